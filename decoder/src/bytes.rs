@@ -1,0 +1,50 @@
+//! A cursor over checked bytes: variable-length integers and names.
+
+use crate::OpenError;
+
+/// Reads fields from the front of a slice.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bytes<'a>(pub &'a [u8]);
+
+impl<'a> Bytes<'a> {
+    pub fn byte(&mut self) -> Result<u8, OpenError> {
+        let (&first, rest) = self.0.split_first().ok_or(OpenError::Truncated)?;
+        self.0 = rest;
+        Ok(first)
+    }
+
+    pub fn take(&mut self, len: usize) -> Result<&'a [u8], OpenError> {
+        let (head, rest) = self.0.split_at_checked(len).ok_or(OpenError::Truncated)?;
+        self.0 = rest;
+        Ok(head)
+    }
+
+    /// LEB128: seven bits a byte, least significant first, at most five bytes.
+    pub fn varint(&mut self) -> Result<u32, OpenError> {
+        let mut value = 0u32;
+        for shift in [0, 7, 14, 21, 28] {
+            let byte = self.byte()?;
+            let bits = u32::from(byte & 0x7f);
+            if shift == 28 && bits > 0xf {
+                return Err(OpenError::Malformed);
+            }
+            value |= bits << shift;
+            if byte & 0x80 == 0 {
+                return Ok(value);
+            }
+        }
+        Err(OpenError::Malformed)
+    }
+
+    /// A varint that holds a signed number as 0, -1, 1, -2, ...
+    pub fn zigzag(&mut self) -> Result<i32, OpenError> {
+        let n = self.varint()?;
+        Ok(((n >> 1) as i32) ^ -((n & 1) as i32))
+    }
+
+    /// A length in a varint, then that many bytes of UTF-8.
+    pub fn name(&mut self) -> Result<&'a str, OpenError> {
+        let len = self.varint()? as usize;
+        core::str::from_utf8(self.take(len)?).map_err(|_| OpenError::Malformed)
+    }
+}

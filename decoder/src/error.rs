@@ -1,0 +1,50 @@
+//! Why bytes are not a clip, or memory does not fit one.
+
+/// Why bytes could not be opened as a rig or a clip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OpenError {
+    /// The file does not begin with the magic of a clip: it is something else.
+    BadMagic,
+    /// A clip of a version that this decoder does not play.
+    UnsupportedVersion(u8),
+    /// The bytes end before the clip does.
+    Truncated,
+    /// A CRC does not match: the bytes were damaged.
+    BadCrc,
+    /// The CRC matches but a field is outside its bounds: the encoder is at fault.
+    Malformed,
+    /// The clip carries no rig and none was given, or not the one that it was made for.
+    WrongRig,
+}
+
+/// The memory lent to a player is too small for the clip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooSmall {
+    /// What the clip needs, in elements of the slice that was too small.
+    pub needed: usize,
+}
+
+impl core::fmt::Display for OpenError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            OpenError::BadMagic => f.write_str("not a pantin clip"),
+            OpenError::UnsupportedVersion(v) => write!(f, "clip version {v:#04x} is not supported"),
+            OpenError::Truncated => f.write_str("the clip is truncated"),
+            OpenError::BadCrc => f.write_str("a CRC does not match: the clip is damaged"),
+            OpenError::Malformed => f.write_str("the clip is malformed"),
+            OpenError::WrongRig => f.write_str("the clip needs another rig"),
+        }
+    }
+}
+
+impl core::fmt::Display for TooSmall {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "the player needs memory for {} elements", self.needed)
+    }
+}
+
+#[cfg(feature = "std")]
+impl std::error::Error for OpenError {}
+#[cfg(feature = "std")]
+impl std::error::Error for TooSmall {}

@@ -1,0 +1,315 @@
+//! The rig: joints, their parents and offsets, and what each channel of a pose means.
+//!
+//! A rig's bytes depend on nothing but the figure, so that many clips may share one by its [`Rig::id`].
+
+use crate::bytes::Bytes;
+use crate::layout::{MAX_CHANNELS, MAX_JOINTS};
+use crate::{OpenError, crc};
+
+/// What one channel of a joint drives. A joint applies its channels in the order of its list, as BVH does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Replaces the x of the joint's offset.
+    Xposition,
+    /// Replaces the y of the joint's offset.
+    Yposition,
+    /// Replaces the z of the joint's offset.
+    Zposition,
+    /// Turns about the joint's x axis.
+    Xrotation,
+    /// Turns about the joint's y axis.
+    Yrotation,
+    /// Turns about the joint's z axis.
+    Zrotation,
+    /// Component w (the real part) of a rotation given as a quaternion, which the figure normalizes.
+    Wquaternion,
+    /// Component x of a quaternion.
+    Xquaternion,
+    /// Component y of a quaternion.
+    Yquaternion,
+    /// Component z of a quaternion.
+    Zquaternion,
+    /// Component x of a rotation given as an exponential map (axis times angle).
+    Xexponential,
+    /// Component y of an exponential map.
+    Yexponential,
+    /// Component z of an exponential map.
+    Zexponential,
+    /// A number that moves no joint: a morph weight, a servo, a light.
+    Scalar,
+}
+
+impl Kind {
+    /// Every kind, at the index that stands for it in a rig's bytes.
+    pub const ALL: [Kind; 14] = [
+        Kind::Xposition,
+        Kind::Yposition,
+        Kind::Zposition,
+        Kind::Xrotation,
+        Kind::Yrotation,
+        Kind::Zrotation,
+        Kind::Wquaternion,
+        Kind::Xquaternion,
+        Kind::Yquaternion,
+        Kind::Zquaternion,
+        Kind::Xexponential,
+        Kind::Yexponential,
+        Kind::Zexponential,
+        Kind::Scalar,
+    ];
+
+    /// A translation along an axis of the parent.
+    pub const fn is_position(self) -> bool {
+        matches!(self, Kind::Xposition | Kind::Yposition | Kind::Zposition)
+    }
+
+    /// An Euler angle about one axis.
+    pub const fn is_rotation(self) -> bool {
+        matches!(self, Kind::Xrotation | Kind::Yrotation | Kind::Zrotation)
+    }
+
+    /// A component of a quaternion.
+    pub const fn is_quaternion(self) -> bool {
+        matches!(self, Kind::Wquaternion | Kind::Xquaternion | Kind::Yquaternion | Kind::Zquaternion)
+    }
+
+    /// A component of an exponential map.
+    pub const fn is_exponential(self) -> bool {
+        matches!(self, Kind::Xexponential | Kind::Yexponential | Kind::Zexponential)
+    }
+
+    /// The axis of a position, rotation, exponential map or of a quaternion's imaginary part: 0, 1, 2 for x, y, z.
+    pub const fn axis(self) -> Option<usize> {
+        match self {
+            Kind::Xposition | Kind::Xrotation | Kind::Xquaternion | Kind::Xexponential => Some(0),
+            Kind::Yposition | Kind::Yrotation | Kind::Yquaternion | Kind::Yexponential => Some(1),
+            Kind::Zposition | Kind::Zrotation | Kind::Zquaternion | Kind::Zexponential => Some(2),
+            Kind::Wquaternion | Kind::Scalar => None,
+        }
+    }
+
+    pub(crate) fn from_code(code: u8) -> Result<Kind, OpenError> {
+        Kind::ALL.get(usize::from(code)).copied().ok_or(OpenError::Malformed)
+    }
+}
+
+/// The channels of one joint, in the order in which they apply: two to a byte, low half first.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinds<'a> {
+    halves: &'a [u8],
+    next: u8,
+    len: u8,
+}
+
+impl Iterator for Kinds<'_> {
+    type Item = Kind;
+
+    fn next(&mut self) -> Option<Kind> {
+        if self.next >= self.len {
+            return None;
+        }
+        let byte = *self.halves.get(usize::from(self.next / 2))?;
+        let code = if self.next % 2 == 0 { byte & 0xf } else { byte >> 4 };
+        self.next += 1;
+        Kind::from_code(code).ok()
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = usize::from(self.len - self.next);
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for Kinds<'_> {}
+
+/// One joint, or an End Site (a joint without channels that only gives a bone its length).
+#[derive(Clone, Copy, Debug)]
+pub struct Joint<'a> {
+    /// Its name in UTF-8; an End Site has none.
+    pub name: &'a str,
+    /// Index of the parent, always smaller than the joint's own; `None` for the root.
+    pub parent: Option<u16>,
+    /// Where it stands in its parent, in steps of [`Rig::length_exponent`].
+    pub offset: [i32; 3],
+    /// Whether this is an End Site.
+    pub end_site: bool,
+    /// Index of its first channel in a pose.
+    pub first_channel: u16,
+    /// Its channels.
+    pub kinds: Kinds<'a>,
+}
+
+/// One channel that moves no joint.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar<'a> {
+    /// Its name in UTF-8.
+    pub name: &'a str,
+    /// A pose's value times 2^(exponent - 31) is the scalar: it lies within -2^exponent .. 2^exponent.
+    pub exponent: i8,
+}
+
+/// A checked rig.
+#[derive(Clone, Copy, Debug)]
+pub struct Rig<'a> {
+    bytes: &'a [u8],
+    joints: u16,
+    scalars: u16,
+    joint_channels: u16,
+    cm_per_unit: u32,
+    length_exponent: i8,
+}
+
+impl<'a> Rig<'a> {
+    /// Checks `bytes`, all of them one rig with its CRC.
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, OpenError> {
+        let (body, stored) = bytes.split_last_chunk::<2>().ok_or(OpenError::Truncated)?;
+        if crc::of(body) != u16::from_le_bytes(*stored) {
+            return Err(OpenError::BadCrc);
+        }
+        let mut reader = Bytes(body);
+        let cm_per_unit = reader.varint()?;
+        let length_exponent = reader.byte()? as i8;
+        let joints = reader.varint()?;
+        let scalars = reader.varint()?;
+        if cm_per_unit == 0 || !(-31..=31).contains(&length_exponent) {
+            return Err(OpenError::Malformed);
+        }
+        if joints > MAX_JOINTS as u32 || scalars > MAX_CHANNELS as u32 {
+            return Err(OpenError::Malformed);
+        }
+        let mut rig = Rig {
+            bytes: reader.0,
+            joints: joints as u16,
+            scalars: scalars as u16,
+            joint_channels: 0,
+            cm_per_unit,
+            length_exponent,
+        };
+        let mut walk = rig.joints();
+        for index in 0..rig.joints {
+            let joint = walk.parse()?;
+            if joint.parent.map_or(index != 0, |parent| parent >= index) {
+                return Err(OpenError::Malformed);
+            }
+            if joint.kinds.count() != usize::from(joint.kinds.len) {
+                return Err(OpenError::Malformed);
+            }
+        }
+        rig.joint_channels = walk.first_channel;
+        let mut walk = Scalars { bytes: walk.bytes, left: rig.scalars };
+        for _ in 0..rig.scalars {
+            walk.parse()?;
+        }
+        if !walk.bytes.0.is_empty() || rig.channels() > MAX_CHANNELS {
+            return Err(OpenError::Malformed);
+        }
+        Ok(rig)
+    }
+
+    /// Names the rig in clips that do not carry it: FNV-1a of its bytes without the CRC, 32 bits.
+    pub fn id_of(bytes: &[u8]) -> u32 {
+        let body = bytes.split_last_chunk::<2>().map_or(bytes, |(body, _)| body);
+        body.iter().fold(0x811c_9dc5, |hash, &byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+    }
+
+    /// Joints, End Sites included. The root comes first, and every parent before its children.
+    pub fn joints(&self) -> Joints<'a> {
+        Joints { bytes: Bytes(self.bytes), left: self.joints, first_channel: 0 }
+    }
+
+    /// Channels that move no joint. In a pose they follow the joints' channels.
+    pub fn scalars(&self) -> Scalars<'a> {
+        let mut joints = self.joints();
+        joints.by_ref().for_each(drop);
+        Scalars { bytes: joints.bytes, left: self.scalars }
+    }
+
+    /// Number of joints, End Sites included.
+    pub fn joint_count(&self) -> usize {
+        usize::from(self.joints)
+    }
+
+    /// Channels of a pose that belong to joints; scalars follow them.
+    pub fn joint_channels(&self) -> usize {
+        usize::from(self.joint_channels)
+    }
+
+    /// Length of a pose.
+    pub fn channels(&self) -> usize {
+        usize::from(self.joint_channels) + usize::from(self.scalars)
+    }
+
+    /// Length of the source's unit, in millionths of a centimetre.
+    pub fn micro_cm_per_unit(&self) -> u32 {
+        self.cm_per_unit
+    }
+
+    /// One step of an offset is 2^`length_exponent` units of the source.
+    pub fn length_exponent(&self) -> i8 {
+        self.length_exponent
+    }
+}
+
+/// Walks the joints of a rig.
+#[derive(Clone, Debug)]
+pub struct Joints<'a> {
+    bytes: Bytes<'a>,
+    left: u16,
+    first_channel: u16,
+}
+
+impl<'a> Joints<'a> {
+    fn parse(&mut self) -> Result<Joint<'a>, OpenError> {
+        let head = self.bytes.byte()?;
+        let len = head & 0xf;
+        let end_site = head & 0x10 != 0;
+        if head & 0xe0 != 0 || (end_site && len != 0) {
+            return Err(OpenError::Malformed);
+        }
+        let parent = self.bytes.varint()?;
+        if parent > MAX_JOINTS as u32 {
+            return Err(OpenError::Malformed);
+        }
+        let parent = (parent as u16).checked_sub(1);
+        let halves = self.bytes.take(usize::from(len).div_ceil(2))?;
+        let offset = [self.bytes.zigzag()?, self.bytes.zigzag()?, self.bytes.zigzag()?];
+        let name = if end_site { "" } else { self.bytes.name()? };
+        let first_channel = self.first_channel;
+        // At most MAX_JOINTS joints of 15 channels: fits 16 bits.
+        self.first_channel = first_channel.wrapping_add(u16::from(len));
+        self.left = self.left.saturating_sub(1);
+        Ok(Joint { name, parent, offset, end_site, first_channel, kinds: Kinds { halves, next: 0, len } })
+    }
+}
+
+impl<'a> Iterator for Joints<'a> {
+    type Item = Joint<'a>;
+
+    fn next(&mut self) -> Option<Joint<'a>> {
+        if self.left == 0 { None } else { self.parse().ok() }
+    }
+}
+
+/// Walks the scalars of a rig.
+#[derive(Clone, Debug)]
+pub struct Scalars<'a> {
+    bytes: Bytes<'a>,
+    left: u16,
+}
+
+impl<'a> Scalars<'a> {
+    fn parse(&mut self) -> Result<Scalar<'a>, OpenError> {
+        let exponent = self.bytes.byte()? as i8;
+        let name = self.bytes.name()?;
+        self.left = self.left.saturating_sub(1);
+        Ok(Scalar { name, exponent })
+    }
+}
+
+impl<'a> Iterator for Scalars<'a> {
+    type Item = Scalar<'a>;
+
+    fn next(&mut self) -> Option<Scalar<'a>> {
+        if self.left == 0 { None } else { self.parse().ok() }
+    }
+}

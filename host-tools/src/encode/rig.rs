@@ -1,0 +1,151 @@
+//! The rig's bytes.
+
+use super::varint;
+use crate::motion::{Joint, Kind, Rig};
+use anyhow::{Result, bail, ensure};
+use pantin::{crc, layout};
+
+/// Bits of the longest offset: an error of 2^-22 of it a joint is far below what a figure shows.
+const OFFSET_BITS: i32 = 21;
+
+/// A joint's offset as the rig keeps it: that of a root, or of the only child of a root that stands still in it, is where
+/// the clip begins and no bone of the figure, when position channels replace it anyway.
+pub fn rest_offset(rig: &Rig, joint: usize) -> [f64; 3] {
+    let is_placement = |joint: &Joint| joint.kinds.iter().filter(|kind| kind.is_position()).count() == 3;
+    let entry = &rig.joints[joint];
+    let placed = match entry.parent {
+        None => true,
+        Some(parent) => {
+            let siblings = rig.joints.iter().filter(|other| other.parent == Some(parent)).count();
+            rig.joints[parent].parent.is_none() && siblings == 1
+        }
+    };
+    if placed && is_placement(entry) { [0.0; 3] } else { entry.offset }
+}
+
+/// Step of the rig's offsets: 2^exponent units.
+pub fn length_exponent(rig: &Rig) -> i8 {
+    let longest =
+        (0..rig.joints.len()).flat_map(|joint| rest_offset(rig, joint)).fold(0.0, |longest: f64, x| longest.max(x.abs()));
+    if longest == 0.0 { 0 } else { (longest.log2().floor() as i32 + 1 - OFFSET_BITS).clamp(-31, 31) as i8 }
+}
+
+/// Step of a scalar's values: the least exponent whose range holds the scale.
+pub fn scalar_exponent(full_scale: f64) -> i8 {
+    (full_scale.abs().max(f64::MIN_POSITIVE).log2().floor() as i32 + 1).clamp(-31, 31) as i8
+}
+
+/// The bytes of `rig` with their CRC.
+pub fn encode(rig: &Rig) -> Result<Vec<u8>> {
+    ensure!(rig.joints.len() <= layout::MAX_JOINTS, "{} joints; a rig holds at most {}", rig.joints.len(), layout::MAX_JOINTS);
+    ensure!(rig.channels() <= layout::MAX_CHANNELS, "{} channels; a rig holds at most {}", rig.channels(), layout::MAX_CHANNELS);
+    let micro = (rig.cm_per_unit * 1e6).round();
+    ensure!((1.0..4e9).contains(&micro), "a unit of {} cm is outside 0.000001 .. 4000 cm", rig.cm_per_unit);
+    let exponent = length_exponent(rig);
+    let mut out = Vec::new();
+    varint::put(&mut out, micro as u32);
+    out.push(exponent as u8);
+    varint::put(&mut out, rig.joints.len() as u32);
+    varint::put(&mut out, rig.scalars.len() as u32);
+    for (index, joint) in rig.joints.iter().enumerate() {
+        ensure!(joint.kinds.len() <= 15, "joint {} has {} channels; at most 15 fit", joint.name, joint.kinds.len());
+        out.push(joint.kinds.len() as u8 | u8::from(joint.end_site) << 4);
+        match joint.parent {
+            None if index == 0 => varint::put(&mut out, 0),
+            Some(parent) if parent < index => varint::put(&mut out, parent as u32 + 1),
+            _ => bail!("joint {} stands before its parent or is a second root", joint.name),
+        }
+        for pair in joint.kinds.chunks(2) {
+            out.push(code(pair[0]) | pair.get(1).map_or(0, |&kind| code(kind)) << 4);
+        }
+        for x in rest_offset(rig, index) {
+            varint::put_zigzag(&mut out, (x / f64::from(exponent).exp2()).round() as i32);
+        }
+        if !joint.end_site {
+            varint::put_name(&mut out, &joint.name);
+        }
+    }
+    for scalar in &rig.scalars {
+        out.push(scalar_exponent(scalar.full_scale) as u8);
+        varint::put_name(&mut out, &scalar.name);
+    }
+    let crc = crc::of(&out);
+    out.extend_from_slice(&crc.to_le_bytes());
+    Ok(out)
+}
+
+fn code(kind: Kind) -> u8 {
+    kind as u8
+}
+
+/// The rig that `bytes` hold, in source units.
+pub fn decode(rig: &pantin::Rig) -> Rig {
+    let step = f64::from(rig.length_exponent()).exp2();
+    Rig {
+        joints: rig
+            .joints()
+            .map(|joint| Joint {
+                name: joint.name.to_string(),
+                parent: joint.parent.map(usize::from),
+                offset: joint.offset.map(|x| f64::from(x) * step),
+                kinds: joint.kinds.collect(),
+                end_site: joint.end_site,
+            })
+            .collect(),
+        scalars: rig
+            .scalars()
+            .map(|scalar| crate::motion::Scalar { name: scalar.name.to_string(), full_scale: f64::from(scalar.exponent).exp2() })
+            .collect(),
+        cm_per_unit: f64::from(rig.micro_cm_per_unit()) * 1e-6,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion;
+
+    fn small() -> Rig {
+        let joint = |name: &str, parent, offset, kinds: &[Kind]| Joint {
+            name: name.into(),
+            parent,
+            offset,
+            kinds: kinds.to_vec(),
+            end_site: name.is_empty(),
+        };
+        use Kind::*;
+        Rig {
+            joints: vec![
+                joint("hip", None, [0.0, 90.0, 0.0], &[Xposition, Yposition, Zposition, Zrotation, Xrotation, Yrotation]),
+                joint("knee", Some(0), [0.0, -45.0, 0.5], &[Zrotation, Xrotation, Yrotation]),
+                joint("", Some(1), [0.0, -40.25, 0.0], &[]),
+            ],
+            scalars: vec![motion::Scalar { name: "smile".into(), full_scale: 1.0 }],
+            cm_per_unit: 2.54,
+        }
+    }
+
+    #[test]
+    fn comes_back_but_for_where_the_clip_begins() {
+        let rig = small();
+        let bytes = encode(&rig).unwrap();
+        let back = decode(&pantin::Rig::new_checked(&bytes).unwrap());
+        let mut expected = rig.clone();
+        expected.joints[0].offset = [0.0; 3];
+        expected.scalars[0].full_scale = 2.0;
+        assert_eq!(back, expected);
+    }
+
+    #[test]
+    fn truncations_and_flipped_bits_are_refused() {
+        let bytes = encode(&small()).unwrap();
+        for len in 0..bytes.len() {
+            assert!(pantin::Rig::new_checked(&bytes[..len]).is_err());
+        }
+        for bit in 0..bytes.len() * 8 {
+            let mut bad = bytes.clone();
+            bad[bit / 8] ^= 1 << (bit % 8);
+            assert!(pantin::Rig::new_checked(&bad).is_err());
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! The host side of pantin: motion files in, clips out, and pictures of both.
+
+pub mod encode;
+pub mod motion;

@@ -1,0 +1,3 @@
+//! `pantin`: the host tool.
+
+fn main() {}

@@ -1,0 +1,132 @@
+//! Motion as every stage of the host tool shares it: a rig, and one value a channel a frame.
+//!
+//! Units are the source's: degrees for rotations, source units (times `cm_per_unit` gives cm) for positions,
+//! degrees (axis times angle) for exponential maps, 1 for quaternion components.
+
+pub use pantin::Kind;
+
+/// A joint, or an End Site.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Name in the source; empty for an End Site.
+    pub name: String,
+    /// Index of the parent, smaller than the joint's own; `None` for the root.
+    pub parent: Option<usize>,
+    /// Where it stands in its parent, in source units. Position channels replace it, axis by axis.
+    pub offset: [f64; 3],
+    /// Channels in the order in which they apply.
+    pub kinds: Vec<Kind>,
+    /// Whether this is an End Site: no channels, no name, only a bone's end.
+    pub end_site: bool,
+}
+
+/// A channel that moves no joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scalar {
+    /// Name in the source.
+    pub name: String,
+    /// Full scale: the value stays within -full_scale..full_scale.
+    pub full_scale: f64,
+}
+
+/// The figure: everything but the motion.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Rig {
+    /// Parents before children; the root first.
+    pub joints: Vec<Joint>,
+    /// Scalars; their channels follow those of the joints.
+    pub scalars: Vec<Scalar>,
+    /// Length of the source's unit in cm.
+    pub cm_per_unit: f64,
+}
+
+impl Rig {
+    /// Channels of the joints.
+    pub fn joint_channels(&self) -> usize {
+        self.joints.iter().map(|joint| joint.kinds.len()).sum()
+    }
+
+    /// All channels.
+    pub fn channels(&self) -> usize {
+        self.joint_channels() + self.scalars.len()
+    }
+
+    /// Index of each joint's first channel.
+    pub fn first_channels(&self) -> Vec<usize> {
+        let mut next = 0;
+        self.joints
+            .iter()
+            .map(|joint| {
+                let first = next;
+                next += joint.kinds.len();
+                first
+            })
+            .collect()
+    }
+
+    /// Joint and kind of every channel; scalars have no joint.
+    pub fn channel_kinds(&self) -> Vec<(Option<usize>, Kind)> {
+        let joints = self.joints.iter().enumerate();
+        let of_joints = joints.flat_map(|(index, joint)| joint.kinds.iter().map(move |&kind| (Some(index), kind)));
+        of_joints.chain(self.scalars.iter().map(|_| (None, Kind::Scalar))).collect()
+    }
+
+    /// What a person would call a channel: `hip.Xrotation`, or the scalar's name.
+    pub fn channel_name(&self, channel: usize) -> String {
+        match self.channel_kinds().get(channel) {
+            Some(&(Some(joint), kind)) => format!("{}.{kind:?}", self.joints[joint].name),
+            _ => self
+                .scalars
+                .get(channel.wrapping_sub(self.joint_channels()))
+                .map_or_else(String::new, |scalar| scalar.name.clone()),
+        }
+    }
+
+    /// What a person would call a joint: an End Site by its parent's name.
+    pub fn joint_name(&self, joint: usize) -> String {
+        let entry = &self.joints[joint];
+        match entry.parent {
+            Some(parent) if entry.end_site => format!("{}/end", self.joints[parent].name),
+            _ => entry.name.clone(),
+        }
+    }
+}
+
+/// How a channel runs between its keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Straight lines.
+    Linear,
+    /// Cubic Hermite with Catmull-Rom tangents: velocity continuous.
+    CatmullRom,
+    /// The natural cubic spline: acceleration continuous in time.
+    Natural,
+    /// The spline whose second difference is continuous and piecewise linear on the frames: coded exactly by slopes alone.
+    Discrete,
+}
+
+/// The keys of one channel: frames strictly ascending, the first 0 and the last `frames - 1`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keys {
+    /// How the channel runs between them.
+    pub interpolation: Interpolation,
+    /// Frame and value.
+    pub keys: Vec<(usize, f64)>,
+}
+
+/// A motion: what importers make, what the fit takes, what an expanded clip becomes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// The figure.
+    pub rig: Rig,
+    /// Seconds a frame.
+    pub frame_time: f64,
+    /// Number of frames, at least 1.
+    pub frames: usize,
+    /// `values[channel][frame]`.
+    pub values: Vec<Vec<f64>>,
+    /// The keys that the source gave, channel by channel, where it had them.
+    pub keys: Vec<Option<Keys>>,
+    /// Whether frame 0 follows the last frame.
+    pub looped: bool,
+}
