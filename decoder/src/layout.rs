@@ -5,9 +5,69 @@ pub const MAGIC: [u8; 2] = *b"Pn";
 /// Version byte: values from 0xe0 are experimental and promise nothing.
 pub const VERSION: u8 = 0xe1;
 
+/// Flag: the rig stands in the file, after the flags.
+pub const HAS_RIG: u8 = 1;
+/// Flag: frame 0 follows the last frame.
+pub const LOOPED: u8 = 2;
+/// Flag: a bit for each joint with three Euler rotations says whether it is coded as an exponential map.
+pub const HAS_EXPONENTIALS: u8 = 4;
+/// Flag: event markers stand before the channels.
+pub const HAS_EVENTS: u8 = 8;
+/// Flags that a decoder knows.
+pub const KNOWN_FLAGS: u8 = 15;
+
 /// Most joints of a rig, End Sites included.
 pub const MAX_JOINTS: usize = 1023;
 /// Most channels of a pose.
 pub const MAX_CHANNELS: usize = 1023;
 /// Most frames of a clip.
 pub const MAX_FRAMES: u32 = 1 << 24;
+
+/// Bytes of the motion that share one CRC; the last block may be shorter.
+pub const BLOCK_BYTES: usize = 254;
+/// Bytes of a CRC.
+pub const CRC_BYTES: usize = 2;
+
+/// Frame rates that take one byte: index 0 means that the frame time follows in nanoseconds.
+pub const FRAME_RATES: [u8; 16] = [0, 120, 60, 30, 24, 25, 50, 100, 90, 48, 36, 20, 15, 12, 10, 8];
+
+/// Lengths of a segment in frames, by index.
+pub const LENGTHS: [u8; 16] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
+
+/// What an acceleration step does to the position, by length: 2^20 * 2 / (L (L + 1)).
+/// A step of w moves p by half a channel step or less over the segment, whatever its length (METHOD 5).
+pub const W_STEPS: [u32; 16] = falling_steps(2);
+/// The same for a slope: 2^20 * 6 / (L (L + 1) (L + 2)).
+pub const K_STEPS: [u32; 16] = falling_steps(3);
+
+const fn falling_steps(order: u32) -> [u32; 16] {
+    let mut steps = [0; 16];
+    let mut i = 0;
+    while i < 16 {
+        let l = LENGTHS[i] as u32;
+        steps[i] = if order == 2 { (1 << 21) / (l * (l + 1)) } else { (6 << 20) / (l * (l + 1) * (l + 2)) };
+        i += 1;
+    }
+    steps
+}
+
+/// Segment types: bits 4 and 5 of a mode; bits 0 to 3 are the length's index.
+pub mod segment_type {
+    /// A new constant acceleration.
+    pub const W: u8 = 0;
+    /// The acceleration carries on, with a new slope.
+    pub const K: u8 = 1;
+    /// A new acceleration and a new slope.
+    pub const WK: u8 = 2;
+    /// The acceleration carries on and stays constant.
+    pub const NONE: u8 = 3;
+}
+/// The mode of a channel that has had no segment yet. No segment has it: type NONE ends at length index 14.
+pub const START_MODE: u8 = 63;
+
+/// Greatest magnitude of w or k with a symbol of its own; that symbol also announces a larger one.
+pub const MAX_MAGNITUDE: u32 = 10;
+/// Largest index of a channel's step: 2^(index / 2) raw units.
+pub const MAX_STEP: u8 = 59;
+/// The channel's step that the first channel's is told against.
+pub const FIRST_STEP: u8 = 44;

@@ -2,12 +2,22 @@
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![forbid(unsafe_code)]
 
+mod blocks;
 mod bytes;
+mod channel;
+mod clip;
 pub mod crc;
+pub mod entropy;
 mod error;
 pub mod layout;
+mod player;
 mod rig;
+pub mod segment;
+pub mod tables;
 pub mod units;
 
+pub use channel::{ChannelState, length, step_size};
+pub use clip::{Clip, Event, has_choice};
 pub use error::{OpenError, TooSmall};
+pub use player::Player;
 pub use rig::{Joint, Joints, Kind, Kinds, Rig, Scalar, Scalars};

@@ -1,4 +1,5 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
 pub mod encode;
+pub mod fit;
 pub mod motion;

@@ -1,4 +1,7 @@
 //! Bytes of a clip, part by part: mirrors of the decoder's files.
 
+pub mod clip;
+pub mod entropy;
 pub mod rig;
+pub mod segment;
 pub mod varint;

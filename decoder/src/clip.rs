@@ -1,0 +1,280 @@
+//! A clip: bytes checked once. Afterwards playing cannot fail.
+
+use crate::blocks::{self, Input, STRIDE};
+use crate::bytes::Bytes;
+use crate::entropy::Symbols;
+use crate::layout::*;
+use crate::rig::{Joint, Kind, Rig};
+use crate::{OpenError, crc};
+
+/// A checked clip.
+#[derive(Clone, Copy, Debug)]
+pub struct Clip<'a> {
+    rig: Rig<'a>,
+    motion: &'a [u8],
+    head: Head,
+}
+
+/// The fields in front of a motion's symbols.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Head {
+    pub(crate) flags: u8,
+    pub(crate) length_exponent: i8,
+    pub(crate) frames: u32,
+    pub(crate) frame_time_ns: u32,
+    /// Where the exponential-map bits, the events and the symbols begin.
+    exponentials: u32,
+    events: u32,
+    event_count: u32,
+    pub(crate) symbols: u32,
+}
+
+/// The parts of a file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parts<'a> {
+    pub(crate) flags: u8,
+    pub(crate) rig: Option<&'a [u8]>,
+    /// CRC of the magic, version, flags and the motion's length: the first block's CRC goes on from it.
+    pub(crate) seed: u16,
+    /// All that follows, of which `motion_len` bytes are the motion.
+    pub(crate) rest: &'a [u8],
+    pub(crate) motion_len: usize,
+}
+
+impl<'a> Parts<'a> {
+    pub(crate) fn split(bytes: &'a [u8]) -> Result<Parts<'a>, OpenError> {
+        let mut reader = Bytes(bytes);
+        if reader.take(2)? != MAGIC {
+            return Err(OpenError::BadMagic);
+        }
+        let version = reader.byte()?;
+        if version != VERSION {
+            return Err(OpenError::UnsupportedVersion(version));
+        }
+        let flags = reader.byte()?;
+        if flags & !KNOWN_FLAGS != 0 {
+            return Err(OpenError::Malformed);
+        }
+        let rig = if flags & HAS_RIG != 0 {
+            let len = reader.varint()? as usize;
+            Some(reader.take(len)?)
+        } else {
+            None
+        };
+        let motion_len = reader.varint()? as usize;
+        let seed = crc::update(crc::of(&[MAGIC[0], MAGIC[1], version, flags]), &(motion_len as u32).to_le_bytes());
+        Ok(Parts { flags, rig, seed, rest: reader.0, motion_len })
+    }
+}
+
+/// Reads the head's fields, which may cross from one block into the next.
+struct HeadReader<'i, 'a> {
+    input: &'i Input<'a>,
+    position: u32,
+}
+
+impl HeadReader<'_, '_> {
+    fn byte(&mut self) -> u8 {
+        self.input.byte(&mut self.position)
+    }
+
+    fn u32(&mut self) -> u32 {
+        u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()])
+    }
+
+    fn varint(&mut self) -> u32 {
+        let mut value = 0;
+        for shift in [0, 7, 14, 21, 28] {
+            let byte = self.byte();
+            value |= u32::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                break;
+            }
+        }
+        value
+    }
+}
+
+/// Whether a clip may code the joint's rotation as an exponential map in place of its three Euler angles.
+pub fn has_choice(joint: &Joint<'_>) -> bool {
+    joint.kinds.filter(|kind| kind.is_rotation()).count() == 3
+}
+
+impl Head {
+    /// Reads the head of a motion that was made for `rig`.
+    pub(crate) fn read(input: &Input<'_>, flags: u8, rig: &Rig<'_>, rig_id: Option<u32>) -> Result<Head, OpenError> {
+        let mut reader = HeadReader { input, position: 0 };
+        let rate = reader.byte();
+        let frame_time_ns = match FRAME_RATES.get(usize::from(rate)) {
+            Some(&0) => reader.u32(),
+            Some(&rate) => (1_000_000_000 + u32::from(rate) / 2) / u32::from(rate),
+            None => return Err(OpenError::Malformed),
+        };
+        let frames = reader.varint();
+        let length_exponent = reader.byte() as i8;
+        if frame_time_ns == 0 || frames == 0 || frames > MAX_FRAMES || !(-63..=31).contains(&length_exponent) {
+            return Err(OpenError::Malformed);
+        }
+        if let Some(id) = rig_id
+            && reader.u32() != id
+        {
+            return Err(OpenError::WrongRig);
+        }
+        let exponentials = reader.position;
+        if flags & HAS_EXPONENTIALS != 0 {
+            let choices = rig.joints().filter(has_choice).count();
+            for _ in 0..choices.div_ceil(8) {
+                reader.byte();
+            }
+        }
+        let event_count = if flags & HAS_EVENTS != 0 { reader.varint() } else { 0 };
+        let events = reader.position;
+        for _ in 0..event_count {
+            if reader.position as usize > input.bytes.len() {
+                return Err(OpenError::Malformed);
+            }
+            reader.varint();
+            reader.varint();
+        }
+        let symbols = reader.position;
+        Ok(Head { flags, length_exponent, frames, frame_time_ns, exponentials, events, event_count, symbols })
+    }
+}
+
+/// A mark in time that a program may react to: a footfall, a sound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// The frame it stands at.
+    pub frame: u32,
+    /// What it means is the program's own affair.
+    pub id: u32,
+}
+
+impl<'a> Clip<'a> {
+    /// Checks a file that holds its rig.
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Clip<'a>, OpenError> {
+        let parts = Parts::split(bytes)?;
+        let rig = Rig::new_checked(parts.rig.ok_or(OpenError::WrongRig)?)?;
+        Clip::assemble(&parts, rig, None)
+    }
+
+    /// Checks a file without a rig (`pantin convert --rig-out`), with the rig that it was made for.
+    /// A file that holds its own is opened with that.
+    pub fn with_rig(bytes: &'a [u8], rig_bytes: &'a [u8]) -> Result<Clip<'a>, OpenError> {
+        let parts = Parts::split(bytes)?;
+        if let Some(own) = parts.rig {
+            return Clip::assemble(&parts, Rig::new_checked(own)?, None);
+        }
+        Clip::assemble(&parts, Rig::new_checked(rig_bytes)?, Some(Rig::id_of(rig_bytes)))
+    }
+
+    fn assemble(parts: &Parts<'a>, rig: Rig<'a>, rig_id: Option<u32>) -> Result<Clip<'a>, OpenError> {
+        let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
+        if !rest.is_empty() || motion.is_empty() {
+            return Err(OpenError::Malformed);
+        }
+        blocks::check(motion, parts.seed)?;
+        let head = Head::read(&Input { bytes: motion, base: 0 }, parts.flags, &rig, rig_id)?;
+        Ok(Clip { rig, motion, head })
+    }
+
+    /// The figure.
+    pub fn rig(&self) -> Rig<'a> {
+        self.rig
+    }
+
+    /// Number of frames, at least 1.
+    pub fn frames(&self) -> u32 {
+        self.head.frames
+    }
+
+    /// Time from one frame to the next.
+    pub fn frame_time_ns(&self) -> u32 {
+        self.head.frame_time_ns
+    }
+
+    /// Whether frame 0 follows the last frame.
+    pub fn looped(&self) -> bool {
+        self.head.flags & LOOPED != 0
+    }
+
+    /// The raw value of a position channel times 2^`length_exponent` is in units of the source.
+    pub fn length_exponent(&self) -> i8 {
+        self.head.length_exponent
+    }
+
+    /// Bytes of the motion with its CRCs: the file without its rig and its first few bytes.
+    pub fn motion_len(&self) -> usize {
+        self.motion.len()
+    }
+
+    /// Bytes of CRCs.
+    pub fn crc_len(&self) -> usize {
+        self.motion.len().div_ceil(STRIDE) * CRC_BYTES
+    }
+
+    /// Bytes in front of the first channel's symbols.
+    pub fn head_len(&self) -> usize {
+        self.head.symbols as usize
+    }
+
+    /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map.
+    pub fn is_exponential(&self, joint: usize) -> bool {
+        if self.head.flags & HAS_EXPONENTIALS == 0 || !self.rig.joints().nth(joint).is_some_and(|joint| has_choice(&joint)) {
+            return false;
+        }
+        let choice = self.rig.joints().take(joint).filter(has_choice).count();
+        let mut position = self.head.exponentials;
+        let mut byte = 0;
+        for _ in 0..=choice / 8 {
+            byte = self.input().byte(&mut position);
+        }
+        byte >> (choice % 8) & 1 != 0
+    }
+
+    /// Number of event markers.
+    pub fn event_count(&self) -> usize {
+        self.head.event_count as usize
+    }
+
+    /// The event markers, in time order.
+    pub fn events(&self) -> impl Iterator<Item = Event> + '_ {
+        let mut position = self.head.events;
+        let mut frame = 0u32;
+        (0..self.head.event_count).map(move |_| {
+            let input = self.input();
+            let mut reader = HeadReader { input: &input, position };
+            frame = frame.wrapping_add(reader.varint());
+            let id = reader.varint();
+            position = reader.position;
+            Event { frame, id }
+        })
+    }
+
+    /// Number of [`crate::ChannelState`]s that a player of this clip needs.
+    pub fn moving(&self) -> usize {
+        let input = self.input();
+        let mut symbols = Symbols::start(&input, self.head.symbols);
+        let mut opening = crate::channel::Opening::default();
+        channel_kinds(&self.rig).filter(|&(kind, _)| opening.read(&mut symbols, &input, kind).1.is_some()).count()
+    }
+
+    pub(crate) fn head(&self) -> &Head {
+        &self.head
+    }
+
+    pub(crate) fn input(&self) -> Input<'a> {
+        Input { bytes: self.motion, base: 0 }
+    }
+}
+
+/// The kind of every channel of a pose and, for positions, the offset that it replaces, in steps of the rig.
+pub(crate) fn channel_kinds<'a>(rig: &Rig<'a>) -> impl Iterator<Item = (Kind, i32)> + use<'a> {
+    let of_joints = rig.joints().flat_map(|joint| {
+        joint.kinds.map(move |kind| {
+            let rest = if kind.is_position() { kind.axis().and_then(|axis| joint.offset.get(axis).copied()) } else { None };
+            (kind, rest.unwrap_or(0))
+        })
+    });
+    of_joints.chain(rig.scalars().map(|_| (Kind::Scalar, 0)))
+}

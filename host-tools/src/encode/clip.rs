@@ -1,0 +1,200 @@
+//! A clip's bytes: the file's head, the rig, the motion's blocks.
+
+use super::entropy::Symbols;
+use super::segment::{Running, Segment};
+use super::varint;
+use anyhow::{Context, Result, ensure};
+use pantin::layout::*;
+use pantin::{Event, crc, step_size, tables};
+
+/// How a channel begins: raw values, multiples of its grids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// It rests where the rig has it: an offset, or zero.
+    Rest,
+    /// It holds one value.
+    Constant {
+        /// The value, a multiple of [`position_grid`].
+        p: i32,
+        /// Index of the channel's step.
+        step: u8,
+    },
+    /// It moves.
+    Moving {
+        /// Value at frame 0, a multiple of [`position_grid`].
+        p: i32,
+        /// Difference from frame 0 to frame 1, a multiple of [`velocity_grid`].
+        v: i32,
+        /// Index of the channel's step.
+        step: u8,
+    },
+}
+
+/// First values are multiples of this: half a channel step.
+pub fn position_grid(step: u8) -> i32 {
+    (step_size(step) >> 1).max(1) as i32
+}
+
+/// First velocities are multiples of this: a quarter of a channel step.
+pub fn velocity_grid(step: u8) -> i32 {
+    (step_size(step) >> 2).max(1) as i32
+}
+
+/// A channel as it is coded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// How it begins.
+    pub start: Start,
+    /// Its segments; none unless it moves.
+    pub segments: Vec<Segment>,
+}
+
+/// A motion as it is coded: one channel for each of the rig's, in its order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coded {
+    /// Number of frames.
+    pub frames: u32,
+    /// Time from one frame to the next.
+    pub frame_time_ns: u32,
+    /// A position's raw value times 2^exponent is in source units.
+    pub length_exponent: i8,
+    /// For each joint that may choose (`pantin::has_choice`): whether its rotation is an exponential map.
+    pub exponentials: Vec<bool>,
+    /// The channels.
+    pub channels: Vec<Channel>,
+    /// Event markers, in time order.
+    pub events: Vec<Event>,
+    /// Whether frame 0 follows the last frame.
+    pub looped: bool,
+}
+
+/// Where the bytes of a motion went.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sizes {
+    /// Fields before the first symbol.
+    pub head: usize,
+    /// Symbols: how channels begin, and their segments.
+    pub symbols: usize,
+    /// CRCs.
+    pub crc: usize,
+}
+
+/// The file: with `rig` in it, or with the id of `rig` if `apart`.
+pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
+    ensure!((1..=MAX_FRAMES).contains(&coded.frames), "{} frames; a clip holds 1 to {MAX_FRAMES}", coded.frames);
+    let mut flags = if apart { 0 } else { HAS_RIG };
+    if coded.looped {
+        flags |= LOOPED;
+    }
+    if coded.exponentials.contains(&true) {
+        flags |= HAS_EXPONENTIALS;
+    }
+    if !coded.events.is_empty() {
+        flags |= HAS_EVENTS;
+    }
+    let mut payload = head(coded, flags, apart.then(|| pantin::Rig::id_of(rig)));
+    let parsed = pantin::Rig::new_checked(rig).context("the rig that was just made does not open")?;
+    ensure!(coded.channels.len() == parsed.channels(), "a rig of {} channels for {}", parsed.channels(), coded.channels.len());
+    payload.extend(symbols(coded, &parsed).finish());
+    let len = payload.len() + payload.len().div_ceil(BLOCK_BYTES) * CRC_BYTES;
+
+    let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
+    let mut crc = crc::update(crc::of(&out), &(len as u32).to_le_bytes());
+    if !apart {
+        varint::put(&mut out, rig.len() as u32);
+        out.extend_from_slice(rig);
+    }
+    varint::put(&mut out, len as u32);
+    for block in payload.chunks(BLOCK_BYTES) {
+        out.extend_from_slice(block);
+        out.extend_from_slice(&crc::update(crc, block).to_le_bytes());
+        crc = crc::INITIAL;
+    }
+    Ok(out)
+}
+
+fn head(coded: &Coded, flags: u8, rig_id: Option<u32>) -> Vec<u8> {
+    let mut out = Vec::new();
+    let of_rate = |rate: u8| (1_000_000_000 + u32::from(rate) / 2) / u32::from(rate);
+    match FRAME_RATES.iter().skip(1).position(|&rate| of_rate(rate) == coded.frame_time_ns) {
+        Some(index) => out.push(index as u8 + 1),
+        None => {
+            out.push(0);
+            out.extend_from_slice(&coded.frame_time_ns.to_le_bytes());
+        }
+    }
+    varint::put(&mut out, coded.frames);
+    out.push(coded.length_exponent as u8);
+    out.extend(rig_id.iter().flat_map(|id| id.to_le_bytes()));
+    if flags & HAS_EXPONENTIALS != 0 {
+        let bits = |chunk: &[bool]| chunk.iter().enumerate().fold(0, |byte, (bit, &set)| byte | u8::from(set) << bit);
+        out.extend(coded.exponentials.chunks(8).map(bits));
+    }
+    if flags & HAS_EVENTS != 0 {
+        varint::put(&mut out, coded.events.len() as u32);
+        let mut before = 0;
+        for event in &coded.events {
+            varint::put(&mut out, event.frame - before);
+            varint::put(&mut out, event.id);
+            before = event.frame;
+        }
+    }
+    out
+}
+
+/// Predicts channel steps as `pantin::Opening` does.
+struct Opening {
+    status: u8,
+    steps: [u8; 2],
+}
+
+impl Opening {
+    fn put(&mut self, start: &Start, position: bool, out: &mut Symbols) {
+        let (status, step, p) = match *start {
+            Start::Rest => (0, 0, 0),
+            Start::Constant { p, step } => (1, step, p),
+            Start::Moving { p, step, .. } => (2, step, p),
+        };
+        out.symbol(tables::status(self.status), status);
+        self.status = status as u8;
+        if status == 0 {
+            return;
+        }
+        let before = std::mem::replace(&mut self.steps[usize::from(position)], step);
+        let change = i32::from(step) - i32::from(before);
+        out.symbol(&tables::STEP_CHANGE, ((change << 1) ^ (change >> 31)) as u32);
+        out.magnitude(&tables::POSITION, p / position_grid(step));
+        if let Start::Moving { v, .. } = *start {
+            out.magnitude(&tables::VELOCITY, v / velocity_grid(step));
+        }
+    }
+}
+
+/// All symbols, in the order in which a player reads them.
+fn symbols(coded: &Coded, rig: &pantin::Rig<'_>) -> Symbols {
+    let mut out = Symbols::default();
+    let mut opening = Opening { status: 0, steps: [FIRST_STEP; 2] };
+    let kinds = rig.joints().flat_map(|joint| joint.kinds).map(pantin::Kind::is_position).chain(std::iter::repeat(false));
+    // due[frame] lists channels in the order in which their running segment was read: the last is the next to be read.
+    let mut due = vec![Vec::new(); coded.frames as usize + 1];
+    let mut running = Vec::new();
+    for (index, (channel, position)) in coded.channels.iter().zip(kinds).enumerate() {
+        opening.put(&channel.start, position, &mut out);
+        if let Start::Moving { v, step, .. } = channel.start {
+            due[0].push(running.len());
+            running.push((index, 0, Running { v, w: 0, k: 0, last: 0, mode: START_MODE, step }));
+        }
+    }
+    for frame in 0..(coded.frames as usize).saturating_sub(2) {
+        for moving in std::mem::take(&mut due[frame]).into_iter().rev() {
+            let (index, next, state) = &mut running[moving];
+            let segment = coded.channels[*index].segments[*next];
+            *next += 1;
+            state.put_mode(segment.mode, &mut out);
+            state.start(segment, Some(&mut out));
+            state.run(segment.length());
+            due[(frame + segment.length()).min(coded.frames as usize)].push(moving);
+        }
+    }
+    out
+}

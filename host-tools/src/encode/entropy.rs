@@ -1,0 +1,96 @@
+//! Writes what `pantin::entropy` reads. rANS is last in, first out: symbols are gathered, then coded from the last to the first.
+
+use pantin::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table};
+
+/// A stretch of the state's low digits: a symbol's probability and where it starts, or bits that are all equally probable.
+#[derive(Clone, Copy, Debug)]
+enum Digit {
+    Symbol { start: u32, size: u32 },
+    Bits { value: u32, count: u32 },
+}
+
+/// Symbols in the order in which a decoder reads them.
+#[derive(Clone, Debug, Default)]
+pub struct Symbols {
+    digits: Vec<Digit>,
+}
+
+/// Start and size of a symbol's stretch of 4096.
+pub fn stretch(table: &Table, symbol: u32) -> (u32, u32) {
+    let at = |index: u32| table.get(index as usize).map_or(1 << SCALE_BITS, |&end| u32::from(end));
+    let start = if symbol == 0 { 0 } else { at(symbol - 1) };
+    (start, at(symbol) - start)
+}
+
+/// What a symbol costs, in bits.
+pub fn cost(table: &Table, symbol: u32) -> f64 {
+    f64::from(SCALE_BITS) - f64::from(stretch(table, symbol).1).log2()
+}
+
+impl Symbols {
+    /// Appends a symbol of the alphabet `table`.
+    pub fn symbol(&mut self, table: &Table, symbol: u32) {
+        let (start, size) = stretch(table, symbol);
+        self.digits.push(Digit::Symbol { start, size });
+    }
+
+    /// Appends `count` bits, 32 at most, the least significant first.
+    pub fn bits(&mut self, mut value: u32, mut count: u32) {
+        while count > 0 {
+            let part = count.min(8);
+            self.digits.push(Digit::Bits { value: value & ((1 << part) - 1), count: part });
+            value = value.checked_shr(part).unwrap_or(0);
+            count -= part;
+        }
+    }
+
+    /// A signed number: its length in bits as a symbol, the bits below the highest, the sign.
+    pub fn magnitude(&mut self, table: &Table, value: i32) {
+        let size = value.unsigned_abs();
+        let bits = u32::BITS - size.leading_zeros();
+        self.symbol(table, bits);
+        if bits > 0 {
+            self.bits(size & !(1 << (bits - 1)), bits - 1);
+            self.bits(u32::from(value < 0), 1);
+        }
+    }
+
+    /// The bytes. A decoder reads zeros past the end, so those that it would read there are left out.
+    pub fn finish(&self) -> Vec<u8> {
+        let mut state = LOW;
+        let mut bytes = Vec::new();
+        let mut shrink = |state: &mut u32, limit: u32| {
+            while *state >= limit {
+                bytes.push(*state as u8);
+                *state >>= 8;
+            }
+        };
+        for digit in self.digits.iter().rev() {
+            match *digit {
+                Digit::Symbol { start, size } => {
+                    shrink(&mut state, (LOW >> SCALE_BITS << 8) * size);
+                    state = (state / size) << SCALE_BITS | (state % size + start);
+                }
+                Digit::Bits { value, count } => {
+                    shrink(&mut state, (LOW << 8) >> count);
+                    state = state << count | value;
+                }
+            }
+        }
+        for _ in 0..STATE_BYTES {
+            bytes.push(state as u8);
+            state >>= 8;
+        }
+        bytes.reverse();
+        while bytes.last() == Some(&0) {
+            bytes.pop();
+        }
+        bytes
+    }
+}
+
+/// What [`Symbols::magnitude`] costs, in bits.
+pub fn magnitude_cost(table: &Table, value: i32) -> f64 {
+    let bits = u32::BITS - value.unsigned_abs().leading_zeros();
+    cost(table, bits) + f64::from(bits)
+}

@@ -1,0 +1,372 @@
+//! One channel: the cheapest segments within a tube, by dynamic programming over hypotheses.
+//!
+//! A hypothesis at frame t stands where a segment starts that first changes the position at t + 1 (the player reads it at
+//! t - 1). All of its numbers are the decoder's integers, held in f64, which is exact below 2^53; positions are not wrapped.
+
+use super::cost::Costs;
+use crate::encode::clip::{Start, position_grid, velocity_grid};
+use crate::encode::segment::Segment;
+use pantin::layout::{K_STEPS, LENGTHS, START_MODE, W_STEPS, segment_type};
+use pantin::segment::{Context, keep_last, last_shift, step as number_step};
+use pantin::step_size;
+
+/// What a channel may do: at each frame within `lo..=hi`, at the price of `a e^2 + 2 b e` bits for the error e = p - x.
+#[derive(Clone, Debug, Default)]
+pub struct Tube {
+    /// The target, raw.
+    pub x: Vec<f64>,
+    /// Least value allowed.
+    pub lo: Vec<f64>,
+    /// Greatest value allowed.
+    pub hi: Vec<f64>,
+    /// Quadratic price.
+    pub a: Vec<f64>,
+    /// Half of the linear price.
+    pub b: Vec<f64>,
+}
+
+impl Tube {
+    /// The price of a path.
+    pub fn price(&self, path: &[f64]) -> f64 {
+        path.iter().enumerate().map(|(f, p)| self.price_at(f, *p)).sum()
+    }
+
+    fn price_at(&self, frame: usize, p: f64) -> f64 {
+        let e = p - self.x[frame];
+        e * (self.a[frame] * e + 2.0 * self.b[frame])
+    }
+}
+
+/// A channel's code.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// How it begins.
+    pub start: Start,
+    /// Its segments.
+    pub segments: Vec<Segment>,
+    /// Its position at every frame, unwrapped.
+    pub path: Vec<f64>,
+    /// Bits of its symbols.
+    pub bits: f64,
+}
+
+/// How hard to search.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Hypotheses that go on from a frame.
+    pub beam: usize,
+    /// Bits by which a hypothesis may be behind the best.
+    pub margin: f64,
+    /// Whether slopes are tried.
+    pub slopes: bool,
+}
+
+/// What a channel's status and step cost, about: they depend on its neighbours.
+const STATUS_BITS: f64 = 1.0;
+const STEP_BITS: f64 = 3.5;
+
+#[derive(Clone, Copy)]
+struct Hypothesis {
+    cost: f64,
+    p: f64,
+    v: f64,
+    w: f64,
+    k: f64,
+    frame: u32,
+    from: u32,
+    last: i16,
+    mode: u8,
+    segment: Segment,
+}
+
+/// Both steps of a mode's length for one channel.
+struct Steps {
+    w: [f64; 16],
+    k: [f64; 16],
+}
+
+/// The channel's own numbers during one search.
+struct Search<'t> {
+    tube: &'t Tube,
+    step: u8,
+    steps: Steps,
+    costs: &'static Costs,
+    effort: Effort,
+    /// Hypotheses by the frame they stand at.
+    heap: Vec<Vec<Hypothesis>>,
+    /// Those that went on, for the way back.
+    gone_on: Vec<Hypothesis>,
+    /// Least cost seen at each frame.
+    least: Vec<f64>,
+}
+
+/// The cheapest code of a channel with this step, if any is found.
+pub fn search(tube: &Tube, step: u8, effort: Effort) -> Option<Fitted> {
+    let resting = constant(tube, step);
+    if tube.x.len() < 3 {
+        return resting.or_else(|| short(tube, step));
+    }
+    let moving = Search::new(tube, step, effort).run();
+    match (resting, moving) {
+        (Some(rest), Some(moving)) => {
+            let better = rest.bits + tube.price(&rest.path) <= moving.bits + tube.price(&moving.path);
+            Some(if better { rest } else { moving })
+        }
+        (rest, moving) => rest.or(moving),
+    }
+}
+
+/// One value for all frames.
+fn constant(tube: &Tube, step: u8) -> Option<Fitted> {
+    let lo = tube.lo.iter().copied().fold(f64::MIN, f64::max);
+    let hi = tube.hi.iter().copied().fold(f64::MAX, f64::min);
+    if lo > hi {
+        return None;
+    }
+    let frames = tube.x.len();
+    let sum_a: f64 = tube.a.iter().sum();
+    let sum_x: f64 = (0..frames).map(|f| tube.a[f] * tube.x[f] - tube.b[f]).sum();
+    let best = if sum_a > 0.0 { (sum_x / sum_a).clamp(lo, hi) } else { 0.5 * (lo + hi) };
+    let mut chosen: Option<(f64, Fitted)> = None;
+    for below in 0..12 {
+        let Some(step) = step.checked_sub(2 * below) else { break };
+        let grid = f64::from(position_grid(step));
+        let p = (best / grid).round() * grid;
+        if p < lo || p > hi {
+            continue;
+        }
+        let path = vec![p; frames];
+        let bits = STATUS_BITS + STEP_BITS + Costs::get().start((p / grid) as i64 as i32, 0);
+        let objective = bits + tube.price(&path);
+        if chosen.as_ref().is_none_or(|(least, _)| objective < *least) {
+            let start = Start::Constant { p: p as i64 as i32, step };
+            chosen = Some((objective, Fitted { start, segments: Vec::new(), path, bits }));
+        }
+    }
+    chosen.map(|(_, fitted)| fitted)
+}
+
+/// One or two frames: a start says it all.
+fn short(tube: &Tube, step: u8) -> Option<Fitted> {
+    let p = near(tube.x[0], f64::from(position_grid(step)));
+    let v = near(tube.x[tube.x.len() - 1] - p, f64::from(velocity_grid(step)));
+    let path: Vec<f64> = (0..tube.x.len()).map(|f| p + f as f64 * v).collect();
+    let inside = path.iter().enumerate().all(|(f, p)| (tube.lo[f]..=tube.hi[f]).contains(p));
+    let start = Start::Moving { p: p as i64 as i32, v: v as i64 as i32, step };
+    inside.then_some(Fitted { start, segments: Vec::new(), path, bits: 24.0 })
+}
+
+fn near(x: f64, grid: f64) -> f64 {
+    (x / grid).round() * grid
+}
+
+/// The decoder's integer: wrapped to 32 bits.
+fn wrap(x: f64) -> i32 {
+    x as i64 as i32
+}
+
+impl<'t> Search<'t> {
+    fn new(tube: &'t Tube, step: u8, effort: Effort) -> Self {
+        let frames = tube.x.len();
+        let of = |table| std::array::from_fn(|i| f64::from(number_step(table, i as u8, step)));
+        Search {
+            tube,
+            step,
+            steps: Steps { w: of(&W_STEPS), k: of(&K_STEPS) },
+            costs: Costs::get(),
+            effort,
+            heap: vec![Vec::new(); frames],
+            gone_on: Vec::with_capacity(frames * effort.beam),
+            least: vec![f64::MAX; frames],
+        }
+    }
+
+    fn run(mut self) -> Option<Fitted> {
+        self.begin();
+        let frames = self.tube.x.len();
+        let mut cells = Vec::new();
+        for frame in 1..frames - 1 {
+            let mut here = std::mem::take(&mut self.heap[frame]);
+            if here.is_empty() {
+                continue;
+            }
+            here.sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost));
+            let horizon = self.least[frame + 1..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
+            let limit = (here[0].cost.min(horizon) + self.effort.margin).max(here[0].cost);
+            let size = f64::from(step_size(self.step));
+            cells.clear();
+            for hypothesis in here {
+                if cells.len() >= self.effort.beam || hypothesis.cost > limit {
+                    break;
+                }
+                let cell = ((hypothesis.p / (0.25 * size)).floor() as i64, (hypothesis.v / (0.03 * size)).floor() as i64);
+                if cells.contains(&cell) {
+                    continue;
+                }
+                cells.push(cell);
+                self.gone_on.push(hypothesis);
+                self.go_on(&hypothesis, segment_type::W);
+                if self.effort.slopes && hypothesis.mode != START_MODE {
+                    self.go_on(&hypothesis, segment_type::K);
+                }
+            }
+        }
+        self.way_back()
+    }
+
+    /// Starts near the target, each with its velocity.
+    fn begin(&mut self) {
+        let tube = self.tube;
+        let (pg, vg) = (f64::from(position_grid(self.step)), f64::from(velocity_grid(self.step)));
+        let middle = (tube.x[0] / pg).round();
+        for p in (-3..=3).map(|offset| (middle + f64::from(offset)) * pg) {
+            if p < tube.lo[0] || p > tube.hi[0] {
+                continue;
+            }
+            let toward = ((tube.x[1] - p) / vg).round();
+            for v in (-6..=6).map(|offset| (toward + f64::from(offset)) * vg) {
+                let next = p + v;
+                if next < tube.lo[1] || next > tube.hi[1] {
+                    continue;
+                }
+                let bits = STATUS_BITS + STEP_BITS + self.costs.start(wrap(p) / wrap(pg), wrap(v) / wrap(vg));
+                let cost = bits + tube.price_at(0, p) + tube.price_at(1, next);
+                let segment = Segment { mode: START_MODE, w: 0, k: 0 };
+                let start =
+                    Hypothesis { cost, p: next, v, w: 0.0, k: 0.0, frame: 1, from: u32::MAX, last: 0, mode: START_MODE, segment };
+                self.heap[1].push(start);
+            }
+        }
+    }
+
+    /// All segments of one type that may follow.
+    fn go_on(&mut self, from: &Hypothesis, kind: u8) {
+        let tube = self.tube;
+        let id = self.gone_on.len() as u32 - 1;
+        let start = from.frame as usize;
+        let rest = tube.x.len() - 1 - start;
+        let slope = kind == segment_type::K;
+        let before = i32::from(from.last) << last_shift(self.step);
+        let last = keep_last(wrap(from.w), self.step);
+        let (mut least, mut most) = (f64::MIN, f64::MAX);
+        // The price of the segment so far is s0 + 2 g s1 + g^2 s2 for a new number g.
+        let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
+        let mut index = 0;
+        for m in 1..=rest {
+            let n = m as f64;
+            let c2 = n * (n + 1.0) * 0.5;
+            let (base, c) =
+                if slope { (from.p + n * from.v + c2 * from.w, c2 * (n - 1.0) / 3.0) } else { (from.p + n * from.v, c2) };
+            let frame = start + m;
+            let (lo, hi) = (tube.lo[frame] - base, tube.hi[frame] - base);
+            if c > 0.0 {
+                least = least.max(lo / c);
+                most = most.min(hi / c);
+            } else if lo > 0.0 || hi < 0.0 {
+                return;
+            }
+            if least > most {
+                return;
+            }
+            let e = base - tube.x[frame];
+            let (a, b) = (tube.a[frame], tube.b[frame]);
+            s0 += e * (a * e + 2.0 * b);
+            s1 += (a * e + b) * c;
+            s2 += a * c * c;
+            while index < 16 && usize::from(LENGTHS[index]) < m {
+                index += 1;
+            }
+            if index == 16 {
+                return;
+            }
+            if usize::from(LENGTHS[index]) != m && m != rest {
+                continue;
+            }
+            let mode = kind << 4 | index as u8;
+            let mode_cost = from.cost + self.costs.mode(from.mode, mode);
+            let limit = self.least[frame] + self.effort.margin;
+            if mode_cost > limit {
+                continue;
+            }
+            let unit = if slope { self.steps.k[index] } else { self.steps.w[index] };
+            let (ql, qh) = ((least / unit).ceil(), (most / unit).floor());
+            // With the first frame alone, a slope is free within what an integer holds.
+            let (ql, qh) = (ql.max(-1e6), qh.min(1e6));
+            if ql > qh {
+                continue;
+            }
+            let now = wrap(if slope { from.k } else { from.w });
+            let context = Context::new(slope, mode, now, if slope { 0 } else { before }, unit as u32);
+            let best = if s2 > 0.0 { (-s1 / s2 / unit).clamp(ql, qh).round() } else { 0.0f64.clamp(ql, qh) };
+            let carried = if slope { 0.0 } else { (from.w / unit).round().clamp(ql, qh) };
+            for q in candidates(ql as i32, qh as i32, best as i32, carried as i32) {
+                let number = if context.flipped { -q } else { q };
+                let g = f64::from(q) * unit;
+                let cost = mode_cost + self.costs.number(context.index, number) + s0 + g * (2.0 * s1 + g * s2);
+                if cost > limit {
+                    continue;
+                }
+                self.least[frame] = self.least[frame].min(cost);
+                let segment = Segment { mode, w: if slope { 0 } else { q }, k: if slope { q } else { 0 } };
+                let (w, k) = if slope { (from.w, g) } else { (g, 0.0) };
+                self.heap[frame].push(Hypothesis {
+                    cost,
+                    p: base + c * g,
+                    v: from.v + n * w + 0.5 * n * (n - 1.0) * k,
+                    w: w + n * k,
+                    k,
+                    frame: frame as u32,
+                    from: id,
+                    last,
+                    mode,
+                    segment,
+                });
+            }
+        }
+    }
+
+    fn way_back(self) -> Option<Fitted> {
+        let frames = self.tube.x.len();
+        let end = self.heap[frames - 1].iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        let mut chain = vec![*end];
+        while let Some(before) = self.gone_on.get(chain[chain.len() - 1].from as usize) {
+            chain.push(*before);
+        }
+        chain.reverse();
+        let first = chain[0];
+        let mut path = vec![first.p - first.v, first.p];
+        for pair in chain.windows(2) {
+            let (from, to) = (&pair[0], &pair[1]);
+            let slope = to.mode >> 4 == segment_type::K;
+            let w = if slope { from.w } else { to.w };
+            for m in 1..=(to.frame - from.frame) {
+                let n = f64::from(m);
+                let c2 = n * (n + 1.0) * 0.5;
+                path.push(from.p + n * from.v + c2 * w + if slope { c2 * (n - 1.0) / 3.0 * to.k } else { 0.0 });
+            }
+        }
+        let start = Start::Moving { p: wrap(path[0]), v: wrap(first.v), step: self.step };
+        let bits = end.cost - self.tube.price(&path);
+        Some(Fitted { start, segments: chain[1..].iter().map(|h| h.segment).collect(), path, bits })
+    }
+}
+
+/// Which of the numbers `least..=most` are tried: all of a few, else those that price and statistics favour.
+fn candidates(least: i32, most: i32, best: i32, carried: i32) -> impl Iterator<Item = i32> {
+    let mut list = [0; 6];
+    let mut len = 0;
+    if most - least < 6 {
+        for q in least..=most {
+            list[len] = q;
+            len += 1;
+        }
+    } else {
+        for q in [best, best - 1, best + 1, 0.clamp(least, most), carried, (best / 2).clamp(least, most)] {
+            if (least..=most).contains(&q) && !list[..len].contains(&q) {
+                list[len] = q;
+                len += 1;
+            }
+        }
+    }
+    list.into_iter().take(len)
+}
