@@ -1,4 +1,7 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
 pub mod encode;
+pub mod export;
+pub mod fk;
+pub mod import;
 pub mod motion;
