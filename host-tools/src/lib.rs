@@ -1,5 +1,8 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
 pub mod encode;
+pub mod export;
 pub mod fit;
+pub mod fk;
+pub mod import;
 pub mod motion;

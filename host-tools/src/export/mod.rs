@@ -1,0 +1,3 @@
+//! Motion files out: one file a format.
+
+pub mod bvh;

@@ -1,0 +1,96 @@
+//! Forward kinematics in floating point: where a motion puts every joint.
+
+use crate::motion::{Joint, Kind, Rig};
+
+type Matrix = [[f64; 3]; 3];
+
+const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// World positions in cm of all joints, End Sites included, at `frame`. `values[channel][frame]` are in the rig's units.
+///
+/// A joint's rotations multiply in the order of its channels; position channels replace its offset, axis by axis.
+pub fn positions(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 3]> {
+    let mut next = 0;
+    let mut world: Vec<(Matrix, [f64; 3])> = Vec::with_capacity(rig.joints.len());
+    for joint in &rig.joints {
+        let channels = &values[next..next + joint.kinds.len()];
+        next += joint.kinds.len();
+        let (rotation, offset) = local(joint, |channel| channels[channel][frame]);
+        world.push(match joint.parent {
+            None => (rotation, offset),
+            Some(parent) => {
+                let (turned, place) = &world[parent];
+                let moved = apply(turned, offset);
+                (product(turned, &rotation), std::array::from_fn(|axis| place[axis] + moved[axis]))
+            }
+        });
+    }
+    world.into_iter().map(|(_, place)| place.map(|x| x * rig.cm_per_unit)).collect()
+}
+
+/// Rotation and place of a joint in its parent; `value` gives its channels.
+fn local(joint: &Joint, value: impl Fn(usize) -> f64) -> (Matrix, [f64; 3]) {
+    let mut offset = joint.offset;
+    let mut rotation = IDENTITY;
+    let mut quaternion = None;
+    let mut exponential = None;
+    for (channel, &kind) in joint.kinds.iter().enumerate() {
+        let value = value(channel);
+        match kind.axis() {
+            Some(axis) if kind.is_position() => offset[axis] = value,
+            Some(axis) if kind.is_rotation() => rotation = product(&rotation, &about(axis, value.to_radians())),
+            Some(axis) if kind.is_exponential() => exponential.get_or_insert([0.0; 3])[axis] = value.to_radians(),
+            Some(axis) => quaternion.get_or_insert([0.0; 4])[axis + 1] = value,
+            None if kind == Kind::Wquaternion => quaternion.get_or_insert([0.0; 4])[0] = value,
+            None => {}
+        }
+    }
+    if let Some(components) = quaternion {
+        rotation = product(&rotation, &from_quaternion(components));
+    }
+    if let Some(vector) = exponential {
+        rotation = product(&rotation, &from_exponential(vector));
+    }
+    (rotation, offset)
+}
+
+fn about(axis: usize, angle: f64) -> Matrix {
+    let (s, c) = angle.sin_cos();
+    let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut matrix = IDENTITY;
+    matrix[j][j] = c;
+    matrix[j][k] = -s;
+    matrix[k][j] = s;
+    matrix[k][k] = c;
+    matrix
+}
+
+/// w, x, y, z of any length but 0, which turns nothing.
+fn from_quaternion(components: [f64; 4]) -> Matrix {
+    let length = components.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length == 0.0 {
+        return IDENTITY;
+    }
+    let [w, x, y, z] = components.map(|component| component / length);
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+}
+
+/// Axis times angle in radians.
+fn from_exponential(vector: [f64; 3]) -> Matrix {
+    let angle = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let scale = if angle == 0.0 { 0.5 } else { (angle / 2.0).sin() / angle };
+    let [x, y, z] = vector.map(|component| component * scale);
+    from_quaternion([(angle / 2.0).cos(), x, y, z])
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|row| std::array::from_fn(|column| (0..3).map(|k| a[row][k] * b[k][column]).sum()))
+}
+
+fn apply(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|row| (0..3).map(|k| matrix[row][k] * vector[k]).sum())
+}

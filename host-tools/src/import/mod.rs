@@ -1,0 +1,105 @@
+//! Motion files in: one file a format. [`load`] finds the format and settles the units.
+
+pub mod bvh;
+pub mod text;
+pub mod units;
+
+use crate::motion::{Kind, Motion};
+use anyhow::{Context, Result, bail, ensure};
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
+
+/// What the user says about a source.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Length of the source's unit in cm, instead of a guess.
+    pub cm_per_unit: Option<f64>,
+    /// Frames a second, for a source that does not say or says nonsense.
+    pub fps: Option<f64>,
+}
+
+/// What an importer read.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The motion; its rig's `cm_per_unit` counts only when `unit_known`.
+    pub motion: Motion,
+    /// Whether the format or the file states its unit of length.
+    pub unit_known: bool,
+    /// What was odd or could not be used, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A motion ready for the other stages.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The motion; angles run on past half a turn instead of jumping.
+    pub motion: Motion,
+    /// Where its unit of length comes from, as a sentence for the user.
+    pub units: String,
+    /// What was odd or could not be used, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A format that [`load`] knows.
+struct Format {
+    name: &'static str,
+    extensions: &'static [&'static str],
+    /// Whether a file that begins so is of this format, for files whose extension says nothing.
+    begins: fn(&[u8]) -> bool,
+    read: fn(&Path, &Options) -> Result<Source>,
+}
+
+/// One line a format.
+const FORMATS: &[Format] = &[Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read }];
+
+/// Bytes at the front of a file from which its format can be told.
+const HEAD: u64 = 1024;
+
+/// Reads the motion file `path`. Errors name the file and, where the format has them, the line.
+pub fn load(path: &Path, options: &Options) -> Result<Imported> {
+    if let Some(fps) = options.fps {
+        ensure!(fps.is_finite() && fps > 0.0, "--fps {fps}: expected a number above 0");
+    }
+    let source = (format_of(path)?.read)(path, options)?;
+    let Source { mut motion, unit_known, warnings } = source;
+    let known = unit_known.then_some(motion.rig.cm_per_unit);
+    let unit = units::settle(&motion, options.cm_per_unit, known).with_context(|| path.display().to_string())?;
+    motion.rig.cm_per_unit = unit.cm_per_unit;
+    unwrap_angles(&mut motion);
+    Ok(Imported { motion, units: unit.sentence, warnings })
+}
+
+fn format_of(path: &Path) -> Result<&'static Format> {
+    let place = || path.display().to_string();
+    let metadata = fs::metadata(path).with_context(place)?;
+    ensure!(!metadata.is_dir(), "{}: a directory; expected a motion file", place());
+    let mut head = Vec::new();
+    File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).with_context(place)?;
+    ensure!(!head.is_empty(), "{}: the file is empty; expected a motion file", place());
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let by_extension = FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
+    let Some(format) = by_extension.or_else(|| FORMATS.iter().find(|format| (format.begins)(&head))) else {
+        let known: Vec<String> =
+            FORMATS.iter().map(|format| format!("{} (.{})", format.name, format.extensions.join(", ."))).collect();
+        bail!("{}: unknown kind of file; expected {}", place(), known.join(" or "));
+    };
+    Ok(format)
+}
+
+/// The whole content of `path`.
+fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).with_context(|| path.display().to_string())
+}
+
+/// Adds whole turns so that no Euler angle moves by more than half a turn from one frame to the next (METHOD 5).
+pub fn unwrap_angles(motion: &mut Motion) {
+    let kinds = motion.rig.channel_kinds();
+    for (values, _) in motion.values.iter_mut().zip(kinds).filter(|(_, (_, kind))| Kind::is_rotation(*kind)) {
+        let mut turns = 0.0;
+        for frame in 1..values.len() {
+            turns += ((values[frame - 1] - values[frame] - turns) / 360.0).round() * 360.0;
+            values[frame] += turns;
+        }
+    }
+}
