@@ -12,6 +12,8 @@ use crate::{OpenError, crc};
 pub struct Clip<'a> {
     rig: Rig<'a>,
     motion: &'a [u8],
+    /// Bytes of the rig in the file, with those of its length.
+    rig_len: usize,
     head: Head,
 }
 
@@ -34,6 +36,7 @@ pub(crate) struct Head {
 pub(crate) struct Parts<'a> {
     pub(crate) flags: u8,
     pub(crate) rig: Option<&'a [u8]>,
+    pub(crate) rig_len: usize,
     /// CRC of the magic, version, flags and the motion's length: the first block's CRC goes on from it.
     pub(crate) seed: u16,
     /// All that follows, of which `motion_len` bytes are the motion.
@@ -55,15 +58,17 @@ impl<'a> Parts<'a> {
         if flags & !KNOWN_FLAGS != 0 {
             return Err(OpenError::Malformed);
         }
+        let before = reader.0.len();
         let rig = if flags & HAS_RIG != 0 {
             let len = reader.varint()? as usize;
             Some(reader.take(len)?)
         } else {
             None
         };
+        let rig_len = before - reader.0.len();
         let motion_len = reader.varint()? as usize;
         let seed = crc::update(crc::of(&[MAGIC[0], MAGIC[1], version, flags]), &(motion_len as u32).to_le_bytes());
-        Ok(Parts { flags, rig, seed, rest: reader.0, motion_len })
+        Ok(Parts { flags, rig, rig_len, seed, rest: reader.0, motion_len })
     }
 }
 
@@ -175,7 +180,7 @@ impl<'a> Clip<'a> {
         }
         blocks::check(motion, parts.seed)?;
         let head = Head::read(&Input { bytes: motion, base: 0 }, parts.flags, &rig, rig_id)?;
-        Ok(Clip { rig, motion, head })
+        Ok(Clip { rig, motion, rig_len: parts.rig_len, head })
     }
 
     /// The figure.
@@ -201,6 +206,11 @@ impl<'a> Clip<'a> {
     /// The raw value of a position channel times 2^`length_exponent` is in units of the source.
     pub fn length_exponent(&self) -> i8 {
         self.head.length_exponent
+    }
+
+    /// Bytes of the file that the rig takes, 0 if it stands apart.
+    pub fn rig_len(&self) -> usize {
+        self.rig_len
     }
 
     /// Bytes of the motion with its CRCs: the file without its rig and its first few bytes.

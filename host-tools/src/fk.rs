@@ -2,9 +2,9 @@
 
 use crate::motion::{Joint, Kind, Rig};
 
-type Matrix = [[f64; 3]; 3];
+pub(crate) type Matrix = [[f64; 3]; 3];
 
-const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// World positions in cm of all joints, End Sites included, at `frame`. `values[channel][frame]` are in the rig's units.
 ///
@@ -29,7 +29,7 @@ pub fn positions(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 3]> 
 }
 
 /// Rotation and place of a joint in its parent; `value` gives its channels.
-fn local(joint: &Joint, value: impl Fn(usize) -> f64) -> (Matrix, [f64; 3]) {
+pub(crate) fn local(joint: &Joint, value: impl Fn(usize) -> f64) -> (Matrix, [f64; 3]) {
     let mut offset = joint.offset;
     let mut rotation = IDENTITY;
     let mut quaternion = None;
@@ -54,7 +54,7 @@ fn local(joint: &Joint, value: impl Fn(usize) -> f64) -> (Matrix, [f64; 3]) {
     (rotation, offset)
 }
 
-fn about(axis: usize, angle: f64) -> Matrix {
+pub(crate) fn about(axis: usize, angle: f64) -> Matrix {
     let (s, c) = angle.sin_cos();
     let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut matrix = IDENTITY;
@@ -80,17 +80,17 @@ fn from_quaternion(components: [f64; 4]) -> Matrix {
 }
 
 /// Axis times angle in radians.
-fn from_exponential(vector: [f64; 3]) -> Matrix {
+pub(crate) fn from_exponential(vector: [f64; 3]) -> Matrix {
     let angle = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
     let scale = if angle == 0.0 { 0.5 } else { (angle / 2.0).sin() / angle };
     let [x, y, z] = vector.map(|component| component * scale);
     from_quaternion([(angle / 2.0).cos(), x, y, z])
 }
 
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| (0..3).map(|k| a[row][k] * b[k][column]).sum()))
 }
 
-fn apply(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
+pub(crate) fn apply(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|row| (0..3).map(|k| matrix[row][k] * vector[k]).sum())
 }

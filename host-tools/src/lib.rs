@@ -1,8 +1,11 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
+pub mod cmd;
 pub mod encode;
+pub mod expand;
 pub mod export;
 pub mod fit;
 pub mod fk;
 pub mod import;
 pub mod motion;
+pub mod verify;

@@ -1,3 +1,35 @@
-//! `pantin`: the host tool.
+//! `pantin`: the host tool. One file a command in `cmd`; this file only dispatches.
 
-fn main() {}
+use clap::{Parser, Subcommand};
+use pantin_tools::cmd;
+use std::process::ExitCode;
+
+/// Character motion for small machines: motion files to clips, and back.
+#[derive(Parser)]
+#[command(name = "pantin", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Convert(cmd::convert::Arguments),
+    Expand(cmd::expand::Arguments),
+    Info(cmd::info::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Convert(arguments) => cmd::convert::run(&arguments),
+        Command::Expand(arguments) => cmd::expand::run(&arguments),
+        Command::Info(arguments) => cmd::info::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("pantin: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

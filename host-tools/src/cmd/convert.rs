@@ -1,0 +1,107 @@
+//! `pantin convert`.
+
+use super::write_whole;
+use crate::encode::{clip, rig};
+use crate::fit::descent::Plan;
+use crate::fit::fit;
+use crate::fit::search::Effort;
+use crate::import;
+use crate::verify::verify;
+use anyhow::{Context, Result, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+
+/// Turn a motion file into a clip.
+///
+/// The bound holds: before anything is written, the clip is played by the device's own decoder and compared, joint by joint
+/// and frame by frame, with the motion. If the bound cannot be met, nothing is written.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin convert walk.bvh -o walk.ptn
+  pantin convert walk.bvh -o walk.ptn --max-error 3cm
+  pantin convert walk.bvh -o walk.ptn --rig-out figure.rig")]
+pub struct Arguments {
+    /// The motion: .bvh, or our key frames (.keys, see docs/KEYFRAMES.md)
+    input: PathBuf,
+    /// The clip to write
+    #[arg(short, long)]
+    output: PathBuf,
+    /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm)
+    #[arg(long, default_value = "0.5cm", value_parser = length_cm)]
+    max_error: f64,
+    /// Greatest error of channels that move no joint, in percent of their full scale
+    #[arg(long, default_value_t = 2.0)]
+    max_scalar_error: f64,
+    /// Length of the source's unit in cm, instead of a guess
+    #[arg(long)]
+    cm_per_unit: Option<f64>,
+    /// Frames a second, for sources that do not say
+    #[arg(long)]
+    fps: Option<f64>,
+    /// Write the rig to this file, and the clip without it
+    #[arg(long)]
+    rig_out: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+fn length_cm(text: &str) -> Result<f64, String> {
+    let units = [("cm", 1.0), ("mm", 0.1), ("in", 2.54), ("m", 100.0), ("", 1.0)];
+    let (number, factor) =
+        units.iter().find_map(|(unit, factor)| text.strip_suffix(unit).map(|number| (number, factor))).unwrap_or((text, &1.0));
+    match number.trim().parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number * factor),
+        _ => Err("expected a length above 0, like 0.5cm".into()),
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let options = import::Options { cm_per_unit: arguments.cm_per_unit, fps: arguments.fps };
+    let imported = import::load(&arguments.input, &options)?;
+    if !arguments.quiet {
+        imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        eprintln!("{}", imported.units);
+    }
+    let motion = imported.motion;
+    let get = |k: &str, d: f64| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+    let plan = Plan {
+        bound_cm: arguments.max_error,
+        passes: get("PASSES", 8.0) as usize,
+        prices: (get("MU0", 10.0), get("MU1", 0.2)),
+        effort: Effort { beam: get("BEAM", 14.0) as usize, margin: get("MARGIN", 9.0), slopes: get("SLOPES", 1.0) > 0.0 },
+    };
+    let part = arguments.max_scalar_error / 100.0;
+    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(1000) };
+    bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta}")?);
+    let coded = fit(&motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
+    bar.finish_and_clear();
+    let rig = rig::encode(&motion.rig)?;
+    let bytes = clip::encode(&coded, &rig, arguments.rig_out.is_some())?;
+    let report = match verify(&bytes, &rig, &motion, arguments.max_error, part) {
+        Ok(report) => report,
+        Err(error) => bail!("{}: not written: {error:#}", arguments.output.display()),
+    };
+    if let Some(path) = &arguments.rig_out {
+        write_whole(path, &rig).context("rig")?;
+    }
+    write_whole(&arguments.output, &bytes)?;
+    if !arguments.quiet {
+        let raw = motion.frames * motion.rig.channels() * 2;
+        eprintln!(
+            "{}: {} frames, {} channels; {} bytes ({} per frame at 16 bits, {:.1} % saved); error max {:.4} cm ({} at frame {}), mean {:.4} cm",
+            arguments.output.display(),
+            motion.frames,
+            motion.rig.channels(),
+            bytes.len(),
+            raw,
+            100.0 - 100.0 * bytes.len() as f64 / raw as f64,
+            report.max_cm,
+            report.worst_joint,
+            report.worst_frame,
+            report.mean_cm
+        );
+    }
+    Ok(())
+}

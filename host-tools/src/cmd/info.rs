@@ -1,0 +1,55 @@
+//! `pantin info`.
+
+use super::Files;
+use anyhow::{Context, Result};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Say what a clip holds, and where its bytes went.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin info walk.ptn
+  pantin info --json walk.ptn")]
+pub struct Arguments {
+    /// The clip
+    input: PathBuf,
+    /// One JSON object; `motion_bytes` is the file without its rig
+    #[arg(long)]
+    json: bool,
+    /// The rig of a clip that was made with --rig-out
+    #[arg(long)]
+    rig: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
+    let clip = files.open().with_context(|| arguments.input.display().to_string())?;
+    let rig = clip.rig();
+    let file = files.clip_len();
+    let fields = [
+        ("frames", json!(clip.frames())),
+        ("fps", json!((1e11 / f64::from(clip.frame_time_ns())).round() / 100.0)),
+        ("joints", json!(rig.joints().filter(|joint| !joint.end_site).count())),
+        ("channels", json!(rig.channels())),
+        ("moving_channels", json!(clip.moving())),
+        ("exponential_joints", json!((0..rig.joint_count()).filter(|&joint| clip.is_exponential(joint)).count())),
+        ("looped", json!(clip.looped())),
+        ("events", json!(clip.event_count())),
+        ("cm_per_unit", json!(f64::from(rig.micro_cm_per_unit()) * 1e-6)),
+        ("file_bytes", json!(file)),
+        ("rig_bytes", json!(clip.rig_len())),
+        ("motion_bytes", json!(file - clip.rig_len())),
+        ("head_bytes", json!(clip.head_len())),
+        ("crc_bytes", json!(clip.crc_len())),
+        ("per_frame_bytes", json!(clip.frames() as usize * rig.channels() * 2)),
+    ];
+    if arguments.json {
+        let object: serde_json::Map<String, serde_json::Value> =
+            fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
+        println!("{}", serde_json::Value::Object(object));
+    } else {
+        fields.iter().for_each(|(name, value)| println!("{:20} {value}", name.replace('_', " ")));
+    }
+    Ok(())
+}

@@ -1,0 +1,287 @@
+//! Closed-loop descent (METHOD 5): each channel is coded anew inside the tube that the true error of everything below it
+//! still leaves, pass after pass, while the price of an error falls.
+
+use super::figure::{Figure, Poses, lever};
+use super::search::{Effort, Fitted, Tube, search};
+use crate::encode::clip::Start;
+use anyhow::{Result, bail};
+use pantin::layout::{FIRST_STEP, MAX_STEP};
+
+/// What may not be exceeded, and how hard to try.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Greatest distance of any joint or End Site from where it should be, in cm.
+    pub bound_cm: f64,
+    /// Passes over all channels.
+    pub passes: usize,
+    /// The price of an error, relative to a bit, in the first and the last pass.
+    pub prices: (f64, f64),
+    /// The search for one channel.
+    pub effort: Effort,
+}
+
+/// Part of the bound that the fit uses: the rest covers rounding in files.
+const USED: f64 = 0.9995;
+/// The price grows by this much where an error comes near the bound, so that others keep room.
+const CROWDING: f64 = 4.0;
+/// Levers are taken as constant while a channel moves by this much at most: degrees.
+const TRUST_DEGREES: f64 = 25.0;
+/// Bits by which a new code must be better.
+const GAIN: f64 = 0.01;
+/// What a channel at rest costs, about.
+const REST_BITS: f64 = 0.4;
+
+/// A channel's code, and what the search had found it to cost.
+type Code = Fitted;
+
+/// The state of a descent.
+pub struct Descent<'m> {
+    figure: &'m Figure,
+    plan: Plan,
+    /// Targets, raw and unwrapped.
+    targets: &'m [Vec<f64>],
+    /// Units of the motion for a raw unit.
+    scales: &'m [f64],
+    /// Where the rig has each channel at rest, raw.
+    rests: &'m [i32],
+    /// Greatest error allowed a scalar, raw.
+    scalar_bounds: &'m [f64],
+    original: &'m Poses,
+    poses: Poses,
+    values: Vec<Vec<f64>>,
+    codes: Vec<Option<Code>>,
+    seconds_a_frame: f64,
+}
+
+impl<'m> Descent<'m> {
+    /// Starts from the original: nothing is coded yet, nothing is off but by the rig's own rounding.
+    #[allow(clippy::too_many_arguments)]
+    pub fn new(
+        figure: &'m Figure,
+        plan: Plan,
+        targets: &'m [Vec<f64>],
+        scales: &'m [f64],
+        rests: &'m [i32],
+        scalar_bounds: &'m [f64],
+        original: &'m Poses,
+        seconds_a_frame: f64,
+    ) -> Self {
+        let values: Vec<Vec<f64>> = targets.iter().zip(scales).map(|(x, s)| x.iter().map(|x| x * s).collect()).collect();
+        let poses = figure.poses(&values);
+        let codes = vec![None; targets.len()];
+        Descent { figure, plan, targets, scales, rests, scalar_bounds, original, poses, values, codes, seconds_a_frame }
+    }
+
+    /// All passes. `progress` hears the part that is done, 0 to 1.
+    pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
+        let channels = self.targets.len();
+        for pass in 0..self.plan.passes {
+            let (first, last) = self.plan.prices;
+            let part = pass as f64 / (self.plan.passes.max(2) - 1) as f64;
+            let price = self.seconds_a_frame * 30.0 * first * (last / first).powf(part);
+            for i in 0..channels {
+                let channel = if pass % 2 == 0 { i } else { channels - 1 - i };
+                self.improve(channel, price, pass)?;
+                progress((pass * channels + i + 1) as f64 / (self.plan.passes * channels) as f64);
+            }
+            if std::env::var("PANTIN_TRACE").is_ok() {
+                let bits: f64 = self.codes.iter().flatten().map(|c| c.bits).sum();
+                let segs: usize = self.codes.iter().flatten().map(|c| c.segments.len()).sum();
+                eprintln!("pass {pass} price {price:.3} bytes {:.0} segments {segs} err {:.4}", bits / 8.0, self.worst());
+            }
+        }
+        Ok(self.codes.into_iter().flatten().collect())
+    }
+
+    fn worst(&self) -> f64 {
+        let mut worst = 0f64;
+        for (a, b) in self.poses.places.iter().flatten().zip(self.original.places.iter().flatten()) {
+            worst = worst.max((0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt());
+        }
+        worst
+    }
+
+    /// Codes one channel anew if that is better.
+    fn improve(&mut self, channel: usize, price: f64, pass: usize) -> Result<()> {
+        let moved = self.figure.moved(channel);
+        let bound = self.plan.bound_cm * USED;
+        let mut bounds = vec![bound; self.figure.frames];
+        let axes = self.figure.axes(channel, &self.values, &self.poses);
+        for attempt in 0..6 {
+            let tube = self.tube(channel, price, &moved, &axes, &bounds);
+            let Some(best) = self.best(channel, &tube, pass + attempt) else { break };
+            if let Some(now) = &self.codes[channel]
+                && objective(&best, &tube) >= objective(now, &tube) - GAIN
+            {
+                return Ok(());
+            }
+            let before = self.set(channel, &best.path);
+            if self.within(&moved, bound, &mut bounds) {
+                self.codes[channel] = Some(best);
+                return Ok(());
+            }
+            self.values[channel] = before;
+            self.refresh(channel);
+        }
+        if self.codes[channel].is_none() {
+            bail!("{}: no code within the bound was found", self.figure.rig.channel_name(channel));
+        }
+        Ok(())
+    }
+
+    /// Puts a path in place and returns the values that it replaces.
+    fn set(&mut self, channel: usize, path: &[f64]) -> Vec<f64> {
+        let scale = self.scales[channel];
+        let before = std::mem::replace(&mut self.values[channel], path.iter().map(|p| p * scale).collect());
+        self.refresh(channel);
+        before
+    }
+
+    fn refresh(&mut self, channel: usize) {
+        if let (Some(joint), ..) = self.figure.channels[channel] {
+            self.figure.update(joint, &self.values, &mut self.poses);
+        }
+    }
+
+    /// Whether all of `moved` are within `bound`; where not, the bounds for another attempt shrink.
+    fn within(&self, moved: &[usize], bound: f64, bounds: &mut [f64]) -> bool {
+        let mut worst = vec![0f64; self.figure.frames];
+        for &joint in moved {
+            for (frame, worst) in worst.iter_mut().enumerate() {
+                *worst = worst.max(square(&self.error(joint, frame)));
+            }
+        }
+        let mut all = true;
+        for (worst, limit) in worst.iter().zip(bounds) {
+            let distance = worst.sqrt();
+            if distance > bound {
+                all = false;
+                *limit *= (bound / distance).powi(2) * 0.98;
+            }
+        }
+        all
+    }
+
+    fn error(&self, joint: usize, frame: usize) -> [f64; 3] {
+        let (p, q) = (&self.poses.places[joint][frame], &self.original.places[joint][frame]);
+        [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+    }
+
+    /// The tube that the other channels' codes leave to this one.
+    fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64]) -> Tube {
+        let frames = self.figure.frames;
+        let target = &self.targets[channel];
+        if self.figure.channels[channel].0.is_none() {
+            let bound = self.scalar_bounds[channel];
+            let a = price / (4.0 * bound * bound);
+            let lo = target.iter().map(|x| x - bound).collect();
+            let hi = target.iter().map(|x| x + bound).collect();
+            return Tube { x: target.clone(), lo, hi, a: vec![a; frames], b: vec![0.0; frames] };
+        }
+        let scale = self.scales[channel];
+        let translates = self.figure.translates(channel);
+        let trust = if translates { f64::MAX } else { TRUST_DEGREES / scale.abs() };
+        // Many joints below share one error: their sum counts as the root of their number.
+        let share = price / (self.plan.bound_cm.powi(2) * (moved.len().max(1) as f64).sqrt());
+        let mut tube =
+            Tube { x: target.clone(), lo: vec![0.0; frames], hi: vec![0.0; frames], a: vec![0.0; frames], b: vec![0.0; frames] };
+        let center = self.figure.channels[channel].0.map(|joint| &self.poses.places[joint]);
+        let Some(center) = center else { return tube };
+        for frame in 0..frames {
+            let now = self.values[channel][frame] / scale - target[frame];
+            let (mut lo, mut hi) = (now - trust, now + trust);
+            let (mut a, mut b) = (0.0, 0.0);
+            let axis = axes[frame].map(|x| x * scale);
+            let limit = bounds[frame] * bounds[frame];
+            for &joint in moved {
+                let error = self.error(joint, frame);
+                let lever = lever(&axis, translates, &center[frame], &self.poses.places[joint][frame]);
+                // With this channel off by e, the joint is off by `rest + lever e`.
+                let rest: [f64; 3] = std::array::from_fn(|i| error[i] - lever[i] * now);
+                let (jj, jr) = (dot(&lever, &lever), dot(&lever, &rest));
+                let used = square(&error) / (self.plan.bound_cm * self.plan.bound_cm);
+                let weight = share * (1.0 + CROWDING * used * used * used);
+                a += weight * jj;
+                b += weight * jr;
+                if jj > 0.0 {
+                    let root = jr * jr - jj * (square(&rest) - limit);
+                    if root <= 0.0 {
+                        (lo, hi) = (lo.max(now), hi.min(now));
+                    } else {
+                        let root = root.sqrt();
+                        lo = lo.max(((-jr - root) / jj).min(now));
+                        hi = hi.min(((-jr + root) / jj).max(now));
+                    }
+                }
+            }
+            tube.lo[frame] = target[frame] + lo;
+            tube.hi[frame] = target[frame] + hi;
+            tube.a[frame] = a;
+            tube.b[frame] = b;
+        }
+        tube
+    }
+
+    /// The best of what the search finds at a few steps.
+    fn best(&self, channel: usize, tube: &Tube, pass: usize) -> Option<Fitted> {
+        if let Some(rest) = self.at_rest(channel, tube) {
+            return Some(rest);
+        }
+        let (guess, other) = match &self.codes[channel] {
+            Some(code) => {
+                let rms = (code.path.iter().zip(&tube.x).map(|(p, x)| (p - x).powi(2)).sum::<f64>() / tube.x.len() as f64).sqrt();
+                let step = step_of(code).unwrap_or(FIRST_STEP);
+                let near = step_index(1.6 * rms).clamp(step.saturating_sub(1), step + 1);
+                (near, if pass % 2 == 0 { near + 1 } else { near.saturating_sub(1) })
+            }
+            None => {
+                // The tube of a channel that is exact so far is as wide as the bound.
+                let width = (0..tube.x.len()).map(|f| tube.hi[f] - tube.lo[f]).fold(f64::MAX, f64::min);
+                let near = step_index(0.15 * width);
+                (near, near.saturating_sub(2))
+            }
+        };
+        let effort = self.plan.effort;
+        let (one, two) = rayon::join(|| search(tube, guess.min(MAX_STEP), effort), || search(tube, other.min(MAX_STEP), effort));
+        let best = [one, two].into_iter().flatten().min_by(|a, b| objective(a, tube).total_cmp(&objective(b, tube)));
+        if best.is_some() || self.codes[channel].is_some() {
+            return best;
+        }
+        // A first code must be found, whatever it costs.
+        (0..guess.min(other)).rev().find_map(|step| search(tube, step, Effort { beam: 4 * effort.beam, ..effort }))
+    }
+
+    /// No code at all, if the rig has the channel within its tube.
+    fn at_rest(&self, channel: usize, tube: &Tube) -> Option<Fitted> {
+        let rest = f64::from(self.rests[channel]);
+        let inside = (0..tube.x.len()).all(|f| (tube.lo[f]..=tube.hi[f]).contains(&rest));
+        let flat = tube.a.iter().all(|&a| a == 0.0);
+        let path = vec![rest; tube.x.len()];
+        let cheap = flat || tube.price(&path) < 8.0;
+        (inside && cheap).then_some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits: REST_BITS })
+    }
+}
+
+fn objective(code: &Fitted, tube: &Tube) -> f64 {
+    code.bits + tube.price(&code.path)
+}
+
+fn step_of(code: &Fitted) -> Option<u8> {
+    match code.start {
+        Start::Rest => None,
+        Start::Constant { step, .. } | Start::Moving { step, .. } => Some(step),
+    }
+}
+
+/// Index of the channel step nearest to `size` raw units.
+fn step_index(size: f64) -> u8 {
+    (2.0 * size.max(1.0).log2()).round().clamp(0.0, f64::from(MAX_STEP)) as u8
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn square(a: &[f64; 3]) -> f64 {
+    dot(a, a)
+}

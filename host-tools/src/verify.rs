@@ -1,0 +1,74 @@
+//! The last step of every conversion: the bytes, played by the device's own decoder, against the motion.
+
+use crate::expand::expand;
+use crate::fk;
+use crate::motion::Motion;
+use anyhow::{Result, ensure};
+use pantin::Clip;
+
+/// How far a clip is from its motion: world-space distances in cm over all frames and joints, End Sites included.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Greatest distance.
+    pub max_cm: f64,
+    /// Mean distance.
+    pub mean_cm: f64,
+    /// Where the greatest is.
+    pub worst_joint: String,
+    /// When the greatest is.
+    pub worst_frame: usize,
+    /// Greatest error of a scalar, as a part of its full scale.
+    pub max_scalar: f64,
+    /// The scalar that has it.
+    pub worst_scalar: String,
+}
+
+/// Compares two motions of the same figure.
+pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
+    ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
+    let mut report = Report::default();
+    let mut sum = 0.0;
+    for frame in 0..original.frames {
+        let places = fk::positions(&original.rig, &original.values, frame);
+        for (joint, (p, q)) in places.iter().zip(fk::positions(&other.rig, &other.values, frame)).enumerate() {
+            let distance = (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>().sqrt();
+            sum += distance;
+            if distance > report.max_cm {
+                (report.max_cm, report.worst_frame) = (distance, frame);
+                report.worst_joint = original.rig.joint_name(joint);
+            }
+        }
+    }
+    report.mean_cm = sum / (original.frames * original.rig.joints.len()).max(1) as f64;
+    let first = original.rig.joint_channels();
+    for (scalar, channel) in original.rig.scalars.iter().zip(first..) {
+        let errors = original.values[channel].iter().zip(&other.values[channel]).map(|(a, b)| (a - b).abs());
+        let worst = errors.fold(0.0, f64::max) / scalar.full_scale;
+        if worst > report.max_scalar {
+            report.max_scalar = worst;
+            report.worst_scalar.clone_from(&scalar.name);
+        }
+    }
+    Ok(report)
+}
+
+/// Opens `bytes` (with `rig` if they hold none), plays them, and refuses them if a bound is broken.
+pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bound_cm: f64, scalar_part: f64) -> Result<Report> {
+    let clip = Clip::with_rig(bytes, rig)?;
+    let report = compare(motion, &expand(&clip)?)?;
+    ensure!(
+        report.max_cm <= bound_cm,
+        "joint {} at frame {} is {:.4} cm off; the bound is {bound_cm} cm",
+        report.worst_joint,
+        report.worst_frame,
+        report.max_cm
+    );
+    ensure!(
+        report.max_scalar <= scalar_part,
+        "channel {} is off by {:.3} % of its full scale; the bound is {:.3} %",
+        report.worst_scalar,
+        100.0 * report.max_scalar,
+        100.0 * scalar_part
+    );
+    Ok(report)
+}
