@@ -2,7 +2,7 @@
 
 use crate::blocks::Input;
 use crate::entropy::Symbols;
-use crate::layout::{FIRST_STEP, LENGTHS, MAX_STEP, START_MODE};
+use crate::layout::{FIRST_STEP, LENGTHS, MAX_STEP, START_MODE, STEP_BITS, STEP_CHANGES};
 use crate::rig::Kind;
 use crate::tables;
 
@@ -102,9 +102,13 @@ impl Opening {
             return (None, None);
         }
         let class = usize::from(kind.is_position());
-        let change = symbols.symbol(input, &tables::STEP_CHANGE) as u8;
-        let before = self.steps.get(class).copied().unwrap_or(FIRST_STEP);
-        let step = before.wrapping_add(unzigzag(u32::from(change)) as u8).min(MAX_STEP);
+        let change = symbols.symbol(input, &tables::STEP_CHANGE);
+        let step = if change < STEP_CHANGES {
+            self.steps.get(class).copied().unwrap_or(FIRST_STEP).wrapping_add(unzigzag(change) as u8)
+        } else {
+            symbols.bits(input, STEP_BITS) as u8
+        };
+        let step = step.min(MAX_STEP);
         if let Some(last) = self.steps.get_mut(class) {
             *last = step;
         }

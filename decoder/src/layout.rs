@@ -65,9 +65,25 @@ pub mod segment_type {
 /// The mode of a channel that has had no segment yet. No segment has it: type NONE ends at length index 14.
 pub const START_MODE: u8 = 63;
 
-/// Greatest magnitude of w or k with a symbol of its own; that symbol also announces a larger one.
-pub const MAX_MAGNITUDE: u32 = 10;
+/// Magnitudes of w or k up to this have a symbol of their own.
+pub const DIRECT: u32 = 6;
+/// The magnitudes behind them come in groups of 2, 4, 8, ..., this many: a symbol and as many bits as its place among them.
+pub const GROUPS: u32 = 6;
+/// Index of the last magnitude symbol: the number of bits follows, then the bits.
+pub const FAR: u32 = DIRECT + GROUPS + 1;
+/// Bits of a far number's count of bits.
+pub const FAR_BITS: u32 = 5;
+
+/// The first magnitude of the group whose members are told by `bits` more bits.
+pub const fn group(bits: u32) -> u32 {
+    DIRECT - 1 + (1 << bits)
+}
+
 /// Largest index of a channel's step: 2^(index / 2) raw units.
 pub const MAX_STEP: u8 = 59;
 /// The channel's step that the first channel's is told against.
 pub const FIRST_STEP: u8 = 44;
+/// Changes of the channel's step with a symbol of their own; the symbol after them says that the step follows in bits.
+pub const STEP_CHANGES: u32 = 24;
+/// Bits of a channel's step told by itself.
+pub const STEP_BITS: u32 = 6;

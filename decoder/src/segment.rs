@@ -1,13 +1,13 @@
 //! One segment: its mode, then its acceleration, its slope, both, or neither.
 
 use crate::blocks::Input;
-use crate::channel::{ChannelState, magnitude, unzigzag};
+use crate::channel::ChannelState;
 use crate::entropy::Symbols;
-use crate::layout::{K_STEPS, MAX_MAGNITUDE, START_MODE, W_STEPS, segment_type};
+use crate::layout::{DIRECT, FAR, FAR_BITS, GROUPS, K_STEPS, START_MODE, W_STEPS, group, segment_type};
 use crate::tables;
 
-/// Bytes that one segment takes at most, CRC included: a mode of 2 symbols and 4 bits, then twice a symbol, a magnitude's
-/// symbol, 31 bits and a sign; no symbol takes more than two bytes.
+/// Bytes that one segment takes at most, CRC included: a mode's symbol and 4 bits, then twice a number's symbol, 5 bits and
+/// 31 bits in four parts; no symbol or part takes more than two bytes.
 pub(crate) const MAX_SEGMENT_BYTES: u32 = 32;
 
 /// Symbols of the mode's alphabet that name type and length at once; two more name types WK and NONE, whose length follows.
@@ -102,11 +102,17 @@ pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols, input: &Inpu
 }
 
 fn number(symbols: &mut Symbols, input: &Input<'_>, context: Context) -> i32 {
-    let zigzag = symbols.symbol(input, tables::number(context.index));
-    let mut number = unzigzag(zigzag);
-    if number.unsigned_abs() >= MAX_MAGNITUDE {
-        let excess = magnitude(symbols, input, &tables::EXCESS);
-        number = number.wrapping_add(if number < 0 { excess.wrapping_abs().wrapping_neg() } else { excess.wrapping_abs() });
-    }
-    if context.flipped { number.wrapping_neg() } else { number }
+    let symbol = symbols.symbol(input, tables::number(context.index));
+    let index = symbol.div_ceil(2);
+    let size = if index <= DIRECT {
+        index
+    } else if index < FAR {
+        group(index - DIRECT) + symbols.bits(input, index - DIRECT)
+    } else {
+        let bits = symbols.bits(input, FAR_BITS);
+        // At most 2^31 + 2^7: it may wrap, but no well-formed number is so large.
+        group(GROUPS + 1) - 1 + (1 << bits) + symbols.long_bits(input, bits)
+    };
+    let negative = (symbol & 1 != 0) != context.flipped;
+    if negative { (size as i32).wrapping_neg() } else { size as i32 }
 }

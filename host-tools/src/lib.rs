@@ -8,4 +8,5 @@ pub mod fit;
 pub mod fk;
 pub mod import;
 pub mod motion;
+pub mod train;
 pub mod verify;

@@ -17,6 +17,7 @@ enum Command {
     Convert(cmd::convert::Arguments),
     Expand(cmd::expand::Arguments),
     Info(cmd::info::Arguments),
+    Train(cmd::train::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => cmd::convert::run(&arguments),
         Command::Expand(arguments) => cmd::expand::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
+        Command::Train(arguments) => cmd::train::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

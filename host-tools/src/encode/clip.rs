@@ -1,11 +1,11 @@
 //! A clip's bytes: the file's head, the rig, the motion's blocks.
 
-use super::entropy::Symbols;
+use super::entropy::{Alphabet, Sink, Symbols};
 use super::segment::{Running, Segment};
 use super::varint;
 use anyhow::{Context, Result, ensure};
 use pantin::layout::*;
-use pantin::{Event, crc, step_size, tables};
+use pantin::{Event, crc, step_size};
 
 /// How a channel begins: raw values, multiples of its grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,9 @@ pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
     let mut payload = head(coded, flags, apart.then(|| pantin::Rig::id_of(rig)));
     let parsed = pantin::Rig::new_checked(rig).context("the rig that was just made does not open")?;
     ensure!(coded.channels.len() == parsed.channels(), "a rig of {} channels for {}", parsed.channels(), coded.channels.len());
-    payload.extend(symbols(coded, &parsed).finish());
+    let mut gathered = Symbols::default();
+    symbols(coded, &parsed, &mut gathered);
+    payload.extend(gathered.finish());
     let len = payload.len() + payload.len().div_ceil(BLOCK_BYTES) * CRC_BYTES;
 
     let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
@@ -149,37 +151,40 @@ struct Opening {
 }
 
 impl Opening {
-    fn put(&mut self, start: &Start, position: bool, out: &mut Symbols) {
+    fn put(&mut self, start: &Start, position: bool, out: &mut dyn Sink) {
         let (status, step, p) = match *start {
             Start::Rest => (0, 0, 0),
             Start::Constant { p, step } => (1, step, p),
             Start::Moving { p, step, .. } => (2, step, p),
         };
-        out.symbol(tables::status(self.status), status);
+        out.symbol(Alphabet::Status(self.status), status);
         self.status = status as u8;
         if status == 0 {
             return;
         }
         let before = std::mem::replace(&mut self.steps[usize::from(position)], step);
         let change = i32::from(step) - i32::from(before);
-        out.symbol(&tables::STEP_CHANGE, ((change << 1) ^ (change >> 31)) as u32);
-        out.magnitude(&tables::POSITION, p / position_grid(step));
+        let zigzag = ((change << 1) ^ (change >> 31)) as u32;
+        out.symbol(Alphabet::StepChange, zigzag.min(STEP_CHANGES));
+        if zigzag >= STEP_CHANGES {
+            out.bits(u32::from(step), STEP_BITS);
+        }
+        out.magnitude(Alphabet::Position, p / position_grid(step));
         if let Start::Moving { v, .. } = *start {
-            out.magnitude(&tables::VELOCITY, v / velocity_grid(step));
+            out.magnitude(Alphabet::Velocity, v / velocity_grid(step));
         }
     }
 }
 
 /// All symbols, in the order in which a player reads them.
-fn symbols(coded: &Coded, rig: &pantin::Rig<'_>) -> Symbols {
-    let mut out = Symbols::default();
+pub fn symbols(coded: &Coded, rig: &pantin::Rig<'_>, out: &mut dyn Sink) {
     let mut opening = Opening { status: 0, steps: [FIRST_STEP; 2] };
     let kinds = rig.joints().flat_map(|joint| joint.kinds).map(pantin::Kind::is_position).chain(std::iter::repeat(false));
     // due[frame] lists channels in the order in which their running segment was read: the last is the next to be read.
     let mut due = vec![Vec::new(); coded.frames as usize + 1];
     let mut running = Vec::new();
     for (index, (channel, position)) in coded.channels.iter().zip(kinds).enumerate() {
-        opening.put(&channel.start, position, &mut out);
+        opening.put(&channel.start, position, out);
         if let Start::Moving { v, step, .. } = channel.start {
             due[0].push(running.len());
             running.push((index, 0, Running { v, w: 0, k: 0, last: 0, mode: START_MODE, step }));
@@ -190,11 +195,10 @@ fn symbols(coded: &Coded, rig: &pantin::Rig<'_>) -> Symbols {
             let (index, next, state) = &mut running[moving];
             let segment = coded.channels[*index].segments[*next];
             *next += 1;
-            state.put_mode(segment.mode, &mut out);
-            state.start(segment, Some(&mut out));
+            state.put_mode(segment.mode, out);
+            state.start(segment, Some(&mut *out));
             state.run(segment.length());
             due[(frame + segment.length()).min(coded.frames as usize)].push(moving);
         }
     }
-    out
 }

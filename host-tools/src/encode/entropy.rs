@@ -1,6 +1,58 @@
 //! Writes what `pantin::entropy` reads. rANS is last in, first out: symbols are gathered, then coded from the last to the first.
 
 use pantin::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table};
+use pantin::tables;
+
+/// What a symbol is of: the format's tables by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Alphabet {
+    /// Whether a channel rests, is constant or moves, after one of that status.
+    Status(u8),
+    /// How a channel's step differs from the one before.
+    StepChange,
+    /// Bits of a first position.
+    Position,
+    /// Bits of a first velocity.
+    Velocity,
+    /// A segment's mode, after a segment of that mode.
+    Mode(u8),
+    /// An acceleration or slope in this context.
+    Number(u8),
+}
+
+impl Alphabet {
+    /// Its table.
+    pub fn table(self) -> &'static Table {
+        match self {
+            Alphabet::Status(after) => tables::status(after),
+            Alphabet::StepChange => &tables::STEP_CHANGE,
+            Alphabet::Position => &tables::POSITION,
+            Alphabet::Velocity => &tables::VELOCITY,
+            Alphabet::Mode(after) => tables::mode(after),
+            Alphabet::Number(context) => tables::number(context),
+        }
+    }
+}
+
+/// Takes symbols in the order in which a decoder reads them.
+pub trait Sink {
+    /// Takes a symbol.
+    fn symbol(&mut self, alphabet: Alphabet, symbol: u32);
+
+    /// Takes `count` bits, 32 at most, the least significant first.
+    fn bits(&mut self, value: u32, count: u32);
+
+    /// A signed number: its length in bits as a symbol, the bits below the highest, the sign.
+    fn magnitude(&mut self, alphabet: Alphabet, value: i32) {
+        let size = value.unsigned_abs();
+        let bits = u32::BITS - size.leading_zeros();
+        self.symbol(alphabet, bits);
+        if bits > 0 {
+            self.bits(size & !(1 << (bits - 1)), bits - 1);
+            self.bits(u32::from(value < 0), 1);
+        }
+    }
+}
 
 /// A stretch of the state's low digits: a symbol's probability and where it starts, or bits that are all equally probable.
 #[derive(Clone, Copy, Debug)]
@@ -28,33 +80,6 @@ pub fn cost(table: &Table, symbol: u32) -> f64 {
 }
 
 impl Symbols {
-    /// Appends a symbol of the alphabet `table`.
-    pub fn symbol(&mut self, table: &Table, symbol: u32) {
-        let (start, size) = stretch(table, symbol);
-        self.digits.push(Digit::Symbol { start, size });
-    }
-
-    /// Appends `count` bits, 32 at most, the least significant first.
-    pub fn bits(&mut self, mut value: u32, mut count: u32) {
-        while count > 0 {
-            let part = count.min(8);
-            self.digits.push(Digit::Bits { value: value & ((1 << part) - 1), count: part });
-            value = value.checked_shr(part).unwrap_or(0);
-            count -= part;
-        }
-    }
-
-    /// A signed number: its length in bits as a symbol, the bits below the highest, the sign.
-    pub fn magnitude(&mut self, table: &Table, value: i32) {
-        let size = value.unsigned_abs();
-        let bits = u32::BITS - size.leading_zeros();
-        self.symbol(table, bits);
-        if bits > 0 {
-            self.bits(size & !(1 << (bits - 1)), bits - 1);
-            self.bits(u32::from(value < 0), 1);
-        }
-    }
-
     /// The bytes. A decoder reads zeros past the end, so those that it would read there are left out.
     pub fn finish(&self) -> Vec<u8> {
         let mut state = LOW;
@@ -89,7 +114,23 @@ impl Symbols {
     }
 }
 
-/// What [`Symbols::magnitude`] costs, in bits.
+impl Sink for Symbols {
+    fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
+        let (start, size) = stretch(alphabet.table(), symbol);
+        self.digits.push(Digit::Symbol { start, size });
+    }
+
+    fn bits(&mut self, mut value: u32, mut count: u32) {
+        while count > 0 {
+            let part = count.min(8);
+            self.digits.push(Digit::Bits { value: value & ((1 << part) - 1), count: part });
+            value = value.checked_shr(part).unwrap_or(0);
+            count -= part;
+        }
+    }
+}
+
+/// What [`Sink::magnitude`] costs, in bits.
 pub fn magnitude_cost(table: &Table, value: i32) -> f64 {
     let bits = u32::BITS - value.unsigned_abs().leading_zeros();
     cost(table, bits) + f64::from(bits)

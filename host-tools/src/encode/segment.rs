@@ -1,7 +1,7 @@
 //! A segment's symbols: the mirror of `pantin::segment`.
 
-use super::entropy::Symbols;
-use pantin::layout::{K_STEPS, MAX_MAGNITUDE, W_STEPS, segment_type};
+use super::entropy::{Alphabet, Sink};
+use pantin::layout::{DIRECT, FAR, FAR_BITS, GROUPS, K_STEPS, W_STEPS, group, segment_type};
 use pantin::segment::{self, Context, DIRECT_MODES};
 use pantin::tables;
 
@@ -45,11 +45,21 @@ pub struct Running {
     pub step: u8,
 }
 
-/// The symbol of a number and, where it is too large for one, what is left over.
-pub fn number_symbol(number: i32) -> (u32, Option<i32>) {
-    let limit = MAX_MAGNITUDE as i32;
-    let zigzag = |n: i32| ((n << 1) ^ (n >> 31)) as u32;
-    if number.abs() < limit { (zigzag(number), None) } else { (zigzag(limit * number.signum()), Some(number.abs() - limit)) }
+/// The symbol of a number, and the bits that follow it: their value and count, in the order of reading.
+pub fn number_symbol(number: i32) -> (u32, [(u32, u32); 2]) {
+    let size = number.unsigned_abs();
+    let symbol = |index: u32| if number < 0 { 2 * index - 1 } else { 2 * index };
+    if size <= DIRECT {
+        return (symbol(size), [(0, 0); 2]);
+    }
+    for bits in 1..=GROUPS {
+        if size < group(bits + 1) {
+            return (symbol(DIRECT + bits), [(size - group(bits), bits), (0, 0)]);
+        }
+    }
+    let rest = size - group(GROUPS + 1) + 1;
+    let bits = rest.ilog2();
+    (symbol(FAR), [(bits, FAR_BITS), (rest - (1 << bits), bits)])
 }
 
 /// The symbol of a mode and, where it names the type alone, the length's index.
@@ -62,15 +72,13 @@ pub fn mode_symbol(mode: u8) -> (u32, Option<u32>) {
 
 impl Running {
     /// Starts the segment: what the decoder's state is once it has read it. With `out`, writes its symbols.
-    pub fn start(&mut self, segment: Segment, mut out: Option<&mut Symbols>) {
+    pub fn start(&mut self, segment: Segment, mut out: Option<&mut dyn Sink>) {
         let mode = segment.mode;
         let mut number = |context: Context, number: i32| {
             let Some(out) = out.as_deref_mut() else { return };
-            let (symbol, excess) = number_symbol(if context.flipped { -number } else { number });
-            out.symbol(tables::number(context.index), symbol);
-            if let Some(excess) = excess {
-                out.magnitude(&tables::EXCESS, excess);
-            }
+            let (symbol, bits) = number_symbol(if context.flipped { -number } else { number });
+            out.symbol(Alphabet::Number(context.index), symbol);
+            bits.iter().for_each(|&(value, count)| out.bits(value, count));
         };
         let before = i32::from(self.last) << segment::last_shift(self.step);
         self.last = segment::keep_last(self.w, self.step);
@@ -90,9 +98,9 @@ impl Running {
     }
 
     /// Writes the mode's symbol; the numbers follow by [`Running::start`].
-    pub fn put_mode(&self, mode: u8, out: &mut Symbols) {
+    pub fn put_mode(&self, mode: u8, out: &mut dyn Sink) {
         let (symbol, length) = mode_symbol(mode);
-        out.symbol(tables::mode(self.mode), symbol);
+        out.symbol(Alphabet::Mode(self.mode), symbol);
         if let Some(length) = length {
             out.bits(length, 4);
         }

@@ -2,19 +2,18 @@
 
 use crate::encode::entropy::{cost, magnitude_cost};
 use crate::encode::segment::{mode_symbol, number_symbol};
-use pantin::layout::MAX_MAGNITUDE;
+use pantin::layout::{GROUPS, group};
 use pantin::segment::CONTEXTS;
 use pantin::tables;
 use std::sync::OnceLock;
 
-/// Numbers whose symbol tells them whole: |n| below this.
-const LIMIT: i32 = MAX_MAGNITUDE as i32;
+/// Numbers of at most this size have their cost at hand.
+const AT_HAND: i32 = group(GROUPS + 1) as i32 - 1;
 
 /// Costs in bits.
 pub struct Costs {
     modes: Vec<[f32; 64]>,
-    numbers: Vec<[f32; 2 * MAX_MAGNITUDE as usize + 1]>,
-    excess: Vec<f32>,
+    numbers: Vec<[f32; 2 * AT_HAND as usize + 1]>,
 }
 
 impl Costs {
@@ -29,11 +28,10 @@ impl Costs {
             let (symbol, length) = mode_symbol(mode);
             (cost(tables::mode(after), symbol) + if length.is_some() { 4.0 } else { 0.0 }) as f32
         };
-        let number = |context: u8, index: usize| cost(tables::number(context), number_symbol(index as i32 - LIMIT).0) as f32;
+        let number = |context: u8, index: usize| number_cost(context, index as i32 - AT_HAND) as f32;
         Costs {
             modes: (0..64).map(|after| std::array::from_fn(|m| mode(after, m as u8))).collect(),
             numbers: (0..CONTEXTS as u8).map(|context| std::array::from_fn(|index| number(context, index))).collect(),
-            excess: (0..=32).map(|bits| (cost(&tables::EXCESS, bits) + f64::from(bits)) as f32).collect(),
         }
     }
 
@@ -46,18 +44,19 @@ impl Costs {
     /// A number, its sign already turned as its context says.
     #[inline]
     pub fn number(&self, context: u8, number: i32) -> f64 {
-        let row = &self.numbers[usize::from(context)];
-        if number.abs() < LIMIT {
-            return f64::from(row[(number + LIMIT) as usize]);
+        if number.abs() <= AT_HAND {
+            return f64::from(self.numbers[usize::from(context)][(number + AT_HAND) as usize]);
         }
-        let excess = number.unsigned_abs() - MAX_MAGNITUDE;
-        f64::from(
-            row[if number < 0 { 0 } else { 2 * LIMIT as usize }] + self.excess[(u32::BITS - excess.leading_zeros()) as usize],
-        )
+        number_cost(context, number)
     }
 
     /// How a moving channel begins, in multiples of its grids.
     pub fn start(&self, p: i32, v: i32) -> f64 {
         magnitude_cost(&tables::POSITION, p) + magnitude_cost(&tables::VELOCITY, v)
     }
+}
+
+fn number_cost(context: u8, number: i32) -> f64 {
+    let (symbol, bits) = number_symbol(number);
+    cost(tables::number(context), symbol) + bits.iter().map(|&(_, count)| f64::from(count)).sum::<f64>()
 }

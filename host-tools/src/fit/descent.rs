@@ -20,8 +20,17 @@ pub struct Plan {
     pub effort: Effort,
 }
 
+impl Plan {
+    /// Quick, for previews and statistics.
+    pub fn fast(bound_cm: f64) -> Plan {
+        Plan { bound_cm, passes: 5, prices: (10.0, 0.2), effort: Effort { beam: 8, margin: 7.0, slopes: true } }
+    }
+}
+
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
+/// Part of the bound that a channel's first code may fill: those that come after need room for theirs.
+const FIRST_PART: f64 = 0.7;
 /// The price grows by this much where an error comes near the bound, so that others keep room.
 const CROWDING: f64 = 4.0;
 /// Levers are taken as constant while a channel moves by this much at most: degrees.
@@ -105,11 +114,18 @@ impl<'m> Descent<'m> {
     fn improve(&mut self, channel: usize, price: f64, pass: usize) -> Result<()> {
         let moved = self.figure.moved(channel);
         let bound = self.plan.bound_cm * USED;
-        let mut bounds = vec![bound; self.figure.frames];
+        let coded = self.codes[channel].is_some();
+        let mut bounds = vec![if coded { bound } else { bound * FIRST_PART }; self.figure.frames];
         let axes = self.figure.axes(channel, &self.values, &self.poses);
         for attempt in 0..6 {
             let tube = self.tube(channel, price, &moved, &axes, &bounds);
-            let Some(best) = self.best(channel, &tube, pass + attempt) else { break };
+            let Some(best) = self.best(channel, &tube, pass + attempt) else {
+                if coded || bounds[0] >= bound {
+                    break;
+                }
+                bounds.iter_mut().for_each(|limit| *limit = bound);
+                continue;
+            };
             if let Some(now) = &self.codes[channel]
                 && objective(&best, &tube) >= objective(now, &tube) - GAIN
             {

@@ -1,0 +1,71 @@
+//! `pantin train`.
+
+use super::write_whole;
+use crate::encode::rig;
+use crate::fit::{descent::Plan, fit};
+use crate::import;
+use crate::motion::Motion;
+use crate::train::Counts;
+use anyhow::{Context, Result};
+use std::path::PathBuf;
+
+/// Make the format's tables (decoder/src/tables.rs) from motions: for whoever changes the format.
+///
+/// Every motion is fitted at each bound and each frame rate with the tables of this build; its symbols are counted, a clip of few
+/// symbols as much as one of many. Build and run it again until the sizes settle.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin train motions/*.bvh -o decoder/src/tables.rs --note 'Trained on ...'")]
+pub struct Arguments {
+    /// Motion files
+    #[arg(required = true)]
+    inputs: Vec<PathBuf>,
+    /// The source file to write
+    #[arg(short, long)]
+    output: PathBuf,
+    /// A sentence for the file that says what the tables were trained on
+    #[arg(long)]
+    note: String,
+    /// Bounds in cm
+    #[arg(long, value_delimiter = ',', default_value = "0.3,1,3")]
+    bounds: Vec<f64>,
+    /// Take every frame, every second, every fourth, ...
+    #[arg(long, value_delimiter = ',', default_value = "1,2,4")]
+    strides: Vec<usize>,
+    /// Frames a second, for sources that do not say
+    #[arg(long)]
+    fps: Option<f64>,
+}
+
+/// Every `stride`-th frame.
+fn decimated(motion: &Motion, stride: usize) -> Motion {
+    let values: Vec<Vec<f64>> = motion.values.iter().map(|values| values.iter().step_by(stride).copied().collect()).collect();
+    let keys = vec![None; values.len()];
+    Motion {
+        frames: motion.frames.div_ceil(stride),
+        frame_time: motion.frame_time * stride as f64,
+        values,
+        keys,
+        ..motion.clone()
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let mut counts = Counts::default();
+    for path in &arguments.inputs {
+        let motion = import::load(path, &import::Options { fps: arguments.fps, ..Default::default() })?.motion;
+        let bytes = rig::encode(&motion.rig)?;
+        let rig = pantin::Rig::new_checked(&bytes)?;
+        for &stride in &arguments.strides {
+            let motion = decimated(&motion, stride);
+            for &bound_cm in &arguments.bounds {
+                let coded = fit(&motion, Plan::fast(bound_cm), 0.02, &mut |_| ()).with_context(|| path.display().to_string())?;
+                let segments: usize = coded.channels.iter().map(|channel| channel.segments.len()).sum();
+                eprintln!("{} every {stride}: {bound_cm} cm, {segments} segments", path.display());
+                counts.add(&coded, &rig, (2000.0 / segments.max(200) as f64).min(1.0));
+            }
+        }
+    }
+    write_whole(&arguments.output, counts.tables(&arguments.note).as_bytes())
+}

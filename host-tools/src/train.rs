@@ -1,0 +1,187 @@
+//! Makes the format's tables from coded motions: counts symbols, joins contexts that behave alike, rounds to 1/4096.
+
+use crate::encode::clip::{Coded, symbols};
+use crate::encode::entropy::{Alphabet, Sink};
+use pantin::entropy::SCALE_BITS;
+use pantin::layout::FAR;
+use pantin::segment::{CONTEXTS, DIRECT_MODES};
+use pantin::tables::MODES;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Tables of modes, and of numbers: with the rest they stay within 2 KiB of flash.
+const MODE_TABLES: usize = 8;
+const NUMBER_TABLES: usize = 16;
+/// How much a table of all contexts counts in each: a symbol never seen must still have a code.
+const PRIOR: f64 = 12.0;
+
+/// How often each symbol came.
+#[derive(Clone, Debug, Default)]
+pub struct Counts {
+    counts: BTreeMap<Alphabet, Vec<f64>>,
+    weight: f64,
+}
+
+impl Sink for Counts {
+    fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
+        let row = self.counts.entry(alphabet).or_insert_with(|| vec![0.0; alphabet.table().len() + 1]);
+        row[symbol as usize] += self.weight;
+    }
+
+    fn bits(&mut self, _: u32, _: u32) {}
+}
+
+impl Counts {
+    /// Adds a clip's symbols, each counted `weight` times.
+    pub fn add(&mut self, coded: &Coded, rig: &pantin::Rig<'_>, weight: f64) {
+        self.weight = weight;
+        symbols(coded, rig, self);
+    }
+
+    fn row(&self, alphabet: Alphabet) -> Vec<f64> {
+        let table = alphabet.table();
+        self.counts.get(&alphabet).cloned().unwrap_or_else(|| vec![0.0; table.len() + 1])
+    }
+
+    /// The text of `decoder/src/tables.rs`.
+    pub fn tables(&self, trained_on: &str) -> String {
+        // Modes are named by symbols in the order of how often they come: a decoder finds frequent ones first.
+        let mut total = vec![0.0; DIRECT_MODES as usize + 2];
+        for after in 0..64 {
+            self.row(Alphabet::Mode(after)).iter().zip(&mut total).for_each(|(count, total)| *total += count);
+        }
+        let mut order: Vec<usize> = (0..DIRECT_MODES as usize).collect();
+        order.sort_by(|&a, &b| total[b].total_cmp(&total[a]).then(MODES[a].cmp(&MODES[b])));
+        let reorder = |row: Vec<f64>| -> Vec<f64> { order.iter().chain(&[32, 33]).map(|&old| row[old]).collect() };
+        let modes = (0..64).map(|after| reorder(self.row(Alphabet::Mode(after)))).collect();
+        let numbers = (0..CONTEXTS as u8).map(|context| self.row(Alphabet::Number(context))).collect();
+        let (mode_after, mode) = join(modes, MODE_TABLES, &|i| if i >= DIRECT_MODES as usize { 0.002 } else { 0.01 });
+        let number_prior = |i: usize| 0.5f64.powi(i.div_ceil(2) as i32).max(0.004);
+        let (number_in, number) = join(numbers, NUMBER_TABLES, &number_prior);
+        let named: Vec<u8> = order.iter().map(|&old| MODES[old]).collect();
+
+        let mut out = HEAD.replace("TRAINED_ON", trained_on);
+        let mut item = |doc: &str, name: &str, kind: String, value: String| {
+            let _ = writeln!(out, "/// {doc}\n{name}: {kind} = {value};\n");
+        };
+        item("Modes in the order of their symbols.", "pub const MODES", "[u8; 32]".into(), format!("{named:?}"));
+        item("Which of [`MODE`] follows a mode.", "const MODE_AFTER", "[u8; 64]".into(), format!("{mode_after:?}"));
+        item(
+            "Modes: 32 named by [`MODES`], then WK and NONE.",
+            "static MODE",
+            format!("[[u16; 33]; {}]", mode.len()),
+            format!("{mode:?}"),
+        );
+        item("Which of [`NUMBER`] a context has.", "const NUMBER_IN", format!("[u8; {CONTEXTS}]"), format!("{number_in:?}"));
+        let width = 2 * FAR;
+        let doc = "Accelerations and slopes in their steps, by index of magnitude: 0, -1, 1, -2, ...";
+        item(doc, "static NUMBER", format!("[[u16; {width}]; {}]", number.len()), format!("{number:?}"));
+        let status: Vec<Vec<u16>> = (0..3).map(|after| cumulative(&self.row(Alphabet::Status(after)), &|_| 0.1)).collect();
+        let doc = "Rest, constant, moving: after a channel that rests, is constant, moves.";
+        item(doc, "static STATUS", "[[u16; 2]; 3]".into(), format!("{status:?}"));
+        let bell = |i: usize| 0.8f64.powi((i as i32 - 6).abs()).max(0.01);
+        for (alphabet, name, doc, prior) in [
+            (
+                Alphabet::StepChange,
+                "STEP_CHANGE",
+                "By how much a channel's step index differs from the last one's: 0, -1, 1, ...",
+                &number_prior as Prior,
+            ),
+            (Alphabet::Position, "POSITION", "Bits of a first position, in half channel steps.", &bell),
+            (Alphabet::Velocity, "VELOCITY", "Bits of a first velocity, in quarter channel steps.", &bell),
+        ] {
+            let table = cumulative(&self.row(alphabet), prior);
+            item(doc, &format!("pub static {name}"), format!("[u16; {}]", table.len()), format!("{table:?}"));
+        }
+        out + TAIL
+    }
+}
+
+type Prior<'p> = &'p dyn Fn(usize) -> f64;
+
+/// Joins the rows that cost least to join until `tables` are left: which table each row has, and the tables.
+fn join(rows: Vec<Vec<f64>>, tables: usize, prior: Prior<'_>) -> (Vec<usize>, Vec<Vec<u16>>) {
+    let mut groups: Vec<(Vec<usize>, Vec<f64>)> = rows.into_iter().enumerate().map(|(i, row)| (vec![i], row)).collect();
+    let contexts = groups.len();
+    while groups.len() > tables {
+        let mut best = (f64::MAX, 0, 0);
+        for a in 0..groups.len() {
+            for b in a + 1..groups.len() {
+                let sum: Vec<f64> = groups[a].1.iter().zip(&groups[b].1).map(|(x, y)| x + y).collect();
+                let cost = bits(&sum, prior) - bits(&groups[a].1, prior) - bits(&groups[b].1, prior);
+                if cost < best.0 {
+                    best = (cost, a, b);
+                }
+            }
+        }
+        let (members, row) = groups.swap_remove(best.2);
+        let kept = &mut groups[best.1];
+        kept.0.extend(members);
+        kept.1.iter_mut().zip(row).for_each(|(x, y)| *x += y);
+    }
+    let mut of = vec![0; contexts];
+    for (table, (members, _)) in groups.iter().enumerate() {
+        members.iter().for_each(|&member| of[member] = table);
+    }
+    (of, groups.iter().map(|(_, row)| cumulative(row, prior)).collect())
+}
+
+fn smoothed(row: &[f64], prior: Prior<'_>) -> Vec<f64> {
+    let whole: f64 = (0..row.len()).map(prior).sum();
+    let total: f64 = row.iter().sum::<f64>() + PRIOR;
+    row.iter().enumerate().map(|(i, count)| (count + PRIOR * prior(i) / whole) / total).collect()
+}
+
+/// Bits that the row's symbols take under its own statistics.
+fn bits(row: &[f64], prior: Prior<'_>) -> f64 {
+    smoothed(row, prior).iter().zip(row).map(|(p, count)| -count * p.log2()).sum()
+}
+
+/// Where the symbols after the first start, in 1/4096; every symbol has at least 1.
+fn cumulative(row: &[f64], prior: Prior<'_>) -> Vec<u16> {
+    let whole = 1 << SCALE_BITS;
+    let parts = smoothed(row, prior);
+    let mut sizes: Vec<i32> = parts.iter().map(|p| ((p * f64::from(whole)).round() as i32).max(1)).collect();
+    while sizes.iter().sum::<i32>() != whole {
+        let change = (whole - sizes.iter().sum::<i32>()).signum();
+        // The symbol whose size is farthest from its part, on the side that the change mends.
+        let off = |i: usize| f64::from(change) * (parts[i] * f64::from(whole) - f64::from(sizes[i]));
+        let allowed = |&i: &usize| sizes[i] + change >= 1;
+        let Some(at) = (0..sizes.len()).filter(allowed).max_by(|&a, &b| off(a).total_cmp(&off(b))) else { break };
+        sizes[at] += change;
+    }
+    let mut sum = 0;
+    sizes[..sizes.len() - 1]
+        .iter()
+        .map(|size| {
+            sum += size;
+            sum as u16
+        })
+        .collect()
+}
+
+const HEAD: &str = "//! Statistics of motion, frozen with the format: made by `pantin train`, not by hand.
+//!
+//! TRAINED_ON
+//!
+//! A table lists the cumulative probabilities of an alphabet in 1/4096: entry i is where symbol i + 1 starts.
+
+";
+
+const TAIL: &str = "/// The modes' table after a segment of this mode.
+pub fn mode(after: u8) -> &'static [u16] {
+    let index = MODE_AFTER.get(usize::from(after)).copied().unwrap_or(0);
+    MODE.get(usize::from(index)).map_or(&[], |table| table)
+}
+
+/// The numbers' table in this context.
+pub fn number(context: u8) -> &'static [u16] {
+    let index = NUMBER_IN.get(usize::from(context)).copied().unwrap_or(0);
+    NUMBER.get(usize::from(index)).map_or(&[], |table| table)
+}
+
+/// The table of a channel's status after a channel of that status.
+pub fn status(after: u8) -> &'static [u16] {
+    STATUS.get(usize::from(after)).map_or(&[], |table| table)
+}
+";
