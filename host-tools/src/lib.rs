@@ -2,6 +2,7 @@
 
 pub mod cmd;
 pub mod encode;
+mod euler;
 pub mod expand;
 pub mod export;
 pub mod fit;

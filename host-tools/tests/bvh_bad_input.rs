@@ -204,6 +204,6 @@ fn a_joint_without_channels_stands_still() {
 #[test]
 fn bad_options_are_refused() {
     for (cm_per_unit, fps) in [(Some(0.0), None), (Some(f64::NAN), None), (None, Some(-1.0))] {
-        assert!(load_bytes("options", GOOD.as_bytes(), &Options { cm_per_unit, fps }).is_err());
+        assert!(load_bytes("options", GOOD.as_bytes(), &Options { cm_per_unit, fps, ..Options::default() }).is_err());
     }
 }

@@ -43,7 +43,8 @@ fn what_is_written_reads_back() {
     for clip in clips() {
         let motion = import::load(&clip, &Options::default()).unwrap().motion;
         export::bvh::save(&motion, &path).unwrap();
-        let back = import::load(&path, &Options { cm_per_unit: Some(motion.rig.cm_per_unit), fps: None }).unwrap().motion;
+        let options = Options { cm_per_unit: Some(motion.rig.cm_per_unit), ..Options::default() };
+        let back = import::load(&path, &options).unwrap().motion;
         let bare = |rig: &Rig| rig.joints.iter().map(|joint| Joint { offset: [0.0; 3], ..joint.clone() }).collect::<Vec<_>>();
         assert_eq!(bare(&back.rig), bare(&motion.rig), "{}", clip.display());
         assert_eq!(back.frames, motion.frames);

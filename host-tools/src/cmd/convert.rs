@@ -21,7 +21,7 @@ use std::path::PathBuf;
   pantin convert walk.bvh -o walk.ptn --max-error 3cm
   pantin convert walk.bvh -o walk.ptn --rig-out figure.rig")]
 pub struct Arguments {
-    /// The motion: .bvh, or our key frames (.keys, see docs/KEYFRAMES.md)
+    /// The motion: .bvh, .amc (its .asf beside it), or our key frames (.keys, see docs/KEYFRAMES.md)
     input: PathBuf,
     /// The clip to write
     #[arg(short, long)]
@@ -38,6 +38,9 @@ pub struct Arguments {
     /// Frames a second, for sources that do not say
     #[arg(long)]
     fps: Option<f64>,
+    /// The .asf of an .amc, instead of the one found beside it
+    #[arg(long)]
+    skeleton: Option<PathBuf>,
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
     rig_out: Option<PathBuf>,
@@ -58,7 +61,8 @@ fn length_cm(text: &str) -> Result<f64, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let options = import::Options { cm_per_unit: arguments.cm_per_unit, fps: arguments.fps };
+    let options =
+        import::Options { cm_per_unit: arguments.cm_per_unit, fps: arguments.fps, skeleton: arguments.skeleton.clone() };
     let imported = import::load(&arguments.input, &options)?;
     if !arguments.quiet {
         imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));

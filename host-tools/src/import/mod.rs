@@ -1,5 +1,8 @@
 //! Motion files in: one file a format. [`load`] finds the format and settles the units.
 
+mod acclaim;
+pub mod amc;
+mod asf;
 pub mod bvh;
 pub mod text;
 pub mod units;
@@ -8,7 +11,7 @@ use crate::motion::{Kind, Motion};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs::{self, File};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What the user says about a source.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +20,8 @@ pub struct Options {
     pub cm_per_unit: Option<f64>,
     /// Frames a second, for a source that does not say or says nonsense.
     pub fps: Option<f64>,
+    /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
+    pub skeleton: Option<PathBuf>,
 }
 
 /// What an importer read.
@@ -51,7 +56,10 @@ struct Format {
 }
 
 /// One line a format.
-const FORMATS: &[Format] = &[Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read }];
+const FORMATS: &[Format] = &[
+    Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
+    Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
+];
 
 /// Bytes at the front of a file from which its format can be told.
 const HEAD: u64 = 1024;

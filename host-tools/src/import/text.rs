@@ -114,9 +114,14 @@ impl<'a> Words<'a> {
     /// The next number; `None` at the end of the file.
     pub fn next_number(&mut self) -> Result<Option<f64>> {
         let Some(word) = self.next_raw() else { return Ok(None) };
+        self.number_from(word).map(Some)
+    }
+
+    /// The number that `word`, read last, stands for.
+    pub fn number_from(&self, word: &[u8]) -> Result<f64> {
         let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f64>().ok());
         match number {
-            Some(number) if number.abs() <= LARGEST => Ok(Some(number)),
+            Some(number) if number.abs() <= LARGEST => Ok(number),
             Some(_) => Err(self.error(format!("expected a finite number of at most {LARGEST:e}, found {}", shown(Some(word))))),
             None => Err(self.error(format!("expected a number, found {}", shown(Some(word))))),
         }
@@ -127,6 +132,24 @@ impl<'a> Words<'a> {
         self.skip_space();
         let word = self.take_until(|byte| byte.is_ascii_whitespace());
         (!word.is_empty()).then_some(word)
+    }
+
+    /// The words of the next line that has some, of a format in which a word with `#` begins a comment and commas and parentheses are white
+    /// space; `None` at the end.
+    pub fn next_line(&mut self) -> Option<Vec<&'a [u8]>> {
+        loop {
+            self.skip_space();
+            if self.at == self.bytes.len() {
+                return None;
+            }
+            let line = self.take_until(|byte| matches!(byte, b'\n' | b'\r'));
+            let between = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b',' | b'(' | b')');
+            let words = line.split(between).filter(|word| !word.is_empty());
+            let words: Vec<&[u8]> = words.take_while(|word| !word.starts_with(b"#")).collect();
+            if !words.is_empty() {
+                return Some(words);
+            }
+        }
     }
 }
 
