@@ -131,14 +131,19 @@ fn turn(letters: &str, degrees: &[f64]) -> Turn {
     })
 }
 
-/// Start and end of every bone at every frame, in the file's units, of files laid out as CMU's are.
-fn acclaim(asf: &str, amc: &str) -> Vec<HashMap<String, ([f64; 3], [f64; 3])>> {
-    let floats = |words: &[&str]| words.iter().map_while(|word| word.parse::<f64>().ok()).collect::<Vec<f64>>();
-    // Vector, axes and letters of the rotations.
-    let mut bones: HashMap<&str, ([f64; 3], Turn, String)> = HashMap::new();
-    let (mut name, mut direction, mut length, mut parents) = ("", vec![], 0.0, vec![]);
-    let hierarchy = asf.find(":hierarchy").unwrap();
-    for line in asf[..hierarchy].lines() {
+/// Vector, axes and letters of the rotations.
+type Bone = ([f64; 3], Turn, String);
+/// Start and end of every bone.
+type Ends = HashMap<String, ([f64; 3], [f64; 3])>;
+
+fn floats(words: &[&str]) -> Vec<f64> {
+    words.iter().map_while(|word| word.parse().ok()).collect()
+}
+
+fn bones(asf: &str) -> HashMap<&str, Bone> {
+    let mut bones: HashMap<&str, Bone> = HashMap::new();
+    let (mut name, mut direction, mut length) = ("", vec![], 0.0);
+    for line in asf.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.first() {
             Some(&"name") => name = words[1],
@@ -152,30 +157,36 @@ fn acclaim(asf: &str, amc: &str) -> Vec<HashMap<String, ([f64; 3], [f64; 3])>> {
             _ => {}
         }
     }
-    for line in asf[hierarchy..].lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        parents.extend(words.iter().skip(1).map(|child| (*child, words[0])));
-    }
-    let mut frames = Vec::new();
+    bones
+}
+
+/// The bones' ends at every frame, in the file's units, of files laid out as CMU's are.
+fn acclaim(asf: &str, amc: &str) -> Vec<Ends> {
+    let (bone_data, hierarchy) = asf.split_once(":hierarchy").unwrap();
+    let bones = bones(bone_data);
+    let lines = hierarchy.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let parents: Vec<(&str, &str)> =
+        lines.flat_map(|words| words.iter().skip(1).map(|child| (*child, words[0])).collect::<Vec<_>>()).collect();
     let (_, rows) = amc.split_once(":DEGREES").unwrap();
-    for block in rows.split('\n').collect::<Vec<_>>().split(|line| line.trim().parse::<usize>().is_ok()).skip(1) {
+    let lines: Vec<&str> = rows.lines().collect();
+    let frame = |block: &[&str]| {
         let rows = block.iter().filter_map(|line| line.split_once(' '));
         let values: HashMap<&str, Vec<f64>> =
             rows.map(|(name, row)| (name, floats(&row.split_whitespace().collect::<Vec<_>>()))).collect();
         let root = &values["root"];
         let place = [root[0], root[1], root[2]];
         let mut world = HashMap::from([("root", turn("xyz", &root[3..]))]);
-        let mut places = HashMap::from([("root".to_string(), (place, place))]);
+        let mut ends = HashMap::from([("root".to_string(), (place, place))]);
         for (bone, parent) in &parents {
             let (vector, axes, letters) = &bones[bone];
             let own = values.get(bone).map_or([1.0, 0.0, 0.0, 0.0], |values| turn(letters, values));
             let turned = times(world[parent], times(times(*axes, own), conjugate(*axes)));
             let [_, x, y, z] = times(times(turned, [0.0, vector[0], vector[1], vector[2]]), conjugate(turned));
-            let start = places[*parent].1;
+            let start = ends[*parent].1;
             world.insert(bone, turned);
-            places.insert(bone.to_string(), (start, [start[0] + x, start[1] + y, start[2] + z]));
+            ends.insert(bone.to_string(), (start, [start[0] + x, start[1] + y, start[2] + z]));
         }
-        frames.push(places);
-    }
-    frames
+        ends
+    };
+    lines.split(|line| line.trim().parse::<usize>().is_ok()).skip(1).map(frame).collect()
 }

@@ -1,4 +1,4 @@
-//! What becomes of Acclaim's bones (ASF and AMC): joints whose frames at rest are all parallel to the world's.
+//! Acclaim's figure (ASF and AMC) and what becomes of its bones: joints whose frames at rest are all parallel to the world's.
 //!
 //! A bone begins where its parent ends, and becomes a joint there; one without children gets an End Site at its own end. With
 //! C the bone's axes and R the turns by its values (about fixed axes, in their order), it turns by C R C^-1 in its parent.
@@ -10,10 +10,49 @@
 //! The root turns so too, with its orientation as C; its position adds to its translation. A bone's translation (rare) is along
 //! C's axes; its length value (`l`, not seen in any file) is left out.
 
-use super::asf::{Bone, Dof, Skeleton};
 use crate::euler;
 use crate::fk::{IDENTITY, Matrix, about, apply, product};
 use crate::motion::{Joint, Kind, Motion, Rig};
+
+/// A value that a motion gives a bone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dof {
+    /// Along an axis: 0, 1, 2 for x, y, z.
+    Translation(usize),
+    /// About an axis.
+    Rotation(usize),
+    /// Along the bone.
+    Length,
+}
+
+/// A bone.
+#[derive(Clone, Debug)]
+pub struct Bone {
+    pub name: String,
+    /// Smaller than the bone's own index; `None` for the root.
+    pub parent: Option<usize>,
+    /// From the bone's start to its end in the rest pose, in units of length.
+    pub vector: [f64; 3],
+    /// The frame in which its values turn it, in the world of the rest pose.
+    pub axes: Matrix,
+    /// In the order of the values, which is the order of the turns about fixed axes.
+    pub dofs: Vec<Dof>,
+}
+
+/// A figure at rest.
+#[derive(Clone, Debug)]
+pub struct Skeleton {
+    /// Parents before children; the root first.
+    pub bones: Vec<Bone>,
+    /// What is added to the root's translation.
+    pub position: [f64; 3],
+    /// Length of the unit, where it is stated.
+    pub cm_per_unit: Option<f64>,
+    /// Whether angles are in radians.
+    pub radians: bool,
+    /// What could not be used, a sentence each.
+    pub warnings: Vec<String>,
+}
 
 const POSITIONS: [Kind; 3] = [Kind::Xposition, Kind::Yposition, Kind::Zposition];
 const ROTATIONS: [Kind; 3] = [Kind::Xrotation, Kind::Yrotation, Kind::Zrotation];

@@ -4,9 +4,9 @@
 //! the motion's name begins with (`09.asf` for `09_12.amc`), else the one that the motion's first comment names.
 //! `acclaim` tells what becomes of the bones.
 
-use super::asf::{self, Dof, Skeleton};
+use super::acclaim::{self, Dof, Skeleton};
 use super::text::{Words, shown};
-use super::{Options, Source, acclaim, read_bytes};
+use super::{Options, Source, asf, read_bytes};
 use anyhow::{Result, anyhow};
 use std::path::{Path, PathBuf};
 

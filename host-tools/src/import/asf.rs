@@ -4,52 +4,13 @@
 //! One unit of length is an inch over `length`, so CMU's 0.45 makes 5.6444 cm; `length 1` stands in files of any unit and is
 //! taken to say nothing.
 
+use super::acclaim::{Bone, Dof, Skeleton};
 use super::text::{Words, shown};
-use crate::fk::{IDENTITY, Matrix, about, product};
+use crate::fk::{IDENTITY, about, product};
 use anyhow::Result;
 use std::path::Path;
 
 const INCH_CM: f64 = 2.54;
-
-/// A value that a motion gives a bone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dof {
-    /// Along an axis: 0, 1, 2 for x, y, z.
-    Translation(usize),
-    /// About an axis.
-    Rotation(usize),
-    /// Along the bone.
-    Length,
-}
-
-/// A bone.
-#[derive(Clone, Debug)]
-pub struct Bone {
-    pub name: String,
-    /// Smaller than the bone's own index; `None` for the root.
-    pub parent: Option<usize>,
-    /// From the bone's start to its end in the rest pose, in units of length.
-    pub vector: [f64; 3],
-    /// The frame in which its values turn it, in the world of the rest pose.
-    pub axes: Matrix,
-    /// In the order of the values, which is the order of the turns about fixed axes.
-    pub dofs: Vec<Dof>,
-}
-
-/// A figure at rest.
-#[derive(Clone, Debug)]
-pub struct Skeleton {
-    /// Parents before children; the root first.
-    pub bones: Vec<Bone>,
-    /// What is added to the root's translation.
-    pub position: [f64; 3],
-    /// Length of the unit, where it is stated.
-    pub cm_per_unit: Option<f64>,
-    /// Whether angles are in radians.
-    pub radians: bool,
-    /// What could not be used, a sentence each.
-    pub warnings: Vec<String>,
-}
 
 /// A bone as its lines give it.
 #[derive(Default)]
