@@ -27,9 +27,16 @@ fn refused(name: &str, from: &str, to: &str, part: &str) {
     assert!(error.contains(part), "{name}: no `{part}` in: {error}");
 }
 
-fn channel<'a>(motion: &'a Motion, name: &str) -> (&'a [f64], Option<&'a [(usize, f64)]>) {
-    let index = (0..motion.rig.channels()).find(|&index| motion.rig.channel_name(index) == name).unwrap();
-    (&motion.values[index], motion.keys[index].as_ref().map(|keys| keys.keys.as_slice()))
+fn index(motion: &Motion, name: &str) -> usize {
+    (0..motion.rig.channels()).find(|&index| motion.rig.channel_name(index) == name).unwrap()
+}
+
+fn values<'a>(motion: &'a Motion, name: &str) -> &'a [f64] {
+    &motion.values[index(motion, name)]
+}
+
+fn keys<'a>(motion: &'a Motion, name: &str) -> &'a [(usize, f64)] {
+    &motion.keys[index(motion, name)].as_ref().unwrap().keys
 }
 
 #[test]
@@ -41,14 +48,16 @@ fn the_documents_example_is_read() {
     assert_eq!(motion.rig.joints[0].kinds, [Kind::Yposition, Kind::Zposition, Kind::Xrotation]);
     assert_eq!(motion.rig.joints[2].parent, Some(1));
     assert!(motion.rig.joints[2].end_site);
-    let (values, keys) = channel(&motion, "hip.Zposition");
-    assert_eq!((values[0], values[30], values[59], keys.unwrap()), (0.0, 60.0, 118.0, &[(0, 0.0), (59, 118.0)][..]));
-    let (values, keys) = channel(&motion, "knee.Xrotation");
-    assert_eq!(keys.unwrap()[..3], [(0, 5.0), (20, 40.0), (35, 10.0)]);
-    assert!(keys.unwrap().iter().all(|&(frame, value)| (values[frame] - value).abs() < 1e-12));
-    assert_eq!(keys.unwrap()[3].0, 59);
+    let forward = values(&motion, "hip.Zposition");
+    assert_eq!((forward[0], forward[30], forward[59]), (0.0, 60.0, 118.0));
+    assert_eq!(keys(&motion, "hip.Zposition"), [(0, 0.0), (59, 118.0)]);
+    let knee = keys(&motion, "knee.Xrotation");
+    assert_eq!(knee[..3], [(0, 5.0), (20, 40.0), (35, 10.0)]);
+    assert!(knee.iter().all(|&(frame, value)| (values(&motion, "knee.Xrotation")[frame] - value).abs() < 1e-12));
+    assert_eq!(knee[3].0, 59);
     // A position without keys stays at its offset.
-    assert_eq!(channel(&motion, "hip.Yposition"), (&[90.0; 60][..], None));
+    assert_eq!(values(&motion, "hip.Yposition"), [90.0; 60]);
+    assert_eq!(motion.keys[0], None);
     assert_eq!(motion.keys[4].as_ref().unwrap().interpolation, Interpolation::Natural);
 }
 
@@ -57,7 +66,7 @@ fn without_a_loop_curves_end_at_the_last_frame() {
     let text = example().replace("loop ", "# ").replace("  60  120", "  59  118").replace("  35   20  10", "  59   20  10");
     let motion = load("open", &text.replace("  30    0.8", "  59    0.8")).unwrap().motion;
     assert!(!motion.looped);
-    assert_eq!(channel(&motion, "hip.Xrotation").1.unwrap(), [(0, -20.0), (20, 0.0), (59, 20.0)]);
+    assert_eq!(keys(&motion, "hip.Xrotation"), [(0, -20.0), (20, 0.0), (59, 20.0)]);
     let error = format!("{:#}", load("short", &text).unwrap_err());
     assert!(error.contains("short.keys:21: the last key of this block is at frame 30; expected one at 59"), "{error}");
 }
