@@ -15,6 +15,8 @@ const MAGIC: &str = "keyframes";
 const VERSION: &str = "1";
 /// Far more than a hand writes, and little enough to sample.
 const MOST_FRAMES: f64 = 1e6;
+/// Frames times channels: 128 MB of samples.
+const MOST_VALUES: usize = 1 << 24;
 
 /// Whether `head` begins such a file; comments may stand before.
 pub fn begins(head: &[u8]) -> bool {
@@ -171,6 +173,9 @@ impl Reader {
         let kinds = self.rig.channel_kinds();
         if kinds.is_empty() {
             return wrong("no joint has channels and there is no scalar, so nothing can move");
+        }
+        if kinds.len() * frames > MOST_VALUES {
+            return wrong(format!("{frames} frames of {} channels; expected at most {MOST_VALUES} values", kinds.len()));
         }
         let mut values: Vec<Vec<f64>> = kinds.iter().map(|&place| vec![rig::rest(&self.rig, place); frames]).collect();
         let mut keys = vec![None; kinds.len()];
