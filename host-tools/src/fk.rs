@@ -94,3 +94,59 @@ pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
 pub(crate) fn apply(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|row| (0..3).map(|k| matrix[row][k] * vector[k]).sum())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Kind::*;
+
+    /// Where a bone of length 1 along `axis` ends after a joint with `channels` has turned it.
+    fn turned(channels: &[(Kind, f64)], axis: usize) -> [f64; 3] {
+        let mut bone = [0.0; 3];
+        bone[axis] = 1.0;
+        let kinds = channels.iter().map(|&(kind, _)| kind).collect();
+        let root = Joint { name: "root".into(), parent: None, offset: [0.0; 3], kinds, end_site: false };
+        let end = Joint { name: String::new(), parent: Some(0), offset: bone, kinds: Vec::new(), end_site: true };
+        let rig = Rig { joints: vec![root, end], scalars: Vec::new(), cm_per_unit: 2.0 };
+        let values: Vec<Vec<f64>> = channels.iter().map(|&(_, value)| vec![value]).collect();
+        positions(&rig, &values, 0)[1].map(|x| x / 2.0)
+    }
+
+    fn same(a: [f64; 3], b: [f64; 3]) {
+        assert!((0..3).all(|axis| (a[axis] - b[axis]).abs() < 1e-12), "{a:?} is not {b:?}");
+    }
+
+    #[test]
+    fn rotations_apply_in_the_order_of_channels() {
+        same(turned(&[(Xrotation, 90.0)], 1), [0.0, 0.0, 1.0]);
+        same(turned(&[(Xrotation, 90.0), (Yrotation, 90.0)], 0), [0.0, 1.0, 0.0]);
+        same(turned(&[(Yrotation, 90.0), (Xrotation, 90.0)], 0), [0.0, 0.0, -1.0]);
+    }
+
+    #[test]
+    fn positions_replace_the_offset_axis_by_axis() {
+        same(turned(&[(Yposition, 3.0), (Yposition, 4.0)], 0), [1.0, 4.0, 0.0]);
+    }
+
+    #[test]
+    fn quaternions_and_exponential_maps_turn_like_the_angle_they_stand_for() {
+        let (half, length) = (20_f64.to_radians(), 7.0);
+        for (axis, [euler, exponential, component]) in [
+            [Xrotation, Xexponential, Xquaternion],
+            [Yrotation, Yexponential, Yquaternion],
+            [Zrotation, Zexponential, Zquaternion],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let bone = (axis + 1) % 3;
+            let expected = turned(&[(euler, 40.0)], bone);
+            same(turned(&[(exponential, 40.0)], bone), expected);
+            same(turned(&[(Wquaternion, half.cos() * length), (component, half.sin() * length)], bone), expected);
+        }
+        same(turned(&[(Wquaternion, 0.0), (Xquaternion, 0.0)], 1), [0.0, 1.0, 0.0]);
+        // Half a turn about the diagonal of x and y swaps them.
+        let side = 180.0 / 2_f64.sqrt();
+        same(turned(&[(Xexponential, side), (Yexponential, side), (Zexponential, 0.0)], 0), [0.0, 1.0, 0.0]);
+    }
+}

@@ -8,6 +8,7 @@ pub mod export;
 pub mod fit;
 pub mod fk;
 pub mod import;
+pub mod keys;
 pub mod motion;
 pub mod train;
 pub mod verify;

@@ -134,3 +134,70 @@ fn number(text: &mut String, value: f64) -> Result<()> {
 fn trimmed(number: String) -> String {
     number.trim_end_matches('0').trim_end_matches('.').to_string()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{Joint, Scalar};
+
+    fn joint(name: &str, parent: Option<usize>, kinds: &[Kind], end_site: bool) -> Joint {
+        Joint { name: name.into(), parent, offset: [0.0, 1.5, -0.00000001], kinds: kinds.to_vec(), end_site }
+    }
+
+    fn motion(joints: Vec<Joint>, values: &[f64]) -> Motion {
+        let rig = Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0 };
+        let keys = vec![None; values.len()];
+        let values = values.iter().map(|&value| vec![value]).collect();
+        Motion { rig, frame_time: 1.0 / 120.0, frames: 1, values, keys, looped: false }
+    }
+
+    #[test]
+    fn joints_are_nested_and_channels_follow_them() {
+        let joints = vec![
+            joint("a {b}", None, &[Kind::Xposition], false),
+            joint("left", Some(0), &[Kind::Xrotation], false),
+            joint("right", Some(0), &[Kind::Yrotation], false),
+            joint("", Some(1), &[], true),
+        ];
+        let mut out = Vec::new();
+        write(&motion(joints, &[1.0, -0.25, 1e-9]), &mut out).unwrap();
+        let expected = "HIERARCHY
+ROOT a _b_
+{
+\tOFFSET 0 1.5 0
+\tCHANNELS 1 Xposition
+\tJOINT left
+\t{
+\t\tOFFSET 0 1.5 0
+\t\tCHANNELS 1 Xrotation
+\t\tEnd Site
+\t\t{
+\t\t\tOFFSET 0 1.5 0
+\t\t}
+\t}
+\tJOINT right
+\t{
+\t\tOFFSET 0 1.5 0
+\t\tCHANNELS 1 Yrotation
+\t}
+}
+MOTION
+Frames: 1
+Frame Time: 0.008333333
+1 -0.25 0
+";
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+
+    #[test]
+    fn what_bvh_cannot_hold_is_named_and_nothing_is_left() {
+        let path = std::env::temp_dir().join(format!("pantin-export-{}.bvh", std::process::id()));
+        let error = |motion: &Motion| format!("{:#}", save(motion, &path).unwrap_err());
+        let quaternion = motion(vec![joint("hip", None, &[Kind::Wquaternion], false)], &[1.0]);
+        assert!(error(&quaternion).contains("joint `hip`: BVH has no Wquaternion"));
+        let mut scalar = motion(vec![joint("hip", None, &[], false)], &[1.0]);
+        scalar.rig.scalars.push(Scalar { name: "smile".into(), full_scale: 1.0 });
+        assert!(error(&scalar).contains("`smile`"));
+        assert!(!path.exists() && !path.with_extension("bvh.part").exists());
+    }
+}

@@ -4,10 +4,11 @@ mod acclaim;
 pub mod amc;
 mod asf;
 pub mod bvh;
+pub mod keyframes;
 pub mod text;
 pub mod units;
 
-use crate::motion::{Kind, Motion};
+use crate::motion::Motion;
 use anyhow::{Context, Result, bail, ensure};
 use std::fs::{self, File};
 use std::io::Read;
@@ -59,6 +60,7 @@ struct Format {
 const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
     Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
+    Format { name: "key frames", extensions: &["keys"], begins: keyframes::begins, read: keyframes::read },
 ];
 
 /// Bytes at the front of a file from which its format can be told.
@@ -100,10 +102,14 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).with_context(|| path.display().to_string())
 }
 
-/// Adds whole turns so that no Euler angle moves by more than half a turn from one frame to the next (METHOD 5).
+/// Adds whole turns so that no Euler angle moves by more than half a turn from one frame to the next (docs/METHOD.md 5).
+/// Curves through keys run as their keys say.
 pub fn unwrap_angles(motion: &mut Motion) {
     let kinds = motion.rig.channel_kinds();
-    for (values, _) in motion.values.iter_mut().zip(kinds).filter(|(_, (_, kind))| Kind::is_rotation(*kind)) {
+    for ((values, (_, kind)), keys) in motion.values.iter_mut().zip(kinds).zip(&motion.keys) {
+        if !kind.is_rotation() || keys.is_some() {
+            continue;
+        }
         let mut turns = 0.0;
         for frame in 1..values.len() {
             turns += ((values[frame - 1] - values[frame] - turns) / 360.0).round() * 360.0;

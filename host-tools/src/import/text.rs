@@ -119,12 +119,7 @@ impl<'a> Words<'a> {
 
     /// The number that `word`, read last, stands for.
     pub fn number_from(&self, word: &[u8]) -> Result<f64> {
-        let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f64>().ok());
-        match number {
-            Some(number) if number.abs() <= LARGEST => Ok(number),
-            Some(_) => Err(self.error(format!("expected a finite number of at most {LARGEST:e}, found {}", shown(Some(word))))),
-            None => Err(self.error(format!("expected a number, found {}", shown(Some(word))))),
-        }
+        number_in(word).map_err(|message| self.error(message))
     }
 
     /// The next word between white space.
@@ -150,6 +145,15 @@ impl<'a> Words<'a> {
                 return Some(words);
             }
         }
+    }
+}
+
+/// The number that `word` is, or what was expected instead.
+pub fn number_in(word: &[u8]) -> Result<f64, String> {
+    match std::str::from_utf8(word).ok().and_then(|text| text.parse::<f64>().ok()) {
+        Some(number) if number.abs() <= LARGEST => Ok(number),
+        Some(_) => Err(format!("expected a finite number of at most {LARGEST:e}, found {}", shown(Some(word)))),
+        None => Err(format!("expected a number, found {}", shown(Some(word)))),
     }
 }
 

@@ -1,0 +1,212 @@
+//! Our own walk and run have the shape the paper's had (docs/METHOD.md 2.6), and they walk and run.
+
+use pantin_tools::import::{self, Options};
+use pantin_tools::motion::Motion;
+use pantin_tools::{export, fk};
+use std::path::Path;
+
+/// A foot stands while it is within this of its lowest height, in cm.
+const NEAR: f64 = 2.0;
+
+struct Clip {
+    motion: Motion,
+    /// World positions in cm: frame, joint.
+    places: Vec<Vec<[f64; 3]>>,
+    /// Way forward of one round.
+    stride: f64,
+}
+
+fn load(name: &str) -> Clip {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../motions/{name}.keys"));
+    let motion = import::load(&path, &Options::default()).unwrap().motion;
+    let places: Vec<_> = (0..motion.frames).map(|frame| fk::positions(&motion.rig, &motion.values, frame)).collect();
+    let forward = &motion.values[2];
+    let stride = (forward[1] - forward[0]) * motion.frames as f64;
+    Clip { motion, places, stride }
+}
+
+impl Clip {
+    fn joint(&self, name: &str) -> usize {
+        (0..self.motion.rig.joints.len()).find(|&joint| self.motion.rig.joint_name(joint) == name).unwrap()
+    }
+
+    /// Place of a joint in any frame of the endless motion.
+    fn place(&self, joint: usize, frame: usize) -> [f64; 3] {
+        let [x, y, z] = self.places[frame % self.motion.frames][joint];
+        [x, y, z + self.stride * (frame / self.motion.frames) as f64]
+    }
+
+    fn track(&self, joint: usize, axis: usize) -> Vec<f64> {
+        self.places.iter().map(|frame| frame[joint][axis]).collect()
+    }
+
+    /// How far ahead of the hips, in every frame.
+    fn ahead(&self, joint: usize) -> Vec<f64> {
+        self.places.iter().map(|frame| frame[joint][2] - frame[0][2]).collect()
+    }
+
+    /// The points of a foot that touch the floor: ball, tip of the toes, heel.
+    fn sole(&self, side: &str) -> Vec<usize> {
+        let ends = ["foot/end", "toes", "toes/end"].map(|part| self.joint(&format!("{side}-{part}")));
+        ends.to_vec()
+    }
+
+    fn frames_near(&self, joint: usize) -> Vec<bool> {
+        let heights = self.track(joint, 1);
+        let lowest = heights.iter().copied().fold(f64::MAX, f64::min);
+        heights.into_iter().map(|y| y < lowest + NEAR).collect()
+    }
+
+    /// Farthest that a point of a standing foot moves over the floor while it stands.
+    fn slide(&self, joint: usize) -> f64 {
+        let near = self.frames_near(joint);
+        let count = near.len();
+        let lifted = near.iter().position(|&near| !near).unwrap();
+        let mut from = None;
+        let mut slide: f64 = 0.0;
+        for frame in lifted..lifted + count {
+            if !near[frame % count] {
+                from = None;
+                continue;
+            }
+            let start = *from.get_or_insert(frame);
+            for other in start..frame {
+                let (a, b) = (self.place(joint, other), self.place(joint, frame));
+                slide = slide.max((a[0] - b[0]).hypot(a[2] - b[2]));
+            }
+        }
+        slide
+    }
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (ma, mb) = (mean(a), mean(b));
+    let product = |x: &[f64], mx: f64, y: &[f64], my: f64| x.iter().zip(y).map(|(x, y)| (x - mx) * (y - my)).sum::<f64>();
+    product(a, ma, b, mb) / (product(a, ma, a, ma) * product(b, mb, b, mb)).sqrt()
+}
+
+fn max(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::MIN, f64::max)
+}
+
+fn min(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::MAX, f64::min)
+}
+
+fn channel<'a>(motion: &'a Motion, name: &str) -> &'a [f64] {
+    let index = (0..motion.rig.channels()).find(|&index| motion.rig.channel_name(index) == name).unwrap();
+    &motion.values[index]
+}
+
+/// Frames and key frames; every key frame keys every channel that moves.
+fn has_shape(motion: &Motion, frames: usize, key_frames: &[usize]) {
+    assert_eq!(motion.frames, frames);
+    assert!(motion.looped);
+    let moving: Vec<usize> =
+        (0..motion.values.len()).filter(|&index| max(&motion.values[index]) - min(&motion.values[index]) > 0.5).collect();
+    assert!((20..=24).contains(&moving.len()), "{} channels move", moving.len());
+    for (index, values) in motion.values.iter().enumerate() {
+        assert!(moving.contains(&index) || max(values) == min(values), "{} hardly moves", motion.rig.channel_name(index));
+    }
+    for index in moving {
+        let keyed: Vec<usize> = motion.keys[index].as_ref().unwrap().keys.iter().map(|&(frame, _)| frame).collect();
+        assert_eq!(keyed, key_frames, "{}", motion.rig.channel_name(index));
+    }
+}
+
+/// What a walk and a run have in common.
+fn goes_on_two_legs(clip: &Clip) {
+    let height = import::units::rest_height_cm(&clip.motion);
+    assert!((150.0..180.0).contains(&height), "{height} cm");
+    let [left, right] = ["left", "right"].map(|side| clip.ahead(clip.joint(&format!("{side}-foot"))));
+    let swaps = (0..left.len()).filter(|&i| (left[i] > right[i]) != (left[(i + 1) % left.len()] > right[(i + 1) % left.len()]));
+    assert_eq!(swaps.count(), 2, "each foot passes the other once a stride");
+    assert!(correlation(&left, &right) < -0.7);
+    for (side, other) in [("left", "right"), ("right", "left")] {
+        for joint in clip.sole(side) {
+            let name = clip.motion.rig.joint_name(joint);
+            assert!(clip.slide(joint) < 3.0, "{name} slides {} cm", clip.slide(joint));
+            assert!(min(&clip.track(joint, 1)) > -1.5, "{name} sinks to {} cm", min(&clip.track(joint, 1)));
+            println!("{name}: slides {:.2} cm, lowest {:.2} cm", clip.slide(joint), min(&clip.track(joint, 1)));
+        }
+        let against =
+            correlation(&clip.ahead(clip.joint(&format!("{side}-hand"))), &clip.ahead(clip.joint(&format!("{side}-foot"))));
+        let along =
+            correlation(&clip.ahead(clip.joint(&format!("{side}-hand"))), &clip.ahead(clip.joint(&format!("{other}-foot"))));
+        assert!(against < -0.7 && along > 0.7, "{side} arm: {against} with its leg, {along} with the other");
+        let ball = clip.joint(&format!("{side}-toes"));
+        let lifts = max(&clip.track(ball, 1)) - min(&clip.track(ball, 1));
+        assert!(lifts > 8.0, "{side} foot rises by {lifts} cm only");
+    }
+}
+
+/// Lowest point of a foot above the floor, in every frame.
+fn clearance(clip: &Clip, side: &str) -> Vec<f64> {
+    let tracks: Vec<Vec<f64>> = clip.sole(side).into_iter().map(|joint| clip.track(joint, 1)).collect();
+    (0..clip.motion.frames).map(|frame| tracks.iter().map(|track| track[frame]).fold(f64::MAX, f64::min)).collect()
+}
+
+/// Over the seam no channel accelerates more than it does elsewhere.
+fn loops_smoothly(clip: &Clip) {
+    for (index, values) in clip.motion.values.iter().enumerate() {
+        let count = values.len();
+        let at = |frame: usize| values[frame % count] + if index == 2 { clip.stride * (frame / count) as f64 } else { 0.0 };
+        let bend = |frame: usize| (at(frame + 1) - 2.0 * at(frame) + at(frame - 1)).abs();
+        let inside = (1..count - 1).map(bend).fold(0.0, f64::max);
+        let seam = bend(count - 1).max(bend(count));
+        assert!(seam <= 1.5 * inside + 1e-9, "{}: {seam} at the seam, {inside} inside", clip.motion.rig.channel_name(index));
+    }
+}
+
+#[test]
+fn the_walk_is_a_walk() {
+    let clip = load("walk");
+    has_shape(&clip.motion, 160, &[0, 18, 80, 98, 159]);
+    assert_eq!(clip.motion.frame_time, 1.0 / 120.0);
+    goes_on_two_legs(&clip);
+    loops_smoothly(&clip);
+    let [left, right] = ["left", "right"].map(|side| clearance(&clip, side));
+    let on_floor = left.iter().zip(&right).all(|(left, right)| left.min(*right) < 1.5);
+    assert!(on_floor, "one foot is always on the floor");
+    let both = left.iter().zip(&right).filter(|(left, right)| left.max(**right) < 1.5).count();
+    assert!((8..60).contains(&both), "{both} frames on both feet");
+    for side in ["left", "right"] {
+        let knee = channel(&clip.motion, &format!("{side}-shin.Xrotation"));
+        assert!(max(knee) > 50.0 && min(knee) > 0.0, "{side} knee {} to {}", min(knee), max(knee));
+    }
+}
+
+#[test]
+fn the_run_is_a_run() {
+    let clip = load("run");
+    has_shape(&clip.motion, 26, &[0, 10, 14, 25]);
+    goes_on_two_legs(&clip);
+    loops_smoothly(&clip);
+    let [left, right] = ["left", "right"].map(|side| clearance(&clip, side));
+    let air: Vec<bool> = left.iter().zip(&right).map(|(left, right)| left.min(*right) > 1.5).collect();
+    let flights = (0..air.len()).filter(|&frame| air[frame] && !air[(frame + 1) % air.len()]).count();
+    assert_eq!(flights, 2, "two flights a stride: {air:?}");
+    assert!(left.iter().zip(&right).all(|(left, right)| left.max(*right) > NEAR), "never on both feet");
+    for side in ["left", "right"] {
+        let knee = channel(&clip.motion, &format!("{side}-shin.Xrotation"));
+        assert!(max(knee) > 90.0 && min(knee) > 0.0, "{side} knee {} to {}", min(knee), max(knee));
+        assert!(max(channel(&clip.motion, &format!("{side}-forearm.Xrotation"))) < -60.0, "elbows stay bent");
+    }
+    assert!(min(&clip.ahead(clip.joint("head"))) > 5.0, "leans forward");
+}
+
+#[test]
+fn both_come_back_from_bvh() {
+    let path = std::env::temp_dir().join(format!("pantin-own-motions-{}.bvh", std::process::id()));
+    for name in ["walk", "run"] {
+        let motion = load(name).motion;
+        export::bvh::save(&motion, &path).unwrap();
+        let back = import::load(&path, &Options::default()).unwrap().motion;
+        assert_eq!(back.rig, motion.rig, "{name}: joints, and the unit guessed");
+        let pairs = motion.values.iter().flatten().zip(back.values.iter().flatten());
+        let far = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(far <= 5e-8 + 1e-12 && back.frames == motion.frames, "{name}: {far}");
+    }
+    std::fs::remove_file(&path).unwrap();
+}
