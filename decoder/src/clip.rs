@@ -179,6 +179,8 @@ impl<'a> Clip<'a> {
             return Err(OpenError::Malformed);
         }
         blocks::check(motion, parts.seed)?;
+        // What a decoder reads past the end is zeros, not the last CRC.
+        let (motion, _) = motion.split_at(motion.len() - CRC_BYTES);
         let head = Head::read(&Input { bytes: motion, base: 0 }, parts.flags, &rig, rig_id)?;
         Ok(Clip { rig, motion, rig_len: parts.rig_len, head })
     }
@@ -215,7 +217,7 @@ impl<'a> Clip<'a> {
 
     /// Bytes of the motion with its CRCs: the file without its rig and its first few bytes.
     pub fn motion_len(&self) -> usize {
-        self.motion.len()
+        self.motion.len() + CRC_BYTES
     }
 
     /// Bytes of CRCs.

@@ -29,8 +29,6 @@ impl Plan {
 
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
-/// Part of the bound that a channel's first code may fill: those that come after need room for theirs.
-const FIRST_PART: f64 = 0.7;
 /// The price grows by this much where an error comes near the bound, so that others keep room.
 const CROWDING: f64 = 4.0;
 /// Levers are taken as constant while a channel moves by this much at most: degrees.
@@ -47,6 +45,8 @@ type Code = Fitted;
 pub struct Descent<'m> {
     figure: &'m Figure,
     plan: Plan,
+    /// Part of the bound that a channel's first code may fill.
+    first_part: f64,
     /// Targets, raw and unwrapped.
     targets: &'m [Vec<f64>],
     /// Units of the motion for a raw unit.
@@ -68,6 +68,7 @@ impl<'m> Descent<'m> {
     pub fn new(
         figure: &'m Figure,
         plan: Plan,
+        first_part: f64,
         targets: &'m [Vec<f64>],
         scales: &'m [f64],
         rests: &'m [i32],
@@ -78,7 +79,20 @@ impl<'m> Descent<'m> {
         let values: Vec<Vec<f64>> = targets.iter().zip(scales).map(|(x, s)| x.iter().map(|x| x * s).collect()).collect();
         let poses = figure.poses(&values);
         let codes = vec![None; targets.len()];
-        Descent { figure, plan, targets, scales, rests, scalar_bounds, original, poses, values, codes, seconds_a_frame }
+        Descent {
+            figure,
+            plan,
+            first_part,
+            targets,
+            scales,
+            rests,
+            scalar_bounds,
+            original,
+            poses,
+            values,
+            codes,
+            seconds_a_frame,
+        }
     }
 
     /// All passes. `progress` hears the part that is done, 0 to 1.
@@ -115,7 +129,7 @@ impl<'m> Descent<'m> {
         let moved = self.figure.moved(channel);
         let bound = self.plan.bound_cm * USED;
         let coded = self.codes[channel].is_some();
-        let mut bounds = vec![if coded { bound } else { bound * FIRST_PART }; self.figure.frames];
+        let mut bounds = vec![if coded { bound } else { bound * self.first_part }; self.figure.frames];
         let axes = self.figure.axes(channel, &self.values, &self.poses);
         for attempt in 0..6 {
             let tube = self.tube(channel, price, &moved, &axes, &bounds);

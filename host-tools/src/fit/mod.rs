@@ -10,9 +10,12 @@ pub mod search;
 use crate::encode::clip::{Channel, Coded};
 use crate::encode::rig as rig_bytes;
 use crate::motion::Motion;
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use descent::{Descent, Plan};
 use figure::Figure;
+
+/// Parts of the bound that first codes may fill, until all channels find one: those that come late need room.
+const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 
 /// Codes `motion` within the plan's bound. `progress` hears the part that is done, 0 to 1.
 pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnMut(f64)) -> Result<Coded> {
@@ -35,8 +38,20 @@ pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnM
         channel.checked_sub(joint_channels).map_or(0.0, |s| motion.rig.scalars[s].full_scale * scalar_part / scales[channel])
     };
     let scalar_bounds: Vec<f64> = (0..targets.len()).map(scalar_bound).collect();
-    let descent = Descent::new(&figure, plan, &targets, &scales, &rests, &scalar_bounds, &original, motion.frame_time);
-    let codes = descent.run(progress)?;
+    let mut failed = None;
+    let mut codes = None;
+    for first_part in FIRST_PARTS {
+        let descent =
+            Descent::new(&figure, plan, first_part, &targets, &scales, &rests, &scalar_bounds, &original, motion.frame_time);
+        match descent.run(progress) {
+            Ok(found) => {
+                codes = Some(found);
+                break;
+            }
+            Err(error) => failed = Some(error),
+        }
+    }
+    let codes = codes.ok_or_else(|| failed.unwrap_or_else(|| anyhow!("no attempt was made")))?;
     Ok(Coded {
         frames: motion.frames as u32,
         frame_time_ns: frame_time_ns(motion.frame_time),

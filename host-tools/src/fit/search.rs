@@ -291,7 +291,7 @@ impl<'t> Search<'t> {
             let unit = if slope { self.steps.k[index] } else { self.steps.w[index] };
             let (ql, qh) = ((least / unit).ceil(), (most / unit).floor());
             // With the first frame alone, a slope is free within what an integer holds.
-            let (ql, qh) = (ql.max(-1e6), qh.min(1e6));
+            let (ql, qh) = (ql.max(-1e9), qh.min(1e9));
             if ql > qh {
                 continue;
             }
