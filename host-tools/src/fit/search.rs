@@ -61,6 +61,24 @@ pub struct Effort {
     pub slopes: bool,
 }
 
+/// Frames of the longest segment.
+const LONGEST: usize = LENGTHS[15] as usize;
+/// By how much one unit of a new w, or k, moves p after m frames, inverted.
+const INVERSE_C2: [f64; LONGEST + 1] = inverses(false);
+const INVERSE_C3: [f64; LONGEST + 1] = inverses(true);
+
+const fn inverses(slope: bool) -> [f64; LONGEST + 1] {
+    let mut out = [0.0; LONGEST + 1];
+    let mut m = 1;
+    while m <= LONGEST {
+        let n = m as f64;
+        let c2 = n * (n + 1.0) * 0.5;
+        out[m] = 1.0 / if slope { c2 * (n - 1.0) / 3.0 } else { c2 };
+        m += 1;
+    }
+    out
+}
+
 /// What a channel's status and step cost, about: they depend on its neighbours.
 const STATUS_BITS: f64 = 1.0;
 const STEP_BITS: f64 = 3.5;
@@ -252,7 +270,8 @@ impl<'t> Search<'t> {
         // The price of the segment so far is s0 + 2 g s1 + g^2 s2 for a new number g.
         let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
         let mut index = 0;
-        for m in 1..=rest {
+        let inverses = if slope { &INVERSE_C3 } else { &INVERSE_C2 };
+        for m in 1..=rest.min(LONGEST) {
             let n = m as f64;
             let c2 = n * (n + 1.0) * 0.5;
             let (base, c) =
@@ -260,8 +279,9 @@ impl<'t> Search<'t> {
             let frame = start + m;
             let (lo, hi) = (tube.lo[frame] - base, tube.hi[frame] - base);
             if c > 0.0 {
-                least = least.max(lo / c);
-                most = most.min(hi / c);
+                let inverse = inverses[m];
+                least = least.max(lo * inverse);
+                most = most.min(hi * inverse);
             } else if lo > 0.0 || hi < 0.0 {
                 return;
             }
