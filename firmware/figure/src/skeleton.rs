@@ -1,0 +1,188 @@
+//! The figure's joints, set up once from the rig in the form that forward kinematics reads frame by frame.
+
+use crate::body::{Limb, Limbs, contains, length};
+use crate::rotation::{Vector, shift_right};
+use crate::{Error, RIG_JOINTS};
+use heapless::Vec;
+use pantin::{Joint, Kind, Rig};
+
+/// One channel, or group of channels, at work on a joint. Numbers are indices into a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drive {
+    /// Takes the place of the offset along an axis.
+    Offset { axis: u8, channel: u16 },
+    /// Turns about an axis.
+    Turn { axis: u8, channel: u16 },
+    /// Turns by an exponential map x, y, z.
+    Exponential([u16; 3]),
+    /// Turns by a quaternion w, x, y, z.
+    Quaternion([u16; 4]),
+}
+
+/// What a joint is for the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The end of a bone from its parent.
+    Bone,
+    /// Where the figure stands, or a joint in the same place as its parent: no line leads to it.
+    Hidden,
+    /// The top of the head.
+    Crown,
+}
+
+/// One joint of the skeleton.
+#[derive(Clone, Copy, Debug)]
+pub struct Bone {
+    /// Index of the parent in the skeleton, smaller than the joint's own; `None` for the root.
+    pub parent: Option<u8>,
+    /// Where it stands in its parent, in figure units.
+    pub offset: Vector,
+    /// What it is for the picture.
+    pub part: Part,
+    /// A joint that has a foot's name: its child points where the figure faces.
+    pub foot: bool,
+    /// Number of entries of [`Skeleton::drives`] that are this joint's; they follow those of the joint before.
+    pub drives: u8,
+    /// Whether another joint hangs on it, so that its rotation matters.
+    pub bears: bool,
+}
+
+/// The joints of a figure, at most `N`, and the channels that drive them.
+///
+/// Lengths are in figure units: the power of two of the source's unit in which the longest component of a bone lies within
+/// 2^13 .. 2^14. A person is some 2^16 high.
+#[derive(Clone, Debug)]
+pub struct Skeleton<const N: usize> {
+    /// Parents before children.
+    pub bones: Vec<Bone, N>,
+    /// The channels at work, joint by joint, in the order in which they apply.
+    pub drives: Vec<Drive, RIG_DRIVES>,
+    /// Right shift that brings a position channel's value to figure units.
+    pub position_shift: i32,
+    /// One figure unit is 2^exponent source units.
+    pub exponent: i32,
+    /// Rough height of the figure.
+    pub size: i32,
+    /// The joint that the camera follows: the hips of a person.
+    pub hips: usize,
+    /// Radius of the head.
+    pub head_radius: i32,
+}
+
+/// Most channels of the joints that are kept.
+pub const RIG_DRIVES: usize = 3 * 64;
+
+/// How much of the rig is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// Every joint and End Site, at its index in the rig.
+    Full,
+    /// What makes a clear picture: no fingers, face or bones too short to see; a head always has a crown.
+    Body,
+}
+
+impl<const N: usize> Skeleton<N> {
+    /// Sets up a rig's figure. `pose` is any pose of the clip, `position_exponent` its step of positions (2^e source units),
+    /// and `is_exponential` tells of a joint whether the clip codes its Euler angles as an exponential map.
+    pub fn new(
+        rig: &Rig,
+        detail: Detail,
+        pose: &[i32],
+        position_exponent: i8,
+        is_exponential: impl Fn(usize) -> bool,
+    ) -> Result<Self, Error> {
+        let mut limbs = Limbs::new(rig, pose, position_exponent)?;
+        match detail {
+            Detail::Body => limbs.prune(),
+            Detail::Full => limbs.settle(0),
+        }
+        let mut skeleton = Skeleton {
+            bones: Vec::new(),
+            drives: Vec::new(),
+            position_shift: limbs.exponent - i32::from(position_exponent),
+            exponent: limbs.exponent,
+            size: limbs.size,
+            hips: limbs.hips,
+            head_radius: 0,
+        };
+        let mut kept: Vec<u8, RIG_JOINTS> = Vec::new();
+        for ((index, joint), limb) in rig.joints().enumerate().zip(&limbs.limbs) {
+            let _ = kept.push(skeleton.bones.len() as u8);
+            if !limb.kept {
+                continue;
+            }
+            let parent = limb.parent.and_then(|parent| kept.get(usize::from(parent)).copied());
+            let drives = skeleton.drive(&joint, is_exponential(index))?;
+            let part = if limb.placement || limb.length == 0 { Part::Hidden } else { Part::Bone };
+            let foot = contains(joint.name, "foot") || contains(joint.name, "ankle");
+            skeleton.push(Bone { parent, offset: limb.bone, part, foot, drives, bears: limb.bears })?;
+            if limb.head && detail == Detail::Body {
+                let parent = Some(skeleton.bones.len() as u8 - 1);
+                let offset = crown(&limbs, index, limb);
+                skeleton.head_radius = (length(offset) / 2).clamp(limbs.size / 22, limbs.size / 14);
+                skeleton.push(Bone { parent, offset, part: Part::Crown, foot: false, drives: 0, bears: false })?;
+            }
+        }
+        Ok(skeleton)
+    }
+
+    fn push(&mut self, bone: Bone) -> Result<(), Error> {
+        if let Some(parent) = bone.parent.and_then(|parent| self.bones.get_mut(usize::from(parent))) {
+            parent.bears = true;
+        }
+        self.bones.push(bone).map_err(|_| Error::TooManyJoints { most: N })
+    }
+
+    /// Adds what drives a joint, and counts it.
+    fn drive(&mut self, joint: &Joint, exponential: bool) -> Result<u8, Error> {
+        let before = self.drives.len();
+        let of = |wanted: Kind| {
+            let place = joint.kinds.clone().position(|kind| kind == wanted);
+            place.map_or(u16::MAX, |slot| joint.first_channel + slot as u16)
+        };
+        let (mut rotations, mut grouped) = (0, false);
+        for (slot, kind) in joint.kinds.clone().enumerate() {
+            let channel = joint.first_channel + slot as u16;
+            let axis = kind.axis().unwrap_or(0) as u8;
+            let drive = if kind.is_position() {
+                Drive::Offset { axis, channel }
+            } else if kind.is_rotation() && exponential {
+                rotations += 1;
+                // The three slots hold x, y and z, wherever position channels stand between them.
+                let mut slots = (0..).zip(joint.kinds.clone()).filter(|(_, kind)| kind.is_rotation()).map(|(slot, _)| slot);
+                if rotations > 1 {
+                    continue;
+                }
+                Drive::Exponential(core::array::from_fn(|_| slots.next().map_or(u16::MAX, |slot: u16| joint.first_channel + slot)))
+            } else if kind.is_rotation() {
+                Drive::Turn { axis, channel }
+            } else if grouped || kind == Kind::Scalar {
+                continue;
+            } else if kind.is_quaternion() {
+                grouped = true;
+                Drive::Quaternion([Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion].map(of))
+            } else {
+                grouped = true;
+                Drive::Exponential([Kind::Xexponential, Kind::Yexponential, Kind::Zexponential].map(of))
+            };
+            self.drives.push(drive).map_err(|_| Error::TooManyChannels { most: RIG_DRIVES })?;
+        }
+        Ok((self.drives.len() - before) as u8)
+    }
+
+    /// The figure units of a length in the rig's or a clip's steps of 2^`exponent` source units.
+    pub fn figure_units(&self, raw: i32, exponent: i8) -> i32 {
+        shift_right(raw, self.exponent - i32::from(exponent))
+    }
+}
+
+/// The crown in the head's own frame: its End Site, or, if that is not worth the name, as much again in the direction of the
+/// bone that leads to the head, a tenth of the figure.
+fn crown(limbs: &Limbs, index: usize, head: &Limb) -> Vector {
+    let tenth = limbs.size / 10;
+    let own = limbs.limbs.iter().find(|limb| limb.end_site && limb.parent == Some(index as u16) && limb.length > tenth / 3);
+    match own {
+        Some(end) => end.bone,
+        None => head.bone.map(|x| x * 64 / (head.length / 64).max(1) * (tenth / 64) / 64),
+    }
+}
