@@ -52,7 +52,7 @@ impl Limbs {
         let bones = || rig.joints().enumerate().map(|(index, joint)| bone(&joint, pose, index <= hips));
         let exponent_of = |moved| i32::from(if moved { position_exponent } else { rig.length_exponent() });
         let bits = |(raw, moved): (i32, bool)| exponent_of(moved) + 32 - raw.unsigned_abs().leading_zeros() as i32;
-        let longest = bones().flatten().filter(|&(raw, _)| raw != 0).map(bits).max();
+        let longest = bones().skip(hips + 1).flatten().filter(|&(raw, _)| raw != 0).map(bits).max();
         let exponent = longest.unwrap_or(0) - BONE_BITS;
         let mut limbs = Vec::new();
         let mut has_head = false;
@@ -63,7 +63,7 @@ impl Limbs {
             let limb = Limb {
                 parent: joint.parent,
                 bone,
-                length: length(bone),
+                length: if index <= hips { 0 } else { length(bone) },
                 reach: 0,
                 longest: 0,
                 children: 0,
@@ -136,7 +136,7 @@ impl Limbs {
 fn placement_end(rig: &Rig) -> usize {
     let only_child = rig.joints().filter(|joint| joint.parent == Some(0)).count() == 1;
     let placed = rig.joints().nth(1).is_some_and(|joint| {
-        let positions = joint.kinds.clone().filter(|kind| kind.is_position()).count();
+        let positions = joint.kinds.filter(|kind| kind.is_position()).count();
         positions == 3 && joint.offset == [0; 3]
     });
     usize::from(only_child && placed)
@@ -145,10 +145,7 @@ fn placement_end(rig: &Rig) -> usize {
 /// Raw components of a joint's bone, and whether each comes from a position channel.
 fn bone(joint: &Joint, pose: &[i32], placement: bool) -> [(i32, bool); 3] {
     let mut bone = joint.offset.map(|raw| (raw, false));
-    if placement {
-        return [(0, false); 3];
-    }
-    for (slot, kind) in joint.kinds.clone().enumerate().filter(|(_, kind)| kind.is_position()) {
+    for (slot, kind) in joint.kinds.enumerate().filter(|(_, kind)| kind.is_position() && !placement) {
         let raw = pose.get(usize::from(joint.first_channel) + slot).copied().unwrap_or(0);
         if let Some(component) = kind.axis().and_then(|axis| bone.get_mut(axis)) {
             *component = (raw, true);

@@ -10,9 +10,19 @@ use pantin::{Joint, Kind, Rig};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
     /// Takes the place of the offset along an axis.
-    Offset { axis: u8, channel: u16 },
+    Offset {
+        /// 0, 1, 2 for x, y, z.
+        axis: u8,
+        /// The position's channel.
+        channel: u16,
+    },
     /// Turns about an axis.
-    Turn { axis: u8, channel: u16 },
+    Turn {
+        /// 0, 1, 2 for x, y, z.
+        axis: u8,
+        /// The angle's channel.
+        channel: u16,
+    },
     /// Turns by an exponential map x, y, z.
     Exponential([u16; 3]),
     /// Turns by a quaternion w, x, y, z.
@@ -136,34 +146,19 @@ impl<const N: usize> Skeleton<N> {
     /// Adds what drives a joint, and counts it.
     fn drive(&mut self, joint: &Joint, exponential: bool) -> Result<u8, Error> {
         let before = self.drives.len();
-        let of = |wanted: Kind| {
-            let place = joint.kinds.clone().position(|kind| kind == wanted);
-            place.map_or(u16::MAX, |slot| joint.first_channel + slot as u16)
-        };
-        let (mut rotations, mut grouped) = (0, false);
-        for (slot, kind) in joint.kinds.clone().enumerate() {
-            let channel = joint.first_channel + slot as u16;
+        let mut grouped = false;
+        for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
             let axis = kind.axis().unwrap_or(0) as u8;
-            let drive = if kind.is_position() {
-                Drive::Offset { axis, channel }
-            } else if kind.is_rotation() && exponential {
-                rotations += 1;
-                // The three slots hold x, y and z, wherever position channels stand between them.
-                let mut slots = (0..).zip(joint.kinds.clone()).filter(|(_, kind)| kind.is_rotation()).map(|(slot, _)| slot);
-                if rotations > 1 {
-                    continue;
+            let drive = match kind {
+                Kind::Scalar => continue,
+                _ if kind.is_position() => Drive::Offset { axis, channel },
+                _ if kind.is_rotation() && !exponential => Drive::Turn { axis, channel },
+                // The rest work as a group, in the place of its first channel.
+                _ if grouped => continue,
+                _ => {
+                    grouped = true;
+                    group(joint, kind)
                 }
-                Drive::Exponential(core::array::from_fn(|_| slots.next().map_or(u16::MAX, |slot: u16| joint.first_channel + slot)))
-            } else if kind.is_rotation() {
-                Drive::Turn { axis, channel }
-            } else if grouped || kind == Kind::Scalar {
-                continue;
-            } else if kind.is_quaternion() {
-                grouped = true;
-                Drive::Quaternion([Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion].map(of))
-            } else {
-                grouped = true;
-                Drive::Exponential([Kind::Xexponential, Kind::Yexponential, Kind::Zexponential].map(of))
             };
             self.drives.push(drive).map_err(|_| Error::TooManyChannels { most: RIG_DRIVES })?;
         }
@@ -173,6 +168,22 @@ impl<const N: usize> Skeleton<N> {
     /// The figure units of a length in the rig's or a clip's steps of 2^`exponent` source units.
     pub fn figure_units(&self, raw: i32, exponent: i8) -> i32 {
         shift_right(raw, self.exponent - i32::from(exponent))
+    }
+}
+
+/// A joint's quaternion or exponential map. Where a clip codes Euler angles as one, their slots hold x, y, z in turn.
+fn group(joint: &Joint, kind: Kind) -> Drive {
+    let channel_of = |wanted| {
+        let mut channels = joint.kinds.zip(joint.first_channel..);
+        channels.find(|(kind, _)| *kind == wanted).map_or(u16::MAX, |(_, channel)| channel)
+    };
+    if kind.is_quaternion() {
+        Drive::Quaternion([Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion].map(channel_of))
+    } else if kind.is_exponential() {
+        Drive::Exponential([Kind::Xexponential, Kind::Yexponential, Kind::Zexponential].map(channel_of))
+    } else {
+        let mut slots = joint.kinds.zip(joint.first_channel..).filter(|(kind, _)| kind.is_rotation());
+        Drive::Exponential([(); 3].map(|()| slots.next().map_or(u16::MAX, |(_, channel)| channel)))
     }
 }
 

@@ -1,12 +1,14 @@
 //! The whole way from a pose to a picture. What is drawn depends on the clip and the pose alone, never on frames before.
 
+use crate::Error;
 use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
 use crate::draw::Ink;
 use crate::kinematics::Kinematics;
 use crate::lines::{Ground, Line, Lines};
-use crate::skeleton::Skeleton;
+use crate::skeleton::{Detail, Skeleton};
 use crate::survey::Survey;
 use embedded_graphics::draw_target::DrawTarget;
+use pantin::Player;
 
 /// A figure of at most `N` joints before its camera.
 #[derive(Clone, Debug)]
@@ -21,7 +23,28 @@ pub struct Stage<const N: usize> {
 /// Scale at which a clip is looked at before the final scale is known: 2^14 sixteenths of a pixel a size.
 const TRIAL_SCALE: i32 = 1 << 14;
 
+/// A clip is looked at in about this many places before it plays.
+const SAMPLES: u32 = 48;
+
 impl<const N: usize> Stage<N> {
+    /// Sets up the figure and the camera for a clip, and leaves the player at frame 0.
+    pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
+        player.rewind();
+        let clip = *player.clip();
+        let skeleton = Skeleton::new(&clip.rig(), Detail::Body, player.pose(), clip.length_exponent(), |joint| {
+            clip.is_exponential(joint)
+        })?;
+        let stride = clip.frames().div_ceil(SAMPLES) as usize;
+        let stage = Stage::new(skeleton, canvas, view, |visit| {
+            for frame in (0..clip.frames()).step_by(stride) {
+                player.seek(frame);
+                visit(player.pose());
+            }
+        });
+        player.rewind();
+        Ok(stage)
+    }
+
     /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
     /// argument; it is called twice and must show the same ones.
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {

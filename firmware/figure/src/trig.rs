@@ -75,7 +75,7 @@ mod tests {
     fn sine_and_cosine_keep_the_stated_error() {
         let mut worst = 0.0f64;
         for step in 0..2_000_000u32 {
-            let raw = step.wrapping_mul(2147_483 * 2 + 1) as i32;
+            let raw = step.wrapping_mul(4_294_967) as i32;
             let angle = f64::from(raw) / 4294967296.0 * std::f64::consts::TAU;
             let (sin, cos) = sin_cos(raw);
             worst = worst.max((f64::from(sin) / 32768.0 - angle.sin()).abs()).max((f64::from(cos) / 32768.0 - angle.cos()).abs());
