@@ -1,7 +1,8 @@
 //! Which joints of a rig make a clear figure: without fingers, toes beyond one, features of the face and bones too short to see.
 
-use crate::rotation::{Vector, shift_right};
+use crate::names::contains;
 use crate::root::{integer_root, shift_for};
+use crate::rotation::{Vector, shift_right};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
 use pantin::{Joint, Rig};
@@ -152,11 +153,6 @@ fn bone(joint: &Joint, pose: &[i32], placement: bool) -> [(i32, bool); 3] {
         }
     }
     bone
-}
-
-/// Whether `name` contains `word` (lower case), in any case.
-pub(crate) fn contains(name: &str, word: &str) -> bool {
-    name.as_bytes().windows(word.len()).any(|part| part.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 /// Length of a vector, rounded down to a few units.

@@ -10,6 +10,7 @@ pub mod camera;
 pub mod draw;
 pub mod kinematics;
 pub mod lines;
+mod names;
 mod root;
 pub mod rotation;
 pub mod skeleton;

@@ -119,12 +119,7 @@ impl<const N: usize> Lines<N> {
 }
 
 fn line(from: Projected, to: Projected, depth: i32, shade: u8) -> Line {
-    Line {
-        from: [narrow(from.x), narrow(from.y)],
-        to: [narrow(to.x), narrow(to.y)],
-        depth: narrow(depth),
-        shade,
-    }
+    Line { from: [narrow(from.x), narrow(from.y)], to: [narrow(to.x), narrow(to.y)], depth: narrow(depth), shade }
 }
 
 fn middle(a: i32, b: i32) -> i16 {

@@ -1,6 +1,7 @@
 //! The figure's joints, set up once from the rig in the form that forward kinematics reads frame by frame.
 
-use crate::body::{Limb, Limbs, contains, length};
+use crate::body::{Limb, Limbs, length};
+use crate::names::{contains, is_left_of};
 use crate::rotation::{Vector, shift_right};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
@@ -49,7 +50,7 @@ pub struct Bone {
     pub offset: Vector,
     /// What it is for the picture.
     pub part: Part,
-    /// A joint that has a foot's name: its child points where the figure faces.
+    /// A joint that has a foot's name.
     pub foot: bool,
     /// Number of entries of [`Skeleton::drives`] that are this joint's; they follow those of the joint before.
     pub drives: u8,
@@ -75,6 +76,8 @@ pub struct Skeleton<const N: usize> {
     pub size: i32,
     /// The joint that the camera follows: the hips of a person.
     pub hips: usize,
+    /// A joint of the left side and its counterpart: across them the figure faces forward.
+    pub sides: Option<[u8; 2]>,
     /// Radius of the head.
     pub head_radius: i32,
 }
@@ -113,6 +116,7 @@ impl<const N: usize> Skeleton<N> {
             exponent: limbs.exponent,
             size: limbs.size,
             hips: limbs.hips,
+            sides: None,
             head_radius: 0,
         };
         let mut kept: Vec<u8, RIG_JOINTS> = Vec::new();
@@ -133,6 +137,7 @@ impl<const N: usize> Skeleton<N> {
                 skeleton.push(Bone { parent, offset, part: Part::Crown, foot: false, drives: 0, bears: false })?;
             }
         }
+        skeleton.sides = sides(rig, &limbs).map(|pair| pair.map(|index| kept.get(index).copied().unwrap_or(0)));
         Ok(skeleton)
     }
 
@@ -169,6 +174,18 @@ impl<const N: usize> Skeleton<N> {
     pub fn figure_units(&self, raw: i32, exponent: i8) -> i32 {
         shift_right(raw, self.exponent - i32::from(exponent))
     }
+}
+
+/// The first two joints, left and right, that are named as counterparts and whose bones are not the same.
+fn sides(rig: &Rig, limbs: &Limbs) -> Option<[usize; 2]> {
+    let joints = || rig.joints().zip(&limbs.limbs).enumerate().filter(|(_, (_, limb))| limb.kept);
+    joints().find_map(|(index, (joint, limb))| {
+        let mut apart = joints().filter(|(other, (_, other_limb))| *other > index && other_limb.bone != limb.bone);
+        apart.find_map(|(other, (counterpart, _))| {
+            let left = is_left_of(joint.name, counterpart.name)?;
+            Some(if left { [index, other] } else { [other, index] })
+        })
+    })
 }
 
 /// A joint's quaternion or exponential map. Where a clip codes Euler angles as one, their slots hold x, y, z in turn.

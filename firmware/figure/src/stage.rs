@@ -31,9 +31,8 @@ impl<const N: usize> Stage<N> {
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
         player.rewind();
         let clip = *player.clip();
-        let skeleton = Skeleton::new(&clip.rig(), Detail::Body, player.pose(), clip.length_exponent(), |joint| {
-            clip.is_exponential(joint)
-        })?;
+        let skeleton =
+            Skeleton::new(&clip.rig(), Detail::Body, player.pose(), clip.length_exponent(), |joint| clip.is_exponential(joint))?;
         let stride = clip.frames().div_ceil(SAMPLES) as usize;
         let stage = Stage::new(skeleton, canvas, view, |visit| {
             for frame in (0..clip.frames()).step_by(stride) {
@@ -72,10 +71,9 @@ impl<const N: usize> Stage<N> {
         let scale = frame.scale(canvas);
         stage.camera = at_scale(scale);
         let rows = i32::from(canvas.height) << PIXEL_BITS;
-        stage.camera.show(
-            (i32::from(canvas.width) << PIXEL_BITS) / 2,
-            rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE,
-        );
+        stage
+            .camera
+            .show((i32::from(canvas.width) << PIXEL_BITS) / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
         stage
     }
 

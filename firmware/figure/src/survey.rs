@@ -15,8 +15,8 @@ pub struct Survey {
     pub high: Vector,
     /// Sum over the poses of crown minus feet, or of the extent along y and z where the rig names no head and feet.
     upright: Vector,
-    /// Sum over the poses of toes minus feet.
-    facing: Vector,
+    /// Sum over the poses of left minus right.
+    leftward: Vector,
 }
 
 /// Which way is up and where the figure faces, in Q15 of the world's axes.
@@ -36,7 +36,7 @@ const SUM_SHIFT: u32 = 6;
 impl Survey {
     /// Nothing seen yet.
     pub const fn new() -> Self {
-        Survey { low: [i32::MAX; 3], high: [i32::MIN; 3], upright: [0; 3], facing: [0; 3] }
+        Survey { low: [i32::MAX; 3], high: [i32::MIN; 3], upright: [0; 3], leftward: [0; 3] }
     }
 
     /// Takes in a pose.
@@ -50,11 +50,6 @@ impl Survey {
                 low = core::array::from_fn(|axis| low[axis].min(position[axis]));
                 high = core::array::from_fn(|axis| high[axis].max(position[axis]));
             }
-            let parent = bone.parent.map(usize::from);
-            if parent.and_then(|parent| skeleton.bones.get(parent)).is_some_and(|parent| parent.foot) {
-                let foot = joints.position(parent.unwrap_or(0));
-                add(&mut self.facing, position, foot);
-            }
             if bone.foot {
                 feet = core::array::from_fn(|axis| feet[axis].wrapping_add(position[axis] >> 4));
                 footed += 1;
@@ -62,6 +57,9 @@ impl Survey {
             if bone.part == Part::Crown {
                 crown = Some(position);
             }
+        }
+        if let Some([left, right]) = skeleton.sides {
+            add(&mut self.leftward, joints.position(usize::from(left)), joints.position(usize::from(right)));
         }
         match crown {
             Some(crown) if footed > 0 => add(&mut self.upright, crown, feet.map(|x| x / footed * 16)),
@@ -81,7 +79,7 @@ impl Survey {
         (self.high[axis] >> 1).saturating_sub(self.low[axis] >> 1)
     }
 
-    /// Up and facing. Up is one of the axes; a figure that does not show where it faces is taken to look along z, or against
+    /// Up and facing. Up is one of the axes; a figure that names no left and right is taken to look along z, or against
     /// y if z is up.
     pub fn bearings(&self) -> Bearings {
         let size = |axis: usize| self.upright[axis].unsigned_abs();
@@ -91,9 +89,10 @@ impl Survey {
         }
         let mut up = [0; 3];
         up[axis] = if self.upright[axis] < 0 { -ONE } else { ONE };
-        let mut level = self.facing;
+        let mut level = self.leftward;
         level[axis] = 0;
-        let facing = direction(level).unwrap_or(if axis == 2 { [0, -ONE, 0] } else { [0, 0, ONE] });
+        let ahead = if axis == 2 { [0, -ONE, 0] } else { [0, 0, ONE] };
+        let facing = direction(level).map_or(ahead, |left| cross(left, up));
         Bearings { axis, up, facing }
     }
 }
