@@ -58,12 +58,11 @@ pub struct Projected {
 /// The distance of the camera from its target in sizes of the figure, and the unit of depth.
 const DISTANCE: i32 = 4;
 const DEPTH_BITS: u32 = 15;
-/// Relative places are shifted to bring the size within 2^12 .. 2^13 and cut off here, three sizes or more away: no point is
-/// farther than 42 567 from the target then.
+/// Relative places are shifted to bring the size within 2^12 .. 2^13 and cut off to 16 bits, four sizes or more away: no
+/// point is farther than 56 756 from the target then.
 const SIZE_BITS: u32 = 13;
-const FARTHEST: i32 = 3 << 13;
 /// Longest row of the view's matrix, so that its product with such a point stays below 2^31.
-const LONGEST_ROW: i32 = 50_000;
+const LONGEST_ROW: i32 = 37_000;
 
 /// Projects places of the world.
 #[derive(Clone, Copy, Debug)]
@@ -124,19 +123,19 @@ impl Camera {
         let rounding = (1 << self.pre_shift) >> 1;
         let [u, v, w]: Vector = core::array::from_fn(|axis| {
             let relative = place[axis].wrapping_sub(target[axis]).wrapping_add(rounding) >> self.pre_shift;
-            relative.clamp(-FARTHEST, FARTHEST)
+            sixteen_bits(relative)
         });
         let [x, y, depth] = self.rows.map(|row| row[0] * u + row[1] * v + row[2] * w);
         let depth = depth >> 14;
         let magnification = magnification(depth);
         // Within 2^15 sixteenths, magnified at most twice: products stay within 2^30.
-        let [x, y] = [x, y].map(|x| ((x >> self.shift).clamp(-0x7fff, 0x7fff) * magnification + (1 << 13)) >> 14);
+        let [x, y] = [x, y].map(|x| (sixteen_bits(x >> self.shift) * magnification + (1 << 13)) >> 14);
         Projected { x: x + self.centre[0], y: y + self.centre[1], depth, magnification }
     }
 
     /// Sixteenths of a pixel of a length in figure units at the target's distance.
     pub fn length(&self, length: i32) -> i32 {
-        (length >> self.pre_shift).min(FARTHEST) * self.scale / (self.size >> self.pre_shift).max(1)
+        (length >> self.pre_shift).min(i32::from(i16::MAX)) * self.scale / (self.size >> self.pre_shift).max(1)
     }
 }
 
@@ -158,14 +157,20 @@ fn of_degrees(degrees: i16) -> i32 {
     i32::from(degrees).wrapping_mul(11_930_465)
 }
 
-/// Distances from half to one and a half times the camera's, in 128 steps.
-static MAGNIFICATION: [i32; 130] = {
-    let mut table = [0; 130];
-    let mut index = 0;
-    while index < 130 {
-        let distance = 64 + index as i32;
-        table[index] = ((1 << 21) + distance / 2) / distance;
-        index += 1;
+/// By the saturating instruction, where the core has one.
+fn sixteen_bits(x: i32) -> i32 {
+    x.clamp(i32::from(i16::MIN), i32::from(i16::MAX))
+}
+
+/// Distances from half to one and a half times the camera's, in 128 steps: value at the start of each, and step to the next.
+static MAGNIFICATION: [[i32; 2]; 128] = {
+    let mut table = [[0; 2]; 128];
+    let mut distance = 64;
+    while distance < 192 {
+        let from = ((1 << 21) + distance / 2) / distance;
+        let to = ((1 << 21) + distance / 2) / (distance + 1);
+        table[distance as usize - 64] = [from, to - from];
+        distance += 1;
     }
     table
 };
@@ -174,6 +179,6 @@ static MAGNIFICATION: [i32; 130] = {
 fn magnification(depth: i32) -> i32 {
     let distance = (depth + (1 << (DEPTH_BITS - 1))).clamp(0, (1 << DEPTH_BITS) - 1);
     let (index, place) = ((distance >> 8) as usize, distance & 0xff);
-    let (Some(&from), Some(&to)) = (MAGNIFICATION.get(index), MAGNIFICATION.get(index + 1)) else { return 1 << 14 };
-    from + (((to - from) * place) >> 8)
+    let Some(&[from, step]) = MAGNIFICATION.get(index) else { return 1 << 14 };
+    from + ((step * place) >> 8)
 }

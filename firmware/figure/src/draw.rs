@@ -55,7 +55,7 @@ impl<const N: usize> Lines<N> {
         if let Some(background) = D::Color::of_shade(0) {
             target.clear(background)?;
         }
-        for line in self.ground.iter().chain(&self.bones) {
+        for line in self.ground.iter().chain(self.far_to_near()) {
             stroke(line, target)?;
         }
         let Some(head) = self.head else { return Ok(()) };

@@ -9,9 +9,16 @@ use heapless::Vec;
 pub struct Placed {
     /// In figure units.
     pub position: Vector,
-    /// Of the joint's own axes.
+    /// Of the joint's own axes; only kept for joints that others hang on.
     pub rotation: Rotation,
 }
+
+impl Placed {
+    const ORIGIN: Placed = Placed { position: [0; 3], rotation: Rotation::IDENTITY };
+}
+
+/// Places stay within 2^29, some 8000 figures away, so that adding a bone never overflows.
+const FARTHEST: i32 = 1 << 29;
 
 /// The joints of one frame. Positions are within 0.05 % of the figure's height of what real numbers give.
 #[derive(Clone, Debug, Default)]
@@ -27,15 +34,19 @@ impl<const N: usize> Kinematics<N> {
 
     /// Places every joint of the skeleton. Channels that the pose lacks are 0.
     pub fn place(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
-        self.placed.clear();
+        // The skeleton has at most N bones.
+        let _ = self.placed.resize(skeleton.bones.len(), Placed::ORIGIN);
         let mut drives = skeleton.drives.as_slice();
-        for bone in &skeleton.bones {
+        for (index, bone) in skeleton.bones.iter().enumerate() {
             let (own, rest) = drives.split_at_checked(usize::from(bone.drives)).unwrap_or((drives, &[]));
             drives = rest;
-            let parent = bone.parent.and_then(|parent| self.placed.get(usize::from(parent)));
-            let placed = place(parent, bone, own, skeleton.position_shift, pose);
-            // The skeleton has at most N bones.
-            let _ = self.placed.push(placed);
+            let Some((before, [placed, ..])) = self.placed.split_at_mut_checked(index) else { return };
+            let parent = bone.parent.and_then(|parent| before.get(usize::from(parent))).unwrap_or(&Placed::ORIGIN);
+            placed.position = position(parent, bone, own, skeleton.position_shift, pose);
+            if bone.bears {
+                placed.rotation = parent.rotation;
+                rotate(&mut placed.rotation, own, pose);
+            }
         }
     }
 
@@ -50,49 +61,39 @@ impl<const N: usize> Kinematics<N> {
     }
 }
 
-fn place(parent: Option<&Placed>, bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Placed {
-    let mut offset = bone.offset;
-    let mut wide = false;
-    for drive in drives {
-        if let Drive::Offset { axis, channel } = *drive
-            && let Some(component) = offset.get_mut(usize::from(axis))
-        {
-            *component = shift_right(value(pose, channel), position_shift);
-            wide = true;
+fn position(parent: &Placed, bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Vector {
+    let reach = if bone.moves {
+        let mut offset = bone.offset;
+        for drive in drives {
+            if let Drive::Offset { axis, channel } = *drive
+                && let Some(component) = offset.get_mut(usize::from(axis))
+            {
+                *component = shift_right(value(pose, channel), position_shift);
+            }
         }
-    }
-    let Some(parent) = parent else {
-        let rotation = if bone.bears { rotated(Rotation::IDENTITY, drives, pose) } else { Rotation::IDENTITY };
-        return Placed { position: offset.map(limited), rotation };
+        parent.rotation.apply_any(offset)
+    } else {
+        parent.rotation.apply(bone.offset)
     };
-    let reach = if wide { parent.rotation.apply_wide(offset) } else { parent.rotation.apply(offset) };
-    let position = core::array::from_fn(|axis| limited(parent.position[axis] + reach[axis]));
-    let rotation = if bone.bears { rotated(parent.rotation, drives, pose) } else { parent.rotation };
-    Placed { position, rotation }
+    core::array::from_fn(|axis| (parent.position[axis] + reach[axis]).clamp(-FARTHEST, FARTHEST))
 }
 
-/// `rotation` after everything that turns the joint.
-fn rotated(mut rotation: Rotation, drives: &[Drive], pose: &[i32]) -> Rotation {
+/// Turns a rotation by everything that turns the joint.
+fn rotate(rotation: &mut Rotation, drives: &[Drive], pose: &[i32]) {
     for drive in drives {
         match *drive {
             Drive::Offset { .. } => {}
             Drive::Turn { axis, channel } => rotation.turn(usize::from(axis), value(pose, channel)),
             Drive::Exponential(channels) => {
-                rotation = rotation.then(&Rotation::of_exponential(channels.map(|channel| value(pose, channel))));
+                *rotation = rotation.then(&Rotation::of_exponential(channels.map(|channel| value(pose, channel))));
             }
             Drive::Quaternion(channels) => {
-                rotation = rotation.then(&Rotation::of_quaternion(channels.map(|channel| value(pose, channel))));
+                *rotation = rotation.then(&Rotation::of_quaternion(channels.map(|channel| value(pose, channel))));
             }
         }
     }
-    rotation
 }
 
 fn value(pose: &[i32], channel: u16) -> i32 {
     pose.get(usize::from(channel)).copied().unwrap_or(0)
-}
-
-/// Keeps a place within 2^29, some 8000 figures away, so that adding a bone never overflows.
-fn limited(x: i32) -> i32 {
-    x.clamp(-(1 << 29), 1 << 29)
 }

@@ -35,8 +35,10 @@ pub struct Head {
 pub struct Lines<const N: usize> {
     /// The ground.
     pub ground: Vec<Line, GROUND_LINES>,
-    /// Bones, the farthest first.
+    /// Bones, in no order.
     pub bones: Vec<Line, N>,
+    /// Indices of the bones, the farthest first.
+    pub order: Vec<u8, N>,
     /// The head, for a rig that names one.
     pub head: Option<Head>,
 }
@@ -61,7 +63,7 @@ pub struct Ground {
 impl<const N: usize> Lines<N> {
     /// Nothing to draw yet.
     pub const fn new() -> Self {
-        Lines { ground: Vec::new(), bones: Vec::new(), head: None }
+        Lines { ground: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None }
     }
 
     /// Lines of the ground about the target.
@@ -90,6 +92,7 @@ impl<const N: usize> Lines<N> {
     /// Lines of the bones and the head.
     pub fn lay_bones(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N>, camera: &Camera, target: Vector) {
         self.bones.clear();
+        self.order.clear();
         self.head = None;
         let mut projected: Vec<Projected, N> = Vec::new();
         for (bone, joint) in skeleton.bones.iter().zip(joints.joints()) {
@@ -110,11 +113,24 @@ impl<const N: usize> Lines<N> {
         }
     }
 
-    /// Puts a line after those that are farther.
+    /// Adds a line, and its index after those of lines that are farther.
     fn insert(&mut self, line: Line) {
-        let nearer = self.bones.iter().rev().take_while(|other| other.depth < line.depth).count();
-        // At most one line a bone.
-        let _ = self.bones.insert(self.bones.len() - nearer, line);
+        let mut place = self.bones.len();
+        // At most one line a bone: there is room.
+        let _ = self.order.push(place as u8);
+        let _ = self.bones.push(line);
+        let depth = |index: u8| self.bones.get(usize::from(index)).map_or(0, |line| line.depth);
+        while let Some([before, here]) = self.order.get_mut(place.wrapping_sub(1)..=place)
+            && depth(*before) < line.depth
+        {
+            core::mem::swap(before, here);
+            place -= 1;
+        }
+    }
+
+    /// Bones in the order in which they are drawn: from far to near.
+    pub fn far_to_near(&self) -> impl Iterator<Item = &Line> {
+        self.order.iter().filter_map(|&index| self.bones.get(usize::from(index)))
     }
 }
 

@@ -41,8 +41,14 @@ impl Rotation {
         core::array::from_fn(|row| (x[row] * v[0] + y[row] * v[1] + z[row] * v[2] + HALF) >> FRACTION_BITS)
     }
 
+    /// The image of a vector of any length: cut off at 2^29.
+    pub fn apply_any(&self, v: Vector) -> Vector {
+        if v.iter().all(|x| (-(1 << 14)..1 << 14).contains(x)) { self.apply(v) } else { self.apply_wide(v) }
+    }
+
     /// The image of a vector of up to 2^29, in two halves: the product of an element with each fits 32 bits.
-    pub fn apply_wide(&self, v: Vector) -> Vector {
+    #[inline(never)]
+    fn apply_wide(&self, v: Vector) -> Vector {
         let high = v.map(|x| x.clamp(-(1 << 29), 1 << 29) >> FRACTION_BITS);
         let low = self.apply(v.map(|x| x & (ONE - 1)));
         let [x, y, z] = &self.0;

@@ -54,6 +54,8 @@ pub struct Bone {
     pub foot: bool,
     /// Number of entries of [`Skeleton::drives`] that are this joint's; they follow those of the joint before.
     pub drives: u8,
+    /// Whether it has position channels.
+    pub moves: bool,
     /// Whether another joint hangs on it, so that its rotation matters.
     pub bears: bool,
 }
@@ -129,12 +131,13 @@ impl<const N: usize> Skeleton<N> {
             let drives = skeleton.drive(&joint, is_exponential(index))?;
             let part = if limb.placement || limb.length == 0 { Part::Hidden } else { Part::Bone };
             let foot = contains(joint.name, "foot") || contains(joint.name, "ankle");
-            skeleton.push(Bone { parent, offset: limb.bone, part, foot, drives, bears: limb.bears })?;
+            let moves = { joint.kinds }.any(|kind| kind.is_position());
+            skeleton.push(Bone { parent, offset: limb.bone, part, foot, drives, moves, bears: limb.bears })?;
             if limb.head && detail == Detail::Body {
                 let parent = Some(skeleton.bones.len() as u8 - 1);
                 let offset = crown(&limbs, index, limb);
                 skeleton.head_radius = (length(offset) / 2).clamp(limbs.size / 22, limbs.size / 14);
-                skeleton.push(Bone { parent, offset, part: Part::Crown, foot: false, drives: 0, bears: false })?;
+                skeleton.push(Bone { parent, offset, part: Part::Crown, foot: false, drives: 0, moves: false, bears: false })?;
             }
         }
         skeleton.sides = sides(rig, &limbs).map(|pair| pair.map(|index| kept.get(index).copied().unwrap_or(0)));

@@ -17,18 +17,23 @@ const TABLE_BITS: u32 = 22;
 /// Fraction bits of the place within an interval: a step of the table (< 2^15) times it stays below 2^29.
 const PLACE_BITS: u32 = 14;
 
-/// The quarter wave, with one entry more so that the quarter turn itself has a right neighbour.
-static QUARTER: [i32; INTERVALS + 2] = quarter_wave();
+/// The quarter wave: its value at the start of each interval, and the step to the next. The quarter turn itself is the last.
+static QUARTER: [[i32; 2]; INTERVALS + 1] = quarter_wave();
 
-const fn quarter_wave() -> [i32; INTERVALS + 2] {
-    let mut table = [0; INTERVALS + 2];
+const fn quarter_wave() -> [[i32; 2]; INTERVALS + 1] {
+    let mut table = [[0; 2]; INTERVALS + 1];
     let mut index = 0;
     while index < table.len() {
-        let angle = index as f64 * core::f64::consts::FRAC_PI_2 / INTERVALS as f64;
-        table[index] = (angle * series(angle * angle, 1.0) * (1 << TABLE_BITS) as f64 + 0.5) as i32;
+        let (from, to) = (quarter_sine(index), quarter_sine(index + 1));
+        table[index] = [from, to - from];
         index += 1;
     }
     table
+}
+
+const fn quarter_sine(index: usize) -> i32 {
+    let angle = index as f64 * core::f64::consts::FRAC_PI_2 / INTERVALS as f64;
+    (angle * series(angle * angle, 1.0) * (1 << TABLE_BITS) as f64 + 0.5) as i32
 }
 
 /// The alternating series sum of (-u)^k / (first + 2k)! * first!: with `first` 0 the cosine of the root of u, with 1 its sine
@@ -46,11 +51,12 @@ pub(crate) const fn series(u: f64, first: f64) -> f64 {
 }
 
 /// Sine of a phase between nothing and a quarter turn (2^30).
+#[inline(always)]
 fn quarter(phase: u32) -> i32 {
     let index = (phase >> 22) as usize;
     let place = (phase >> (22 - PLACE_BITS)) & ((1 << PLACE_BITS) - 1);
-    let (Some(&from), Some(&to)) = (QUARTER.get(index), QUARTER.get(index + 1)) else { return ONE };
-    let value = from + (((to - from) * place as i32) >> PLACE_BITS);
+    let Some(&[from, step]) = QUARTER.get(index) else { return ONE };
+    let value = from + ((step * place as i32) >> PLACE_BITS);
     (value + (1 << (TABLE_BITS - FRACTION_BITS - 1))) >> (TABLE_BITS - FRACTION_BITS)
 }
 
