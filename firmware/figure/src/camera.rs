@@ -55,8 +55,9 @@ pub struct Projected {
     pub magnification: i32,
 }
 
-/// The distance of the camera from its target in sizes of the figure, and the unit of depth.
-const DISTANCE: i32 = 4;
+/// The distance of the camera from its target in sizes of the figure.
+pub const DISTANCE: i32 = 4;
+/// The same in units of depth: 2^15.
 const DEPTH_BITS: u32 = 15;
 /// Relative places are shifted to bring the size within 2^12 .. 2^13 and cut off to 16 bits, four sizes or more away: no
 /// point is farther than 56 756 from the target then.
@@ -111,6 +112,11 @@ impl Camera {
     /// Puts the target at a place of the display, in sixteenths of a pixel.
     pub fn show(&mut self, x: i32, y: i32) {
         self.centre = [x, y];
+    }
+
+    /// Scale (sixteenths of a pixel a size at the target's distance), size in figure units, and where the target appears.
+    pub fn framing(&self) -> (i32, i32, [i32; 2]) {
+        (self.scale, self.size, self.centre)
     }
 
     /// The target for a frame whose hips are at `hips`.

@@ -1,7 +1,7 @@
 //! Forward kinematics in fixed point: from a pose to where every joint is.
 
 use crate::rotation::{Rotation, Vector, shift_right};
-use crate::skeleton::{Bone, Drive, Skeleton};
+use crate::skeleton::{Bone, Drive, NONE, Skeleton};
 use heapless::Vec;
 
 /// Where a joint is and how it is turned, in the world.
@@ -36,7 +36,7 @@ impl<const N: usize> Kinematics<N> {
     pub fn place(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
         // The skeleton has at most N bones.
         let _ = self.placed.resize(skeleton.bones.len(), Placed::ORIGIN);
-        let mut drives = skeleton.drives.as_slice();
+        let mut drives = skeleton.drives();
         for (index, bone) in skeleton.bones.iter().enumerate() {
             let (own, rest) = drives.split_at_checked(usize::from(bone.drives)).unwrap_or((drives, &[]));
             drives = rest;
@@ -65,9 +65,8 @@ fn position(parent: &Placed, bone: &Bone, drives: &[Drive], position_shift: i32,
     let reach = if bone.moves {
         let mut offset = bone.offset;
         for drive in drives {
-            if let Drive::Offset { axis, channel } = *drive
-                && let Some(component) = offset.get_mut(usize::from(axis))
-            {
+            let Drive::Offset(channels) = drive else { continue };
+            for (component, &channel) in offset.iter_mut().zip(channels).filter(|(_, channel)| **channel != NONE) {
                 *component = shift_right(value(pose, channel), position_shift);
             }
         }
@@ -82,7 +81,7 @@ fn position(parent: &Placed, bone: &Bone, drives: &[Drive], position_shift: i32,
 fn rotate(rotation: &mut Rotation, drives: &[Drive], pose: &[i32]) {
     for drive in drives {
         match *drive {
-            Drive::Offset { .. } => {}
+            Drive::Offset(_) => {}
             Drive::Turn { axis, channel } => rotation.turn(usize::from(axis), value(pose, channel)),
             Drive::Exponential(channels) => {
                 *rotation = rotation.then(&Rotation::of_exponential(channels.map(|channel| value(pose, channel))));

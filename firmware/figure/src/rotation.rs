@@ -171,6 +171,7 @@ fn square_of(q: [i32; 4]) -> u32 {
 }
 
 /// `value` / 2^`shift`, rounded; a negative shift multiplies and saturates.
+#[inline(never)]
 pub(crate) fn shift_right(value: i32, shift: i32) -> i32 {
     match shift {
         32.. => 0,

@@ -10,13 +10,8 @@ use pantin::{Joint, Kind, Rig};
 /// One channel, or group of channels, at work on a joint. Numbers are indices into a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
-    /// Takes the place of the offset along an axis.
-    Offset {
-        /// 0, 1, 2 for x, y, z.
-        axis: u8,
-        /// The position's channel.
-        channel: u16,
-    },
+    /// Takes the place of the offset's x, y, z, where it is not [`NONE`].
+    Offset([u16; 3]),
     /// Turns about an axis.
     Turn {
         /// 0, 1, 2 for x, y, z.
@@ -68,8 +63,10 @@ pub struct Bone {
 pub struct Skeleton<const N: usize> {
     /// Parents before children.
     pub bones: Vec<Bone, N>,
-    /// The channels at work, joint by joint, in the order in which they apply.
-    pub drives: Vec<Drive, RIG_DRIVES>,
+    /// The channels at work, joint by joint, in the order in which they apply; in fours, the last padded.
+    drives: Vec<[Drive; DRIVES], N>,
+    /// How many they are.
+    driven: usize,
     /// Right shift that brings a position channel's value to figure units.
     pub position_shift: i32,
     /// One figure unit is 2^exponent source units.
@@ -84,8 +81,11 @@ pub struct Skeleton<const N: usize> {
     pub head_radius: i32,
 }
 
-/// Most channels of the joints that are kept.
-pub const RIG_DRIVES: usize = 3 * 64;
+/// In place of a channel: there is none.
+pub const NONE: u16 = u16::MAX;
+
+/// Room for drives, a joint: an offset and three turns. Joints with fewer leave room for others.
+const DRIVES: usize = 4;
 
 /// How much of the rig is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,6 +114,7 @@ impl<const N: usize> Skeleton<N> {
         let mut skeleton = Skeleton {
             bones: Vec::new(),
             drives: Vec::new(),
+            driven: 0,
             position_shift: limbs.exponent - i32::from(position_exponent),
             exponent: limbs.exponent,
             size: limbs.size,
@@ -128,7 +129,8 @@ impl<const N: usize> Skeleton<N> {
                 continue;
             }
             let parent = limb.parent.and_then(|parent| kept.get(usize::from(parent)).copied());
-            let drives = skeleton.drive(&joint, is_exponential(index))?;
+            let turns = limb.bears || limb.head;
+            let drives = skeleton.drive(&joint, turns, is_exponential(index))?;
             let part = if limb.placement || limb.length == 0 { Part::Hidden } else { Part::Bone };
             let foot = contains(joint.name, "foot") || contains(joint.name, "ankle");
             let moves = { joint.kinds }.any(|kind| kind.is_position());
@@ -151,16 +153,20 @@ impl<const N: usize> Skeleton<N> {
         self.bones.push(bone).map_err(|_| Error::TooManyJoints { most: N })
     }
 
-    /// Adds what drives a joint, and counts it.
-    fn drive(&mut self, joint: &Joint, exponential: bool) -> Result<u8, Error> {
-        let before = self.drives.len();
-        let mut grouped = false;
+    /// Adds what drives a joint, and counts it. What turns one that nothing hangs on is left out.
+    fn drive(&mut self, joint: &Joint, turns: bool, exponential: bool) -> Result<u8, Error> {
+        let before = self.driven;
+        let (mut moved, mut grouped) = (false, !turns);
         for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
             let axis = kind.axis().unwrap_or(0) as u8;
             let drive = match kind {
                 Kind::Scalar => continue,
-                _ if kind.is_position() => Drive::Offset { axis, channel },
-                _ if kind.is_rotation() && !exponential => Drive::Turn { axis, channel },
+                _ if kind.is_position() && moved => continue,
+                _ if kind.is_position() => {
+                    moved = true;
+                    Drive::Offset([Kind::Xposition, Kind::Yposition, Kind::Zposition].map(|kind| channel_of(joint, kind)))
+                }
+                _ if kind.is_rotation() && !exponential && turns => Drive::Turn { axis, channel },
                 // The rest work as a group, in the place of its first channel.
                 _ if grouped => continue,
                 _ => {
@@ -168,9 +174,24 @@ impl<const N: usize> Skeleton<N> {
                     group(joint, kind)
                 }
             };
-            self.drives.push(drive).map_err(|_| Error::TooManyChannels { most: RIG_DRIVES })?;
+            self.push_drive(drive)?;
         }
-        Ok((self.drives.len() - before) as u8)
+        Ok((self.driven - before) as u8)
+    }
+
+    fn push_drive(&mut self, drive: Drive) -> Result<(), Error> {
+        let full = Error::TooManyChannels { most: DRIVES * N };
+        if self.driven.is_multiple_of(DRIVES) {
+            self.drives.push([drive; DRIVES]).map_err(|_| full)?;
+        }
+        *self.drives.as_flattened_mut().get_mut(self.driven).ok_or(full)? = drive;
+        self.driven += 1;
+        Ok(())
+    }
+
+    /// What drives the joints, all in one row.
+    pub fn drives(&self) -> &[Drive] {
+        self.drives.as_flattened()
     }
 
     /// The figure units of a length in the rig's or a clip's steps of 2^`exponent` source units.
@@ -191,19 +212,22 @@ fn sides(rig: &Rig, limbs: &Limbs) -> Option<[usize; 2]> {
     })
 }
 
+/// A joint's channel of a kind.
+fn channel_of(joint: &Joint, wanted: Kind) -> u16 {
+    let mut channels = joint.kinds.zip(joint.first_channel..);
+    channels.find(|(kind, _)| *kind == wanted).map_or(NONE, |(_, channel)| channel)
+}
+
 /// A joint's quaternion or exponential map. Where a clip codes Euler angles as one, their slots hold x, y, z in turn.
 fn group(joint: &Joint, kind: Kind) -> Drive {
-    let channel_of = |wanted| {
-        let mut channels = joint.kinds.zip(joint.first_channel..);
-        channels.find(|(kind, _)| *kind == wanted).map_or(u16::MAX, |(_, channel)| channel)
-    };
+    let channel_of = |kind| channel_of(joint, kind);
     if kind.is_quaternion() {
         Drive::Quaternion([Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion].map(channel_of))
     } else if kind.is_exponential() {
         Drive::Exponential([Kind::Xexponential, Kind::Yexponential, Kind::Zexponential].map(channel_of))
     } else {
         let mut slots = joint.kinds.zip(joint.first_channel..).filter(|(kind, _)| kind.is_rotation());
-        Drive::Exponential([(); 3].map(|()| slots.next().map_or(u16::MAX, |(_, channel)| channel)))
+        Drive::Exponential([(); 3].map(|()| slots.next().map_or(NONE, |(_, channel)| channel)))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::draw::Ink;
 use crate::kinematics::Kinematics;
 use crate::lines::{Ground, Line, Lines};
 use crate::skeleton::{Detail, Skeleton};
-use crate::survey::Survey;
+use crate::survey::{Bearings, Survey};
 use embedded_graphics::draw_target::DrawTarget;
 use pantin::Player;
 
@@ -14,6 +14,7 @@ use pantin::Player;
 #[derive(Clone, Debug)]
 pub struct Stage<const N: usize> {
     skeleton: Skeleton<N>,
+    bearings: Bearings,
     camera: Camera,
     ground: Ground,
     joints: Kinematics<N>,
@@ -62,7 +63,7 @@ impl<const N: usize> Stage<N> {
         let spacing = (32 - size.leading_zeros()).saturating_sub(2).max(1);
         let ground = Ground { axis: bearings.axis, height, spacing };
         let camera = at_scale(TRIAL_SCALE);
-        let mut stage = Stage { skeleton, camera, ground, joints, lines: Lines::new() };
+        let mut stage = Stage { skeleton, bearings, camera, ground, joints, lines: Lines::new() };
         let mut frame = Frame::default();
         poses(&mut |pose| {
             stage.look(pose);
@@ -108,6 +109,11 @@ impl<const N: usize> Stage<N> {
     /// The camera.
     pub fn camera(&self) -> &Camera {
         &self.camera
+    }
+
+    /// Up and facing, as the camera takes them.
+    pub fn bearings(&self) -> Bearings {
+        self.bearings
     }
 
     /// Where the joints of the last pose are.
