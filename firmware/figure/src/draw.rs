@@ -60,11 +60,11 @@ impl<const N: usize> Lines<N> {
         }
         let Some(head) = self.head else { return Ok(()) };
         let (Some(ink), Some(inside)) = (D::Color::of_shade(head.shade), D::Color::of_shade(0)) else { return Ok(()) };
-        // A whole number of pixels across, about the middle.
-        let diameter = pixel(head.radius.saturating_mul(2).saturating_add(8)).max(3);
-        let corner = |x: i16| (2 * i32::from(x) - diameter * 16 + 16) >> 5;
+        // An odd number of pixels across, so that it stands even about the pixel in its middle.
+        let radius = pixel(head.radius.saturating_add(8)).max(1);
+        let corner = |x: i16| pixel(x) - radius;
         let style = PrimitiveStyleBuilder::new().stroke_color(ink).stroke_width(1).fill_color(inside).build();
-        let circle = Circle::new(Point::new(corner(head.centre[0]), corner(head.centre[1])), diameter as u32);
+        let circle = Circle::new(Point::new(corner(head.centre[0]), corner(head.centre[1])), 2 * radius as u32 + 1);
         circle.into_styled(style).draw(target)
     }
 }
