@@ -61,6 +61,7 @@ pub fn run<B: Board>(clip: &[u8], options: Options, board: &mut B) -> Exit {
     Exit::Done
 }
 
+#[inline(never)]
 fn play<B: Board>(player: &mut Player, stage: &mut Stage<JOINTS>, mode: Mode, board: &mut B) {
     let mut frame = Frame::new();
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);

@@ -10,15 +10,16 @@ use pantin::{Joint, Rig};
 /// What is known of one joint of the whole rig before the figure's skeleton is built.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limb {
-    pub parent: Option<u16>,
-    /// Its bone in figure units: the rest offset, or what position channels put in its place.
-    pub bone: Vector,
+    /// Index of the parent; the root has [`NO_PARENT`].
+    pub parent: u16,
+    /// Its bone in figure units: the rest offset, or what position channels put in its place. Nothing for a placement.
+    pub bone: [i16; 3],
     /// Length of the bone.
     pub length: i32,
     /// Longest chain of bones below it, and the child that it starts with.
     pub reach: i32,
     pub longest: u16,
-    pub children: u16,
+    pub children: u8,
     /// Not a bone but where the figure stands.
     pub placement: bool,
     pub end_site: bool,
@@ -26,9 +27,12 @@ pub(crate) struct Limb {
     pub kept: bool,
     /// Whether a kept joint hangs on it.
     pub bears: bool,
-    /// In what is left of a hand: how long the finger is up to here.
-    pub finger: Option<i32>,
+    /// In what is left of a hand: how long the finger is up to here. Elsewhere negative.
+    pub finger: i32,
 }
+
+/// In place of a parent's index: more than any rig has.
+const NO_PARENT: u16 = u16::MAX;
 
 /// All joints of a rig, and what follows from them together.
 pub(crate) struct Limbs {
@@ -48,6 +52,7 @@ const NO_SIZE: i32 = 1 << 14;
 
 impl Limbs {
     /// Reads the rig; where a joint's bone is a matter of position channels, as `pose` has them.
+    #[inline(never)]
     pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8) -> Result<Self, Error> {
         let hips = placement_end(rig);
         let bones = || rig.joints().enumerate().map(|(index, joint)| bone(&joint, pose, index <= hips));
@@ -58,13 +63,15 @@ impl Limbs {
         let mut limbs = Vec::new();
         let mut has_head = false;
         for ((index, joint), bone) in rig.joints().enumerate().zip(bones()) {
-            let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)));
+            let bone = if index <= hips { [(0, false); 3] } else { bone };
+            // Below 2^14 by the choice of the exponent.
+            let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)) as i16);
             let head = !has_head && contains(joint.name, "head");
             has_head |= head;
             let limb = Limb {
-                parent: joint.parent,
+                parent: joint.parent.unwrap_or(NO_PARENT),
                 bone,
-                length: if index <= hips { 0 } else { length(bone) },
+                length: length(bone.map(i32::from)),
                 reach: 0,
                 longest: 0,
                 children: 0,
@@ -73,7 +80,7 @@ impl Limbs {
                 head,
                 kept: true,
                 bears: false,
-                finger: None,
+                finger: -1,
             };
             limbs.push(limb).map_err(|_| Error::TooManyJoints { most: RIG_JOINTS })?;
         }
@@ -86,8 +93,8 @@ impl Limbs {
     fn measure(&mut self) {
         for index in (0..self.limbs.len()).rev() {
             let Limb { parent, length, reach, .. } = self.limbs[index];
-            if let Some(parent) = parent.and_then(|parent| self.limbs.get_mut(usize::from(parent))) {
-                parent.children += 1;
+            if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
+                parent.children = parent.children.saturating_add(1);
                 if length + reach >= parent.reach {
                     parent.reach = length + reach;
                     parent.longest = index as u16;
@@ -104,17 +111,14 @@ impl Limbs {
     /// limb and is too short to see.
     pub fn prune(&mut self) {
         for index in 0..self.limbs.len() {
-            let Some(parent) = self.limbs[index].parent.and_then(|parent| self.limbs.get(usize::from(parent))) else { continue };
+            let Some(parent) = self.limbs.get(usize::from(self.limbs[index].parent)) else { continue };
             let hand = parent.children > 1 && parent.reach < self.size / 6;
-            let shows = match parent.finger {
-                _ if !parent.kept || parent.head => false,
-                None if !hand => true,
-                finger => parent.longest == index as u16 && finger.unwrap_or(0) < self.size / 25,
-            };
-            let finger = if hand { Some(0) } else { parent.finger };
+            let finger = if hand { 0 } else { parent.finger };
+            let shows = finger < 0 || (parent.longest == index as u16 && parent.finger < self.size / 25);
+            let kept = parent.kept && !parent.head && shows;
             let limb = &mut self.limbs[index];
-            limb.kept = shows;
-            limb.finger = finger.map(|length| length + limb.length);
+            limb.kept = kept;
+            limb.finger = if finger < 0 { finger } else { finger + limb.length };
         }
         self.settle(self.size / 64);
     }
@@ -124,9 +128,9 @@ impl Limbs {
         for index in (0..self.limbs.len()).rev() {
             let limb = &mut self.limbs[index];
             limb.kept &= limb.placement || limb.head || limb.bears || limb.length >= shortest;
-            let parent = limb.parent.filter(|_| limb.kept);
-            if let Some(parent) = parent.and_then(|parent| self.limbs.get_mut(usize::from(parent))) {
-                parent.bears = true;
+            let (parent, kept) = (limb.parent, limb.kept);
+            if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
+                parent.bears |= kept;
             }
         }
     }

@@ -99,6 +99,7 @@ pub enum Detail {
 impl<const N: usize> Skeleton<N> {
     /// Sets up a rig's figure. `pose` is any pose of the clip, `position_exponent` its step of positions (2^e source units),
     /// and `is_exponential` tells of a joint whether the clip codes its Euler angles as an exponential map.
+    #[inline(never)]
     pub fn new(
         rig: &Rig,
         detail: Detail,
@@ -128,13 +129,17 @@ impl<const N: usize> Skeleton<N> {
             if !limb.kept {
                 continue;
             }
-            let parent = limb.parent.and_then(|parent| kept.get(usize::from(parent)).copied());
+            let parent = kept.get(usize::from(limb.parent)).copied();
             let turns = limb.bears || limb.head;
             let drives = skeleton.drive(&joint, turns, is_exponential(index))?;
             let part = if limb.placement || limb.length == 0 { Part::Hidden } else { Part::Bone };
             let foot = contains(joint.name, "foot") || contains(joint.name, "ankle");
             let moves = { joint.kinds }.any(|kind| kind.is_position());
-            skeleton.push(Bone { parent, offset: limb.bone, part, foot, drives, moves, bears: limb.bears })?;
+            let offset = match limb.placement {
+                true => joint.offset.map(|raw| skeleton.figure_units(raw, rig.length_exponent())),
+                false => limb.bone.map(i32::from),
+            };
+            skeleton.push(Bone { parent, offset, part, foot, drives, moves, bears: limb.bears })?;
             if limb.head && detail == Detail::Body {
                 let parent = Some(skeleton.bones.len() as u8 - 1);
                 let offset = crown(&limbs, index, limb);
@@ -235,9 +240,9 @@ fn group(joint: &Joint, kind: Kind) -> Drive {
 /// bone that leads to the head, a tenth of the figure.
 fn crown(limbs: &Limbs, index: usize, head: &Limb) -> Vector {
     let tenth = limbs.size / 10;
-    let own = limbs.limbs.iter().find(|limb| limb.end_site && limb.parent == Some(index as u16) && limb.length > tenth / 3);
+    let own = limbs.limbs.iter().find(|limb| limb.end_site && usize::from(limb.parent) == index && limb.length > tenth / 3);
     match own {
-        Some(end) => end.bone,
-        None => head.bone.map(|x| x * 64 / (head.length / 64).max(1) * (tenth / 64) / 64),
+        Some(end) => end.bone.map(i32::from),
+        None => head.bone.map(|x| i32::from(x) * 64 / (head.length / 64).max(1) * (tenth / 64) / 64),
     }
 }

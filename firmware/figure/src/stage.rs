@@ -29,6 +29,7 @@ const SAMPLES: u32 = 48;
 
 impl<const N: usize> Stage<N> {
     /// Sets up the figure and the camera for a clip, and leaves the player at frame 0.
+    #[inline(never)]
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
         player.rewind();
         let clip = *player.clip();
@@ -47,6 +48,7 @@ impl<const N: usize> Stage<N> {
 
     /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
     /// argument; it is called twice and must show the same ones.
+    #[inline(never)]
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
         let mut joints = Kinematics::new();
         let mut survey = Survey::new();
