@@ -10,5 +10,6 @@ pub mod fk;
 pub mod import;
 pub mod keys;
 pub mod motion;
+pub mod render;
 pub mod train;
 pub mod verify;

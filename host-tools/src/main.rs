@@ -17,6 +17,7 @@ enum Command {
     Convert(cmd::convert::Arguments),
     Expand(cmd::expand::Arguments),
     Info(cmd::info::Arguments),
+    Render(cmd::render::Arguments),
     Train(cmd::train::Arguments),
 }
 
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => cmd::convert::run(&arguments),
         Command::Expand(arguments) => cmd::expand::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
+        Command::Render(arguments) => cmd::render::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
     };
     match result {

@@ -3,6 +3,7 @@
 pub mod convert;
 pub mod expand;
 pub mod info;
+pub mod render;
 pub mod train;
 
 use anyhow::{Context, Result};

@@ -1,0 +1,38 @@
+//! What the program is asked to do, as words of a command line.
+
+/// When it goes on to the next frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// At the clip's own rate, for ever.
+    Play,
+    /// At the clip's own rate, for so many pictures.
+    Frames(u32),
+    /// When the other end of the line says so.
+    Sync,
+}
+
+/// How the program runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// When it goes on.
+    pub mode: Mode,
+    /// Degrees of the camera about the figure, instead of the usual view.
+    pub orbit: Option<i16>,
+}
+
+impl Options {
+    /// Reads the words `frames=N`, `sync` and `view=DEGREES`. Others are passed over: an emulator without arguments gives the
+    /// program's own path.
+    pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
+        let mut options = Options { mode: Mode::Play, orbit: None };
+        for word in words {
+            match word.split_once('=') {
+                None if word == "sync" => options.mode = Mode::Sync,
+                Some(("frames", count)) => options.mode = count.parse().map_or(options.mode, Mode::Frames),
+                Some(("view", degrees)) => options.orbit = degrees.parse().ok().or(options.orbit),
+                _ => {}
+            }
+        }
+        options
+    }
+}

@@ -1,0 +1,46 @@
+//! The SSD0323 on synchronous serial port 0: 128x64 pixels of 16 greys, two a byte.
+//!
+//! Its chip select is pin 0 of port D, which the board pulls the right way by itself: port D is never touched here.
+
+use crate::registers::{gpio_c, ssi0, system};
+
+const PIN_7: u32 = 1 << 7;
+/// The port is still shifting bits out.
+const BUSY: u32 = 1 << 4;
+const RECEIVE_NOT_EMPTY: u32 = 1 << 2;
+
+/// Sets up the port and the display's window: all of it.
+pub fn start() {
+    // Clocks of port C and of the serial port.
+    system::RCGC1.write(system::RCGC1.read() | 1 << 4);
+    system::RCGC2.write(system::RCGC2.read() | 1 << 2 | 1 << 0);
+    gpio_c::DIR.write(gpio_c::DIR.read() | PIN_7);
+    gpio_c::DEN.write(gpio_c::DEN.read() | PIN_7);
+    ssi0::CR1.write(0);
+    ssi0::CPSR.write(2);
+    // Frames of 8 bits.
+    ssi0::CR0.write(7);
+    ssi0::CR1.write(2);
+    // Columns (of two pixels) and rows, first and last; row by row.
+    command(&[0x15, 0, 63, 0x75, 0, 63, 0xa0, 0]);
+}
+
+fn command(bytes: &[u8]) {
+    select(0, bytes);
+}
+
+/// Writes a picture: the window takes it from its first byte, and is back there after its last.
+pub fn show(picture: &[u8]) {
+    select(PIN_7, picture);
+}
+
+fn select(pin: u32, bytes: &[u8]) {
+    gpio_c::PIN_7.write(pin);
+    for &byte in bytes {
+        ssi0::DR.write(u32::from(byte));
+        // Every byte out brings one in; were it not fetched, the port would stall after eight.
+        while ssi0::SR.read() & RECEIVE_NOT_EMPTY == 0 {}
+        ssi0::DR.read();
+    }
+    while ssi0::SR.read() & BUSY != 0 {}
+}

@@ -1,0 +1,53 @@
+//! From a pose to a wireframe figure: fixed-point forward kinematics, a perspective camera, lines with depth, and their
+//! drawing into any `embedded-graphics` target. No heap, no float, no product wider than 32 bits a frame.
+//!
+//! [`Stage`] is the whole way; firmware, host tool and browser call the same code and get the same pixels.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+mod body;
+pub mod camera;
+pub mod draw;
+pub mod kinematics;
+pub mod lines;
+mod names;
+mod root;
+pub mod rotation;
+pub mod skeleton;
+pub mod stage;
+pub mod survey;
+pub mod trig;
+
+pub use camera::{Canvas, Track, View};
+pub use draw::Ink;
+pub use skeleton::{Detail, Skeleton};
+pub use stage::Stage;
+
+/// Most joints of a rig that a figure is made of, End Sites included, before fingers and the like are left out.
+pub const RIG_JOINTS: usize = 192;
+
+/// Why a rig makes no figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// More joints than there is room for.
+    TooManyJoints {
+        /// The room.
+        most: usize,
+    },
+    /// More channels drive the figure than there is room for.
+    TooManyChannels {
+        /// The room.
+        most: usize,
+    },
+}
+
+impl core::fmt::Display for Error {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Error::TooManyJoints { most } => write!(f, "the figure has more than {most} joints"),
+            Error::TooManyChannels { most } => write!(f, "more than {most} channels drive the figure"),
+        }
+    }
+}
+
+impl core::error::Error for Error {}

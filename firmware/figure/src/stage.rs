@@ -1,0 +1,161 @@
+//! The whole way from a pose to a picture. What is drawn depends on the clip and the pose alone, never on frames before.
+
+use crate::Error;
+use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
+use crate::draw::Ink;
+use crate::kinematics::Kinematics;
+use crate::lines::{Ground, Line, Lines};
+use crate::skeleton::{Detail, Skeleton};
+use crate::survey::{Bearings, Survey};
+use embedded_graphics::draw_target::DrawTarget;
+use pantin::Player;
+
+/// A figure of at most `N` joints before its camera.
+#[derive(Clone, Debug)]
+pub struct Stage<const N: usize> {
+    skeleton: Skeleton<N>,
+    bearings: Bearings,
+    camera: Camera,
+    ground: Ground,
+    joints: Kinematics<N>,
+    lines: Lines<N>,
+}
+
+/// Scale at which a clip is looked at before the final scale is known: 2^14 sixteenths of a pixel a size.
+const TRIAL_SCALE: i32 = 1 << 14;
+
+/// A clip is looked at in about this many places before it plays.
+const SAMPLES: u32 = 48;
+
+impl<const N: usize> Stage<N> {
+    /// Sets up the figure and the camera for a clip, and leaves the player at frame 0.
+    #[inline(never)]
+    pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
+        player.rewind();
+        let clip = *player.clip();
+        let skeleton =
+            Skeleton::new(&clip.rig(), Detail::Body, player.pose(), clip.length_exponent(), |joint| clip.is_exponential(joint))?;
+        let stride = clip.frames().div_ceil(SAMPLES) as usize;
+        let stage = Stage::new(skeleton, canvas, view, |visit| {
+            for frame in (0..clip.frames()).step_by(stride) {
+                player.seek(frame);
+                visit(player.pose());
+            }
+        });
+        player.rewind();
+        Ok(stage)
+    }
+
+    /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
+    /// argument; it is called twice and must show the same ones.
+    #[inline(never)]
+    pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
+        let mut joints = Kinematics::new();
+        let mut survey = Survey::new();
+        poses(&mut |pose| {
+            joints.place(&skeleton, pose);
+            survey.include(&skeleton, &joints);
+        });
+        let bearings = survey.bearings();
+        let size = skeleton.size;
+        let at_scale = |scale| Camera::new(&survey, bearings, size, view, scale);
+        let upwards = bearings.up[bearings.axis] > 0;
+        let height = if upwards { survey.low[bearings.axis] } else { survey.high[bearings.axis] };
+        // Lines a quarter to half a size apart.
+        let spacing = (32 - size.leading_zeros()).saturating_sub(2).max(1);
+        let ground = Ground { axis: bearings.axis, height, spacing };
+        let camera = at_scale(TRIAL_SCALE);
+        let mut stage = Stage { skeleton, bearings, camera, ground, joints, lines: Lines::new() };
+        let mut frame = Frame::default();
+        poses(&mut |pose| {
+            stage.look(pose);
+            frame.include(&stage.lines);
+        });
+        let scale = frame.scale(canvas);
+        stage.camera = at_scale(scale);
+        let rows = i32::from(canvas.height) << PIXEL_BITS;
+        stage
+            .camera
+            .show((i32::from(canvas.width) << PIXEL_BITS) / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
+        stage
+    }
+
+    /// The frame of a pose as lines.
+    pub fn look(&mut self, pose: &[i32]) -> &Lines<N> {
+        self.joints.place(&self.skeleton, pose);
+        let target = self.camera.target(self.joints.position(self.skeleton.hips));
+        self.lines.lay_ground(&self.ground, &self.camera, target);
+        self.lines.lay_bones(&self.skeleton, &self.joints, &self.camera, target);
+        &self.lines
+    }
+
+    /// The lines of the last pose that was looked at.
+    pub fn lines(&self) -> &Lines<N> {
+        &self.lines
+    }
+
+    /// Clears the target and draws the figure in a pose.
+    pub fn draw<D>(&mut self, pose: &[i32], target: &mut D) -> Result<(), D::Error>
+    where
+        D: DrawTarget,
+        D::Color: Ink,
+    {
+        self.look(pose).draw(target)
+    }
+
+    /// The figure's joints.
+    pub fn skeleton(&self) -> &Skeleton<N> {
+        &self.skeleton
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Up and facing, as the camera takes them.
+    pub fn bearings(&self) -> Bearings {
+        self.bearings
+    }
+
+    /// Where the joints of the last pose are.
+    pub fn joints(&self) -> &Kinematics<N> {
+        &self.joints
+    }
+}
+
+/// What the figure covers of the display over a clip, in sixteenths of a pixel from the target.
+#[derive(Default)]
+struct Frame {
+    top: i32,
+    bottom: i32,
+    side: i32,
+}
+
+impl Frame {
+    fn include<const N: usize>(&mut self, lines: &Lines<N>) {
+        for &Line { from, to, .. } in &lines.bones {
+            self.widen(from, 0);
+            self.widen(to, 0);
+        }
+        if let Some(head) = lines.head {
+            self.widen(head.centre, head.radius);
+        }
+    }
+
+    fn widen(&mut self, [x, y]: [i16; 2], radius: i16) {
+        let (x, y, radius) = (i32::from(x), i32::from(y), i32::from(radius));
+        self.side = self.side.max(x.abs() + radius);
+        self.top = self.top.min(y - radius);
+        self.bottom = self.bottom.max(y + radius);
+    }
+
+    /// The scale at which all of it fits, with a margin of a 20th of the canvas.
+    fn scale(&self, canvas: Canvas) -> i32 {
+        let fit = |pixels: u16, covered: i32| {
+            let room = (i32::from(pixels) * 9 / 10) << PIXEL_BITS;
+            room * (TRIAL_SCALE / 256) / (covered / 256).max(1)
+        };
+        fit(canvas.height, self.bottom - self.top).min(fit(canvas.width, 2 * self.side)).clamp(1, TRIAL_SCALE)
+    }
+}

@@ -1,0 +1,118 @@
+//! What a clip asks of the camera: how far the figure gets, which way is up, where it faces. Gathered from some of its poses.
+
+use crate::kinematics::Kinematics;
+use crate::root::direction;
+use crate::rotation::Vector;
+use crate::skeleton::{Part, Skeleton};
+use crate::trig::ONE;
+
+/// Gathers what a clip's poses show, axis by axis. Lengths are figure units.
+#[derive(Clone, Copy, Debug)]
+pub struct Survey {
+    /// Least coordinates of any joint.
+    pub low: Vector,
+    /// Greatest coordinates of any joint.
+    pub high: Vector,
+    /// Sum over the poses of crown minus feet, or of the extent along y and z where the rig names no head and feet.
+    upright: Vector,
+    /// Sum over the poses of left minus right.
+    leftward: Vector,
+}
+
+/// Which way is up and where the figure faces, in Q15 of the world's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bearings {
+    /// The axis that is vertical.
+    pub axis: usize,
+    /// Up: 1 along that axis, forwards or backwards.
+    pub up: Vector,
+    /// Horizontal.
+    pub facing: Vector,
+}
+
+/// Sums of lengths up to 2^19 over a few hundred poses stay below 2^31.
+const SUM_SHIFT: u32 = 6;
+
+impl Survey {
+    /// Nothing seen yet.
+    pub const fn new() -> Self {
+        Survey { low: [i32::MAX; 3], high: [i32::MIN; 3], upright: [0; 3], leftward: [0; 3] }
+    }
+
+    /// Takes in a pose.
+    pub fn include<const N: usize>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N>) {
+        let mut low = [i32::MAX; 3];
+        let mut high = [i32::MIN; 3];
+        let (mut crown, mut feet, mut footed) = (None, [0i32; 3], 0);
+        for (index, (bone, joint)) in skeleton.bones.iter().zip(joints.joints()).enumerate() {
+            let position = joint.position;
+            if index >= skeleton.hips {
+                low = core::array::from_fn(|axis| low[axis].min(position[axis]));
+                high = core::array::from_fn(|axis| high[axis].max(position[axis]));
+            }
+            if bone.foot {
+                feet = core::array::from_fn(|axis| feet[axis].wrapping_add(position[axis] >> 4));
+                footed += 1;
+            }
+            if bone.part == Part::Crown {
+                crown = Some(position);
+            }
+        }
+        if let Some([left, right]) = skeleton.sides {
+            add(&mut self.leftward, joints.position(usize::from(left)), joints.position(usize::from(right)));
+        }
+        match crown {
+            Some(crown) if footed > 0 => add(&mut self.upright, crown, feet.map(|x| x / footed * 16)),
+            _ => add(&mut self.upright, [0, high[1], high[2]], [0, low[1], low[2]]),
+        }
+        self.low = core::array::from_fn(|axis| low[axis].min(self.low[axis]));
+        self.high = core::array::from_fn(|axis| high[axis].max(self.high[axis]));
+    }
+
+    /// The middle of everything seen.
+    pub fn middle(&self) -> Vector {
+        core::array::from_fn(|axis| (self.low[axis] >> 1).wrapping_add(self.high[axis] >> 1))
+    }
+
+    /// Half the extent along an axis.
+    pub fn half_extent(&self, axis: usize) -> i32 {
+        (self.high[axis] >> 1).saturating_sub(self.low[axis] >> 1)
+    }
+
+    /// Up and facing. Up is one of the axes; a figure that names no left and right is taken to look along z, or against
+    /// y if z is up.
+    pub fn bearings(&self) -> Bearings {
+        let size = |axis: usize| self.upright[axis].unsigned_abs();
+        let mut axis = if size(2) > size(1) { 2 } else { 1 };
+        if size(0) > size(axis) {
+            axis = 0;
+        }
+        let mut up = [0; 3];
+        up[axis] = if self.upright[axis] < 0 { -ONE } else { ONE };
+        let mut level = self.leftward;
+        level[axis] = 0;
+        let ahead = if axis == 2 { [0, -ONE, 0] } else { [0, 0, ONE] };
+        let facing = direction(level).map_or(ahead, |left| cross(left, up));
+        Bearings { axis, up, facing }
+    }
+}
+
+impl Default for Survey {
+    fn default() -> Self {
+        Survey::new()
+    }
+}
+
+fn add(sum: &mut Vector, to: Vector, from: Vector) {
+    for axis in 0..3 {
+        sum[axis] = sum[axis].saturating_add(to[axis].saturating_sub(from[axis]) >> SUM_SHIFT);
+    }
+}
+
+/// The cross product of two Q15 vectors of length 1.
+pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
+    core::array::from_fn(|axis| {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        (a[next] * b[last] - a[last] * b[next]) >> 15
+    })
+}
