@@ -38,6 +38,20 @@ pub fn rust_target(target: &str) -> Result<()> {
     Ok(())
 }
 
+/// Makes sure that cargo has one of the toolchain's components: `rustfmt`, `clippy`.
+pub fn component(name: &str) -> Result<()> {
+    let command = if name == "rustfmt" { "fmt" } else { name };
+    let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+    let there = Command::new(cargo).args([command, "--version"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    if there.context("cannot start cargo")?.success() {
+        return Ok(());
+    }
+    eprintln!("adding {name}: rustup component add {name}");
+    let status = Command::new("rustup").args(["component", "add", name]).status();
+    ensure!(status.is_ok_and(|status| status.success()), "{name} is missing, and `rustup component add {name}` failed");
+    Ok(())
+}
+
 /// The emulator's program, from `PATH`; if it is missing, the error says how to get it.
 pub fn emulator(name: &str) -> Result<PathBuf> {
     paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))
