@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use harness::build::Firmware;
 use harness::defmt_log;
 use harness::qemu::{LM3S6965EVB, Launch, Outcome};
+use harness::screen::Picture;
 use harness::{setup, sync};
 
 fn endings() -> Firmware {
@@ -80,6 +81,27 @@ fn a_display_that_nothing_drew_on_is_black_and_keys_are_taken() {
     assert!(error.contains("no-such-key"), "{error}");
     qemu.control().unwrap().quit().unwrap();
     assert_eq!(qemu.wait().unwrap().code, 0);
+}
+
+#[test]
+fn every_pixel_of_every_frame_is_read_back() {
+    if setup::host_only("frames in step") {
+        return;
+    }
+    let program = Firmware::build("testsuite", "panel", LM3S6965EVB, None).unwrap();
+    let mut seen = 0;
+    let outcome = sync::play(Launch::new(LM3S6965EVB, program.elf()), 5, |frame, picture| {
+        assert_eq!(frame, seen);
+        let greys = (0..64).flat_map(|y| (0..128).map(move |x| (x / 8 + y + frame as usize) % 16));
+        let expected = Picture::new(128, 64, greys.map(|grey| grey as u8).collect())?;
+        if let Some(difference) = picture.difference(&expected) {
+            panic!("frame {frame}: {difference}");
+        }
+        seen += 1;
+        Ok(())
+    });
+    assert_eq!(outcome.unwrap().code, 0);
+    assert_eq!(seen, 5);
 }
 
 #[test]
