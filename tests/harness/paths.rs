@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{BufWriter, Write};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -41,7 +42,9 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()>
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let attempt = || -> Result<()> {
         fs::create_dir_all(folder)?;
-        let mut file = BufWriter::new(tempfile::Builder::new().prefix(".part-").tempfile_in(folder)?);
+        // Temporary files are their owner's alone; this one becomes an ordinary file, within the user's umask.
+        let mode = fs::Permissions::from_mode(0o666);
+        let mut file = BufWriter::new(tempfile::Builder::new().prefix(".part-").permissions(mode).tempfile_in(folder)?);
         write(&mut file)?;
         let file = file.into_inner().map_err(|error| error.into_error())?;
         file.persist(path)?;

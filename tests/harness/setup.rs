@@ -65,8 +65,8 @@ pub fn install_emulator(name: &str) -> Result<PathBuf> {
     if paths::program("apt-get").is_none() || !is_root() {
         return emulator(name);
     }
-    apt_get(&["update"])?;
-    apt_get(&["install", "-y", "--no-install-recommends", name])?;
+    let installed = apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", name]));
+    installed.with_context(|| format!("{name} is missing and could not be installed"))?;
     emulator(name)
 }
 
