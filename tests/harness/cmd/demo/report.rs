@@ -13,12 +13,13 @@ pub struct Clip {
     pub path: PathBuf,
     /// Number of frames.
     pub frames: usize,
-    /// Number of channels.
-    pub channels: usize,
     /// Frames a second.
     pub rate: f64,
-    bytes: u64,
-    motion_bytes: u64,
+    channels: f64,
+    moving: f64,
+    bytes: f64,
+    motion_bytes: f64,
+    per_frame_bytes: f64,
     max_error_cm: f64,
     mean_error_cm: f64,
 }
@@ -32,23 +33,15 @@ impl Clip {
         Ok(Self {
             path,
             frames: number(&info, "frames")? as usize,
-            channels: number(&info, "channels")? as usize,
-            rate: number(&info, "frames_per_second")?,
-            bytes: number(&info, "bytes")? as u64,
-            motion_bytes: number(&info, "motion_bytes")? as u64,
+            rate: number(&info, "fps")?,
+            channels: number(&info, "channels")?,
+            moving: number(&info, "moving_channels")?,
+            bytes: number(&info, "file_bytes")?,
+            motion_bytes: number(&info, "motion_bytes")?,
+            per_frame_bytes: number(&info, "per_frame_bytes")?,
             max_error_cm: number(&converted, "max_error_cm")?,
             mean_error_cm: number(&converted, "mean_error_cm")?,
         })
-    }
-
-    /// Bytes of the same motion with 16 bits for every channel in every frame.
-    fn per_frame_bytes(&self) -> u64 {
-        2 * self.frames as u64 * self.channels as u64
-    }
-
-    /// What the motion's bytes save against that, in percent.
-    fn saving(&self) -> f64 {
-        100.0 * (1.0 - self.motion_bytes as f64 / self.per_frame_bytes() as f64)
     }
 }
 
@@ -66,11 +59,11 @@ impl fmt::Display for Report<'_> {
         let seconds = clip.frames as f64 / clip.rate;
         let rows = [
             ("frames", format!("{} ({seconds:.2} s at {:.0} a second)", clip.frames, clip.rate)),
-            ("channels", clip.channels.to_string()),
-            ("bytes per-frame, 16 bits a value", clip.per_frame_bytes().to_string()),
+            ("channels", format!("{} ({} of them moving)", clip.channels, clip.moving)),
+            ("bytes per-frame, 16 bits a value", clip.per_frame_bytes.to_string()),
             ("bytes of the clip's motion", clip.motion_bytes.to_string()),
             ("bytes of the clip with its rig", clip.bytes.to_string()),
-            ("saving of the motion", format!("{:.1} %", clip.saving())),
+            ("saving of the motion", format!("{:.1} %", 100.0 * (1.0 - clip.motion_bytes / clip.per_frame_bytes))),
             ("max error at any joint", format!("{:.3} cm", clip.max_error_cm)),
             ("mean error", format!("{:.3} cm", clip.mean_error_cm)),
         ];
