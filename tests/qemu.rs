@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use harness::build::Firmware;
 use harness::defmt_log;
 use harness::qemu::{LM3S6965EVB, Launch, Outcome};
-use harness::screen::Picture;
-use harness::{setup, sync};
+use harness::{screen, setup, sync};
+use pantin_tools::render::screen::Picture;
 
 fn endings() -> Firmware {
     Firmware::build("testsuite", "endings", LM3S6965EVB, None).unwrap()
@@ -72,8 +72,8 @@ fn a_display_that_nothing_drew_on_is_black_and_keys_are_taken() {
     let program = endings();
     let mut qemu = Launch::new(LM3S6965EVB, program.elf()).argument("spin").display().start().unwrap();
     let picture = qemu.picture().unwrap();
-    assert_eq!((picture.width(), picture.height()), (128, 64));
-    assert!(picture.greys().iter().all(|&grey| grey == 0), "{picture:?}");
+    assert_eq!(picture.pixels.len(), 128 * 64);
+    assert!(picture.pixels.iter().all(|&grey| grey == 0), "{picture:?}");
     for down in [true, false] {
         qemu.control().unwrap().key("up", down).unwrap();
     }
@@ -93,8 +93,8 @@ fn every_pixel_of_every_frame_is_read_back() {
     let outcome = sync::play(Launch::new(LM3S6965EVB, program.elf()), 5, |frame, picture| {
         assert_eq!(frame, seen);
         let greys = (0..64).flat_map(|y| (0..128).map(move |x| (x / 8 + y + frame as usize) % 16));
-        let expected = Picture::new(128, 64, greys.map(|grey| grey as u8).collect())?;
-        if let Some(difference) = picture.difference(&expected) {
+        let expected = Picture { pixels: greys.map(|grey| grey as u8).collect() };
+        if let Some(difference) = screen::difference(&picture, &expected) {
             panic!("frame {frame}: {difference}");
         }
         seen += 1;

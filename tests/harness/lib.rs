@@ -4,7 +4,6 @@ pub mod build;
 pub mod defmt_log;
 pub mod icount;
 pub mod paths;
-pub mod pictures;
 pub mod qemu;
 pub mod qmp;
 pub mod screen;

@@ -8,11 +8,11 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow, bail};
+use pantin_tools::render::screen::Picture;
 use tempfile::TempDir;
 
 use crate::qmp::Qmp;
-use crate::screen::Picture;
-use crate::setup;
+use crate::{screen, setup};
 
 /// Time between looks at a process or socket that is not ready.
 const POLL: Duration = Duration::from_millis(2);
@@ -176,7 +176,7 @@ impl Qemu {
         let path = self.directory.path().join("screen.ppm");
         self.control()?.screendump(&path).map_err(|error| self.explain(error))?;
         let dump = std::fs::read(&path).context("QEMU left no picture")?;
-        Picture::from_window(&dump)
+        screen::from_window(&dump)
     }
 
     /// Waits for the end and says how it went; an error if the time limit comes first.

@@ -8,7 +8,7 @@ use std::io::{Read, Write};
 use anyhow::{Context, Result};
 
 use crate::qemu::{Launch, Outcome, Qemu};
-use crate::screen::Picture;
+use pantin_tools::render::screen::Picture;
 
 /// The word that asks for this mode on the semihosting command line.
 pub const ARGUMENT: &str = "sync";

@@ -13,16 +13,16 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use harness::{build, paths, pictures, setup};
+use harness::{build, paths, setup};
+use pantin_tools::cmd::write_whole;
+use pantin_tools::render::screen::Picture;
+use pantin_tools::render::{gif, sheet};
 
 use super::steps::say;
 use report::{Clip, Report};
 
-/// Pictures on the contact sheet, a row of it, and how much it and the GIF are enlarged.
-const SHEET: usize = 16;
-const SHEET_COLUMNS: usize = 4;
-const SHEET_SCALE: usize = 2;
-const GIF_SCALE: usize = 4;
+/// Pictures on the contact sheet.
+const SHEET: usize = 12;
 
 /// Plays a motion on the display of an emulated board, and shows what it costs.
 #[derive(Args)]
@@ -88,12 +88,18 @@ impl Demo {
         Clip::new(path, &converted, &info)
     }
 
-    fn write_pictures(&self, shown: &[harness::screen::Picture], rate: f64) -> Result<()> {
-        pictures::write_gif(&self.out.join("demo.gif"), shown, rate, GIF_SCALE)?;
+    fn write_pictures(&self, shown: &[Picture], rate: f64) -> Result<()> {
+        let stride = gif::stride(1.0 / rate) as usize;
+        let animated: Vec<_> = shown.iter().step_by(stride).cloned().collect();
+        let mut animation = vec![];
+        gif::write(&mut animation, &animated, stride as f64 / rate)?;
+        write_whole(&self.out.join("demo.gif"), &animation)?;
         let chosen = SHEET.min(shown.len());
-        let spread: Vec<_> = (0..chosen).map(|index| shown[index * shown.len() / chosen].clone()).collect();
-        let sheet = pictures::contact_sheet(&spread, SHEET_COLUMNS)?;
-        pictures::write_png(&self.out.join("demo-sheet.png"), &sheet, SHEET_SCALE)
+        let frames = (0..chosen).map(|index| index * shown.len() / chosen);
+        let labelled: Vec<_> = frames.map(|frame| (frame as u32, shown[frame].clone())).collect();
+        let mut pictures = vec![];
+        sheet::write(&mut pictures, &labelled)?;
+        write_whole(&self.out.join("demo-sheet.png"), &pictures)
     }
 }
 

@@ -7,8 +7,8 @@ use anyhow::{Result, ensure};
 use harness::build::Firmware;
 use harness::icount::{self, Stats};
 use harness::qemu::{LM3S6965EVB, Launch};
-use harness::screen::Picture;
 use harness::{defmt_log, setup, sync};
+use pantin_tools::render::screen::Picture;
 
 use crate::cmd::steps::{progress, say};
 
