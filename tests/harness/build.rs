@@ -14,7 +14,7 @@ use crate::paths;
 use crate::qemu::Machine;
 use crate::setup;
 
-/// One call of `cargo build --release`.
+/// One call of `cargo build`.
 pub struct Build {
     /// Where it runs: each workspace finds its own configuration there.
     pub workspace: PathBuf,
@@ -30,7 +30,7 @@ pub struct Build {
 pub fn cargo(build: &Build) -> Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--release", "--quiet", "--message-format=json-render-diagnostics"]).args(&build.arguments);
+    command.args(["build", "--quiet", "--message-format=json-render-diagnostics"]).args(&build.arguments);
     command.envs(build.environment.iter().cloned()).current_dir(&build.workspace).stdout(Stdio::piped());
     let mut child = command.spawn().context("cannot start cargo")?;
     let mut product = None;
@@ -62,7 +62,9 @@ impl Firmware {
         let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
         let product = cargo(&Build {
             workspace: paths::firmware(),
-            arguments: ["--package", package, "--bin", program, "--target", machine.target].map(OsString::from).into(),
+            arguments: ["--release", "--package", package, "--bin", program, "--target", machine.target]
+                .map(OsString::from)
+                .into(),
             environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).collect(),
             product: program.into(),
         })?;
@@ -78,7 +80,8 @@ impl Firmware {
     }
 }
 
-/// Builds the host tool and returns its program.
+/// Builds the host tool and returns its program: in the profile of the tests, which is optimized, so that a fresh clone
+/// compiles it once.
 pub fn host_tool() -> Result<PathBuf> {
     cargo(&Build {
         workspace: paths::root(),

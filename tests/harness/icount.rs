@@ -80,7 +80,7 @@ pub fn plugin(emulator: &str) -> Result<PathBuf> {
     };
     build::cargo(&build::Build {
         workspace: crate::paths::root(),
-        arguments: vec!["--package".into(), "icount-plugin".into()],
+        arguments: vec!["--release".into(), "--package".into(), "icount-plugin".into()],
         environment: vec![("QEMU_PLUGIN_API".into(), interface.into())],
         product: "icount_plugin".into(),
     })

@@ -1,6 +1,7 @@
 //! Emulators, screens and images of the firmware, for tests and for `cargo xtask`.
 
 pub mod build;
+pub mod clips;
 pub mod defmt_log;
 pub mod icount;
 pub mod paths;
