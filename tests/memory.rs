@@ -31,6 +31,7 @@ fn copy(name: &str, to: &Path) {
     let mut files = Command::new("git");
     files.args(["ls-files", "--cached", "--others", "--exclude-standard", name]);
     let listed = files.current_dir(paths::root()).output().unwrap();
+    assert!(listed.status.success(), "git must list the sources: {}", String::from_utf8_lossy(&listed.stderr));
     for file in String::from_utf8(listed.stdout).unwrap().lines() {
         let target = to.join(file);
         fs::create_dir_all(target.parent().unwrap()).unwrap();

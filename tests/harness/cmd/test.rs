@@ -11,11 +11,12 @@
 //! ...
 //! ```
 
+use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use harness::{paths, setup};
+use harness::{clips, paths, setup};
 
 use super::packages::{self, Package};
 use super::steps::Steps;
@@ -35,15 +36,18 @@ impl Test {
         let (boards, libraries): (Vec<_>, Vec<_>) = packages.into_iter().partition(|package| !package.targets.is_empty());
         let mut steps = Steps::default();
         steps.run("tools", || tools(&boards, self.host_only));
+        steps.run("host tool, and a clip for the firmware", walk);
         steps.run("format", || cargo(Workspace::Host, "fmt --all --check", false));
         steps.run("format of the firmware", || cargo(Workspace::Firmware, "fmt --all --check", false));
         steps.run("lints", || cargo(Workspace::Host, "clippy --workspace --all-targets -- -D warnings", false));
-        steps.run("host tests", || cargo(Workspace::Host, "test --workspace --exclude harness", false));
+        steps.run("host tests", || cargo(Workspace::Host, "test --workspace --exclude harness --no-fail-fast", false));
         let named: String = libraries.iter().map(|library| format!(" -p {}", library.name)).collect();
         if !named.is_empty() {
             let lints = format!("clippy{named} --all-targets -- -D warnings");
             steps.run("lints of the firmware's libraries", || cargo(Workspace::Firmware, &lints, false));
-            steps.run("host tests of the firmware's libraries", || cargo(Workspace::Firmware, &format!("test{named}"), false));
+            steps.run("host tests of the firmware's libraries", || {
+                cargo(Workspace::Firmware, &format!("test{named} --no-fail-fast"), false)
+            });
         }
         for Package { name, targets } in &boards {
             for target in targets {
@@ -55,7 +59,7 @@ impl Test {
             }
         }
         let name = if self.host_only { "harness tests (QEMU left out)" } else { "QEMU tests" };
-        steps.run(name, || cargo(Workspace::Host, "test -p harness", self.host_only));
+        steps.run(name, || cargo(Workspace::Host, "test -p harness --no-fail-fast", self.host_only));
         steps.finish()
     }
 }
@@ -79,13 +83,23 @@ fn tools(boards: &[Package], host_only: bool) -> Result<()> {
     Ok(())
 }
 
+/// Where the clip lies that the boards are built with.
+fn clip() -> PathBuf {
+    paths::root().join("target/xtask/walk.ptn")
+}
+
+fn walk() -> Result<()> {
+    std::fs::create_dir_all(paths::root().join("target/xtask")).context("cannot make target/xtask")?;
+    clips::convert(&paths::root().join("motions/walk.keys"), &paths::root().join("target/xtask")).map(drop)
+}
+
 fn cargo(workspace: Workspace, arguments: &str, host_only: bool) -> Result<()> {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     let folder = match workspace {
         Workspace::Host => paths::root(),
         Workspace::Firmware => paths::firmware(),
     };
-    command.args(arguments.split(' ')).current_dir(folder);
+    command.args(arguments.split(' ')).current_dir(folder).env("PANTIN_CLIP", clip());
     if host_only {
         command.env(setup::HOST_ONLY, "1");
     }
