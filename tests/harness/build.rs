@@ -1,7 +1,7 @@
 //! Programs built by cargo: firmware for a target, the host tool, the plugin.
 
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
@@ -30,7 +30,10 @@ pub struct Build {
 pub fn cargo(build: &Build) -> Result<PathBuf> {
     let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["build", "--quiet", "--message-format=json-render-diagnostics"]).args(&build.arguments);
+    command.args(["build", "--message-format=json-render-diagnostics"]).args(&build.arguments);
+    if !std::io::stderr().is_terminal() {
+        command.arg("--quiet");
+    }
     command.envs(build.environment.iter().cloned()).current_dir(&build.workspace).stdout(Stdio::piped());
     let mut child = command.spawn().context("cannot start cargo")?;
     let mut product = None;
