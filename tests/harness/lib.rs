@@ -1,1 +1,12 @@
 //! Emulators, screens and images of the firmware, for tests and for `cargo xtask`.
+
+pub mod build;
+pub mod clips;
+pub mod defmt_log;
+pub mod icount;
+pub mod paths;
+pub mod qemu;
+pub mod qmp;
+pub mod screen;
+pub mod setup;
+pub mod sync;

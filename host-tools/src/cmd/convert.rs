@@ -44,6 +44,9 @@ pub struct Arguments {
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
     rig_out: Option<PathBuf>,
+    /// Print the measured errors as one JSON object
+    #[arg(long)]
+    json: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
@@ -91,6 +94,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         write_whole(path, &rig).context("rig")?;
     }
     write_whole(&arguments.output, &bytes)?;
+    if arguments.json {
+        let worst = serde_json::json!({
+            "max_error_cm": report.max_cm,
+            "mean_error_cm": report.mean_cm,
+            "worst_joint": report.worst_joint,
+            "worst_frame": report.worst_frame,
+        });
+        println!("{worst}");
+    }
     if !arguments.quiet {
         let raw = motion.frames * motion.rig.channels() * 2;
         eprintln!(

@@ -1,0 +1,95 @@
+//! Programs built by cargo: firmware for a target, the host tool, the plugin.
+
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+
+use anyhow::{Context, Result, ensure};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::paths;
+use crate::qemu::Machine;
+use crate::setup;
+
+/// One call of `cargo build`.
+pub struct Build {
+    /// Where it runs: each workspace finds its own configuration there.
+    pub workspace: PathBuf,
+    /// What to build.
+    pub arguments: Vec<OsString>,
+    /// Variables that the build reads.
+    pub environment: Vec<(OsString, OsString)>,
+    /// Name of the target whose file is wanted.
+    pub product: String,
+}
+
+/// Builds, with cargo's own messages on stderr, and returns the product's file.
+pub fn cargo(build: &Build) -> Result<PathBuf> {
+    let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["build", "--message-format=json-render-diagnostics"]).args(&build.arguments);
+    if !std::io::stderr().is_terminal() {
+        command.arg("--quiet");
+    }
+    command.envs(build.environment.iter().cloned()).current_dir(&build.workspace).stdout(Stdio::piped());
+    let mut child = command.spawn().context("cannot start cargo")?;
+    let mut product = None;
+    for line in child.stdout.take().into_iter().flat_map(|stdout| BufReader::new(stdout).lines()) {
+        let message: Value = serde_json::from_str(&line?).context("cargo's messages are not JSON")?;
+        if message["reason"] == "compiler-artifact" && message["target"]["name"] == build.product.as_str() {
+            let file = message["executable"].as_str().or_else(|| message["filenames"][0].as_str());
+            product = file.map(PathBuf::from).or(product);
+        }
+    }
+    ensure!(child.wait()?.success(), "cargo could not build {}", build.product);
+    product.with_context(|| format!("cargo built no {}", build.product))
+}
+
+/// A firmware program, as an ELF file of its own: a later build of the same program does not change it.
+pub struct Firmware {
+    _directory: TempDir,
+    elf: PathBuf,
+}
+
+impl Firmware {
+    /// Builds a program of the firmware workspace for a machine, with a clip embedded where it plays one.
+    pub fn build(package: &str, program: &str, machine: Machine, clip: Option<&Path>) -> Result<Self> {
+        // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
+        static TURN: Mutex<()> = Mutex::new(());
+        let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        setup::rust_target(machine.target)?;
+        let clip = clip.map(|clip| std::path::absolute(clip).map(|clip| ("PANTIN_CLIP".into(), clip.into()))).transpose()?;
+        let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
+        let product = cargo(&Build {
+            workspace: paths::firmware(),
+            arguments: ["--release", "--package", package, "--bin", program, "--target", machine.target]
+                .map(OsString::from)
+                .into(),
+            environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).collect(),
+            product: program.into(),
+        })?;
+        let directory = tempfile::Builder::new().prefix("pantin-elf-").tempdir().context("cannot make a temporary folder")?;
+        let elf = directory.path().join(program);
+        std::fs::copy(&product, &elf).with_context(|| format!("cannot copy {}", product.display()))?;
+        Ok(Self { _directory: directory, elf })
+    }
+
+    /// The ELF file; it goes with this value.
+    pub fn elf(&self) -> &Path {
+        &self.elf
+    }
+}
+
+/// Builds the host tool and returns its program: in the profile of the tests, which is optimized, so that a fresh clone
+/// compiles it once.
+pub fn host_tool() -> Result<PathBuf> {
+    cargo(&Build {
+        workspace: paths::root(),
+        arguments: ["--package", "pantin-tools", "--bin", "pantin"].map(OsString::from).into(),
+        environment: vec![],
+        product: "pantin".into(),
+    })
+}

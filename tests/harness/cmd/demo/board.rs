@@ -1,0 +1,52 @@
+//! The clip on the reference board: built into its firmware, booted, played frame by frame.
+
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Result, ensure};
+use harness::build::Firmware;
+use harness::icount::{self, Stats};
+use harness::qemu::{LM3S6965EVB, Launch};
+use harness::{defmt_log, setup, sync};
+use pantin_tools::render::screen::Picture;
+
+use crate::cmd::steps::{progress, say};
+
+/// The longest that a demo may play.
+const LIMIT: Duration = Duration::from_secs(180);
+
+/// What the board showed and how many instructions it took.
+pub struct Play {
+    /// The display, frame by frame.
+    pub pictures: Vec<Picture>,
+    /// Instructions of each of the frame's regions; `None` where QEMU cannot count.
+    pub counts: Option<Vec<Stats>>,
+}
+
+/// Plays the first `frames` frames of a clip.
+pub fn play(clip: &Path, frames: usize) -> Result<Play> {
+    say("building the firmware");
+    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB, Some(clip))?;
+    let folder = tempfile::tempdir()?;
+    let counts = folder.path().join("counts");
+    let mut launch = Launch::new(LM3S6965EVB, firmware.elf()).limit(LIMIT);
+    let counting = setup::takes_plugins(LM3S6965EVB.emulator);
+    if counting {
+        launch = launch.counting(&icount::plugin(LM3S6965EVB.emulator)?, &counts);
+    } else {
+        say("this QEMU takes no plugins: instructions are not counted");
+    }
+    say("playing on QEMU's lm3s6965evb");
+    let mut pictures = vec![];
+    let outcome = sync::play(launch, frames, |number, picture| {
+        ensure!(number as usize == pictures.len(), "the board shows frame {number}, expected {}", pictures.len());
+        pictures.push(picture);
+        progress("frame", pictures.len(), frames);
+        Ok(())
+    })?;
+    let log = defmt_log::decode(firmware.elf(), &outcome.stdout)?;
+    log.iter().for_each(|line| say(&format!("   board: {line}")));
+    ensure!(outcome.code == 0, "the board ended with code {}: {}", outcome.code, outcome.stderr.trim());
+    let counts = counting.then(|| icount::by_kind(&icount::read(&counts)?, icount::FRAME_REGIONS.len())).transpose()?;
+    Ok(Play { pictures, counts })
+}

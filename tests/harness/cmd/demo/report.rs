@@ -1,0 +1,84 @@
+//! The demo's table: what the motion was, what the clip is, what playing it costs.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use harness::icount::{FRAME_REGIONS, Stats};
+use serde_json::Value;
+
+/// A converted clip, as the host tool describes it.
+pub struct Clip {
+    /// Its file.
+    pub path: PathBuf,
+    /// Number of frames.
+    pub frames: usize,
+    /// Frames a second.
+    pub rate: f64,
+    channels: f64,
+    moving: f64,
+    bytes: f64,
+    motion_bytes: f64,
+    per_frame_bytes: f64,
+    max_error_cm: f64,
+    mean_error_cm: f64,
+}
+
+impl Clip {
+    /// From the JSON that `pantin convert` and `pantin info` print.
+    pub fn new(path: PathBuf, converted: &[u8], info: &[u8]) -> Result<Self> {
+        let converted: Value = serde_json::from_slice(converted).context("`pantin convert --json` prints no JSON")?;
+        let info: Value = serde_json::from_slice(info).context("`pantin info --json` prints no JSON")?;
+        let number = |from: &Value, key: &str| from[key].as_f64().with_context(|| format!("pantin's JSON has no number {key}"));
+        Ok(Self {
+            path,
+            frames: number(&info, "frames")? as usize,
+            rate: number(&info, "fps")?,
+            channels: number(&info, "channels")?,
+            moving: number(&info, "moving_channels")?,
+            bytes: number(&info, "file_bytes")?,
+            motion_bytes: number(&info, "motion_bytes")?,
+            per_frame_bytes: number(&info, "per_frame_bytes")?,
+            max_error_cm: number(&converted, "max_error_cm")?,
+            mean_error_cm: number(&converted, "mean_error_cm")?,
+        })
+    }
+}
+
+/// The table.
+pub struct Report<'a> {
+    /// What was played.
+    pub clip: &'a Clip,
+    /// Instructions a region of a frame, where counted.
+    pub counts: Option<Vec<Stats>>,
+}
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let clip = self.clip;
+        let seconds = clip.frames as f64 / clip.rate;
+        let rows = [
+            ("frames", format!("{} ({seconds:.2} s at {:.0} a second)", clip.frames, clip.rate)),
+            ("channels", format!("{} ({} of them moving)", clip.channels, clip.moving)),
+            ("bytes per-frame, 16 bits a value", clip.per_frame_bytes.to_string()),
+            ("bytes of the clip's motion", clip.motion_bytes.to_string()),
+            ("bytes of the clip with its rig", clip.bytes.to_string()),
+            ("saving of the motion", format!("{:.1} %", 100.0 * (1.0 - clip.motion_bytes / clip.per_frame_bytes))),
+            ("max error at any joint", format!("{:.3} cm", clip.max_error_cm)),
+            ("mean error", format!("{:.3} cm", clip.mean_error_cm)),
+        ];
+        for (name, value) in rows {
+            writeln!(formatter, "{name:<34} {value}")?;
+        }
+        let Some(counts) = &self.counts else {
+            return writeln!(formatter, "{:<34} not counted", "guest instructions a frame");
+        };
+        let total: f64 = counts.iter().map(Stats::mean).sum();
+        writeln!(formatter, "{:<34} {total:.0} on average", "guest instructions a frame")?;
+        for (name, stats) in FRAME_REGIONS.iter().zip(counts) {
+            let worst = format!("at most {} in frame {}", stats.most, stats.worst);
+            writeln!(formatter, "  {name:<32} {:.0} ({worst})", stats.mean())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,6 @@
+//! One command a file.
+
+pub mod demo;
+mod packages;
+mod steps;
+pub mod test;

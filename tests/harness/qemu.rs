@@ -1,0 +1,270 @@
+//! QEMU as a child process: it never outlives its time limit or the value that stands for it.
+
+use std::io::Read;
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow, bail};
+use pantin_tools::render::screen::Picture;
+use tempfile::TempDir;
+
+use crate::qmp::Qmp;
+use crate::{screen, setup};
+
+/// Time between looks at a process or socket that is not ready.
+const POLL: Duration = Duration::from_millis(2);
+
+/// A machine that QEMU emulates.
+#[derive(Clone, Copy, Debug)]
+pub struct Machine {
+    /// The program that emulates it.
+    pub emulator: &'static str,
+    /// QEMU's name for it.
+    pub name: &'static str,
+    /// The Rust target of its programs.
+    pub target: &'static str,
+}
+
+/// Cortex-M3 with 64 KiB RAM, 256 KiB flash and an OLED of 128x64 pixels in 16 greys.
+pub const LM3S6965EVB: Machine = Machine { emulator: "qemu-system-arm", name: "lm3s6965evb", target: "thumbv7m-none-eabi" };
+
+/// Cortex-M0 with 16 KiB RAM and 256 KiB flash.
+pub const MICROBIT: Machine = Machine { emulator: "qemu-system-arm", name: "microbit", target: "thumbv6m-none-eabi" };
+
+/// What to start, and with what attached.
+#[derive(Clone, Debug)]
+pub struct Launch {
+    machine: Machine,
+    elf: PathBuf,
+    arguments: Vec<String>,
+    serial: bool,
+    display: bool,
+    plugin: Option<(PathBuf, PathBuf)>,
+    limit: Duration,
+}
+
+impl Launch {
+    /// A run of `elf`, for 60 s at most, with semihosting and nothing else.
+    pub fn new(machine: Machine, elf: &Path) -> Self {
+        let limit = Duration::from_secs(60);
+        Self { machine, elf: elf.into(), arguments: vec![], serial: false, display: false, plugin: None, limit }
+    }
+
+    /// Appends a word to the command line that the program reads by semihosting.
+    pub fn argument(mut self, word: impl Into<String>) -> Self {
+        self.arguments.push(word.into());
+        self
+    }
+
+    /// Connects the machine's first serial port.
+    pub fn serial(mut self) -> Self {
+        self.serial = true;
+        self
+    }
+
+    /// Connects the machine's display and keys.
+    pub fn display(mut self) -> Self {
+        self.display = true;
+        self
+    }
+
+    /// Counts instructions with the plugin of [`crate::icount`] into a file, read by [`crate::icount::read`].
+    pub fn counting(mut self, plugin: &Path, counts: &Path) -> Self {
+        self.plugin = Some((plugin.into(), counts.into()));
+        self
+    }
+
+    /// Ends the run when it takes longer.
+    pub fn limit(mut self, limit: Duration) -> Self {
+        self.limit = limit;
+        self
+    }
+
+    /// Starts QEMU, and waits until it has connected what was asked.
+    pub fn start(self) -> Result<Qemu> {
+        let emulator = setup::emulator(self.machine.emulator)?;
+        let directory = tempfile::Builder::new().prefix("pantin-qemu-").tempdir().context("cannot make a temporary folder")?;
+        let listen = |wanted: bool, name| wanted.then(|| UnixListener::bind(directory.path().join(name))).transpose();
+        let serial = listen(self.serial, "serial").context("cannot make a socket")?;
+        let control = listen(self.display, "qmp").context("cannot make a socket")?;
+        let mut command = Command::new(&emulator);
+        command.args(self.command_line(directory.path())).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().with_context(|| format!("cannot start {}", emulator.display()))?;
+        let (stdout, stderr) = (collect(child.stdout.take()), collect(child.stderr.take()));
+        let deadline = Instant::now() + self.limit;
+        let limit = self.limit;
+        let mut qemu = Qemu { child, stdout, stderr, directory, serial: None, control: None, limit, deadline };
+        qemu.serial = serial.map(|socket| qemu.accept(&socket)).transpose()?;
+        if let Some(socket) = control {
+            let stream = qemu.accept(&socket)?;
+            qemu.control = Some(Qmp::new(stream, limit).map_err(|error| qemu.explain(error))?);
+        }
+        Ok(qemu)
+    }
+
+    fn command_line(&self, directory: &Path) -> Vec<String> {
+        let socket = |wanted, name| match wanted {
+            true => format!("unix:{}", escaped(&directory.join(name))),
+            false => "none".to_owned(),
+        };
+        let mut semihosting = "enable=on,target=native".to_owned();
+        for argument in &self.arguments {
+            semihosting.push_str(&format!(",arg={}", argument.replace(',', ",,")));
+        }
+        let elf = self.elf.display().to_string();
+        let mut line: Vec<String> =
+            ["-M", self.machine.name, "-display", "none", "-monitor", "none", "-kernel", &elf].map(String::from).into();
+        line.extend(["-serial".into(), socket(self.serial, "serial"), "-semihosting-config".into(), semihosting]);
+        if self.display {
+            line.extend(["-qmp".into(), socket(true, "qmp")]);
+        }
+        if let Some((plugin, counts)) = &self.plugin {
+            line.extend(["-plugin".into(), format!("{},out={}", escaped(plugin), escaped(counts))]);
+        }
+        line
+    }
+}
+
+/// What a finished run left.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The exit code; a signal's number negated where one ended QEMU.
+    pub code: i32,
+    /// Everything on stdout: what the program wrote by semihosting.
+    pub stdout: Vec<u8>,
+    /// Everything on stderr: QEMU's own words.
+    pub stderr: String,
+}
+
+/// A running QEMU. Dropping it kills it.
+pub struct Qemu {
+    child: Child,
+    stdout: JoinHandle<Vec<u8>>,
+    stderr: JoinHandle<Vec<u8>>,
+    directory: TempDir,
+    serial: Option<UnixStream>,
+    control: Option<Qmp>,
+    limit: Duration,
+    deadline: Instant,
+}
+
+impl Qemu {
+    /// The process's id.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// The first serial port; reading waits no longer than the run's time limit.
+    pub fn serial(&mut self) -> Result<&mut UnixStream> {
+        let left = self.left()?;
+        let serial = self.serial.as_mut().context("this run has no serial port")?;
+        serial.set_read_timeout(Some(left))?;
+        Ok(serial)
+    }
+
+    /// The control connection.
+    pub fn control(&mut self) -> Result<&mut Qmp> {
+        self.left()?;
+        self.control.as_mut().context("this run has no display")
+    }
+
+    /// What the display shows now, on a machine whose window shows each pixel of 16 greys as 4x4.
+    pub fn picture(&mut self) -> Result<Picture> {
+        let path = self.directory.path().join("screen.ppm");
+        self.control()?.screendump(&path).map_err(|error| self.explain(error))?;
+        let dump = std::fs::read(&path).context("QEMU left no picture")?;
+        screen::from_window(&dump)
+    }
+
+    /// Waits for the end and says how it went; an error if the time limit comes first.
+    pub fn wait(mut self) -> Result<Outcome> {
+        // Closed connections would hold QEMU up no longer than the program's end, and a full socket not at all.
+        let status = self.ended()?;
+        let stdout = take(&mut self.stdout);
+        let stderr = String::from_utf8_lossy(&take(&mut self.stderr)).into_owned();
+        Ok(Outcome { code: code(status), stdout, stderr })
+    }
+
+    /// Adds to an error of a connection what QEMU said and how it ended, if it did: that is the cause.
+    pub fn explain(&mut self, error: anyhow::Error) -> anyhow::Error {
+        thread::sleep(POLL * 10);
+        match self.child.try_wait() {
+            Ok(Some(status)) => {
+                let words = String::from_utf8_lossy(&take(&mut self.stderr)).trim().to_owned();
+                error.context(format!("QEMU ended with code {}: {words}", code(status)))
+            }
+            _ if Instant::now() >= self.deadline => error.context(format!("QEMU ran longer than {:?}", self.limit)),
+            _ => error,
+        }
+    }
+
+    fn ended(&mut self) -> Result<ExitStatus> {
+        loop {
+            if let Some(status) = self.child.try_wait()? {
+                return Ok(status);
+            }
+            self.left()?;
+            thread::sleep(POLL);
+        }
+    }
+
+    fn accept(&mut self, socket: &UnixListener) -> Result<UnixStream> {
+        socket.set_nonblocking(true)?;
+        loop {
+            match socket.accept() {
+                Ok((stream, _)) => {
+                    stream.set_nonblocking(false)?;
+                    return Ok(stream);
+                }
+                Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => thread::sleep(POLL),
+                Err(error) => return Err(error.into()),
+            }
+            if self.child.try_wait()?.is_some() {
+                return Err(self.explain(anyhow!("QEMU did not start")));
+            }
+            self.left()?;
+        }
+    }
+
+    fn left(&self) -> Result<Duration> {
+        match self.deadline.checked_duration_since(Instant::now()) {
+            Some(left) if !left.is_zero() => Ok(left),
+            _ => bail!("QEMU ran longer than {:?}", self.limit),
+        }
+    }
+}
+
+impl Drop for Qemu {
+    fn drop(&mut self) {
+        // Both fail only where the process is gone already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn collect(stream: Option<impl Read + Send + 'static>) -> JoinHandle<Vec<u8>> {
+    thread::spawn(move || {
+        let mut bytes = vec![];
+        if let Some(mut stream) = stream {
+            let _ = stream.read_to_end(&mut bytes);
+        }
+        bytes
+    })
+}
+
+fn take(thread: &mut JoinHandle<Vec<u8>>) -> Vec<u8> {
+    std::mem::replace(thread, thread::spawn(Vec::new)).join().unwrap_or_default()
+}
+
+fn code(status: ExitStatus) -> i32 {
+    use std::os::unix::process::ExitStatusExt;
+    status.code().or_else(|| status.signal().map(|signal| -signal)).unwrap_or(-1)
+}
+
+/// A path inside one of QEMU's options, where a comma ends a value unless it is doubled.
+fn escaped(path: &Path) -> String {
+    path.display().to_string().replace(',', ",,")
+}

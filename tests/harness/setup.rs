@@ -1,0 +1,119 @@
+//! What a fresh machine may lack: Rust targets and QEMU. Each is installed where that is possible, and said.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, anyhow, bail, ensure};
+
+use crate::paths;
+
+/// Set to run without QEMU: tests that need it skip, and say so.
+pub const HOST_ONLY: &str = "PANTIN_HOST_ONLY";
+
+/// Whether QEMU tests are to be skipped; says it where no test runner swallows it.
+pub fn host_only(test: &str) -> bool {
+    let skip = std::env::var_os(HOST_ONLY).is_some_and(|value| !value.is_empty());
+    if skip {
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {test} needs QEMU ({HOST_ONLY} is set)");
+    }
+    skip
+}
+
+/// Makes sure that Rust can compile for `target`.
+pub fn rust_target(target: &str) -> Result<()> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
+    let folder = Command::new(rustc).args(["--print", "target-libdir", "--target", target]).output();
+    let folder = folder.context("cannot start rustc")?;
+    if folder.status.success() && PathBuf::from(String::from_utf8_lossy(&folder.stdout).trim()).is_dir() {
+        return Ok(());
+    }
+    ensure!(
+        paths::program("rustup").is_some(),
+        "Rust's library for {target} is missing, and there is no rustup to add it: install it with your Rust toolchain"
+    );
+    eprintln!("adding Rust's library for {target}: rustup target add {target}");
+    let status = Command::new("rustup").args(["target", "add", target]).status()?;
+    ensure!(status.success(), "`rustup target add {target}` failed: no network, or a toolchain that rustup does not manage");
+    Ok(())
+}
+
+/// Makes sure that cargo has one of the toolchain's components: `rustfmt`, `clippy`.
+pub fn component(name: &str) -> Result<()> {
+    let command = if name == "rustfmt" { "fmt" } else { name };
+    let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
+    let there = Command::new(cargo).args([command, "--version"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    if there.context("cannot start cargo")?.success() {
+        return Ok(());
+    }
+    eprintln!("adding {name}: rustup component add {name}");
+    let status = Command::new("rustup").args(["component", "add", name]).status();
+    ensure!(status.is_ok_and(|status| status.success()), "{name} is missing, and `rustup component add {name}` failed");
+    Ok(())
+}
+
+/// The emulator's program, from `PATH`; if it is missing, the error says how to get it.
+pub fn emulator(name: &str) -> Result<PathBuf> {
+    paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))
+}
+
+/// Makes sure that the emulator is there: installs it on Debian and Ubuntu as root.
+pub fn install_emulator(name: &str) -> Result<PathBuf> {
+    if let Some(program) = paths::program(name) {
+        return Ok(program);
+    }
+    if paths::program("apt-get").is_none() || !is_root() {
+        return emulator(name);
+    }
+    let installed = apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", name]));
+    installed.with_context(|| format!("{name} is missing and could not be installed"))?;
+    emulator(name)
+}
+
+/// Major and minor version of the emulator.
+pub fn version(name: &str) -> Result<(u32, u32)> {
+    let output = Command::new(emulator(name)?).arg("--version").output()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let number = text.split_whitespace().skip_while(|word| *word != "version").nth(1).unwrap_or_default();
+    let mut parts = number.split('.').map(|part| part.parse().ok());
+    match (parts.next().flatten(), parts.next().flatten()) {
+        (Some(major), Some(minor)) => Ok((major, minor)),
+        _ => bail!("{name} --version says {:?}, expected `version` and a number", text.trim()),
+    }
+}
+
+/// Whether the emulator takes plugins: a build may leave them out.
+pub fn takes_plugins(name: &str) -> bool {
+    let help = emulator(name).ok().and_then(|program| Command::new(program).arg("-help").output().ok());
+    help.is_some_and(|help| String::from_utf8_lossy(&help.stdout).contains("-plugin"))
+}
+
+fn apt_get(arguments: &[&str]) -> Result<()> {
+    eprintln!("installing QEMU: apt-get {}", arguments.join(" "));
+    let mut command = Command::new("apt-get");
+    command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive").stdin(Stdio::null()).stdout(Stdio::null());
+    let status = command.status().context("cannot start apt-get")?;
+    ensure!(status.success(), "`apt-get {}` failed", arguments.join(" "));
+    Ok(())
+}
+
+fn advice(name: &str) -> String {
+    // Debian and Ubuntu name the package of each Arm emulator as its program.
+    let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {name}"));
+    let others = [
+        ("dnf", format!("sudo dnf install -y {name}-core")),
+        ("pacman", format!("sudo pacman -S --needed {name}")),
+        ("apk", format!("sudo apk add {name}")),
+        ("brew", "brew install qemu".into()),
+    ];
+    let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
+    match apt.or_else(other) {
+        Some(command) => format!("install it with: {command}"),
+        None => "install QEMU (https://www.qemu.org/download)".into(),
+    }
+}
+
+fn is_root() -> bool {
+    let id = Command::new("id").arg("-u").output();
+    id.is_ok_and(|id| id.stdout.trim_ascii() == b"0")
+}
