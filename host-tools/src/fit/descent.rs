@@ -29,6 +29,10 @@ impl Plan {
 
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
+/// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
+const ATTEMPTS: usize = 4;
+const FIRST_ATTEMPTS: usize = 16;
+const SHRINK: f64 = 0.6;
 /// The price grows by this much where an error comes near the bound, so that others keep room.
 const CROWDING: f64 = 4.0;
 /// Levers are taken as constant while a channel moves by this much at most: degrees.
@@ -59,6 +63,8 @@ pub struct Descent<'m> {
     poses: Poses,
     values: Vec<Vec<f64>>,
     codes: Vec<Option<Code>>,
+    /// The last pass that found each channel a better code.
+    improved: Vec<usize>,
     seconds_a_frame: f64,
 }
 
@@ -79,6 +85,7 @@ impl<'m> Descent<'m> {
         let values: Vec<Vec<f64>> = targets.iter().zip(scales).map(|(x, s)| x.iter().map(|x| x * s).collect()).collect();
         let poses = figure.poses(&values);
         let codes = vec![None; targets.len()];
+        let improved = vec![0; targets.len()];
         Descent {
             figure,
             plan,
@@ -91,6 +98,7 @@ impl<'m> Descent<'m> {
             poses,
             values,
             codes,
+            improved,
             seconds_a_frame,
         }
     }
@@ -104,24 +112,20 @@ impl<'m> Descent<'m> {
             let price = self.seconds_a_frame * 30.0 * first * (last / first).powf(part);
             for i in 0..channels {
                 let channel = if pass % 2 == 0 { i } else { channels - 1 - i };
-                self.improve(channel, price, pass)?;
+                // A channel that nothing helped lately is tried every third pass only.
+                if pass < self.improved[channel] + 3 || (pass + channel) % 3 == 0 || pass + 1 == self.plan.passes {
+                    self.improve(channel, price, pass)?;
+                }
                 progress((pass * channels + i + 1) as f64 / (self.plan.passes * channels) as f64);
             }
             if std::env::var("PANTIN_TRACE").is_ok() {
                 let bits: f64 = self.codes.iter().flatten().map(|c| c.bits).sum();
                 let segs: usize = self.codes.iter().flatten().map(|c| c.segments.len()).sum();
-                eprintln!("pass {pass} price {price:.3} bytes {:.0} segments {segs} err {:.4}", bits / 8.0, self.worst());
+                let imp = self.improved.iter().filter(|&&p| p == pass).count();
+                eprintln!("pass {pass} price {price:.3} bytes {:.0} segments {segs} improved {imp}", bits / 8.0);
             }
         }
         Ok(self.codes.into_iter().flatten().collect())
-    }
-
-    fn worst(&self) -> f64 {
-        let mut worst = 0f64;
-        for (a, b) in self.poses.places.iter().flatten().zip(self.original.places.iter().flatten()) {
-            worst = worst.max((0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt());
-        }
-        worst
     }
 
     /// Codes one channel anew if that is better.
@@ -131,8 +135,11 @@ impl<'m> Descent<'m> {
         let coded = self.codes[channel].is_some();
         let mut bounds = vec![if coded { bound } else { bound * self.first_part }; self.figure.frames];
         let axes = self.figure.axes(channel, &self.values, &self.poses);
-        for attempt in 0..6 {
-            let tube = self.tube(channel, price, &moved, &axes, &bounds);
+        let worst_now = self.worst(&moved);
+        let attempts = if coded { ATTEMPTS } else { FIRST_ATTEMPTS };
+        for attempt in 0..attempts {
+            let shrink = SHRINK.powi((attempt as i32 - 1).max(0));
+            let tube = self.tube(channel, price, &moved, &axes, &bounds, shrink);
             let Some(best) = self.best(channel, &tube, pass + attempt) else {
                 if coded || bounds[0] >= bound {
                     break;
@@ -146,15 +153,28 @@ impl<'m> Descent<'m> {
                 return Ok(());
             }
             let before = self.set(channel, &best.path);
-            if self.within(&moved, bound, &mut bounds) {
+            let worst = self.worst(&moved);
+            if worst.iter().all(|&distance| distance <= bound) {
                 self.codes[channel] = Some(best);
+                self.improved[channel] = pass;
                 return Ok(());
+            }
+            // Levers change along the way: leave less room where they misled, but never less than there is.
+            for ((limit, distance), now) in bounds.iter_mut().zip(worst).zip(&worst_now) {
+                if distance > bound {
+                    *limit = (*limit * (bound / distance).powi(2) * 0.98).max(0.5 * (now + bound));
+                }
             }
             self.values[channel] = before;
             self.refresh(channel);
         }
         if self.codes[channel].is_none() {
-            bail!("{}: no code within the bound was found", self.figure.rig.channel_name(channel));
+            let (frame, reached) = worst_now.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap_or((0, &0.0));
+            bail!(
+                "{}: no code within {} cm was found; tightest at frame {frame}, where {reached:.4} cm are already used",
+                self.figure.rig.channel_name(channel),
+                self.plan.bound_cm
+            );
         }
         Ok(())
     }
@@ -173,23 +193,15 @@ impl<'m> Descent<'m> {
         }
     }
 
-    /// Whether all of `moved` are within `bound`; where not, the bounds for another attempt shrink.
-    fn within(&self, moved: &[usize], bound: f64, bounds: &mut [f64]) -> bool {
+    /// The greatest error of these joints at each frame, in cm.
+    fn worst(&self, joints: &[usize]) -> Vec<f64> {
         let mut worst = vec![0f64; self.figure.frames];
-        for &joint in moved {
+        for &joint in joints {
             for (frame, worst) in worst.iter_mut().enumerate() {
                 *worst = worst.max(square(&self.error(joint, frame)));
             }
         }
-        let mut all = true;
-        for (worst, limit) in worst.iter().zip(bounds) {
-            let distance = worst.sqrt();
-            if distance > bound {
-                all = false;
-                *limit *= (bound / distance).powi(2) * 0.98;
-            }
-        }
-        all
+        worst.iter().map(|square| square.sqrt()).collect()
     }
 
     fn error(&self, joint: usize, frame: usize) -> [f64; 3] {
@@ -198,7 +210,7 @@ impl<'m> Descent<'m> {
     }
 
     /// The tube that the other channels' codes leave to this one.
-    fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64]) -> Tube {
+    fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64], shrink: f64) -> Tube {
         let frames = self.figure.frames;
         let target = &self.targets[channel];
         if self.figure.channels[channel].0.is_none() {
@@ -244,8 +256,8 @@ impl<'m> Descent<'m> {
                     }
                 }
             }
-            tube.lo[frame] = target[frame] + lo;
-            tube.hi[frame] = target[frame] + hi;
+            tube.lo[frame] = target[frame] + now + shrink * (lo - now);
+            tube.hi[frame] = target[frame] + now + shrink * (hi - now);
             tube.a[frame] = a;
             tube.b[frame] = b;
         }
