@@ -109,7 +109,7 @@ impl Iterator for Kinds<'_> {
             return None;
         }
         let byte = *self.halves.get(usize::from(self.next / 2))?;
-        let code = if self.next % 2 == 0 { byte & 0xf } else { byte >> 4 };
+        let code = if self.next.is_multiple_of(2) { byte & 0xf } else { byte >> 4 };
         self.next += 1;
         Kind::from_code(code).ok()
     }

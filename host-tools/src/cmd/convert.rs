@@ -2,9 +2,8 @@
 
 use super::write_whole;
 use crate::encode::{clip, rig};
-use crate::fit::descent::Plan;
+use crate::fit::descent::Level;
 use crate::fit::fit;
-use crate::fit::search::Effort;
 use crate::import;
 use crate::verify::verify;
 use anyhow::{Context, Result, bail};
@@ -29,6 +28,9 @@ pub struct Arguments {
     /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm)
     #[arg(long, default_value = "0.5cm", value_parser = length_cm)]
     max_error: f64,
+    /// How hard to look for few bytes
+    #[arg(long, value_enum, default_value = "default")]
+    effort: Level,
     /// Greatest error of channels that move no joint, in percent of their full scale
     #[arg(long, default_value_t = 2.0)]
     max_scalar_error: f64,
@@ -72,13 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         eprintln!("{}", imported.units);
     }
     let motion = imported.motion;
-    let get = |k: &str, d: f64| std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-    let plan = Plan {
-        bound_cm: arguments.max_error,
-        passes: get("PASSES", 8.0) as usize,
-        prices: (get("MU0", 10.0), get("MU1", 0.2)),
-        effort: Effort { beam: get("BEAM", 14.0) as usize, margin: get("MARGIN", 9.0), slopes: get("SLOPES", 1.0) > 0.0 },
-    };
+    let plan = arguments.effort.plan(arguments.max_error);
     let part = arguments.max_scalar_error / 100.0;
     let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(1000) };
     bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta}")?);

@@ -2,7 +2,7 @@
 
 use super::write_whole;
 use crate::encode::rig;
-use crate::fit::{descent::Plan, fit};
+use crate::fit::{descent::Level, fit};
 use crate::import;
 use crate::motion::Motion;
 use crate::train::Counts;
@@ -37,6 +37,9 @@ pub struct Arguments {
     fps: Option<f64>,
 }
 
+/// Statistics are of what the search finds when it is not hurried.
+const TRAINING: Level = Level::Default;
+
 /// Every `stride`-th frame.
 fn decimated(motion: &Motion, stride: usize) -> Motion {
     let values: Vec<Vec<f64>> = motion.values.iter().map(|values| values.iter().step_by(stride).copied().collect()).collect();
@@ -60,7 +63,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         for &stride in &arguments.strides {
             let motion = decimated(&motion, stride);
             for &bound_cm in &arguments.bounds {
-                let coded = fit(&motion, Plan::fast(bound_cm), 0.02, &mut |_| ()).with_context(|| path.display().to_string())?;
+                let coded =
+                    fit(&motion, TRAINING.plan(bound_cm), 0.02, &mut |_| ()).with_context(|| path.display().to_string())?;
                 let segments: usize = coded.channels.iter().map(|channel| channel.segments.len()).sum();
                 eprintln!("{} every {stride}: {bound_cm} cm, {segments} segments", path.display());
                 counts.add(&coded, &rig, (2000.0 / segments.max(200) as f64).min(1.0));

@@ -20,10 +20,31 @@ pub struct Plan {
     pub effort: Effort,
 }
 
-impl Plan {
-    /// Quick, for previews and statistics.
-    pub fn fast(bound_cm: f64) -> Plan {
-        Plan { bound_cm, passes: 5, prices: (10.0, 0.2), effort: Effort { beam: 8, margin: 7.0, slopes: true } }
+/// How hard to look for few bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Level {
+    /// For previews: many times faster than the motion plays
+    Fast,
+    /// About as fast as the motion plays
+    Default,
+    /// A few percent smaller, several times slower
+    Best,
+}
+
+impl Level {
+    /// The plan of this level for a bound.
+    pub fn plan(self, bound_cm: f64) -> Plan {
+        let plan = |passes, beam, margin, slopes| Plan {
+            bound_cm,
+            passes,
+            prices: (10.0, 0.2),
+            effort: Effort { beam, margin, slopes },
+        };
+        match self {
+            Level::Fast => plan(3, 4, 5.0, false),
+            Level::Default => plan(12, 14, 9.0, true),
+            Level::Best => plan(30, 30, 14.0, true),
+        }
     }
 }
 
@@ -111,18 +132,12 @@ impl<'m> Descent<'m> {
             let part = pass as f64 / (self.plan.passes.max(2) - 1) as f64;
             let price = self.seconds_a_frame * 30.0 * first * (last / first).powf(part);
             for i in 0..channels {
-                let channel = if pass % 2 == 0 { i } else { channels - 1 - i };
+                let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
                 // A channel that nothing helped lately is tried every third pass only.
-                if pass < self.improved[channel] + 3 || (pass + channel) % 3 == 0 || pass + 1 == self.plan.passes {
+                if pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) || pass + 1 == self.plan.passes {
                     self.improve(channel, price, pass)?;
                 }
                 progress((pass * channels + i + 1) as f64 / (self.plan.passes * channels) as f64);
-            }
-            if std::env::var("PANTIN_TRACE").is_ok() {
-                let bits: f64 = self.codes.iter().flatten().map(|c| c.bits).sum();
-                let segs: usize = self.codes.iter().flatten().map(|c| c.segments.len()).sum();
-                let imp = self.improved.iter().filter(|&&p| p == pass).count();
-                eprintln!("pass {pass} price {price:.3} bytes {:.0} segments {segs} improved {imp}", bits / 8.0);
             }
         }
         Ok(self.codes.into_iter().flatten().collect())
@@ -274,7 +289,7 @@ impl<'m> Descent<'m> {
                 let rms = (code.path.iter().zip(&tube.x).map(|(p, x)| (p - x).powi(2)).sum::<f64>() / tube.x.len() as f64).sqrt();
                 let step = step_of(code).unwrap_or(FIRST_STEP);
                 let near = step_index(1.6 * rms).clamp(step.saturating_sub(1), step + 1);
-                (near, if pass % 2 == 0 { near + 1 } else { near.saturating_sub(1) })
+                (near, if pass.is_multiple_of(2) { near + 1 } else { near.saturating_sub(1) })
             }
             None => {
                 // The tube of a channel that is exact so far is as wide as the bound.
@@ -283,7 +298,11 @@ impl<'m> Descent<'m> {
                 (near, near.saturating_sub(2))
             }
         };
-        let effort = self.plan.effort;
+        let mut effort = self.plan.effort;
+        if pass < self.plan.passes / 2 {
+            // What early passes find is soon replaced.
+            effort = Effort { beam: effort.beam.div_ceil(2), margin: 0.7 * effort.margin, ..effort };
+        }
         let (one, two) = rayon::join(|| search(tube, guess.min(MAX_STEP), effort), || search(tube, other.min(MAX_STEP), effort));
         let best = [one, two].into_iter().flatten().min_by(|a, b| objective(a, tube).total_cmp(&objective(b, tube)));
         if best.is_some() || self.codes[channel].is_some() {

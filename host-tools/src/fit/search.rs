@@ -178,6 +178,13 @@ fn near(x: f64, grid: f64) -> f64 {
     (x / grid).round() * grid
 }
 
+/// Rounds down; much quicker than the library's where the processor's own is not assumed.
+#[inline]
+fn floor(x: f64) -> i64 {
+    let whole = x as i64;
+    whole - i64::from(whole as f64 > x)
+}
+
 /// The decoder's integer: wrapped to 32 bits.
 fn wrap(x: f64) -> i32 {
     x as i64 as i32
@@ -203,21 +210,23 @@ impl<'t> Search<'t> {
         self.begin();
         let frames = self.tube.x.len();
         let mut cells = Vec::new();
+        let mut ranked: Vec<(f64, usize)> = Vec::new();
+        let (position_cells, velocity_cells) =
+            (4.0 / f64::from(step_size(self.step)), 1.0 / (0.03 * f64::from(step_size(self.step))));
         for frame in 1..frames - 1 {
-            let mut here = std::mem::take(&mut self.heap[frame]);
-            if here.is_empty() {
-                continue;
-            }
-            here.sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost));
-            let horizon = self.least[frame + 1..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
-            let limit = (here[0].cost.min(horizon) + self.effort.margin).max(here[0].cost);
-            let size = f64::from(step_size(self.step));
+            let here = std::mem::take(&mut self.heap[frame]);
+            let horizon = self.least[frame..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
+            let limit = (horizon + self.effort.margin).max(self.least[frame]);
+            ranked.clear();
+            ranked.extend(here.iter().enumerate().filter(|(_, h)| h.cost <= limit).map(|(index, h)| (h.cost, index)));
+            ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             cells.clear();
-            for hypothesis in here {
-                if cells.len() >= self.effort.beam || hypothesis.cost > limit {
+            for &(_, index) in &ranked {
+                let hypothesis = here[index];
+                if cells.len() >= self.effort.beam {
                     break;
                 }
-                let cell = ((hypothesis.p / (0.25 * size)).floor() as i64, (hypothesis.v / (0.03 * size)).floor() as i64);
+                let cell = (floor(hypothesis.p * position_cells), floor(hypothesis.v * velocity_cells));
                 if cells.contains(&cell) {
                     continue;
                 }
@@ -309,17 +318,18 @@ impl<'t> Search<'t> {
                 continue;
             }
             let unit = if slope { self.steps.k[index] } else { self.steps.w[index] };
-            let (ql, qh) = ((least / unit).ceil(), (most / unit).floor());
             // With the first frame alone, a slope is free within what an integer holds.
-            let (ql, qh) = (ql.max(-1e9), qh.min(1e9));
+            let (ql, qh) = (-floor((-least / unit).min(1e9)), floor((most / unit).min(1e9)));
             if ql > qh {
                 continue;
             }
             let now = wrap(if slope { from.k } else { from.w });
             let context = Context::new(slope, mode, now, if slope { 0 } else { before }, unit as u32);
-            let best = if s2 > 0.0 { (-s1 / s2 / unit).clamp(ql, qh).round() } else { 0.0f64.clamp(ql, qh) };
-            let carried = if slope { 0.0 } else { (from.w / unit).round().clamp(ql, qh) };
-            for q in candidates(ql as i32, qh as i32, best as i32, carried as i32) {
+            let (ql, qh) = (ql as i32, qh as i32);
+            let nearest = |x: f64| (floor(x.clamp(-1e9, 1e9) + 0.5) as i32).clamp(ql, qh);
+            let best = if s2 > 0.0 { nearest(-s1 / (s2 * unit)) } else { 0.clamp(ql, qh) };
+            let carried = if slope { 0 } else { nearest(from.w / unit) };
+            for q in candidates(ql, qh, best, carried) {
                 let number = if context.flipped { -q } else { q };
                 let g = f64::from(q) * unit;
                 let cost = mode_cost + self.costs.number(context.index, number) + s0 + g * (2.0 * s1 + g * s2);
