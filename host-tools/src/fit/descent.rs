@@ -16,6 +16,8 @@ pub struct Plan {
     pub passes: usize,
     /// The price of an error, relative to a bit, in the first and the last pass.
     pub prices: (f64, f64),
+    /// Whether two steps are tried at a time, or one.
+    pub both_steps: bool,
     /// The search for one channel.
     pub effort: Effort,
 }
@@ -34,14 +36,16 @@ pub enum Level {
 impl Level {
     /// The plan of this level for a bound.
     pub fn plan(self, bound_cm: f64) -> Plan {
-        let plan = |passes, beam, margin, slopes| Plan {
+        let plan = |passes, beam, margin, thorough| Plan {
             bound_cm,
             passes,
             prices: (10.0, 0.2),
-            effort: Effort { beam, margin, slopes },
+            both_steps: thorough,
+            effort: Effort { beam, margin, slopes: thorough },
         };
+
         match self {
-            Level::Fast => plan(3, 4, 5.0, false),
+            Level::Fast => plan(2, 3, 4.0, false),
             Level::Default => plan(12, 14, 9.0, true),
             Level::Best => plan(30, 30, 14.0, true),
         }
@@ -303,7 +307,9 @@ impl<'m> Descent<'m> {
             // What early passes find is soon replaced.
             effort = Effort { beam: effort.beam.div_ceil(2), margin: 0.7 * effort.margin, ..effort };
         }
-        let (one, two) = rayon::join(|| search(tube, guess.min(MAX_STEP), effort), || search(tube, other.min(MAX_STEP), effort));
+        let one = || search(tube, guess.min(MAX_STEP), effort);
+        let two = || if self.plan.both_steps { search(tube, other.min(MAX_STEP), effort) } else { None };
+        let (one, two) = rayon::join(one, two);
         let best = [one, two].into_iter().flatten().min_by(|a, b| objective(a, tube).total_cmp(&objective(b, tube)));
         if best.is_some() || self.codes[channel].is_some() {
             return best;
