@@ -280,7 +280,7 @@ impl<'t> Search<'t> {
         let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
         let mut index = 0;
         let inverses = if slope { &INVERSE_C3 } else { &INVERSE_C2 };
-        for m in 1..=rest.min(LONGEST) {
+        for (m, &inverse) in inverses.iter().enumerate().take(rest + 1).skip(1) {
             let n = m as f64;
             let c2 = n * (n + 1.0) * 0.5;
             let (base, c) =
@@ -288,7 +288,6 @@ impl<'t> Search<'t> {
             let frame = start + m;
             let (lo, hi) = (tube.lo[frame] - base, tube.hi[frame] - base);
             if c > 0.0 {
-                let inverse = inverses[m];
                 least = least.max(lo * inverse);
                 most = most.min(hi * inverse);
             } else if lo > 0.0 || hi < 0.0 {
