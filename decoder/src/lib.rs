@@ -9,6 +9,8 @@ mod clip;
 pub mod crc;
 pub mod entropy;
 mod error;
+#[doc = include_str!("../FORMAT.md")]
+pub mod format {}
 pub mod layout;
 mod player;
 mod rig;
