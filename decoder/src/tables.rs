@@ -4,6 +4,8 @@
 //!
 //! A table lists the cumulative probabilities of an alphabet in 1/4096: entry i is where symbol i + 1 starts.
 
+use crate::entropy::{ModeTable, NumberTable};
+
 /// Modes in the order of their symbols.
 pub const MODES: [u8; 32] =
     [0, 1, 2, 3, 4, 6, 5, 7, 8, 9, 11, 10, 12, 15, 13, 14, 18, 17, 19, 21, 23, 20, 22, 26, 25, 24, 28, 27, 29, 31, 30, 16];
@@ -147,15 +149,17 @@ pub static VELOCITY: [u16; 32] = [
 ];
 
 /// The modes' table after a segment of this mode.
-pub fn mode(after: u8) -> &'static [u16] {
+#[inline(always)]
+pub fn mode(after: u8) -> &'static ModeTable {
     let index = MODE_AFTER.get(usize::from(after)).copied().unwrap_or(0);
-    MODE.get(usize::from(index)).map_or(&[], |table| table)
+    MODE.get(usize::from(index)).unwrap_or(&MODE[0])
 }
 
 /// The numbers' table in this context.
-pub fn number(context: u8) -> &'static [u16] {
+#[inline(always)]
+pub fn number(context: u8) -> &'static NumberTable {
     let index = NUMBER_IN.get(usize::from(context)).copied().unwrap_or(0);
-    NUMBER.get(usize::from(index)).map_or(&[], |table| table)
+    NUMBER.get(usize::from(index)).unwrap_or(&NUMBER[0])
 }
 
 /// The table of a channel's status after a channel of that status.
