@@ -29,8 +29,43 @@ impl Input<'_> {
     }
 }
 
-/// Checks the CRC of every block. `seed` is the CRC of what stands before the motion and must not change unseen.
-pub(crate) fn check(bytes: &[u8], seed: u16) -> Result<(), OpenError> {
+/// Reads fields of bytes, which may cross from one block into the next.
+pub(crate) struct Reader<'i, 'a> {
+    pub(crate) input: &'i Input<'a>,
+    pub(crate) position: u32,
+}
+
+impl Reader<'_, '_> {
+    pub(crate) fn byte(&mut self) -> u8 {
+        self.input.byte(&mut self.position)
+    }
+
+    pub(crate) fn u32(&mut self) -> u32 {
+        u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()])
+    }
+
+    /// As `Bytes::varint` reads it; what does not fit is lost.
+    #[inline(never)]
+    pub(crate) fn varint(&mut self) -> u32 {
+        let mut value = 0;
+        for shift in [0, 7, 14, 21, 28] {
+            let byte = self.byte();
+            value |= u32::from(byte & 0x7f) << shift;
+            if byte & 0x80 == 0 {
+                break;
+            }
+        }
+        value
+    }
+
+    pub(crate) fn zigzag(&mut self) -> i32 {
+        let n = self.varint();
+        (n >> 1) as i32 ^ -((n & 1) as i32)
+    }
+}
+
+/// Checks the CRC of every block, and returns all but the last CRC. `seed` is the CRC of what stands before the motion and must not change unseen.
+pub(crate) fn check(bytes: &[u8], seed: u16) -> Result<&[u8], OpenError> {
     let mut crc = seed;
     for block in bytes.chunks(STRIDE) {
         let (body, stored) = block.split_last_chunk::<CRC_BYTES>().ok_or(OpenError::Truncated)?;
@@ -39,5 +74,6 @@ pub(crate) fn check(bytes: &[u8], seed: u16) -> Result<(), OpenError> {
         }
         crc = crc::INITIAL;
     }
-    Ok(())
+    // What a decoder reads past the end is zeros, not the last CRC.
+    bytes.split_last_chunk::<CRC_BYTES>().map(|(bytes, _)| bytes).ok_or(OpenError::Malformed)
 }

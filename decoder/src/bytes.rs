@@ -42,9 +42,9 @@ impl<'a> Bytes<'a> {
         Ok(((n >> 1) as i32) ^ -((n & 1) as i32))
     }
 
-    /// A length in a varint, then that many bytes of UTF-8.
-    pub fn name(&mut self) -> Result<&'a str, OpenError> {
+    /// A length in a varint, then that many bytes.
+    pub fn name(&mut self) -> Result<&'a [u8], OpenError> {
         let len = self.varint()? as usize;
-        core::str::from_utf8(self.take(len)?).map_err(|_| OpenError::Malformed)
+        self.take(len)
     }
 }

@@ -1,10 +1,11 @@
 //! A clip: bytes checked once. Afterwards playing cannot fail.
 
-use crate::blocks::{self, Input, STRIDE};
+use crate::blocks::{self, Input, Reader, STRIDE};
 use crate::bytes::Bytes;
 use crate::entropy::Symbols;
 use crate::layout::*;
-use crate::rig::{Joint, Kind, Rig};
+use crate::opening::Starts;
+use crate::rig::{Joint, Rig};
 use crate::{OpenError, crc};
 
 /// A checked clip.
@@ -15,20 +16,23 @@ pub struct Clip<'a> {
     /// Bytes of the rig in the file, with those of its length.
     rig_len: usize,
     head: Head,
+    /// Where the symbols begin.
+    symbols: u32,
+    /// Snapshots; empty if there are none.
+    index: &'a [u8],
 }
 
 /// The fields in front of a motion's symbols.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Head {
     pub(crate) flags: u8,
     pub(crate) length_exponent: i8,
     pub(crate) frames: u32,
     pub(crate) frame_time_ns: u32,
-    /// Where the exponential-map bits, the events and the symbols begin.
-    exponentials: u32,
-    events: u32,
-    event_count: u32,
-    pub(crate) symbols: u32,
+    pub(crate) event_count: u32,
+    /// Where the events begin: at 148 at most. Exponential-map bits stand before them.
+    pub(crate) events: u8,
+    exponentials: u8,
 }
 
 /// The parts of a file.
@@ -67,36 +71,8 @@ impl<'a> Parts<'a> {
         };
         let rig_len = before - reader.0.len();
         let motion_len = reader.varint()? as usize;
-        let seed = crc::update(crc::of(&[MAGIC[0], MAGIC[1], version, flags]), &(motion_len as u32).to_le_bytes());
+        let seed = crc::of_prefix(flags, motion_len as u32);
         Ok(Parts { flags, rig, rig_len, seed, rest: reader.0, motion_len })
-    }
-}
-
-/// Reads the head's fields, which may cross from one block into the next.
-struct HeadReader<'i, 'a> {
-    input: &'i Input<'a>,
-    position: u32,
-}
-
-impl HeadReader<'_, '_> {
-    fn byte(&mut self) -> u8 {
-        self.input.byte(&mut self.position)
-    }
-
-    fn u32(&mut self) -> u32 {
-        u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()])
-    }
-
-    fn varint(&mut self) -> u32 {
-        let mut value = 0;
-        for shift in [0, 7, 14, 21, 28] {
-            let byte = self.byte();
-            value |= u32::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                break;
-            }
-        }
-        value
     }
 }
 
@@ -108,11 +84,11 @@ pub fn has_choice(joint: &Joint<'_>) -> bool {
 impl Head {
     /// Reads the head of a motion that was made for `rig`.
     pub(crate) fn read(input: &Input<'_>, flags: u8, rig: &Rig<'_>, rig_id: Option<u32>) -> Result<Head, OpenError> {
-        let mut reader = HeadReader { input, position: 0 };
+        let mut reader = Reader { input, position: 0 };
         let rate = reader.byte();
-        let frame_time_ns = match FRAME_RATES.get(usize::from(rate)) {
+        let frame_time_ns = match FRAME_TIMES_NS.get(usize::from(rate)) {
             Some(&0) => reader.u32(),
-            Some(&rate) => (1_000_000_000 + u32::from(rate) / 2) / u32::from(rate),
+            Some(&time) => time,
             None => return Err(OpenError::Malformed),
         };
         let frames = reader.varint();
@@ -125,7 +101,7 @@ impl Head {
         {
             return Err(OpenError::WrongRig);
         }
-        let exponentials = reader.position;
+        let exponentials = reader.position as u8;
         if flags & HAS_EXPONENTIALS != 0 {
             let choices = rig.joints().filter(has_choice).count();
             for _ in 0..choices.div_ceil(8) {
@@ -133,16 +109,23 @@ impl Head {
             }
         }
         let event_count = if flags & HAS_EVENTS != 0 { reader.varint() } else { 0 };
-        let events = reader.position;
-        for _ in 0..event_count {
-            if reader.position as usize > input.bytes.len() {
-                return Err(OpenError::Malformed);
-            }
-            reader.varint();
-            reader.varint();
+        let events = reader.position as u8;
+        Ok(Head { flags, length_exponent, frames, frame_time_ns, event_count, events, exponentials })
+    }
+
+    /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map. `input` holds the
+    /// motion's first block.
+    pub(crate) fn is_exponential(&self, input: &Input<'_>, rig: &Rig<'_>, joint: usize) -> bool {
+        if self.flags & HAS_EXPONENTIALS == 0 || !rig.joints().nth(joint).is_some_and(|joint| has_choice(&joint)) {
+            return false;
         }
-        let symbols = reader.position;
-        Ok(Head { flags, length_exponent, frames, frame_time_ns, exponentials, events, event_count, symbols })
+        let choice = rig.joints().take(joint).filter(has_choice).count();
+        let mut reader = Reader { input, position: u32::from(self.exponentials) };
+        let mut byte = 0;
+        for _ in 0..=choice / 8 {
+            byte = reader.byte();
+        }
+        byte >> (choice % 8) & 1 != 0
     }
 }
 
@@ -170,19 +153,36 @@ impl<'a> Clip<'a> {
         if let Some(own) = parts.rig {
             return Clip::assemble(&parts, Rig::new_checked(own)?, None);
         }
-        Clip::assemble(&parts, Rig::new_checked(rig_bytes)?, Some(Rig::id_of(rig_bytes)))
+        let rig = Rig::new_checked(rig_bytes)?;
+        Clip::assemble(&parts, rig, Some(rig.id()))
     }
 
     fn assemble(parts: &Parts<'a>, rig: Rig<'a>, rig_id: Option<u32>) -> Result<Clip<'a>, OpenError> {
         let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
-        if !rest.is_empty() || motion.is_empty() {
+        let motion = blocks::check(motion, parts.seed)?;
+        let index = if parts.flags & HAS_INDEX != 0 {
+            let mut reader = Bytes(rest);
+            let len = reader.varint()?;
+            let blocks = reader.take(len as usize)?;
+            (blocks::check(blocks, crc::update(crc::INITIAL, &len.to_le_bytes()))?, reader.0)
+        } else {
+            (&[][..], rest)
+        };
+        let (index, rest) = index;
+        if !rest.is_empty() {
             return Err(OpenError::Malformed);
         }
-        blocks::check(motion, parts.seed)?;
-        // What a decoder reads past the end is zeros, not the last CRC.
-        let (motion, _) = motion.split_at(motion.len() - CRC_BYTES);
-        let head = Head::read(&Input { bytes: motion, base: 0 }, parts.flags, &rig, rig_id)?;
-        Ok(Clip { rig, motion, rig_len: parts.rig_len, head })
+        let input = Input { bytes: motion, base: 0 };
+        let head = Head::read(&input, parts.flags, &rig, rig_id)?;
+        let mut reader = Reader { input: &input, position: u32::from(head.events) };
+        for _ in 0..head.event_count {
+            if reader.position as usize > motion.len() {
+                return Err(OpenError::Malformed);
+            }
+            event(&mut reader, 0);
+        }
+        let symbols = reader.position;
+        Ok(Clip { rig, motion, rig_len: parts.rig_len, head, symbols, index })
     }
 
     /// The figure.
@@ -227,21 +227,12 @@ impl<'a> Clip<'a> {
 
     /// Bytes in front of the first channel's symbols.
     pub fn head_len(&self) -> usize {
-        self.head.symbols as usize
+        self.symbols as usize
     }
 
     /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map.
     pub fn is_exponential(&self, joint: usize) -> bool {
-        if self.head.flags & HAS_EXPONENTIALS == 0 || !self.rig.joints().nth(joint).is_some_and(|joint| has_choice(&joint)) {
-            return false;
-        }
-        let choice = self.rig.joints().take(joint).filter(has_choice).count();
-        let mut position = self.head.exponentials;
-        let mut byte = 0;
-        for _ in 0..=choice / 8 {
-            byte = self.input().byte(&mut position);
-        }
-        byte >> (choice % 8) & 1 != 0
+        self.head.is_exponential(&self.input(), &self.rig, joint)
     }
 
     /// Number of event markers.
@@ -251,28 +242,34 @@ impl<'a> Clip<'a> {
 
     /// The event markers, in time order.
     pub fn events(&self) -> impl Iterator<Item = Event> + '_ {
-        let mut position = self.head.events;
-        let mut frame = 0u32;
+        let mut position = u32::from(self.head.events);
+        let mut frame = 0;
         (0..self.head.event_count).map(move |_| {
             let input = self.input();
-            let mut reader = HeadReader { input: &input, position };
-            frame = frame.wrapping_add(reader.varint());
-            let id = reader.varint();
-            position = reader.position;
-            Event { frame, id }
+            let mut reader = Reader { input: &input, position };
+            let event = event(&mut reader, frame);
+            (position, frame) = (reader.position, event.frame);
+            event
         })
     }
 
     /// Number of [`crate::ChannelState`]s that a player of this clip needs.
     pub fn moving(&self) -> usize {
         let input = self.input();
-        let mut symbols = Symbols::start(&input, self.head.symbols);
-        let mut opening = crate::channel::Opening::default();
-        channel_kinds(&self.rig).filter(|&(kind, _)| opening.read(&mut symbols, &input, kind).1.is_some()).count()
+        Starts::new(&self.rig, self.head.length_exponent).count(&mut Symbols::start(&input, self.symbols), &input)
     }
 
-    pub(crate) fn head(&self) -> &Head {
-        &self.head
+    /// Bytes of the snapshots in the file, their CRCs included; 0 if there are none.
+    pub fn index_len(&self) -> usize {
+        if self.index.is_empty() { 0 } else { self.index.len() + CRC_BYTES }
+    }
+
+    pub(crate) fn symbols(&self) -> u32 {
+        self.symbols
+    }
+
+    pub(crate) fn index(&self) -> Option<Input<'a>> {
+        if self.index.is_empty() { None } else { Some(Input { bytes: self.index, base: 0 }) }
     }
 
     pub(crate) fn input(&self) -> Input<'a> {
@@ -280,13 +277,8 @@ impl<'a> Clip<'a> {
     }
 }
 
-/// The kind of every channel of a pose and, for positions, the offset that it replaces, in steps of the rig.
-pub(crate) fn channel_kinds<'a>(rig: &Rig<'a>) -> impl Iterator<Item = (Kind, i32)> + use<'a> {
-    let of_joints = rig.joints().flat_map(|joint| {
-        joint.kinds.map(move |kind| {
-            let rest = if kind.is_position() { kind.axis().and_then(|axis| joint.offset.get(axis).copied()) } else { None };
-            (kind, rest.unwrap_or(0))
-        })
-    });
-    of_joints.chain(rig.scalars().map(|_| (Kind::Scalar, 0)))
+/// The event that follows one at frame `before`.
+pub(crate) fn event(reader: &mut Reader<'_, '_>, before: u32) -> Event {
+    let frame = before.wrapping_add(reader.varint());
+    Event { frame, id: reader.varint() }
 }

@@ -2,6 +2,8 @@
 //!
 //! It detects every single-bit error, and every burst of up to 16 bits, in a block of [`crate::layout::BLOCK_BYTES`].
 
+use crate::layout::{MAGIC, VERSION};
+
 /// The value before the first byte.
 pub const INITIAL: u16 = 0xffff;
 
@@ -35,6 +37,11 @@ pub fn update(crc: u16, bytes: &[u8]) -> u16 {
 /// The CRC of `bytes` alone.
 pub fn of(bytes: &[u8]) -> u16 {
     update(INITIAL, bytes)
+}
+
+/// What a motion's first block goes on from: the CRC of the file's first four bytes and the motion's length.
+pub fn of_prefix(flags: u8, motion_len: u32) -> u16 {
+    update(of(&[MAGIC[0], MAGIC[1], VERSION, flags]), &motion_len.to_le_bytes())
 }
 
 #[cfg(test)]

@@ -13,8 +13,10 @@ pub const LOOPED: u8 = 2;
 pub const HAS_EXPONENTIALS: u8 = 4;
 /// Flag: event markers stand before the channels.
 pub const HAS_EVENTS: u8 = 8;
+/// Flag: snapshots stand after the motion.
+pub const HAS_INDEX: u8 = 16;
 /// Flags that a decoder knows.
-pub const KNOWN_FLAGS: u8 = 15;
+pub const KNOWN_FLAGS: u8 = 31;
 
 /// Most joints of a rig, End Sites included.
 pub const MAX_JOINTS: usize = 1023;
@@ -30,6 +32,20 @@ pub const CRC_BYTES: usize = 2;
 
 /// Frame rates that take one byte: index 0 means that the frame time follows in nanoseconds.
 pub const FRAME_RATES: [u8; 16] = [0, 120, 60, 30, 24, 25, 50, 100, 90, 48, 36, 20, 15, 12, 10, 8];
+
+/// The frame times of [`FRAME_RATES`] in nanoseconds, rounded.
+pub const FRAME_TIMES_NS: [u32; 16] = frame_times();
+
+const fn frame_times() -> [u32; 16] {
+    let mut times = [0; 16];
+    let mut i = 1;
+    while i < 16 {
+        let rate = FRAME_RATES[i] as u32;
+        times[i] = (1_000_000_000 + rate / 2) / rate;
+        i += 1;
+    }
+    times
+}
 
 /// Lengths of a segment in frames, by index.
 pub const LENGTHS: [u8; 16] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];

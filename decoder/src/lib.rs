@@ -11,15 +11,25 @@ pub mod entropy;
 mod error;
 #[doc = include_str!("../FORMAT.md")]
 pub mod format {}
+mod history;
+mod index;
 pub mod layout;
+mod opening;
 mod player;
+mod position;
+mod prefix;
 mod rig;
 pub mod segment;
+mod snapshots;
+mod stream;
 pub mod tables;
 pub mod units;
 
 pub use channel::{ChannelState, length, step_size};
 pub use clip::{Clip, Event, has_choice};
 pub use error::{OpenError, TooSmall};
-pub use player::Player;
+pub use history::Undo;
+pub use player::{Memory, Player};
 pub use rig::{Joint, Joints, Kind, Kinds, Rig, Scalar, Scalars};
+pub use snapshots::Mark;
+pub use stream::{Step, Stream};

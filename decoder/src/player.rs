@@ -1,160 +1,28 @@
 //! Plays a clip: step, seek to any frame, step back. Bit for bit the same poses by every route.
 
-use crate::blocks::Input;
-use crate::channel::{ChannelState, NIL, Opening};
-use crate::clip::{Clip, channel_kinds};
+use crate::channel::ChannelState;
+use crate::clip::Clip;
 use crate::entropy::Symbols;
-use crate::layout::START_MODE;
-use crate::{TooSmall, segment};
-
-/// Channels wait for their next segment in this many lists, by the frame at which it is due.
-pub(crate) const LISTS: usize = 32;
-
-/// Where the player is: all of its state but the channels and the pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Position {
-    pub(crate) symbols: Symbols,
-    pub(crate) frame: u32,
-    /// First channel of each list.
-    lists: [u16; LISTS],
-    /// First of the channels whose segment starts at this frame and is still to be read.
-    pending: u16,
-    /// Whether the lists of this frame were searched for due channels.
-    collected: bool,
-}
-
-/// The moving channels and the pose, while a frame is made.
-pub(crate) struct Channels<'p> {
-    pub(crate) states: &'p mut [ChannelState],
-    pub(crate) pose: &'p mut [i32],
-}
-
-impl Position {
-    /// Reads how every channel starts. `states` gets one element a moving channel.
-    pub(crate) fn open(clip: &Clip<'_>, states: &mut [ChannelState], pose: &mut [i32]) -> Result<(Position, usize), TooSmall> {
-        let input = clip.input();
-        let mut position = Position {
-            symbols: Symbols::start(&input, clip.head().symbols),
-            frame: 0,
-            lists: [NIL; LISTS],
-            pending: NIL,
-            collected: true,
-        };
-        let shift = i32::from(clip.rig().length_exponent()) - i32::from(clip.length_exponent());
-        let mut opening = Opening::default();
-        let mut moving = 0u16;
-        for (slot, (kind, rest)) in channel_kinds(&clip.rig()).enumerate() {
-            let (p, start) = opening.read(&mut position.symbols, &input, kind);
-            let value = pose.get_mut(slot).ok_or(TooSmall { needed: clip.rig().channels() })?;
-            *value = p.unwrap_or(shifted(rest, shift));
-            let Some((v, step)) = start else { continue };
-            let state = states.get_mut(usize::from(moving)).ok_or_else(|| TooSmall { needed: clip.moving() })?;
-            *state = ChannelState { v, slot: slot as u16, step, ..ChannelState::default() };
-            state.set_mode(START_MODE);
-            state.set_next(position.pending);
-            position.pending = moving;
-            moving += 1;
-        }
-        Ok((position, usize::from(moving)))
-    }
-
-    /// Moves the channels that are due at this frame into `pending`, in the order of their list.
-    fn collect(&mut self, states: &mut [ChannelState]) {
-        let Some(head) = self.lists.get_mut(self.frame as usize % LISTS) else { return };
-        let now = self.frame as u8;
-        let (mut at, mut kept, mut taken) = (*head, NIL, NIL);
-        *head = NIL;
-        while let Some(state) = states.get(usize::from(at)) {
-            let next = state.next();
-            let last = if state.due == now { &mut taken } else { &mut kept };
-            let before = *last;
-            *last = at;
-            let first = if state.due == now { &mut self.pending } else { &mut *head };
-            if before == NIL {
-                *first = at;
-            } else if let Some(state) = states.get_mut(usize::from(before)) {
-                state.set_next(at);
-            }
-            at = next;
-        }
-        for end in [kept, taken] {
-            if let Some(state) = states.get_mut(usize::from(end)) {
-                state.set_next(NIL);
-            }
-        }
-        self.collected = true;
-    }
-
-    /// Reads the segments that start at this frame. With `hop`, channels stand at the start of their last segment and are
-    /// first brought to its end. False if the input ran dry: call again when it holds more.
-    pub(crate) fn read_due(
-        &mut self,
-        channels: &mut Channels<'_>,
-        input: &Input<'_>,
-        frames: u32,
-        dry_at: u32,
-        hop: bool,
-    ) -> bool {
-        // A segment at frame f first changes the position at f + 2: none starts later than this.
-        if self.frame + 2 >= frames {
-            return true;
-        }
-        if !self.collected {
-            self.collect(channels.states);
-        }
-        while let Some(state) = channels.states.get_mut(usize::from(self.pending)) {
-            if self.symbols.position > dry_at {
-                return false;
-            }
-            if hop && let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                state.hop(p, i32::from(state.length()));
-            }
-            let length = segment::read(state, &mut self.symbols, input);
-            state.due = (self.frame as u8).wrapping_add(length);
-            let index = self.pending;
-            self.pending = state.next();
-            if let Some(head) = self.lists.get_mut(usize::from(state.due) % LISTS) {
-                state.set_next(*head);
-                *head = index;
-            }
-        }
-        true
-    }
-
-    /// The three additions, for every channel.
-    #[inline]
-    pub(crate) fn advance(&mut self, channels: &mut Channels<'_>) {
-        for state in channels.states.iter_mut() {
-            if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                *p = p.wrapping_add(state.v);
-            }
-            state.v = state.v.wrapping_add(state.w);
-            state.w = state.w.wrapping_add(state.k);
-        }
-        self.frame += 1;
-        self.collected = false;
-    }
-
-    /// Moves every channel between this frame and the start of its segment: `back` to the start, else from it.
-    fn hop_all(&self, channels: &mut Channels<'_>, back: bool) {
-        for state in channels.states.iter_mut() {
-            if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                // Past the last segment's end (no segment starts at the last two frames) it is negative.
-                let left = i32::from(state.due.wrapping_sub(self.frame as u8) as i8);
-                let run = if state.length() == 0 { 0 } else { i32::from(state.length()) - left };
-                state.hop(p, if back { -run } else { run });
-            }
-        }
-    }
-}
-
-/// A rest offset in the clip's unit, rounded down.
-fn shifted(rest: i32, shift: i32) -> i32 {
-    if shift >= 0 { rest.wrapping_shl(shift as u32) } else { rest >> shift.unsigned_abs().min(31) }
-}
+use crate::history::{History, Undo};
+use crate::opening::{Opened, Starts};
+use crate::position::{Beside, Channels, Position, reads};
+use crate::snapshots::{Mark, Snapshots};
+use crate::{TooSmall, index};
 
 /// Plays a [`Clip`] in memory of the caller's: a [`ChannelState`] for each of the clip's moving channels, and a pose of
 /// one raw value for each of the rig's channels.
+///
+/// ```
+/// # fn play(clip: pantin::Clip) -> Result<(), pantin::TooSmall> {
+/// let (mut states, mut pose) = ([pantin::ChannelState::default(); 80], [0; 100]);
+/// let mut player = pantin::Player::new(clip, &mut states, &mut pose)?;
+/// while !player.ended() {
+///     player.step();
+///     let knee = pantin::units::angle(player.pose()[7]);
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Player<'a, 'm> {
     clip: Clip<'a>,
@@ -163,12 +31,46 @@ pub struct Player<'a, 'm> {
     position: Position,
 }
 
+/// Memory lent to a [`Player`] that steps back or seeks much. What is kept in it is of that player's clip alone.
+#[derive(Debug)]
+pub struct Memory<'m> {
+    history: History<'m>,
+    snapshots: Snapshots<'m>,
+}
+
+impl<'m> Memory<'m> {
+    /// `undo` holds a record for each segment read of late: with one a moving channel it reaches back about 8 frames of lively
+    /// motion, and everything beyond is played anew. Each snapshot takes one of `marks` and as many of `states` and `values` as
+    /// the clip has moving channels. Any of them may be empty.
+    pub fn new(
+        player: &Player<'_, '_>,
+        undo: &'m mut [Undo],
+        marks: &'m mut [Mark],
+        states: &'m mut [ChannelState],
+        values: &'m mut [i32],
+    ) -> Memory<'m> {
+        let snapshots = Snapshots::new(marks, states, values, player.states.len(), player.clip.frames());
+        Memory { history: History::new(undo), snapshots }
+    }
+}
+
 impl<'a, 'm> Player<'a, 'm> {
     /// Starts at frame 0. `states` needs [`Clip::moving`] elements, `pose` needs [`crate::Rig::channels`].
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, TooSmall> {
-        let (position, moving) = Position::open(&clip, states, pose)?;
-        let states = states.get_mut(..moving).ok_or(TooSmall { needed: moving })?;
-        Ok(Player { clip, states, pose, position })
+        let pose = pose.get_mut(..clip.rig().channels()).ok_or(TooSmall { needed: clip.rig().channels() })?;
+        let mut player = Player { clip, states, pose, position: Position::default() };
+        let moving = player.open().ok_or_else(|| TooSmall { needed: clip.moving() })?;
+        player.states = player.states.split_at_mut_checked(moving).map_or(&mut [], |(moving, _)| moving);
+        Ok(player)
+    }
+
+    /// Reads how channels start: the number that move, if there are states for them.
+    fn open(&mut self) -> Option<usize> {
+        let input = self.clip.input();
+        let mut starts = Starts::new(&self.clip.rig(), self.clip.length_exponent());
+        self.position = Position { symbols: Symbols::start(&input, self.clip.symbols()), frame: 0, next: 0 };
+        let opened = starts.read(&mut self.position.symbols, &input, u32::MAX, self.states, self.pose);
+        (opened == Opened::Done).then_some(usize::from(starts.moving))
     }
 
     /// The clip that plays.
@@ -181,46 +83,110 @@ impl<'a, 'm> Player<'a, 'm> {
         self.position.frame
     }
 
-    /// One raw value a channel of the rig: see [`crate::units`].
+    /// Whether this is the last frame: the next step goes to frame 0.
+    pub fn ended(&self) -> bool {
+        self.position.frame + 1 >= self.clip.frames()
+    }
+
+    /// One raw value a channel of the rig. The channel's kind says what it is (see [`crate::units`]): an angle in 2^-32
+    /// turns, a position in 2^[`Clip::length_exponent`] units of the source, a quaternion's component in 2^-30, a scalar in
+    /// 2^([`crate::Scalar::exponent`] - 31).
     pub fn pose(&self) -> &[i32] {
         self.pose
     }
 
+    /// The ids of the event markers at this frame.
+    pub fn events(&self) -> impl Iterator<Item = u32> + '_ {
+        self.clip.events().filter(|event| event.frame == self.position.frame).map(|event| event.id)
+    }
+
+    fn parts(&mut self) -> (&mut Position, Channels<'_>) {
+        (&mut self.position, Channels { states: &mut *self.states, pose: &mut *self.pose })
+    }
+
     /// Goes on by one frame; from the last frame to frame 0.
     pub fn step(&mut self) {
-        let frames = self.clip.frames();
-        if self.position.frame + 1 >= frames {
-            self.rewind();
-            return;
+        if self.ended() {
+            return self.rewind();
         }
-        let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
-        self.position.read_due(&mut channels, &self.clip.input(), frames, u32::MAX, false);
-        self.position.advance(&mut channels);
+        let (input, frames) = (self.clip.input(), self.clip.frames());
+        let (position, mut channels) = self.parts();
+        if reads(position.frame, frames) {
+            position.step(&mut channels, &input);
+        } else {
+            position.advance(&mut channels);
+        }
     }
 
     /// Goes back to frame 0.
     pub fn rewind(&mut self) {
-        // The memory sufficed when the player was made, and no other clip can have come in since.
-        if let Ok((position, _)) = Position::open(&self.clip, self.states, self.pose) {
-            self.position = position;
-        }
+        // The memory sufficed when the player was made.
+        self.open();
     }
 
     /// Goes to `frame`, or to the last one if there are fewer. Forward it costs a hop a segment on the way; backward it
-    /// starts from frame 0.
+    /// starts from the file's last snapshot before it (`pantin convert --index`), or from frame 0.
     pub fn seek(&mut self, frame: u32) {
-        let frames = self.clip.frames();
+        self.seek_with(frame, &mut Memory::new(self, &mut [], &mut [], &mut [], &mut []));
+    }
+
+    /// [`Player::step`], and keeps what going back needs.
+    pub fn step_with(&mut self, memory: &mut Memory<'_>) {
+        if self.ended() {
+            return self.rewind();
+        }
+        let (input, frames) = (self.clip.input(), self.clip.frames());
+        let (position, mut channels) = self.parts();
+        memory.history.begin(position.frame);
+        if reads(position.frame, frames) {
+            position.read_due(&mut channels, &input, u32::MAX, Beside::Record(&mut memory.history));
+        }
+        position.advance(&mut channels);
+        memory.snapshots.keep(position, &channels);
+    }
+
+    /// [`Player::seek`], from the nearest snapshot in `memory` if that is closer; keeps the snapshots that it comes past.
+    pub fn seek_with(&mut self, frame: u32, memory: &mut Memory<'_>) {
+        let (input, frames, index) = (self.clip.input(), self.clip.frames(), self.clip.index());
         let target = frame.min(frames - 1);
-        if target < self.position.frame {
+        let now = self.position.frame;
+        let mut from = if now <= target { now } else { 0 };
+        let stored = index.and_then(|index| index::nearest(&index, target)).filter(|entry| entry.frame > from);
+        from = stored.map_or(from, |entry| entry.frame);
+        if let Some((kept, _)) = memory.snapshots.nearest(target).filter(|&(_, frame)| frame > from) {
+            let (position, mut channels) = self.parts();
+            memory.snapshots.restore(kept, position, &mut channels);
+        } else if let (Some(entry), Some(index)) = (stored, index) {
+            let (position, mut channels) = self.parts();
+            index::restore(&index, entry, position, &mut channels);
+        } else if target < now {
             self.rewind();
         }
-        let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
-        self.position.hop_all(&mut channels, true);
-        while self.position.frame < target {
-            self.position.read_due(&mut channels, &self.clip.input(), frames, u32::MAX, true);
-            self.position.frame += 1;
-            self.position.collected = false;
+        let (position, mut channels) = self.parts();
+        while position.frame < target {
+            let stop = memory.snapshots.next_after(position.frame).min(target);
+            position.run_to(&mut channels, &input, frames, stop);
+            memory.snapshots.keep(position, &channels);
         }
-        self.position.hop_all(&mut channels, false);
+    }
+
+    /// Goes back by one frame; from frame 0 to the last one. Takes back the additions and the segments in `memory`; where that
+    /// does not reach, it plays some frames before anew.
+    pub fn step_back(&mut self, memory: &mut Memory<'_>) {
+        let Some(target) = self.position.frame.checked_sub(1) else { return self.seek_with(u32::MAX, memory) };
+        let (position, mut channels) = self.parts();
+        if memory.history.step_back(position, &mut channels) {
+            return;
+        }
+        let again = memory.history.refill();
+        self.seek_with(target.saturating_sub(again), memory);
+        while self.position.frame < target {
+            self.step_with(memory);
+        }
+    }
+
+    /// Writes a snapshot of this frame, as `pantin convert --index` puts it into a file.
+    pub fn write_snapshot(&self, put: &mut dyn FnMut(u8)) {
+        index::write(&self.position, self.states, self.pose, put);
     }
 }

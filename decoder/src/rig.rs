@@ -125,8 +125,7 @@ impl ExactSizeIterator for Kinds<'_> {}
 /// One joint, or an End Site (a joint without channels that only gives a bone its length).
 #[derive(Clone, Copy, Debug)]
 pub struct Joint<'a> {
-    /// Its name in UTF-8; an End Site has none.
-    pub name: &'a str,
+    name: &'a [u8],
     /// Index of the parent, always smaller than the joint's own; `None` for the root.
     pub parent: Option<u16>,
     /// Where it stands in its parent, in steps of [`Rig::length_exponent`].
@@ -139,19 +138,35 @@ pub struct Joint<'a> {
     pub kinds: Kinds<'a>,
 }
 
+impl<'a> Joint<'a> {
+    /// Its name; empty for an End Site, and for a name that is not UTF-8 (opening a rig does not look into names).
+    pub fn name(&self) -> &'a str {
+        core::str::from_utf8(self.name).unwrap_or("")
+    }
+}
+
 /// One channel that moves no joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar<'a> {
-    /// Its name in UTF-8.
-    pub name: &'a str,
+    name: &'a [u8],
     /// A pose's value times 2^(exponent - 31) is the scalar: it lies within -2^exponent .. 2^exponent.
     pub exponent: i8,
+}
+
+impl<'a> Scalar<'a> {
+    /// Its name; empty for one that is not UTF-8.
+    pub fn name(&self) -> &'a str {
+        core::str::from_utf8(self.name).unwrap_or("")
+    }
 }
 
 /// A checked rig.
 #[derive(Clone, Copy, Debug)]
 pub struct Rig<'a> {
-    bytes: &'a [u8],
+    /// All bytes but the CRC.
+    body: &'a [u8],
+    /// Where the joints begin in them: 12 at most.
+    joints_at: u8,
     joints: u16,
     scalars: u16,
     joint_channels: u16,
@@ -178,7 +193,8 @@ impl<'a> Rig<'a> {
             return Err(OpenError::Malformed);
         }
         let mut rig = Rig {
-            bytes: reader.0,
+            body,
+            joints_at: (body.len() - reader.0.len()) as u8,
             joints: joints as u16,
             scalars: scalars as u16,
             joint_channels: 0,
@@ -206,15 +222,14 @@ impl<'a> Rig<'a> {
         Ok(rig)
     }
 
-    /// Names the rig in clips that do not carry it: FNV-1a of its bytes without the CRC, 32 bits.
-    pub fn id_of(bytes: &[u8]) -> u32 {
-        let body = bytes.split_last_chunk::<2>().map_or(bytes, |(body, _)| body);
-        body.iter().fold(0x811c_9dc5, |hash, &byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+    /// Names the rig in clips that do not carry it.
+    pub fn id(&self) -> u32 {
+        self.body.iter().fold(Id::default(), |id, &byte| id.and(byte)).0
     }
 
     /// Joints, End Sites included. The root comes first, and every parent before its children.
     pub fn joints(&self) -> Joints<'a> {
-        Joints { bytes: Bytes(self.bytes), left: self.joints, first_channel: 0 }
+        Joints { bytes: Bytes(self.body.get(usize::from(self.joints_at)..).unwrap_or(&[])), left: self.joints, first_channel: 0 }
     }
 
     /// Channels that move no joint. In a pose they follow the joints' channels.
@@ -250,6 +265,57 @@ impl<'a> Rig<'a> {
     }
 }
 
+/// A rig's id, byte by byte: FNV-1a, 32 bits, of all but the CRC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Id(pub u32);
+
+impl Default for Id {
+    fn default() -> Self {
+        Id(0x811c_9dc5)
+    }
+}
+
+impl Id {
+    pub fn and(self, byte: u8) -> Id {
+        Id((self.0 ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+    }
+}
+
+/// Walks the channels of a pose.
+#[derive(Clone, Debug)]
+pub(crate) struct Slots<'a> {
+    joints: Joints<'a>,
+    kinds: Kinds<'a>,
+    offset: [i32; 3],
+    scalars: u16,
+}
+
+impl<'a> Rig<'a> {
+    pub(crate) fn slots(&self) -> Slots<'a> {
+        let kinds = Kinds { halves: &[], next: 0, len: 0 };
+        Slots { joints: self.joints(), kinds, offset: [0; 3], scalars: self.scalars }
+    }
+}
+
+impl Iterator for Slots<'_> {
+    /// A channel's kind and, for positions, the offset that it replaces, in steps of the rig.
+    type Item = (Kind, i32);
+
+    fn next(&mut self) -> Option<(Kind, i32)> {
+        loop {
+            if let Some(kind) = self.kinds.next() {
+                let axis = if kind.is_position() { kind.axis() } else { None };
+                return Some((kind, axis.and_then(|axis| self.offset.get(axis).copied()).unwrap_or(0)));
+            }
+            let Some(joint) = self.joints.next() else {
+                self.scalars = self.scalars.checked_sub(1)?;
+                return Some((Kind::Scalar, 0));
+            };
+            (self.kinds, self.offset) = (joint.kinds, joint.offset);
+        }
+    }
+}
+
 /// Walks the joints of a rig.
 #[derive(Clone, Debug)]
 pub struct Joints<'a> {
@@ -273,7 +339,7 @@ impl<'a> Joints<'a> {
         let parent = (parent as u16).checked_sub(1);
         let halves = self.bytes.take(usize::from(len).div_ceil(2))?;
         let offset = [self.bytes.zigzag()?, self.bytes.zigzag()?, self.bytes.zigzag()?];
-        let name = if end_site { "" } else { self.bytes.name()? };
+        let name = if end_site { &[][..] } else { self.bytes.name()? };
         let first_channel = self.first_channel;
         // At most MAX_JOINTS joints of 15 channels: fits 16 bits.
         self.first_channel = first_channel.wrapping_add(u16::from(len));

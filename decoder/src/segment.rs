@@ -1,7 +1,7 @@
 //! One segment: its mode, then its acceleration, its slope, both, or neither.
 
 use crate::blocks::Input;
-use crate::channel::ChannelState;
+use crate::channel::{ChannelState, length};
 use crate::entropy::Symbols;
 use crate::layout::{DIRECT, FAR, FAR_BITS, GROUPS, K_STEPS, START_MODE, W_STEPS, group, segment_type};
 use crate::tables;
@@ -73,9 +73,10 @@ pub fn keep_last(w: i32, channel_step: u8) -> i16 {
     (w >> last_shift(channel_step)).clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
 }
 
-/// Reads the segment that follows the one that `state` has ended, and returns its length in frames.
-pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols, input: &Input<'_>) -> u8 {
-    let symbol = symbols.symbol(input, tables::mode(state.mode()));
+/// Reads the segment that follows the one that `state` has ended.
+#[inline(never)]
+pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols, input: &Input<'_>) {
+    let symbol = symbols.mode(input, tables::mode(state.mode));
     let mode = if symbol < DIRECT_MODES {
         tables::MODES.get(symbol as usize).copied().unwrap_or(0)
     } else {
@@ -97,12 +98,14 @@ pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols, input: &Inpu
     } else {
         state.k = 0;
     }
-    state.set_mode(mode);
-    crate::channel::length(mode)
+    state.mode = mode;
+    // It was due at this frame.
+    state.due = state.due.wrapping_add(length(mode));
 }
 
+#[inline(never)]
 fn number(symbols: &mut Symbols, input: &Input<'_>, context: Context) -> i32 {
-    let symbol = symbols.symbol(input, tables::number(context.index));
+    let symbol = symbols.number(input, tables::number(context.index));
     let index = symbol.div_ceil(2);
     let size = if index <= DIRECT {
         index

@@ -4,6 +4,8 @@
 //!
 //! A table lists the cumulative probabilities of an alphabet in 1/4096: entry i is where symbol i + 1 starts.
 
+use crate::entropy::{ModeTable, NumberTable};
+
 /// Modes in the order of their symbols.
 pub const MODES: [u8; 32] =
     [0, 1, 2, 3, 4, 6, 7, 5, 8, 9, 12, 10, 11, 15, 13, 14, 18, 19, 23, 21, 20, 26, 22, 25, 17, 24, 28, 27, 29, 30, 31, 16];
@@ -147,15 +149,17 @@ pub static VELOCITY: [u16; 32] = [
 ];
 
 /// The modes' table after a segment of this mode.
-pub fn mode(after: u8) -> &'static [u16] {
+#[inline(always)]
+pub fn mode(after: u8) -> &'static ModeTable {
     let index = MODE_AFTER.get(usize::from(after)).copied().unwrap_or(0);
-    MODE.get(usize::from(index)).map_or(&[], |table| table)
+    MODE.get(usize::from(index)).unwrap_or(&MODE[0])
 }
 
 /// The numbers' table in this context.
-pub fn number(context: u8) -> &'static [u16] {
+#[inline(always)]
+pub fn number(context: u8) -> &'static NumberTable {
     let index = NUMBER_IN.get(usize::from(context)).copied().unwrap_or(0);
-    NUMBER.get(usize::from(index)).map_or(&[], |table| table)
+    NUMBER.get(usize::from(index)).unwrap_or(&NUMBER[0])
 }
 
 /// The table of a channel's status after a channel of that status.

@@ -166,18 +166,22 @@ const HEAD: &str = "//! Statistics of motion, frozen with the format: made by `p
 //!
 //! A table lists the cumulative probabilities of an alphabet in 1/4096: entry i is where symbol i + 1 starts.
 
+use crate::entropy::{ModeTable, NumberTable};
+
 ";
 
 const TAIL: &str = "/// The modes' table after a segment of this mode.
-pub fn mode(after: u8) -> &'static [u16] {
+#[inline(always)]
+pub fn mode(after: u8) -> &'static ModeTable {
     let index = MODE_AFTER.get(usize::from(after)).copied().unwrap_or(0);
-    MODE.get(usize::from(index)).map_or(&[], |table| table)
+    MODE.get(usize::from(index)).unwrap_or(&MODE[0])
 }
 
 /// The numbers' table in this context.
-pub fn number(context: u8) -> &'static [u16] {
+#[inline(always)]
+pub fn number(context: u8) -> &'static NumberTable {
     let index = NUMBER_IN.get(usize::from(context)).copied().unwrap_or(0);
-    NUMBER.get(usize::from(index)).map_or(&[], |table| table)
+    NUMBER.get(usize::from(index)).unwrap_or(&NUMBER[0])
 }
 
 /// The table of a channel's status after a channel of that status.

@@ -66,7 +66,7 @@ impl Limbs {
             let bone = if index <= hips { [(0, false); 3] } else { bone };
             // Below 2^14 by the choice of the exponent.
             let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)) as i16);
-            let head = !has_head && contains(joint.name, "head");
+            let head = !has_head && contains(joint.name(), "head");
             has_head |= head;
             let limb = Limb {
                 parent: joint.parent.unwrap_or(NO_PARENT),

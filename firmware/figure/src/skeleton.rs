@@ -133,7 +133,7 @@ impl<const N: usize> Skeleton<N> {
             let turns = limb.bears || limb.head;
             let drives = skeleton.drive(&joint, turns, is_exponential(index))?;
             let part = if limb.placement || limb.length == 0 { Part::Hidden } else { Part::Bone };
-            let foot = contains(joint.name, "foot") || contains(joint.name, "ankle");
+            let foot = contains(joint.name(), "foot") || contains(joint.name(), "ankle");
             let moves = { joint.kinds }.any(|kind| kind.is_position());
             let offset = match limb.placement {
                 true => joint.offset.map(|raw| skeleton.figure_units(raw, rig.length_exponent())),
@@ -211,7 +211,7 @@ fn sides(rig: &Rig, limbs: &Limbs) -> Option<[usize; 2]> {
     joints().find_map(|(index, (joint, limb))| {
         let mut apart = joints().filter(|(other, (_, other_limb))| *other > index && other_limb.bone != limb.bone);
         apart.find_map(|(other, (counterpart, _))| {
-            let left = is_left_of(joint.name, counterpart.name)?;
+            let left = is_left_of(joint.name(), counterpart.name())?;
             Some(if left { [index, other] } else { [other, index] })
         })
     })

@@ -92,33 +92,41 @@ pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
     if !coded.events.is_empty() {
         flags |= HAS_EVENTS;
     }
-    let mut payload = head(coded, flags, apart.then(|| pantin::Rig::id_of(rig)));
     let parsed = pantin::Rig::new_checked(rig).context("the rig that was just made does not open")?;
+    let mut payload = head(coded, flags, apart.then(|| parsed.id()));
     ensure!(coded.channels.len() == parsed.channels(), "a rig of {} channels for {}", parsed.channels(), coded.channels.len());
     let mut gathered = Symbols::default();
     symbols(coded, &parsed, &mut gathered);
     payload.extend(gathered.finish());
-    let len = payload.len() + payload.len().div_ceil(BLOCK_BYTES) * CRC_BYTES;
+    let len = blocks_len(payload.len());
 
     let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
-    let mut crc = crc::update(crc::of(&out), &(len as u32).to_le_bytes());
     if !apart {
         varint::put(&mut out, rig.len() as u32);
         out.extend_from_slice(rig);
     }
     varint::put(&mut out, len as u32);
+    put_blocks(&mut out, &payload, crc::of_prefix(flags, len as u32));
+    Ok(out)
+}
+
+/// Bytes of `payload` bytes in blocks.
+pub fn blocks_len(payload: usize) -> usize {
+    payload + payload.div_ceil(BLOCK_BYTES) * CRC_BYTES
+}
+
+/// Cuts `payload` into blocks with a CRC each, the first of which goes on from `crc`.
+pub fn put_blocks(out: &mut Vec<u8>, payload: &[u8], mut crc: u16) {
     for block in payload.chunks(BLOCK_BYTES) {
         out.extend_from_slice(block);
         out.extend_from_slice(&crc::update(crc, block).to_le_bytes());
         crc = crc::INITIAL;
     }
-    Ok(out)
 }
 
 fn head(coded: &Coded, flags: u8, rig_id: Option<u32>) -> Vec<u8> {
     let mut out = Vec::new();
-    let of_rate = |rate: u8| (1_000_000_000 + u32::from(rate) / 2) / u32::from(rate);
-    match FRAME_RATES.iter().skip(1).position(|&rate| of_rate(rate) == coded.frame_time_ns) {
+    match FRAME_TIMES_NS.iter().skip(1).position(|&time| time == coded.frame_time_ns) {
         Some(index) => out.push(index as u8 + 1),
         None => {
             out.push(0);
@@ -180,25 +188,21 @@ impl Opening {
 pub fn symbols(coded: &Coded, rig: &pantin::Rig<'_>, out: &mut dyn Sink) {
     let mut opening = Opening { status: 0, steps: [FIRST_STEP; 2] };
     let kinds = rig.joints().flat_map(|joint| joint.kinds).map(pantin::Kind::is_position).chain(std::iter::repeat(false));
-    // due[frame] lists channels in the order in which their running segment was read: the last is the next to be read.
-    let mut due = vec![Vec::new(); coded.frames as usize + 1];
     let mut running = Vec::new();
     for (index, (channel, position)) in coded.channels.iter().zip(kinds).enumerate() {
         opening.put(&channel.start, position, out);
         if let Start::Moving { v, step, .. } = channel.start {
-            due[0].push(running.len());
-            running.push((index, 0, Running { v, w: 0, k: 0, last: 0, mode: START_MODE, step }));
+            running.push((index, 0, Running { v, w: 0, k: 0, last: 0, mode: START_MODE, step }, 0));
         }
     }
     for frame in 0..(coded.frames as usize).saturating_sub(2) {
-        for moving in std::mem::take(&mut due[frame]).into_iter().rev() {
-            let (index, next, state) = &mut running[moving];
+        for (index, next, state, due) in running.iter_mut().filter(|(.., due)| *due == frame) {
             let segment = coded.channels[*index].segments[*next];
             *next += 1;
             state.put_mode(segment.mode, out);
             state.start(segment, Some(&mut *out));
             state.run(segment.length());
-            due[(frame + segment.length()).min(coded.frames as usize)].push(moving);
+            *due += segment.length();
         }
     }
 }

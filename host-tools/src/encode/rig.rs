@@ -85,7 +85,7 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
         joints: rig
             .joints()
             .map(|joint| Joint {
-                name: joint.name.to_string(),
+                name: joint.name().to_string(),
                 parent: joint.parent.map(usize::from),
                 offset: joint.offset.map(|x| f64::from(x) * step),
                 kinds: joint.kinds.collect(),
@@ -94,7 +94,7 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
             .collect(),
         scalars: rig
             .scalars()
-            .map(|scalar| crate::motion::Scalar { name: scalar.name.to_string(), full_scale: f64::from(scalar.exponent).exp2() })
+            .map(|scalar| crate::motion::Scalar { name: scalar.name().to_string(), full_scale: f64::from(scalar.exponent).exp2() })
             .collect(),
         cm_per_unit: f64::from(rig.micro_cm_per_unit()) * 1e-6,
     }

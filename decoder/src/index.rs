@@ -1,0 +1,82 @@
+//! Snapshots in the file (`--index`): after the motion, in blocks of their own. A decoder may leave them out.
+
+use crate::blocks::{Input, Reader};
+use crate::channel::ChannelState;
+use crate::entropy::{STATE_BYTES, Symbols};
+use crate::layout::{START_MODE, segment_type};
+use crate::position::{Channels, Position};
+
+/// Where a snapshot stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Entry {
+    pub(crate) frame: u32,
+    position: u32,
+}
+
+/// The last snapshot of no later frame than `target`.
+pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
+    let mut reader = Reader { input, position: 0 };
+    let spacing = reader.varint();
+    let count = reader.varint();
+    let mut entry = Entry { frame: 0, position: 0 };
+    for _ in 0..count {
+        let frame = entry.frame.checked_add(spacing)?;
+        if frame > target || spacing == 0 {
+            break;
+        }
+        entry = Entry { frame, position: entry.position.wrapping_add(reader.varint()) };
+    }
+    (entry.frame > 0).then_some(entry)
+}
+
+/// Goes to where the snapshot was taken. Every channel has its slot and step from its start.
+pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut Position, channels: &mut Channels<'_>) {
+    let mut reader = Reader { input, position: entry.position };
+    let at = reader.varint();
+    let state = (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(reader.byte()));
+    *position = Position { symbols: Symbols::at(at, state), frame: entry.frame, next: 0 };
+    for state in channels.states.iter_mut() {
+        state.mode = (reader.byte() & START_MODE).min(START_MODE - 1);
+        state.due = (entry.frame as u8).wrapping_add(reader.byte());
+        state.last = reader.zigzag() as i16;
+        let p = reader.zigzag();
+        state.v = reader.zigzag();
+        state.w = reader.zigzag();
+        state.k = if has_slope(state.mode) { reader.zigzag() } else { 0 };
+        if let Some(value) = channels.pose.get_mut(usize::from(state.slot)) {
+            *value = p;
+        }
+    }
+}
+
+/// Writes what [`restore`] reads.
+pub(crate) fn write(position: &Position, states: &[ChannelState], pose: &[i32], put: &mut dyn FnMut(u8)) {
+    varint(position.symbols.position, put);
+    let state = position.symbols.state();
+    (0..STATE_BYTES).rev().for_each(|byte| put((state >> (8 * byte)) as u8));
+    for state in states {
+        put(state.mode);
+        put(state.due.wrapping_sub(position.frame as u8));
+        let p = pose.get(usize::from(state.slot)).copied().unwrap_or(0);
+        [i32::from(state.last), p, state.v, state.w].into_iter().for_each(|value| zigzag(value, put));
+        if has_slope(state.mode) {
+            zigzag(state.k, put);
+        }
+    }
+}
+
+fn has_slope(mode: u8) -> bool {
+    matches!(mode >> 4, segment_type::K | segment_type::WK)
+}
+
+fn varint(mut value: u32, put: &mut dyn FnMut(u8)) {
+    while value >= 0x80 {
+        put(value as u8 | 0x80);
+        value >>= 7;
+    }
+    put(value as u8);
+}
+
+fn zigzag(value: i32, put: &mut dyn FnMut(u8)) {
+    varint((value << 1 ^ value >> 31) as u32, put);
+}

@@ -1,0 +1,133 @@
+//! How channels begin: at rest, with a constant, or with a position and a velocity.
+
+use crate::blocks::Input;
+use crate::channel::{ChannelState, step_size};
+use crate::entropy::Symbols;
+use crate::layout::{FIRST_STEP, MAX_STEP, STEP_BITS, STEP_CHANGES};
+use crate::rig::{Kind, Rig, Slots};
+use crate::tables;
+
+/// What the channels read so far tell about the next one.
+#[derive(Clone, Copy, Debug)]
+struct Opening {
+    status: u8,
+    steps: [u8; 2],
+}
+
+impl Default for Opening {
+    fn default() -> Self {
+        Opening { status: 0, steps: [FIRST_STEP; 2] }
+    }
+}
+
+impl Opening {
+    /// The next channel's start: its position unless it rests, and velocity and index of its step if it moves.
+    #[inline(never)]
+    fn read(&mut self, symbols: &mut Symbols, input: &Input<'_>, kind: Kind) -> (Option<i32>, Option<(i32, u8)>) {
+        let status = symbols.symbol(input, tables::status(self.status)) as u8;
+        self.status = status.min(2);
+        if status == 0 {
+            return (None, None);
+        }
+        let class = usize::from(kind.is_position());
+        let change = symbols.symbol(input, &tables::STEP_CHANGE);
+        let step = if change < STEP_CHANGES {
+            self.steps.get(class).copied().unwrap_or(FIRST_STEP).wrapping_add(unzigzag(change) as u8)
+        } else {
+            symbols.bits(input, STEP_BITS) as u8
+        };
+        let step = step.min(MAX_STEP);
+        if let Some(last) = self.steps.get_mut(class) {
+            *last = step;
+        }
+        let grid = step_size(step);
+        let p = magnitude(symbols, input, &tables::POSITION).wrapping_mul((grid >> 1).max(1) as i32);
+        if status == 1 {
+            return (Some(p), None);
+        }
+        let v = magnitude(symbols, input, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
+        (Some(p), Some((v, step)))
+    }
+}
+
+/// 0, 1, 2, 3, ... as 0, -1, 1, -2, ...
+const fn unzigzag(n: u32) -> i32 {
+    (n >> 1) as i32 ^ -((n & 1) as i32)
+}
+
+/// A signed number: the symbol is its length in bits, then come the bits below the highest, then the sign.
+fn magnitude(symbols: &mut Symbols, input: &Input<'_>, table: &[u16]) -> i32 {
+    let bits = symbols.symbol(input, table);
+    let Some(below) = bits.checked_sub(1) else { return 0 };
+    let value = (1 << below.min(31)) | symbols.long_bits(input, below.min(31)) as i32;
+    if symbols.bits(input, 1) == 0 { value } else { value.wrapping_neg() }
+}
+
+/// What became of reading the starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Opened {
+    /// All are read.
+    Done,
+    /// The input ran dry: go on when it holds more.
+    Dry,
+    /// There are more moving channels than states.
+    Full,
+}
+
+/// Reads the starts of a rig's channels, one after the other.
+#[derive(Clone, Debug)]
+pub(crate) struct Starts<'a> {
+    slots: Slots<'a>,
+    opening: Opening,
+    /// Steps of the rig's offsets in those of the clip: 2^shift.
+    shift: i32,
+    slot: u16,
+    /// Moving channels so far.
+    pub(crate) moving: u16,
+}
+
+impl<'a> Starts<'a> {
+    pub(crate) fn new(rig: &Rig<'a>, length_exponent: i8) -> Starts<'a> {
+        let shift = i32::from(rig.length_exponent()) - i32::from(length_exponent);
+        Starts { slots: rig.slots(), opening: Opening::default(), shift, slot: 0, moving: 0 }
+    }
+
+    /// Reads on, up to the last position at which a start is sure to be whole. `pose` has a value for every channel.
+    pub(crate) fn read(
+        &mut self,
+        symbols: &mut Symbols,
+        input: &Input<'_>,
+        dry_at: u32,
+        states: &mut [ChannelState],
+        pose: &mut [i32],
+    ) -> Opened {
+        while symbols.position <= dry_at {
+            let Some((kind, rest)) = self.slots.next() else { return Opened::Done };
+            let (p, start) = self.opening.read(symbols, input, kind);
+            if let Some(value) = pose.get_mut(usize::from(self.slot)) {
+                *value = p.unwrap_or(shifted(rest, self.shift));
+            }
+            if let Some((v, step)) = start {
+                let Some(state) = states.get_mut(usize::from(self.moving)) else { return Opened::Full };
+                *state = ChannelState { v, slot: self.slot, step, ..ChannelState::default() };
+                self.moving += 1;
+            }
+            self.slot += 1;
+        }
+        Opened::Dry
+    }
+
+    /// Number of moving channels, all starts being at hand.
+    pub(crate) fn count(mut self, symbols: &mut Symbols, input: &Input<'_>) -> usize {
+        let mut moving = 0;
+        while let Some((kind, _)) = self.slots.next() {
+            moving += usize::from(self.opening.read(symbols, input, kind).1.is_some());
+        }
+        moving
+    }
+}
+
+/// A rest offset in the clip's unit, rounded down.
+fn shifted(rest: i32, shift: i32) -> i32 {
+    if shift >= 0 { rest.wrapping_shl(shift as u32) } else { rest >> shift.unsigned_abs().min(31) }
+}

@@ -1,0 +1,123 @@
+//! Where a player is, and its ways on: the additions, the segments that are due, and hops over many frames.
+
+use crate::blocks::Input;
+use crate::channel::ChannelState;
+use crate::entropy::Symbols;
+use crate::history::History;
+use crate::segment;
+
+/// All of a player's state but the channels and the pose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Position {
+    pub(crate) symbols: Symbols,
+    pub(crate) frame: u32,
+    /// Channels below have read what they need for the step from this frame.
+    pub(crate) next: u16,
+}
+
+/// The moving channels and the pose, while a frame is made.
+pub(crate) struct Channels<'p> {
+    pub(crate) states: &'p mut [ChannelState],
+    pub(crate) pose: &'p mut [i32],
+}
+
+/// A segment at frame f first changes the position at f + 2: none starts later than this.
+pub(crate) fn reads(frame: u32, frames: u32) -> bool {
+    frame + 2 < frames
+}
+
+/// What to do beside reading a segment.
+pub(crate) enum Beside<'h, 'm> {
+    Nothing,
+    /// Channels stand at the start of their last segment: bring them to its end first.
+    Hop,
+    /// Keep what is needed to undo it.
+    Record(&'h mut History<'m>),
+}
+
+impl Position {
+    /// Reads the segments that start at this frame, in the order of channels. False if the input ran dry: call again when it
+    /// holds more.
+    pub(crate) fn read_due(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, dry_at: u32, mut beside: Beside<'_, '_>) -> bool {
+        let now = self.frame as u8;
+        let states = channels.states.get_mut(usize::from(self.next)..).unwrap_or(&mut []);
+        for state in states {
+            if state.due == now {
+                if self.symbols.position > dry_at {
+                    return false;
+                }
+                match &mut beside {
+                    Beside::Nothing => {}
+                    Beside::Hop => {
+                        if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
+                            state.hop(p, i32::from(state.length()));
+                        }
+                    }
+                    Beside::Record(history) => history.push(self, state),
+                }
+                segment::read(state, &mut self.symbols, input);
+            }
+            self.next += 1;
+        }
+        true
+    }
+
+    /// The three additions, for every channel.
+    #[inline]
+    pub(crate) fn advance(&mut self, channels: &mut Channels<'_>) {
+        for state in channels.states.iter_mut() {
+            state.add(channels.pose);
+        }
+        self.frame += 1;
+        self.next = 0;
+    }
+
+    /// The three additions taken back, last first.
+    pub(crate) fn retreat(&mut self, channels: &mut Channels<'_>) {
+        for state in channels.states.iter_mut() {
+            state.w = state.w.wrapping_sub(state.k);
+            state.v = state.v.wrapping_sub(state.w);
+            if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
+                *p = p.wrapping_sub(state.v);
+            }
+        }
+        self.frame -= 1;
+    }
+
+    /// One frame on, with its segments: what `read_due` and `advance` do, in one loop.
+    pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>) {
+        let now = self.frame as u8;
+        for state in channels.states.iter_mut() {
+            if state.due == now {
+                segment::read(state, &mut self.symbols, input);
+            }
+            state.add(channels.pose);
+        }
+        self.frame += 1;
+    }
+
+    /// Goes to a later frame by hops over segments.
+    pub(crate) fn run_to(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32, target: u32) {
+        self.hop_all(channels, true);
+        while self.frame < target {
+            if reads(self.frame, frames) {
+                self.read_due(channels, input, u32::MAX, Beside::Hop);
+            }
+            self.next = 0;
+            self.frame += 1;
+        }
+        self.hop_all(channels, false);
+    }
+
+    /// Moves every channel between this frame and the start of its segment: `back` to the start, else from it.
+    fn hop_all(&self, channels: &mut Channels<'_>, back: bool) {
+        for state in channels.states.iter_mut() {
+            if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
+                // -96 to 2: none starts at the last two frames, and a channel that has had none is due at frame 0.
+                let past = i32::from((self.frame as u8).wrapping_sub(state.due) as i8);
+                let run = i32::from(state.length()) + past;
+                state.hop(p, if back { -run } else { run });
+            }
+        }
+    }
+}

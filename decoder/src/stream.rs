@@ -1,0 +1,298 @@
+//! Plays bytes that are still coming: each block is checked before it is used, and running dry is no error.
+
+use crate::blocks::{Input, Reader, STRIDE};
+use crate::channel::ChannelState;
+use crate::clip::{Event, Head, event};
+use crate::crc;
+use crate::entropy::Symbols;
+use crate::layout::*;
+use crate::opening::{Opened, Starts};
+use crate::position::{Beside, Channels, Position, reads};
+use crate::prefix::Prefix;
+use crate::rig::Rig;
+use crate::segment::MAX_SEGMENT_BYTES;
+use crate::{OpenError, TooSmall};
+
+/// What a step of a [`Stream`] came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Feed more bytes. The pose is to be shown again only after the next `Frame`.
+    NeedMore,
+    /// The clip's head has been read: what the clip says of itself is known from here on.
+    Opened,
+    /// An event marker; they come all before the first frame.
+    Event(Event),
+    /// The pose shows the next frame.
+    Frame,
+    /// The last frame was the clip's last.
+    End,
+    /// The bytes that follow are damaged, or no clip for this rig. It stays so.
+    Damaged(OpenError),
+    /// More channels move than there are states. It stays so.
+    TooSmall,
+}
+
+/// What is read next.
+#[derive(Debug)]
+enum Stage<'a> {
+    Prefix(Prefix),
+    Head,
+    Events { left: u32, position: u32, frame: u32 },
+    Starts(Starts<'a>),
+    Frames,
+    Failed(Step),
+}
+
+/// The bytes of the motion that are at hand, in the caller's memory: whole blocks, and the part of one.
+#[derive(Debug)]
+struct Window<'m> {
+    buffer: &'m mut [u8],
+    /// Bytes in it, and how many of them are of blocks that were checked.
+    len: usize,
+    checked: usize,
+    /// Where it begins, counted from the motion's first byte.
+    base: u32,
+    /// Bytes of the motion that are not yet in it.
+    left: u32,
+    /// What the next block's CRC goes on from.
+    seed: u16,
+    damaged: bool,
+}
+
+impl Window<'_> {
+    /// Takes what fits, checks the blocks that are whole, and returns how much it took.
+    fn fill(&mut self, bytes: &[u8]) -> usize {
+        let free = self.buffer.get_mut(self.len..).unwrap_or(&mut []);
+        let count = bytes.len().min(free.len()).min(self.left as usize);
+        for (place, byte) in free.iter_mut().zip(bytes).take(count) {
+            *place = *byte;
+        }
+        self.len += count;
+        self.left -= count as u32;
+        while !self.damaged && self.checked < self.len {
+            let rest = self.buffer.get(self.checked..self.len).unwrap_or(&[]);
+            let block = rest.get(..STRIDE).unwrap_or(rest);
+            if block.len() < STRIDE && self.left > 0 {
+                break;
+            }
+            let sum = block.split_last_chunk::<CRC_BYTES>().map(|(body, stored)| (crc::update(self.seed, body), *stored));
+            self.damaged = sum.is_none_or(|(sum, stored)| sum != u16::from_le_bytes(stored));
+            if !self.damaged {
+                self.checked += block.len();
+                self.seed = crc::INITIAL;
+            }
+        }
+        count
+    }
+
+    /// Drops the blocks before the one that holds `position`.
+    fn drop_before(&mut self, position: u32) {
+        let drop = (position - self.base) as usize & !(STRIDE - 1);
+        let drop = drop.min(self.checked);
+        if drop > 0 {
+            self.buffer.copy_within(drop..self.len, 0);
+            self.len -= drop;
+            self.checked -= drop;
+            self.base += drop as u32;
+        }
+    }
+
+    fn whole(&self) -> bool {
+        self.left == 0 && self.checked == self.len
+    }
+
+    fn input(&self) -> Input<'_> {
+        let end = if self.whole() { self.len.saturating_sub(CRC_BYTES) } else { self.checked };
+        Input { bytes: self.buffer.get(..end).unwrap_or(&[]), base: self.base }
+    }
+
+    /// The last position at which a segment or a start is sure to be whole.
+    fn dry_at(&self) -> u32 {
+        if self.whole() { u32::MAX } else { (self.base + self.checked as u32).saturating_sub(MAX_SEGMENT_BYTES) }
+    }
+}
+
+/// Plays a clip of a known rig from pieces of any size: a file (its own rig is passed over if it is the known one) from its
+/// first byte on. Bit for bit the poses of a [`crate::Player`].
+///
+/// Call [`Stream::step`] until it answers [`Step::NeedMore`], then [`Stream::feed`].
+#[derive(Debug)]
+pub struct Stream<'a, 'm> {
+    rig: Rig<'a>,
+    states: &'m mut [ChannelState],
+    pose: &'m mut [i32],
+    window: Window<'m>,
+    stage: Stage<'a>,
+    head: Head,
+    position: Position,
+}
+
+impl<'a, 'm> Stream<'a, 'm> {
+    /// Bytes that `buffer` needs at least. It holds what has come and has not been played.
+    pub const BUFFER: usize = 2 * STRIDE;
+
+    /// Waits for the first byte. `states` needs an element a moving channel ([`crate::Rig::channels`] always suffice), `pose`
+    /// one a channel of the rig.
+    pub fn new(
+        rig: Rig<'a>,
+        buffer: &'m mut [u8],
+        states: &'m mut [ChannelState],
+        pose: &'m mut [i32],
+    ) -> Result<Self, TooSmall> {
+        let pose = pose.get_mut(..rig.channels()).ok_or(TooSmall { needed: rig.channels() })?;
+        if buffer.len() < Self::BUFFER {
+            return Err(TooSmall { needed: Self::BUFFER });
+        }
+        let window = Window { buffer, len: 0, checked: 0, base: 0, left: 0, seed: 0, damaged: false };
+        let stage = Stage::Prefix(Prefix::default());
+        Ok(Stream { rig, states, pose, window, stage, head: Head::default(), position: Position::default() })
+    }
+
+    /// Takes bytes and returns how many: fewer than all if the buffer is full (then step) or the motion is complete.
+    pub fn feed(&mut self, bytes: &[u8]) -> usize {
+        let mut taken = 0;
+        while let Stage::Prefix(prefix) = &mut self.stage {
+            let Some(&byte) = bytes.get(taken) else { return taken };
+            taken += 1;
+            match prefix.push(byte, &self.rig) {
+                Ok(None) => {}
+                Ok(Some(motion_len)) => {
+                    (self.window.left, self.window.seed) = (motion_len, prefix.seed(motion_len));
+                    self.head.flags = prefix.flags;
+                    self.stage = Stage::Head;
+                }
+                Err(error) => self.stage = Stage::Failed(Step::Damaged(error)),
+            }
+        }
+        let reading = match &self.stage {
+            Stage::Events { position, .. } => *position,
+            Stage::Starts(_) | Stage::Frames => self.position.symbols.position,
+            Stage::Prefix(_) | Stage::Head | Stage::Failed(_) => 0,
+        };
+        self.window.drop_before(reading.max(self.window.base));
+        taken + self.window.fill(bytes.get(taken..).unwrap_or(&[]))
+    }
+
+    /// Goes on as far as one answer.
+    pub fn step(&mut self) -> Step {
+        match self.stage {
+            Stage::Prefix(_) => Step::NeedMore,
+            Stage::Head => self.head(),
+            Stage::Events { left, position, frame } => self.event(left, position, frame),
+            Stage::Starts(_) => self.starts(),
+            Stage::Frames => self.frame_on(),
+            Stage::Failed(step) => step,
+        }
+    }
+
+    /// What it means that the window ran dry.
+    fn dry(&mut self) -> Step {
+        if self.window.damaged { self.fail(Step::Damaged(OpenError::BadCrc)) } else { Step::NeedMore }
+    }
+
+    fn fail(&mut self, step: Step) -> Step {
+        self.stage = Stage::Failed(step);
+        step
+    }
+
+    fn head(&mut self) -> Step {
+        if self.window.checked == 0 {
+            let step = if self.window.left == 0 { Step::Damaged(OpenError::Malformed) } else { Step::NeedMore };
+            return if self.window.damaged { self.dry() } else { step };
+        }
+        let flags = self.head.flags;
+        let rig_id = if flags & HAS_RIG == 0 { Some(self.rig.id()) } else { None };
+        match Head::read(&self.window.input(), flags, &self.rig, rig_id) {
+            Err(error) => self.fail(Step::Damaged(error)),
+            Ok(head) => {
+                self.head = head;
+                self.stage = Stage::Events { left: head.event_count, position: u32::from(head.events), frame: 0 };
+                Step::Opened
+            }
+        }
+    }
+
+    fn event(&mut self, left: u32, position: u32, frame: u32) -> Step {
+        if position > self.window.dry_at() {
+            return self.dry();
+        }
+        let input = self.window.input();
+        if left == 0 {
+            self.position = Position { symbols: Symbols::start(&input, position), ..Position::default() };
+            self.stage = Stage::Starts(Starts::new(&self.rig, self.head.length_exponent));
+            return self.starts();
+        }
+        if position as usize > self.window.base as usize + input.bytes.len() {
+            return self.fail(Step::Damaged(OpenError::Malformed));
+        }
+        let mut reader = Reader { input: &input, position };
+        let event = event(&mut reader, frame);
+        self.stage = Stage::Events { left: left - 1, position: reader.position, frame: event.frame };
+        Step::Event(event)
+    }
+
+    fn starts(&mut self) -> Step {
+        let Stage::Starts(starts) = &mut self.stage else { return Step::NeedMore };
+        let (input, dry_at) = (self.window.input(), self.window.dry_at());
+        match starts.read(&mut self.position.symbols, &input, dry_at, self.states, self.pose) {
+            Opened::Dry => self.dry(),
+            Opened::Full => self.fail(Step::TooSmall),
+            Opened::Done => {
+                let states = core::mem::take(&mut self.states);
+                self.states = states.get_mut(..usize::from(starts.moving)).unwrap_or(&mut []);
+                self.stage = Stage::Frames;
+                Step::Frame
+            }
+        }
+    }
+
+    fn frame_on(&mut self) -> Step {
+        let frame = self.position.frame;
+        if frame + 1 >= self.head.frames {
+            return Step::End;
+        }
+        let (input, dry_at) = (self.window.input(), self.window.dry_at());
+        let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
+        if reads(frame, self.head.frames) && !self.position.read_due(&mut channels, &input, dry_at, Beside::Nothing) {
+            return self.dry();
+        }
+        self.position.advance(&mut channels);
+        Step::Frame
+    }
+
+    /// The frame that the pose shows.
+    pub fn frame(&self) -> u32 {
+        self.position.frame
+    }
+
+    /// One raw value a channel of the rig, as [`crate::Player::pose`]. It is of one frame also while bytes are missing.
+    pub fn pose(&self) -> &[i32] {
+        self.pose
+    }
+
+    /// Number of frames; 0 before [`Step::Opened`].
+    pub fn frames(&self) -> u32 {
+        self.head.frames
+    }
+
+    /// Time from one frame to the next; 0 before [`Step::Opened`].
+    pub fn frame_time_ns(&self) -> u32 {
+        self.head.frame_time_ns
+    }
+
+    /// Whether frame 0 follows the last frame.
+    pub fn looped(&self) -> bool {
+        self.head.flags & LOOPED != 0
+    }
+
+    /// The raw value of a position channel times 2^`length_exponent` is in units of the source.
+    pub fn length_exponent(&self) -> i8 {
+        self.head.length_exponent
+    }
+
+    /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map. `None` unless
+    /// asked between [`Step::Opened`] and the next call of `feed` or `step`: later the bytes that tell may be gone.
+    pub fn is_exponential(&self, joint: usize) -> Option<bool> {
+        (self.window.base == 0 && self.head.frames > 0).then(|| self.head.is_exponential(&self.window.input(), &self.rig, joint))
+    }
+}
