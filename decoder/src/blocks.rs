@@ -20,10 +20,10 @@ impl Input<'_> {
     #[inline]
     pub(crate) fn byte(&self, position: &mut u32) -> u8 {
         let byte = self.bytes.get(position.wrapping_sub(self.base) as usize).copied().unwrap_or(0);
-        *position += 1;
+        *position = position.wrapping_add(1);
         // STRIDE is 256: the low byte of a position is its place in the block.
         if *position as usize % STRIDE == BLOCK_BYTES {
-            *position += CRC_BYTES as u32;
+            *position = position.wrapping_add(CRC_BYTES as u32);
         }
         byte
     }

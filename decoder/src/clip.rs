@@ -2,7 +2,7 @@
 
 use crate::blocks::{self, Input, Reader, STRIDE};
 use crate::bytes::Bytes;
-use crate::entropy::Symbols;
+use crate::entropy::{Cursor, Symbols};
 use crate::layout::*;
 use crate::opening::Starts;
 use crate::rig::{Joint, Rig};
@@ -256,7 +256,7 @@ impl<'a> Clip<'a> {
     /// Number of [`crate::ChannelState`]s that a player of this clip needs.
     pub fn moving(&self) -> usize {
         let input = self.input();
-        Starts::new(&self.rig, self.head.length_exponent).count(&mut Symbols::start(&input, self.symbols), &input)
+        Starts::new(&self.rig, self.head.length_exponent).count(&mut Symbols { at: Cursor::start(&input, self.symbols), input })
     }
 
     /// Bytes of the snapshots in the file, their CRCs included; 0 if there are none.

@@ -1,7 +1,7 @@
 //! Steps taken back exactly, from memory that the caller lends.
 
 use crate::channel::ChannelState;
-use crate::entropy::Symbols;
+use crate::entropy::Cursor;
 use crate::position::{Channels, Position};
 
 /// What reading one segment changed.
@@ -9,7 +9,7 @@ use crate::position::{Channels, Position};
 pub struct Undo {
     w: i32,
     k: i32,
-    symbols: Symbols,
+    cursor: Cursor,
     frame: u32,
     channel: u16,
     last: i16,
@@ -56,10 +56,10 @@ impl<'m> History<'m> {
     }
 
     /// Keeps what a segment's reading will change.
-    pub(crate) fn push(&mut self, position: &Position, state: &ChannelState) {
+    pub(crate) fn push(&mut self, frame: u32, channel: u16, cursor: Cursor, state: &ChannelState) {
         let full = self.len == self.ring.len();
         let Some(place) = self.ring.get_mut(self.end) else {
-            self.floor = position.frame + 1;
+            self.floor = frame + 1;
             return;
         };
         if full {
@@ -70,9 +70,9 @@ impl<'m> History<'m> {
         *place = Undo {
             w: state.w,
             k: state.k,
-            symbols: position.symbols,
-            frame: position.frame,
-            channel: position.next,
+            cursor,
+            frame,
+            channel,
             last: state.last,
             mode: state.mode,
         };
@@ -94,7 +94,7 @@ impl<'m> History<'m> {
                 // It was read when it was due.
                 state.due = undo.frame as u8;
             }
-            position.symbols = undo.symbols;
+            position.cursor = undo.cursor;
             self.end = before;
             self.len -= 1;
         }

@@ -2,7 +2,7 @@
 
 use crate::blocks::{Input, Reader};
 use crate::channel::ChannelState;
-use crate::entropy::{STATE_BYTES, Symbols};
+use crate::entropy::{Cursor, STATE_BYTES};
 use crate::layout::{START_MODE, segment_type};
 use crate::position::{Channels, Position};
 
@@ -34,7 +34,7 @@ pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut Position, 
     let mut reader = Reader { input, position: entry.position };
     let at = reader.varint();
     let state = (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(reader.byte()));
-    *position = Position { symbols: Symbols::at(at, state), frame: entry.frame, next: 0 };
+    *position = Position { cursor: Cursor::at(at, state), frame: entry.frame, next: 0 };
     for state in channels.states.iter_mut() {
         state.mode = (reader.byte() & START_MODE).min(START_MODE - 1);
         state.due = (entry.frame as u8).wrapping_add(reader.byte());
@@ -51,8 +51,8 @@ pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut Position, 
 
 /// Writes what [`restore`] reads.
 pub(crate) fn write(position: &Position, states: &[ChannelState], pose: &[i32], put: &mut dyn FnMut(u8)) {
-    varint(position.symbols.position, put);
-    let state = position.symbols.state();
+    varint(position.cursor.position, put);
+    let state = position.cursor.state();
     (0..STATE_BYTES).rev().for_each(|byte| put((state >> (8 * byte)) as u8));
     for state in states {
         put(state.mode);

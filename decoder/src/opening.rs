@@ -1,6 +1,5 @@
 //! How channels begin: at rest, with a constant, or with a position and a velocity.
 
-use crate::blocks::Input;
 use crate::channel::{ChannelState, step_size};
 use crate::entropy::Symbols;
 use crate::layout::{FIRST_STEP, MAX_STEP, STEP_BITS, STEP_CHANGES};
@@ -23,29 +22,29 @@ impl Default for Opening {
 impl Opening {
     /// The next channel's start: its position unless it rests, and velocity and index of its step if it moves.
     #[inline(never)]
-    fn read(&mut self, symbols: &mut Symbols, input: &Input<'_>, kind: Kind) -> (Option<i32>, Option<(i32, u8)>) {
-        let status = symbols.symbol(input, tables::status(self.status)) as u8;
+    fn read(&mut self, symbols: &mut Symbols<'_>, kind: Kind) -> (Option<i32>, Option<(i32, u8)>) {
+        let status = symbols.symbol(tables::status(self.status)) as u8;
         self.status = status.min(2);
         if status == 0 {
             return (None, None);
         }
         let class = usize::from(kind.is_position());
-        let change = symbols.symbol(input, &tables::STEP_CHANGE);
+        let change = symbols.symbol(&tables::STEP_CHANGE);
         let step = if change < STEP_CHANGES {
             self.steps.get(class).copied().unwrap_or(FIRST_STEP).wrapping_add(unzigzag(change) as u8)
         } else {
-            symbols.bits(input, STEP_BITS) as u8
+            symbols.bits(STEP_BITS) as u8
         };
         let step = step.min(MAX_STEP);
         if let Some(last) = self.steps.get_mut(class) {
             *last = step;
         }
         let grid = step_size(step);
-        let p = magnitude(symbols, input, &tables::POSITION).wrapping_mul((grid >> 1).max(1) as i32);
+        let p = magnitude(symbols, &tables::POSITION).wrapping_mul((grid >> 1).max(1) as i32);
         if status == 1 {
             return (Some(p), None);
         }
-        let v = magnitude(symbols, input, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
+        let v = magnitude(symbols, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
         (Some(p), Some((v, step)))
     }
 }
@@ -56,11 +55,11 @@ const fn unzigzag(n: u32) -> i32 {
 }
 
 /// A signed number: the symbol is its length in bits, then come the bits below the highest, then the sign.
-fn magnitude(symbols: &mut Symbols, input: &Input<'_>, table: &[u16]) -> i32 {
-    let bits = symbols.symbol(input, table);
+fn magnitude(symbols: &mut Symbols<'_>, table: &[u16]) -> i32 {
+    let bits = symbols.symbol(table);
     let Some(below) = bits.checked_sub(1) else { return 0 };
-    let value = (1 << below.min(31)) | symbols.long_bits(input, below.min(31)) as i32;
-    if symbols.bits(input, 1) == 0 { value } else { value.wrapping_neg() }
+    let value = (1 << below.min(31)) | symbols.long_bits(below.min(31)) as i32;
+    if symbols.bits(1) == 0 { value } else { value.wrapping_neg() }
 }
 
 /// What became of reading the starts.
@@ -95,15 +94,14 @@ impl<'a> Starts<'a> {
     /// Reads on, up to the last position at which a start is sure to be whole. `pose` has a value for every channel.
     pub(crate) fn read(
         &mut self,
-        symbols: &mut Symbols,
-        input: &Input<'_>,
+        symbols: &mut Symbols<'_>,
         dry_at: u32,
         states: &mut [ChannelState],
         pose: &mut [i32],
     ) -> Opened {
-        while symbols.position <= dry_at {
+        while symbols.at.position <= dry_at {
             let Some((kind, rest)) = self.slots.next() else { return Opened::Done };
-            let (p, start) = self.opening.read(symbols, input, kind);
+            let (p, start) = self.opening.read(symbols, kind);
             if let Some(value) = pose.get_mut(usize::from(self.slot)) {
                 *value = p.unwrap_or(shifted(rest, self.shift));
             }
@@ -118,10 +116,10 @@ impl<'a> Starts<'a> {
     }
 
     /// Number of moving channels, all starts being at hand.
-    pub(crate) fn count(mut self, symbols: &mut Symbols, input: &Input<'_>) -> usize {
+    pub(crate) fn count(mut self, symbols: &mut Symbols<'_>) -> usize {
         let mut moving = 0;
         while let Some((kind, _)) = self.slots.next() {
-            moving += usize::from(self.opening.read(symbols, input, kind).1.is_some());
+            moving += usize::from(self.opening.read(symbols, kind).1.is_some());
         }
         moving
     }

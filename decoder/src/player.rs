@@ -2,7 +2,7 @@
 
 use crate::channel::ChannelState;
 use crate::clip::Clip;
-use crate::entropy::Symbols;
+use crate::entropy::{Cursor, Symbols};
 use crate::history::{History, Undo};
 use crate::opening::{Opened, Starts};
 use crate::position::{Beside, Channels, Position, reads};
@@ -68,8 +68,9 @@ impl<'a, 'm> Player<'a, 'm> {
     fn open(&mut self) -> Option<usize> {
         let input = self.clip.input();
         let mut starts = Starts::new(&self.clip.rig(), self.clip.length_exponent());
-        self.position = Position { symbols: Symbols::start(&input, self.clip.symbols()), frame: 0, next: 0 };
-        let opened = starts.read(&mut self.position.symbols, &input, u32::MAX, self.states, self.pose);
+        let mut symbols = Symbols { at: Cursor::start(&input, self.clip.symbols()), input };
+        let opened = starts.read(&mut symbols, u32::MAX, self.states, self.pose);
+        self.position = Position { cursor: symbols.at, frame: 0, next: 0 };
         (opened == Opened::Done).then_some(usize::from(starts.moving))
     }
 

@@ -2,14 +2,14 @@
 
 use crate::blocks::Input;
 use crate::channel::ChannelState;
-use crate::entropy::Symbols;
+use crate::entropy::{Cursor, Symbols};
 use crate::history::History;
 use crate::segment;
 
 /// All of a player's state but the channels and the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Position {
-    pub(crate) symbols: Symbols,
+    pub(crate) cursor: Cursor,
     pub(crate) frame: u32,
     /// Channels below have read what they need for the step from this frame.
     pub(crate) next: u16,
@@ -41,9 +41,11 @@ impl Position {
     pub(crate) fn read_due(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, dry_at: u32, mut beside: Beside<'_, '_>) -> bool {
         let now = self.frame as u8;
         let states = channels.states.get_mut(usize::from(self.next)..).unwrap_or(&mut []);
+        let mut symbols = Symbols { at: self.cursor, input: *input };
         for state in states {
             if state.due == now {
-                if self.symbols.position > dry_at {
+                if symbols.at.position > dry_at {
+                    self.cursor = symbols.at;
                     return false;
                 }
                 match &mut beside {
@@ -53,12 +55,13 @@ impl Position {
                             state.hop(p, i32::from(state.length()));
                         }
                     }
-                    Beside::Record(history) => history.push(self, state),
+                    Beside::Record(history) => history.push(self.frame, self.next, symbols.at, state),
                 }
-                segment::read(state, &mut self.symbols, input);
+                segment::read(state, &mut symbols);
             }
             self.next += 1;
         }
+        self.cursor = symbols.at;
         true
     }
 
@@ -87,12 +90,14 @@ impl Position {
     /// One frame on, with its segments: what `read_due` and `advance` do, in one loop.
     pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>) {
         let now = self.frame as u8;
+        let mut symbols = Symbols { at: self.cursor, input: *input };
         for state in channels.states.iter_mut() {
             if state.due == now {
-                segment::read(state, &mut self.symbols, input);
+                segment::read(state, &mut symbols);
             }
             state.add(channels.pose);
         }
+        self.cursor = symbols.at;
         self.frame += 1;
     }
 

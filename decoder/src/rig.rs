@@ -207,7 +207,8 @@ impl<'a> Rig<'a> {
             if joint.parent.map_or(index != 0, |parent| parent >= index) {
                 return Err(OpenError::Malformed);
             }
-            if joint.kinds.count() != usize::from(joint.kinds.len) {
+            // A kind that is none ends the walk early; a scalar belongs to no joint.
+            if joint.kinds.take_while(|&kind| kind != Kind::Scalar).count() != usize::from(joint.kinds.len) {
                 return Err(OpenError::Malformed);
             }
         }

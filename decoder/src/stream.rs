@@ -4,7 +4,7 @@ use crate::blocks::{Input, Reader, STRIDE};
 use crate::channel::ChannelState;
 use crate::clip::{Event, Head, event};
 use crate::crc;
-use crate::entropy::Symbols;
+use crate::entropy::{Cursor, Symbols};
 use crate::layout::*;
 use crate::opening::{Opened, Starts};
 use crate::position::{Beside, Channels, Position, reads};
@@ -166,7 +166,7 @@ impl<'a, 'm> Stream<'a, 'm> {
         }
         let reading = match &self.stage {
             Stage::Events { position, .. } => *position,
-            Stage::Starts(_) | Stage::Frames => self.position.symbols.position,
+            Stage::Starts(_) | Stage::Frames => self.position.cursor.position,
             Stage::Prefix(_) | Stage::Head | Stage::Failed(_) => 0,
         };
         self.window.drop_before(reading.max(self.window.base));
@@ -218,7 +218,7 @@ impl<'a, 'm> Stream<'a, 'm> {
         }
         let input = self.window.input();
         if left == 0 {
-            self.position = Position { symbols: Symbols::start(&input, position), ..Position::default() };
+            self.position = Position { cursor: Cursor::start(&input, position), ..Position::default() };
             self.stage = Stage::Starts(Starts::new(&self.rig, self.head.length_exponent));
             return self.starts();
         }
@@ -234,7 +234,10 @@ impl<'a, 'm> Stream<'a, 'm> {
     fn starts(&mut self) -> Step {
         let Stage::Starts(starts) = &mut self.stage else { return Step::NeedMore };
         let (input, dry_at) = (self.window.input(), self.window.dry_at());
-        match starts.read(&mut self.position.symbols, &input, dry_at, self.states, self.pose) {
+        let mut symbols = Symbols { at: self.position.cursor, input };
+        let opened = starts.read(&mut symbols, dry_at, self.states, self.pose);
+        self.position.cursor = symbols.at;
+        match opened {
             Opened::Dry => self.dry(),
             Opened::Full => self.fail(Step::TooSmall),
             Opened::Done => {
