@@ -10,3 +10,4 @@ pub mod qmp;
 pub mod screen;
 pub mod setup;
 pub mod sync;
+pub mod vectors;

@@ -12,12 +12,14 @@ use clap::Parser;
 enum Command {
     Demo(cmd::demo::Demo),
     Test(cmd::test::Test),
+    Vectors(cmd::vectors::Vectors),
 }
 
 fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Demo(demo) => demo.run(),
         Command::Test(test) => test.run(),
+        Command::Vectors(vectors) => vectors.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,3 +4,4 @@ pub mod demo;
 mod packages;
 mod steps;
 pub mod test;
+pub mod vectors;
