@@ -139,9 +139,10 @@ impl Position {
     fn hop_all(&self, channels: &mut Channels<'_>, back: bool) {
         for state in channels.states.iter_mut() {
             if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                // Past the last segment's end (no segment starts at the last two frames) it is negative.
+                // Past the last segment's end (no segment starts at the last two frames) it is negative; so it is for a channel
+                // of a clip of two frames, which has none.
                 let left = i32::from(state.due.wrapping_sub(self.frame as u8) as i8);
-                let run = if state.length() == 0 { 0 } else { i32::from(state.length()) - left };
+                let run = i32::from(state.length()) - left;
                 state.hop(p, if back { -run } else { run });
             }
         }

@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod clips;
+pub mod conformance;
 pub mod defmt_log;
 pub mod icount;
 pub mod paths;

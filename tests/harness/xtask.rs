@@ -10,6 +10,7 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Command {
+    Conformance(cmd::conformance::Conformance),
     Demo(cmd::demo::Demo),
     Test(cmd::test::Test),
     Vectors(cmd::vectors::Vectors),
@@ -17,6 +18,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Command::parse() {
+        Command::Conformance(conformance) => conformance.run(),
         Command::Demo(demo) => demo.run(),
         Command::Test(test) => test.run(),
         Command::Vectors(vectors) => vectors.run(),

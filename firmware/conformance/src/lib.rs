@@ -28,7 +28,12 @@ pub fn crc_of(pose: &[i32]) -> u16 {
 }
 
 /// Steps through the whole clip, then seeks, and tells each pose's CRC.
-pub fn play(clip: Clip<'_>, states: &mut [ChannelState], pose: &mut [i32], tell: &mut dyn FnMut(Play, u16)) -> Result<(), TooSmall> {
+pub fn play(
+    clip: Clip<'_>,
+    states: &mut [ChannelState],
+    pose: &mut [i32],
+    tell: &mut dyn FnMut(Play, u16),
+) -> Result<(), TooSmall> {
     let frames = clip.frames();
     let mut player = Player::new(clip, states, pose)?;
     tell(Play::Step, crc_of(player.pose()));

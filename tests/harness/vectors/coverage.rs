@@ -60,7 +60,8 @@ pub fn left_out(motions: &[Made]) -> Result<Vec<String>> {
     for mode in 0..START_MODE {
         wants(seen.modes.contains(&mode), format!("type {} of {} frames", mode >> 4, LENGTHS[usize::from(mode & 15)]));
     }
-    let has = |of: &dyn Fn(Alphabet) -> bool, symbol| seen.symbols.iter().any(|&(alphabet, other)| of(alphabet) && other == symbol);
+    let has =
+        |of: &dyn Fn(Alphabet) -> bool, symbol| seen.symbols.iter().any(|&(alphabet, other)| of(alphabet) && other == symbol);
     for symbol in 0..=2 * FAR {
         wants(has(&|of| matches!(of, Alphabet::Number(context) if context < 48), symbol), format!("symbol {symbol} of w"));
         wants(has(&|of| matches!(of, Alphabet::Number(context) if context >= 48), symbol), format!("symbol {symbol} of k"));

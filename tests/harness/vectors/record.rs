@@ -3,7 +3,9 @@
 //! `crcs` has one CRC a frame: CRC-16/IBM-3740 of the pose's raw values as little-endian 32-bit integers, in hexadecimal.
 //! `poses` has whole poses by frame, as raw values. The other fields are the clip's own, as it tells them.
 
-use anyhow::Result;
+use std::path::Path;
+
+use anyhow::{Context, Result};
 use conformance::Play;
 use pantin::{ChannelState, Clip};
 use serde_json::{Map, Value, json};
@@ -14,6 +16,7 @@ use super::json;
 const POSE_VALUES: usize = 400;
 
 /// The CRC of every frame, step by step, and of those that [`conformance::sought`] names, by seeking.
+#[derive(Debug, Default)]
 pub struct Crcs {
     /// One a frame.
     pub stepped: Vec<u16>,
@@ -51,6 +54,19 @@ pub fn of(clip: &Clip<'_>) -> Result<String> {
         ("poses", json!(poses(clip)?)),
         ("crcs", json!(crcs)),
     ]))
+}
+
+/// The CRCs of a committed record, which names no frames sought: their poses are those of the frames.
+pub fn read(folder: &Path, name: &str) -> Result<Crcs> {
+    let path = folder.join(name).with_extension("json");
+    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let record: Value = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
+    let crc = |crc: &Value| u16::from_str_radix(crc.as_str()?, 16).ok();
+    let stepped: Option<Vec<u16>> = record["crcs"].as_array().and_then(|crcs| crcs.iter().map(crc).collect());
+    let stepped = stepped.filter(|crcs| record["frames"] == crcs.len());
+    let stepped = stepped.with_context(|| format!("{}: `crcs` has no CRC for each of `frames`", path.display()))?;
+    let sought = conformance::sought(stepped.len() as u32).map(|frame| stepped[frame as usize]).collect();
+    Ok(Crcs { stepped, sought })
 }
 
 /// The first, the middle and the last pose, as far as they are short.
