@@ -12,6 +12,7 @@ use clap::Parser;
 enum Command {
     Conformance(cmd::conformance::Conformance),
     Demo(cmd::demo::Demo),
+    Fuzz(cmd::fuzz::Fuzz),
     Test(cmd::test::Test),
     Vectors(cmd::vectors::Vectors),
 }
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Conformance(conformance) => conformance.run(),
         Command::Demo(demo) => demo.run(),
+        Command::Fuzz(fuzz) => fuzz.run(),
         Command::Test(test) => test.run(),
         Command::Vectors(vectors) => vectors.run(),
     };

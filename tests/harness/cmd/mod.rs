@@ -2,6 +2,7 @@
 
 pub mod conformance;
 pub mod demo;
+pub mod fuzz;
 mod packages;
 mod steps;
 pub mod test;

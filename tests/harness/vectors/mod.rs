@@ -3,7 +3,6 @@
 pub mod constants;
 pub mod coverage;
 mod json;
-mod noise;
 pub mod own;
 pub mod record;
 pub mod synthetic;

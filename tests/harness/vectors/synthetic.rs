@@ -9,7 +9,7 @@ use pantin_tools::encode::segment::Segment;
 use pantin_tools::motion::{Joint, Rig, Scalar};
 
 use super::Vector;
-use super::noise::Noise;
+use hostile::noise::Noise;
 
 /// A motion of noise, and its figure.
 pub struct Made {
