@@ -17,7 +17,7 @@ fn shows_what_the_host_draws(motion: &Path, most: usize) {
     let clip = files.open().unwrap();
     let frames = most.min(clip.frames() as usize);
     let expected = host::pictures(&clip, Default::default(), 0..frames as u32).unwrap();
-    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB, Some(&path)).unwrap();
+    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, Some(&path)).unwrap();
     let counts = folder.path().join("counts");
     let plugin = icount::plugin(LM3S6965EVB.emulator).unwrap();
     let launch = Launch::new(LM3S6965EVB, firmware.elf()).counting(&plugin, &counts);

@@ -10,7 +10,7 @@ use harness::{screen, setup, sync};
 use pantin_tools::render::screen::Picture;
 
 fn endings() -> Firmware {
-    Firmware::build("testsuite", "endings", LM3S6965EVB, None).unwrap()
+    Firmware::build("testsuite", "endings", LM3S6965EVB.target, None).unwrap()
 }
 
 fn run(program: &Firmware, words: &[&str]) -> Outcome {
@@ -88,7 +88,7 @@ fn every_pixel_of_every_frame_is_read_back() {
     if setup::host_only("frames in step") {
         return;
     }
-    let program = Firmware::build("testsuite", "panel", LM3S6965EVB, None).unwrap();
+    let program = Firmware::build("testsuite", "panel", LM3S6965EVB.target, None).unwrap();
     let mut seen = 0;
     let outcome = sync::play(Launch::new(LM3S6965EVB, program.elf()), 5, |frame, picture| {
         assert_eq!(frame, seen);
@@ -120,7 +120,7 @@ fn the_log_is_decoded_up_to_the_panic() {
     if setup::host_only("the log") {
         return;
     }
-    let program = Firmware::build("testsuite", "log", LM3S6965EVB, None).unwrap();
+    let program = Firmware::build("testsuite", "log", LM3S6965EVB.target, None).unwrap();
     let outcome = run(&program, &[]);
     assert_eq!(outcome.code, 101, "{}", outcome.stderr);
     let lines = defmt_log::decode(program.elf(), &outcome.stdout).unwrap();

@@ -11,7 +11,6 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::paths;
-use crate::qemu::Machine;
 use crate::setup;
 
 /// One call of `cargo build`.
@@ -48,6 +47,23 @@ pub fn cargo(build: &Build) -> Result<PathBuf> {
     product.with_context(|| format!("cargo built no {}", build.product))
 }
 
+/// What a build needs beside its own words for the core library of its target.
+#[derive(Default)]
+struct Core {
+    arguments: Vec<OsString>,
+    environment: Vec<(OsString, OsString)>,
+}
+
+/// Cargo compiles core itself: unstable, so the stable compiler must be told to allow it. In a folder of its own, since build
+/// scripts run again whenever that permission comes or goes.
+fn core_from_source() -> Core {
+    let folder = paths::firmware().join("target/core-from-source");
+    Core {
+        arguments: vec!["-Zbuild-std=core".into()],
+        environment: vec![("RUSTC_BOOTSTRAP".into(), "1".into()), ("CARGO_TARGET_DIR".into(), folder.into())],
+    }
+}
+
 /// A firmware program, as an ELF file of its own: a later build of the same program does not change it.
 pub struct Firmware {
     _directory: TempDir,
@@ -55,20 +71,20 @@ pub struct Firmware {
 }
 
 impl Firmware {
-    /// Builds a program of the firmware workspace for a machine, with a clip embedded where it plays one.
-    pub fn build(package: &str, program: &str, machine: Machine, clip: Option<&Path>) -> Result<Self> {
+    /// Builds a program of the firmware workspace for a Rust target, with a clip embedded where it plays one.
+    pub fn build(package: &str, program: &str, target: &str, clip: Option<&Path>) -> Result<Self> {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        setup::rust_target(machine.target)?;
+        setup::rust_target(target)?;
         let clip = clip.map(|clip| std::path::absolute(clip).map(|clip| ("PANTIN_CLIP".into(), clip.into()))).transpose()?;
         let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
+        let core = if setup::is_from_source(target) { core_from_source() } else { Core::default() };
+        let arguments = ["--release", "--package", package, "--bin", program, "--target", target].into_iter();
         let product = cargo(&Build {
             workspace: paths::firmware(),
-            arguments: ["--release", "--package", package, "--bin", program, "--target", machine.target]
-                .map(OsString::from)
-                .into(),
-            environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).collect(),
+            arguments: arguments.map(OsString::from).chain(core.arguments).collect(),
+            environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).chain(core.environment).collect(),
             product: program.into(),
         })?;
         let directory = tempfile::Builder::new().prefix("pantin-elf-").tempdir().context("cannot make a temporary folder")?;

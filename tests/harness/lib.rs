@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod clips;
+pub mod conformance;
 pub mod defmt_log;
 pub mod icount;
 pub mod paths;
@@ -10,3 +11,4 @@ pub mod qmp;
 pub mod screen;
 pub mod setup;
 pub mod sync;
+pub mod vectors;

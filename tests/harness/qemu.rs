@@ -26,13 +26,32 @@ pub struct Machine {
     pub name: &'static str,
     /// The Rust target of its programs.
     pub target: &'static str,
+    /// What else QEMU must be told.
+    pub options: &'static [&'static str],
 }
 
 /// Cortex-M3 with 64 KiB RAM, 256 KiB flash and an OLED of 128x64 pixels in 16 greys.
-pub const LM3S6965EVB: Machine = Machine { emulator: "qemu-system-arm", name: "lm3s6965evb", target: "thumbv7m-none-eabi" };
+pub const LM3S6965EVB: Machine =
+    Machine { emulator: "qemu-system-arm", name: "lm3s6965evb", target: "thumbv7m-none-eabi", options: &[] };
 
 /// Cortex-M0 with 16 KiB RAM and 256 KiB flash.
-pub const MICROBIT: Machine = Machine { emulator: "qemu-system-arm", name: "microbit", target: "thumbv6m-none-eabi" };
+pub const MICROBIT: Machine =
+    Machine { emulator: "qemu-system-arm", name: "microbit", target: "thumbv6m-none-eabi", options: &[] };
+
+/// Cortex-M4F with 4 MiB of each.
+pub const MPS2_AN386: Machine =
+    Machine { emulator: "qemu-system-arm", name: "mps2-an386", target: "thumbv7em-none-eabihf", options: &[] };
+
+/// ARM925T, ARMv4T: Siemens SX1, a phone of 2003.
+pub const SX1: Machine = Machine { emulator: "qemu-system-arm", name: "sx1", target: "armv4t-none-eabi", options: &[] };
+
+/// RV32IMAC, entered without firmware.
+pub const VIRT: Machine = Machine {
+    emulator: "qemu-system-riscv32",
+    name: "virt",
+    target: "riscv32imac-unknown-none-elf",
+    options: &["-bios", "none"],
+};
 
 /// What to start, and with what attached.
 #[derive(Clone, Debug)]
@@ -118,6 +137,7 @@ impl Launch {
         let mut line: Vec<String> =
             ["-M", self.machine.name, "-display", "none", "-monitor", "none", "-kernel", &elf].map(String::from).into();
         line.extend(["-serial".into(), socket(self.serial, "serial"), "-semihosting-config".into(), semihosting]);
+        line.extend(self.machine.options.iter().map(|option| (*option).to_owned()));
         if self.display {
             line.extend(["-qmp".into(), socket(true, "qmp")]);
         }

@@ -20,8 +20,19 @@ pub fn host_only(test: &str) -> bool {
     skip
 }
 
+/// Targets without a compiled core library: cargo compiles it from the toolchain's source.
+const FROM_SOURCE: [&str; 1] = ["armv4t-none-eabi"];
+
+/// Whether the core library of `target` must be compiled.
+pub fn is_from_source(target: &str) -> bool {
+    FROM_SOURCE.contains(&target)
+}
+
 /// Makes sure that Rust can compile for `target`.
 pub fn rust_target(target: &str) -> Result<()> {
+    if is_from_source(target) {
+        return rust_source();
+    }
     let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
     let folder = Command::new(rustc).args(["--print", "target-libdir", "--target", target]).output();
     let folder = folder.context("cannot start rustc")?;
@@ -35,6 +46,19 @@ pub fn rust_target(target: &str) -> Result<()> {
     eprintln!("adding Rust's library for {target}: rustup target add {target}");
     let status = Command::new("rustup").args(["target", "add", target]).status()?;
     ensure!(status.success(), "`rustup target add {target}` failed: no network, or a toolchain that rustup does not manage");
+    Ok(())
+}
+
+fn rust_source() -> Result<()> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
+    let sysroot = Command::new(rustc).args(["--print", "sysroot"]).output().context("cannot start rustc")?;
+    let sysroot = PathBuf::from(String::from_utf8_lossy(&sysroot.stdout).trim());
+    if sysroot.join("lib/rustlib/src/rust/library/core").is_dir() {
+        return Ok(());
+    }
+    eprintln!("adding the source of Rust's libraries: rustup component add rust-src");
+    let status = Command::new("rustup").args(["component", "add", "rust-src"]).status();
+    ensure!(status.is_ok_and(|status| status.success()), "rust-src is missing, and `rustup component add rust-src` failed");
     Ok(())
 }
 
@@ -52,12 +76,12 @@ pub fn component(name: &str) -> Result<()> {
     Ok(())
 }
 
-/// The emulator's program, from `PATH`; if it is missing, the error says how to get it.
+/// An emulator or Node.js, from `PATH`; if it is missing, the error says how to get it.
 pub fn emulator(name: &str) -> Result<PathBuf> {
     paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))
 }
 
-/// Makes sure that the emulator is there: installs it on Debian and Ubuntu as root.
+/// Makes sure that it is there: installs it on Debian and Ubuntu as root.
 pub fn install_emulator(name: &str) -> Result<PathBuf> {
     if let Some(program) = paths::program(name) {
         return Ok(program);
@@ -65,7 +89,7 @@ pub fn install_emulator(name: &str) -> Result<PathBuf> {
     if paths::program("apt-get").is_none() || !is_root() {
         return emulator(name);
     }
-    let installed = apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", name]));
+    let installed = apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", debian(name)]));
     installed.with_context(|| format!("{name} is missing and could not be installed"))?;
     emulator(name)
 }
@@ -89,7 +113,7 @@ pub fn takes_plugins(name: &str) -> bool {
 }
 
 fn apt_get(arguments: &[&str]) -> Result<()> {
-    eprintln!("installing QEMU: apt-get {}", arguments.join(" "));
+    eprintln!("installing what the tests need: apt-get {}", arguments.join(" "));
     let mut command = Command::new("apt-get");
     command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive").stdin(Stdio::null()).stdout(Stdio::null());
     let status = command.status().context("cannot start apt-get")?;
@@ -97,18 +121,29 @@ fn apt_get(arguments: &[&str]) -> Result<()> {
     Ok(())
 }
 
+/// The package of Debian and Ubuntu that has the program.
+fn debian(name: &str) -> &str {
+    match name {
+        "node" => "nodejs",
+        "qemu-system-riscv32" => "qemu-system-misc",
+        // That of the Arm emulators is named as they are.
+        other => other,
+    }
+}
+
 fn advice(name: &str) -> String {
-    // Debian and Ubuntu name the package of each Arm emulator as its program.
-    let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {name}"));
+    let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {}", debian(name)));
+    let package = if name == "node" { "nodejs".to_owned() } else { name.to_owned() };
     let others = [
-        ("dnf", format!("sudo dnf install -y {name}-core")),
-        ("pacman", format!("sudo pacman -S --needed {name}")),
-        ("apk", format!("sudo apk add {name}")),
-        ("brew", "brew install qemu".into()),
+        ("dnf", format!("sudo dnf install -y {package}{}", if name == "node" { "" } else { "-core" })),
+        ("pacman", format!("sudo pacman -S --needed {package}")),
+        ("apk", format!("sudo apk add {package}")),
+        ("brew", format!("brew install {}", if name == "node" { "node" } else { "qemu" })),
     ];
     let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
     match apt.or_else(other) {
         Some(command) => format!("install it with: {command}"),
+        None if name == "node" => "install Node.js (https://nodejs.org)".into(),
         None => "install QEMU (https://www.qemu.org/download)".into(),
     }
 }

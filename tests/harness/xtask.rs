@@ -10,14 +10,20 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Command {
+    Conformance(cmd::conformance::Conformance),
     Demo(cmd::demo::Demo),
+    Fuzz(cmd::fuzz::Fuzz),
     Test(cmd::test::Test),
+    Vectors(cmd::vectors::Vectors),
 }
 
 fn main() -> ExitCode {
     let result = match Command::parse() {
+        Command::Conformance(conformance) => conformance.run(),
         Command::Demo(demo) => demo.run(),
+        Command::Fuzz(fuzz) => fuzz.run(),
         Command::Test(test) => test.run(),
+        Command::Vectors(vectors) => vectors.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

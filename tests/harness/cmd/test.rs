@@ -78,7 +78,9 @@ fn tools(boards: &[Package], host_only: bool) -> Result<()> {
         setup::rust_target(target)?;
     }
     if !host_only {
-        setup::install_emulator("qemu-system-arm").context("(or leave QEMU's tests out with --host-only)")?;
+        for program in ["qemu-system-arm", "qemu-system-riscv32", "node"] {
+            setup::install_emulator(program).context("(or leave QEMU's tests out with --host-only)")?;
+        }
     }
     Ok(())
 }

@@ -26,7 +26,7 @@ pub struct Play {
 /// Plays the first `frames` frames of a clip.
 pub fn play(clip: &Path, frames: usize) -> Result<Play> {
     say("building the firmware");
-    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB, Some(clip))?;
+    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, Some(clip))?;
     let folder = tempfile::tempdir()?;
     let counts = folder.path().join("counts");
     let mut launch = Launch::new(LM3S6965EVB, firmware.elf()).limit(LIMIT);

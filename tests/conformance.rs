@@ -1,0 +1,49 @@
+//! The same poses on every core: each plays all golden vectors, and finds the CRCs that stand in the repository.
+
+use harness::conformance::{CORES, Expected, Place};
+use harness::setup;
+
+fn agrees(core: &str) {
+    let (_, place) = CORES.into_iter().find(|(name, _)| *name == core).unwrap();
+    if !matches!(place, Place::Host) && setup::host_only(core) {
+        return;
+    }
+    let expected = Expected::load().unwrap();
+    let agreed = expected.check(place).unwrap_or_else(|error| panic!("{core}: {error:#}"));
+    assert!(agreed.vectors >= 20 && agreed.poses > 1000, "{agreed:?}");
+}
+
+#[test]
+fn this_host_agrees() {
+    agrees("this host");
+}
+
+#[test]
+fn cortex_m0_agrees() {
+    agrees("Cortex-M0");
+}
+
+#[test]
+fn cortex_m3_agrees() {
+    agrees("Cortex-M3");
+}
+
+#[test]
+fn cortex_m4f_agrees() {
+    agrees("Cortex-M4F");
+}
+
+#[test]
+fn armv4t_agrees() {
+    agrees("ARMv4T");
+}
+
+#[test]
+fn rv32imac_agrees() {
+    agrees("RV32IMAC");
+}
+
+#[test]
+fn webassembly_agrees() {
+    agrees("wasm32");
+}

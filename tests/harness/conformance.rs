@@ -1,0 +1,138 @@
+//! Every golden vector on every core: one image a core, whose CRCs must be those that the records name.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow, ensure};
+
+use crate::build::Firmware;
+use crate::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, SX1, VIRT};
+use crate::vectors::record::{self, Crcs};
+use crate::vectors::{self, Vector};
+use crate::{paths, setup};
+
+/// What plays the vectors.
+#[derive(Clone, Copy, Debug)]
+pub enum Place {
+    /// This process.
+    Host,
+    /// A machine under QEMU.
+    Emulated(Machine),
+    /// WebAssembly under Node.js.
+    Node,
+}
+
+/// Name of a core, and where it is.
+pub const CORES: [(&str, Place); 7] = [
+    ("this host", Place::Host),
+    ("Cortex-M0", Place::Emulated(MICROBIT)),
+    ("Cortex-M3", Place::Emulated(LM3S6965EVB)),
+    ("Cortex-M4F", Place::Emulated(MPS2_AN386)),
+    ("ARMv4T", Place::Emulated(SX1)),
+    ("RV32IMAC", Place::Emulated(VIRT)),
+    ("wasm32", Place::Node),
+];
+
+/// The Rust target of WebAssembly.
+const WASM: &str = "wasm32-unknown-unknown";
+
+/// Longest run of an image.
+const LIMIT: Duration = Duration::from_secs(60);
+
+/// A core that agrees.
+#[derive(Clone, Copy, Debug)]
+pub struct Agreed {
+    /// Vectors played.
+    pub vectors: usize,
+    /// Poses compared, by stepping and by seeking.
+    pub poses: usize,
+    /// Time that playing took, with the emulator's start.
+    pub time: Duration,
+}
+
+/// What every core must find.
+pub struct Expected {
+    vectors: Vec<Vector>,
+    crcs: BTreeMap<String, Crcs>,
+}
+
+impl Expected {
+    /// From the records in the repository.
+    pub fn load() -> Result<Expected> {
+        let folder = vectors::folder();
+        let vectors = vectors::load(&folder)?;
+        let crcs = vectors.iter().map(|vector| Ok((vector.name.clone(), record::read(&folder, &vector.name)?)));
+        Ok(Expected { crcs: crcs.collect::<Result<_>>()?, vectors })
+    }
+
+    /// Plays all vectors there, and compares every pose.
+    pub fn check(&self, place: Place) -> Result<Agreed> {
+        let (time, found) = match place {
+            Place::Host => self.here()?,
+            Place::Emulated(machine) => emulated(machine)?,
+            Place::Node => node()?,
+        };
+        ensure!(found.len() == self.crcs.len(), "{} vectors were played, of {}", found.len(), self.crcs.len());
+        for (name, expected) in &self.crcs {
+            let found = found.get(name).with_context(|| format!("vector {name} was not played"))?;
+            agree("step", &expected.stepped, &found.stepped).with_context(|| format!("vector {name}"))?;
+            agree("seek", &expected.sought, &found.sought).with_context(|| format!("vector {name}"))?;
+        }
+        let poses = self.crcs.values().map(|crcs| crcs.stepped.len() + crcs.sought.len()).sum();
+        Ok(Agreed { vectors: found.len(), poses, time })
+    }
+
+    fn here(&self) -> Result<(Duration, BTreeMap<String, Crcs>)> {
+        let started = Instant::now();
+        let found = self.vectors.iter().map(|vector| Ok((vector.name.clone(), record::crcs(&vector.open()?)?)));
+        Ok((started.elapsed(), found.collect::<Result<_>>()?))
+    }
+}
+
+fn agree(way: &str, expected: &[u16], found: &[u16]) -> Result<()> {
+    ensure!(expected.len() == found.len(), "{} poses by {way}, expected {}", found.len(), expected.len());
+    let differs = expected.iter().zip(found).position(|(expected, found)| expected != found);
+    differs.map_or(Ok(()), |at| Err(anyhow!("pose {at} by {way} has CRC {:04x}, expected {:04x}", found[at], expected[at])))
+}
+
+fn emulated(machine: Machine) -> Result<(Duration, BTreeMap<String, Crcs>)> {
+    setup::emulator(machine.emulator)?;
+    let image = Firmware::build("conformance-image", "conformance", machine.target, None)?;
+    let started = Instant::now();
+    let outcome = Launch::new(machine, image.elf()).limit(LIMIT).start()?.wait()?;
+    ensure!(outcome.code == 0, "the image ended with code {}: {}", outcome.code, outcome.stderr.trim());
+    Ok((started.elapsed(), parse(&outcome.stdout)?))
+}
+
+fn node() -> Result<(Duration, BTreeMap<String, Crcs>)> {
+    let node = setup::emulator("node")?;
+    let image = Firmware::build("conformance-image", "conformance", WASM, None)?;
+    let started = Instant::now();
+    let output = Command::new(node).arg(script()).arg(image.elf()).stdin(Stdio::null()).output().context("cannot start node")?;
+    let words = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "node ended with {}: {}", output.status, words.trim());
+    Ok((started.elapsed(), parse(&output.stdout)?))
+}
+
+fn script() -> PathBuf {
+    paths::root().join("tests/harness/conformance.mjs")
+}
+
+/// Reads what an image printed.
+fn parse(text: &[u8]) -> Result<BTreeMap<String, Crcs>> {
+    let mut found = BTreeMap::new();
+    let mut last: Option<&mut Crcs> = None;
+    for line in std::str::from_utf8(text).context("the image printed no text")?.lines() {
+        match (line.split_once(' '), &mut last) {
+            (None, _) => last = Some(found.entry(line.to_owned()).or_insert_with(Crcs::default)),
+            (Some((way, crc)), Some(crcs)) => {
+                let crc = u16::from_str_radix(crc, 16).with_context(|| format!("the image printed {line:?}"))?;
+                if way == "step" { crcs.stepped.push(crc) } else { crcs.sought.push(crc) }
+            }
+            (Some(_), None) => return Err(anyhow!("the image printed {line:?} before a vector's name")),
+        }
+    }
+    Ok(found)
+}

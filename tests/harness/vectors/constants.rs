@@ -1,0 +1,77 @@
+//! `tables.json`: the format's numbers and tables for decoders in other languages, from the Rust constants.
+//!
+//! A table lists cumulative probabilities in 1/4096, as `pantin::tables` says. Contexts that share a table share its index.
+
+use pantin::segment::{CONTEXTS, DIRECT_MODES};
+use pantin::{Kind, entropy, layout, tables};
+use pantin_tools::encode::entropy::Alphabet;
+use serde_json::json;
+
+use super::json;
+
+/// The tables of some contexts without repetition, and the index that each context has.
+fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u16>>, Vec<usize>) {
+    let mut rows: Vec<Vec<u16>> = vec![];
+    let index = |alphabet: Alphabet| {
+        let row = alphabet.table().to_vec();
+        rows.iter().position(|other| *other == row).unwrap_or_else(|| {
+            rows.push(row);
+            rows.len() - 1
+        })
+    };
+    let indices = contexts.map(index).collect();
+    (rows, indices)
+}
+
+/// The file's text.
+pub fn text() -> String {
+    let (mode, mode_after) = shared((0..64).map(Alphabet::Mode));
+    let (number, number_in) = shared((0..CONTEXTS as u8).map(Alphabet::Number));
+    let status: Vec<Vec<u16>> = (0..3).map(|after| Alphabet::Status(after).table().to_vec()).collect();
+    let kinds: Vec<String> = Kind::ALL.iter().map(|kind| format!("{kind:?}")).collect();
+    json::text(&[
+        ("magic", json!(layout::MAGIC)),
+        ("version", json!(layout::VERSION)),
+        ("has_rig", json!(layout::HAS_RIG)),
+        ("looped", json!(layout::LOOPED)),
+        ("has_exponentials", json!(layout::HAS_EXPONENTIALS)),
+        ("has_events", json!(layout::HAS_EVENTS)),
+        ("known_flags", json!(layout::KNOWN_FLAGS)),
+        ("max_joints", json!(layout::MAX_JOINTS)),
+        ("max_channels", json!(layout::MAX_CHANNELS)),
+        ("max_frames", json!(layout::MAX_FRAMES)),
+        ("block_bytes", json!(layout::BLOCK_BYTES)),
+        ("crc_bytes", json!(layout::CRC_BYTES)),
+        ("frame_rates", json!(layout::FRAME_RATES)),
+        ("kinds", json!(kinds)),
+        ("scale_bits", json!(entropy::SCALE_BITS)),
+        ("low", json!(entropy::LOW)),
+        ("state_bytes", json!(entropy::STATE_BYTES)),
+        ("lengths", json!(layout::LENGTHS)),
+        ("w_steps", json!(layout::W_STEPS)),
+        ("k_steps", json!(layout::K_STEPS)),
+        ("type_w", json!(layout::segment_type::W)),
+        ("type_k", json!(layout::segment_type::K)),
+        ("type_wk", json!(layout::segment_type::WK)),
+        ("type_none", json!(layout::segment_type::NONE)),
+        ("start_mode", json!(layout::START_MODE)),
+        ("direct_modes", json!(DIRECT_MODES)),
+        ("direct", json!(layout::DIRECT)),
+        ("groups", json!(layout::GROUPS)),
+        ("far", json!(layout::FAR)),
+        ("far_bits", json!(layout::FAR_BITS)),
+        ("max_step", json!(layout::MAX_STEP)),
+        ("first_step", json!(layout::FIRST_STEP)),
+        ("step_changes", json!(layout::STEP_CHANGES)),
+        ("step_bits", json!(layout::STEP_BITS)),
+        ("modes", json!(tables::MODES)),
+        ("mode_after", json!(mode_after)),
+        ("mode", json!(mode)),
+        ("number_in", json!(number_in)),
+        ("number", json!(number)),
+        ("status", json!(status)),
+        ("step_change", json!(Alphabet::StepChange.table())),
+        ("position", json!(Alphabet::Position.table())),
+        ("velocity", json!(Alphabet::Velocity.table())),
+    ])
+}

@@ -1,0 +1,83 @@
+//! Which symbols of the format some motions use.
+
+use std::collections::BTreeSet;
+
+use anyhow::Result;
+use pantin::layout::{FAR, FAR_BITS, LENGTHS, START_MODE, STEP_CHANGES};
+use pantin_tools::encode::clip::symbols;
+use pantin_tools::encode::entropy::{Alphabet, Sink};
+use pantin_tools::encode::rig;
+use pantin_tools::encode::segment::mode_symbol;
+
+use super::synthetic::Made;
+
+/// Symbols by alphabet, and the counts of bits that far numbers had.
+#[derive(Default)]
+struct Seen {
+    symbols: BTreeSet<(Alphabet, u32)>,
+    modes: BTreeSet<u8>,
+    far_bits: BTreeSet<u32>,
+    /// The last symbol, which tells what the bits behind it are.
+    last: Option<(Alphabet, u32)>,
+}
+
+impl Sink for Seen {
+    fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
+        self.symbols.insert((alphabet, symbol));
+        self.last = Some((alphabet, symbol));
+        if let Alphabet::Mode(_) = alphabet {
+            self.modes.extend((0..START_MODE).filter(|&mode| mode_symbol(mode) == (symbol, None)));
+        }
+    }
+
+    fn bits(&mut self, value: u32, count: u32) {
+        match self.last.take() {
+            Some((Alphabet::Number(_), symbol)) if symbol.div_ceil(2) == FAR && count == FAR_BITS => {
+                self.far_bits.insert(value);
+            }
+            Some((Alphabet::Mode(_), symbol)) => {
+                let named = |mode: &u8| mode_symbol(*mode) == (symbol, Some(value));
+                self.modes.extend((0..START_MODE).filter(named));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What of the format the motions leave out; nothing if they are complete.
+pub fn left_out(motions: &[Made]) -> Result<Vec<String>> {
+    let mut seen = Seen::default();
+    for made in motions {
+        let bytes = rig::encode(&made.rig)?;
+        symbols(&made.coded, &pantin::Rig::new_checked(&bytes)?, &mut seen);
+    }
+    let mut missing = vec![];
+    let mut wants = |there: bool, what: String| {
+        if !there {
+            missing.push(what);
+        }
+    };
+    for mode in 0..START_MODE {
+        wants(seen.modes.contains(&mode), format!("type {} of {} frames", mode >> 4, LENGTHS[usize::from(mode & 15)]));
+    }
+    let has =
+        |of: &dyn Fn(Alphabet) -> bool, symbol| seen.symbols.iter().any(|&(alphabet, other)| of(alphabet) && other == symbol);
+    for symbol in 0..=2 * FAR {
+        wants(has(&|of| matches!(of, Alphabet::Number(context) if context < 48), symbol), format!("symbol {symbol} of w"));
+        wants(has(&|of| matches!(of, Alphabet::Number(context) if context >= 48), symbol), format!("symbol {symbol} of k"));
+    }
+    for bits in 0..30 {
+        wants(seen.far_bits.contains(&bits), format!("a far number of {bits} bits"));
+    }
+    for after in 0..3 {
+        for status in 0..3 {
+            wants(seen.symbols.contains(&(Alphabet::Status(after), status)), format!("status {status} after {after}"));
+        }
+    }
+    for (alphabet, last) in [(Alphabet::StepChange, STEP_CHANGES), (Alphabet::Position, 32), (Alphabet::Velocity, 31)] {
+        for symbol in 0..=last {
+            wants(seen.symbols.contains(&(alphabet, symbol)), format!("symbol {symbol} of {alphabet:?}"));
+        }
+    }
+    Ok(missing)
+}

@@ -1,0 +1,278 @@
+//! Vectors made of noise and of edges: together they hold every feature of the format, which [`super::coverage`] counts.
+
+use anyhow::Result;
+use pantin::layout::{FIRST_STEP, GROUPS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
+use pantin::{Event, Kind};
+use pantin_tools::encode::clip::{self, Channel, Coded, Start, position_grid, velocity_grid};
+use pantin_tools::encode::rig;
+use pantin_tools::encode::segment::Segment;
+use pantin_tools::motion::{Joint, Rig, Scalar};
+
+use super::Vector;
+use hostile::noise::Noise;
+
+/// A motion of noise, and its figure.
+pub struct Made {
+    /// Name of the vector.
+    pub name: &'static str,
+    /// Its figure.
+    pub rig: Rig,
+    /// Its motion.
+    pub coded: Coded,
+    /// Whether the rig stands apart.
+    pub apart: bool,
+}
+
+impl Made {
+    /// The files.
+    pub fn vector(&self) -> Result<Vector> {
+        let rig = rig::encode(&self.rig)?;
+        let clip = clip::encode(&self.coded, &rig, self.apart)?;
+        Ok(Vector { name: self.name.into(), clip, rig: self.apart.then_some(rig) })
+    }
+}
+
+const EULER: [Kind; 3] = [Kind::Zrotation, Kind::Xrotation, Kind::Yrotation];
+const PLACE: [Kind; 3] = [Kind::Xposition, Kind::Yposition, Kind::Zposition];
+const QUATERNION: [Kind; 4] = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion];
+const EXPONENTIAL: [Kind; 3] = [Kind::Xexponential, Kind::Yexponential, Kind::Zexponential];
+
+/// A chain of joints with these channels, one unit of 1 cm apart, and as many scalars.
+fn figure(joints: &[&[Kind]], scalars: usize) -> Rig {
+    let joint = |(index, kinds): (usize, &&[Kind])| Joint {
+        name: format!("j{index}"),
+        parent: index.checked_sub(1),
+        offset: [0.0, if index == 0 { 0.0 } else { -10.5 }, 0.25 * index as f64],
+        kinds: kinds.to_vec(),
+        end_site: false,
+    };
+    Rig {
+        joints: joints.iter().enumerate().map(joint).collect(),
+        scalars: (0..scalars).map(|index| Scalar { name: format!("s{index}"), full_scale: 1.0 }).collect(),
+        cm_per_unit: 1.0,
+    }
+}
+
+/// A motion without channels yet, 30 frames a second.
+fn motion(frames: u32) -> Coded {
+    Coded {
+        frames,
+        frame_time_ns: 33_333_333,
+        length_exponent: -16,
+        exponentials: vec![],
+        channels: vec![],
+        events: vec![],
+        looped: false,
+    }
+}
+
+fn moving(p: i32, v: i32, step: u8) -> Start {
+    Start::Moving { p: p.wrapping_mul(position_grid(step)), v: v.wrapping_mul(velocity_grid(step)), step }
+}
+
+fn constant(p: i32, step: u8) -> Start {
+    Start::Constant { p: p.wrapping_mul(position_grid(step)), step }
+}
+
+/// A segment of this mode with small numbers where it has any.
+fn small(mode: u8, noise: &mut Noise) -> Segment {
+    let kind = mode >> 4;
+    let mut number = |has: bool| if has { noise.between(-9, 9) } else { 0 };
+    Segment {
+        mode,
+        w: number(matches!(kind, segment_type::W | segment_type::WK)),
+        k: number(matches!(kind, segment_type::K | segment_type::WK)),
+    }
+}
+
+/// Segments until no other may start: the last two frames start none.
+fn fill(frames: u32, mut next: impl FnMut() -> Segment) -> Vec<Segment> {
+    let mut segments = vec![];
+    let mut frame = 0;
+    while frame + 2 < frames as usize {
+        segments.push(next());
+        frame += segments.last().map_or(1, Segment::length);
+    }
+    segments
+}
+
+fn lively(frames: u32, start: Start, noise: &mut Noise) -> Channel {
+    let segments = fill(frames, || {
+        let mode = noise.below(4) as u8 * 16 + noise.below(10) as u8;
+        small(mode, noise)
+    });
+    Channel { start, segments }
+}
+
+/// Every channel of `rig` moves by noise.
+fn alive(rig: &Rig, coded: &mut Coded, noise: &mut Noise) {
+    for (_, kind) in rig.channel_kinds() {
+        let step = if kind.is_position() { 18 } else { 42 } + noise.below(5) as u8;
+        let start = moving(noise.between(-300, 300), noise.between(-40, 40), step);
+        coded.channels.push(lively(coded.frames, start, noise));
+    }
+}
+
+fn simple(name: &'static str, joints: &[&[Kind]], scalars: usize, mut coded: Coded) -> Made {
+    let rig = figure(joints, scalars);
+    let seed = name.len() as u64 + u64::from(coded.frames);
+    alive(&rig, &mut coded, &mut Noise::new(seed));
+    Made { name, rig, coded, apart: false }
+}
+
+/// Every type with every length: six channels take the 63 modes in six orders.
+fn segments() -> Made {
+    let rig = figure(&[&EULER, &EULER], 0);
+    let mut coded = motion(420);
+    let mut noise = Noise::new(7);
+    let modes: Vec<u8> = (0..START_MODE).collect();
+    for channel in 0..rig.channels() {
+        let mut order = modes.iter().cycle().skip(channel * modes.len() / 6 + channel % 2).step_by(11);
+        let start = moving(channel as i32 * 50, 3 - channel as i32, FIRST_STEP - 6 + channel as u8);
+        let segments = fill(coded.frames, || small(order.next().copied().unwrap_or(0), &mut noise));
+        coded.channels.push(Channel { start, segments });
+    }
+    Made { name: "segments", rig, coded, apart: false }
+}
+
+/// Numbers of every size up to 2^30, of either sign, as accelerations and as slopes; values wrap.
+fn numbers() -> Made {
+    let rig = figure(&[], 8);
+    let mut coded = motion(100);
+    let mut noise = Noise::new(11);
+    let mut turn = 0;
+    let mut number = move || {
+        turn = (turn + 7) % 38;
+        let size = match turn {
+            0..8 => (1 << turn) - 1,
+            bits => group(GROUPS + 1) as i32 - 1 + (1 << (bits - 8)) + noise.below(1 << (bits - 8)) as i32,
+        };
+        if noise.below(2) == 0 { size } else { -size }
+    };
+    for channel in 0..rig.channels() as u8 {
+        let mut turn = channel;
+        let next = || {
+            turn = turn.wrapping_add(1);
+            let length = turn / 3 % 4;
+            match turn % 3 {
+                0 => Segment { mode: segment_type::W << 4 | length, w: number(), k: 0 },
+                1 => Segment { mode: segment_type::K << 4 | length, w: 0, k: number() },
+                _ => Segment { mode: segment_type::WK << 4 | length, w: number(), k: number() },
+            }
+        };
+        coded.channels.push(Channel { start: moving(0, 0, 5 * channel + channel % 2), segments: fill(100, next) });
+    }
+    Made { name: "numbers", rig, coded, apart: false }
+}
+
+/// How channels begin: every change of step, every step, first values of every size, the least one included; resting,
+/// constant and moving channels after one another.
+fn starts() -> Made {
+    let rig = figure(&[vec![&PLACE as &[Kind]; 12], vec![&EULER as &[Kind]; 28]].concat(), 0);
+    let mut noise = Noise::new(13);
+    let mut step = 30;
+    let changes = (0..STEP_CHANGES as i32).map(|change| {
+        step += if change % 2 == 0 { change / 2 } else { -(change + 1) / 2 };
+        constant(change - 9, step as u8)
+    });
+    let mut starts: Vec<Start> = [constant(1, 30)].into_iter().chain(changes).collect();
+    starts.extend((0..=u32::from(MAX_STEP)).map(|step| {
+        // 17 and 60 have no common factor.
+        let step = (step * 17 % 60) as u8;
+        match noise.below(3) {
+            0 => Start::Rest,
+            1 => constant(noise.between(-9, 9), step),
+            _ => moving(noise.between(-9, 9), noise.between(-9, 9), step),
+        }
+    }));
+    starts.extend((0..=32).map(|bits: u32| {
+        let sized = |bits: u32, sign: i32| bits.checked_sub(1).map_or(0, |bit| (1i32 << bit).wrapping_mul(sign));
+        moving(sized(bits, 1 - 2 * (bits as i32 % 2)), sized((bits * 7) % 32, -1), 0)
+    }));
+    starts.resize(rig.channels(), Start::Rest);
+    let mut coded = motion(3);
+    let segments = |start: &Start| match start {
+        Start::Moving { .. } => vec![Segment { mode: 0, w: 3, k: 0 }],
+        _ => vec![],
+    };
+    coded.channels = starts.into_iter().map(|start| Channel { segments: segments(&start), start }).collect();
+    Made { name: "starts", rig, coded, apart: false }
+}
+
+/// Nothing moves.
+fn still() -> Made {
+    let rig = figure(&[&PLACE, &EULER], 0);
+    let mut coded = motion(5);
+    let rest = Channel { start: Start::Rest, segments: vec![] };
+    coded.channels = vec![rest; 6];
+    coded.channels[1].start = constant(95, 22);
+    coded.channels[5].start = constant(-33, 44);
+    Made { name: "still", rig, coded, apart: false }
+}
+
+/// Twelve joints may choose, so that the bits take two bytes; every third one does.
+fn exponential_choice() -> Made {
+    let mut joints: Vec<&[Kind]> = vec![&EULER; 12];
+    joints.insert(2, &[Kind::Xrotation]);
+    let mut coded = motion(16);
+    coded.exponentials = (0..12).map(|joint| joint % 3 == 1).collect();
+    simple("exponential-choice", &joints, 0, coded)
+}
+
+/// A loop with so many events that the fields before the first symbol cross from one block into the next.
+fn events() -> Made {
+    let mut coded = motion(120);
+    coded.looped = true;
+    let mut noise = Noise::new(17);
+    let mut frame = 0;
+    for id in 0..90 {
+        coded.events.push(Event { frame, id: if id % 9 == 0 { u32::MAX - id } else { id * 40 } });
+        frame = (frame + noise.below(3) as u32).min(119);
+    }
+    simple("events", &[&PLACE], 1, coded)
+}
+
+/// A frame time that is no usual rate's.
+fn odd_rate() -> Made {
+    simple("odd-rate", &[&EULER], 0, Coded { frame_time_ns: 41_708_375, ..motion(12) })
+}
+
+/// Three hundred channels, a third of which moves.
+fn crowd() -> Made {
+    let rig = figure(&[&EULER as &[Kind]; 100], 0);
+    let mut coded = motion(24);
+    let mut noise = Noise::new(19);
+    for channel in 0..300 {
+        coded.channels.push(match channel % 3 {
+            0 => lively(24, moving(noise.between(-90, 90), noise.between(-9, 9), 40 + channel as u8 % 7), &mut noise),
+            1 => Channel { start: constant(noise.between(-99, 99), 44), segments: vec![] },
+            _ => Channel { start: Start::Rest, segments: vec![] },
+        });
+    }
+    Made { name: "channels-300", rig, coded, apart: false }
+}
+
+/// All of them.
+pub fn all() -> Vec<Made> {
+    let mut apart = simple("rig-apart", &[&PLACE, &EULER, &EULER], 0, motion(20));
+    apart.apart = true;
+    vec![
+        segments(),
+        numbers(),
+        starts(),
+        still(),
+        exponential_choice(),
+        events(),
+        odd_rate(),
+        crowd(),
+        apart,
+        simple("quaternion", &[&QUATERNION, &QUATERNION], 0, motion(40)),
+        simple("exponential-map", &[&EXPONENTIAL, &EXPONENTIAL], 0, motion(40)),
+        simple("scalars", &[], 5, motion(40)),
+        simple("mixed", &[&PLACE, &EULER, &QUATERNION, &EXPONENTIAL, &[], &[Kind::Xrotation]], 2, motion(30)),
+        simple("empty", &[], 0, motion(4)),
+        simple("frames-1", &[&EULER], 1, motion(1)),
+        simple("frames-2", &[&EULER], 1, motion(2)),
+        simple("frames-3", &[&EULER], 1, motion(3)),
+    ]
+}

@@ -1,0 +1,91 @@
+//! Bytes of strangers: the first inputs of the fuzz targets, the golden vectors, and damage to both, the same on every run.
+//! `cargo xtask fuzz` looks longer.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use harness::{paths, vectors};
+use hostile::noise::Noise;
+use hostile::{DOORS, Door};
+
+/// Damaged inputs of a door: a second or two. (With RUST_BACKTRACE set, importers take many times longer over each error.)
+const CLIPS: usize = 20_000;
+/// The same for files.
+const FILES: usize = 3000;
+
+fn files(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = entries.filter(|path| path.is_file() && wanted(path)).collect();
+    files.sort();
+    files
+}
+
+fn inputs(door: Door) -> Vec<(PathBuf, Vec<u8>)> {
+    let of_kind = |path: &Path| door.vectors.iter().any(|kind| path.extension().is_some_and(|extension| extension == *kind));
+    let mut all = files(&paths::root().join("fuzz/corpus-seed").join(door.name), |_| true);
+    all.extend(files(&vectors::folder(), of_kind));
+    all.into_iter().map(|path| (path.clone(), fs::read(&path).unwrap())).collect()
+}
+
+fn holds(name: &str, attempts: usize) {
+    let door = hostile::door(name).unwrap();
+    let inputs = inputs(door);
+    assert!(!inputs.is_empty(), "no first inputs for {name}");
+    for (path, input) in &inputs {
+        println!("{}", path.display());
+        assert!((door.enter)(input), "a first input is refused: it reaches nothing");
+    }
+    let mut noise = Noise::new(1);
+    let mut accepted = 0;
+    let started = Instant::now();
+    for attempt in 0..attempts {
+        let [(path, input), (_, other)] = [0; 2].map(|_| &inputs[noise.below(inputs.len())]);
+        let damaged = noise.damage(input, other, door.words);
+        // Shown if the door panics: the input can be made again from it.
+        println!("attempt {attempt} on {}", path.display());
+        accepted += usize::from((door.enter)(&damaged));
+    }
+    println!("{name}: {accepted} of {attempts} accepted, in {:.1} s", started.elapsed().as_secs_f64());
+    // Behind CRCs none or nearly none is; elsewhere the damage would test too little.
+    assert!(name == "open_play" || (ATTEMPTS / 20..attempts).contains(&accepted), "{accepted} of {attempts} accepted");
+}
+
+#[test]
+fn clips_as_they_come() {
+    holds("open_play", CLIPS);
+}
+
+#[test]
+fn clips_behind_their_crcs() {
+    holds("crc_fixed_play", CLIPS);
+}
+
+#[test]
+fn rigs() {
+    holds("rig_open", CLIPS);
+}
+
+#[test]
+fn bvh_files() {
+    holds("import_bvh", FILES);
+}
+
+#[test]
+fn key_frame_files() {
+    holds("import_keys", FILES);
+}
+
+#[test]
+fn amc_files() {
+    holds("import_amc", FILES);
+}
+
+#[test]
+fn every_door_has_its_fuzz_target() {
+    let targets = files(&paths::root().join("fuzz/fuzz_targets"), |_| true);
+    let mut named: Vec<&str> = DOORS.iter().map(|door| door.name).collect();
+    named.sort_unstable();
+    let targets: Vec<String> = targets.iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    assert_eq!(targets, named);
+}

@@ -1,0 +1,87 @@
+//! Clips and rigs: an error or poses, in bounded time, the same by every route.
+
+use pantin::{ChannelState, Clip, Player, Rig};
+
+use crate::fix;
+use crate::noise::Noise;
+
+/// Values of poses that one input may make: a few milliseconds.
+const VALUES: u64 = 200_000;
+/// Seeks of one input.
+const SEEKS: usize = 8;
+
+/// For clips whose rig stands apart: one of our vectors' rig.
+const RIG: &[u8] = include_bytes!("../../vectors/rig-apart.rig");
+
+/// Opens a clip as it is and plays it.
+pub fn open_play(bytes: &[u8]) -> bool {
+    let Ok(clip) = Clip::with_rig(bytes, RIG) else { return false };
+    play(clip, bytes);
+    true
+}
+
+/// Mends the CRCs and lengths first, so that what lies behind them is reached.
+pub fn crc_fixed_play(bytes: &[u8]) -> bool {
+    let mut bytes = bytes.to_vec();
+    fix::clip(&mut bytes);
+    open_play(&bytes)
+}
+
+/// Opens a rig, as it is and with its CRC mended, and walks it.
+pub fn rig_open(bytes: &[u8]) -> bool {
+    walk(bytes);
+    let mut bytes = bytes.to_vec();
+    fix::rig(&mut bytes);
+    walk(&bytes)
+}
+
+fn walk(bytes: &[u8]) -> bool {
+    let Ok(rig) = Rig::new_checked(bytes) else { return false };
+    let mut channels = 0;
+    for (index, joint) in rig.joints().enumerate() {
+        assert!(joint.parent.map_or(index == 0, |parent| usize::from(parent) < index));
+        assert_eq!(usize::from(joint.first_channel), channels);
+        channels += joint.kinds.count();
+    }
+    assert_eq!((rig.joints().count(), channels), (rig.joint_count(), rig.joint_channels()));
+    assert_eq!(rig.scalars().count() + channels, rig.channels());
+    let _ = Rig::id_of(bytes);
+    true
+}
+
+fn play(clip: Clip<'_>, bytes: &[u8]) {
+    let channels = clip.rig().channels();
+    let moving = clip.moving();
+    assert!(moving <= channels);
+    let mut states = vec![ChannelState::default(); moving];
+    let mut pose = vec![0; channels];
+    if moving > 0 {
+        assert!(Player::new(clip, &mut states[1..], &mut pose).is_err());
+    }
+    for joint in 0..clip.rig().joint_count() {
+        clip.is_exponential(joint);
+    }
+    assert_eq!(clip.events().count(), clip.event_count());
+    let frames = u64::from(clip.frames()).min(1 + VALUES / channels.max(1) as u64) as usize;
+    let mut stepped = Vec::with_capacity(frames * channels);
+    let mut player = Player::new(clip, &mut states, &mut pose).expect("memory as asked for");
+    for frame in 0..frames {
+        assert_eq!(player.frame() as usize, frame);
+        stepped.extend_from_slice(player.pose());
+        player.step();
+    }
+    let mut noise = Noise::new(bytes.len() as u64);
+    for _ in 0..SEEKS {
+        let frame = noise.below(frames);
+        player.seek(frame as u32);
+        assert_eq!(player.frame() as usize, frame);
+        assert!(player.pose() == &stepped[frame * channels..][..channels], "frame {frame} by seeking is another");
+    }
+    // Seeking far costs a look at every frame on the way.
+    if u64::from(clip.frames()) * (1 + moving as u64) <= VALUES {
+        player.seek(u32::MAX);
+        assert_eq!(player.frame(), clip.frames() - 1);
+    }
+    player.rewind();
+    assert!(player.pose() == &stepped[..channels]);
+}

@@ -1,0 +1,59 @@
+//! Mends what a check at the door would refuse, and nothing else.
+
+use pantin::crc;
+use pantin::layout::{BLOCK_BYTES, CRC_BYTES, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
+
+/// Makes the CRC of a rig right, if it is long enough to have one.
+pub fn rig(bytes: &mut [u8]) {
+    if let Some((body, stored)) = bytes.split_last_chunk_mut::<CRC_BYTES>() {
+        *stored = crc::of(body).to_le_bytes();
+    }
+}
+
+/// Makes magic, version, flags, the motion's length and all CRCs right.
+pub fn clip(bytes: &mut Vec<u8>) {
+    bytes.resize(bytes.len().max(8), 0);
+    bytes[..2].copy_from_slice(&MAGIC);
+    bytes[2] = VERSION;
+    bytes[3] &= KNOWN_FLAGS;
+    let flags = bytes[3];
+    let mut at = 4;
+    if flags & HAS_RIG != 0 {
+        let Some((len, digits)) = varint(&bytes[at..]) else { return };
+        at += digits;
+        let Some(body) = bytes[at..].get_mut(..len) else { return };
+        rig(body);
+        at += len;
+    }
+    let Some((_, digits)) = varint(&bytes[at..]) else { return };
+    let motion = bytes.split_off(at).split_off(digits);
+    let mut seed = crc::of(&bytes[..4]);
+    put_varint(bytes, motion.len());
+    seed = crc::update(seed, &(motion.len() as u32).to_le_bytes());
+    for block in motion.chunks(BLOCK_BYTES + CRC_BYTES) {
+        let body = &block[..block.len().saturating_sub(CRC_BYTES)];
+        bytes.extend_from_slice(body);
+        bytes.extend_from_slice(&crc::update(seed, body).to_le_bytes()[..block.len() - body.len()]);
+        seed = crc::INITIAL;
+    }
+}
+
+/// A length and how many bytes it takes.
+fn varint(bytes: &[u8]) -> Option<(usize, usize)> {
+    let mut value = 0;
+    for (digit, byte) in bytes.iter().enumerate().take(4) {
+        value |= usize::from(byte & 0x7f) << (7 * digit);
+        if byte & 0x80 == 0 {
+            return Some((value, digit + 1));
+        }
+    }
+    None
+}
+
+fn put_varint(out: &mut Vec<u8>, mut value: usize) {
+    while value >= 0x80 {
+        out.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    out.push(value as u8);
+}

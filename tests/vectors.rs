@@ -1,0 +1,61 @@
+//! The golden vectors: what stands in the repository is what the decoder makes of it, and leaves no part of the format out.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use harness::vectors::{self, constants, coverage, record, synthetic};
+
+/// Bytes that the folder may have.
+const MOST: u64 = 60_000;
+
+#[test]
+fn every_vector_decodes_to_its_record() {
+    let vectors = vectors::load(&vectors::folder()).unwrap();
+    for vector in &vectors {
+        let clip = vector.open().unwrap();
+        let recorded = fs::read_to_string(vectors::folder().join(&vector.name).with_extension("json")).unwrap();
+        assert_eq!(record::of(&clip).unwrap(), recorded, "{}", vector.name);
+    }
+    let synthetic = synthetic::all();
+    let named: BTreeSet<&str> = vectors.iter().map(|vector| vector.name.as_str()).collect();
+    assert!(synthetic.iter().all(|made| named.contains(made.name)), "`cargo xtask vectors` makes what is missing");
+}
+
+#[test]
+fn seeking_finds_the_poses_that_stepping_makes() {
+    for vector in vectors::load(&vectors::folder()).unwrap() {
+        let clip = vector.open().unwrap();
+        let crcs = record::crcs(&clip).unwrap();
+        assert_eq!(crcs.stepped.len(), clip.frames() as usize);
+        for (frame, crc) in conformance::sought(clip.frames()).zip(&crcs.sought) {
+            assert_eq!(crcs.stepped[frame as usize], *crc, "{}, frame {frame}", vector.name);
+        }
+    }
+}
+
+#[test]
+fn the_tables_as_json_are_those_of_the_decoder() {
+    let committed = fs::read_to_string(vectors::folder().join("tables.json")).unwrap();
+    assert_eq!(committed, constants::text(), "`cargo xtask vectors` writes them anew");
+}
+
+#[test]
+fn no_part_of_the_format_is_left_out() {
+    assert_eq!(coverage::left_out(&synthetic::all()).unwrap(), Vec::<String>::new());
+}
+
+#[test]
+fn synthetic_vectors_come_out_byte_for_byte() {
+    for made in synthetic::all() {
+        let made = made.vector().unwrap();
+        let committed = fs::read(vectors::folder().join(&made.name).with_extension("ptn")).unwrap();
+        assert!(made.clip == committed, "{}: the encoder makes other bytes than those committed", made.name);
+    }
+}
+
+#[test]
+fn the_files_are_few_and_small() {
+    let entries = fs::read_dir(vectors::folder()).unwrap();
+    let total: u64 = entries.map(|entry| entry.unwrap().metadata().unwrap().len()).sum();
+    assert!(total < MOST, "{total} bytes");
+}
