@@ -18,11 +18,12 @@ const PAINT: u32 = 0x5a5a_a5a5;
 pub fn used(work: &mut dyn FnMut()) -> usize {
     let painted = paint();
     black_box(work)();
-    let first = painted.clone().step_by(4).find(|&address| {
-        // SAFETY: aligned, and memory; painted by `paint`.
-        unsafe { (address as *const u32).read_volatile() != PAINT }
-    });
-    painted.end + OWN - first.unwrap_or(painted.end)
+    let mut address = painted.start;
+    // SAFETY: aligned, and memory; painted by `paint`.
+    while address < painted.end && unsafe { (address as *const u32).read_volatile() } == PAINT {
+        address += 4;
+    }
+    painted.end + OWN - address
 }
 
 /// Paints below its own frame, which is where a function called next has its own.
@@ -30,10 +31,13 @@ pub fn used(work: &mut dyn FnMut()) -> usize {
 fn paint() -> Range<usize> {
     let mut here = 0_u32;
     let top = black_box(&raw mut here) as usize & !3;
-    for address in (top - DEPTH..top - OWN).step_by(4) {
+    let painted = top - DEPTH..top - OWN;
+    let mut address = painted.start;
+    while address < painted.end {
         // SAFETY: aligned, and below this function's frame: nothing lives there, programs that measure leave DEPTH bytes of
         // stack, and no interrupt is on.
         unsafe { (address as *mut u32).write_volatile(PAINT) }
+        address += 4;
     }
-    top - DEPTH..top - OWN
+    painted
 }
