@@ -1,6 +1,7 @@
 //! One command a file.
 
+pub mod bench;
 pub mod demo;
 mod packages;
-mod steps;
+pub mod steps;
 pub mod test;
