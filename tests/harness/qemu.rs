@@ -53,6 +53,9 @@ pub const VIRT: Machine = Machine {
     options: &["-bios", "none"],
 };
 
+/// Cortex-M4 with FPU; of its memory, programs use as much as MICROBIT has.
+pub const MPS2_AN386: Machine = Machine { emulator: "qemu-system-arm", name: "mps2-an386", target: "thumbv7em-none-eabihf" };
+
 /// What to start, and with what attached.
 #[derive(Clone, Debug)]
 pub struct Launch {
@@ -62,6 +65,7 @@ pub struct Launch {
     serial: bool,
     display: bool,
     plugin: Option<(PathBuf, PathBuf)>,
+    loaded: Option<(PathBuf, u32)>,
     limit: Duration,
 }
 
@@ -69,7 +73,7 @@ impl Launch {
     /// A run of `elf`, for 60 s at most, with semihosting and nothing else.
     pub fn new(machine: Machine, elf: &Path) -> Self {
         let limit = Duration::from_secs(60);
-        Self { machine, elf: elf.into(), arguments: vec![], serial: false, display: false, plugin: None, limit }
+        Self { machine, elf: elf.into(), arguments: vec![], serial: false, display: false, plugin: None, loaded: None, limit }
     }
 
     /// Appends a word to the command line that the program reads by semihosting.
@@ -93,6 +97,12 @@ impl Launch {
     /// Counts instructions with the plugin of [`crate::icount`] into a file, read by [`crate::icount::read`].
     pub fn counting(mut self, plugin: &Path, counts: &Path) -> Self {
         self.plugin = Some((plugin.into(), counts.into()));
+        self
+    }
+
+    /// Puts a file's bytes into the machine's memory before it starts, into flash too.
+    pub fn loading(mut self, file: &Path, address: u32) -> Self {
+        self.loaded = Some((file.into(), address));
         self
     }
 
@@ -140,6 +150,10 @@ impl Launch {
         line.extend(self.machine.options.iter().map(|option| (*option).to_owned()));
         if self.display {
             line.extend(["-qmp".into(), socket(true, "qmp")]);
+        }
+        if let Some((file, address)) = &self.loaded {
+            let option = format!("loader,file={},addr={address:#x},force-raw=on", escaped(file));
+            line.extend(["-device".into(), option]);
         }
         if let Some((plugin, counts)) = &self.plugin {
             line.extend(["-plugin".into(), format!("{},out={}", escaped(plugin), escaped(counts))]);

@@ -1,5 +1,6 @@
 //! `cargo xtask`: the commands of the repository.
 
+mod bench;
 mod cmd;
 
 use std::process::ExitCode;
@@ -11,6 +12,7 @@ use clap::Parser;
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Command {
     Conformance(cmd::conformance::Conformance),
+    Bench(cmd::bench::Bench),
     Demo(cmd::demo::Demo),
     Fuzz(cmd::fuzz::Fuzz),
     Test(cmd::test::Test),
@@ -20,6 +22,7 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Conformance(conformance) => conformance.run(),
+        Command::Bench(bench) => bench.run(),
         Command::Demo(demo) => demo.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Test(test) => test.run(),

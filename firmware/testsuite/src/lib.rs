@@ -1,6 +1,10 @@
 //! What the programs share: a panic or a fault ends the emulator with a code other than 0.
 #![no_std]
 
+pub mod clip;
+pub mod markers;
+pub mod paint;
+
 use core::panic::PanicInfo;
 
 // Linked for what they provide: the critical section, the log's way out.

@@ -1,9 +1,10 @@
 //! One command a file.
 
 pub mod conformance;
+pub mod bench;
 pub mod demo;
 pub mod fuzz;
 mod packages;
-mod steps;
+pub mod steps;
 pub mod test;
 pub mod vectors;

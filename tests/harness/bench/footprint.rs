@@ -1,0 +1,105 @@
+//! The decoder's memory on the smallest processor: code and tables from the image's ELF file, RAM and stack from a run.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use harness::build::Firmware;
+use harness::paths;
+use harness::qemu::MICROBIT;
+use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+
+use super::guest::Guest;
+use super::{Goal, Setting, reference, table, tool};
+use crate::cmd::steps::say;
+
+/// What no decoder's image may hold: parts of symbols' names.
+const UNWANTED: [&str; 9] =
+    ["panic", "begin_unwind", "core::fmt", "__aeabi_f", "__aeabi_d", "compiler_builtins::float", "div", "__aeabi_i2", "alloc::"];
+
+/// Functions shown.
+const SHOWN: usize = 12;
+
+/// A linked image.
+struct Image {
+    code: f64,
+    tables: f64,
+    /// Names and bytes of functions and tables, the largest first.
+    symbols: Vec<(String, u64)>,
+}
+
+impl Image {
+    fn read(program: &str) -> Result<Self> {
+        let firmware = Firmware::build("testsuite", program, MICROBIT, None)?;
+        let bytes = std::fs::read(firmware.elf())?;
+        let elf = object::File::parse(&*bytes).context("the image is no ELF file")?;
+        let size = |name| elf.section_by_name(name).map_or(0, |section| section.size()) as f64;
+        let named = elf.symbols().filter(|symbol| matches!(symbol.kind(), SymbolKind::Text | SymbolKind::Data));
+        let sized = named.filter(|symbol| symbol.size() > 0);
+        let mut symbols: Vec<_> = sized
+            .map(|symbol| (format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())), symbol.size()))
+            .collect();
+        symbols.sort_by_key(|(_, size)| std::cmp::Reverse(*size));
+        Ok(Self { code: size(".text"), tables: size(".rodata"), symbols })
+    }
+
+    fn unwanted(&self) -> Vec<&str> {
+        let bad = |name: &&str| UNWANTED.iter().any(|part| name.contains(part));
+        self.symbols.iter().map(|(name, _)| name.as_str()).filter(bad).collect()
+    }
+}
+
+/// Builds, reads, runs.
+pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
+    let (empty, decoder) = (Image::read("image-empty")?, Image::read("image-decoder")?);
+    let own = decoder.symbols.iter().filter(|symbol| !empty.symbols.contains(symbol));
+    let rows: Vec<_> = own.take(SHOWN).map(|(name, size)| vec![name.clone(), size.to_string()]).collect();
+    table::print(&["largest functions and tables, Cortex-M0", "bytes"], &rows);
+    let unwanted = decoder.unwanted();
+    if !unwanted.is_empty() {
+        say(&format!("   panic, formatting, float, divide or heap in the image: {}", unwanted.join(", ")));
+    }
+    let mut goals = vec![
+        Goal::at_most("code on Cortex-M0", decoder.code - empty.code, 4096.0, 0, "bytes"),
+        Goal::at_most("tables", decoder.tables - empty.tables, 2048.0, 0, "bytes"),
+        Goal::at_most("symbols of panic, formatting, float, divide or heap", unwanted.len() as f64, 0.0, 0, ""),
+    ];
+    let (name, clip) = clip(setting)?;
+    goals.extend(memory(&name, &clip)?);
+    Ok(goals)
+}
+
+/// A clip of 31 joints where there is one, else our walk.
+fn clip(setting: &Setting) -> Result<(String, std::path::PathBuf)> {
+    let (name, path, unit) = match reference::named("bvh_xia_strut-walk")? {
+        Some(clip) => (clip.name.clone(), clip.path.clone(), clip.cm_per_unit()),
+        None => ("walk".into(), paths::root().join("motions/walk.keys"), None),
+    };
+    let made = setting.tool.converted(&path, &format!("{name}-1cm"), &tool::options(1.0, unit))?;
+    Ok((name, made.clip))
+}
+
+fn memory(name: &str, clip: &Path) -> Result<Vec<Goal>> {
+    let log = Guest::new(MICROBIT, "memory")?.log(clip)?;
+    let numbers: Vec<(&str, f64)> = log
+        .iter()
+        .filter_map(|line| {
+            let mut words = line.split(' ').skip(1);
+            Some((words.next()?, words.next()?.parse().ok()?))
+        })
+        .collect();
+    let rows: Vec<_> = numbers.iter().map(|(what, bytes)| vec![(*what).to_owned(), bytes.to_string()]).collect();
+    table::print(&[&format!("RAM of a channel and a player, stack of the calls; {name}"), "bytes"], &rows);
+    let of = |what: &str| numbers.iter().find(|(name, _)| *name == what).map(|(_, bytes)| *bytes);
+    let stack = numbers.iter().filter(|(name, _)| !["channel", "player"].contains(name)).map(|(_, bytes)| *bytes);
+    Ok(vec![
+        Goal::at_most("RAM a moving channel", of("channel").context("no size of a channel")?, 20.0, 0, "bytes"),
+        Goal::at_most(
+            "RAM of a player beside them and the pose",
+            of("player").context("no size of a player")?,
+            128.0,
+            0,
+            "bytes",
+        ),
+        Goal::at_most("stack of any call", stack.fold(0.0, f64::max), 512.0, 0, "bytes"),
+    ])
+}

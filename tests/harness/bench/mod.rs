@@ -1,0 +1,87 @@
+//! What `cargo xtask bench` measures: one part a file, and what the parts share.
+
+mod argument;
+mod decimation;
+mod decode;
+mod error;
+mod footprint;
+mod goals;
+mod guest;
+mod host;
+mod paper;
+mod peers;
+mod plot;
+mod readme;
+mod reference;
+mod size;
+mod table;
+mod tool;
+
+pub use goals::{Goal, print};
+pub use readme::{store, write};
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use harness::paths;
+
+/// What can be measured by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// Bytes against error of the reference clips, the peers beside
+    Size,
+    /// What twice the frames a second cost in bytes
+    Decimation,
+    /// The paper's walk and run, in our own motions
+    Paper,
+    /// Guest instructions a pose and a seek
+    Decode,
+    /// Code, tables, RAM and stack of the decoder
+    Footprint,
+    /// Time a pose on this machine, and encoding speed
+    Host,
+    /// Additions against polynomials, and a clip against a per-frame file over a link
+    Argument,
+}
+
+/// What every part works with.
+pub struct Setting {
+    /// The host tool, as its users have it.
+    pub tool: tool::Tool,
+    /// Where plots and clips go.
+    pub out: PathBuf,
+    /// Fewer and shorter clips.
+    pub quick: bool,
+    /// Only reference clips whose name holds this.
+    pub only: Option<String>,
+}
+
+impl Setting {
+    /// Builds the host tool and makes the folder.
+    pub fn new(quick: bool, only: Option<String>) -> Result<Self> {
+        let out = paths::root().join("target/bench");
+        std::fs::create_dir_all(out.join("clips")).with_context(|| format!("cannot make {}", out.display()))?;
+        Ok(Self { tool: tool::Tool::build(out.join("clips"))?, out, quick, only })
+    }
+}
+
+impl Part {
+    /// Measures, prints, and returns what stands in the README's table.
+    pub fn run(self, setting: &Setting) -> Result<Vec<Goal>> {
+        match self {
+            Self::Size => size::run(setting),
+            Self::Decimation => decimation::run(setting),
+            Self::Paper => paper::run(setting),
+            Self::Decode => decode::run(setting),
+            Self::Footprint => footprint::run(setting),
+            Self::Host => host::run(setting),
+            Self::Argument => argument::run(setting),
+        }
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}

@@ -1,0 +1,56 @@
+//! What the parts measured, kept from run to run, and the README's table of it.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::ValueEnum;
+use harness::paths;
+use pantin_tools::cmd::write_whole;
+
+use super::{Goal, Part, goals};
+
+const START: &str = "<!-- bench -->";
+const END: &str = "<!-- /bench -->";
+
+/// Keeps a part's numbers of a full run.
+pub fn store(folder: &Path, part: Part, goals: &[Goal]) -> Result<()> {
+    write_whole(&file(folder, part), &serde_json::to_vec_pretty(goals)?)
+}
+
+/// Writes the numbers of all parts into the README, between its markers.
+pub fn write(folder: &Path) -> Result<()> {
+    let mut text = String::new();
+    for part in Part::value_variants() {
+        let path = file(folder, *part);
+        let stored = std::fs::read(&path);
+        let stored = stored.with_context(|| format!("no full run of `cargo xtask bench {}` yet", part.name()))?;
+        let goals: Vec<Goal> = serde_json::from_slice(&stored).with_context(|| path.display().to_string())?;
+        ensure!(!goals.is_empty(), "`cargo xtask bench {}` measured nothing: the README needs all of it", part.name());
+        text.push_str(&format!("`cargo xtask bench {}`\n\n{}\n", part.name(), goals::markdown(&goals)));
+    }
+    let readme = paths::root().join("README.md");
+    let before = std::fs::read_to_string(&readme).context("README.md")?;
+    write_whole(&readme, replaced(&before, &text)?.as_bytes())
+}
+
+fn file(folder: &Path, part: Part) -> PathBuf {
+    folder.join(part.name()).with_extension("json")
+}
+
+fn replaced(readme: &str, table: &str) -> Result<String> {
+    let parts = readme.split_once(START).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
+    let Some((head, tail)) = parts else { bail!("README.md has no {START} ... {END}") };
+    Ok(format!("{head}{START}\n{}\n{END}{tail}", table.trim_end()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_stands_between_the_markers_changes() {
+        let before = "a\n<!-- bench -->\nold\n<!-- /bench -->\nb\n";
+        assert_eq!(replaced(before, "new\n\n").unwrap(), "a\n<!-- bench -->\nnew\n<!-- /bench -->\nb\n");
+        assert!(replaced("a\n<!-- bench -->\n", "new").is_err());
+    }
+}

@@ -1,0 +1,117 @@
+//! The host tool in its release build, run as its users run it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use harness::build::{self, Build};
+use harness::paths;
+use serde_json::Value;
+
+/// The program, and where its clips go.
+pub struct Tool {
+    program: PathBuf,
+    clips: PathBuf,
+}
+
+/// A motion turned into a clip.
+pub struct Converted {
+    /// The clip.
+    pub clip: PathBuf,
+    /// Wall time that it took; `None` if the clip was there from an earlier run.
+    pub seconds: Option<f64>,
+    /// What `pantin info` says.
+    pub info: Info,
+}
+
+/// What `pantin info --json` says of a clip.
+pub struct Info {
+    /// Frames.
+    pub frames: f64,
+    /// Frames a second.
+    pub fps: f64,
+    /// Channels that move.
+    pub moving: f64,
+    /// The file without its rig.
+    pub motion_bytes: f64,
+}
+
+impl Info {
+    /// How long it plays.
+    pub fn seconds(&self) -> f64 {
+        self.frames / self.fps
+    }
+}
+
+impl Tool {
+    /// Builds it.
+    pub fn build(clips: PathBuf) -> Result<Self> {
+        let program = build::cargo(&Build {
+            workspace: paths::root(),
+            arguments: ["--release", "--package", "pantin-tools", "--bin", "pantin"].map(Into::into).into(),
+            environment: vec![],
+            product: "pantin".into(),
+        })?;
+        Ok(Self { program, clips })
+    }
+
+    /// Converts a motion into the clip `name`.ptn.
+    pub fn convert(&self, motion: &Path, name: &str, options: &[String]) -> Result<Converted> {
+        let clip = self.clips.join(name).with_extension("ptn");
+        let start = Instant::now();
+        self.run(Command::new(&self.program).arg("convert").arg(motion).arg("-q").arg("-o").arg(&clip).args(options))?;
+        let seconds = Some(start.elapsed().as_secs_f64());
+        Ok(Converted { info: self.info(&clip)?, clip, seconds })
+    }
+
+    /// As [`Tool::convert`], but takes a clip that is newer than the program and the motion. The name must stand for the options.
+    pub fn converted(&self, motion: &Path, name: &str, options: &[String]) -> Result<Converted> {
+        let clip = self.clips.join(name).with_extension("ptn");
+        let changed = |path: &Path| path.metadata().and_then(|data| data.modified());
+        let newer = |path: &Path| matches!((changed(&clip), changed(path)), (Ok(made), Ok(source)) if made > source);
+        if newer(&self.program) && newer(motion) {
+            return Ok(Converted { info: self.info(&clip)?, clip, seconds: None });
+        }
+        self.convert(motion, name, options)
+    }
+
+    /// Turns a clip back into a BVH file.
+    pub fn expand(&self, clip: &Path, bvh: &Path) -> Result<()> {
+        self.run(Command::new(&self.program).arg("expand").arg(clip).arg("-o").arg(bvh)).map(drop)
+    }
+
+    /// Whether a command of the tool has an option.
+    pub fn has_option(&self, command: &str, option: &str) -> Result<bool> {
+        let help = self.run(Command::new(&self.program).args([command, "--help"]))?;
+        Ok(String::from_utf8_lossy(&help).split_whitespace().any(|word| word == option))
+    }
+
+    fn info(&self, clip: &Path) -> Result<Info> {
+        let text = self.run(Command::new(&self.program).args(["info", "--json"]).arg(clip))?;
+        let json: Value = serde_json::from_slice(&text).context("`pantin info --json` prints no JSON")?;
+        let number = |key: &str| json[key].as_f64().with_context(|| format!("`pantin info --json` has no number {key}"));
+        Ok(Info {
+            frames: number("frames")?,
+            fps: number("fps")?,
+            moving: number("moving_channels")?,
+            motion_bytes: number("motion_bytes")?,
+        })
+    }
+
+    fn run(&self, command: &mut Command) -> Result<Vec<u8>> {
+        let output = command.stdin(Stdio::null()).output();
+        let output = output.with_context(|| format!("cannot start {}", self.program.display()))?;
+        if !output.status.success() {
+            bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        Ok(output.stdout)
+    }
+}
+
+/// The options of a conversion: the bound, and the unit where it is known.
+pub fn options(bound_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
+    let mut options = vec!["--max-error".to_owned(), format!("{bound_cm}cm")];
+    options.extend(cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]));
+    options
+}
