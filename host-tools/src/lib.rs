@@ -1,5 +1,6 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
+pub mod channel_error;
 pub mod cmd;
 pub mod encode;
 mod euler;

@@ -36,10 +36,11 @@ fn damage(text: &[u8], noise: &mut Noise) -> Vec<u8> {
 #[test]
 fn damaged_files_never_panic() {
     let walk = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.keys")).unwrap();
+    let wave = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/wave.proc")).unwrap();
     let bvh = b"HIERARCHY\nROOT hip\n{\nOFFSET 0 9 0\nCHANNELS 2 Yposition Xrotation\nEnd Site\n{\nOFFSET 1 0 0\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n1 2\n3 4\n";
     let mut noise = Noise(1);
     let mut read = 0;
-    for (extension, text) in [("keys", walk.as_slice()), ("bvh", bvh)] {
+    for (extension, text) in [("keys", walk.as_slice()), ("proc", wave.as_slice()), ("bvh", bvh)] {
         let path = std::env::temp_dir().join(format!("pantin-hostile-{}.{extension}", std::process::id()));
         for _ in 0..400 {
             std::fs::write(&path, damage(text, &mut noise)).unwrap();
@@ -57,5 +58,5 @@ fn damaged_files_never_panic() {
         }
         std::fs::remove_file(&path).unwrap();
     }
-    assert!((30..770).contains(&read), "{read} of 800 were read: the damage tests too little");
+    assert!((30..1170).contains(&read), "{read} of 1200 were read: the damage tests too little");
 }

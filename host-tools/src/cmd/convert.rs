@@ -1,32 +1,41 @@
 //! `pantin convert`.
 
+use super::channel_bound::ChannelBound;
 use super::write_whole;
+use crate::channel_error;
 use crate::encode::{clip, rig};
+use crate::fit::bounds::Bounds;
+use crate::fit::chain::Held;
 use crate::fit::descent::Level;
-use crate::fit::fit;
+use crate::fit::{channelwise, fit};
 use crate::import;
+use crate::motion::Motion;
 use crate::verify::verify;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Turn a motion file into a clip.
 ///
 /// The bound holds: before anything is written, the clip is played by the device's own decoder and compared, joint by joint
-/// and frame by frame, with the motion. If the bound cannot be met, nothing is written.
+/// (or channel by channel) and frame by frame, with the motion. If the bound cannot be met, nothing is written.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin convert walk.bvh -o walk.ptn
   pantin convert walk.bvh -o walk.ptn --max-error 3cm
-  pantin convert walk.bvh -o walk.ptn --rig-out figure.rig")]
+  pantin convert walk.bvh -o walk.ptn --rig-out figure.rig
+  pantin convert motions/walk.keys -o walk.ptn --exact
+  pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5")]
 pub struct Arguments {
-    /// The motion: .bvh, .amc (its .asf beside it), or our key frames (.keys, see docs/KEYFRAMES.md)
+    /// The motion: .bvh, .amc (its .asf beside it), our key frames (.keys, see docs/KEYFRAMES.md), or functions of time
+    /// (.proc, see docs/PROCEDURAL.md)
     input: PathBuf,
     /// The clip to write
     #[arg(short, long)]
     output: PathBuf,
     /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm)
-    #[arg(long, default_value = "0.5cm", value_parser = length_cm)]
+    #[arg(long, group = "bound", default_value = "0.5cm", value_parser = length_cm)]
     max_error: f64,
     /// How hard to look for few bytes
     #[arg(long, value_enum, default_value = "default")]
@@ -34,6 +43,8 @@ pub struct Arguments {
     /// Greatest error of channels that move no joint, in percent of their full scale
     #[arg(long, default_value_t = 2.0)]
     max_scalar_error: f64,
+    #[command(flatten)]
+    channels: ChannelBound,
     /// Length of the source's unit in cm, instead of a guess
     #[arg(long)]
     cm_per_unit: Option<f64>,
@@ -74,46 +85,89 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         eprintln!("{}", imported.units);
     }
     let motion = imported.motion;
-    let plan = arguments.effort.plan(arguments.max_error);
-    let part = arguments.max_scalar_error / 100.0;
-    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(1000) };
-    bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta}")?);
-    let coded = fit(&motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
-    bar.finish_and_clear();
     let rig = rig::encode(&motion.rig)?;
-    let bytes = clip::encode(&coded, &rig, arguments.rig_out.is_some())?;
-    let report = match verify(&bytes, &rig, &motion, arguments.max_error, part) {
-        Ok(report) => report,
-        Err(error) => bail!("{}: not written: {error:#}", arguments.output.display()),
+    let made = match arguments.channels.bounds(&motion)? {
+        Some(bounds) => by_channel(arguments, &motion, &rig, &bounds)?,
+        None => by_distance(arguments, &motion, &rig)?,
     };
     if let Some(path) = &arguments.rig_out {
         write_whole(path, &rig).context("rig")?;
     }
-    write_whole(&arguments.output, &bytes)?;
+    write_whole(&arguments.output, &made.bytes)?;
     if arguments.json {
-        let worst = serde_json::json!({
-            "max_error_cm": report.max_cm,
-            "mean_error_cm": report.mean_cm,
-            "worst_joint": report.worst_joint,
-            "worst_frame": report.worst_frame,
-        });
-        println!("{worst}");
+        println!("{}", made.json);
     }
     if !arguments.quiet {
         let raw = motion.frames * motion.rig.channels() * 2;
         eprintln!(
-            "{}: {} frames, {} channels; {} bytes ({} per frame at 16 bits, {:.1} % saved); error max {:.4} cm ({} at frame {}), mean {:.4} cm",
+            "{}: {} frames, {} channels; {} bytes ({} per frame at 16 bits, {:.1} % saved); {}",
             arguments.output.display(),
             motion.frames,
             motion.rig.channels(),
-            bytes.len(),
+            made.bytes.len(),
             raw,
-            100.0 - 100.0 * bytes.len() as f64 / raw as f64,
-            report.max_cm,
-            report.worst_joint,
-            report.worst_frame,
-            report.mean_cm
+            100.0 - 100.0 * made.bytes.len() as f64 / raw as f64,
+            made.errors
         );
     }
     Ok(())
+}
+
+/// A clip that keeps its bound.
+struct Made {
+    bytes: Vec<u8>,
+    json: serde_json::Value,
+    /// The errors as a clause for the user.
+    errors: String,
+}
+
+fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
+    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(length) };
+    bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta}")?);
+    Ok(bar)
+}
+
+fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8]) -> Result<Made> {
+    let plan = arguments.effort.plan(arguments.max_error);
+    let part = arguments.max_scalar_error / 100.0;
+    let bar = bar(arguments, 1000)?;
+    let coded = fit(motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
+    bar.finish_and_clear();
+    let bytes = clip::encode(&coded, rig, arguments.rig_out.is_some())?;
+    let not_written = || format!("{}: not written", arguments.output.display());
+    let report = verify(&bytes, rig, motion, arguments.max_error, part).with_context(not_written)?;
+    let json = json!({
+        "max_error_cm": report.max_cm,
+        "mean_error_cm": report.mean_cm,
+        "worst_joint": report.worst_joint,
+        "worst_frame": report.worst_frame,
+    });
+    let (joint, frame) = (report.worst_joint, report.worst_frame);
+    let errors = format!("error max {:.4} cm ({joint} at frame {frame}), mean {:.4} cm", report.max_cm, report.mean_cm);
+    Ok(Made { bytes, json, errors })
+}
+
+fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bounds) -> Result<Made> {
+    let bar = bar(arguments, motion.rig.channels() as u64)?;
+    let not_written = || format!("{}: not written", arguments.output.display());
+    let coded = channelwise::fit(motion, bounds, &|| bar.inc(1)).with_context(not_written)?;
+    bar.finish_and_clear();
+    let bytes = clip::encode(&coded, rig, arguments.rig_out.is_some())?;
+    let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;
+    let worst = &report.worst;
+    let json = json!({
+        "max_error": worst.error,
+        "part_of_bound": worst.part,
+        "worst_channel": motion.rig.channel_name(worst.channel),
+        "worst_frame": worst.frame,
+        "max_drift": report.drift.error,
+        "drifting_channel": motion.rig.channel_name(report.drift.channel),
+    });
+    let errors = match bounds.held {
+        Held::Positions => format!("error max {}", worst.sentence(motion)),
+        Held::Accelerations => {
+            format!("error max {}, a frame^2; drift max {}", worst.sentence(motion), report.drift.sentence(motion))
+        }
+    };
+    Ok(Made { bytes, json, errors })
 }

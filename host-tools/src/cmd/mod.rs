@@ -1,5 +1,6 @@
 //! One file a command; its arguments' doc comment is the manual.
 
+mod channel_bound;
 pub mod convert;
 pub mod expand;
 pub mod info;

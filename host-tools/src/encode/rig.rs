@@ -94,7 +94,11 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
             .collect(),
         scalars: rig
             .scalars()
-            .map(|scalar| crate::motion::Scalar { name: scalar.name().to_string(), full_scale: f64::from(scalar.exponent).exp2() })
+            .map(|scalar| {
+                // The greatest raw value: 2^exponent itself would ask for one exponent more.
+                let full_scale = f64::from(i32::MAX) * (f64::from(scalar.exponent) - 31.0).exp2();
+                crate::motion::Scalar { name: scalar.name().to_string(), full_scale }
+            })
             .collect(),
         cm_per_unit: f64::from(rig.micro_cm_per_unit()) * 1e-6,
     }
@@ -132,7 +136,8 @@ mod tests {
         let back = decode(&pantin::Rig::new_checked(&bytes).unwrap());
         let mut expected = rig.clone();
         expected.joints[0].offset = [0.0; 3];
-        expected.scalars[0].full_scale = 2.0;
+        expected.scalars[0].full_scale = 2.0 - (-30f64).exp2();
+        assert_eq!(scalar_exponent(back.scalars[0].full_scale), scalar_exponent(1.0));
         assert_eq!(back, expected);
     }
 

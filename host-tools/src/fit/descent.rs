@@ -2,6 +2,7 @@
 //! still leaves, pass after pass, while the price of an error falls.
 
 use super::figure::{Figure, Poses, lever};
+use super::refusal::refusal;
 use super::search::{Effort, Fitted, Tube, search};
 use crate::encode::clip::Start;
 use anyhow::{Result, bail};
@@ -188,12 +189,7 @@ impl<'m> Descent<'m> {
             self.refresh(channel);
         }
         if self.codes[channel].is_none() {
-            let (frame, reached) = worst_now.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap_or((0, &0.0));
-            bail!(
-                "{}: no code within {} cm was found; tightest at frame {frame}, where {reached:.4} cm are already used",
-                self.figure.rig.channel_name(channel),
-                self.plan.bound_cm
-            );
+            bail!(refusal(self.figure, &self.poses, self.original, channel, &moved, self.plan.bound_cm));
         }
         Ok(())
     }

@@ -1,10 +1,14 @@
 //! From per-frame motion to segments: the fewest bits within the bound.
 
+pub mod bounds;
+pub mod chain;
+pub mod channelwise;
 pub mod cost;
 pub mod descent;
 pub mod figure;
 pub mod parametrize;
 pub mod raw;
+pub mod refusal;
 pub mod search;
 
 use crate::encode::clip::{Channel, Coded};

@@ -4,9 +4,12 @@ mod acclaim;
 pub mod amc;
 mod asf;
 pub mod bvh;
+mod expression;
 pub mod keyframes;
+pub mod procedural;
 pub mod text;
 pub mod units;
+mod written;
 
 use crate::motion::Motion;
 use anyhow::{Context, Result, bail, ensure};
@@ -61,6 +64,7 @@ const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
     Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
     Format { name: "key frames", extensions: &["keys"], begins: keyframes::begins, read: keyframes::read },
+    Format { name: "procedural motion", extensions: &["proc"], begins: procedural::begins, read: procedural::read },
 ];
 
 /// Bytes at the front of a file from which its format can be told.

@@ -1,4 +1,4 @@
-//! The lines that describe the figure, and the names that keys are given to.
+//! The lines that describe the figure, and the names of its channels.
 
 use super::{Read, number, positive, wrong};
 use crate::motion::{Joint, Kind, Rig, Scalar};

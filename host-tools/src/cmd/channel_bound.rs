@@ -1,0 +1,42 @@
+//! The flags of `pantin convert` that bound channels instead of joints.
+
+use crate::fit::bounds::Bounds;
+use crate::fit::chain::Held;
+use crate::motion::Motion;
+use anyhow::Result;
+
+/// Bounds for each channel, in place of --max-error.
+#[derive(clap::Args)]
+pub struct ChannelBound {
+    /// Instead of --max-error: greatest error of each channel at every frame, in degrees for rotations and in percent for all others (of a
+    /// position's way from its least to its greatest value, of a scalar's full scale, of 2 for a quaternion's components)
+    #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
+    max_channel_error: Option<f64>,
+    /// Instead of --max-error: greatest error of each channel's acceleration (second difference) at every frame, in degrees a frame^2 for
+    /// rotations and in percent a frame^2 for all others. Positions and rotations drift: by how much is told
+    #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
+    max_accel_error: Option<f64>,
+    /// Instead of --max-error: channels with keys (.keys) as they are, off by rounding alone: at most 0.006 degrees, or 2^-16 of
+    /// what --max-channel-error takes a percentage of
+    #[arg(long, group = "bound")]
+    exact: bool,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a number above 0".into()),
+    }
+}
+
+impl ChannelBound {
+    /// The bounds that the flags ask for, if any.
+    pub fn bounds(&self, motion: &Motion) -> Result<Option<Bounds>> {
+        Ok(match (self.max_channel_error, self.max_accel_error) {
+            (Some(delta), _) => Some(Bounds::of(motion, Held::Positions, delta)),
+            (_, Some(epsilon)) => Some(Bounds::of(motion, Held::Accelerations, epsilon)),
+            _ if self.exact => Some(Bounds::exact(motion)?),
+            _ => None,
+        })
+    }
+}

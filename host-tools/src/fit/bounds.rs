@@ -1,0 +1,78 @@
+//! How far each channel may be off where channels are coded for themselves: the paper's delta and epsilon (METHOD 2.3).
+
+use super::chain::Held;
+use super::raw;
+use crate::motion::{Kind, Motion};
+use anyhow::{Result, ensure};
+
+/// Largest error of a rotation that is coded exactly, in degrees: rounding to 16 bits a turn is off by half of it.
+pub const EXACT_DEGREES: f64 = 0.006;
+/// The same for other channels, as a part of their [`range`].
+pub const EXACT_PART: f64 = 1.0 / 65536.0;
+
+/// What channels keep to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// What is bounded.
+    pub held: Held,
+    /// Whether curves are known and tubes around them narrow.
+    pub exact: bool,
+    /// The greatest error of each channel in the motion's units, of accelerations in those a frame^2.
+    pub greatest: Vec<f64>,
+}
+
+impl Bounds {
+    /// `error` degrees for rotations and exponential maps, `error` percent of the [`range`] for all others, but no less than the
+    /// clip's own step there (2^-30 of the farthest position).
+    pub fn of(motion: &Motion, held: Held, error: f64) -> Bounds {
+        Bounds { held, exact: false, greatest: greatest(motion, error, error / 100.0) }
+    }
+
+    /// Of a motion whose curves are known, rounding alone: every channel that moves has keys.
+    pub fn exact(motion: &Motion) -> Result<Bounds> {
+        for (channel, (values, keys)) in motion.values.iter().zip(&motion.keys).enumerate() {
+            let still = values.iter().all(|value| *value == values[0]);
+            ensure!(
+                still || keys.is_some(),
+                "channel {} moves and has no keys; exact coding needs a source with keys for every moving channel (.keys)",
+                motion.rig.channel_name(channel)
+            );
+        }
+        Ok(Bounds { held: Held::Positions, exact: true, greatest: greatest(motion, EXACT_DEGREES, EXACT_PART) })
+    }
+}
+
+fn greatest(motion: &Motion, degrees: f64, part: f64) -> Vec<f64> {
+    let kinds = motion.rig.channel_kinds();
+    let steps = raw::scales(&motion.rig, raw::clip_length_exponent(&motion.rig, &motion.values));
+    let of = |(channel, &(_, kind)): (usize, &(Option<usize>, Kind))| {
+        if kind.is_rotation() || kind.is_exponential() { degrees } else { (part * range(motion, channel)).max(steps[channel]) }
+    };
+    kinds.iter().enumerate().map(of).collect()
+}
+
+/// What a percentage of a channel is of: a position's way from its least to its greatest value, a scalar's full scale, 2 for
+/// quaternion components (-1 to 1).
+pub fn range(motion: &Motion, channel: usize) -> f64 {
+    let (_, kind) = motion.rig.channel_kinds()[channel];
+    if kind.is_quaternion() {
+        return 2.0;
+    }
+    if let Some(scalar) = channel.checked_sub(motion.rig.joint_channels()) {
+        return motion.rig.scalars[scalar].full_scale;
+    }
+    let values = &motion.values[channel];
+    let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(least, most), x| (least.min(*x), most.max(*x)));
+    most - least
+}
+
+/// The unit of a channel's errors, as a word behind a number.
+pub fn unit(kind: Kind) -> &'static str {
+    if kind.is_rotation() || kind.is_exponential() {
+        " degrees"
+    } else if kind.is_position() {
+        " units"
+    } else {
+        ""
+    }
+}

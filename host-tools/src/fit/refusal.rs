@@ -1,0 +1,39 @@
+//! What is said when a bound cannot be met.
+
+use super::figure::{Figure, Poses};
+
+/// `x` with four digits of what `bound` has, however small that is.
+pub fn amount(x: f64, bound: f64) -> String {
+    let digits = if bound > 0.0 { (3.0 - bound.log10().floor()).clamp(0.0, 15.0) } else { 4.0 };
+    format!("{x:.0$}", digits as usize)
+}
+
+/// Names the joint and frame at which a channel without a code has the least room: `moved` are the joints that it moves.
+pub fn refusal(figure: &Figure, poses: &Poses, original: &Poses, channel: usize, moved: &[usize], bound_cm: f64) -> String {
+    let name = figure.rig.channel_name(channel);
+    let distance = |joint: usize, frame: usize| {
+        let (p, q) = (poses.places[joint][frame], original.places[joint][frame]);
+        (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum::<f64>().sqrt()
+    };
+    let all = moved.iter().flat_map(|&joint| (0..figure.frames).map(move |frame| (joint, frame, distance(joint, frame))));
+    let Some((joint, frame, off)) = all.max_by(|a, b| a.2.total_cmp(&b.2)) else {
+        return format!("channel {name}: no code within its bound was found");
+    };
+    let (off, bound) = (amount(off, bound_cm), amount(bound_cm, bound_cm));
+    let joint = figure.rig.joint_name(joint);
+    format!(
+        "channel {name}: no code within {bound} cm was found; joint {joint} at frame {frame} is {off} cm off before it is coded"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::amount;
+
+    #[test]
+    fn amounts_show_what_differs() {
+        assert_eq!(amount(0.51234, 0.5), "0.5123");
+        assert_eq!(amount(2.5e-8, 1e-8), "0.00000002500");
+        assert_eq!(amount(30.0, 25.0), "30.00");
+    }
+}

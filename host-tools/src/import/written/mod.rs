@@ -1,0 +1,158 @@
+//! What our own texts share: lines of words, the figure and the timing in front, and errors that name the line.
+
+pub mod rig;
+
+use super::text::{number_in, shown};
+use super::{Options, read_bytes};
+use crate::motion::Rig;
+use anyhow::{Result, anyhow};
+use std::path::Path;
+
+/// Far more than a hand writes, and little enough to sample.
+const MOST_FRAMES: f64 = 1e6;
+/// Frames times channels: 128 MB of samples.
+pub const MOST_VALUES: usize = 1 << 24;
+
+/// What is wrong, and where if it is not the line at hand.
+pub struct Wrong {
+    /// Another line than the one at hand, from 1.
+    pub line: Option<usize>,
+    /// What was expected and what stands there.
+    pub message: String,
+}
+
+impl From<String> for Wrong {
+    fn from(message: String) -> Wrong {
+        Wrong { line: None, message }
+    }
+}
+
+/// What a line gives.
+pub type Read<T> = Result<T, Wrong>;
+
+/// An error at the line at hand.
+pub fn wrong<T>(message: impl Into<String>) -> Read<T> {
+    Err(Wrong::from(message.into()))
+}
+
+/// Whether the first word of `head` is `magic`; comments may stand before.
+pub fn begins(head: &[u8], magic: &str) -> bool {
+    let text = String::from_utf8_lossy(head);
+    text.lines().find_map(|line| words(line).next()) == Some(magic)
+}
+
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split('#').next().unwrap_or_default().trim_start_matches('\u{feff}').split_whitespace()
+}
+
+/// Reads a text of lines.
+pub trait Reader: Sized {
+    /// The first line: a word and the version that this reader knows.
+    const FIRST: [&'static str; 2];
+
+    /// Takes line `line`, whose first word is `first`.
+    fn line(&mut self, line: usize, first: &str, rest: &[&str]) -> Read<()>;
+
+    /// The motion, once all lines were read.
+    fn finish(self, options: &Options) -> Read<super::Source>;
+
+    /// Reads `path`. Errors name the file and the line.
+    fn read(mut self, path: &Path, options: &Options) -> Result<super::Source> {
+        let bytes = read_bytes(path)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let mut begun = false;
+        let mut line = 0;
+        let result = text.lines().try_for_each(|content| {
+            line += 1;
+            let words: Vec<&str> = words(content).collect();
+            let Some((first, rest)) = words.split_first() else { return Ok(()) };
+            if begun {
+                return self.line(line, first, rest);
+            }
+            begun = true;
+            if words == Self::FIRST { Ok(()) } else { wrong(format!("expected `{}` as the first line", Self::FIRST.join(" "))) }
+        });
+        let source = result.and_then(|()| self.finish(options));
+        source.map_err(|Wrong { line: own, message }| anyhow!("{}:{}: {message}", path.display(), own.unwrap_or(line.max(1))))
+    }
+}
+
+/// The lines in front: figure and timing.
+#[derive(Default)]
+pub struct Header {
+    /// The figure; its `cm_per_unit` is that of the line, or 1.
+    pub rig: Rig,
+    /// Length of its unit, if the file says.
+    pub cm_per_unit: Option<f64>,
+    /// Frames a second.
+    pub fps: Option<f64>,
+    /// Number of frames.
+    pub frames: Option<usize>,
+    /// Whether frame 0 follows the last frame.
+    pub looped: bool,
+}
+
+/// First words of a header's lines, as errors list them.
+pub const HEADINGS: &str = "cm-per-unit, fps, frames, loop, joint, end, scalar";
+
+impl Header {
+    /// Whether a line that begins so is part of the header.
+    pub fn has(first: &str) -> bool {
+        HEADINGS.split(", ").any(|heading| heading == first)
+    }
+
+    /// Takes one of its lines.
+    pub fn line(&mut self, first: &str, rest: &[&str]) -> Read<()> {
+        match first {
+            "cm-per-unit" => self.cm_per_unit = Some(positive(first, rest)?),
+            "fps" => self.fps = Some(positive(first, rest)?),
+            "frames" => {
+                let frames = positive(first, rest)?;
+                if frames.fract() != 0.0 || frames > MOST_FRAMES {
+                    return wrong(format!("expected whole frames, at most {MOST_FRAMES}, found {frames}"));
+                }
+                self.frames = Some(frames as usize);
+            }
+            "loop" if rest.is_empty() => self.looped = true,
+            "joint" => rig::joint(&mut self.rig, rest)?,
+            "end" => rig::end(&mut self.rig, rest)?,
+            "scalar" => rig::scalar(&mut self.rig, rest)?,
+            _ => return wrong(format!("expected the end of the line after `{first}`, found `{}`", rest.join(" "))),
+        }
+        Ok(())
+    }
+
+    /// Frames and frames a second, if the figure has what can move and samples fit the memory.
+    pub fn timing(&self, options: &Options) -> Read<(usize, f64)> {
+        let missing = |what: &str| Wrong::from(format!("expected `{what} NUMBER`, found the end of the file"));
+        let frames = self.frames.ok_or_else(|| missing("frames"))?;
+        let fps = self.fps.or(options.fps).ok_or_else(|| missing("fps"))?;
+        let channels = self.rig.channels();
+        if channels == 0 {
+            return wrong("no joint has channels and there is no scalar, so nothing can move");
+        }
+        if channels * frames > MOST_VALUES {
+            return wrong(format!("{frames} frames of {channels} channels; expected at most {MOST_VALUES} values"));
+        }
+        Ok((frames, fps))
+    }
+
+    /// Every channel held still where it is without a line of its own.
+    pub fn at_rest(&self, frames: usize) -> Vec<Vec<f64>> {
+        self.rig.channel_kinds().into_iter().map(|place| vec![rig::rest(&self.rig, place); frames]).collect()
+    }
+}
+
+/// A number.
+pub fn number(word: &str) -> Read<f64> {
+    number_in(word.as_bytes()).map_err(Wrong::from)
+}
+
+/// The one number above 0 that follows `name`.
+pub fn positive(name: &str, words: &[&str]) -> Read<f64> {
+    let [word] = words else { return wrong(format!("expected one number after `{name}`")) };
+    match number(word)? {
+        number if number > 0.0 => Ok(number),
+        _ => wrong(format!("expected a number above 0 after `{name}`, found {}", shown(Some(word.as_bytes())))),
+    }
+}
