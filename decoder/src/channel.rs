@@ -72,4 +72,3 @@ pub const fn step_size(index: u8) -> u32 {
         (whole >> 7) * 181
     }
 }
-

@@ -67,15 +67,7 @@ impl<'m> History<'m> {
         } else {
             self.len += 1;
         }
-        *place = Undo {
-            w: state.w,
-            k: state.k,
-            cursor,
-            frame,
-            channel,
-            last: state.last,
-            mode: state.mode,
-        };
+        *place = Undo { w: state.w, k: state.k, cursor, frame, channel, last: state.last, mode: state.mode };
         self.end = if self.end + 1 == self.ring.len() { 0 } else { self.end + 1 };
     }
 

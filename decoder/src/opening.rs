@@ -116,12 +116,9 @@ impl<'a> Starts<'a> {
     }
 
     /// Number of moving channels, all starts being at hand.
-    pub(crate) fn count(mut self, symbols: &mut Symbols<'_>) -> usize {
-        let mut moving = 0;
-        while let Some((kind, _)) = self.slots.next() {
-            moving += usize::from(self.opening.read(symbols, kind).1.is_some());
-        }
-        moving
+    pub(crate) fn count(self, symbols: &mut Symbols<'_>) -> usize {
+        let Starts { mut opening, slots, .. } = self;
+        slots.filter(|&(kind, _)| opening.read(symbols, kind).1.is_some()).count()
     }
 }
 

@@ -38,7 +38,13 @@ pub(crate) enum Beside<'h, 'm> {
 impl Position {
     /// Reads the segments that start at this frame, in the order of channels. False if the input ran dry: call again when it
     /// holds more.
-    pub(crate) fn read_due(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, dry_at: u32, mut beside: Beside<'_, '_>) -> bool {
+    pub(crate) fn read_due(
+        &mut self,
+        channels: &mut Channels<'_>,
+        input: &Input<'_>,
+        dry_at: u32,
+        mut beside: Beside<'_, '_>,
+    ) -> bool {
         let now = self.frame as u8;
         let states = channels.states.get_mut(usize::from(self.next)..).unwrap_or(&mut []);
         let mut symbols = Symbols { at: self.cursor, input: *input };

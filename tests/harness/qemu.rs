@@ -53,9 +53,6 @@ pub const VIRT: Machine = Machine {
     options: &["-bios", "none"],
 };
 
-/// Cortex-M4 with FPU; of its memory, programs use as much as MICROBIT has.
-pub const MPS2_AN386: Machine = Machine { emulator: "qemu-system-arm", name: "mps2-an386", target: "thumbv7em-none-eabihf" };
-
 /// What to start, and with what attached.
 #[derive(Clone, Debug)]
 pub struct Launch {

@@ -29,7 +29,7 @@ struct Image {
 
 impl Image {
     fn read(program: &str) -> Result<Self> {
-        let firmware = Firmware::build("testsuite", program, MICROBIT, None)?;
+        let firmware = Firmware::build("testsuite", program, MICROBIT.target, None)?;
         let bytes = std::fs::read(firmware.elf())?;
         let elf = object::File::parse(&*bytes).context("the image is no ELF file")?;
         let size = |name| elf.section_by_name(name).map_or(0, |section| section.size()) as f64;

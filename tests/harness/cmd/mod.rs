@@ -1,7 +1,7 @@
 //! One command a file.
 
-pub mod conformance;
 pub mod bench;
+pub mod conformance;
 pub mod demo;
 pub mod fuzz;
 mod packages;
