@@ -64,9 +64,9 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Checks the CRC of every block, and returns all but the last CRC. `seed` is the CRC of what stands before the motion and must not change unseen.
-pub(crate) fn check(bytes: &[u8], seed: u16) -> Result<&[u8], OpenError> {
-    let mut crc = seed;
+/// Checks the CRC of every block, and returns all but the last CRC, and that. `crc` is that of what must not change unseen before them.
+#[inline(never)]
+pub(crate) fn check(bytes: &[u8], mut crc: u16) -> Result<(&[u8], u16), OpenError> {
     for block in bytes.chunks(STRIDE) {
         let (body, stored) = block.split_last_chunk::<CRC_BYTES>().ok_or(OpenError::Truncated)?;
         if crc::update(crc, body) != u16::from_le_bytes(*stored) {
@@ -75,5 +75,6 @@ pub(crate) fn check(bytes: &[u8], seed: u16) -> Result<&[u8], OpenError> {
         crc = crc::INITIAL;
     }
     // What a decoder reads past the end is zeros, not the last CRC.
-    bytes.split_last_chunk::<CRC_BYTES>().map(|(bytes, _)| bytes).ok_or(OpenError::Malformed)
+    let (bytes, last) = bytes.split_last_chunk::<CRC_BYTES>().ok_or(OpenError::Malformed)?;
+    Ok((bytes, u16::from_le_bytes(*last)))
 }

@@ -11,19 +11,19 @@ pub struct ChannelState {
     pub(crate) k: i32,
     /// Index of p in the pose.
     pub(crate) slot: u16,
-    /// The acceleration that the last new one took over from, in 2^-12 channel steps; it is a context of the next.
-    pub(crate) last: i16,
     /// The frame at which the running segment ends, modulo 256.
     pub(crate) due: u8,
     /// Mode of the running segment.
     pub(crate) mode: u8,
     /// Index of the channel's step.
     pub(crate) step: u8,
+    /// Sign of the acceleration that the last new one took over from, 0 if it was small: a context of the next.
+    pub(crate) turn: i8,
 }
 
 impl Default for ChannelState {
     fn default() -> Self {
-        ChannelState { v: 0, w: 0, k: 0, slot: 0, last: 0, due: 0, mode: START_MODE, step: 0 }
+        ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, turn: 0 }
     }
 }
 
@@ -60,15 +60,13 @@ pub const fn length(mode: u8) -> u8 {
     LENGTHS[(mode & 15) as usize]
 }
 
-/// A channel's step in raw units: 2^(index / 2).
+/// A channel's step in raw units: 1, 1, 2, 3, 4, 6, 8, 12, ...
 pub const fn step_size(index: u8) -> u32 {
-    let whole = 1u32 << (index >> 1);
-    // 181 / 128 is the square root of 2, to 0.01 %.
-    if index & 1 == 0 {
-        whole
-    } else if whole < 128 {
-        (whole * 181) >> 7
-    } else {
-        (whole >> 7) * 181
-    }
+    (mantissa(index) << (index >> 1)) >> 1
+}
+
+/// A channel's step is this times a power of two.
+#[inline(always)]
+pub(crate) const fn mantissa(index: u8) -> u32 {
+    2 | (index & 1) as u32
 }

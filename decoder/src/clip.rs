@@ -140,6 +140,7 @@ pub struct Event {
 
 impl<'a> Clip<'a> {
     /// Checks a file that holds its rig.
+    #[inline(never)]
     pub fn new_checked(bytes: &'a [u8]) -> Result<Clip<'a>, OpenError> {
         let parts = Parts::split(bytes)?;
         let rig = Rig::new_checked(parts.rig.ok_or(OpenError::WrongRig)?)?;
@@ -157,19 +158,17 @@ impl<'a> Clip<'a> {
         Clip::assemble(&parts, rig, Some(rig.id()))
     }
 
+    #[inline(never)]
     fn assemble(parts: &Parts<'a>, rig: Rig<'a>, rig_id: Option<u32>) -> Result<Clip<'a>, OpenError> {
         let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
-        let motion = blocks::check(motion, parts.seed)?;
-        let index = if parts.flags & HAS_INDEX != 0 {
-            let mut reader = Bytes(rest);
+        let (motion, last_crc) = blocks::check(motion, parts.seed)?;
+        let mut index = &[][..];
+        let mut reader = Bytes(rest);
+        if parts.flags & HAS_INDEX != 0 {
             let len = reader.varint()?;
-            let blocks = reader.take(len as usize)?;
-            (blocks::check(blocks, crc::update(crc::INITIAL, &len.to_le_bytes()))?, reader.0)
-        } else {
-            (&[][..], rest)
-        };
-        let (index, rest) = index;
-        if !rest.is_empty() {
+            index = blocks::check(reader.take(len as usize)?, index_seed(last_crc, len))?.0;
+        }
+        if !reader.0.is_empty() {
             return Err(OpenError::Malformed);
         }
         let input = Input { bytes: motion, base: 0 };
@@ -275,6 +274,11 @@ impl<'a> Clip<'a> {
     pub(crate) fn input(&self) -> Input<'a> {
         Input { bytes: self.motion, base: 0 }
     }
+}
+
+/// What the CRC of an index's first block goes on from: `motion_crc` is the motion's last.
+pub fn index_seed(motion_crc: u16, len: u32) -> u16 {
+    crc::update(motion_crc, &len.to_le_bytes())
 }
 
 /// The event that follows one at frame `before`.

@@ -11,36 +11,17 @@ pub const LOW: u32 = 1 << 16;
 /// Bytes of the state at the start of a stream.
 pub const STATE_BYTES: usize = 3;
 
-/// Cumulative probabilities of an alphabet: entry i is where symbol i + 1 starts; the last symbol ends at 2^12.
+/// An alphabet's cumulative probabilities in 2^-12: the low 12 bits of entry i are where symbol i starts; the last symbol ends
+/// at 2^12. The high 4 bits of entry i say at which symbol to begin to look for a number of [`SIXTEENTH`] i.
 pub type Table = [u16];
-/// The table of a segment's mode.
-pub type ModeTable = [u16; 33];
-/// The table of an acceleration or a slope.
-pub type NumberTable = [u16; 26];
 
-/// Fifteen entries from `at` on.
-#[inline(always)]
-fn window(table: &Table, at: usize) -> &[u16; 15] {
-    table.get(at..).and_then(|rest| rest.first_chunk()).unwrap_or(&[0; 15])
-}
+/// Bits of a number's place within the sixteenth that the high bits of a [`Table`] speak of.
+pub const SIXTEENTH: u32 = SCALE_BITS - 4;
 
-/// How many of the entries are at most `low`: four comparisons.
+/// Where a symbol starts, by its entry.
 #[inline(always)]
-fn passed(entries: &[u16; 15], low: u16) -> usize {
-    let mut count = 0;
-    if entries[7] <= low {
-        count = 8;
-    }
-    if entries[count + 3] <= low {
-        count += 4;
-    }
-    if entries[count + 1] <= low {
-        count += 2;
-    }
-    if entries[count] <= low {
-        count += 1;
-    }
-    count
+pub const fn start(entry: u16) -> u32 {
+    entry as u32 & ((1 << SCALE_BITS) - 1)
 }
 
 /// How far symbols have been read.
@@ -89,57 +70,42 @@ impl Symbols<'_> {
         }
     }
 
-    #[inline(always)]
-    fn low(&self) -> u16 {
-        (self.at.state & ((1 << SCALE_BITS) - 1)) as u16
-    }
-
-    /// Takes the symbol that the state's low digits name.
-    #[inline(always)]
-    fn take(&mut self, table: &Table, symbol: usize) -> u32 {
-        let low = u32::from(self.low());
-        let end = table.get(symbol).map_or(1 << SCALE_BITS, |&end| u32::from(end));
-        let start = table.get(symbol.wrapping_sub(1)).map_or(0, |&start| u32::from(start));
-        // state < 2^24, so the product stays below 2^24.
-        self.at.state = end.wrapping_sub(start) * (self.at.state >> SCALE_BITS) + low - start;
-        self.refill();
-        symbol as u32
-    }
-
-    /// The next symbol of the alphabet `table`: an index of at most `table.len()`.
+    /// The next symbol of the alphabet `table`.
     #[inline(never)]
     pub(crate) fn symbol(&mut self, table: &Table) -> u32 {
-        let low = self.low();
-        let symbol = table.iter().take_while(|&&next| next <= low).count();
-        self.take(table, symbol)
+        self.symbol_in_line(table)
     }
 
-    /// The same for a segment's mode, by bisection.
+    /// The same where calls would cost too much.
     #[inline(always)]
-    pub(crate) fn mode(&mut self, table: &ModeTable) -> u32 {
-        let low = self.low();
-        let [first, second, rest @ ..] = table;
-        let symbol = if low < *first {
-            0
-        } else if low < *second {
-            1
-        } else {
-            2 + if low < rest[15] { passed(window(rest, 0), low) } else { 16 + passed(window(rest, 16), low) }
+    pub(crate) fn symbol_in_line(&mut self, table: &Table) -> u32 {
+        let state = self.at.state;
+        let low = state & ((1 << SCALE_BITS) - 1);
+        let mut symbol = table.get((low >> SIXTEENTH) as usize).map_or(0, |&entry| usize::from(entry >> SCALE_BITS));
+        let mut from = table.get(symbol).map_or(0, |&entry| start(entry));
+        let size = loop {
+            let next = table.get(symbol + 1).map_or(1 << SCALE_BITS, |&entry| start(entry));
+            if low < next {
+                break next.wrapping_sub(from);
+            }
+            from = next;
+            symbol += 1;
         };
-        self.take(table, symbol)
-    }
-
-    /// The same for a number, by bisection.
-    #[inline(always)]
-    pub(crate) fn number(&mut self, table: &NumberTable) -> u32 {
-        let low = self.low();
-        let symbol = if low < table[10] { passed(window(table, 0), low) } else { 11 + passed(window(table, 11), low) };
-        self.take(table, symbol)
+        // state < 2^24, so the product stays below 2^24.
+        self.at.state = size * (state >> SCALE_BITS) + low.wrapping_sub(from);
+        self.refill();
+        symbol as u32
     }
 
     /// The next `count` bits, 8 at most.
     #[inline(never)]
     pub(crate) fn bits(&mut self, count: u32) -> u32 {
+        self.few_bits(count)
+    }
+
+    /// The same where calls would cost too much.
+    #[inline(always)]
+    pub(crate) fn few_bits(&mut self, count: u32) -> u32 {
         let value = self.at.state & ((1 << count) - 1);
         self.at.state >>= count;
         self.refill();

@@ -12,8 +12,8 @@ pub struct Undo {
     cursor: Cursor,
     frame: u32,
     channel: u16,
-    last: i16,
     mode: u8,
+    turn: i8,
 }
 
 /// A ring of the last segments read.
@@ -67,7 +67,7 @@ impl<'m> History<'m> {
         } else {
             self.len += 1;
         }
-        *place = Undo { w: state.w, k: state.k, cursor, frame, channel, last: state.last, mode: state.mode };
+        *place = Undo { w: state.w, k: state.k, cursor, frame, channel, mode: state.mode, turn: state.turn };
         self.end = if self.end + 1 == self.ring.len() { 0 } else { self.end + 1 };
     }
 
@@ -82,7 +82,7 @@ impl<'m> History<'m> {
             let before = if self.end == 0 { self.ring.len() } else { self.end } - 1;
             let Some(undo) = self.ring.get(before).filter(|undo| undo.frame == position.frame) else { break };
             if let Some(state) = channels.states.get_mut(usize::from(undo.channel)) {
-                (state.w, state.k, state.last, state.mode) = (undo.w, undo.k, undo.last, undo.mode);
+                (state.w, state.k, state.turn, state.mode) = (undo.w, undo.k, undo.turn, undo.mode);
                 // It was read when it was due.
                 state.due = undo.frame as u8;
             }

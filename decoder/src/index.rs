@@ -21,7 +21,8 @@ pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
     let mut entry = Entry { frame: 0, position: 0 };
     for _ in 0..count {
         let frame = entry.frame.checked_add(spacing)?;
-        if frame > target || spacing == 0 {
+        // An index that ends before its list does would read zeros for long.
+        if frame > target || spacing == 0 || reader.position as usize > input.bytes.len() {
             break;
         }
         entry = Entry { frame, position: entry.position.wrapping_add(reader.varint()) };
@@ -36,9 +37,10 @@ pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut Position, 
     let state = (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(reader.byte()));
     *position = Position { cursor: Cursor::at(at, state), frame: entry.frame, next: 0 };
     for state in channels.states.iter_mut() {
-        state.mode = (reader.byte() & START_MODE).min(START_MODE - 1);
+        let mode = reader.byte();
+        state.mode = (mode & START_MODE).min(START_MODE - 1);
+        state.turn = (mode >> 6).min(2) as i8 - 1;
         state.due = (entry.frame as u8).wrapping_add(reader.byte());
-        state.last = reader.zigzag() as i16;
         let p = reader.zigzag();
         state.v = reader.zigzag();
         state.w = reader.zigzag();
@@ -55,10 +57,10 @@ pub(crate) fn write(position: &Position, states: &[ChannelState], pose: &[i32], 
     let state = position.cursor.state();
     (0..STATE_BYTES).rev().for_each(|byte| put((state >> (8 * byte)) as u8));
     for state in states {
-        put(state.mode);
+        put(state.mode | ((state.turn + 1) as u8) << 6);
         put(state.due.wrapping_sub(position.frame as u8));
         let p = pose.get(usize::from(state.slot)).copied().unwrap_or(0);
-        [i32::from(state.last), p, state.v, state.w].into_iter().for_each(|value| zigzag(value, put));
+        [p, state.v, state.w].into_iter().for_each(|value| zigzag(value, put));
         if has_slope(state.mode) {
             zigzag(state.k, put);
         }

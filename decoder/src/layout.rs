@@ -3,7 +3,7 @@
 /// First bytes of every clip.
 pub const MAGIC: [u8; 2] = *b"Pn";
 /// Version byte: values from 0xe0 are experimental and promise nothing.
-pub const VERSION: u8 = 0xe3;
+pub const VERSION: u8 = 0xe4;
 
 /// Flag: the rig stands in the file, after the flags.
 pub const HAS_RIG: u8 = 1;
@@ -50,22 +50,26 @@ const fn frame_times() -> [u32; 16] {
 /// Lengths of a segment in frames, by index.
 pub const LENGTHS: [u8; 16] = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 
-/// What an acceleration step does to the position, by length: 2^20 * 2 / (L (L + 1)).
-/// A step of w moves p by half a channel step or less over the segment, whatever its length (METHOD 5).
-pub const W_STEPS: [u32; 16] = falling_steps(2);
-/// The same for a slope: 2^20 * 6 / (L (L + 1) (L + 2)).
-pub const K_STEPS: [u32; 16] = falling_steps(3);
+/// The step of an acceleration and, from entry 16 on, of a slope, by length, before the channel's step scales it:
+/// 2^30 / (L (L + 1)) and 3 * 2^30 / (L (L + 1) (L + 2)), so that over the segment either moves p by a channel step or less (METHOD 5).
+pub const STEPS: [u32; 32] = falling_steps();
+/// What a scaled step is shifted down by where the channel's step is 0.
+pub const STEPS_SHIFT: u32 = 30;
 
-const fn falling_steps(order: u32) -> [u32; 16] {
-    let mut steps = [0; 16];
+const fn falling_steps() -> [u32; 32] {
+    let mut steps = [0; 32];
     let mut i = 0;
     while i < 16 {
         let l = LENGTHS[i] as u32;
-        steps[i] = if order == 2 { (1 << 21) / (l * (l + 1)) } else { (6 << 20) / (l * (l + 1) * (l + 2)) };
+        steps[i] = (1 << 30) / (l * (l + 1));
+        steps[i + 16] = (3 << 30) / (l * (l + 1) * (l + 2));
         i += 1;
     }
     steps
 }
+
+/// Classes of lengths by index, which choose a number's statistics: 1, 2 and 3, 4 to 8, longer.
+pub const LENGTH_CLASSES: [u8; 16] = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];
 
 /// Segment types: bits 4 and 5 of a mode; bits 0 to 3 are the length's index.
 pub mod segment_type {
@@ -95,7 +99,7 @@ pub const fn group(bits: u32) -> u32 {
     DIRECT - 1 + (1 << bits)
 }
 
-/// Largest index of a channel's step: 2^(index / 2) raw units.
+/// Largest index of a channel's step: 1, 1, 2, 3, 4, 6, 8, 12, ... raw units.
 pub const MAX_STEP: u8 = 59;
 /// The channel's step that the first channel's is told against.
 pub const FIRST_STEP: u8 = 44;

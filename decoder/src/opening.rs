@@ -1,7 +1,7 @@
 //! How channels begin: at rest, with a constant, or with a position and a velocity.
 
 use crate::channel::{ChannelState, step_size};
-use crate::entropy::Symbols;
+use crate::entropy::{Symbols, Table};
 use crate::layout::{FIRST_STEP, MAX_STEP, STEP_BITS, STEP_CHANGES};
 use crate::rig::{Kind, Rig, Slots};
 use crate::tables;
@@ -55,7 +55,7 @@ const fn unzigzag(n: u32) -> i32 {
 }
 
 /// A signed number: the symbol is its length in bits, then come the bits below the highest, then the sign.
-fn magnitude(symbols: &mut Symbols<'_>, table: &[u16]) -> i32 {
+fn magnitude(symbols: &mut Symbols<'_>, table: &Table) -> i32 {
     let bits = symbols.symbol(table);
     let Some(below) = bits.checked_sub(1) else { return 0 };
     let value = (1 << below.min(31)) | symbols.long_bits(below.min(31)) as i32;

@@ -5,7 +5,7 @@ use crate::clip::Clip;
 use crate::entropy::{Cursor, Symbols};
 use crate::history::{History, Undo};
 use crate::opening::{Opened, Starts};
-use crate::position::{Beside, Channels, Position, reads};
+use crate::position::{Channels, Position, reads};
 use crate::snapshots::{Mark, Snapshots};
 use crate::{TooSmall, index};
 
@@ -65,6 +65,7 @@ impl<'a, 'm> Player<'a, 'm> {
     }
 
     /// Reads how channels start: the number that move, if there are states for them.
+    #[inline(never)]
     fn open(&mut self) -> Option<usize> {
         let input = self.clip.input();
         let mut starts = Starts::new(&self.clip.rig(), self.clip.length_exponent());
@@ -106,6 +107,7 @@ impl<'a, 'm> Player<'a, 'm> {
     }
 
     /// Goes on by one frame; from the last frame to frame 0.
+    #[inline(never)]
     pub fn step(&mut self) {
         if self.ended() {
             return self.rewind();
@@ -128,7 +130,7 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Goes to `frame`, or to the last one if there are fewer. Forward it costs a hop a segment on the way; backward it
     /// starts from the file's last snapshot before it (`pantin convert --index`), or from frame 0.
     pub fn seek(&mut self, frame: u32) {
-        self.seek_with(frame, &mut Memory::new(self, &mut [], &mut [], &mut [], &mut []));
+        self.go(frame, None);
     }
 
     /// [`Player::step`], and keeps what going back needs.
@@ -140,7 +142,7 @@ impl<'a, 'm> Player<'a, 'm> {
         let (position, mut channels) = self.parts();
         memory.history.begin(position.frame);
         if reads(position.frame, frames) {
-            position.read_due(&mut channels, &input, u32::MAX, Beside::Record(&mut memory.history));
+            position.read_due(&mut channels, &input, u32::MAX, Some(&mut memory.history));
         }
         position.advance(&mut channels);
         memory.snapshots.keep(position, &channels);
@@ -148,15 +150,21 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// [`Player::seek`], from the nearest snapshot in `memory` if that is closer; keeps the snapshots that it comes past.
     pub fn seek_with(&mut self, frame: u32, memory: &mut Memory<'_>) {
+        self.go(frame, Some(&mut memory.snapshots));
+    }
+
+    #[inline(never)]
+    fn go(&mut self, frame: u32, mut snapshots: Option<&mut Snapshots<'_>>) {
         let (input, frames, index) = (self.clip.input(), self.clip.frames(), self.clip.index());
         let target = frame.min(frames - 1);
         let now = self.position.frame;
         let mut from = if now <= target { now } else { 0 };
         let stored = index.and_then(|index| index::nearest(&index, target)).filter(|entry| entry.frame > from);
         from = stored.map_or(from, |entry| entry.frame);
-        if let Some((kept, _)) = memory.snapshots.nearest(target).filter(|&(_, frame)| frame > from) {
+        let kept = snapshots.as_ref().and_then(|snapshots| snapshots.nearest(target)).filter(|&(_, frame)| frame > from);
+        if let (Some((kept, _)), Some(snapshots)) = (kept, &snapshots) {
             let (position, mut channels) = self.parts();
-            memory.snapshots.restore(kept, position, &mut channels);
+            snapshots.restore(kept, position, &mut channels);
         } else if let (Some(entry), Some(index)) = (stored, index) {
             let (position, mut channels) = self.parts();
             index::restore(&index, entry, position, &mut channels);
@@ -165,9 +173,11 @@ impl<'a, 'm> Player<'a, 'm> {
         }
         let (position, mut channels) = self.parts();
         while position.frame < target {
-            let stop = memory.snapshots.next_after(position.frame).min(target);
+            let stop = snapshots.as_ref().map_or(target, |snapshots| snapshots.next_after(position.frame).min(target));
             position.run_to(&mut channels, &input, frames, stop);
-            memory.snapshots.keep(position, &channels);
+            if let Some(snapshots) = &mut snapshots {
+                snapshots.keep(position, &channels);
+            }
         }
     }
 

@@ -26,24 +26,16 @@ pub(crate) fn reads(frame: u32, frames: u32) -> bool {
     frame + 2 < frames
 }
 
-/// What to do beside reading a segment.
-pub(crate) enum Beside<'h, 'm> {
-    Nothing,
-    /// Channels stand at the start of their last segment: bring them to its end first.
-    Hop,
-    /// Keep what is needed to undo it.
-    Record(&'h mut History<'m>),
-}
-
 impl Position {
-    /// Reads the segments that start at this frame, in the order of channels. False if the input ran dry: call again when it
-    /// holds more.
+    /// Reads the segments that start at this frame, in the order of channels, and keeps in `history` what undoes it. False if
+    /// the input ran dry: call again when it holds more.
+    #[inline(never)]
     pub(crate) fn read_due(
         &mut self,
         channels: &mut Channels<'_>,
         input: &Input<'_>,
         dry_at: u32,
-        mut beside: Beside<'_, '_>,
+        mut history: Option<&mut History<'_>>,
     ) -> bool {
         let now = self.frame as u8;
         let states = channels.states.get_mut(usize::from(self.next)..).unwrap_or(&mut []);
@@ -54,14 +46,8 @@ impl Position {
                     self.cursor = symbols.at;
                     return false;
                 }
-                match &mut beside {
-                    Beside::Nothing => {}
-                    Beside::Hop => {
-                        if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                            state.hop(p, i32::from(state.length()));
-                        }
-                    }
-                    Beside::Record(history) => history.push(self.frame, self.next, symbols.at, state),
+                if let Some(history) = &mut history {
+                    history.push(self.frame, self.next, symbols.at, state);
                 }
                 segment::read(state, &mut symbols);
             }
@@ -108,15 +94,25 @@ impl Position {
     }
 
     /// Goes to a later frame by hops over segments.
+    #[inline(never)]
     pub(crate) fn run_to(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32, target: u32) {
         self.hop_all(channels, true);
+        let mut symbols = Symbols { at: self.cursor, input: *input };
         while self.frame < target {
             if reads(self.frame, frames) {
-                self.read_due(channels, input, u32::MAX, Beside::Hop);
+                let now = self.frame as u8;
+                for state in channels.states.iter_mut().filter(|state| state.due == now) {
+                    // It stands at the start of its last segment.
+                    if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
+                        state.hop(p, i32::from(state.length()));
+                    }
+                    segment::read(state, &mut symbols);
+                }
             }
-            self.next = 0;
             self.frame += 1;
         }
+        self.cursor = symbols.at;
+        self.next = 0;
         self.hop_all(channels, false);
     }
 

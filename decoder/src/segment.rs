@@ -1,8 +1,8 @@
 //! One segment: its mode, then its acceleration, its slope, both, or neither.
 
-use crate::channel::{ChannelState, length};
+use crate::channel::{ChannelState, length, mantissa};
 use crate::entropy::Symbols;
-use crate::layout::{DIRECT, FAR, FAR_BITS, GROUPS, K_STEPS, START_MODE, W_STEPS, group, segment_type};
+use crate::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
 use crate::tables;
 
 /// Bytes that one segment takes at most, CRC included: a mode's symbol and 4 bits, then twice a number's symbol, 5 bits and
@@ -12,14 +12,15 @@ pub(crate) const MAX_SEGMENT_BYTES: u32 = 32;
 /// Symbols of the mode's alphabet that name type and length at once; two more name types WK and NONE, whose length follows.
 pub const DIRECT_MODES: u32 = 32;
 
-/// The step of an acceleration (`steps` is [`W_STEPS`]) or a slope ([`K_STEPS`]), in raw units a frame^2 or a frame^3.
+/// Where the slopes begin in [`STEPS`], which the modes of type W and K index.
+pub const SLOPE: u8 = 16;
+
+/// The step of an acceleration (`which` is the length's index) or a slope (that + [`SLOPE`]), in raw units a frame^2 or a frame^3.
 #[inline(always)]
-pub fn step(steps: &[u32; 16], mode: u8, channel_step: u8) -> u32 {
-    let even = steps[usize::from(mode & 15)];
-    // At most 2^20 * 181 / 128 < 2^21, then shifted up by (MAX_STEP >> 1) - 20 = 9.
-    let scaled = if channel_step & 1 == 0 { even } else { (even * 181) >> 7 };
-    let exponent = u32::from(channel_step >> 1);
-    if exponent >= 20 { scaled << ((exponent - 20) & 31) } else { (scaled >> (20 - exponent)).max(1) }
+pub const fn step(which: u8, channel_step: u8) -> u32 {
+    // At most 2^29 * 3; the shift is at least 30 - MAX_STEP / 2 = 1.
+    let scaled = STEPS[(which & 31) as usize] * mantissa(channel_step);
+    (scaled >> ((STEPS_SHIFT - (channel_step >> 1) as u32) & 31)) | 1
 }
 
 /// What the last accelerations tell about the next one: which statistics it has, and whether its sign is turned around.
@@ -29,70 +30,94 @@ pub struct Context {
     pub index: u8,
     /// Whether the symbol tells the opposite number.
     pub flipped: bool,
+    /// Sign of the running number, 0 if it is small: the next context's `turn`.
+    pub sign: i8,
 }
 
 /// Contexts of w and k together.
 pub const CONTEXTS: usize = 96;
 
-impl Context {
-    /// For a segment of `mode`: `now` is the running w (or k, if `slope`), `before` the one before it, `step` the new one's.
-    pub fn new(slope: bool, mode: u8, now: i32, before: i32, step: u32) -> Context {
-        let length_class = (LENGTH_CLASSES >> (2 * (mode & 15))) as u8 & 3;
-        // step < 2^30, so nothing here passes 2^32.
-        let half = (step + 1) >> 1;
-        let size = now.unsigned_abs();
-        let mut a = 0;
-        let mut turned = before;
-        let b = if before.unsigned_abs() < half { 0 } else { before.signum() };
-        if size >= half {
-            a = 1 + u8::from(size >= half + step) + u8::from(size >= half + 2 * step);
-            turned = now;
-        } else if b == 0 {
-            turned = 0;
-        }
-        let flip = turned >> 31;
-        let b = (b ^ flip) - flip;
-        let index = (length_class + 4 * u8::from(slope)) * 12 + a * 3 + (b + 1) as u8;
-        Context { index, flipped: flip != 0 }
+/// The first context of a length, or of a length's slopes: 12 a class.
+const FIRST_CONTEXTS: [u8; 32] = {
+    let mut first = [0; 32];
+    let mut i = 0;
+    while i < 32 {
+        first[i] = 12 * (LENGTH_CLASSES[i % 16] + 4 * (i / 16) as u8);
+        i += 1;
     }
-}
+    first
+};
 
-/// Classes of lengths, two bits each: 1, 2 and 3, 4 to 8, longer.
-const LENGTH_CLASSES: u32 = 0xffff_ea94;
-
-/// The scale of [`ChannelState`]'s `last`: raw units are shifted down by this much.
-pub fn last_shift(channel_step: u8) -> u32 {
-    u32::from(channel_step >> 1).saturating_sub(12)
-}
-
-/// `w` as `last` keeps it.
-pub fn keep_last(w: i32, channel_step: u8) -> i16 {
-    (w >> last_shift(channel_step)).clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
+impl Context {
+    /// `which` as in [`step`], which gave `unit`: `now` is the running w or k; `turn` the sign before, 0 for a slope.
+    #[inline(always)]
+    pub const fn new(which: u8, now: i32, turn: i8, unit: u32) -> Context {
+        // unit < 2^30, so nothing here passes 2^32.
+        let half = (unit + 1) >> 1;
+        let mut size = now.unsigned_abs();
+        let turn = turn as i32;
+        let (mut a, mut sign, mut flip) = (0, 0, turn >> 31);
+        if size >= half {
+            flip = now >> 31;
+            sign = flip | 1;
+            a = 3;
+            size >>= 1;
+            if size >= unit {
+                a = 6;
+                if size >= 3 * unit {
+                    a = 9;
+                }
+            }
+        }
+        let first = FIRST_CONTEXTS[(which & 31) as usize];
+        let index = first as i32 + a + (turn ^ flip) - flip + 1;
+        Context { index: index as u8, flipped: flip != 0, sign: sign as i8 }
+    }
 }
 
 /// Reads the segment that follows the one that `state` has ended.
+#[inline(never)]
 pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) {
     let mode = mode(symbols, state.mode);
-    let before = i32::from(state.last) << last_shift(state.step);
-    state.last = keep_last(state.w, state.step);
-    let kind = mode >> 4;
-    if kind == segment_type::W || kind == segment_type::WK {
-        state.w = coefficient(symbols, false, mode, state.step, state.w, before);
-    }
-    state.k = if kind == segment_type::K || kind == segment_type::WK {
-        coefficient(symbols, true, mode, state.step, state.k, 0)
-    } else {
-        0
-    };
     state.mode = mode;
     // It was due at this frame.
     state.due = state.due.wrapping_add(length(mode));
+    let (kind, length) = (mode >> 4, mode & 15);
+    if kind & 1 == 0 {
+        (state.w, state.turn) = number(symbols, state.step, length, state.w, state.turn);
+    }
+    let slope = match kind {
+        segment_type::K | segment_type::WK => slope(symbols, state, length | SLOPE),
+        _ => 0,
+    };
+    state.k = slope;
+}
+
+/// A new slope: captured motion has few.
+#[inline(never)]
+fn slope(symbols: &mut Symbols<'_>, state: &ChannelState, which: u8) -> i32 {
+    number(symbols, state.step, which, state.k, 0).0
+}
+
+/// A new acceleration or slope in raw units, and the sign of the running one, `now`.
+#[inline(always)]
+fn number(symbols: &mut Symbols<'_>, channel_step: u8, which: u8, now: i32, turn: i8) -> (i32, i8) {
+    let unit = step(which, channel_step);
+    let context = Context::new(which, now, turn, unit);
+    let symbol = symbols.symbol_in_line(tables::number(context.index));
+    let mut size = (symbol + 1) >> 1;
+    if size > DIRECT {
+        size = far(symbols, size);
+    }
+    let value = size.wrapping_mul(unit) as i32;
+    let negative = (symbol & 1 != 0) != context.flipped;
+    (if negative { value.wrapping_neg() } else { value }, context.sign)
 }
 
 /// The mode that follows `after`.
-#[inline(never)]
+#[inline(always)]
 fn mode(symbols: &mut Symbols<'_>, after: u8) -> u8 {
-    let symbol = symbols.mode(tables::mode(after));
+    let symbol = symbols.symbol_in_line(tables::mode(after));
     if let Some(&mode) = tables::MODES.get(symbol as usize) {
         return mode;
     }
@@ -100,28 +125,13 @@ fn mode(symbols: &mut Symbols<'_>, after: u8) -> u8 {
     if mode == START_MODE { START_MODE - 1 } else { mode }
 }
 
-/// A new acceleration, or slope, in raw units.
-#[inline(never)]
-fn coefficient(symbols: &mut Symbols<'_>, slope: bool, mode: u8, channel_step: u8, now: i32, before: i32) -> i32 {
-    let unit = step(if slope { &K_STEPS } else { &W_STEPS }, mode, channel_step);
-    let context = Context::new(slope, mode, now, before, unit);
-    let symbol = symbols.number(tables::number(context.index));
-    let index = (symbol + 1) >> 1;
-    let mut size = unit.wrapping_mul(index);
-    if index > DIRECT {
-        size = unit.wrapping_mul(far(symbols, index));
-    }
-    let negative = (symbol & 1 != 0) != context.flipped;
-    if negative { (size as i32).wrapping_neg() } else { size as i32 }
-}
-
 /// A magnitude above [`DIRECT`].
 #[inline(never)]
 fn far(symbols: &mut Symbols<'_>, index: u32) -> u32 {
-    if index < FAR {
-        return group(index - DIRECT) + symbols.bits(index - DIRECT);
+    if let Some(count @ 1..=GROUPS) = index.checked_sub(DIRECT) {
+        return group(count) + symbols.few_bits(count);
     }
     let bits = symbols.bits(FAR_BITS);
-    // At most 2^31 + 2^7: it may wrap, but no well-formed number is so large.
-    (group(GROUPS + 1) - 1 + (1 << bits)).wrapping_add(symbols.long_bits(bits))
+    // At most 2^32 + 2^7: it may wrap, but no well-formed number is so large.
+    (group(GROUPS + 1) - 1).wrapping_add(1 << bits).wrapping_add(symbols.long_bits(bits))
 }

@@ -7,7 +7,7 @@ use crate::crc;
 use crate::entropy::{Cursor, Symbols};
 use crate::layout::*;
 use crate::opening::{Opened, Starts};
-use crate::position::{Beside, Channels, Position, reads};
+use crate::position::{Channels, Position, reads};
 use crate::prefix::Prefix;
 use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
@@ -256,7 +256,7 @@ impl<'a, 'm> Stream<'a, 'm> {
         }
         let (input, dry_at) = (self.window.input(), self.window.dry_at());
         let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
-        if reads(frame, self.head.frames) && !self.position.read_due(&mut channels, &input, dry_at, Beside::Nothing) {
+        if reads(frame, self.head.frames) && !self.position.read_due(&mut channels, &input, dry_at, None) {
             return self.dry();
         }
         self.position.advance(&mut channels);

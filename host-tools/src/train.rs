@@ -1,9 +1,8 @@
 //! Makes the format's tables from coded motions: counts symbols, joins contexts that behave alike, rounds to 1/4096.
 
 use crate::encode::clip::{Coded, symbols};
-use crate::encode::entropy::{Alphabet, Sink};
-use pantin::entropy::SCALE_BITS;
-use pantin::layout::FAR;
+use crate::encode::entropy::{Alphabet, Sink, sizes};
+use pantin::entropy::{SCALE_BITS, SIXTEENTH};
 use pantin::segment::{CONTEXTS, DIRECT_MODES};
 use pantin::tables::MODES;
 use std::collections::BTreeMap;
@@ -24,7 +23,7 @@ pub struct Counts {
 
 impl Sink for Counts {
     fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
-        let row = self.counts.entry(alphabet).or_insert_with(|| vec![0.0; alphabet.table().len() + 1]);
+        let row = self.counts.entry(alphabet).or_insert_with(|| vec![0.0; sizes(alphabet.table()).count()]);
         row[symbol as usize] += self.weight;
     }
 
@@ -39,8 +38,7 @@ impl Counts {
     }
 
     fn row(&self, alphabet: Alphabet) -> Vec<f64> {
-        let table = alphabet.table();
-        self.counts.get(&alphabet).cloned().unwrap_or_else(|| vec![0.0; table.len() + 1])
+        self.counts.get(&alphabet).cloned().unwrap_or_else(|| vec![0.0; sizes(alphabet.table()).count()])
     }
 
     /// The text of `decoder/src/tables.rs`.
@@ -57,7 +55,7 @@ impl Counts {
         let numbers = (0..CONTEXTS as u8).map(|context| self.row(Alphabet::Number(context))).collect();
         let (mode_after, mode) = join(modes, MODE_TABLES, &|i| if i >= DIRECT_MODES as usize { 0.002 } else { 0.01 });
         let number_prior = |i: usize| 0.5f64.powi(i.div_ceil(2) as i32).max(0.004);
-        let (number_in, number) = join(numbers, NUMBER_TABLES, &number_prior);
+        let (mut number_in, number) = join(numbers, NUMBER_TABLES, &number_prior);
         let named: Vec<u8> = order.iter().map(|&old| MODES[old]).collect();
 
         let mut out = HEAD.replace("TRAINED_ON", trained_on);
@@ -69,16 +67,16 @@ impl Counts {
         item(
             "Modes: 32 named by [`MODES`], then WK and NONE.",
             "static MODE",
-            format!("[[u16; 33]; {}]", mode.len()),
+            format!("[[u16; {}]; {}]", mode[0].len(), mode.len()),
             format!("{mode:?}"),
         );
-        item("Which of [`NUMBER`] a context has.", "const NUMBER_IN", format!("[u8; {CONTEXTS}]"), format!("{number_in:?}"));
-        let width = 2 * FAR;
+        number_in.resize(128, 0);
+        item("Which of [`NUMBER`] a context has.", "const NUMBER_IN", "[u8; 128]".into(), format!("{number_in:?}"));
         let doc = "Accelerations and slopes in their steps, by index of magnitude: 0, -1, 1, -2, ...";
-        item(doc, "static NUMBER", format!("[[u16; {width}]; {}]", number.len()), format!("{number:?}"));
-        let status: Vec<Vec<u16>> = (0..3).map(|after| cumulative(&self.row(Alphabet::Status(after)), &|_| 0.1)).collect();
+        item(doc, "static NUMBER", format!("[[u16; {}]; {}]", number[0].len(), number.len()), format!("{number:?}"));
+        let status: Vec<Entries> = (0..3).map(|after| rounded(&self.row(Alphabet::Status(after)), &|_| 0.1)).collect();
         let doc = "Rest, constant, moving: after a channel that rests, is constant, moves.";
-        item(doc, "static STATUS", "[[u16; 2]; 3]".into(), format!("{status:?}"));
+        item(doc, "static STATUS", "[[u16; 3]; 3]".into(), format!("{status:?}"));
         let bell = |i: usize| 0.8f64.powi((i as i32 - 6).abs()).max(0.01);
         for (alphabet, name, doc, prior) in [
             (
@@ -90,7 +88,7 @@ impl Counts {
             (Alphabet::Position, "POSITION", "Bits of a first position, in half channel steps.", &bell),
             (Alphabet::Velocity, "VELOCITY", "Bits of a first velocity, in quarter channel steps.", &bell),
         ] {
-            let table = cumulative(&self.row(alphabet), prior);
+            let table = rounded(&self.row(alphabet), prior);
             item(doc, &format!("pub static {name}"), format!("[u16; {}]", table.len()), format!("{table:?}"));
         }
         out + TAIL
@@ -99,8 +97,11 @@ impl Counts {
 
 type Prior<'p> = &'p dyn Fn(usize) -> f64;
 
+/// A table as the decoder has it.
+type Entries = Vec<u16>;
+
 /// Joins the rows that cost least to join until `tables` are left: which table each row has, and the tables.
-fn join(rows: Vec<Vec<f64>>, tables: usize, prior: Prior<'_>) -> (Vec<usize>, Vec<Vec<u16>>) {
+fn join(rows: Vec<Vec<f64>>, tables: usize, prior: Prior<'_>) -> (Vec<usize>, Vec<Entries>) {
     let mut groups: Vec<(Vec<usize>, Vec<f64>)> = rows.into_iter().enumerate().map(|(i, row)| (vec![i], row)).collect();
     let contexts = groups.len();
     while groups.len() > tables {
@@ -123,7 +124,7 @@ fn join(rows: Vec<Vec<f64>>, tables: usize, prior: Prior<'_>) -> (Vec<usize>, Ve
     for (table, (members, _)) in groups.iter().enumerate() {
         members.iter().for_each(|&member| of[member] = table);
     }
-    (of, groups.iter().map(|(_, row)| cumulative(row, prior)).collect())
+    (of, groups.iter().map(|(_, row)| rounded(row, prior)).collect())
 }
 
 fn smoothed(row: &[f64], prior: Prior<'_>) -> Vec<f64> {
@@ -137,8 +138,8 @@ fn bits(row: &[f64], prior: Prior<'_>) -> f64 {
     smoothed(row, prior).iter().zip(row).map(|(p, count)| -count * p.log2()).sum()
 }
 
-/// Where the symbols after the first start, in 1/4096; every symbol has at least 1.
-fn cumulative(row: &[f64], prior: Prior<'_>) -> Vec<u16> {
+/// The table of probabilities in 1/4096; every symbol has at least 1.
+fn rounded(row: &[f64], prior: Prior<'_>) -> Entries {
     let whole = 1 << SCALE_BITS;
     let parts = smoothed(row, prior);
     let mut sizes: Vec<i32> = parts.iter().map(|p| ((p * f64::from(whole)).round() as i32).max(1)).collect();
@@ -150,42 +151,37 @@ fn cumulative(row: &[f64], prior: Prior<'_>) -> Vec<u16> {
         let Some(at) = (0..sizes.len()).filter(allowed).max_by(|&a, &b| off(a).total_cmp(&off(b))) else { break };
         sizes[at] += change;
     }
-    let mut sum = 0;
-    sizes[..sizes.len() - 1]
-        .iter()
-        .map(|size| {
-            sum += size;
-            sum as u16
-        })
-        .collect()
+    let starts = sizes.iter().scan(0, |sum, &size| Some(std::mem::replace(sum, *sum + size as u32)));
+    let starts: Vec<u32> = starts.collect();
+    let holding = |low: u32| starts.iter().filter(|&&start| start <= low).count() as u32 - 1;
+    let hint = |i: u32| if i < 16 { holding(i << SIXTEENTH).min(15) << SCALE_BITS } else { 0 };
+    starts.iter().zip(0..).map(|(start, i)| (start | hint(i)) as u16).collect()
 }
 
 const HEAD: &str = "//! Statistics of motion, frozen with the format: made by `pantin train`, not by hand.
 //!
 //! TRAINED_ON
 //!
-//! A table lists the cumulative probabilities of an alphabet in 1/4096: entry i is where symbol i + 1 starts.
+//! A table lists an alphabet's cumulative probabilities, as [`Table`] says.
 
-use crate::entropy::{ModeTable, NumberTable};
+use crate::entropy::Table;
 
 ";
 
 const TAIL: &str = "/// The modes' table after a segment of this mode.
 #[inline(always)]
-pub fn mode(after: u8) -> &'static ModeTable {
-    let index = MODE_AFTER.get(usize::from(after)).copied().unwrap_or(0);
-    MODE.get(usize::from(index)).unwrap_or(&MODE[0])
+pub fn mode(after: u8) -> &'static Table {
+    &MODE[usize::from(MODE_AFTER[usize::from(after & 63)] & 7)]
 }
 
 /// The numbers' table in this context.
 #[inline(always)]
-pub fn number(context: u8) -> &'static NumberTable {
-    let index = NUMBER_IN.get(usize::from(context)).copied().unwrap_or(0);
-    NUMBER.get(usize::from(index)).unwrap_or(&NUMBER[0])
+pub fn number(context: u8) -> &'static Table {
+    &NUMBER[usize::from(NUMBER_IN[usize::from(context & 127)] & 15)]
 }
 
 /// The table of a channel's status after a channel of that status.
-pub fn status(after: u8) -> &'static [u16] {
+pub fn status(after: u8) -> &'static Table {
     STATUS.get(usize::from(after)).map_or(&[], |table| table)
 }
 ";

@@ -78,3 +78,25 @@ fn clips_of_one_figure_share_its_rig() {
     let rigs: Vec<Vec<u8>> = captured("bvh_bandai1_").iter().map(|path| rig::encode(&load(path).rig).unwrap()).collect();
     assert!(rigs.windows(2).all(|pair| pair[0] == pair[1]));
 }
+
+#[test]
+fn angles_that_begin_turns_away_are_kept() {
+    let mut motion = own("walk.keys");
+    let angles: Vec<usize> = motion
+        .rig
+        .channel_kinds()
+        .iter()
+        .enumerate()
+        .filter(|(_, (_, kind))| kind.is_rotation())
+        .map(|(channel, _)| channel)
+        .collect();
+    for (count, channel) in angles.into_iter().enumerate() {
+        // From -7.4 to 7.4 turns: past the integer's range, and on either side of its edge.
+        let turns = (count % 75) as f64 * 0.2 - 7.4;
+        motion.values[channel].iter_mut().for_each(|x| *x += turns * 360.0);
+        motion.keys[channel] = None;
+    }
+    for bound in [0.2, 0.3, 0.5, 0.7, 1.0] {
+        convert(&motion, bound, Level::Fast);
+    }
+}

@@ -32,7 +32,7 @@ fn figure() -> Rig {
 }
 
 fn coded() -> Coded {
-    let start = Start::Moving { p: 20 * position_grid(STEP), v: -6 * velocity_grid(STEP), step: STEP };
+    let start = Start::Moving { p: 20, v: -6, step: STEP };
     Coded {
         frames: 8,
         frame_time_ns: 33_333_333,
@@ -45,7 +45,7 @@ fn coded() -> Coded {
 }
 
 fn unit(segment: &Segment) -> u32 {
-    pantin::segment::step(if segment.kind() == segment_type::K { &K_STEPS } else { &W_STEPS }, segment.mode, STEP)
+    pantin::segment::step(segment.mode, STEP)
 }
 
 /// What the example's symbols and bits mean, in the order in which they are read.

@@ -81,7 +81,7 @@ impl Brute<'_> {
                 let mut bits = Bits(4.5);
                 bits.magnitude(Alphabet::Position, p / pg);
                 bits.magnitude(Alphabet::Velocity, v / vg);
-                let running = Running { v, w: 0, k: 0, last: 0, mode: START_MODE, step: STEP };
+                let running = Running { v, w: 0, k: 0, turn: 0, mode: START_MODE, step: STEP };
                 self.on(running, p, 0, bits.0 + self.price(0, p) + self.price(1, p + v));
             }
         }

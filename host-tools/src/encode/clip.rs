@@ -7,23 +7,23 @@ use anyhow::{Context, Result, ensure};
 use pantin::layout::*;
 use pantin::{Event, crc, step_size};
 
-/// How a channel begins: raw values, multiples of its grids.
+/// How a channel begins, in multiples of its grids, which need not divide the range of raw values: those may wrap, these not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// It rests where the rig has it: an offset, or zero.
     Rest,
     /// It holds one value.
     Constant {
-        /// The value, a multiple of [`position_grid`].
+        /// The value in [`position_grid`]s.
         p: i32,
         /// Index of the channel's step.
         step: u8,
     },
     /// It moves.
     Moving {
-        /// Value at frame 0, a multiple of [`position_grid`].
+        /// Value at frame 0 in [`position_grid`]s.
         p: i32,
-        /// Difference from frame 0 to frame 1, a multiple of [`velocity_grid`].
+        /// Difference from frame 0 to frame 1 in [`velocity_grid`]s.
         v: i32,
         /// Index of the channel's step.
         step: u8,
@@ -177,9 +177,9 @@ impl Opening {
         if zigzag >= STEP_CHANGES {
             out.bits(u32::from(step), STEP_BITS);
         }
-        out.magnitude(Alphabet::Position, p / position_grid(step));
+        out.magnitude(Alphabet::Position, p);
         if let Start::Moving { v, .. } = *start {
-            out.magnitude(Alphabet::Velocity, v / velocity_grid(step));
+            out.magnitude(Alphabet::Velocity, v);
         }
     }
 }
@@ -192,7 +192,8 @@ pub fn symbols(coded: &Coded, rig: &pantin::Rig<'_>, out: &mut dyn Sink) {
     for (index, (channel, position)) in coded.channels.iter().zip(kinds).enumerate() {
         opening.put(&channel.start, position, out);
         if let Start::Moving { v, step, .. } = channel.start {
-            running.push((index, 0, Running { v, w: 0, k: 0, last: 0, mode: START_MODE, step }, 0));
+            let v = v.wrapping_mul(velocity_grid(step));
+            running.push((index, 0, Running { v, w: 0, k: 0, turn: 0, mode: START_MODE, step }, 0));
         }
     }
     for frame in 0..(coded.frames as usize).saturating_sub(2) {

@@ -1,6 +1,6 @@
 //! Writes what `pantin::entropy` reads. rANS is last in, first out: symbols are gathered, then coded from the last to the first.
 
-use pantin::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table};
+use pantin::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table, start};
 use pantin::tables;
 
 /// What a symbol is of: the format's tables by name.
@@ -67,11 +67,16 @@ pub struct Symbols {
     digits: Vec<Digit>,
 }
 
+/// Probabilities in 2^-12 of an alphabet's symbols.
+pub fn sizes(table: &Table) -> impl Iterator<Item = u32> + '_ {
+    (0..table.len() as u32).map(|symbol| stretch(table, symbol).1)
+}
+
 /// Start and size of a symbol's stretch of 4096.
 pub fn stretch(table: &Table, symbol: u32) -> (u32, u32) {
-    let at = |index: u32| table.get(index as usize).map_or(1 << SCALE_BITS, |&end| u32::from(end));
-    let start = if symbol == 0 { 0 } else { at(symbol - 1) };
-    (start, at(symbol) - start)
+    let start = start(table[symbol as usize]);
+    let end = table.get(symbol as usize + 1).map_or(1 << SCALE_BITS, |&next| pantin::entropy::start(next));
+    (start, end - start)
 }
 
 /// What a symbol costs, in bits.

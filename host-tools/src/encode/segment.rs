@@ -1,8 +1,8 @@
 //! A segment's symbols: the mirror of `pantin::segment`.
 
 use super::entropy::{Alphabet, Sink};
-use pantin::layout::{DIRECT, FAR, FAR_BITS, GROUPS, K_STEPS, W_STEPS, group, segment_type};
-use pantin::segment::{self, Context, DIRECT_MODES};
+use pantin::layout::{DIRECT, FAR, FAR_BITS, GROUPS, group, segment_type};
+use pantin::segment::{Context, DIRECT_MODES, SLOPE, step};
 use pantin::tables;
 
 /// A segment: its mode, and how many steps its new acceleration and slope have (0 if it has none).
@@ -37,8 +37,8 @@ pub struct Running {
     pub w: i32,
     /// Slope.
     pub k: i32,
-    /// The acceleration before, as the decoder keeps it.
-    pub last: i16,
+    /// Sign of the acceleration before, as the decoder keeps it.
+    pub turn: i8,
     /// Mode of the segment that ends.
     pub mode: u8,
     /// Index of the channel's step.
@@ -80,16 +80,16 @@ impl Running {
             out.symbol(Alphabet::Number(context.index), symbol);
             bits.iter().for_each(|&(value, count)| out.bits(value, count));
         };
-        let before = i32::from(self.last) << segment::last_shift(self.step);
-        self.last = segment::keep_last(self.w, self.step);
+        let length = mode & 15;
         if matches!(segment.kind(), segment_type::W | segment_type::WK) {
-            let unit = segment::step(&W_STEPS, mode, self.step);
-            number(Context::new(false, mode, self.w, before, unit), segment.w);
-            self.w = segment.w.wrapping_mul(unit as i32);
+            let unit = step(length, self.step);
+            let context = Context::new(length, self.w, self.turn, unit);
+            number(context, segment.w);
+            (self.w, self.turn) = (segment.w.wrapping_mul(unit as i32), context.sign);
         }
         if matches!(segment.kind(), segment_type::K | segment_type::WK) {
-            let unit = segment::step(&K_STEPS, mode, self.step);
-            number(Context::new(true, mode, self.k, 0, unit), segment.k);
+            let unit = step(length | SLOPE, self.step);
+            number(Context::new(length | SLOPE, self.k, 0, unit), segment.k);
             self.k = segment.k.wrapping_mul(unit as i32);
         } else {
             self.k = 0;

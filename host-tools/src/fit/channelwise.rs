@@ -5,8 +5,8 @@ use super::bounds::{Bounds, unit};
 use super::chain::{Held, chain};
 use super::cost::Costs;
 use super::refusal::amount;
-use super::search::{Effort, Fitted, Tube, search};
-use super::{frame_time_ns, raw};
+use super::search::{Effort, Fitted, Tube, in_grids, search};
+use super::{raw, time};
 use crate::encode::clip::{Channel, Coded, Start, position_grid, velocity_grid};
 use crate::motion::Motion;
 use anyhow::{Result, bail};
@@ -47,9 +47,11 @@ pub fn fit(motion: &Motion, bounds: &Bounds, progress: &(dyn Fn() + Sync)) -> Re
     let length_exponent = raw::clip_length_exponent(&motion.rig, &motion.values);
     let scales = raw::scales(&motion.rig, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);
+    let kinds = motion.rig.channel_kinds();
+    let frame_time_ns = time(motion)?;
     let code = |channel: usize| {
         let scale = scales[channel];
-        let target: Vec<f64> = motion.values[channel].iter().map(|x| x / scale).collect();
+        let target = raw::target(&motion.values[channel], kinds[channel].1, scale);
         check_range(motion, channel, &target)?;
         let bound = (USED * bounds.greatest[channel] / scale).max(NARROWEST);
         let rest = f64::from(rests[channel]);
@@ -62,7 +64,7 @@ pub fn fit(motion: &Motion, bounds: &Bounds, progress: &(dyn Fn() + Sync)) -> Re
     let choices = motion.rig.joints.iter().filter(|joint| joint.kinds.iter().filter(|kind| kind.is_rotation()).count() == 3);
     Ok(Coded {
         frames: motion.frames as u32,
-        frame_time_ns: frame_time_ns(motion.frame_time),
+        frame_time_ns,
         length_exponent,
         exponentials: choices.map(|_| false).collect(),
         channels: codes.into_iter().map(|code| Channel { start: code.start, segments: code.segments }).collect(),
@@ -164,8 +166,8 @@ fn cheapest<T>(tries: impl IntoIterator<Item = T>, code: impl Fn(T) -> Option<Fi
 }
 
 fn start(p: f64, v: f64, step: u8) -> (f64, f64, f64) {
-    let raw = |x: f64| x as i64 as i32;
-    (p, v, Costs::get().start(raw(p) / position_grid(step), raw(v) / velocity_grid(step)))
+    let (p_grids, v_grids) = in_grids(p, v, step);
+    (p, v, Costs::get().start(p_grids, v_grids))
 }
 
 fn positions(tube: &Tube, step: u8, beam: usize) -> Option<Fitted> {

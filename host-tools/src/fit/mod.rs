@@ -14,21 +14,24 @@ pub mod search;
 use crate::encode::clip::{Channel, Coded};
 use crate::encode::rig as rig_bytes;
 use crate::motion::Motion;
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, ensure};
 use descent::{Descent, Plan};
 use figure::Figure;
+use pantin::layout::MAX_FRAMES;
 
 /// Parts of the bound that first codes may fill, until all channels find one: those that come late need room.
 const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 
 /// Codes `motion` within the plan's bound. `progress` hears the part that is done, 0 to 1.
 pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnMut(f64)) -> Result<Coded> {
+    let frame_time_ns = time(motion)?;
     let (chosen, exponentials) = parametrize::parametrize(motion, plan.bound_cm);
     let length_exponent = raw::clip_length_exponent(&motion.rig, &motion.values);
     let scales = raw::scales(&chosen.rig, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);
-    let targets: Vec<Vec<f64>> =
-        chosen.values.iter().zip(&scales).map(|(values, scale)| values.iter().map(|x| x / scale).collect()).collect();
+    let kinds = chosen.rig.channel_kinds();
+    let channels = chosen.values.iter().zip(kinds).zip(&scales);
+    let targets: Vec<_> = channels.map(|((values, (_, kind)), &scale)| raw::target(values, kind, scale)).collect();
     let original = Figure::new(motion.rig.clone(), motion.frames).poses(&motion.values);
     // What will be played has the rig's rounded offsets.
     let bytes = rig_bytes::encode(&motion.rig)?;
@@ -58,7 +61,7 @@ pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnM
     let codes = codes.ok_or_else(|| failed.unwrap_or_else(|| anyhow!("no attempt was made")))?;
     Ok(Coded {
         frames: motion.frames as u32,
-        frame_time_ns: frame_time_ns(motion.frame_time),
+        frame_time_ns,
         length_exponent,
         exponentials,
         channels: codes.into_iter().map(|code| Channel { start: code.start, segments: code.segments }).collect(),
@@ -70,8 +73,21 @@ pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnM
 /// Frame times are written with few digits: one within this part of a usual rate's is that rate's.
 const SAME_RATE: f64 = 1e-4;
 
-fn frame_time_ns(seconds: f64) -> u32 {
+/// The frame time in ns of a motion whose length in frames and in time a clip can hold.
+fn time(motion: &Motion) -> Result<u32> {
+    ensure!(
+        (1..=MAX_FRAMES as usize).contains(&motion.frames),
+        "{} frames; a clip holds 1 to {MAX_FRAMES}: take fewer by --fps",
+        motion.frames
+    );
+    let seconds = motion.frame_time;
     let usual = pantin::layout::FRAME_RATES.iter().skip(1).map(|&rate| 1.0 / f64::from(rate));
     let exact = usual.into_iter().find(|usual| (usual / seconds - 1.0).abs() < SAME_RATE).unwrap_or(seconds);
-    (exact * 1e9).round() as u32
+    let ns = (exact * 1e9).round();
+    ensure!(
+        (1.0..=f64::from(u32::MAX)).contains(&ns),
+        "a frame time of {seconds} s; a clip holds 1 ns to {} s: state the rate by --fps",
+        f64::from(u32::MAX) * 1e-9
+    );
+    Ok(ns as u32)
 }

@@ -21,6 +21,14 @@ pub fn scales(rig: &Rig, length_exponent: i8) -> Vec<f64> {
     kinds.iter().enumerate().map(of).collect()
 }
 
+/// A channel's values in raw units. Euler angles begin within half a turn of 0: whole turns are all one to the decoder.
+pub fn target(values: &[f64], kind: Kind, scale: f64) -> Vec<f64> {
+    let range = 32f64.exp2();
+    let first = values.first().map_or(0.0, |first| first / scale);
+    let turns = if kind.is_rotation() { (first / range).round() * range } else { 0.0 };
+    values.iter().map(|x| x / scale - turns).collect()
+}
+
 /// The exponent that gives a clip's positions the finest step with all of them inside half of the range.
 pub fn clip_length_exponent(rig: &Rig, values: &[Vec<f64>]) -> i8 {
     let kinds = rig.channel_kinds();

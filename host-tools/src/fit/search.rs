@@ -6,8 +6,8 @@
 use super::cost::Costs;
 use crate::encode::clip::{Start, position_grid, velocity_grid};
 use crate::encode::segment::Segment;
-use pantin::layout::{K_STEPS, LENGTHS, START_MODE, W_STEPS, segment_type};
-use pantin::segment::{Context, keep_last, last_shift, step as number_step};
+use pantin::layout::{LENGTHS, START_MODE, segment_type};
+use pantin::segment::{Context, SLOPE, step as number_step};
 use pantin::step_size;
 
 /// What a channel may do: at each frame within `lo..=hi`, at the price of `a e^2 + 2 b e` bits for the error e = p - x.
@@ -92,7 +92,7 @@ struct Hypothesis {
     k: f64,
     frame: u32,
     from: u32,
-    last: i16,
+    turn: i8,
     mode: u8,
     segment: Segment,
 }
@@ -154,10 +154,10 @@ fn constant(tube: &Tube, step: u8) -> Option<Fitted> {
             continue;
         }
         let path = vec![p; frames];
-        let bits = STATUS_BITS + STEP_BITS + Costs::get().start((p / grid) as i64 as i32, 0);
+        let bits = STATUS_BITS + STEP_BITS + Costs::get().start(wrap(p / grid), 0);
         let objective = bits + tube.price(&path);
         if chosen.as_ref().is_none_or(|(least, _)| objective < *least) {
-            let start = Start::Constant { p: p as i64 as i32, step };
+            let start = Start::Constant { p: wrap(p / grid), step };
             chosen = Some((objective, Fitted { start, segments: Vec::new(), path, bits }));
         }
     }
@@ -166,12 +166,19 @@ fn constant(tube: &Tube, step: u8) -> Option<Fitted> {
 
 /// One or two frames: a start says it all.
 fn short(tube: &Tube, step: u8) -> Option<Fitted> {
-    let p = near(tube.x[0], f64::from(position_grid(step)));
-    let v = near(tube.x[tube.x.len() - 1] - p, f64::from(velocity_grid(step)));
+    let (pg, vg) = (f64::from(position_grid(step)), f64::from(velocity_grid(step)));
+    let p = near(tube.x[0], pg);
+    let v = near(tube.x[tube.x.len() - 1] - p, vg);
     let path: Vec<f64> = (0..tube.x.len()).map(|f| p + f as f64 * v).collect();
     let inside = path.iter().enumerate().all(|(f, p)| (tube.lo[f]..=tube.hi[f]).contains(p));
-    let start = Start::Moving { p: p as i64 as i32, v: v as i64 as i32, step };
+    let (p, v) = (wrap(p / pg), wrap(v / vg));
+    let start = Start::Moving { p, v, step };
     inside.then_some(Fitted { start, segments: Vec::new(), path, bits: 24.0 })
+}
+
+/// A first position and velocity in the step's grids, of which they are multiples.
+pub(super) fn in_grids(p: f64, v: f64, step: u8) -> (i32, i32) {
+    (wrap(p / f64::from(position_grid(step))), wrap(v / f64::from(velocity_grid(step))))
 }
 
 fn near(x: f64, grid: f64) -> f64 {
@@ -193,11 +200,11 @@ fn wrap(x: f64) -> i32 {
 impl<'t> Search<'t> {
     fn new(tube: &'t Tube, step: u8, effort: Effort) -> Self {
         let frames = tube.x.len();
-        let of = |table| std::array::from_fn(|i| f64::from(number_step(table, i as u8, step)));
+        let of = |first| std::array::from_fn(|i| f64::from(number_step(first | i as u8, step)));
         Search {
             tube,
             step,
-            steps: Steps { w: of(&W_STEPS), k: of(&K_STEPS) },
+            steps: Steps { w: of(0), k: of(SLOPE) },
             costs: Costs::get(),
             effort,
             heap: vec![Vec::new(); frames],
@@ -256,11 +263,11 @@ impl<'t> Search<'t> {
                 if next < tube.lo[1] || next > tube.hi[1] {
                     continue;
                 }
-                let bits = STATUS_BITS + STEP_BITS + self.costs.start(wrap(p) / wrap(pg), wrap(v) / wrap(vg));
+                let bits = STATUS_BITS + STEP_BITS + self.costs.start(wrap(p / pg), wrap(v / vg));
                 let cost = bits + tube.price_at(0, p) + tube.price_at(1, next);
                 let segment = Segment { mode: START_MODE, w: 0, k: 0 };
                 let start =
-                    Hypothesis { cost, p: next, v, w: 0.0, k: 0.0, frame: 1, from: u32::MAX, last: 0, mode: START_MODE, segment };
+                    Hypothesis { cost, p: next, v, w: 0.0, k: 0.0, frame: 1, from: u32::MAX, turn: 0, mode: START_MODE, segment };
                 self.heap[1].push(start);
             }
         }
@@ -273,8 +280,6 @@ impl<'t> Search<'t> {
         let start = from.frame as usize;
         let rest = tube.x.len() - 1 - start;
         let slope = kind == segment_type::K;
-        let before = i32::from(from.last) << last_shift(self.step);
-        let last = keep_last(wrap(from.w), self.step);
         let (mut least, mut most) = (f64::MIN, f64::MAX);
         // The price of the segment so far is s0 + 2 g s1 + g^2 s2 for a new number g.
         let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
@@ -323,7 +328,9 @@ impl<'t> Search<'t> {
                 continue;
             }
             let now = wrap(if slope { from.k } else { from.w });
-            let context = Context::new(slope, mode, now, if slope { 0 } else { before }, unit as u32);
+            let which = index as u8 | if slope { SLOPE } else { 0 };
+            let context = Context::new(which, now, if slope { 0 } else { from.turn }, unit as u32);
+            let turn = if slope { from.turn } else { context.sign };
             let (ql, qh) = (ql as i32, qh as i32);
             let nearest = |x: f64| (floor(x.clamp(-1e9, 1e9) + 0.5) as i32).clamp(ql, qh);
             let best = if s2 > 0.0 { nearest(-s1 / (s2 * unit)) } else { 0.clamp(ql, qh) };
@@ -346,7 +353,7 @@ impl<'t> Search<'t> {
                     k,
                     frame: frame as u32,
                     from: id,
-                    last,
+                    turn,
                     mode,
                     segment,
                 });
@@ -374,7 +381,8 @@ impl<'t> Search<'t> {
                 path.push(from.p + n * from.v + c2 * w + if slope { c2 * (n - 1.0) / 3.0 * to.k } else { 0.0 });
             }
         }
-        let start = Start::Moving { p: wrap(path[0]), v: wrap(first.v), step: self.step };
+        let (p, v) = in_grids(path[0], first.v, self.step);
+        let start = Start::Moving { p, v, step: self.step };
         let bits = end.cost - self.tube.price(&path);
         Some(Fitted { start, segments: chain[1..].iter().map(|h| h.segment).collect(), path, bits })
     }

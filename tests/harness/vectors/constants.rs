@@ -1,19 +1,23 @@
 //! `tables.json`: the format's numbers and tables for decoders in other languages, from the Rust constants.
 //!
-//! A table lists cumulative probabilities in 1/4096, as `pantin::tables` says. Contexts that share a table share its index.
+//! A table lists the probabilities of its symbols in 1/4096. Contexts that share a table share its index.
 
 use pantin::segment::{CONTEXTS, DIRECT_MODES};
 use pantin::{Kind, entropy, layout, tables};
-use pantin_tools::encode::entropy::Alphabet;
+use pantin_tools::encode::entropy::{Alphabet, sizes};
 use serde_json::json;
 
 use super::json;
 
+fn list(alphabet: Alphabet) -> Vec<u32> {
+    sizes(alphabet.table()).collect()
+}
+
 /// The tables of some contexts without repetition, and the index that each context has.
-fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u16>>, Vec<usize>) {
-    let mut rows: Vec<Vec<u16>> = vec![];
+fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u32>>, Vec<usize>) {
+    let mut rows: Vec<Vec<u32>> = vec![];
     let index = |alphabet: Alphabet| {
-        let row = alphabet.table().to_vec();
+        let row = list(alphabet);
         rows.iter().position(|other| *other == row).unwrap_or_else(|| {
             rows.push(row);
             rows.len() - 1
@@ -27,7 +31,7 @@ fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u16>>, Vec<usize
 pub fn text() -> String {
     let (mode, mode_after) = shared((0..64).map(Alphabet::Mode));
     let (number, number_in) = shared((0..CONTEXTS as u8).map(Alphabet::Number));
-    let status: Vec<Vec<u16>> = (0..3).map(|after| Alphabet::Status(after).table().to_vec()).collect();
+    let status: Vec<Vec<u32>> = (0..3).map(|after| list(Alphabet::Status(after))).collect();
     let kinds: Vec<String> = Kind::ALL.iter().map(|kind| format!("{kind:?}")).collect();
     json::text(&[
         ("magic", json!(layout::MAGIC)),
@@ -48,8 +52,9 @@ pub fn text() -> String {
         ("low", json!(entropy::LOW)),
         ("state_bytes", json!(entropy::STATE_BYTES)),
         ("lengths", json!(layout::LENGTHS)),
-        ("w_steps", json!(layout::W_STEPS)),
-        ("k_steps", json!(layout::K_STEPS)),
+        ("length_classes", json!(layout::LENGTH_CLASSES)),
+        ("steps", json!(layout::STEPS)),
+        ("steps_shift", json!(layout::STEPS_SHIFT)),
         ("type_w", json!(layout::segment_type::W)),
         ("type_k", json!(layout::segment_type::K)),
         ("type_wk", json!(layout::segment_type::WK)),
@@ -70,8 +75,8 @@ pub fn text() -> String {
         ("number_in", json!(number_in)),
         ("number", json!(number)),
         ("status", json!(status)),
-        ("step_change", json!(Alphabet::StepChange.table())),
-        ("position", json!(Alphabet::Position.table())),
-        ("velocity", json!(Alphabet::Velocity.table())),
+        ("step_change", json!(list(Alphabet::StepChange))),
+        ("position", json!(list(Alphabet::Position))),
+        ("velocity", json!(list(Alphabet::Velocity))),
     ])
 }

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use pantin::layout::{FIRST_STEP, GROUPS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
 use pantin::{Event, Kind};
-use pantin_tools::encode::clip::{self, Channel, Coded, Start, position_grid, velocity_grid};
+use pantin_tools::encode::clip::{self, Channel, Coded, Start};
 use pantin_tools::encode::rig;
 use pantin_tools::encode::segment::Segment;
 use pantin_tools::motion::{Joint, Rig, Scalar};
@@ -67,11 +67,11 @@ fn motion(frames: u32) -> Coded {
 }
 
 fn moving(p: i32, v: i32, step: u8) -> Start {
-    Start::Moving { p: p.wrapping_mul(position_grid(step)), v: v.wrapping_mul(velocity_grid(step)), step }
+    Start::Moving { p, v, step }
 }
 
 fn constant(p: i32, step: u8) -> Start {
-    Start::Constant { p: p.wrapping_mul(position_grid(step)), step }
+    Start::Constant { p, step }
 }
 
 /// A segment of this mode with small numbers where it has any.

@@ -10,12 +10,12 @@ mod numbers;
 pub use numbers::Held;
 
 use super::cost::Costs;
-use super::search::{Fitted, Tube};
+use super::search::{Fitted, Tube, in_grids};
 use crate::encode::clip::Start;
 use crate::encode::segment::Segment;
 use numbers::{LARGEST, Range, Room, Sums};
-use pantin::layout::{K_STEPS, LENGTHS, START_MODE, W_STEPS, segment_type};
-use pantin::segment::{Context, keep_last, last_shift, step as number_step};
+use pantin::layout::{LENGTHS, START_MODE, segment_type};
+use pantin::segment::{Context, SLOPE, step as number_step};
 use std::collections::HashSet;
 
 /// A place from which segments go on.
@@ -31,7 +31,7 @@ struct Hypothesis {
     k: f64,
     frame: u32,
     from: u32,
-    last: i16,
+    turn: i8,
     mode: u8,
     segment: Segment,
 }
@@ -144,8 +144,8 @@ impl Chains<'_> {
             Held::Positions => (0..2).map(|f| self.tube.a[f] * (p + f as f64 * v - self.tube.x[f]).powi(2)).sum(),
             Held::Accelerations => 0.0,
         };
-        let (w, k, rank, frame, from, last, mode) = (0.0, 0.0, 0.0, 1, u32::MAX, 0, START_MODE);
-        self.push(Hypothesis { bits, rank, price, p: p + v, v, w, k, frame, from, last, mode, segment });
+        let (w, k, rank, frame, from, turn, mode) = (0.0, 0.0, 0.0, 1, u32::MAX, 0, START_MODE);
+        self.push(Hypothesis { bits, rank, price, p: p + v, v, w, k, frame, from, turn, mode, segment });
     }
 
     fn push(&mut self, mut state: Hypothesis) {
@@ -233,7 +233,7 @@ impl Chains<'_> {
     }
 
     fn unit(&self, slope: bool, mode: u8) -> f64 {
-        f64::from(number_step(if slope { &K_STEPS } else { &W_STEPS }, mode, self.step))
+        f64::from(number_step(mode & 15 | if slope { SLOPE } else { 0 }, self.step))
     }
 
     fn number_bits(&self, context: Context, number: i32) -> f64 {
@@ -246,16 +246,18 @@ impl Chains<'_> {
         }
         let kind = mode >> 4;
         let mut bits = from.bits + self.costs.mode(from.mode, mode);
-        let (mut w, mut k) = (from.w, 0.0);
+        let (mut w, mut k, mut turn) = (from.w, 0.0, from.turn);
+        let length_index = mode & 15;
         if kind == segment_type::W || kind == segment_type::WK {
             let unit = self.unit(false, mode);
-            let before = i32::from(from.last) << last_shift(self.step);
-            bits += self.number_bits(Context::new(false, mode, wrap(from.w), before, unit as u32), qw);
+            let context = Context::new(length_index, wrap(from.w), from.turn, unit as u32);
+            bits += self.number_bits(context, qw);
+            turn = context.sign;
             w = f64::from(qw) * unit;
         }
         if kind == segment_type::K || kind == segment_type::WK {
             let unit = self.unit(true, mode);
-            bits += self.number_bits(Context::new(true, mode, wrap(from.k), 0, unit as u32), qk);
+            bits += self.number_bits(Context::new(length_index | SLOPE, wrap(from.k), 0, unit as u32), qk);
             k = f64::from(qk) * unit;
         }
         let n = length as f64;
@@ -270,7 +272,7 @@ impl Chains<'_> {
             k,
             frame: from.frame + length as u32,
             from: self.gone_on.len() as u32 - 1,
-            last: keep_last(wrap(from.w), self.step),
+            turn,
             mode,
             segment: Segment { mode, w: qw, k: qk },
         });
@@ -295,7 +297,8 @@ impl Chains<'_> {
                 from.p + m as f64 * from.v + w_moves * w + k_moves * to.k
             }));
         }
-        let start = Start::Moving { p: wrap(path[0]), v: wrap(first.v), step: self.step };
+        let (p, v) = in_grids(path[0], first.v, self.step);
+        let start = Start::Moving { p, v, step: self.step };
         Some(Fitted { start, segments: chain[1..].iter().map(|h| h.segment).collect(), path, bits: end.bits })
     }
 }
