@@ -26,7 +26,7 @@ pub mod tables;
 pub mod units;
 
 pub use channel::{ChannelState, length, step_size};
-pub use clip::{Clip, Event, has_choice};
+pub use clip::{Clip, Event, has_choice, index_seed};
 pub use error::{OpenError, TooSmall};
 pub use history::Undo;
 pub use player::{Memory, Player};

@@ -11,8 +11,9 @@ use crate::fit::{channelwise, fit};
 use crate::import;
 use crate::motion::Motion;
 use crate::verify::verify;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
+use pantin::layout::MAX_FRAMES;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -26,6 +27,7 @@ use std::path::PathBuf;
   pantin convert walk.bvh -o walk.ptn --max-error 3cm
   pantin convert walk.bvh -o walk.ptn --rig-out figure.rig
   pantin convert motions/walk.keys -o walk.ptn --exact
+  pantin convert walk.bvh -o walk.ptn --index 2
   pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5")]
 pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), our key frames (.keys, see docs/KEYFRAMES.md), or functions of time
@@ -54,6 +56,9 @@ pub struct Arguments {
     /// The .asf of an .amc, instead of the one found beside it
     #[arg(long)]
     skeleton: Option<PathBuf>,
+    /// Put a snapshot of the player's state into the file each so many seconds: seeking starts from the last one
+    #[arg(long, value_name = "SECONDS")]
+    index: Option<f64>,
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
     rig_out: Option<PathBuf>,
@@ -127,13 +132,29 @@ fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
     Ok(bar)
 }
 
+/// The clip's bytes, with the index that was asked for; says what it costs.
+fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8>> {
+    let apart = arguments.rig_out.is_some();
+    let plain = clip::encode(coded, rig, apart)?;
+    let Some(seconds) = arguments.index else { return Ok(plain) };
+    let spacing = (seconds * 1e9 / f64::from(coded.frame_time_ns)).round();
+    ensure!((1.0..=f64::from(MAX_FRAMES)).contains(&spacing), "--index {seconds}: expected a frame's time or more, in seconds");
+    let bytes = clip::encode_with_index(coded, rig, apart, spacing as u32)?;
+    if !arguments.quiet {
+        let cost = bytes.len() - plain.len();
+        let part = 100.0 * cost as f64 / plain.len() as f64;
+        eprintln!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)");
+    }
+    Ok(bytes)
+}
+
 fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8]) -> Result<Made> {
     let plan = arguments.effort.plan(arguments.max_error);
     let part = arguments.max_scalar_error / 100.0;
     let bar = bar(arguments, 1000)?;
     let coded = fit(motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
     bar.finish_and_clear();
-    let bytes = clip::encode(&coded, rig, arguments.rig_out.is_some())?;
+    let bytes = file(arguments, &coded, rig)?;
     let not_written = || format!("{}: not written", arguments.output.display());
     let report = verify(&bytes, rig, motion, arguments.max_error, part).with_context(not_written)?;
     let json = json!({
@@ -152,7 +173,7 @@ fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bound
     let not_written = || format!("{}: not written", arguments.output.display());
     let coded = channelwise::fit(motion, bounds, &|| bar.inc(1)).with_context(not_written)?;
     bar.finish_and_clear();
-    let bytes = clip::encode(&coded, rig, arguments.rig_out.is_some())?;
+    let bytes = file(arguments, &coded, rig)?;
     let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;
     let worst = &report.worst;
     let json = json!({

@@ -42,6 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("motion_bytes", json!(file - clip.rig_len())),
         ("head_bytes", json!(clip.head_len())),
         ("crc_bytes", json!(clip.crc_len())),
+        ("index_bytes", json!(clip.index_len())),
         ("per_frame_bytes", json!(clip.frames() as usize * rig.channels() * 2)),
     ];
     if arguments.json {

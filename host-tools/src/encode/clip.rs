@@ -2,8 +2,8 @@
 
 use super::entropy::{Alphabet, Sink, Symbols};
 use super::segment::{Running, Segment};
-use super::varint;
-use anyhow::{Context, Result, ensure};
+use super::{index, varint};
+use anyhow::{Context, Result, bail, ensure};
 use pantin::layout::*;
 use pantin::{Event, crc, step_size};
 
@@ -81,6 +81,19 @@ pub struct Sizes {
 
 /// The file: with `rig` in it, or with the id of `rig` if `apart`.
 pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
+    file(coded, rig, apart, None)
+}
+
+/// The file with a snapshot each `spacing` frames, for players that seek much.
+pub fn encode_with_index(coded: &Coded, rig: &[u8], apart: bool, spacing: u32) -> Result<Vec<u8>> {
+    let plain = encode(coded, rig, apart)?;
+    let clip = pantin::Clip::with_rig(&plain, rig).context("the clip that was just made does not open")?;
+    let bytes = file(coded, rig, apart, Some(&index::payload(clip, spacing)?))?;
+    index::check(&bytes, rig)?;
+    Ok(bytes)
+}
+
+fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<Vec<u8>> {
     ensure!((1..=MAX_FRAMES).contains(&coded.frames), "{} frames; a clip holds 1 to {MAX_FRAMES}", coded.frames);
     let mut flags = if apart { 0 } else { HAS_RIG };
     if coded.looped {
@@ -91,6 +104,13 @@ pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
     }
     if !coded.events.is_empty() {
         flags |= HAS_EVENTS;
+    }
+    if index.is_some() {
+        flags |= HAS_INDEX;
+    }
+    ensure!(coded.events.is_sorted_by_key(|event| event.frame), "event markers must be in the order of their frames");
+    if let Some(event) = coded.events.last().filter(|event| event.frame >= coded.frames) {
+        bail!("an event marker at frame {}; the last frame is {}", event.frame, coded.frames - 1);
     }
     let parsed = pantin::Rig::new_checked(rig).context("the rig that was just made does not open")?;
     let mut payload = head(coded, flags, apart.then(|| parsed.id()));
@@ -106,7 +126,12 @@ pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
         out.extend_from_slice(rig);
     }
     varint::put(&mut out, len as u32);
-    put_blocks(&mut out, &payload, crc::of_prefix(flags, len as u32));
+    let last = put_blocks(&mut out, &payload, crc::of_prefix(flags, len as u32));
+    if let Some(index) = index {
+        let len = blocks_len(index.len()) as u32;
+        varint::put(&mut out, len);
+        put_blocks(&mut out, index, pantin::index_seed(last, len));
+    }
     Ok(out)
 }
 
@@ -115,13 +140,16 @@ pub fn blocks_len(payload: usize) -> usize {
     payload + payload.div_ceil(BLOCK_BYTES) * CRC_BYTES
 }
 
-/// Cuts `payload` into blocks with a CRC each, the first of which goes on from `crc`.
-pub fn put_blocks(out: &mut Vec<u8>, payload: &[u8], mut crc: u16) {
+/// Cuts `payload` into blocks with a CRC each, the first of which goes on from `crc`; returns the last.
+pub fn put_blocks(out: &mut Vec<u8>, payload: &[u8], mut crc: u16) -> u16 {
+    let mut last = crc;
     for block in payload.chunks(BLOCK_BYTES) {
+        last = crc::update(crc, block);
         out.extend_from_slice(block);
-        out.extend_from_slice(&crc::update(crc, block).to_le_bytes());
+        out.extend_from_slice(&last.to_le_bytes());
         crc = crc::INITIAL;
     }
+    last
 }
 
 fn head(coded: &Coded, flags: u8, rig_id: Option<u32>) -> Vec<u8> {

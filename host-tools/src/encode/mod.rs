@@ -2,6 +2,7 @@
 
 pub mod clip;
 pub mod entropy;
+pub mod index;
 pub mod rig;
 pub mod segment;
 pub mod varint;

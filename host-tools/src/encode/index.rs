@@ -1,0 +1,69 @@
+//! Snapshots in the file (`pantin convert --index`), for players that seek much: decoder/FORMAT.md section 14.
+
+use super::clip::blocks_len;
+use super::varint;
+use anyhow::{Context, Result, ensure};
+use pantin::{ChannelState, Clip, Player};
+
+/// The payload of an index with a snapshot each `spacing` frames of the clip, which has none yet.
+pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
+    ensure!(spacing > 0, "an index of a snapshot each 0 frames: expected 1 or more");
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; clip.rig().channels()];
+    let mut player = Player::new(clip, &mut states, &mut pose)?;
+    let mut snapshots = Vec::new();
+    while !player.ended() {
+        player.step();
+        if player.frame().is_multiple_of(spacing) {
+            let mut snapshot = Vec::new();
+            player.write_snapshot(&mut |byte| snapshot.push(byte));
+            snapshots.push(snapshot);
+        }
+    }
+    Ok(table(spacing, &snapshots))
+}
+
+/// Spacing, number, where each begins, and the snapshots. Where they begin depends on how long it takes to say so.
+fn table(spacing: u32, snapshots: &[Vec<u8>]) -> Vec<u8> {
+    let mut head_len = 0;
+    loop {
+        let mut out = Vec::new();
+        varint::put(&mut out, spacing);
+        varint::put(&mut out, snapshots.len() as u32);
+        let (mut before, mut begin) = (0, head_len);
+        for snapshot in snapshots {
+            // CRCs count where there is one before.
+            let place = place(begin);
+            varint::put(&mut out, place - before);
+            (before, begin) = (place, begin + snapshot.len());
+        }
+        if out.len() == head_len {
+            return snapshots.iter().fold(out, |mut out, snapshot| {
+                out.extend_from_slice(snapshot);
+                out
+            });
+        }
+        head_len = out.len();
+    }
+}
+
+/// Where byte `index` of a payload stands among the blocks with their CRCs.
+fn place(index: usize) -> u32 {
+    (blocks_len(index + 1) - pantin::layout::CRC_BYTES - 1) as u32
+}
+
+/// Plays the clip from its index: every frame after a snapshot must be what stepping gives.
+pub fn check(bytes: &[u8], rig: &[u8]) -> Result<()> {
+    let clip = Clip::with_rig(bytes, rig).context("the clip with its index does not open")?;
+    let mut memory = [(); 2].map(|()| (vec![ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]));
+    let [(states, pose), (other_states, other_pose)] = &mut memory;
+    let mut stepped = Player::new(clip, states, pose)?;
+    let mut sought = Player::new(clip, other_states, other_pose)?;
+    while !stepped.ended() {
+        stepped.step();
+        sought.rewind();
+        sought.seek(stepped.frame());
+        ensure!(sought.pose() == stepped.pose(), "frame {} differs when it is sought", stepped.frame());
+    }
+    Ok(())
+}
