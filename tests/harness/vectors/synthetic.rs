@@ -21,13 +21,18 @@ pub struct Made {
     pub coded: Coded,
     /// Whether the rig stands apart.
     pub apart: bool,
+    /// Frames from one snapshot of its index to the next; 0 for none.
+    pub index: u32,
 }
 
 impl Made {
     /// The files.
     pub fn vector(&self) -> Result<Vector> {
         let rig = rig::encode(&self.rig)?;
-        let clip = clip::encode(&self.coded, &rig, self.apart)?;
+        let clip = match self.index {
+            0 => clip::encode(&self.coded, &rig, self.apart)?,
+            spacing => clip::encode_with_index(&self.coded, &rig, self.apart, spacing)?,
+        };
         Ok(Vector { name: self.name.into(), clip, rig: self.apart.then_some(rig) })
     }
 }
@@ -117,7 +122,7 @@ fn simple(name: &'static str, joints: &[&[Kind]], scalars: usize, mut coded: Cod
     let rig = figure(joints, scalars);
     let seed = name.len() as u64 + u64::from(coded.frames);
     alive(&rig, &mut coded, &mut Noise::new(seed));
-    Made { name, rig, coded, apart: false }
+    Made { name, rig, coded, apart: false, index: 0 }
 }
 
 /// Every type with every length: six channels take the 63 modes in six orders.
@@ -132,7 +137,7 @@ fn segments() -> Made {
         let segments = fill(coded.frames, || small(order.next().copied().unwrap_or(0), &mut noise));
         coded.channels.push(Channel { start, segments });
     }
-    Made { name: "segments", rig, coded, apart: false }
+    Made { name: "segments", rig, coded, apart: false, index: 0 }
 }
 
 /// Numbers of every size up to 2^30, of either sign, as accelerations and as slopes; values wrap.
@@ -162,7 +167,7 @@ fn numbers() -> Made {
         };
         coded.channels.push(Channel { start: moving(0, 0, 5 * channel + channel % 2), segments: fill(100, next) });
     }
-    Made { name: "numbers", rig, coded, apart: false }
+    Made { name: "numbers", rig, coded, apart: false, index: 0 }
 }
 
 /// How channels begin: every change of step, every step, first values of every size, the least one included; resting,
@@ -196,7 +201,7 @@ fn starts() -> Made {
         _ => vec![],
     };
     coded.channels = starts.into_iter().map(|start| Channel { segments: segments(&start), start }).collect();
-    Made { name: "starts", rig, coded, apart: false }
+    Made { name: "starts", rig, coded, apart: false, index: 0 }
 }
 
 /// Nothing moves.
@@ -207,7 +212,7 @@ fn still() -> Made {
     coded.channels = vec![rest; 6];
     coded.channels[1].start = constant(95, 22);
     coded.channels[5].start = constant(-33, 44);
-    Made { name: "still", rig, coded, apart: false }
+    Made { name: "still", rig, coded, apart: false, index: 0 }
 }
 
 /// Twelve joints may choose, so that the bits take two bytes; every third one does.
@@ -249,13 +254,15 @@ fn crowd() -> Made {
             _ => Channel { start: Start::Rest, segments: vec![] },
         });
     }
-    Made { name: "channels-300", rig, coded, apart: false }
+    Made { name: "channels-300", rig, coded, apart: false, index: 0 }
 }
 
 /// All of them.
 pub fn all() -> Vec<Made> {
     let mut apart = simple("rig-apart", &[&PLACE, &EULER, &EULER], 0, motion(20));
     apart.apart = true;
+    let mut indexed = simple("index", &[&PLACE, &QUATERNION, &EULER], 2, motion(90));
+    indexed.index = 7;
     vec![
         segments(),
         numbers(),
@@ -266,6 +273,7 @@ pub fn all() -> Vec<Made> {
         odd_rate(),
         crowd(),
         apart,
+        indexed,
         simple("quaternion", &[&QUATERNION, &QUATERNION], 0, motion(40)),
         simple("exponential-map", &[&EXPONENTIAL, &EXPONENTIAL], 0, motion(40)),
         simple("scalars", &[], 5, motion(40)),

@@ -1,0 +1,277 @@
+//! Laws of the decoder, on the golden vectors: the same poses by every route, through both doors, and no damaged byte that passes.
+
+use std::ops::ControlFlow;
+
+use harness::vectors::{self, Vector};
+use hostile::noise::Noise;
+use pantin::{ChannelState, Clip, Mark, Memory, Player, Rig, Step, Stream, Undo};
+
+/// Every pose of the clip, by steps.
+fn poses(clip: Clip<'_>) -> Vec<Vec<i32>> {
+    let (mut states, mut pose) = memory(&clip);
+    let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
+    let mut poses = vec![player.pose().to_vec()];
+    while !player.ended() {
+        player.step();
+        poses.push(player.pose().to_vec());
+    }
+    poses
+}
+
+fn memory(clip: &Clip<'_>) -> (Vec<ChannelState>, Vec<i32>) {
+    (vec![ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()])
+}
+
+fn all() -> Vec<Vector> {
+    vectors::load(&vectors::folder()).unwrap()
+}
+
+/// A walk of a player through a clip by all its ways on, with so many records of history and snapshots lent.
+fn wander(clip: Clip<'_>, undo: usize, marks: usize, noise: &mut Noise) {
+    let poses = poses(clip);
+    let last = poses.len() - 1;
+    let (mut states, mut pose) = memory(&clip);
+    let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
+    let mut lent = (
+        vec![Undo::default(); undo],
+        vec![Mark::default(); marks],
+        vec![ChannelState::default(); marks * clip.moving()],
+        vec![0; marks * clip.moving()],
+    );
+    let mut memory = Memory::new(&player, &mut lent.0, &mut lent.1, &mut lent.2, &mut lent.3);
+    let mut frame = 0;
+    for turn in 0..600 {
+        let far = noise.below(last + 2);
+        // Long runs one way, so that history fills and runs out.
+        let way = if turn % 40 < 25 { turn / 40 % 4 } else { noise.below(7) };
+        frame = match way {
+            0 => {
+                player.step();
+                if frame == last { 0 } else { frame + 1 }
+            }
+            1 | 3 => {
+                player.step_back(&mut memory);
+                if frame == 0 { last } else { frame - 1 }
+            }
+            2 => {
+                player.step_with(&mut memory);
+                if frame == last { 0 } else { frame + 1 }
+            }
+            4 => {
+                player.seek(far as u32);
+                far.min(last)
+            }
+            5 => {
+                player.seek_with(far as u32, &mut memory);
+                far.min(last)
+            }
+            _ => {
+                player.rewind();
+                0
+            }
+        };
+        assert_eq!(player.frame() as usize, frame, "turn {turn}, way {way}");
+        assert!(player.pose() == poses[frame], "turn {turn}, way {way}: frame {frame} is another pose");
+        assert_eq!(player.ended(), frame == last);
+    }
+}
+
+#[test]
+fn every_route_leads_to_the_same_pose_with_any_memory_lent() {
+    for vector in all() {
+        let clip = vector.open().unwrap();
+        for (undo, marks) in [(0, 0), (1, 0), (0, 1), (7, 2), (40, 5), (3 * clip.moving() + 1, 40)] {
+            println!("{}: {undo} records, {marks} snapshots", vector.name);
+            wander(clip, undo, marks, &mut Noise::new((undo * 100 + marks) as u64));
+        }
+    }
+}
+
+#[test]
+fn a_player_that_plays_and_goes_back_ping_pong_never_leaves_the_clip() {
+    for vector in all() {
+        let clip = vector.open().unwrap();
+        let poses = poses(clip);
+        let (mut states, mut pose) = memory(&clip);
+        let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
+        let mut undo = vec![Undo::default(); 2 * clip.moving()];
+        let mut memory = Memory::new(&player, &mut undo, &mut [], &mut [], &mut []);
+        for _ in 0..2 {
+            while !player.ended() {
+                player.step_with(&mut memory);
+                assert!(player.pose() == poses[player.frame() as usize]);
+            }
+            while player.frame() > 0 {
+                player.step_back(&mut memory);
+                assert!(player.pose() == poses[player.frame() as usize]);
+            }
+        }
+    }
+}
+
+/// What comes of pushing `bytes` in pieces of the sizes that `piece` tells: frames as they appear, until `seen` has had enough.
+fn push(
+    rig: Rig<'_>,
+    bytes: &[u8],
+    buffer: usize,
+    mut piece: impl FnMut() -> usize,
+    mut seen: impl FnMut(Step, &Stream<'_, '_>) -> ControlFlow<()>,
+) -> Step {
+    let mut buffer = vec![0; buffer];
+    let (mut states, mut pose) = (vec![ChannelState::default(); rig.channels()], vec![0; rig.channels()]);
+    let mut stream = Stream::new(rig, &mut buffer, &mut states, &mut pose).unwrap();
+    let mut rest = bytes;
+    loop {
+        match stream.step() {
+            Step::NeedMore if rest.is_empty() => return Step::NeedMore,
+            Step::NeedMore => {
+                let taken = stream.feed(&rest[..piece().min(rest.len())]);
+                // A full buffer that can't be played on would wait for ever.
+                assert!(taken > 0, "{} bytes left, none taken", rest.len());
+                rest = &rest[taken..];
+            }
+            step => {
+                let done = seen(step, &stream).is_break();
+                if done || matches!(step, Step::End | Step::Damaged(_) | Step::TooSmall) {
+                    return step;
+                }
+            }
+        }
+    }
+}
+
+/// The rig that a receiver knows: in a file it stands behind its length, one or two bytes of varint.
+fn rig_of(vector: &Vector) -> Vec<u8> {
+    if let Some(rig) = &vector.rig {
+        return rig.clone();
+    }
+    let clip = vector.open().unwrap();
+    let digits = if vector.clip[4] & 0x80 == 0 { 1 } else { 2 };
+    vector.clip[4 + digits..4 + clip.rig_len()].to_vec()
+}
+
+#[test]
+fn pieces_of_any_size_play_as_the_whole() {
+    for vector in all() {
+        let clip = vector.open().unwrap();
+        let (rig, poses) = (rig_of(&vector), poses(clip));
+        let events: Vec<_> = clip.events().collect();
+        let mut noise = Noise::new(5);
+        for size in [1, 2, 3, 7, 64, 255, 256, 257, 700, 1 << 20, 0] {
+            for buffer in [Stream::BUFFER, Stream::BUFFER + 1, 3000] {
+                let (mut frame, mut marks) = (0, vec![]);
+                let mut piece = || if size == 0 { 1 + noise.below(300) } else { size };
+                let end = push(Rig::new_checked(&rig).unwrap(), &vector.clip, buffer, &mut piece, |step, stream| {
+                    match step {
+                        Step::Opened => {
+                            assert_eq!((stream.frames(), stream.frame_time_ns()), (clip.frames(), clip.frame_time_ns()));
+                            assert_eq!((stream.looped(), stream.length_exponent()), (clip.looped(), clip.length_exponent()));
+                            let joints = 0..clip.rig().joint_count();
+                            assert!(joints.into_iter().all(|j| stream.is_exponential(j) == Some(clip.is_exponential(j))));
+                        }
+                        Step::Event(event) => marks.push(event),
+                        Step::Frame => {
+                            assert_eq!(stream.frame() as usize, frame);
+                            assert!(stream.pose() == poses[frame], "{} in pieces of {size}: frame {frame}", vector.name);
+                            frame += 1;
+                        }
+                        _ => {}
+                    }
+                    ControlFlow::Continue(())
+                });
+                assert_eq!((end, frame), (Step::End, poses.len()), "{} in pieces of {size}, buffer of {buffer}", vector.name);
+                assert_eq!(marks, events, "{} in pieces of {size}", vector.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn playing_begins_before_the_last_byte_has_come() {
+    let vector = all().into_iter().max_by_key(|vector| vector.open().unwrap().motion_len()).unwrap();
+    let clip = vector.open().unwrap();
+    let rig = rig_of(&vector);
+    let mut frames = 0;
+    let half = &vector.clip[..vector.clip.len() - clip.motion_len() / 2];
+    let end = push(Rig::new_checked(&rig).unwrap(), half, Stream::BUFFER, || 1, |step, _| {
+        frames += u32::from(step == Step::Frame);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(end, Step::NeedMore);
+    // A quarter at least: a block of 256 bytes and a segment's worth wait.
+    assert!(4 * frames > clip.frames(), "{}: {frames} frames of {} from half of the motion", vector.name, clip.frames());
+}
+
+#[test]
+fn every_file_cut_short_is_refused_whole_and_waited_for_in_pieces() {
+    for vector in all() {
+        let clip = vector.open().unwrap();
+        let (rig, poses) = (rig_of(&vector), poses(clip));
+        let complete = vector.clip.len() - clip.index_len() - usize::from(clip.index_len() > 0) * 2;
+        let stride = (vector.clip.len() / 120).max(1);
+        for len in (0..vector.clip.len()).step_by(stride) {
+            let cut = &vector.clip[..len];
+            assert!(Clip::with_rig(cut, &rig).is_err(), "{} cut to {len}", vector.name);
+            let mut frame = 0;
+            let end = push(Rig::new_checked(&rig).unwrap(), cut, Stream::BUFFER, || 33, |step, stream| {
+                if step == Step::Frame {
+                    assert!(stream.pose() == poses[frame], "{} cut to {len}: frame {frame}", vector.name);
+                    frame += 1;
+                }
+                ControlFlow::Continue(())
+            });
+            assert!(end == Step::NeedMore || len >= complete, "{} cut to {len}: {end:?}", vector.name);
+        }
+    }
+}
+
+#[test]
+fn every_flipped_bit_is_found_before_a_wrong_pose_is_shown() {
+    for vector in all() {
+        let clip = vector.open().unwrap();
+        let (rig, poses) = (rig_of(&vector), poses(clip));
+        // A stream knows its rig and passes over the file's, and never comes to the index.
+        let motion = vector.clip.len() - clip.index_len();
+        let stride = (vector.clip.len() * 8 / 1500).max(1);
+        for bit in (0..vector.clip.len() * 8).step_by(stride) {
+            let mut damaged = vector.clip.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            assert!(Clip::with_rig(&damaged, &rig).is_err(), "{}: bit {bit} flipped and not found", vector.name);
+            let mut frame = 0;
+            let end = push(Rig::new_checked(&rig).unwrap(), &damaged, Stream::BUFFER, || 100, |step, stream| {
+                if step == Step::Frame {
+                    assert!(stream.pose() == poses[frame], "{}: bit {bit} flipped, frame {frame}", vector.name);
+                    frame += 1;
+                }
+                ControlFlow::Continue(())
+            });
+            let in_rig = bit / 8 >= 4 && bit / 8 < 4 + clip.rig_len();
+            let passes = bit / 8 + 4 >= motion && clip.index_len() > 0 || in_rig;
+            assert!(end != Step::End || passes, "{}: bit {bit} flipped and played to the end", vector.name);
+        }
+    }
+}
+
+#[test]
+fn damage_stays_damage() {
+    let vector = all().into_iter().find(|vector| vector.name == "segments").unwrap();
+    let rig = rig_of(&vector);
+    let mut damaged = vector.clip.clone();
+    let at = damaged.len() - 300;
+    damaged[at] ^= 4;
+    let rig = Rig::new_checked(&rig).unwrap();
+    let mut buffer = [0; Stream::BUFFER];
+    let (mut states, mut pose) = (vec![ChannelState::default(); rig.channels()], vec![0; rig.channels()]);
+    let mut stream = Stream::new(rig, &mut buffer, &mut states, &mut pose).unwrap();
+    let mut rest = &damaged[..];
+    let first = loop {
+        match stream.step() {
+            Step::NeedMore => rest = &rest[stream.feed(rest)..],
+            Step::Damaged(error) => break error,
+            Step::End => panic!("played to the end"),
+            _ => {}
+        }
+    };
+    stream.feed(&vector.clip);
+    assert_eq!(stream.step(), Step::Damaged(first));
+}
