@@ -51,7 +51,7 @@ pub struct Arguments {
     /// Length of the source's unit in cm, instead of a guess
     #[arg(long)]
     cm_per_unit: Option<f64>,
-    /// Frames a second, for sources that do not say; tables with a time are sampled at this rate
+    /// Frames a second: for sources that do not say, instead of what a face's file says, and at which a table with a time is sampled
     #[arg(long)]
     fps: Option<f64>,
     /// The .asf of an .amc, instead of the one found beside it

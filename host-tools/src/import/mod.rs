@@ -28,7 +28,8 @@ use std::path::{Path, PathBuf};
 pub struct Options {
     /// Length of the source's unit in cm, instead of a guess.
     pub cm_per_unit: Option<f64>,
-    /// Frames a second, for a source that does not say or says nonsense.
+    /// Frames a second, for a source that does not say or says nonsense; instead of what a face's file says; at which a table with a
+    /// time is sampled.
     pub fps: Option<f64>,
     /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
     pub skeleton: Option<PathBuf>,
