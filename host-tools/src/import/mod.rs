@@ -6,6 +6,7 @@ mod asf;
 pub mod bvh;
 mod expression;
 pub mod fap;
+mod fap_names;
 pub mod keyframes;
 pub mod livelink;
 pub mod procedural;
