@@ -6,6 +6,8 @@ use pantin::layout::MAX_CHANNELS;
 
 /// Frames times channels: 128 MB of samples.
 pub const MOST_VALUES: usize = 1 << 24;
+/// Rows are put no farther on a grid: [`check_size`] refuses it long before.
+const FARTHEST: usize = 1 << 30;
 /// No full scale is smaller: of channels that never leave 0, nor of such as a clip's raw values could not tell from it.
 const LEAST_SCALE: f64 = 1e-6;
 
@@ -53,7 +55,7 @@ impl Grid {
         let mut place = |&time: &f64| {
             let steps = ((time - last) / usual).round();
             if steps > 0.0 {
-                frame = frame.saturating_add(steps as usize);
+                frame = frame.saturating_add(steps as usize).min(FARTHEST);
                 last = time;
             }
             frame
@@ -108,6 +110,8 @@ mod tests {
         assert_eq!(grid.frames, [0, 1, 2, 5, 5, 6]);
         assert_eq!((grid.len(), grid.gaps(), grid.first_gap()), (7, (2, 1), Some(3)));
         assert_eq!(grid.fill(&[1.0, 2.0, 3.0, 6.0, 99.0, 7.0]), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        let far = Grid::of(&[0.0, 1e-300, 2e-300, 1e9]).unwrap();
+        assert!(check_size(1, far.len()).is_err());
         assert!(Grid::of(&[3.0, 3.0]).is_none() && Grid::of(&[3.0]).is_none());
     }
 
