@@ -82,6 +82,26 @@ fn amc_files() {
 }
 
 #[test]
+fn fap_files() {
+    holds("import_fap", FILES);
+}
+
+#[test]
+fn live_link_face_files() {
+    holds("import_livelink", FILES);
+}
+
+#[test]
+fn tables() {
+    holds("import_table", FILES);
+}
+
+#[test]
+fn procedural_files() {
+    holds("import_proc", FILES);
+}
+
+#[test]
 fn every_door_has_its_fuzz_target() {
     let targets = files(&paths::root().join("fuzz/fuzz_targets"), |_| true);
     let mut named: Vec<&str> = DOORS.iter().map(|door| door.name).collect();

@@ -21,6 +21,8 @@ pub struct Report {
     pub max_scalar: f64,
     /// The scalar that has it.
     pub worst_scalar: String,
+    /// When it has it.
+    pub worst_scalar_frame: usize,
 }
 
 /// Compares two motions of the same figure.
@@ -42,11 +44,12 @@ pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
     report.mean_cm = sum / (original.frames * original.rig.joints.len()).max(1) as f64;
     let first = original.rig.joint_channels();
     for (scalar, channel) in original.rig.scalars.iter().zip(first..) {
-        let errors = original.values[channel].iter().zip(&other.values[channel]).map(|(a, b)| (a - b).abs());
-        let worst = errors.fold(0.0, f64::max) / scalar.full_scale;
-        if worst > report.max_scalar {
-            report.max_scalar = worst;
-            report.worst_scalar.clone_from(&scalar.name);
+        for (frame, (a, b)) in original.values[channel].iter().zip(&other.values[channel]).enumerate() {
+            let part = (a - b).abs() / scalar.full_scale;
+            if part > report.max_scalar {
+                (report.max_scalar, report.worst_scalar_frame) = (part, frame);
+                report.worst_scalar.clone_from(&scalar.name);
+            }
         }
     }
     Ok(report)
@@ -65,8 +68,9 @@ pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bound_cm: f64, scalar_p
     );
     ensure!(
         report.max_scalar <= scalar_part,
-        "channel {} is off by {:.3} % of its full scale; the bound is {:.3} %",
+        "channel {} at frame {} is off by {:.3} % of its full scale; the bound is {:.3} %",
         report.worst_scalar,
+        report.worst_scalar_frame,
         100.0 * report.max_scalar,
         100.0 * scalar_part
     );

@@ -22,7 +22,8 @@ pub struct ChannelBound {
     exact: bool,
 }
 
-fn above_zero(text: &str) -> Result<f64, String> {
+/// A finite number above 0.
+pub fn above_zero(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
         _ => Err("expected a number above 0".into()),

@@ -1,6 +1,6 @@
 //! `pantin convert`.
 
-use super::channel_bound::ChannelBound;
+use super::channel_bound::{ChannelBound, above_zero};
 use super::write_whole;
 use crate::channel_error;
 use crate::encode::{clip, rig};
@@ -10,7 +10,7 @@ use crate::fit::descent::Level;
 use crate::fit::{channelwise, fit};
 use crate::import;
 use crate::motion::Motion;
-use crate::verify::verify;
+use crate::verify::{Report, verify};
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use pantin::layout::MAX_FRAMES;
@@ -28,10 +28,13 @@ use std::path::PathBuf;
   pantin convert walk.bvh -o walk.ptn --rig-out figure.rig
   pantin convert motions/walk.keys -o walk.ptn --exact
   pantin convert walk.bvh -o walk.ptn --index 2
-  pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5")]
+  pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5
+  pantin convert face.csv -o face.ptn --max-scalar-error 2
+  pantin convert servos.tsv -o servos.ptn --fps 50")]
 pub struct Arguments {
-    /// The motion: .bvh, .amc (its .asf beside it), our key frames (.keys, see docs/KEYFRAMES.md), or functions of time
-    /// (.proc, see docs/PROCEDURAL.md)
+    /// The motion: .bvh, .amc (its .asf beside it), our key frames (.keys, see docs/KEYFRAMES.md), functions of time
+    /// (.proc, see docs/PROCEDURAL.md), a face by Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
+    /// below a row of their names (.csv, .tsv)
     input: PathBuf,
     /// The clip to write
     #[arg(short, long)]
@@ -43,14 +46,14 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
     /// Greatest error of channels that move no joint, in percent of their full scale
-    #[arg(long, default_value_t = 2.0)]
+    #[arg(long, value_name = "PERCENT", default_value = "2", value_parser = above_zero)]
     max_scalar_error: f64,
     #[command(flatten)]
     channels: ChannelBound,
     /// Length of the source's unit in cm, instead of a guess
     #[arg(long)]
     cm_per_unit: Option<f64>,
-    /// Frames a second, for sources that do not say
+    /// Frames a second: for sources that do not say, instead of what a face's file says, and at which a table with a time is sampled
     #[arg(long)]
     fps: Option<f64>,
     /// The .asf of an .amc, instead of the one found beside it
@@ -157,15 +160,37 @@ fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8]) -> Result<Mad
     let bytes = file(arguments, &coded, rig)?;
     let not_written = || format!("{}: not written", arguments.output.display());
     let report = verify(&bytes, rig, motion, arguments.max_error, part).with_context(not_written)?;
-    let json = json!({
-        "max_error_cm": report.max_cm,
-        "mean_error_cm": report.mean_cm,
-        "worst_joint": report.worst_joint,
-        "worst_frame": report.worst_frame,
-    });
-    let (joint, frame) = (report.worst_joint, report.worst_frame);
-    let errors = format!("error max {:.4} cm ({joint} at frame {frame}), mean {:.4} cm", report.max_cm, report.mean_cm);
-    Ok(Made { bytes, json, errors })
+    Ok(Made { bytes, json: errors_json(&report, motion), errors: errors_text(&report, motion) })
+}
+
+/// The errors of what the motion has: joints, scalars or both.
+fn errors_json(report: &Report, motion: &Motion) -> serde_json::Value {
+    let mut fields = serde_json::Map::new();
+    if !motion.rig.joints.is_empty() {
+        fields.insert("max_error_cm".into(), json!(report.max_cm));
+        fields.insert("mean_error_cm".into(), json!(report.mean_cm));
+        fields.insert("worst_joint".into(), json!(report.worst_joint));
+        fields.insert("worst_frame".into(), json!(report.worst_frame));
+    }
+    if !motion.rig.scalars.is_empty() {
+        fields.insert("max_scalar_error_percent".into(), json!(100.0 * report.max_scalar));
+        fields.insert("worst_scalar".into(), json!(report.worst_scalar));
+        fields.insert("worst_scalar_frame".into(), json!(report.worst_scalar_frame));
+    }
+    fields.into()
+}
+
+fn errors_text(report: &Report, motion: &Motion) -> String {
+    let (joint, frame) = (&report.worst_joint, report.worst_frame);
+    let joints = format!("error max {:.4} cm ({joint} at frame {frame}), mean {:.4} cm", report.max_cm, report.mean_cm);
+    let (scalar, frame) = (&report.worst_scalar, report.worst_scalar_frame);
+    let place = if scalar.is_empty() { String::new() } else { format!(" ({scalar} at frame {frame})") };
+    let scalars = format!("scalars' error max {:.3} % of full scale{place}", 100.0 * report.max_scalar);
+    match (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty()) {
+        (false, true) => joints,
+        (true, _) => scalars,
+        (false, false) => format!("{joints}; {scalars}"),
+    }
 }
 
 fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bounds) -> Result<Made> {

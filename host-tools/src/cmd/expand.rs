@@ -6,15 +6,21 @@ use crate::export;
 use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
 
-/// Turn a clip back into per-frame motion: the same joints, channels and frames.
+/// Turn a clip back into per-frame motion, or into source text for firmware.
+///
+/// The output's extension says what is written: .bvh has the same joints, channels and frames; .csv a row of all channels' values a frame, with the
+/// time in seconds; .h and .rs have the clip's own bytes, their length, the frame rate and the channels' names.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin expand walk.ptn -o walk.bvh
-  pantin expand walk.ptn --rig figure.rig -o walk.bvh")]
+  pantin expand walk.ptn --rig figure.rig -o walk.bvh
+  pantin expand face.ptn -o face.csv
+  pantin expand walk.ptn -o walk.h
+  pantin expand walk.ptn -o src/walk.rs")]
 pub struct Arguments {
     /// The clip
     input: PathBuf,
-    /// The motion file to write: .bvh
+    /// The file to write: .bvh, .csv, .h or .rs
     #[arg(short, long)]
     output: PathBuf,
     /// The rig of a clip that was made with --rig-out
@@ -25,14 +31,16 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
-    let clip = files.open().with_context(|| arguments.input.display().to_string())?;
-    let motion = expand(&clip)?;
+    let place = || arguments.input.display().to_string();
+    let clip = files.open().with_context(place)?;
+    let stem = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
+    let mut out = Vec::new();
     match arguments.output.extension().and_then(|extension| extension.to_str()) {
-        Some("bvh") => {
-            let mut out = Vec::new();
-            export::bvh::write(&motion, &mut out)?;
-            write_whole(&arguments.output, &out)
-        }
-        _ => bail!("{}: expected a name that ends in .bvh", arguments.output.display()),
+        Some("bvh") => export::bvh::write(&expand(&clip)?, &mut out).with_context(place)?,
+        Some("csv") => export::table::write(&expand(&clip)?, &mut out)?,
+        Some("h") => out = export::source::c_header(&clip, files.clip(), &stem).into_bytes(),
+        Some("rs") => out = export::source::rust_module(&clip, files.clip(), &stem).into_bytes(),
+        _ => bail!("{}: expected a name that ends in .bvh, .csv, .h or .rs", arguments.output.display()),
     }
+    write_whole(&arguments.output, &out)
 }

@@ -43,6 +43,11 @@ impl Files {
         Ok(if self.rig.is_empty() { pantin::Clip::new_checked(&self.clip) } else { opened }?)
     }
 
+    /// The clip's bytes.
+    pub fn clip(&self) -> &[u8] {
+        &self.clip
+    }
+
     /// Length of the clip's file.
     pub fn clip_len(&self) -> usize {
         self.clip.len()

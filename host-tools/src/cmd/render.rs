@@ -1,7 +1,8 @@
 //! `pantin render`
 
 use super::{Files, write_whole};
-use crate::render::{gif, screen, sheet};
+use crate::expand::expand;
+use crate::render::{chart, gif, screen, sheet};
 use anyhow::{Context, Result, bail};
 use pantin_figure::{Track, View};
 use std::path::PathBuf;
@@ -11,11 +12,12 @@ const SHEET_PICTURES: u32 = 12;
 
 /// Draw a clip as the reference board's display shows it, by the firmware's own figure code.
 ///
-/// A .gif is an animation at the clip's own rate, a .png a sheet of twelve frames.
+/// A .gif is an animation at the clip's own rate, a .png a sheet of twelve frames. A clip without joints is a chart of its channels over time (.png).
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin render walk.ptn -o walk.gif
-  pantin render walk.ptn -o walk.png --view 0")]
+  pantin render walk.ptn -o walk.png --view 0
+  pantin render face.ptn -o face.png")]
 pub struct Arguments {
     /// The clip
     input: PathBuf,
@@ -40,8 +42,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
+    let no_joints = clip.rig().joint_count() == 0;
     let mut out = Vec::new();
     match arguments.output.extension().and_then(|extension| extension.to_str()) {
+        Some("gif") if no_joints => {
+            bail!(
+                "{}: a clip without joints has no figure to animate; a name that ends in .png gives a chart",
+                arguments.output.display()
+            );
+        }
+        Some("png") if no_joints => chart::write(&mut out, &expand(&clip)?)?,
         Some("gif") => {
             let stride = gif::stride(frame_time);
             let pictures = screen::pictures(&clip, view, (0..clip.frames()).step_by(stride as usize))?;

@@ -1,3 +1,5 @@
 //! Motion files out: one file a format.
 
 pub mod bvh;
+pub mod source;
+pub mod table;

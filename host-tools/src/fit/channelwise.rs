@@ -38,6 +38,8 @@ struct Aim<'a> {
     target: &'a [f64],
     rest: f64,
     bound: f64,
+    /// Values beyond this come round from the other side; angles may.
+    room: f64,
     held: Held,
     exact: bool,
 }
@@ -55,7 +57,9 @@ pub fn fit(motion: &Motion, bounds: &Bounds, progress: &(dyn Fn() + Sync)) -> Re
         check_range(motion, channel, &target)?;
         let bound = (USED * bounds.greatest[channel] / scale).max(NARROWEST);
         let rest = f64::from(rests[channel]);
-        let aim = Aim { target: &target, rest, bound, held: bounds.held, exact: bounds.exact };
+        let turns = motion.rig.channel_kinds()[channel].1.is_rotation();
+        let room = if turns { f64::INFINITY } else { f64::from(i32::MAX) };
+        let aim = Aim { target: &target, rest, bound, room, held: bounds.held, exact: bounds.exact };
         let found = aim.best();
         progress();
         found.map_or_else(|| refuse(motion, channel, aim, scale), Ok)
@@ -122,7 +126,7 @@ impl Aim<'_> {
         if frames >= 3 && self.held == Held::Accelerations {
             return self.accelerations();
         }
-        let tube = self.tube(self.target.to_vec());
+        let tube = self.tube(self.target.to_vec(), self.room);
         let still = self.target.iter().all(|x| (x - self.target[0]).abs() <= self.bound);
         if frames < 3 || still || !self.exact {
             let found = cheapest(self.steps(POSITION_STEPS), |step| search(&tube, step, EFFORT))?;
@@ -135,7 +139,7 @@ impl Aim<'_> {
     }
 
     fn accelerations(&self) -> Option<Fitted> {
-        let tube = self.tube(seconds(self.target));
+        let tube = self.tube(seconds(self.target), f64::INFINITY);
         let (p, v) = (self.target[0], self.target[1] - self.target[0]);
         cheapest(self.steps(ACCELERATION_STEPS), |step| {
             let near = |x: f64, grid: i32| (x / f64::from(grid)).round() * f64::from(grid);
@@ -146,9 +150,9 @@ impl Aim<'_> {
         })
     }
 
-    fn tube(&self, x: Vec<f64>) -> Tube {
-        let lo = x.iter().map(|x| x - self.bound).collect();
-        let hi = x.iter().map(|x| x + self.bound).collect();
+    fn tube(&self, x: Vec<f64>, room: f64) -> Tube {
+        let lo = x.iter().map(|x| (x - self.bound).max(-room)).collect();
+        let hi = x.iter().map(|x| (x + self.bound).min(room)).collect();
         let (a, b) = (vec![PRICE / (self.bound * self.bound); x.len()], vec![0.0; x.len()]);
         Tube { x, lo, hi, a, b }
     }

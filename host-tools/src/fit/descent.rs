@@ -53,6 +53,9 @@ impl Level {
     }
 }
 
+/// Raw values of a scalar: beyond them it would come round from the other side.
+const LEAST: f64 = i32::MIN as f64;
+const MOST: f64 = i32::MAX as f64;
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
 /// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
@@ -229,10 +232,10 @@ impl<'m> Descent<'m> {
         let frames = self.figure.frames;
         let target = &self.targets[channel];
         if self.figure.channels[channel].0.is_none() {
-            let bound = self.scalar_bounds[channel];
+            let bound = self.scalar_bounds[channel] * USED;
             let a = price / (4.0 * bound * bound);
-            let lo = target.iter().map(|x| x - bound).collect();
-            let hi = target.iter().map(|x| x + bound).collect();
+            let lo = target.iter().map(|x| (x - bound).max(LEAST)).collect();
+            let hi = target.iter().map(|x| (x + bound).min(MOST)).collect();
             return Tube { x: target.clone(), lo, hi, a: vec![a; frames], b: vec![0.0; frames] };
         }
         let scale = self.scales[channel];

@@ -5,9 +5,16 @@ pub mod amc;
 mod asf;
 pub mod bvh;
 mod expression;
+pub mod fap;
+mod fap_names;
 pub mod keyframes;
+pub mod livelink;
 pub mod procedural;
+mod scalars;
+mod sheet;
+pub mod table;
 pub mod text;
+mod timecode;
 pub mod units;
 mod written;
 
@@ -22,7 +29,8 @@ use std::path::{Path, PathBuf};
 pub struct Options {
     /// Length of the source's unit in cm, instead of a guess.
     pub cm_per_unit: Option<f64>,
-    /// Frames a second, for a source that does not say or says nonsense.
+    /// Frames a second, for a source that does not say or says nonsense; instead of what a face's file says; at which a table with a
+    /// time is sampled.
     pub fps: Option<f64>,
     /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
     pub skeleton: Option<PathBuf>,
@@ -59,12 +67,15 @@ struct Format {
     read: fn(&Path, &Options) -> Result<Source>,
 }
 
-/// One line a format.
+/// One line a format. Of several with one extension, those that a file's begin tells stand before the one that takes all others.
 const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
     Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
     Format { name: "key frames", extensions: &["keys"], begins: keyframes::begins, read: keyframes::read },
     Format { name: "procedural motion", extensions: &["proc"], begins: procedural::begins, read: procedural::read },
+    Format { name: "FAP", extensions: &["fap"], begins: fap::begins, read: fap::read },
+    Format { name: "Live Link Face", extensions: &["csv"], begins: livelink::begins, read: livelink::read },
+    Format { name: "table", extensions: &["csv", "tsv"], begins: table::begins, read: table::read },
 ];
 
 /// Bytes at the front of a file from which its format can be told.
@@ -92,7 +103,8 @@ fn format_of(path: &Path) -> Result<&'static Format> {
     File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).with_context(place)?;
     ensure!(!head.is_empty(), "{}: the file is empty; expected a motion file", place());
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let by_extension = FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
+    let of_extension = || FORMATS.iter().filter(|format| format.extensions.contains(&extension.as_str()));
+    let by_extension = of_extension().find(|format| (format.begins)(&head)).or_else(|| of_extension().next_back());
     let Some(format) = by_extension.or_else(|| FORMATS.iter().find(|format| (format.begins)(&head))) else {
         let known: Vec<String> =
             FORMATS.iter().map(|format| format!("{} (.{})", format.name, format.extensions.join(", ."))).collect();

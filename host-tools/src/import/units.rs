@@ -29,6 +29,9 @@ pub fn settle(motion: &Motion, user: Option<f64>, source: Option<f64>) -> Result
         ensure!(cm.is_finite() && cm > 0.0, "--cm-per-unit {cm}: expected a number above 0");
         return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {cm} cm, as given") });
     }
+    if motion.rig.joints.is_empty() {
+        return Ok(Unit { cm_per_unit: 1.0, sentence: "units: no joints, so none of length".into() });
+    }
     if let Some(cm) = source {
         return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {cm} cm, as the file says") });
     }

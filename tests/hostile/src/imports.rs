@@ -58,6 +58,16 @@ pub const AMC_WORDS: [&str; 14] = [
     "1e99",
 ];
 
+pub const LIVELINK_WORDS: [&str; 12] =
+    ["Timecode", "BlendshapeCount", "JawOpen", "_R", "00:00:59:59.9", "23:59:59;29", ",0\n", ",", "\n", "\"", "-1e9", "nan"];
+
+pub const FAP_WORDS: [&str; 8] = ["2.1", " 1", " 0", "\n", "-1e9", "nan", " 25 ", "99999999999"];
+
+pub const TABLE_WORDS: [&str; 12] = ["time", "frame", "ms", ",", ";", "\t", "\n", "\"", "-1e9", "1e-9", "nan", "99999999999"];
+
+pub const PROC_WORDS: [&str; 14] =
+    ["let ", " = ", "sin(", "sqrt(", "min(", ")", "^", "/", "joint", "scalar", "loop", "fps", "frames", "99999999999"];
+
 /// Loads a file of this kind.
 pub fn load(extension: &str, text: &[u8]) -> bool {
     in_folder(|folder| {

@@ -1,0 +1,203 @@
+//! Tables of any channels: a row of names, then a row of values a frame, between commas, tabs or semicolons.
+//!
+//! The first two columns may be a time in seconds (`time`, `t`, `seconds`, `timestamp`), in milliseconds (`time_ms`, `ms`) or a frame's number (`frame`, or no
+//! name at all). Without a time, `--fps` is needed; with a time, `--fps` takes the values on straight lines at that rate, and without it the rows must
+//! be even but for missing ones. Full scale is a channel's own greatest value, whatever its sign.
+
+use super::scalars::{self, Grid};
+use super::sheet::{Row, Sheet, delimiter};
+use super::{Options, Source, read_bytes};
+use anyhow::Result;
+use std::path::Path;
+
+/// A row may be this far from its place, as a part of a frame: times are written with few digits.
+const JITTER: f64 = 0.3;
+/// Rates that times written with few digits stand for.
+const USUAL: [f64; 16] = [23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60.0, 72.0, 90.0, 100.0, 120.0, 10.0, 15.0, 20.0];
+
+/// Whether `head` begins such a file: a second line that begins with a number, and delimiters in the first.
+pub fn begins(head: &[u8]) -> bool {
+    let delimiter = delimiter(head);
+    let mut lines = head.split(|&byte| byte == b'\n');
+    let (Some(names), Some(values)) = (lines.next(), lines.next()) else { return false };
+    let first = values.split(|&byte| byte == delimiter).next().unwrap_or_default().trim_ascii();
+    names.contains(&delimiter) && std::str::from_utf8(first).is_ok_and(|first| first.parse::<f64>().is_ok())
+}
+
+/// Reads the file `path`.
+pub fn read(path: &Path, options: &Options) -> Result<Source> {
+    let bytes = read_bytes(path)?;
+    let mut sheet = Sheet::open(path, &bytes)?;
+    let clock = Clock::of(&sheet.header);
+    if let Some(column) = (clock.columns..sheet.header.len()).find(|&column| sheet.header[column].is_empty()) {
+        return Err(sheet.error_in(1, column, "expected a name"));
+    }
+    let names: Vec<String> = sheet.header[clock.columns..].to_vec();
+    scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
+    let rows = Rows::read(&mut sheet, &clock)?;
+    let (values, fps, warnings) = match (clock.time, options.fps) {
+        (Some(_), Some(fps)) => (rows.at_rate(&sheet, fps)?, fps, Vec::new()),
+        (Some(_), None) => rows.timed(&sheet)?,
+        (None, Some(fps)) => {
+            let (values, warnings) = rows.numbered(&sheet)?;
+            (values, fps, warnings)
+        }
+        (None, None) => return Err(sheet.error(1, "no column of times (`time`, in seconds); --fps gives the frames a second")),
+    };
+    let scales = vec![0.0; values.len()];
+    Ok(Source { motion: scalars::motion(names, &scales, values, 1.0 / fps), unit_known: false, warnings })
+}
+
+/// What the first columns say about time.
+struct Clock {
+    /// Column and length of its unit in seconds.
+    time: Option<(usize, f64)>,
+    frame: Option<usize>,
+    /// How many columns are not channels.
+    columns: usize,
+}
+
+impl Clock {
+    fn of(header: &[String]) -> Clock {
+        let mut clock = Clock { time: None, frame: None, columns: 0 };
+        for (column, name) in header.iter().enumerate().take(2) {
+            match name.to_ascii_lowercase().as_str() {
+                "time" | "t" | "sec" | "seconds" | "timestamp" | "time_s" | "time (s)" | "time [s]" if clock.time.is_none() => {
+                    clock.time = Some((column, 1.0));
+                }
+                "time_ms" | "ms" | "milliseconds" | "time (ms)" | "time [ms]" if clock.time.is_none() => {
+                    clock.time = Some((column, 1e-3))
+                }
+                "" | "frame" | "frames" | "frame_number" | "#" if clock.frame.is_none() => clock.frame = Some(column),
+                _ => break,
+            }
+            clock.columns = column + 1;
+        }
+        clock
+    }
+}
+
+struct Rows {
+    lines: Vec<u64>,
+    /// Seconds, or a frame's number, or the row's own.
+    times: Vec<f64>,
+    /// Column that the times are from.
+    column: usize,
+    /// `values[channel][row]`.
+    values: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    fn read(sheet: &mut Sheet, clock: &Clock) -> Result<Rows> {
+        let channels = sheet.header.len() - clock.columns;
+        let column = clock.time.map(|(column, _)| column).or(clock.frame);
+        let mut rows =
+            Rows { lines: Vec::new(), times: Vec::new(), column: column.unwrap_or(0), values: vec![Vec::new(); channels] };
+        while let Some(row) = sheet.next()? {
+            sheet.whole(&row)?;
+            let time = match (clock.time, column) {
+                (Some((column, unit)), _) => sheet.number(&row, column)? * unit,
+                (None, Some(column)) => frame_number(sheet, &row, column)?,
+                (None, None) => rows.times.len() as f64,
+            };
+            if rows.times.last().is_some_and(|&before| before >= time) {
+                return Err(sheet.error_in(row.line, rows.column, "expected more than in the row above"));
+            }
+            rows.times.push(time);
+            rows.lines.push(row.line);
+            for (channel, values) in rows.values.iter_mut().enumerate() {
+                values.push(sheet.number(&row, clock.columns + channel)?);
+            }
+        }
+        if rows.times.is_empty() {
+            return Err(sheet.error(1, "no row of values below the header"));
+        }
+        Ok(rows)
+    }
+
+    /// Rows by their frames' numbers.
+    fn numbered(&self, sheet: &Sheet) -> Result<(Vec<Vec<f64>>, Vec<String>)> {
+        let frames: Vec<usize> = self.times.iter().map(|time| (time - self.times[0]) as usize).collect();
+        let grid = Grid { frames, period: 1.0 };
+        scalars::check_size(self.values.len(), grid.len()).map_err(|error| sheet.error(1, error))?;
+        Ok((self.filled(&grid), self.gaps(&grid)))
+    }
+
+    /// Rows by their times, which must be even; frames a second; and what is odd.
+    fn timed(&self, sheet: &Sheet) -> Result<(Vec<Vec<f64>>, f64, Vec<String>)> {
+        let Some(grid) = Grid::of(&self.times) else {
+            return Err(sheet.error(self.lines[0], "one row tells no frame rate; --fps gives the frames a second"));
+        };
+        scalars::check_size(self.values.len(), grid.len()).map_err(|error| sheet.error(1, error))?;
+        let off = |row: usize| (self.times[row] - self.times[0]) / grid.period - grid.frames[row] as f64;
+        let uneven = (1..self.times.len()).find(|&row| off(row).abs() > JITTER || grid.frames[row] == grid.frames[row - 1]);
+        if let Some(row) = uneven {
+            let message = format!(
+                "this time is between the frames of rows {:.6} s apart; --fps takes the values at an even rate",
+                grid.period
+            );
+            return Err(sheet.error_in(self.lines[row], self.column, message));
+        }
+        Ok((self.filled(&grid), usual_rate(&grid, &self.times), self.gaps(&grid)))
+    }
+
+    /// The values on straight lines between the rows, `fps` times a second.
+    fn at_rate(&self, sheet: &Sheet, fps: f64) -> Result<Vec<Vec<f64>>> {
+        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
+        // A last row that rounding puts just before a frame is that frame.
+        let frames = ((last - first) * fps + 1e-6) as usize + 1;
+        scalars::check_size(self.values.len(), frames).map_err(|error| sheet.error(1, error))?;
+        let sampled = |values: &Vec<f64>| {
+            let mut row = 0;
+            let mut at = |frame: usize| {
+                let time = first + frame as f64 / fps;
+                while row + 1 < self.times.len() && self.times[row + 1] <= time {
+                    row += 1;
+                }
+                let Some(next) = self.times.get(row + 1) else { return values[row] };
+                let part = (time - self.times[row]) / (next - self.times[row]);
+                values[row] + part * (values[row + 1] - values[row])
+            };
+            (0..frames).map(&mut at).collect()
+        };
+        Ok(self.values.iter().map(sampled).collect())
+    }
+
+    fn filled(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        self.values.iter().map(|values| grid.fill(values)).collect()
+    }
+
+    fn gaps(&self, grid: &Grid) -> Vec<String> {
+        let Some(row) = grid.first_gap() else { return Vec::new() };
+        let (missing, line) = (grid.gaps().0, self.lines[row]);
+        vec![format!("{missing} of {} frames have no row (first before line {line}): filled by straight lines", grid.len())]
+    }
+}
+
+fn frame_number(sheet: &Sheet, row: &Row, column: usize) -> Result<f64> {
+    let number = sheet.number(row, column)?;
+    if number.fract() == 0.0 {
+        Ok(number)
+    } else {
+        Err(sheet.error_in(row.line, column, format!("expected a whole frame's number, found {number}")))
+    }
+}
+
+/// The usual rate nearest to the measured one, if it explains every time as far as its digits go; else the measured one.
+fn usual_rate(grid: &Grid, times: &[f64]) -> f64 {
+    let measured = grid.period.recip();
+    let far = |rate: &f64| (rate / measured - 1.0).abs();
+    let rounding = last_digit(times);
+    let explains = |rate: &f64| {
+        let place = |(&time, &frame): (&f64, &usize)| (time - times[0] - frame as f64 / rate).abs();
+        times.iter().zip(&grid.frames).all(|row| place(row) <= rounding)
+    };
+    USUAL.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).filter(explains).unwrap_or(measured)
+}
+
+/// The place value of the last decimal digit that any of `times` has.
+fn last_digit(times: &[f64]) -> f64 {
+    let whole = |scale: f64| times.iter().all(|time| (time * scale - (time * scale).round()).abs() < 1e-3);
+    let scales = (0..9).map(|digits| 10f64.powi(digits));
+    scales.into_iter().find(|&scale| whole(scale)).unwrap_or(1e9).recip()
+}

@@ -1,0 +1,82 @@
+//! Tables: columns of any name are read, and mistakes are named with their place.
+
+use anyhow::Result;
+use pantin_tools::import::{Options, load, table};
+use pantin_tools::motion::Motion;
+
+fn read_with(name: &str, text: impl AsRef<[u8]>, fps: Option<f64>) -> Result<(Motion, Vec<String>)> {
+    let path = std::env::temp_dir().join(format!("pantin-table-{name}-{}.csv", std::process::id()));
+    std::fs::write(&path, text).unwrap();
+    let read = load(&path, &Options { fps, ..Options::default() });
+    std::fs::remove_file(&path).unwrap();
+    read.map(|imported| (imported.motion, imported.warnings))
+}
+
+fn error(name: &str, text: &str, fps: Option<f64>) -> String {
+    format!("{:#}", read_with(name, text, fps).unwrap_err())
+}
+
+#[test]
+fn columns_of_any_name_are_channels() {
+    let (motion, _) = read_with("servos", "\"pan, left\";tilt\n-90;0\n45.5;1\n", Some(50.0)).unwrap();
+    assert_eq!([motion.rig.channel_name(0), motion.rig.channel_name(1)], ["pan, left", "tilt"]);
+    assert_eq!(motion.values, [[-90.0, 45.5], [0.0, 1.0]]);
+    assert_eq!((motion.rig.scalars[0].full_scale, motion.frame_time), (90.0, 0.02));
+}
+
+#[test]
+fn times_of_few_digits_give_the_rate_and_missing_rows_are_filled() {
+    let (motion, warnings) =
+        read_with("times", "time\tlamp\n0.00\t0\n0.03\t1\n0.07\t2\n0.10\t3\n0.20\t6\n0.23\t7\n\n", None).unwrap();
+    assert_eq!((motion.frames, motion.frame_time), (8, 1.0 / 30.0));
+    assert_eq!(motion.values[0], [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+    assert!(warnings[0].starts_with("2 of 8 frames have no row (first before line 6)"), "{warnings:?}");
+    let (motion, _) = read_with("ms", "frame,time_ms,lamp\n1,0,0\n2,8.333,1\n3,16.667,2\n", None).unwrap();
+    assert_eq!((motion.rig.scalars.len(), motion.frame_time), (1, 1.0 / 120.0));
+}
+
+#[test]
+fn a_given_rate_resamples_times_and_counts_frames() {
+    let (motion, _) = read_with("rate", "t,lamp\n0,0\n0.5,5\n0.6,5\n1,9\n", Some(10.0)).unwrap();
+    let expected = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+    assert!(
+        motion.values[0].iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-9),
+        "{:?}",
+        motion.values
+    );
+    let (motion, _) = read_with("frames", "frame,lamp\n5,0\n6,1\n9,4\n", Some(30.0)).unwrap();
+    assert_eq!(motion.values[0], [0.0, 1.0, 2.0, 3.0, 4.0]);
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_place() {
+    let fps = Some(30.0);
+    assert!(error("rateless", "a,b\n1,2\n", None).contains("--fps gives"));
+    assert!(error("header", "a,b\n", fps).contains(".csv:1: no row of values"));
+    assert!(error("blank", "\n\n", fps).contains(".csv:1: expected a row of column names"));
+    assert!(error("empty", "", fps).contains("the file is empty"));
+    assert!(error("clock", "time,frame\n0,0\n", fps).contains(".csv:1: no channels"));
+    assert!(error("columns", "a,b\n1,2\n1,2,3\n", fps).contains(".csv:3: 3 cells; expected 2"));
+    assert!(error("missing", "a,b\n1,\n", fps).contains(".csv:2: column 2 (b): expected a number, found nothing"));
+    assert!(error("nan", "a,b\n1,2\nNaN,3\n", fps).contains(".csv:3: column 1 (a): expected a finite number"));
+    assert!(error("huge", "a,b\n1,-1e10\n", fps).contains(".csv:2: column 2 (b): expected a finite number"));
+    assert!(error("twice", "a,b,a\n1,2,3\n", fps).contains(".csv:1: column 3: the name `a` stands in column 1 already"));
+    assert!(error("unnamed", "a,,b\n1,2,3\n", fps).contains(".csv:1: column 2 (): expected a name"));
+    assert!(error("back", "time,a\n1,0\n0.5,0\n", None).contains(".csv:3: column 1 (time): expected more"));
+    assert!(
+        error("uneven", "time,a\n0,0\n1,0\n2,0\n2.5,0\n3,0\n4,0\n", None)
+            .contains(".csv:4: column 1 (time): this time is between")
+    );
+    assert!(error("part", "frame,a\n0.5,0\n", fps).contains(".csv:2: column 1 (frame): expected a whole frame's number"));
+    assert!(error("far", "time,a\n0,0\n0.01,0\n1e9,0\n", None).contains("expected at most"));
+    let strange = format!("{:#}", read_with("strange", b"a,\xff\xfe\n1,2\n", fps).unwrap_err());
+    assert!(strange.contains(".csv:1: column 2: ") && strange.contains("is not UTF-8"), "{strange}");
+    let strange = format!("{:#}", read_with("strange-value", b"a,b\n1,\xff\n", fps).unwrap_err());
+    assert!(strange.contains(".csv:2: column 2 (b): expected a number"), "{strange}");
+}
+
+#[test]
+fn a_table_is_told_by_its_second_line() {
+    assert!(table::begins(b"a,b\n1,2\n") && table::begins(b"a\tb\n-1e3\t2\n"));
+    assert!(!table::begins(b"a,b\nc,d\n") && !table::begins(b"a\n1\n") && !table::begins(b""));
+}
