@@ -193,10 +193,16 @@ fn playing_begins_before_the_last_byte_has_come() {
     let rig = rig_of(&vector);
     let mut frames = 0;
     let half = &vector.clip[..vector.clip.len() - clip.motion_len() / 2];
-    let end = push(Rig::new_checked(&rig).unwrap(), half, Stream::BUFFER, || 1, |step, _| {
-        frames += u32::from(step == Step::Frame);
-        ControlFlow::Continue(())
-    });
+    let end = push(
+        Rig::new_checked(&rig).unwrap(),
+        half,
+        Stream::BUFFER,
+        || 1,
+        |step, _| {
+            frames += u32::from(step == Step::Frame);
+            ControlFlow::Continue(())
+        },
+    );
     assert_eq!(end, Step::NeedMore);
     // A quarter at least: a block of 256 bytes and a segment's worth wait.
     assert!(4 * frames > clip.frames(), "{}: {frames} frames of {} from half of the motion", vector.name, clip.frames());
@@ -213,13 +219,19 @@ fn every_file_cut_short_is_refused_whole_and_waited_for_in_pieces() {
             let cut = &vector.clip[..len];
             assert!(Clip::with_rig(cut, &rig).is_err(), "{} cut to {len}", vector.name);
             let mut frame = 0;
-            let end = push(Rig::new_checked(&rig).unwrap(), cut, Stream::BUFFER, || 33, |step, stream| {
-                if step == Step::Frame {
-                    assert!(stream.pose() == poses[frame], "{} cut to {len}: frame {frame}", vector.name);
-                    frame += 1;
-                }
-                ControlFlow::Continue(())
-            });
+            let end = push(
+                Rig::new_checked(&rig).unwrap(),
+                cut,
+                Stream::BUFFER,
+                || 33,
+                |step, stream| {
+                    if step == Step::Frame {
+                        assert!(stream.pose() == poses[frame], "{} cut to {len}: frame {frame}", vector.name);
+                        frame += 1;
+                    }
+                    ControlFlow::Continue(())
+                },
+            );
             assert!(end == Step::NeedMore || len >= complete, "{} cut to {len}: {end:?}", vector.name);
         }
     }
@@ -238,13 +250,19 @@ fn every_flipped_bit_is_found_before_a_wrong_pose_is_shown() {
             damaged[bit / 8] ^= 1 << (bit % 8);
             assert!(Clip::with_rig(&damaged, &rig).is_err(), "{}: bit {bit} flipped and not found", vector.name);
             let mut frame = 0;
-            let end = push(Rig::new_checked(&rig).unwrap(), &damaged, Stream::BUFFER, || 100, |step, stream| {
-                if step == Step::Frame {
-                    assert!(stream.pose() == poses[frame], "{}: bit {bit} flipped, frame {frame}", vector.name);
-                    frame += 1;
-                }
-                ControlFlow::Continue(())
-            });
+            let end = push(
+                Rig::new_checked(&rig).unwrap(),
+                &damaged,
+                Stream::BUFFER,
+                || 100,
+                |step, stream| {
+                    if step == Step::Frame {
+                        assert!(stream.pose() == poses[frame], "{}: bit {bit} flipped, frame {frame}", vector.name);
+                        frame += 1;
+                    }
+                    ControlFlow::Continue(())
+                },
+            );
             let in_rig = bit / 8 >= 4 && bit / 8 < 4 + clip.rig_len();
             let passes = bit / 8 + 4 >= motion && clip.index_len() > 0 || in_rig;
             assert!(end != Step::End || passes, "{}: bit {bit} flipped and played to the end", vector.name);

@@ -1,7 +1,7 @@
 //! Mends what a check at the door would refuse, and nothing else.
 
 use pantin::crc;
-use pantin::layout::{BLOCK_BYTES, CRC_BYTES, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
+use pantin::layout::{BLOCK_BYTES, CRC_BYTES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
 
 /// Makes the CRC of a rig right, if it is long enough to have one.
 pub fn rig(bytes: &mut [u8]) {
@@ -25,17 +25,29 @@ pub fn clip(bytes: &mut Vec<u8>) {
         rig(body);
         at += len;
     }
-    let Some((_, digits)) = varint(&bytes[at..]) else { return };
-    let motion = bytes.split_off(at).split_off(digits);
-    let mut seed = crc::of(&bytes[..4]);
-    put_varint(bytes, motion.len());
-    seed = crc::update(seed, &(motion.len() as u32).to_le_bytes());
-    for block in motion.chunks(BLOCK_BYTES + CRC_BYTES) {
+    let Some((len, digits)) = varint(&bytes[at..]) else { return };
+    let mut motion = bytes.split_off(at).split_off(digits);
+    let index = if flags & HAS_INDEX != 0 { motion.split_off(len.min(motion.len())) } else { vec![] };
+    let seed = crc::update(crc::of(&bytes[..4]), &(motion.len() as u32).to_le_bytes());
+    let last = put_part(bytes, &motion, seed);
+    if flags & HAS_INDEX != 0 {
+        let index = &index[varint(&index).map_or(index.len(), |(_, digits)| digits)..];
+        put_part(bytes, index, pantin::index_seed(last, index.len() as u32));
+    }
+}
+
+/// A length and as many bytes of blocks, with their CRCs made right; the last of which it returns.
+fn put_part(out: &mut Vec<u8>, blocks: &[u8], mut seed: u16) -> u16 {
+    put_varint(out, blocks.len());
+    let mut last = seed;
+    for block in blocks.chunks(BLOCK_BYTES + CRC_BYTES) {
         let body = &block[..block.len().saturating_sub(CRC_BYTES)];
-        bytes.extend_from_slice(body);
-        bytes.extend_from_slice(&crc::update(seed, body).to_le_bytes()[..block.len() - body.len()]);
+        last = crc::update(seed, body);
+        out.extend_from_slice(body);
+        out.extend_from_slice(&last.to_le_bytes()[..block.len() - body.len()]);
         seed = crc::INITIAL;
     }
+    last
 }
 
 /// A length and how many bytes it takes.
