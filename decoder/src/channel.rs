@@ -36,9 +36,9 @@ impl ChannelState {
     /// The three additions: a frame on.
     #[inline(always)]
     pub(crate) fn add(&mut self, pose: &mut [i32]) {
-        if let Some(p) = pose.get_mut(usize::from(self.slot)) {
-            *p = p.wrapping_add(self.v);
-        }
+        // Every state's slot is in the pose.
+        let Some(p) = pose.get_mut(usize::from(self.slot)) else { return };
+        *p = p.wrapping_add(self.v);
         self.v = self.v.wrapping_add(self.w);
         self.w = self.w.wrapping_add(self.k);
     }

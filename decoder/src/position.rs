@@ -26,6 +26,20 @@ pub(crate) fn reads(frame: u32, frames: u32) -> bool {
     frame + 2 < frames
 }
 
+/// How many channels stand before the first whose segment ends now. A seek looks at every channel in every frame: four at a time.
+fn first_due(states: &[ChannelState], now: u8) -> usize {
+    let (fours, _) = states.as_chunks::<4>();
+    let mut before = 0;
+    for [a, b, c, d] in fours {
+        if a.due == now || b.due == now || c.due == now || d.due == now {
+            break;
+        }
+        before += 4;
+    }
+    let rest = states.get(before..).unwrap_or(&[]);
+    before + rest.iter().take_while(|state| state.due != now).count()
+}
+
 impl Position {
     /// Reads the segments that start at this frame, in the order of channels, and keeps in `history` what undoes it. False if
     /// the input ran dry: call again when it holds more.
@@ -101,12 +115,14 @@ impl Position {
         while self.frame < target {
             if reads(self.frame, frames) {
                 let now = self.frame as u8;
-                for state in channels.states.iter_mut().filter(|state| state.due == now) {
+                let mut rest = &mut *channels.states;
+                while let Some((_, [state, after @ ..])) = rest.split_at_mut_checked(first_due(rest, now)) {
                     // It stands at the start of its last segment.
                     if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
                         state.hop(p, i32::from(state.length()));
                     }
                     segment::read(state, &mut symbols);
+                    rest = after;
                 }
             }
             self.frame += 1;

@@ -9,7 +9,7 @@ use crate::tables;
 /// 31 bits in four parts; no symbol or part takes more than two bytes.
 pub(crate) const MAX_SEGMENT_BYTES: u32 = 32;
 
-/// Symbols of the mode's alphabet that name type and length at once; two more name types WK and NONE, whose length follows.
+/// Symbols of the mode's alphabet that are modes, of type W or K; two more name types WK and NONE, whose length follows.
 pub const DIRECT_MODES: u32 = 32;
 
 /// Where the slopes begin in [`STEPS`], which the modes of type W and K index.
@@ -28,8 +28,8 @@ pub const fn step(which: u8, channel_step: u8) -> u32 {
 pub struct Context {
     /// Index into the contexts of [`tables`].
     pub index: u8,
-    /// Whether the symbol tells the opposite number.
-    pub flipped: bool,
+    /// -1 if the symbol tells the opposite number, else 0.
+    pub flip: i32,
     /// Sign of the running number, 0 if it is small: the next context's `turn`.
     pub sign: i8,
 }
@@ -71,7 +71,7 @@ impl Context {
         }
         let first = FIRST_CONTEXTS[(which & 31) as usize];
         let index = first as i32 + a + (turn ^ flip) - flip + 1;
-        Context { index: index as u8, flipped: flip != 0, sign: sign as i8 }
+        Context { index: index as u8, flip, sign: sign as i8 }
     }
 }
 
@@ -109,17 +109,17 @@ fn number(symbols: &mut Symbols<'_>, channel_step: u8, which: u8, now: i32, turn
     if size > DIRECT {
         size = far(symbols, size);
     }
-    let value = size.wrapping_mul(unit) as i32;
-    let negative = (symbol & 1 != 0) != context.flipped;
-    (if negative { value.wrapping_neg() } else { value }, context.sign)
+    // All ones if it is negative.
+    let sign = -((symbol & 1) as i32) ^ context.flip;
+    ((size.wrapping_mul(unit) as i32 ^ sign).wrapping_sub(sign), context.sign)
 }
 
 /// The mode that follows `after`.
 #[inline(always)]
 fn mode(symbols: &mut Symbols<'_>, after: u8) -> u8 {
     let symbol = symbols.symbol_in_line(tables::mode(after));
-    if let Some(&mode) = tables::MODES.get(symbol as usize) {
-        return mode;
+    if symbol < DIRECT_MODES {
+        return symbol as u8;
     }
     let mode = (segment_type::WK + (symbol & 1) as u8) << 4 | symbols.bits(4) as u8;
     if mode == START_MODE { START_MODE - 1 } else { mode }

@@ -4,7 +4,6 @@ use crate::encode::clip::{Coded, symbols};
 use crate::encode::entropy::{Alphabet, Sink, sizes};
 use pantin::entropy::{SCALE_BITS, SIXTEENTH};
 use pantin::segment::{CONTEXTS, DIRECT_MODES};
-use pantin::tables::MODES;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -43,29 +42,19 @@ impl Counts {
 
     /// The text of `decoder/src/tables.rs`.
     pub fn tables(&self, trained_on: &str) -> String {
-        // Modes are named by symbols in the order of how often they come: a decoder finds frequent ones first.
-        let mut total = vec![0.0; DIRECT_MODES as usize + 2];
-        for after in 0..64 {
-            self.row(Alphabet::Mode(after)).iter().zip(&mut total).for_each(|(count, total)| *total += count);
-        }
-        let mut order: Vec<usize> = (0..DIRECT_MODES as usize).collect();
-        order.sort_by(|&a, &b| total[b].total_cmp(&total[a]).then(MODES[a].cmp(&MODES[b])));
-        let reorder = |row: Vec<f64>| -> Vec<f64> { order.iter().chain(&[32, 33]).map(|&old| row[old]).collect() };
-        let modes = (0..64).map(|after| reorder(self.row(Alphabet::Mode(after)))).collect();
+        let modes = (0..64).map(|after| self.row(Alphabet::Mode(after))).collect();
         let numbers = (0..CONTEXTS as u8).map(|context| self.row(Alphabet::Number(context))).collect();
         let (mode_after, mode) = join(modes, MODE_TABLES, &|i| if i >= DIRECT_MODES as usize { 0.002 } else { 0.01 });
         let number_prior = |i: usize| 0.5f64.powi(i.div_ceil(2) as i32).max(0.004);
         let (mut number_in, number) = join(numbers, NUMBER_TABLES, &number_prior);
-        let named: Vec<u8> = order.iter().map(|&old| MODES[old]).collect();
 
         let mut out = HEAD.replace("TRAINED_ON", trained_on);
         let mut item = |doc: &str, name: &str, kind: String, value: String| {
             let _ = writeln!(out, "/// {doc}\n{name}: {kind} = {value};\n");
         };
-        item("Modes in the order of their symbols.", "pub const MODES", "[u8; 32]".into(), format!("{named:?}"));
         item("Which of [`MODE`] follows a mode.", "const MODE_AFTER", "[u8; 64]".into(), format!("{mode_after:?}"));
         item(
-            "Modes: 32 named by [`MODES`], then WK and NONE.",
+            "Modes 0 to 31, then the types WK and NONE.",
             "static MODE",
             format!("[[u16; {}]; {}]", mode[0].len(), mode.len()),
             format!("{mode:?}"),

@@ -3,7 +3,6 @@
 use super::entropy::{Alphabet, Sink};
 use pantin::layout::{DIRECT, FAR, FAR_BITS, GROUPS, group, segment_type};
 use pantin::segment::{Context, DIRECT_MODES, SLOPE, step};
-use pantin::tables;
 
 /// A segment: its mode, and how many steps its new acceleration and slope have (0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,10 +63,8 @@ pub fn number_symbol(number: i32) -> (u32, [(u32, u32); 2]) {
 
 /// The symbol of a mode and, where it names the type alone, the length's index.
 pub fn mode_symbol(mode: u8) -> (u32, Option<u32>) {
-    match tables::MODES.iter().position(|&other| other == mode) {
-        Some(symbol) => (symbol as u32, None),
-        None => (DIRECT_MODES + u32::from(mode >> 4 & 1), Some(u32::from(mode & 15))),
-    }
+    let mode = u32::from(mode);
+    if mode < DIRECT_MODES { (mode, None) } else { (DIRECT_MODES + (mode >> 4 & 1), Some(mode & 15)) }
 }
 
 impl Running {
@@ -76,7 +73,7 @@ impl Running {
         let mode = segment.mode;
         let mut number = |context: Context, number: i32| {
             let Some(out) = out.as_deref_mut() else { return };
-            let (symbol, bits) = number_symbol(if context.flipped { -number } else { number });
+            let (symbol, bits) = number_symbol(if context.flip != 0 { -number } else { number });
             out.symbol(Alphabet::Number(context.index), symbol);
             bits.iter().for_each(|&(value, count)| out.bits(value, count));
         };

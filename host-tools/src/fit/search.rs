@@ -336,7 +336,7 @@ impl<'t> Search<'t> {
             let best = if s2 > 0.0 { nearest(-s1 / (s2 * unit)) } else { 0.clamp(ql, qh) };
             let carried = if slope { 0 } else { nearest(from.w / unit) };
             for q in candidates(ql, qh, best, carried) {
-                let number = if context.flipped { -q } else { q };
+                let number = if context.flip != 0 { -q } else { q };
                 let g = f64::from(q) * unit;
                 let cost = mode_cost + self.costs.number(context.index, number) + s0 + g * (2.0 * s1 + g * s2);
                 if cost > limit {

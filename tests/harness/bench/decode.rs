@@ -59,10 +59,32 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
         let costs = costs.collect::<Result<Vec<_>>>()?;
         print(&clips, &costs);
         // Our own motions stand in only where there are no others.
-        let judged = if reference == 0 { &costs[..] } else { &costs[..reference] };
-        goals.extend(judge(core, most, judged));
+        let judged = if reference == 0 { 0..costs.len() } else { 0..reference };
+        goals.extend(judge(core, most, &costs[judged.clone()]));
+        if core == "Cortex-M3" {
+            goals.extend(backwards(machine, &clips[judged.clone()], &costs[judged])?);
+        }
     }
     Ok(goals)
+}
+
+/// Going back, and seeking, with memory lent (`back` in `firmware/testsuite` says how much), on the machine that has it.
+fn backwards(machine: Machine, clips: &[Played], costs: &[Cost]) -> Result<Vec<Goal>> {
+    let guest = Guest::new(machine, "back")?;
+    let (mut back, mut seeks, mut rows) = (vec![], vec![], vec![]);
+    for (clip, cost) in clips.iter().zip(costs) {
+        let counts = guest.counts(Some(&clip.path)).with_context(|| clip.name.clone())?;
+        let &[forth, home, seek] = &counts[..] else { anyhow::bail!("{} regions: expected 3", counts.len()) };
+        let times = |count: u64| count as f64 / cost.steps as f64;
+        back.push(times(home));
+        seeks.push(seek as f64);
+        rows.push(vec![clip.name.clone(), format!("{:.2}", times(forth)), format!("{:.2}", times(home)), seek.to_string()]);
+    }
+    table::print(&["clip, with memory lent", "forth / step", "back / step", "seek to the end"], &rows);
+    Ok(vec![
+        Goal::at_most("Cortex-M3: going back with memory lent, of stepping, mean", mean(&back).unwrap_or(0.0), 5.0, 2, ""),
+        Goal::at_most("Cortex-M3: instructions of a seek by lent snapshots, mean", mean(&seeks).unwrap_or(0.0), 15_000.0, 0, ""),
+    ])
 }
 
 /// What a clip costs on a machine.

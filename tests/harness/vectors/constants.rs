@@ -3,7 +3,7 @@
 //! A table lists the probabilities of its symbols in 1/4096. Contexts that share a table share its index.
 
 use pantin::segment::{CONTEXTS, DIRECT_MODES};
-use pantin::{Kind, entropy, layout, tables};
+use pantin::{Kind, entropy, layout};
 use pantin_tools::encode::entropy::{Alphabet, sizes};
 use serde_json::json;
 
@@ -69,7 +69,6 @@ pub fn text() -> String {
         ("first_step", json!(layout::FIRST_STEP)),
         ("step_changes", json!(layout::STEP_CHANGES)),
         ("step_bits", json!(layout::STEP_BITS)),
-        ("modes", json!(tables::MODES)),
         ("mode_after", json!(mode_after)),
         ("mode", json!(mode)),
         ("number_in", json!(number_in)),

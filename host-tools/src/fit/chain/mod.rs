@@ -237,7 +237,7 @@ impl Chains<'_> {
     }
 
     fn number_bits(&self, context: Context, number: i32) -> f64 {
-        self.costs.number(context.index, if context.flipped { -number } else { number })
+        self.costs.number(context.index, if context.flip != 0 { -number } else { number })
     }
 
     fn segment(&mut self, from: &Hypothesis, mode: u8, sums: &Sums, length: usize, (qw, qk): (i32, i32)) {
