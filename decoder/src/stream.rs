@@ -90,7 +90,12 @@ impl Window<'_> {
         let drop = (position - self.base) as usize & !(STRIDE - 1);
         let drop = drop.min(self.checked);
         if drop > 0 {
-            self.buffer.copy_within(drop..self.len, 0);
+            for place in 0..self.len - drop {
+                let byte = self.buffer.get(place + drop).copied();
+                if let (Some(byte), Some(place)) = (byte, self.buffer.get_mut(place)) {
+                    *place = byte;
+                }
+            }
             self.len -= drop;
             self.checked -= drop;
             self.base += drop as u32;
