@@ -62,6 +62,9 @@ pub struct Arguments {
     /// Put a snapshot of the player's state into the file each so many seconds: seeking starts from the last one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
+    /// Which animation of a file that holds several (glTF): its name, or its number from 0
+    #[arg(long, value_name = "NAME|INDEX")]
+    animation: Option<String>,
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
     rig_out: Option<PathBuf>,
@@ -86,7 +89,12 @@ fn length_cm(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let options =
-        import::Options { cm_per_unit: arguments.cm_per_unit, fps: arguments.fps, skeleton: arguments.skeleton.clone() };
+        import::Options {
+            cm_per_unit: arguments.cm_per_unit,
+            fps: arguments.fps,
+            skeleton: arguments.skeleton.clone(),
+            animation: arguments.animation.clone(),
+        };
     let imported = import::load(&arguments.input, &options)?;
     if !arguments.quiet {
         imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
