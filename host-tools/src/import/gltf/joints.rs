@@ -3,12 +3,12 @@
 use super::angles;
 use super::file::File;
 use super::grid::Grid;
-use super::place::{Rest, Stretch, settled};
+use super::place::{Base, Rest, Stretch, settled};
 use super::scalars::Weight;
 use super::track::Track;
 use super::tree::Tree;
 use super::{Channels, POSITIONS, Target, Tracks, Values};
-use crate::fk::{Matrix, from_quaternion};
+use crate::fk::{Matrix, from_quaternion, product};
 use crate::keys::sample_pieces;
 use crate::motion::{Joint, Keys, Kind, Piece};
 use anyhow::Result;
@@ -20,6 +20,7 @@ const STANDS: f64 = 1e-6;
 pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<Channels> {
     let mut channels = Channels::default();
     let mut stretches: Vec<Stretch> = Vec::new();
+    let under = tree.under.iter().map(|&node| rest(file, node)).collect::<Result<Vec<_>>>()?;
     for (node, parent) in tree.nodes.iter().zip(&tree.parents) {
         let Some(node) = *node else {
             channels.joints.push(Joint { name: "root".into(), parent: None, offset: [0.0; 3], kinds: Vec::new(), end_site: false });
@@ -28,19 +29,19 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
         };
         let moving = Moving::new(file, node, tracks, grid)?;
         let name = name(file, node);
-        let above = parent.map_or(&Stretch::None, |parent| &stretches[parent]);
-        let (offset, places) = moving.places(above, grid);
+        let base = parent.map_or_else(|| Base::nodes(&under), |parent| Base::joint(stretches[parent].clone()));
+        let (offset, places) = moving.places(&base, grid);
         let mut kinds = Vec::new();
         for (axis, place) in places {
             kinds.push(POSITIONS[axis]);
             channels.of_joints.push(place);
         }
-        for (kind, values) in moving.rotations(grid) {
+        for (kind, values) in moving.rotations(&base, grid) {
             kinds.push(kind);
             channels.of_joints.push(values);
         }
         channels.scalars.extend(moving.scales(&name, grid));
-        let below = above.below(&moving.turns, &moving.scale, grid.frames);
+        let below = base.stretch.below(&moving.turns, &moving.scale, grid.frames);
         stretches.push(below);
         channels.joints.push(Joint { name, parent: *parent, offset, kinds, end_site: false });
     }
@@ -51,6 +52,11 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
 pub fn name(file: &File, node: usize) -> String {
     let name = file.root.nodes[node].name.as_deref().map(super::one_line).unwrap_or_default();
     if name.trim().is_empty() { format!("node{node}") } else { name }
+}
+
+fn rest(file: &File, node: usize) -> Result<Rest> {
+    let rest = Rest::of(&file.root.nodes[node]);
+    rest.ok_or_else(|| file.error(&format!("nodes[{node}]"), "its place is not in numbers below 1e9"))
 }
 
 /// A node on the frames. What stands still is there once.
@@ -65,9 +71,7 @@ struct Moving<'t> {
 
 impl<'t> Moving<'t> {
     fn new(file: &File, node: usize, tracks: &'t Tracks, grid: &Grid) -> Result<Moving<'t>> {
-        let Some(rest) = Rest::of(&file.root.nodes[node]) else {
-            return Err(file.error(&format!("nodes[{node}]"), "its place is no number below 1e9"));
-        };
+        let rest = rest(file, node)?;
         let turned = tracks.get(&Target::Rotation(node));
         let quaternions = match turned {
             Some(track) => track.rotations(grid.first, grid.frame_time, grid.frames)?,
@@ -85,20 +89,20 @@ impl<'t> Moving<'t> {
     }
 
     /// The offset, and the axes along which the place moves.
-    fn places(&self, above: &Stretch, grid: &Grid) -> ([f64; 3], Vec<(usize, Values)>) {
+    fn places(&self, base: &Base, grid: &Grid) -> ([f64; 3], Vec<(usize, Values)>) {
         let curves = self.translation.map(|track| [0, 1, 2].map(|i| track.pieces(i, grid.first, grid.frame_time)));
-        if curves.is_none() && above.is_still() {
-            return (above.place(0, self.rest.translation), Vec::new());
+        if curves.is_none() && base.stretch.is_still() {
+            return (base.at(0, self.rest.translation), Vec::new());
         }
         let own = match &curves {
             Some(curves) => vectors(&[0, 1, 2].map(|i| sample_pieces(&curves[i], grid.frames))),
             None => vec![self.rest.translation; grid.frames],
         };
-        let places: Vec<[f64; 3]> = own.iter().enumerate().map(|(frame, &place)| above.place(frame, place)).collect();
+        let places: Vec<[f64; 3]> = own.iter().enumerate().map(|(frame, &place)| base.at(frame, place)).collect();
         let largest = places.iter().flatten().fold(0f64, |largest, x| largest.max(x.abs()));
         let moves = |axis: &usize| places.iter().any(|place| (place[*axis] - places[0][*axis]).abs() > STANDS * largest);
         let channel = |axis: usize| {
-            let pieces = curves.as_ref().filter(|_| above.is_still()).map(|curves| along(axis, curves, above));
+            let pieces = curves.as_ref().filter(|_| base.stretch.is_still()).map(|curves| along(axis, curves, base));
             let values = match &pieces {
                 Some(pieces) => sample_pieces(pieces, grid.frames),
                 None => places.iter().map(|place| place[axis]).collect(),
@@ -108,8 +112,9 @@ impl<'t> Moving<'t> {
         (places[0], (0..3).filter(moves).map(channel).collect())
     }
 
-    fn rotations(&self, grid: &Grid) -> Vec<(Kind, Values)> {
-        let channels = angles::channels(&self.turns).into_iter();
+    fn rotations(&self, base: &Base, grid: &Grid) -> Vec<(Kind, Values)> {
+        let turns: Vec<Matrix> = self.turns.iter().map(|turn| product(&base.turn, turn)).collect();
+        let channels = angles::channels(&turns).into_iter();
         let whole = |(kind, mut values): (Kind, Vec<f64>)| {
             values.resize(grid.frames, values[0]);
             let keys = self.steps.then(|| Keys::Pieces(runs(&values)));
@@ -135,16 +140,13 @@ fn vectors(curves: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
     (0..curves[0].len()).map(|frame| std::array::from_fn(|i| curves[i][frame])).collect()
 }
 
-/// Pieces of the place along `axis`: those of all three own axes, which begin alike, as D mixes them.
-fn along(axis: usize, curves: &[Vec<Piece>; 3], above: &Stretch) -> Vec<Piece> {
-    if matches!(above, Stretch::None) {
-        return curves[axis].clone();
-    }
-    let row = above.at(0)[axis];
-    let mixed = |n: usize, part: fn(&Piece) -> f64| (0..3).map(|i| row[i] * part(&curves[i][n])).sum::<f64>();
+/// Pieces of the place along `axis`: those of all three own axes, which begin alike, as the base mixes them.
+fn along(axis: usize, curves: &[Vec<Piece>; 3], base: &Base) -> Vec<Piece> {
+    let Some(linear) = base.linear(0) else { return curves[axis].clone() };
+    let mixed = |n: usize, part: fn(&Piece) -> f64| (0..3).map(|i| linear[axis][i] * part(&curves[i][n])).sum::<f64>();
     let piece = |n: usize| Piece {
         start: curves[axis][n].start,
-        p: mixed(n, |piece| piece.p),
+        p: base.place[axis] + mixed(n, |piece| piece.p),
         c: mixed(n, |piece| piece.c),
         w: mixed(n, |piece| piece.w),
         k: mixed(n, |piece| piece.k),

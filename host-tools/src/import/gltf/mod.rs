@@ -147,7 +147,7 @@ fn doubts(file: &File, tree: &tree::Tree, motion: &Motion, options: &Options) ->
         let metres = height / 100.0;
         doubts.push(format!("the figure is {metres:.4} m high in glTF's metres; --cm-per-unit 1 if the unit is the cm"));
     }
-    let left_out = file.root.nodes.len() - tree.nodes.iter().flatten().count();
+    let left_out = file.root.nodes.len() - tree.nodes.iter().flatten().count() - tree.under.len();
     doubts.extend(unused(&file.root, left_out));
     doubts
 }

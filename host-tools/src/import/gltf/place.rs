@@ -5,7 +5,7 @@
 //! the node D becomes transposed(R) D R S. Without scales D is 1; a uniform one commutes with R.
 
 use super::track::unit;
-use crate::fk::{IDENTITY, Matrix, apply, product};
+use crate::fk::{IDENTITY, Matrix, apply, from_quaternion, product};
 use gltf::json::Node;
 
 /// Scales nearer to 1, and to each other, than this are equal: f32 writes them within 1e-7, exporters compute them a little worse.
@@ -117,9 +117,45 @@ impl Stretch {
         !matches!(self, Stretch::Moving(_))
     }
 
+}
+
+/// What a joint stands in: nothing but the stretch of the joint above, or, for the first joint, nodes that are no joints.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// Where it is.
+    pub place: [f64; 3],
+    /// How it is turned.
+    pub turn: Matrix,
+    /// D of the module's text.
+    pub stretch: Stretch,
+}
+
+impl Base {
+    /// A joint above with this stretch.
+    pub fn joint(stretch: Stretch) -> Base {
+        Base { place: [0.0; 3], turn: IDENTITY, stretch }
+    }
+
+    /// Nodes that stand in each other, from the top.
+    pub fn nodes(rests: &[Rest]) -> Base {
+        rests.iter().fold(Base::joint(Stretch::None), |base, rest| {
+            let [x, y, z, w] = rest.rotation;
+            let turn = from_quaternion([w, x, y, z]);
+            let place = base.at(0, rest.translation);
+            Base { place, turn: product(&base.turn, &turn), stretch: base.stretch.below(&[turn], &[rest.scale], 1) }
+        })
+    }
+
+    /// The linear part of [`Base::at`]; `None` if it changes nothing.
+    pub fn linear(&self, frame: usize) -> Option<Matrix> {
+        let nothing = matches!(self.stretch, Stretch::None) && self.turn == IDENTITY;
+        (!nothing).then(|| product(&self.turn, &self.stretch.at(frame)))
+    }
+
     /// The place of a node with this translation.
-    pub fn place(&self, frame: usize, translation: [f64; 3]) -> [f64; 3] {
-        if matches!(self, Stretch::None) { translation } else { apply(&self.at(frame), translation) }
+    pub fn at(&self, frame: usize, translation: [f64; 3]) -> [f64; 3] {
+        let turned = self.linear(frame).map_or(translation, |linear| apply(&linear, translation));
+        std::array::from_fn(|axis| self.place[axis] + turned[axis])
     }
 }
 
@@ -156,7 +192,7 @@ mod tests {
                 let rest = from_matrix(m);
                 assert!((0..3).all(|i| (rest.scale[i] - scale[i]).abs() < 1e-12), "{:?}", rest.scale);
                 let [x, y, z, w] = rest.rotation;
-                let back = crate::fk::from_quaternion([w, x, y, z]);
+                let back = from_quaternion([w, x, y, z]);
                 assert!((0..9).all(|n| (back[n / 3][n % 3] - turn[n / 3][n % 3]).abs() < 1e-12));
                 assert_eq!(rest.translation, [7.0, 0.0, 0.0]);
             }

@@ -1,8 +1,9 @@
 //! Which nodes become joints, and in which order.
 //!
 //! Joints are the scene's nodes that some animation of the file moves or that some skin names, all above them, so that they stand where
-//! they stand, and all below them, which they carry. They are the same for every animation of a file. Lights, cameras and
-//! meshes that nothing moves are no part of the figure.
+//! they stand, and all below them, which they carry. Lights, cameras and meshes that nothing moves are no part of the figure. Nodes
+//! above all others that no animation moves and that carry one node each (axes, armatures) only say where the figure stands: they
+//! are one joint with the node that they carry. All this is the same for every animation of a file.
 
 use super::file::File;
 use anyhow::{Result, bail};
@@ -16,6 +17,8 @@ use std::collections::HashSet;
 pub struct Tree {
     /// The node of each joint; `None` for a root that only joins several.
     pub nodes: Vec<Option<usize>>,
+    /// Nodes above the first joint that it stands in, from the top.
+    pub under: Vec<usize>,
     /// The joint above each joint.
     pub parents: Vec<Option<usize>>,
     /// Nodes that are moved but stand outside of the scene.
@@ -27,7 +30,8 @@ pub fn tree(file: &File) -> Result<Tree> {
     let above = parents(file)?;
     let roots = roots(file, &above)?;
     let order = depth_first(file, &roots);
-    let used = used(file);
+    let moved = moved(file);
+    let used = used(file, &moved);
     let mut kept = used.clone();
     // Upwards and downwards are the same walk: in this order parents come first.
     for &node in order.iter().rev() {
@@ -41,21 +45,29 @@ pub fn tree(file: &File) -> Result<Tree> {
         kept[node] |= carried[node];
     }
     let mut tree = Tree::default();
-    if roots.iter().filter(|&&root| kept[root]).count() > 1 {
+    let order: Vec<usize> = order.into_iter().filter(|&node| kept[node]).collect();
+    let mut children = vec![0; above.len()];
+    order.iter().filter_map(|&node| above[node]).for_each(|parent| children[parent] += 1);
+    if order.iter().filter(|&&node| above[node].is_none()).count() > 1 {
         tree.nodes.push(None);
         tree.parents.push(None);
+    } else {
+        let mut line = order.iter().copied().take_while(|&node| !moved[node] && children[node] == 1).peekable();
+        while let Some(node) = line.next_if(|node| tree.under.last().copied() == above[*node]) {
+            tree.under.push(node);
+        }
     }
     let mut joint_of = vec![None; above.len()];
-    for &node in order.iter().filter(|&&node| kept[node]) {
+    for &node in &order[tree.under.len()..] {
         let joined = (!tree.nodes.is_empty()).then_some(0);
-        tree.parents.push(above[node].map_or(joined, |parent| joint_of[parent]));
+        tree.parents.push(above[node].and_then(|parent| joint_of[parent]).or(joined));
         joint_of[node] = Some(tree.nodes.len());
         tree.nodes.push(Some(node));
     }
     if tree.nodes.len() > MAX_JOINTS {
         bail!(file.error("nodes", format!("{} of them make the figure; a rig holds at most {MAX_JOINTS}", tree.nodes.len())));
     }
-    tree.outside = (0..used.len()).filter(|&node| used[node] && joint_of[node].is_none()).collect();
+    tree.outside = (0..used.len()).filter(|&node| used[node] && !kept[node]).collect();
     Ok(tree)
 }
 
@@ -106,13 +118,20 @@ fn depth_first(file: &File, roots: &[usize]) -> Vec<usize> {
     order
 }
 
-/// Nodes that an animation moves or a skin names.
-fn used(file: &File) -> Vec<bool> {
+/// Nodes that an animation moves.
+fn moved(file: &File) -> Vec<bool> {
     let moves = |path: &Checked<Property>| !matches!(path, Checked::Valid(Property::MorphTargetWeights) | Checked::Invalid);
     let channels = file.root.animations.iter().flat_map(|animation| &animation.channels);
-    let moved = channels.filter(|channel| moves(&channel.target.path)).map(|channel| channel.target.node.value());
-    let named = file.root.skins.iter().flat_map(|skin| &skin.joints).map(|joint| joint.value());
-    let mut used = vec![false; file.root.nodes.len()];
-    moved.chain(named).for_each(|node| used[node] = true);
+    let mut moved = vec![false; file.root.nodes.len()];
+    for channel in channels.filter(|channel| moves(&channel.target.path)) {
+        moved[channel.target.node.value()] = true;
+    }
+    moved
+}
+
+/// Those, and what a skin names.
+fn used(file: &File, moved: &[bool]) -> Vec<bool> {
+    let mut used = moved.to_vec();
+    file.root.skins.iter().flat_map(|skin| &skin.joints).for_each(|joint| used[joint.value()] = true);
     used
 }
