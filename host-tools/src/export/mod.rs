@@ -3,3 +3,4 @@
 pub mod bvh;
 pub mod source;
 pub mod table;
+pub mod gltf;

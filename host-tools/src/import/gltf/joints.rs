@@ -13,8 +13,8 @@ use crate::keys::sample_pieces;
 use crate::motion::{Joint, Keys, Kind, Piece};
 use anyhow::Result;
 
-/// Part of a place's largest coordinate by which it may waver and still stand: what f32 writes.
-const STANDS: f64 = 1e-6;
+/// Part of a place's largest coordinate by which it may waver and still stand: what f32 writes, and what exporters compute with it.
+const STANDS: f64 = 1e-5;
 
 /// The joints of `tree` with their channels, and a scalar for each scale that changes.
 pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<Channels> {

@@ -19,6 +19,13 @@ pub struct Entry {
     pub tracks: usize,
 }
 
+impl Entry {
+    /// From the first frame to the last.
+    pub fn seconds(&self) -> f64 {
+        if self.frames == 0 { 0.0 } else { (self.frames - 1) as f64 / self.fps }
+    }
+}
+
 /// All animations of the glTF file `path`, those included that nothing can be read from: they have no frames.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
     let file = File::open(path, &read_bytes(path)?)?;
