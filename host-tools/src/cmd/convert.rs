@@ -102,13 +102,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.list {
         return super::info::animations(&arguments.input, arguments.json);
     }
-    let options =
-        import::Options {
-            cm_per_unit: arguments.cm_per_unit,
-            fps: arguments.fps,
-            skeleton: arguments.skeleton.clone(),
-            animation: arguments.animation.clone(),
-        };
+    let options = import::Options {
+        cm_per_unit: arguments.cm_per_unit,
+        fps: arguments.fps,
+        skeleton: arguments.skeleton.clone(),
+        animation: arguments.animation.clone(),
+    };
     let imported = import::load(&arguments.input, &options)?;
     if !arguments.quiet {
         imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));

@@ -64,9 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 pub fn animations(path: &Path, as_json: bool) -> Result<()> {
     let entries = gltf::list(path, None)?;
     if as_json {
-        let object = |entry: &gltf::Entry| {
-            json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks})
-        };
+        let object = |entry: &gltf::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
         println!("{}", json!(entries.iter().map(object).collect::<Vec<_>>()));
         return Ok(());
     }

@@ -85,7 +85,8 @@ impl Form {
         let offset = usize::try_from(offset)?;
         let end = needed.and_then(|needed| needed.checked_add(offset));
         let data = end.and_then(|end| view.get(offset..end)).context("it ends after its bufferView")?;
-        let one = |element: &[u8]| element[..size * components].chunks(size).map(|number| self.number(number)).collect::<Vec<_>>();
+        let one =
+            |element: &[u8]| element[..size * components].chunks(size).map(|number| self.number(number)).collect::<Vec<_>>();
         Ok(data.chunks(stride).flat_map(one).collect())
     }
 

@@ -3,6 +3,7 @@
 use anyhow::{Result, anyhow, bail};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use gltf::json::animation::{Animation, Channel};
 use gltf::json::validation::Validate;
 use gltf::json::{Path as JsonPath, Root};
 use std::cell::OnceCell;
@@ -47,7 +48,7 @@ impl File {
                 wrong = Some(format!("{at}: {error}"));
             }
         });
-        match wrong {
+        match wrong.or_else(|| missing_node(&root)) {
             Some(message) => Err(place(message)),
             None => Ok(File { buffers: vec![OnceCell::new(); root.buffers.len()], root, path: path.into(), bin }),
         }
@@ -91,6 +92,16 @@ impl File {
         let beside = self.path.with_file_name("").join(relative);
         fs::read(&beside).map_err(|error| anyhow!("{}: {error}", beside.display()))
     }
+}
+
+/// A node that a channel names and that is not there: the gltf crate does not look into channels.
+fn missing_node(root: &Root) -> Option<String> {
+    let of_animation = |(number, animation): (usize, &Animation)| {
+        let missing = |channel: &Channel| channel.target.node.value() >= root.nodes.len();
+        let channel = animation.channels.iter().position(missing)?;
+        Some(format!("animations[{number}].channels[{channel}].target.node: no such node"))
+    };
+    root.animations.iter().enumerate().find_map(of_animation)
 }
 
 /// Messages that quote a file stay short and on their line.

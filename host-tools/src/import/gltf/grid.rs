@@ -13,16 +13,13 @@ const LONGEST: f64 = 0.11;
 /// Frames a second where keys do not say.
 const PLAIN_FPS: f64 = 30.0;
 /// Rates that people mean.
-const USUAL: [f64; 16] =
-    [10.0, 12.0, 12.5, 15.0, 20.0, 23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60.0, 100.0, 120.0];
+const USUAL: [f64; 16] = [10.0, 12.0, 12.5, 15.0, 20.0, 23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60.0, 100.0, 120.0];
 /// Distances within this part of each other are one.
 const ALIKE: f64 = 0.01;
 /// Rates within this part of a usual one are that one.
 const MEANT: f64 = 5e-4;
 /// Shorter frames are no frames.
 const MOST_FPS: f64 = 1000.0;
-/// Numbers that a motion may have.
-const MOST_VALUES: f64 = 33_554_432.0;
 
 /// Frames in time.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,9 +48,8 @@ pub fn grid(tracks: &[&Track], fps: Option<f64>) -> Result<Grid> {
     let times = || tracks.iter().flat_map(|track| &track.times);
     let (first, last) = times().fold((f64::MAX, f64::MIN), |(first, last), &time| (first.min(time), last.max(time)));
     let steps = ((last - first) * fps - 1e-3).ceil().max(0.0);
-    let values: usize = tracks.iter().map(|track| track.components).sum();
     ensure!(
-        steps < f64::from(MAX_FRAMES) && steps * values as f64 <= MOST_VALUES,
+        steps < f64::from(MAX_FRAMES),
         "{:.0} s at {fps} frames a second are too long for a clip; --fps takes fewer frames",
         last - first
     );

@@ -23,7 +23,13 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
     let under = tree.under.iter().map(|&node| rest(file, node)).collect::<Result<Vec<_>>>()?;
     for (node, parent) in tree.nodes.iter().zip(&tree.parents) {
         let Some(node) = *node else {
-            channels.joints.push(Joint { name: "root".into(), parent: None, offset: [0.0; 3], kinds: Vec::new(), end_site: false });
+            channels.joints.push(Joint {
+                name: "root".into(),
+                parent: None,
+                offset: [0.0; 3],
+                kinds: Vec::new(),
+                end_site: false,
+            });
             stretches.push(Stretch::None);
             continue;
         };

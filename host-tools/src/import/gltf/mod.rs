@@ -18,7 +18,7 @@ pub(crate) use place::quaternion;
 
 use super::{Options, Source, read_bytes, units};
 use crate::motion::{Keys, Kind, Motion, Rig};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail, ensure};
 use file::{File, one_line};
 use gltf::json::Root;
 use gltf::json::animation::Property;
@@ -33,6 +33,9 @@ use track::Track;
 const CM_PER_UNIT: f64 = 100.0;
 /// Figures of other heights make one doubt that the file's unit is the metre, in cm.
 const PLAUSIBLE_CM: std::ops::RangeInclusive<f64> = 20.0..=500.0;
+
+/// Numbers that may be held at a time, about: five minutes of 100 joints at 60 frames a second.
+const MOST_NUMBERS: usize = 1 << 25;
 
 /// Whether `head` begins a glTF file.
 pub fn begins(head: &[u8]) -> bool {
@@ -54,6 +57,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         .map_err(|error| file.error(&format!("animations[{number}]"), error))?;
     warnings.push(grid.sentence.clone());
     let tree = tree::tree(&file)?;
+    check_size(&tracks, &tree, &grid).map_err(|error| file.error(&format!("animations[{number}]"), error))?;
     let mut channels = joints::joints(&file, &tree, &tracks, &grid)?;
     channels.scalars.extend(scalars::weights(&file, &tracks, &grid)?);
     scalars::tell_apart(&mut channels.scalars);
@@ -72,7 +76,8 @@ fn chosen(file: &File, path: &Path, options: &Options) -> Result<usize> {
     let by_name = animations.iter().position(|animation| animation.name.as_deref() == Some(wanted.as_str()));
     let by_number = wanted.parse().ok().filter(|&number: &usize| number < animations.len());
     by_name.or(by_number).ok_or_else(|| {
-        let names: Vec<String> = animations.iter().enumerate().map(|(number, animation)| named(number, &animation.name)).collect();
+        let names: Vec<String> =
+            animations.iter().enumerate().map(|(number, animation)| named(number, &animation.name)).collect();
         anyhow!("{}: no animation `{wanted}`; there are {}", path.display(), one_line(&names.join(", ")))
     })
 }
@@ -107,10 +112,21 @@ fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Trac
         };
         let track = Track::read(file, number, animation, channel.sampler.value(), components)?;
         if tracks.insert(target, track).is_some() {
-            warnings.push(format!("animations[{number}].channels[{index}]: {target:?} has a channel already; the last one counts"));
+            warnings
+                .push(format!("animations[{number}].channels[{index}]: {target:?} has a channel already; the last one counts"));
         }
     }
     Ok(tracks)
+}
+
+/// Refuses a motion that would fill the memory: two keys a year apart are a small file.
+fn check_size(tracks: &Tracks, tree: &tree::Tree, grid: &Grid) -> Result<()> {
+    let stretches = tracks.keys().any(|target| matches!(target, Target::Scale(_)));
+    let of_joint = if stretches { 15 } else { 6 };
+    let of_tracks: usize = tracks.values().map(|track| 3 * track.components).sum();
+    let numbers = (of_tracks + of_joint * tree.nodes.len()).saturating_mul(grid.frames);
+    ensure!(numbers <= MOST_NUMBERS, "{} frames are too many for this figure; --fps takes fewer", grid.frames);
+    Ok(())
 }
 
 /// A channel of the motion: its values, and its curve where that is known.

@@ -47,9 +47,10 @@ fn from_matrix(m: [f64; 16]) -> Rest {
     let across = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let mirrored = across.iter().zip(c).map(|(x, y)| x * y).sum::<f64>() < 0.0;
     let scale = [length(a) * if mirrored { -1.0 } else { 1.0 }, length(b), length(c)];
-    let turn = scale.iter().all(|x| x.abs() > 1e-12).then(|| -> Matrix {
-        std::array::from_fn(|row| std::array::from_fn(|i| [a, b, c][i][row] / scale[i]))
-    });
+    let turn = scale
+        .iter()
+        .all(|x| x.abs() > 1e-12)
+        .then(|| -> Matrix { std::array::from_fn(|row| std::array::from_fn(|i| [a, b, c][i][row] / scale[i])) });
     Rest { translation: [m[12], m[13], m[14]], rotation: turn.map_or([0.0, 0.0, 0.0, 1.0], |turn| quaternion(&turn)), scale }
 }
 
@@ -116,7 +117,6 @@ impl Stretch {
     pub fn is_still(&self) -> bool {
         !matches!(self, Stretch::Moving(_))
     }
-
 }
 
 /// What a joint stands in: nothing but the stretch of the joint above, or, for the first joint, nodes that are no joints.
