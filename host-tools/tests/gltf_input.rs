@@ -164,7 +164,7 @@ fn scales_move_the_joints_below() {
     // Twice as large, then stretched along x by 3, and y grows from 1 to 2 in one second.
     let mut builder = Builder::new(json!([
         {"scale": [2, 2, 2], "translation": [0, 1, 0], "children": [1]},
-        {"name": "a", "scale": [3, 1, 1], "rotation": [0, 0, 0.70710678, 0.70710678], "children": [2]},
+        {"name": "a", "scale": [3, 1, 1], "rotation": [0, 0, 1, 1], "children": [2]},
         {"name": "b", "translation": [1, 1, 0], "children": [3]},
         {"name": "c", "translation": [1, 1, 0]},
     ]));
