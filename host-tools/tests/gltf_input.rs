@@ -248,6 +248,28 @@ fn accessors_may_be_normalized_sparse_and_strided() {
 }
 
 #[test]
+fn what_turns_at_the_end_of_a_limb_has_an_end() {
+    let mut builder = Builder::new(json!([
+        {"name": "arm", "children": [1]}, {"name": "hand", "translation": [0, 0.5, 0], "children": [2]}, {"name": "ball", "mesh": 0},
+    ]));
+    let turns = [[0.0, 0.0, 0.0, 1.0], [0.6, 0.0, 0.0, 0.8]];
+    for node in 0..3 {
+        builder.animate(node, "rotation", "LINEAR", &[0.0, 0.1], turns.as_flattened());
+    }
+    let box_ =
+        json!({"componentType": 5126, "count": 8, "type": "VEC3", "min": [-2, -1, 0], "max": [1, 1, 0.5], "bufferView": 0});
+    let accessor = builder.push("accessors", box_);
+    builder.root["meshes"] = json!([{"primitives": [{"attributes": {"POSITION": accessor}}]}]);
+    let ends = |builder: &Builder| {
+        let joints = builder.load("ends").motion.rig.joints;
+        joints.into_iter().filter(|joint| joint.end_site).map(|joint| (joint.parent, joint.offset)).collect::<Vec<_>>()
+    };
+    assert_eq!(ends(&builder), [(Some(2), [-2.0, -1.0, 0.5])]);
+    builder.root["nodes"][1]["children"] = json!(null);
+    assert_eq!(ends(&builder), [(Some(1), [0.0, 0.25, 0.0])], "half as far as the bone before");
+}
+
+#[test]
 fn an_animation_is_chosen_by_name_or_number() {
     let mut builder = spline();
     builder.root["animations"][0]["name"] = json!("walk");

@@ -202,7 +202,7 @@ fn joints_stand_and_turn_as_the_files_matrices_have_them() {
             let expected = worlds(&gltf.document, &tracks, time, motion.frame_time);
             let places = fk::positions(&probed.rig, &probed.values, frame);
             let count = motion.rig.joints.len();
-            for (index, joint) in motion.rig.joints.iter().enumerate() {
+            for (index, joint) in motion.rig.joints.iter().enumerate().filter(|(_, joint)| !joint.end_site) {
                 let Some(world) = expected.get(&joint.name) else {
                     assert_eq!(joint.name, "root", "{}", path.display());
                     continue;

@@ -8,10 +8,12 @@ use super::scalars::Weight;
 use super::track::Track;
 use super::tree::Tree;
 use super::{Channels, POSITIONS, Target, Tracks, Values};
-use crate::fk::{Matrix, from_quaternion, product};
+use crate::fk::{Matrix, apply, from_quaternion, product};
 use crate::keys::sample_pieces;
 use crate::motion::{Joint, Keys, Kind, Piece};
 use anyhow::Result;
+use gltf::json::mesh::Semantic;
+use gltf::json::validation::Checked;
 
 /// Part of a place's largest coordinate by which it may waver and still stand: what f32 writes, and what exporters compute with it.
 const STANDS: f64 = 1e-5;
@@ -20,6 +22,7 @@ const STANDS: f64 = 1e-5;
 pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<Channels> {
     let mut channels = Channels::default();
     let mut stretches: Vec<Stretch> = Vec::new();
+    let mut ends = Vec::new();
     let under = tree.under.iter().map(|&node| rest(file, node)).collect::<Result<Vec<_>>>()?;
     for (node, parent) in tree.nodes.iter().zip(&tree.parents) {
         let Some(node) = *node else {
@@ -48,10 +51,40 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
         }
         channels.scalars.extend(moving.scales(&name, grid));
         let below = base.stretch.below(&moving.turns, &moving.scale, grid.frames);
+        let index = channels.joints.len();
+        if moving.turns.len() > 1 && !tree.parents.contains(&Some(index)) {
+            ends.extend(end(file, node, parent.map(|_| offset), &below).map(|offset| (index, offset)));
+        }
         stretches.push(below);
         channels.joints.push(Joint { name, parent: *parent, offset, kinds, end_site: false });
     }
+    let site = |(parent, offset)| Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true };
+    channels.joints.extend(ends.into_iter().map(site));
     Ok(channels)
+}
+
+/// An End Site for a joint that turns and carries no other, as a bound on places would not see its rotation: at the farthest corner of its
+/// mesh, or, without one, half as far as the bone before it and in the same direction.
+fn end(file: &File, node: usize, bone: Option<[f64; 3]>, below: &Stretch) -> Option<[f64; 3]> {
+    let corner = corner(file, node).map(|corner| apply(&below.at(0), corner));
+    corner.or(bone.map(|bone| bone.map(|x| x / 2.0))).filter(|end| end.iter().any(|x| *x != 0.0))
+}
+
+/// The corner of the box around a node's mesh that is farthest from the node.
+fn corner(file: &File, node: usize) -> Option<[f64; 3]> {
+    let mesh = file.root.meshes.get(file.root.nodes[node].mesh?.value())?;
+    let position = Checked::Valid(Semantic::Positions);
+    let places = mesh.primitives.iter().filter_map(|primitive| primitive.attributes.get(&position));
+    let mut corner = [0f64; 3];
+    for accessor in places.filter_map(|accessor| file.root.accessors.get(accessor.value())) {
+        for bound in [&accessor.min, &accessor.max].into_iter().flatten() {
+            for (axis, far) in corner.iter_mut().enumerate() {
+                let x = bound.get(axis).and_then(|x| x.as_f64()).filter(|x| x.abs() <= 1e9).unwrap_or(0.0);
+                *far = if x.abs() > far.abs() { x } else { *far };
+            }
+        }
+    }
+    Some(corner).filter(|corner| *corner != [0.0; 3])
 }
 
 /// What a person would call a node.
