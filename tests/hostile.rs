@@ -102,6 +102,11 @@ fn procedural_files() {
 }
 
 #[test]
+fn gltf_files() {
+    holds("import_gltf", FILES);
+}
+
+#[test]
 fn every_door_has_its_fuzz_target() {
     let targets = files(&paths::root().join("fuzz/fuzz_targets"), |_| true);
     let mut named: Vec<&str> = DOORS.iter().map(|door| door.name).collect();

@@ -66,7 +66,7 @@ pub(crate) fn about(axis: usize, angle: f64) -> Matrix {
 }
 
 /// w, x, y, z of any length but 0, which turns nothing.
-fn from_quaternion(components: [f64; 4]) -> Matrix {
+pub(crate) fn from_quaternion(components: [f64; 4]) -> Matrix {
     let length = components.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length == 0.0 {
         return IDENTITY;

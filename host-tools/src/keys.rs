@@ -4,21 +4,41 @@
 //! second derivative (`Natural`) or second difference (`Discrete`) w at the keys: both are linear in a segment, so the curve
 //! is known by w at its two ends, and one equation a key, that both sides meet smoothly, gives all w (docs/METHOD.md 2.1, 2.3).
 
-use crate::motion::Interpolation;
+use crate::motion::{Interpolation, Piece};
 
-/// One segment.
-#[derive(Clone, Copy)]
-struct Cubic {
-    p: f64,
-    c: f64,
-    w: f64,
-    k: f64,
-}
-
-impl Cubic {
-    fn at(&self, s: f64) -> f64 {
+impl Piece {
+    /// Value `s` frames after its start.
+    pub fn at(&self, s: f64) -> f64 {
         self.p + s * (self.c + s * (self.w / 2.0 + s * self.k / 6.0))
     }
+
+    /// The cubic of two keys, each a time in frames, a value and a slope a frame there; the second is later than the first.
+    pub fn hermite(from: [f64; 3], to: [f64; 3]) -> Piece {
+        let length = to[0] - from[0];
+        let span = Span { p: from[1], length, slope: (to[1] - from[1]) / length };
+        Piece { start: from[0], ..span.hermite(from[2], to[2]) }
+    }
+}
+
+/// By how much a piece may begin after a frame and still hold there: what rounding a time to f32 takes, in frames.
+fn late(frame: f64) -> f64 {
+    1e-5 + 2e-7 * frame
+}
+
+/// Values of frames `0..frames` of the curve that `pieces` make, starts ascending; before the first it stays at its start.
+pub fn sample_pieces(pieces: &[Piece], frames: usize) -> Vec<f64> {
+    let mut next = 0;
+    let value = |frame: usize| {
+        let time = frame as f64;
+        while pieces.get(next).is_some_and(|piece| piece.start <= time + late(time)) {
+            next += 1;
+        }
+        match next {
+            0 => pieces.first().map_or(0.0, |piece| piece.p),
+            _ => pieces[next - 1].at(time - pieces[next - 1].start),
+        }
+    };
+    (0..frames).map(value).collect()
 }
 
 /// Values of frames `0..frames` of the curve through `keys`: frame and value, frames strictly ascending from 0, at least one.
@@ -38,13 +58,13 @@ pub fn sample(keys: &[(usize, f64)], interpolation: Interpolation, frames: usize
     (0..frames).map(value).collect()
 }
 
-fn cubics(keys: &[(usize, f64)], interpolation: Interpolation, cycle: bool) -> Vec<Cubic> {
+fn cubics(keys: &[(usize, f64)], interpolation: Interpolation, cycle: bool) -> Vec<Piece> {
     let spans: Vec<Span> = keys.windows(2).map(|pair| Span::new(pair[0], pair[1])).collect();
     if spans.is_empty() {
         return Vec::new();
     }
     match interpolation {
-        Interpolation::Linear => spans.iter().map(|span| Cubic { p: span.p, c: span.slope, w: 0.0, k: 0.0 }).collect(),
+        Interpolation::Linear => spans.iter().map(|span| Piece { p: span.p, c: span.slope, ..Piece::default() }).collect(),
         Interpolation::CatmullRom => {
             let tangents = tangents(&spans, cycle);
             spans.iter().zip(tangents.windows(2)).map(|(span, ends)| span.hermite(ends[0], ends[1])).collect()
@@ -67,16 +87,16 @@ impl Span {
         Span { p: from.1, length, slope: (to.1 - from.1) / length }
     }
 
-    fn hermite(&self, from: f64, to: f64) -> Cubic {
+    fn hermite(&self, from: f64, to: f64) -> Piece {
         let w = 2.0 * (3.0 * self.slope - 2.0 * from - to) / self.length;
         let k = 6.0 * (from + to - 2.0 * self.slope) / (self.length * self.length);
-        Cubic { p: self.p, c: from, w, k }
+        Piece { p: self.p, c: from, w, k, ..Piece::default() }
     }
 
-    fn spline(&self, from: f64, to: f64) -> Cubic {
+    fn spline(&self, from: f64, to: f64) -> Piece {
         let k = (to - from) / self.length;
         let c = self.slope - self.length * (from / 2.0 + self.length * k / 6.0);
-        Cubic { p: self.p, c, w: from, k }
+        Piece { p: self.p, c, w: from, k, ..Piece::default() }
     }
 }
 
@@ -102,7 +122,7 @@ const SWEEPS: usize = 64;
 ///
 /// With L and R the lengths before and after a key, the equation there is, in w of the key before, of it, and after it,
 /// `(L - grid/L)/6, (L + R)/3 + grid (1/L + 1/R)/6, (R - grid/R)/6`, with the difference of the chords' slopes on the right.
-fn splines(spans: &[Span], cycle: bool, grid: f64) -> Vec<Cubic> {
+fn splines(spans: &[Span], cycle: bool, grid: f64) -> Vec<Piece> {
     let count = spans.len();
     let mut w = vec![0.0; count + 1];
     let reach = |length: f64| (length - grid / length) / 6.0;
@@ -139,6 +159,19 @@ mod tests {
         let drift = keys[keys.len() - 1].1 - keys[0].1;
         let once = sample(keys, interpolation, period, true);
         (0..=2 * period).map(|frame| once[frame % period] + drift * (frame / period) as f64).collect()
+    }
+
+    #[test]
+    fn pieces_begin_between_frames_and_join_by_value_and_slope() {
+        let keys = [[0.25, 2.0, 1.0], [3.5, -1.0, 0.5], [6.0, 4.0, -2.0]];
+        let mut pieces: Vec<Piece> = keys.windows(2).map(|pair| Piece::hermite(pair[0], pair[1])).collect();
+        let second = pieces[1];
+        assert!((pieces[0].at(3.25) - second.p).abs() < 1e-12 && (second.c - 0.5).abs() < 1e-12);
+        pieces.push(Piece { start: 6.0, p: 4.0, ..Piece::default() });
+        let values = sample_pieces(&pieces, 9);
+        assert_eq!(values[0], 2.0, "before the first piece the curve stays");
+        assert!((values[4] - second.at(0.5)).abs() < 1e-15);
+        assert_eq!(values[6..], [4.0; 3]);
     }
 
     #[test]
@@ -204,7 +237,7 @@ mod tests {
     }
 
     /// Slope and curvature on both sides of a key.
-    fn ends(cubics: &[Cubic], keys: &[(usize, f64)], segment: usize) -> [(f64, f64); 2] {
+    fn ends(cubics: &[Piece], keys: &[(usize, f64)], segment: usize) -> [(f64, f64); 2] {
         let length = (keys[segment + 1].0 - keys[segment].0) as f64;
         let before = &cubics[segment];
         let after = &cubics[(segment + 1) % cubics.len()];

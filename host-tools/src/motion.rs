@@ -105,13 +105,33 @@ pub enum Interpolation {
     Discrete,
 }
 
-/// The keys of one channel: frames strictly ascending, the first 0 and the last `frames - 1`.
+/// What is known of one channel's curve, so that it converts without a fit (docs/METHOD.md 2.3).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Keys {
-    /// How the channel runs between them.
-    pub interpolation: Interpolation,
-    /// Frame and value.
-    pub keys: Vec<(usize, f64)>,
+pub enum Keys {
+    /// Keys on frames: strictly ascending, the first 0 and the last `frames - 1`.
+    OnFrames {
+        /// How the channel runs between them.
+        interpolation: Interpolation,
+        /// Frame and value.
+        keys: Vec<(usize, f64)>,
+    },
+    /// Cubics in time, each from its start to the next one's, which may lie between frames.
+    Pieces(Vec<Piece>),
+}
+
+/// A cubic `p + c s + w s^2 / 2 + k s^3 / 6`, s frames after `start`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Piece {
+    /// Where it begins, in frames.
+    pub start: f64,
+    /// Value at its start.
+    pub p: f64,
+    /// First derivative there, a frame.
+    pub c: f64,
+    /// Second derivative there, a frame^2.
+    pub w: f64,
+    /// Third derivative, a frame^3.
+    pub k: f64,
 }
 
 /// A motion: what importers make, what the fit takes, what an expanded clip becomes.

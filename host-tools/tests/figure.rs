@@ -266,7 +266,7 @@ fn person() -> Motion {
 fn a_person_is_drawn_as_a_person() {
     let case = Case::new(person());
     let canvas = Canvas { width: 40, height: 40 };
-    let view = View { orbit: 0, tilt: 0, track: Track::Follow };
+    let view = View { orbit: 0, tilt: 0, ..View::default() };
     let mut stage = Stage::new(case.skeleton(Detail::Body), canvas, view, |visit| visit(&case.pose(0)));
     let mut display = MockDisplay::<BinaryColor>::new();
     display.set_allow_overdraw(true);

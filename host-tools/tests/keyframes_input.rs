@@ -1,7 +1,7 @@
 //! Key-frame text: the example of docs/KEYFRAMES.md is read as it says, and mistakes are named with their line.
 
 use pantin_tools::import::{self, Imported, Options};
-use pantin_tools::motion::{Interpolation, Kind, Motion};
+use pantin_tools::motion::{Interpolation, Keys, Kind, Motion};
 
 /// The first example of the document.
 fn example() -> String {
@@ -36,7 +36,10 @@ fn values<'a>(motion: &'a Motion, name: &str) -> &'a [f64] {
 }
 
 fn keys<'a>(motion: &'a Motion, name: &str) -> &'a [(usize, f64)] {
-    &motion.keys[index(motion, name)].as_ref().unwrap().keys
+    match &motion.keys[index(motion, name)] {
+        Some(Keys::OnFrames { keys, .. }) => keys,
+        other => panic!("{name} has no keys on frames: {other:?}"),
+    }
 }
 
 #[test]
@@ -58,7 +61,7 @@ fn the_documents_example_is_read() {
     // A position without keys stays at its offset.
     assert_eq!(values(&motion, "hip.Yposition"), [90.0; 60]);
     assert_eq!(motion.keys[0], None);
-    assert_eq!(motion.keys[4].as_ref().unwrap().interpolation, Interpolation::Natural);
+    assert!(matches!(motion.keys[4], Some(Keys::OnFrames { interpolation: Interpolation::Natural, .. })));
 }
 
 #[test]

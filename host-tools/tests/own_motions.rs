@@ -1,7 +1,7 @@
 //! Our own walk and run have the shape the paper's had (docs/METHOD.md 2.6), and they walk and run.
 
 use pantin_tools::import::{self, Options};
-use pantin_tools::motion::Motion;
+use pantin_tools::motion::{Keys, Motion};
 use pantin_tools::{export, fk};
 use std::path::Path;
 
@@ -110,7 +110,8 @@ fn has_shape(motion: &Motion, frames: usize, key_frames: &[usize]) {
         assert!(moving.contains(&index) || max(values) == min(values), "{} hardly moves", motion.rig.channel_name(index));
     }
     for index in moving {
-        let keyed: Vec<usize> = motion.keys[index].as_ref().unwrap().keys.iter().map(|&(frame, _)| frame).collect();
+        let Some(Keys::OnFrames { keys, .. }) = &motion.keys[index] else { panic!("channel {index} has no keys on frames") };
+        let keyed: Vec<usize> = keys.iter().map(|&(frame, _)| frame).collect();
         assert_eq!(keyed, key_frames, "{}", motion.rig.channel_name(index));
     }
 }

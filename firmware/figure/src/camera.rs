@@ -34,11 +34,14 @@ pub struct View {
     pub tilt: i16,
     /// What it looks at.
     pub track: Track,
+    /// The axis that is vertical, in place of the one along which the figure has its head farthest from its feet: animals
+    /// have it ahead.
+    pub up: Option<u8>,
 }
 
 impl Default for View {
     fn default() -> Self {
-        View { orbit: -50, tilt: 12, track: Track::Follow }
+        View { orbit: -50, tilt: 12, track: Track::Follow, up: None }
     }
 }
 

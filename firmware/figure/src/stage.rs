@@ -56,7 +56,7 @@ impl<const N: usize> Stage<N> {
             joints.place(&skeleton, pose);
             survey.include(&skeleton, &joints);
         });
-        let bearings = survey.bearings();
+        let bearings = survey.bearings(view.up);
         let size = skeleton.size;
         let at_scale = |scale| Camera::new(&survey, bearings, size, view, scale);
         let upwards = bearings.up[bearings.axis] > 0;

@@ -79,14 +79,15 @@ impl Survey {
         (self.high[axis] >> 1).saturating_sub(self.low[axis] >> 1)
     }
 
-    /// Up and facing. Up is one of the axes; a figure that names no left and right is taken to look along z, or against
+    /// Up and facing. Up is one of the axes, `given` or found; a figure that names no left and right is taken to look along z, or against
     /// y if z is up.
-    pub fn bearings(&self) -> Bearings {
+    pub fn bearings(&self, given: Option<u8>) -> Bearings {
         let size = |axis: usize| self.upright[axis].unsigned_abs();
         let mut axis = if size(2) > size(1) { 2 } else { 1 };
         if size(0) > size(axis) {
             axis = 0;
         }
+        let axis = given.map_or(axis, |given| usize::from(given).min(2));
         let mut up = [0; 3];
         up[axis] = if self.upright[axis] < 0 { -ONE } else { ONE };
         let mut level = self.leftward;

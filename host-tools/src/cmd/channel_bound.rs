@@ -16,7 +16,7 @@ pub struct ChannelBound {
     /// rotations and in percent a frame^2 for all others. Positions and rotations drift: by how much is told
     #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
     max_accel_error: Option<f64>,
-    /// Instead of --max-error: channels with keys (.keys) as they are, off by rounding alone: at most 0.006 degrees, or 2^-16 of
+    /// Instead of --max-error: channels with keys (.keys, glTF's places and weights) as they are, off by rounding alone: at most 0.006 degrees, or 2^-16 of
     /// what --max-channel-error takes a percentage of
     #[arg(long, group = "bound")]
     exact: bool,

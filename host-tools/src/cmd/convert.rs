@@ -15,7 +15,7 @@ use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use pantin::layout::MAX_FRAMES;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Turn a motion file into a clip.
 ///
@@ -30,15 +30,20 @@ use std::path::PathBuf;
   pantin convert walk.bvh -o walk.ptn --index 2
   pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5
   pantin convert face.csv -o face.ptn --max-scalar-error 2
-  pantin convert servos.tsv -o servos.ptn --fps 50")]
+  pantin convert servos.tsv -o servos.ptn --fps 50
+  pantin convert --list fox.glb
+  pantin convert fox.glb -o walk.ptn --animation Walk --cm-per-unit 1")]
 pub struct Arguments {
-    /// The motion: .bvh, .amc (its .asf beside it), our key frames (.keys, see docs/KEYFRAMES.md), functions of time
+    /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, our key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face by Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
     /// below a row of their names (.csv, .tsv)
     input: PathBuf,
     /// The clip to write
-    #[arg(short, long)]
-    output: PathBuf,
+    #[arg(short, long, required_unless_present = "list")]
+    output: Option<PathBuf>,
+    /// Write nothing; list the animations of a glTF file
+    #[arg(long)]
+    list: bool,
     /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm)
     #[arg(long, group = "bound", default_value = "0.5cm", value_parser = length_cm)]
     max_error: f64,
@@ -62,6 +67,9 @@ pub struct Arguments {
     /// Put a snapshot of the player's state into the file each so many seconds: seeking starts from the last one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
+    /// Which animation of a file that holds several (glTF): its name, or its number from 0
+    #[arg(long, value_name = "NAME|INDEX")]
+    animation: Option<String>,
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
     rig_out: Option<PathBuf>,
@@ -71,6 +79,12 @@ pub struct Arguments {
     /// Say nothing but errors
     #[arg(short, long)]
     quiet: bool,
+}
+
+impl Arguments {
+    fn output(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(""))
+    }
 }
 
 fn length_cm(text: &str) -> Result<f64, String> {
@@ -85,8 +99,15 @@ fn length_cm(text: &str) -> Result<f64, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let options =
-        import::Options { cm_per_unit: arguments.cm_per_unit, fps: arguments.fps, skeleton: arguments.skeleton.clone() };
+    if arguments.list {
+        return super::info::animations(&arguments.input, arguments.json);
+    }
+    let options = import::Options {
+        cm_per_unit: arguments.cm_per_unit,
+        fps: arguments.fps,
+        skeleton: arguments.skeleton.clone(),
+        animation: arguments.animation.clone(),
+    };
     let imported = import::load(&arguments.input, &options)?;
     if !arguments.quiet {
         imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
@@ -101,7 +122,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if let Some(path) = &arguments.rig_out {
         write_whole(path, &rig).context("rig")?;
     }
-    write_whole(&arguments.output, &made.bytes)?;
+    write_whole(arguments.output(), &made.bytes)?;
     if arguments.json {
         println!("{}", made.json);
     }
@@ -109,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let raw = motion.frames * motion.rig.channels() * 2;
         eprintln!(
             "{}: {} frames, {} channels; {} bytes ({} per frame at 16 bits, {:.1} % saved); {}",
-            arguments.output.display(),
+            arguments.output().display(),
             motion.frames,
             motion.rig.channels(),
             made.bytes.len(),
@@ -158,7 +179,7 @@ fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8]) -> Result<Mad
     let coded = fit(motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
     bar.finish_and_clear();
     let bytes = file(arguments, &coded, rig)?;
-    let not_written = || format!("{}: not written", arguments.output.display());
+    let not_written = || format!("{}: not written", arguments.output().display());
     let report = verify(&bytes, rig, motion, arguments.max_error, part).with_context(not_written)?;
     Ok(Made { bytes, json: errors_json(&report, motion), errors: errors_text(&report, motion) })
 }
@@ -195,7 +216,7 @@ fn errors_text(report: &Report, motion: &Motion) -> String {
 
 fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bounds) -> Result<Made> {
     let bar = bar(arguments, motion.rig.channels() as u64)?;
-    let not_written = || format!("{}: not written", arguments.output.display());
+    let not_written = || format!("{}: not written", arguments.output().display());
     let coded = channelwise::fit(motion, bounds, &|| bar.inc(1)).with_context(not_written)?;
     bar.finish_and_clear();
     let bytes = file(arguments, &coded, rig)?;

@@ -14,13 +14,14 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   pantin expand walk.ptn -o walk.bvh
   pantin expand walk.ptn --rig figure.rig -o walk.bvh
+  pantin expand walk.ptn -o walk.glb
   pantin expand face.ptn -o face.csv
   pantin expand walk.ptn -o walk.h
   pantin expand walk.ptn -o src/walk.rs")]
 pub struct Arguments {
     /// The clip
     input: PathBuf,
-    /// The file to write: .bvh, .csv, .h or .rs
+    /// The file to write: .bvh, .glb (glTF), .csv, .h or .rs
     #[arg(short, long)]
     output: PathBuf,
     /// The rig of a clip that was made with --rig-out
@@ -38,9 +39,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     match arguments.output.extension().and_then(|extension| extension.to_str()) {
         Some("bvh") => export::bvh::write(&expand(&clip)?, &mut out).with_context(place)?,
         Some("csv") => export::table::write(&expand(&clip)?, &mut out)?,
+        Some("glb") => out = export::gltf::write(&expand(&clip)?).with_context(place)?,
         Some("h") => out = export::source::c_header(&clip, files.clip(), &stem).into_bytes(),
         Some("rs") => out = export::source::rust_module(&clip, files.clip(), &stem).into_bytes(),
-        _ => bail!("{}: expected a name that ends in .bvh, .csv, .h or .rs", arguments.output.display()),
+        _ => bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs", arguments.output.display()),
     }
     write_whole(&arguments.output, &out)
 }

@@ -1,17 +1,19 @@
 //! `pantin info`.
 
 use super::Files;
+use crate::import::gltf;
 use anyhow::{Context, Result};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Say what a clip holds, and where its bytes went.
+/// Say what a clip holds, and where its bytes went; or which animations a glTF file holds.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin info walk.ptn
-  pantin info --json walk.ptn")]
+  pantin info --json walk.ptn
+  pantin info figure.glb")]
 pub struct Arguments {
-    /// The clip
+    /// The clip, or a .glb or .gltf
     input: PathBuf,
     /// One JSON object; `motion_bytes` is the file without its rig
     #[arg(long)]
@@ -23,6 +25,9 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.input.extension().is_some_and(|extension| extension == "glb" || extension == "gltf") {
+        return animations(&arguments.input, arguments.json);
+    }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let rig = clip.rig();
@@ -51,6 +56,22 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         println!("{}", serde_json::Value::Object(object));
     } else {
         fields.iter().for_each(|(name, value)| println!("{:20} {value}", name.replace('_', " ")));
+    }
+    Ok(())
+}
+
+/// The animations of a glTF file, one a line; `pantin convert --animation` takes their numbers or names.
+pub fn animations(path: &Path, as_json: bool) -> Result<()> {
+    let entries = gltf::list(path, None)?;
+    if as_json {
+        let object = |entry: &gltf::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
+        println!("{}", json!(entries.iter().map(object).collect::<Vec<_>>()));
+        return Ok(());
+    }
+    for (number, entry) in entries.iter().enumerate() {
+        let name = entry.name.as_deref().unwrap_or("without a name");
+        let (frames, fps, tracks) = (entry.frames, (entry.fps * 1000.0).round() / 1000.0, entry.tracks);
+        println!("{number:3} {name}: {frames} frames at {fps} a second, {:.3} s, {tracks} tracks", entry.seconds());
     }
     Ok(())
 }

@@ -30,15 +30,27 @@ pub struct Arguments {
     /// Degrees about the figure: 0 looks it in the face, 90 sees it walk to the left, -90 to the right
     #[arg(long, value_name = "DEGREES", default_value_t = View::default().orbit, allow_negative_numbers = true)]
     view: i16,
+    /// The axis that is vertical, where the figure is no person and stands on its hands too
+    #[arg(long, value_enum, value_name = "AXIS")]
+    up: Option<Axis>,
     /// Keep the camera still instead of following the figure
     #[arg(long)]
     fixed: bool,
 }
 
+/// An axis of the world.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Axis {
+    X,
+    Y,
+    Z,
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let track = if arguments.fixed { Track::Fixed } else { Track::Follow };
-    let view = View { orbit: arguments.view, track, ..View::default() };
+    let up = arguments.up.map(|axis| axis as u8);
+    let view = View { orbit: arguments.view, track, up, ..View::default() };
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;

@@ -146,7 +146,7 @@ fn within(mut keys: Vec<(usize, f64)>, interpolation: Interpolation, values: &[f
     let last = values.len() - 1;
     keys.retain(|&(frame, _)| frame < last);
     keys.push((last, values[last]));
-    Keys { interpolation, keys }
+    Keys::OnFrames { interpolation, keys }
 }
 
 fn interpolation(word: &str) -> Read<Interpolation> {

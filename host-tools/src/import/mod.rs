@@ -7,6 +7,7 @@ pub mod bvh;
 mod expression;
 pub mod fap;
 mod fap_names;
+pub mod gltf;
 pub mod keyframes;
 pub mod livelink;
 pub mod procedural;
@@ -34,6 +35,8 @@ pub struct Options {
     pub fps: Option<f64>,
     /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
     pub skeleton: Option<PathBuf>,
+    /// Which animation of a file that holds several: its name, or its number from 0, instead of the first.
+    pub animation: Option<String>,
 }
 
 /// What an importer read.
@@ -71,6 +74,7 @@ struct Format {
 const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
     Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
+    Format { name: "glTF", extensions: &["glb", "gltf"], begins: gltf::begins, read: gltf::read },
     Format { name: "key frames", extensions: &["keys"], begins: keyframes::begins, read: keyframes::read },
     Format { name: "procedural motion", extensions: &["proc"], begins: procedural::begins, read: procedural::read },
     Format { name: "FAP", extensions: &["fap"], begins: fap::begins, read: fap::read },

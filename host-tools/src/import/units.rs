@@ -55,6 +55,20 @@ pub fn rest_height_cm(motion: &Motion) -> f64 {
     rest_height(motion) * motion.rig.cm_per_unit
 }
 
+/// Extent in cm of the figure at frame 0 along the axis where it is largest, without what only carries it: the joints before the first that
+/// has several children.
+pub fn posed_height_cm(motion: &Motion) -> f64 {
+    let joints = &motion.rig.joints;
+    let children = |joint: usize| joints.iter().filter(|other| other.parent == Some(joint)).count();
+    let first = (0..joints.len()).find(|&joint| children(joint) > 1).unwrap_or(0);
+    let places = crate::fk::positions(&motion.rig, &motion.values, 0);
+    let along = |axis: usize| {
+        let range = places[first..].iter().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+        range.1 - range.0
+    };
+    if places.is_empty() { 0.0 } else { (0..3).map(along).fold(0.0, f64::max) }
+}
+
 /// The longest way along the bones from the end of a head to a foot, which no pose changes; without such names, the largest
 /// extent at rest along an axis (files differ in which one is up).
 fn rest_height(motion: &Motion) -> f64 {

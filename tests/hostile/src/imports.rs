@@ -68,6 +68,23 @@ pub const TABLE_WORDS: [&str; 12] = ["time", "frame", "ms", ",", ";", "\t", "\n"
 pub const PROC_WORDS: [&str; 14] =
     ["let ", " = ", "sin(", "sqrt(", "min(", ")", "^", "/", "joint", "scalar", "loop", "fps", "frames", "99999999999"];
 
+pub const GLTF_WORDS: [&str; 14] = [
+    "\"children\":[0],",
+    "\"count\":4294967295,",
+    "\"byteOffset\":18446744073709551615,",
+    "\"byteStride\":4,",
+    "\"matrix\":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1],",
+    "\"scale\":[0,1,1],",
+    "\"normalized\":true,",
+    "CUBICSPLINE",
+    "STEP",
+    "null",
+    "[]",
+    "{}",
+    "-1",
+    "1e38",
+];
+
 /// Loads a file of this kind.
 pub fn load(extension: &str, text: &[u8]) -> bool {
     in_folder(|folder| {

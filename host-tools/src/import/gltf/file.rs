@@ -1,0 +1,134 @@
+//! The container: JSON, and the buffers it names, from a .glb, from data URIs, or from files beside it.
+
+use anyhow::{Result, anyhow, bail};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use gltf::json::animation::{Animation, Channel};
+use gltf::json::validation::Validate;
+use gltf::json::{Path as JsonPath, Root};
+use std::cell::OnceCell;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// Parts of the JSON that motion depends on: what is wrong elsewhere (materials, say) does not matter.
+const NEEDED: [&str; 8] = ["nodes", "scene", "skins", "animations", "accessors", "bufferViews", "buffers", "asset"];
+
+/// Length of the head of a .glb.
+const GLB_HEAD: usize = 12;
+
+/// A glTF file; buffers are read when they are first asked for.
+pub struct File {
+    /// The JSON, its indices checked.
+    pub root: Root,
+    path: PathBuf,
+    bin: Option<Vec<u8>>,
+    buffers: Vec<OnceCell<Vec<u8>>>,
+}
+
+impl File {
+    /// Opens `bytes`, the content of `path`.
+    pub fn open(path: &Path, bytes: &[u8]) -> Result<File> {
+        let place = |message: String| anyhow!("{}: {}", path.display(), one_line(&message));
+        let (json, bin) = if bytes.starts_with(b"glTF") {
+            let length = bytes.get(8..GLB_HEAD).map(|field| u32::from_le_bytes([field[0], field[1], field[2], field[3]]));
+            if length.is_none_or(|length| (length as usize) < GLB_HEAD || length as usize > bytes.len()) {
+                return Err(place("the file is shorter than its head says; expected a whole .glb".into()));
+            }
+            let glb = gltf::Glb::from_slice(bytes).map_err(|error| place(format!("not a .glb of version 2: {error}")))?;
+            (glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned()))
+        } else {
+            (bytes.to_vec(), None)
+        };
+        let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&json);
+        let root: Root = gltf::json::deserialize::from_slice(json).map_err(|error| place(format!("glTF's JSON: {error}")))?;
+        let mut wrong = None;
+        root.validate(&root, JsonPath::new, &mut |at, error| {
+            let at = at().to_string();
+            if wrong.is_none() && NEEDED.iter().any(|part| at.starts_with(part)) {
+                wrong = Some(format!("{at}: {error}"));
+            }
+        });
+        match wrong.or_else(|| missing_node(&root)) {
+            Some(message) => Err(place(message)),
+            None => Ok(File { buffers: vec![OnceCell::new(); root.buffers.len()], root, path: path.into(), bin }),
+        }
+    }
+
+    /// `path: where: message`; `at` is a JSON path.
+    pub fn error(&self, at: &str, message: impl std::fmt::Display) -> anyhow::Error {
+        anyhow!("{}: {at}: {message}", self.path.display())
+    }
+
+    /// Bytes of a buffer.
+    pub fn buffer(&self, index: usize) -> Result<&[u8]> {
+        let at = format!("buffers[{index}]");
+        let Some(cell) = self.buffers.get(index) else { bail!(self.error(&at, "no such buffer")) };
+        if let Some(bytes) = cell.get() {
+            return Ok(bytes);
+        }
+        let bytes = self.read_buffer(index).map_err(|error| self.error(&at, error))?;
+        let expected = self.root.buffers[index].byte_length.0;
+        if (bytes.len() as u64) < expected {
+            bail!(self.error(&at, format!("{} bytes; expected byteLength, {expected}", bytes.len())));
+        }
+        Ok(cell.get_or_init(|| bytes))
+    }
+
+    fn read_buffer(&self, index: usize) -> Result<Vec<u8>> {
+        let Some(uri) = &self.root.buffers[index].uri else {
+            let bin = if index == 0 { self.bin.clone() } else { None };
+            return bin.ok_or_else(|| anyhow!("neither a uri nor a binary chunk holds its bytes"));
+        };
+        if let Some(data) = uri.strip_prefix("data:") {
+            let Some((_, data)) = data.split_once(";base64,") else { bail!("expected base64 in the data URI") };
+            return STANDARD.decode(data.trim_end()).map_err(|error| anyhow!("the data URI is no base64: {error}"));
+        }
+        let name = percent_decoded(uri);
+        let relative = Path::new(&name);
+        let inside = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if uri.contains("://") || !inside {
+            bail!("uri `{}`: expected a data URI or the name of a file beside this one", one_line(uri));
+        }
+        let beside = self.path.with_file_name("").join(relative);
+        fs::read(&beside).map_err(|error| anyhow!("{}: {error}", beside.display()))
+    }
+}
+
+/// A node that a channel names and that is not there: the gltf crate does not look into channels.
+fn missing_node(root: &Root) -> Option<String> {
+    let of_animation = |(number, animation): (usize, &Animation)| {
+        let missing = |channel: &Channel| channel.target.node.value() >= root.nodes.len();
+        let channel = animation.channels.iter().position(missing)?;
+        Some(format!("animations[{number}].channels[{channel}].target.node: no such node"))
+    };
+    root.animations.iter().enumerate().find_map(of_animation)
+}
+
+/// Messages that quote a file stay short and on their line.
+pub fn one_line(text: &str) -> String {
+    text.chars().take(200).map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+fn percent_decoded(uri: &str) -> String {
+    let mut out = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, tail @ ..] = rest {
+        let code = match tail {
+            [a, b, ..] if *first == b'%' => std::str::from_utf8(&[*a, *b]).ok().and_then(|hex| u8::from_str_radix(hex, 16).ok()),
+            _ => None,
+        };
+        out.push(code.unwrap_or(*first));
+        rest = if code.is_some() { &tail[2..] } else { tail };
+    }
+    String::from_utf8_lossy(&out).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent_decoded;
+
+    #[test]
+    fn percent_signs_are_decoded_where_they_are_codes() {
+        assert_eq!(percent_decoded("a%20b%C3%A4%2"), "a bä%2");
+    }
+}

@@ -1,0 +1,68 @@
+//! The frames on which keys in time are sampled.
+//!
+//! Rule: the first key of all is frame 0. Without --fps, a frame is as long as the commonest distance between two keys of a track that
+//! follow each other; a usual rate within 0.05 % of it is meant. Keys farther apart than [`LONGEST`] are poses, not frames:
+//! then there are [`PLAIN_FPS`]. The last frame is the first one at or after the last key.
+
+use super::track::Track;
+use anyhow::{Result, ensure};
+use pantin::layout::MAX_FRAMES;
+
+/// Seconds above which the distance of keys says nothing about frames.
+const LONGEST: f64 = 0.11;
+/// Frames a second where keys do not say.
+const PLAIN_FPS: f64 = 30.0;
+/// Rates that people mean.
+const USUAL: [f64; 16] = [10.0, 12.0, 12.5, 15.0, 20.0, 23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60.0, 100.0, 120.0];
+/// Distances within this part of each other are one.
+const ALIKE: f64 = 0.01;
+/// Rates within this part of a usual one are that one.
+const MEANT: f64 = 5e-4;
+/// Shorter frames are no frames.
+const MOST_FPS: f64 = 1000.0;
+
+/// Frames in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Seconds of frame 0.
+    pub first: f64,
+    /// Seconds a frame.
+    pub frame_time: f64,
+    /// Number of frames.
+    pub frames: usize,
+    /// For the user: the rate, and where it comes from.
+    pub sentence: String,
+}
+
+/// The frames for `tracks`, of which there is at least one.
+pub fn grid(tracks: &[&Track], fps: Option<f64>) -> Result<Grid> {
+    let (fps, why) = match (fps, common(tracks)) {
+        (Some(fps), _) => (fps, "as given"),
+        (None, Some(seconds)) if seconds <= LONGEST => {
+            let meant = USUAL.into_iter().find(|usual| (usual * seconds - 1.0).abs() < MEANT);
+            (meant.unwrap_or(1.0 / seconds), "the commonest distance of keys; --fps overrides")
+        }
+        _ => (PLAIN_FPS, "as the keys are far apart; --fps overrides"),
+    };
+    ensure!(fps <= MOST_FPS, "keys ask for {fps:.0} frames a second; --fps gives a rate of at most {MOST_FPS}");
+    let times = || tracks.iter().flat_map(|track| &track.times);
+    let (first, last) = times().fold((f64::MAX, f64::MIN), |(first, last), &time| (first.min(time), last.max(time)));
+    let steps = ((last - first) * fps - 1e-3).ceil().max(0.0);
+    ensure!(
+        steps < f64::from(MAX_FRAMES),
+        "{:.0} s at {fps} frames a second are too long for a clip; --fps takes fewer frames",
+        last - first
+    );
+    let sentence = format!("{fps:.6}");
+    let shown = sentence.trim_end_matches('0').trim_end_matches('.');
+    Ok(Grid { first, frame_time: 1.0 / fps, frames: steps as usize + 1, sentence: format!("{shown} frames a second, {why}") })
+}
+
+/// The commonest distance of keys, the mean of those that are alike; of equally common ones, the shortest.
+fn common(tracks: &[&Track]) -> Option<f64> {
+    let mut spaces: Vec<f64> = tracks.iter().flat_map(|track| track.times.windows(2).map(|pair| pair[1] - pair[0])).collect();
+    spaces.sort_unstable_by(f64::total_cmp);
+    let alike = spaces.chunk_by(|a, b| b - a < ALIKE * a);
+    let most = alike.rev().max_by_key(|group| group.len())?;
+    Some(most.iter().sum::<f64>() / most.len() as f64)
+}

@@ -1,0 +1,201 @@
+//! The channels of the joints: every node's local place and rotation on the frames.
+
+use super::angles;
+use super::file::File;
+use super::grid::Grid;
+use super::place::{Base, Rest, Stretch, settled};
+use super::scalars::Weight;
+use super::track::Track;
+use super::tree::Tree;
+use super::{Channels, POSITIONS, Target, Tracks, Values};
+use crate::fk::{Matrix, apply, from_quaternion, product};
+use crate::keys::sample_pieces;
+use crate::motion::{Joint, Keys, Kind, Piece};
+use anyhow::Result;
+use gltf::json::mesh::Semantic;
+use gltf::json::validation::Checked;
+
+/// Part of a place's largest coordinate by which it may waver and still stand: what f32 writes, and what exporters compute with it.
+const STANDS: f64 = 1e-5;
+
+/// The joints of `tree` with their channels, and a scalar for each scale that changes.
+pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<Channels> {
+    let mut channels = Channels::default();
+    let mut stretches: Vec<Stretch> = Vec::new();
+    let mut ends = Vec::new();
+    let under = tree.under.iter().map(|&node| rest(file, node)).collect::<Result<Vec<_>>>()?;
+    for (node, parent) in tree.nodes.iter().zip(&tree.parents) {
+        let Some(node) = *node else {
+            channels.joints.push(Joint {
+                name: "root".into(),
+                parent: None,
+                offset: [0.0; 3],
+                kinds: Vec::new(),
+                end_site: false,
+            });
+            stretches.push(Stretch::None);
+            continue;
+        };
+        let moving = Moving::new(file, node, tracks, grid)?;
+        let name = name(file, node);
+        let base = parent.map_or_else(|| Base::nodes(&under), |parent| Base::joint(stretches[parent].clone()));
+        let (offset, places) = moving.places(&base, grid);
+        let mut kinds = Vec::new();
+        for (axis, place) in places {
+            kinds.push(POSITIONS[axis]);
+            channels.of_joints.push(place);
+        }
+        for (kind, values) in moving.rotations(&base, grid) {
+            kinds.push(kind);
+            channels.of_joints.push(values);
+        }
+        channels.scalars.extend(moving.scales(&name, grid));
+        let below = base.stretch.below(&moving.turns, &moving.scale, grid.frames);
+        let index = channels.joints.len();
+        if moving.turns.len() > 1 && !tree.parents.contains(&Some(index)) {
+            ends.extend(end(file, node, parent.map(|_| offset), &below).map(|offset| (index, offset)));
+        }
+        stretches.push(below);
+        channels.joints.push(Joint { name, parent: *parent, offset, kinds, end_site: false });
+    }
+    let site = |(parent, offset)| Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true };
+    channels.joints.extend(ends.into_iter().map(site));
+    Ok(channels)
+}
+
+/// An End Site for a joint that turns and carries no other, as a bound on places would not see its rotation: at the farthest corner of its
+/// mesh, or, without one, half as far as the bone before it and in the same direction.
+fn end(file: &File, node: usize, bone: Option<[f64; 3]>, below: &Stretch) -> Option<[f64; 3]> {
+    let corner = corner(file, node).map(|corner| apply(&below.at(0), corner));
+    corner.or(bone.map(|bone| bone.map(|x| x / 2.0))).filter(|end| end.iter().any(|x| *x != 0.0))
+}
+
+/// The corner of the box around a node's mesh that is farthest from the node.
+fn corner(file: &File, node: usize) -> Option<[f64; 3]> {
+    let mesh = file.root.meshes.get(file.root.nodes[node].mesh?.value())?;
+    let position = Checked::Valid(Semantic::Positions);
+    let places = mesh.primitives.iter().filter_map(|primitive| primitive.attributes.get(&position));
+    let mut corner = [0f64; 3];
+    for accessor in places.filter_map(|accessor| file.root.accessors.get(accessor.value())) {
+        for bound in [&accessor.min, &accessor.max].into_iter().flatten() {
+            for (axis, far) in corner.iter_mut().enumerate() {
+                let x = bound.get(axis).and_then(|x| x.as_f64()).filter(|x| x.abs() <= 1e9).unwrap_or(0.0);
+                *far = if x.abs() > far.abs() { x } else { *far };
+            }
+        }
+    }
+    Some(corner).filter(|corner| *corner != [0.0; 3])
+}
+
+/// What a person would call a node.
+pub fn name(file: &File, node: usize) -> String {
+    let name = file.root.nodes[node].name.as_deref().map(super::one_line).unwrap_or_default();
+    if name.trim().is_empty() { format!("node{node}") } else { name }
+}
+
+fn rest(file: &File, node: usize) -> Result<Rest> {
+    let rest = Rest::of(&file.root.nodes[node]);
+    rest.ok_or_else(|| file.error(&format!("nodes[{node}]"), "its place is not in numbers below 1e9"))
+}
+
+/// A node on the frames. What stands still is there once.
+struct Moving<'t> {
+    rest: Rest,
+    translation: Option<&'t Track>,
+    scaled: Option<&'t Track>,
+    turns: Vec<Matrix>,
+    scale: Vec<[f64; 3]>,
+    steps: bool,
+}
+
+impl<'t> Moving<'t> {
+    fn new(file: &File, node: usize, tracks: &'t Tracks, grid: &Grid) -> Result<Moving<'t>> {
+        let rest = rest(file, node)?;
+        let turned = tracks.get(&Target::Rotation(node));
+        let quaternions = match turned {
+            Some(track) => track.rotations(grid.first, grid.frame_time, grid.frames)?,
+            None => vec![rest.rotation],
+        };
+        let turns = quaternions.into_iter().map(|[x, y, z, w]| from_quaternion([w, x, y, z])).collect();
+        let scaled = tracks.get(&Target::Scale(node));
+        let scale = match scaled {
+            Some(track) => settled(vectors(&[0, 1, 2].map(|i| sampled(track, i, grid)))),
+            None => vec![rest.scale],
+        };
+        let scaled = scaled.filter(|_| scale.len() > 1);
+        let steps = turned.is_some_and(Track::steps);
+        Ok(Moving { rest, translation: tracks.get(&Target::Translation(node)), scaled, turns, scale, steps })
+    }
+
+    /// The offset, and the axes along which the place moves.
+    fn places(&self, base: &Base, grid: &Grid) -> ([f64; 3], Vec<(usize, Values)>) {
+        let curves = self.translation.map(|track| [0, 1, 2].map(|i| track.pieces(i, grid.first, grid.frame_time)));
+        if curves.is_none() && base.stretch.is_still() {
+            return (base.at(0, self.rest.translation), Vec::new());
+        }
+        let own = match &curves {
+            Some(curves) => vectors(&[0, 1, 2].map(|i| sample_pieces(&curves[i], grid.frames))),
+            None => vec![self.rest.translation; grid.frames],
+        };
+        let places: Vec<[f64; 3]> = own.iter().enumerate().map(|(frame, &place)| base.at(frame, place)).collect();
+        let largest = places.iter().flatten().fold(0f64, |largest, x| largest.max(x.abs()));
+        let moves = |axis: &usize| places.iter().any(|place| (place[*axis] - places[0][*axis]).abs() > STANDS * largest);
+        let channel = |axis: usize| {
+            let pieces = curves.as_ref().filter(|_| base.stretch.is_still()).map(|curves| along(axis, curves, base));
+            let values = match &pieces {
+                Some(pieces) => sample_pieces(pieces, grid.frames),
+                None => places.iter().map(|place| place[axis]).collect(),
+            };
+            (axis, Values { values, keys: pieces.map(Keys::Pieces) })
+        };
+        (places[0], (0..3).filter(moves).map(channel).collect())
+    }
+
+    fn rotations(&self, base: &Base, grid: &Grid) -> Vec<(Kind, Values)> {
+        let turns: Vec<Matrix> = self.turns.iter().map(|turn| product(&base.turn, turn)).collect();
+        let channels = angles::channels(&turns).into_iter();
+        let whole = |(kind, mut values): (Kind, Vec<f64>)| {
+            values.resize(grid.frames, values[0]);
+            let keys = self.steps.then(|| Keys::Pieces(runs(&values)));
+            (kind, Values { values, keys })
+        };
+        channels.map(whole).collect()
+    }
+
+    /// Scalars for the axes along which the scale changes.
+    fn scales(&self, name: &str, grid: &Grid) -> Vec<Weight> {
+        let Some(track) = self.scaled else { return Vec::new() };
+        let changes = |axis: &usize| self.scale.iter().any(|scale| scale[*axis] != self.scale[0][*axis]);
+        let axes = (0..3).filter(changes);
+        axes.map(|axis| Weight::new(format!("{name}.scale.{}", ["x", "y", "z"][axis]), name, track, axis, 0.0, grid)).collect()
+    }
+}
+
+fn sampled(track: &Track, component: usize, grid: &Grid) -> Vec<f64> {
+    sample_pieces(&track.pieces(component, grid.first, grid.frame_time), grid.frames)
+}
+
+fn vectors(curves: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
+    (0..curves[0].len()).map(|frame| std::array::from_fn(|i| curves[i][frame])).collect()
+}
+
+/// Pieces of the place along `axis`: those of all three own axes, which begin alike, as the base mixes them.
+fn along(axis: usize, curves: &[Vec<Piece>; 3], base: &Base) -> Vec<Piece> {
+    let Some(linear) = base.linear(0) else { return curves[axis].clone() };
+    let mixed = |n: usize, part: fn(&Piece) -> f64| (0..3).map(|i| linear[axis][i] * part(&curves[i][n])).sum::<f64>();
+    let piece = |n: usize| Piece {
+        start: curves[axis][n].start,
+        p: base.place[axis] + mixed(n, |piece| piece.p),
+        c: mixed(n, |piece| piece.c),
+        w: mixed(n, |piece| piece.w),
+        k: mixed(n, |piece| piece.k),
+    };
+    (0..curves[axis].len()).map(piece).collect()
+}
+
+/// A piece for each run of equal values.
+fn runs(values: &[f64]) -> Vec<Piece> {
+    let begins = |frame: &usize| *frame == 0 || values[*frame] != values[*frame - 1];
+    let frames = (0..values.len()).filter(begins);
+    frames.map(|frame| Piece { start: frame as f64, p: values[frame], ..Piece::default() }).collect()
+}

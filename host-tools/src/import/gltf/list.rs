@@ -1,0 +1,43 @@
+//! The animations of a file.
+
+use super::file::File;
+use super::{grid, tracks};
+use crate::import::read_bytes;
+use anyhow::Result;
+use std::path::Path;
+
+/// One animation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// Frames, as a conversion would make them.
+    pub frames: usize,
+    /// Frames a second.
+    pub fps: f64,
+    /// Tracks of nodes and weights.
+    pub tracks: usize,
+}
+
+impl Entry {
+    /// From the first frame to the last.
+    pub fn seconds(&self) -> f64 {
+        if self.frames == 0 { 0.0 } else { (self.frames - 1) as f64 / self.fps }
+    }
+}
+
+/// All animations of the glTF file `path`, those included that nothing can be read from: they have no frames.
+pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
+    let file = File::open(path, &read_bytes(path)?)?;
+    let entry = |number: usize| {
+        let name = file.root.animations[number].name.as_deref().map(super::one_line);
+        let tracks = tracks(&file, number, &mut Vec::new())?;
+        let count = tracks.len();
+        if count == 0 {
+            return Ok(Entry { name, frames: 0, fps: 0.0, tracks: 0 });
+        }
+        let grid = grid::grid(&tracks.values().collect::<Vec<_>>(), fps)?;
+        Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: count })
+    };
+    (0..file.root.animations.len()).map(entry).collect()
+}

@@ -1,0 +1,187 @@
+//! glTF 2.0, .gltf and .glb: one animation of a file as a motion of its nodes and morph weights.
+//!
+//! LINEAR, STEP and CUBICSPLINE tracks of places, weights and scales stay curves in time, which convert without a fit;
+//! rotations are sampled and become Euler angles. Scales that change become scalars, and in any case move the joints below.
+
+mod accessor;
+mod angles;
+mod file;
+mod grid;
+mod joints;
+mod list;
+mod place;
+mod scalars;
+mod track;
+mod tree;
+
+pub(crate) use place::quaternion;
+
+use super::{Options, Source, read_bytes, units};
+use crate::motion::{Keys, Kind, Motion, Rig};
+use anyhow::{Result, anyhow, bail, ensure};
+use file::{File, one_line};
+use gltf::json::Root;
+use gltf::json::animation::Property;
+use gltf::json::validation::Checked;
+use grid::Grid;
+pub use list::{Entry, list};
+use std::collections::BTreeMap;
+use std::path::Path;
+use track::Track;
+
+/// glTF's unit of length is the metre.
+const CM_PER_UNIT: f64 = 100.0;
+/// Figures of other heights make one doubt that the file's unit is the metre, in cm.
+const PLAUSIBLE_CM: std::ops::RangeInclusive<f64> = 20.0..=500.0;
+
+/// Numbers that may be held at a time, about: five minutes of 100 joints at 60 frames a second.
+const MOST_NUMBERS: usize = 1 << 25;
+
+/// Whether `head` begins a glTF file.
+pub fn begins(head: &[u8]) -> bool {
+    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
+    let asset = b"\"asset\"";
+    head.starts_with(b"glTF") || (text.starts_with(b"{") && text.windows(asset.len()).any(|word| word == asset))
+}
+
+/// Reads an animation of the glTF file `path`.
+pub fn read(path: &Path, options: &Options) -> Result<Source> {
+    let file = File::open(path, &read_bytes(path)?)?;
+    let number = chosen(&file, path, options)?;
+    let mut warnings = Vec::new();
+    let tracks = tracks(&file, number, &mut warnings)?;
+    if tracks.is_empty() {
+        bail!(file.error(&format!("animations[{number}]"), "no channel moves a node or a weight"));
+    }
+    let grid = grid::grid(&tracks.values().collect::<Vec<_>>(), options.fps)
+        .map_err(|error| file.error(&format!("animations[{number}]"), error))?;
+    warnings.push(grid.sentence.clone());
+    let tree = tree::tree(&file)?;
+    check_size(&tracks, &tree, &grid).map_err(|error| file.error(&format!("animations[{number}]"), error))?;
+    let mut channels = joints::joints(&file, &tree, &tracks, &grid)?;
+    channels.scalars.extend(scalars::weights(&file, &tracks, &grid)?);
+    scalars::tell_apart(&mut channels.scalars);
+    let motion = channels.motion(&grid);
+    warnings.extend(doubts(&file, &tree, &motion, options));
+    Ok(Source { motion, unit_known: true, warnings })
+}
+
+/// The animation that the user names, by name or by number from 0, or the first.
+fn chosen(file: &File, path: &Path, options: &Options) -> Result<usize> {
+    let animations = &file.root.animations;
+    if animations.is_empty() {
+        bail!("{}: no animation, so nothing moves", path.display());
+    }
+    let Some(wanted) = &options.animation else { return Ok(0) };
+    let by_name = animations.iter().position(|animation| animation.name.as_deref() == Some(wanted.as_str()));
+    let by_number = wanted.parse().ok().filter(|&number: &usize| number < animations.len());
+    by_name.or(by_number).ok_or_else(|| {
+        let names: Vec<String> =
+            animations.iter().enumerate().map(|(number, animation)| named(number, &animation.name)).collect();
+        anyhow!("{}: no animation `{wanted}`; there are {}", path.display(), one_line(&names.join(", ")))
+    })
+}
+
+fn named(number: usize, name: &Option<String>) -> String {
+    name.as_ref().map_or_else(|| number.to_string(), |name| format!("{number} ({name})"))
+}
+
+/// What moves a node or a mesh's weights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Target {
+    Translation(usize),
+    Rotation(usize),
+    Scale(usize),
+    Weights(usize),
+}
+
+/// Tracks of an animation by node and property.
+type Tracks = BTreeMap<Target, Track>;
+
+fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Tracks> {
+    let animation = &file.root.animations[number];
+    let mut tracks = Tracks::new();
+    for (index, channel) in animation.channels.iter().enumerate() {
+        let node = channel.target.node.value();
+        let (target, components) = match channel.target.path {
+            Checked::Valid(Property::Translation) => (Target::Translation(node), 3),
+            Checked::Valid(Property::Rotation) => (Target::Rotation(node), 4),
+            Checked::Valid(Property::Scale) => (Target::Scale(node), 3),
+            Checked::Valid(Property::MorphTargetWeights) => (Target::Weights(node), 1),
+            Checked::Invalid => bail!(file.error(&format!("animations[{number}].channels[{index}]"), "unknown target path")),
+        };
+        let track = Track::read(file, number, animation, channel.sampler.value(), components)?;
+        if tracks.insert(target, track).is_some() {
+            warnings
+                .push(format!("animations[{number}].channels[{index}]: {target:?} has a channel already; the last one counts"));
+        }
+    }
+    Ok(tracks)
+}
+
+/// Refuses a motion that would fill the memory: two keys a year apart are a small file.
+fn check_size(tracks: &Tracks, tree: &tree::Tree, grid: &Grid) -> Result<()> {
+    let stretches = tracks.keys().any(|target| matches!(target, Target::Scale(_)));
+    let of_joint = if stretches { 15 } else { 6 };
+    let of_tracks: usize = tracks.values().map(|track| 3 * track.components).sum();
+    let numbers = (of_tracks + of_joint * tree.nodes.len()).saturating_mul(grid.frames);
+    ensure!(numbers <= MOST_NUMBERS, "{} frames are too many for this figure; --fps takes fewer", grid.frames);
+    Ok(())
+}
+
+/// A channel of the motion: its values, and its curve where that is known.
+pub(crate) struct Values {
+    values: Vec<f64>,
+    keys: Option<Keys>,
+}
+
+/// Joints and scalars with their channels.
+#[derive(Default)]
+struct Channels {
+    joints: Vec<crate::motion::Joint>,
+    of_joints: Vec<Values>,
+    scalars: Vec<scalars::Weight>,
+}
+
+impl Channels {
+    fn motion(self, grid: &Grid) -> Motion {
+        let (scalars, of_scalars): (Vec<_>, Vec<_>) = self.scalars.into_iter().map(scalars::Weight::split).unzip();
+        let rig = Rig { joints: self.joints, scalars, cm_per_unit: CM_PER_UNIT };
+        let (values, keys) = self.of_joints.into_iter().chain(of_scalars).map(|entry| (entry.values, entry.keys)).unzip();
+        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false }
+    }
+}
+
+/// What is odd, and what is not used.
+fn doubts(file: &File, tree: &tree::Tree, motion: &Motion, options: &Options) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if let Some(node) = tree.outside.first() {
+        doubts.push(format!("{} moving nodes (nodes[{node}] is one) are outside of the scene and left out", tree.outside.len()));
+    }
+    let height = units::posed_height_cm(motion);
+    if options.cm_per_unit.is_none() && height > 0.0 && !PLAUSIBLE_CM.contains(&height) {
+        let metres = height / 100.0;
+        doubts.push(format!("the figure is {metres:.4} m high in glTF's metres; --cm-per-unit 1 if the unit is the cm"));
+    }
+    let left_out = file.root.nodes.len() - tree.nodes.iter().flatten().count() - tree.under.len();
+    doubts.extend(unused(&file.root, left_out));
+    doubts
+}
+
+/// One sentence about what motion does not need.
+fn unused(root: &Root, left_out: usize) -> Option<String> {
+    let counts = [
+        (left_out, "nodes that nothing moves"),
+        (root.meshes.len(), "meshes"),
+        (root.skins.len(), "skins' weights"),
+        (root.materials.len(), "materials"),
+        (root.images.len(), "images"),
+        (root.cameras.len(), "cameras"),
+    ];
+    let present = counts.iter().filter(|(count, _)| *count > 0);
+    let words: Vec<String> = present.map(|(count, what)| format!("{count} {what}")).collect();
+    (!words.is_empty()).then(|| format!("not used: {}", words.join(", ")))
+}
+
+/// The kinds of positions.
+const POSITIONS: [Kind; 3] = [Kind::Xposition, Kind::Yposition, Kind::Zposition];
