@@ -31,15 +31,15 @@ pub const BLOCK_BYTES: usize = 254;
 pub const CRC_BYTES: usize = 2;
 
 /// Frame rates that take one byte: index 0 means that the frame time follows in nanoseconds.
-pub const FRAME_RATES: [u8; 16] = [0, 120, 60, 30, 24, 25, 50, 100, 90, 48, 36, 20, 15, 12, 10, 8];
+pub const FRAME_RATES: [u8; 10] = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 
 /// The frame times of [`FRAME_RATES`] in nanoseconds, rounded.
-pub const FRAME_TIMES_NS: [u32; 16] = frame_times();
+pub const FRAME_TIMES_NS: [u32; FRAME_RATES.len()] = frame_times();
 
-const fn frame_times() -> [u32; 16] {
-    let mut times = [0; 16];
+const fn frame_times() -> [u32; FRAME_RATES.len()] {
+    let mut times = [0; FRAME_RATES.len()];
     let mut i = 1;
-    while i < 16 {
+    while i < times.len() {
         let rate = FRAME_RATES[i] as u32;
         times[i] = (1_000_000_000 + rate / 2) / rate;
         i += 1;

@@ -9,8 +9,10 @@ use crate::tables;
 /// 31 bits in four parts; no symbol or part takes more than two bytes.
 pub(crate) const MAX_SEGMENT_BYTES: u32 = 32;
 
-/// Symbols of the mode's alphabet that are modes, of type W or K; two more name types WK and NONE, whose length follows.
+/// Symbols of the mode's alphabet that are modes, of type W or K; one more says that a mode of type WK or NONE follows in bits.
 pub const DIRECT_MODES: u32 = 32;
+/// Bits of a mode that follows.
+pub const MODE_BITS: u32 = 5;
 
 /// Where the slopes begin in [`STEPS`], which the modes of type W and K index.
 pub const SLOPE: u8 = 16;
@@ -121,7 +123,7 @@ fn mode(symbols: &mut Symbols<'_>, after: u8) -> u8 {
     if symbol < DIRECT_MODES {
         return symbol as u8;
     }
-    let mode = (segment_type::WK + (symbol & 1) as u8) << 4 | symbols.bits(4) as u8;
+    let mode = (DIRECT_MODES + symbols.bits(MODE_BITS)) as u8;
     if mode == START_MODE { START_MODE - 1 } else { mode }
 }
 

@@ -54,7 +54,7 @@ impl Counts {
         };
         item("Which of [`MODE`] follows a mode.", "const MODE_AFTER", "[u8; 64]".into(), format!("{mode_after:?}"));
         item(
-            "Modes 0 to 31, then the types WK and NONE.",
+            "Modes 0 to 31, then those of the other types together.",
             "static MODE",
             format!("[[u16; {}]; {}]", mode[0].len(), mode.len()),
             format!("{mode:?}"),

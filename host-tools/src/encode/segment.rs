@@ -2,7 +2,7 @@
 
 use super::entropy::{Alphabet, Sink};
 use pantin::layout::{DIRECT, FAR, FAR_BITS, GROUPS, group, segment_type};
-use pantin::segment::{Context, DIRECT_MODES, SLOPE, step};
+use pantin::segment::{Context, DIRECT_MODES, MODE_BITS, SLOPE, step};
 
 /// A segment: its mode, and how many steps its new acceleration and slope have (0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,10 +61,10 @@ pub fn number_symbol(number: i32) -> (u32, [(u32, u32); 2]) {
     (symbol(FAR), [(bits, FAR_BITS), (rest - (1 << bits), bits)])
 }
 
-/// The symbol of a mode and, where it names the type alone, the length's index.
+/// The symbol of a mode and, where it does not name the mode, the bits that do.
 pub fn mode_symbol(mode: u8) -> (u32, Option<u32>) {
     let mode = u32::from(mode);
-    if mode < DIRECT_MODES { (mode, None) } else { (DIRECT_MODES + (mode >> 4 & 1), Some(mode & 15)) }
+    if mode < DIRECT_MODES { (mode, None) } else { (DIRECT_MODES, Some(mode - DIRECT_MODES)) }
 }
 
 impl Running {
@@ -96,10 +96,10 @@ impl Running {
 
     /// Writes the mode's symbol; the numbers follow by [`Running::start`].
     pub fn put_mode(&self, mode: u8, out: &mut dyn Sink) {
-        let (symbol, length) = mode_symbol(mode);
+        let (symbol, bits) = mode_symbol(mode);
         out.symbol(Alphabet::Mode(self.mode), symbol);
-        if let Some(length) = length {
-            out.bits(length, 4);
+        if let Some(bits) = bits {
+            out.bits(bits, MODE_BITS);
         }
     }
 

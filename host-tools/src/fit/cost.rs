@@ -3,7 +3,7 @@
 use crate::encode::entropy::{cost, magnitude_cost};
 use crate::encode::segment::{mode_symbol, number_symbol};
 use pantin::layout::{GROUPS, group};
-use pantin::segment::CONTEXTS;
+use pantin::segment::{CONTEXTS, MODE_BITS};
 use pantin::tables;
 use std::sync::OnceLock;
 
@@ -25,8 +25,8 @@ impl Costs {
 
     fn of_tables() -> Costs {
         let mode = |after: u8, mode: u8| {
-            let (symbol, length) = mode_symbol(mode);
-            (cost(tables::mode(after), symbol) + if length.is_some() { 4.0 } else { 0.0 }) as f32
+            let (symbol, bits) = mode_symbol(mode);
+            (cost(tables::mode(after), symbol) + if bits.is_some() { f64::from(MODE_BITS) } else { 0.0 }) as f32
         };
         let number = |context: u8, index: usize| number_cost(context, index as i32 - AT_HAND) as f32;
         Costs {
