@@ -28,6 +28,12 @@ impl Default for ChannelState {
 }
 
 impl ChannelState {
+    /// Becomes `other`, field by field: as a whole it would drag the library's memory move into small images.
+    pub(crate) fn become_as(&mut self, other: &ChannelState) {
+        (self.v, self.w, self.k) = (other.v, other.w, other.k);
+        (self.slot, self.due, self.mode, self.step, self.turn) = (other.slot, other.due, other.mode, other.step, other.turn);
+    }
+
     /// Frames of the running segment, 0 if there was none yet.
     pub(crate) fn length(&self) -> u8 {
         if self.mode == START_MODE { 0 } else { length(self.mode) }

@@ -54,25 +54,24 @@ impl<'m> Memory<'m> {
     }
 }
 
+/// Reads how channels start: where the segments begin, and how many channels move; as many as `usize` holds if there are more than
+/// `states`.
+#[inline(never)]
+fn open(clip: &Clip<'_>, states: &mut [ChannelState], pose: &mut [i32]) -> (Cursor, usize) {
+    let input = clip.input();
+    let mut starts = Starts::new(&clip.rig(), clip.length_exponent());
+    let mut symbols = Symbols { at: Cursor::start(&input, clip.symbols()), input };
+    let opened = starts.read(&mut symbols, u32::MAX, states, pose);
+    (symbols.at, if opened == Opened::Done { usize::from(starts.moving) } else { usize::MAX })
+}
+
 impl<'a, 'm> Player<'a, 'm> {
     /// Starts at frame 0. `states` needs [`Clip::moving`] elements, `pose` needs [`crate::Rig::channels`].
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, TooSmall> {
         let pose = pose.get_mut(..clip.rig().channels()).ok_or(TooSmall { needed: clip.rig().channels() })?;
-        let mut player = Player { clip, states, pose, position: Position::default() };
-        let moving = player.open().ok_or_else(|| TooSmall { needed: clip.moving() })?;
-        player.states = player.states.split_at_mut_checked(moving).map_or(&mut [], |(moving, _)| moving);
-        Ok(player)
-    }
-
-    /// Reads how channels start: the number that move, if there are states for them.
-    #[inline(never)]
-    fn open(&mut self) -> Option<usize> {
-        let input = self.clip.input();
-        let mut starts = Starts::new(&self.clip.rig(), self.clip.length_exponent());
-        let mut symbols = Symbols { at: Cursor::start(&input, self.clip.symbols()), input };
-        let opened = starts.read(&mut symbols, u32::MAX, self.states, self.pose);
-        self.position = Position { cursor: symbols.at, frame: 0, next: 0 };
-        (opened == Opened::Done).then_some(usize::from(starts.moving))
+        let (cursor, moving) = open(&clip, states, pose);
+        let states = states.get_mut(..moving).ok_or_else(|| TooSmall { needed: clip.moving() })?;
+        Ok(Player { clip, states, pose, position: Position { cursor, frame: 0, next: 0 } })
     }
 
     /// The clip that plays.
@@ -124,7 +123,8 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Goes back to frame 0.
     pub fn rewind(&mut self) {
         // The memory sufficed when the player was made.
-        self.open();
+        let (cursor, _) = open(&self.clip, self.states, self.pose);
+        self.position = Position { cursor, frame: 0, next: 0 };
     }
 
     /// Goes to `frame`, or to the last one if there are fewer. Forward it costs a hop a segment on the way; backward it

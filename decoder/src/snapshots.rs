@@ -57,7 +57,7 @@ impl<'m> Snapshots<'m> {
         let at = index * self.moving;
         let kept = self.states.iter_mut().zip(self.values.iter_mut()).skip(at);
         for (state, (kept, value)) in channels.states.iter().zip(kept) {
-            *kept = *state;
+            kept.become_as(state);
             *value = channels.pose.get(usize::from(state.slot)).copied().unwrap_or(0);
         }
     }
@@ -75,7 +75,7 @@ impl<'m> Snapshots<'m> {
         *position = mark.0;
         let kept = self.states.iter().zip(self.values.iter()).skip(index * self.moving);
         for (state, (kept, value)) in channels.states.iter_mut().zip(kept) {
-            *state = *kept;
+            state.become_as(kept);
             if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
                 *p = *value;
             }
