@@ -1,7 +1,9 @@
 //! The same poses on every core: each plays all golden vectors, and finds the CRCs that stand in the repository.
 
+use std::process::Command;
+
 use harness::conformance::{CORES, Expected, Place};
-use harness::setup;
+use harness::{paths, setup, vectors};
 
 fn agrees(core: &str) {
     let (_, place) = CORES.into_iter().find(|(name, _)| *name == core).unwrap();
@@ -46,4 +48,16 @@ fn rv32imac_agrees() {
 #[test]
 fn webassembly_agrees() {
     agrees("wasm32");
+}
+
+#[test]
+fn a_decoder_written_from_the_format_alone_agrees() {
+    if setup::host_only("the independent decoder") {
+        return;
+    }
+    let script = paths::root().join("tests/independent/decode.mjs");
+    let output = Command::new(setup::emulator("node").unwrap()).arg(script).arg(vectors::folder()).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(told.lines().count(), vectors::load(&vectors::folder()).unwrap().len());
 }

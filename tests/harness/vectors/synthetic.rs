@@ -224,6 +224,37 @@ fn exponential_choice() -> Made {
     simple("exponential-choice", &joints, 0, coded)
 }
 
+/// The widest steps with the shortest lengths, where six steps of an acceleration do not fit 32 bits.
+fn widest_steps() -> Made {
+    let rig = figure(&[&EULER, &EULER], 0);
+    let mut coded = motion(40);
+    let mut noise = Noise::new(23);
+    for step in (MAX_STEP - 5)..=MAX_STEP {
+        let segments = fill(40, || {
+            let mode = noise.below(2) as u8 * 16 + noise.below(2) as u8;
+            small(mode, &mut noise)
+        });
+        coded.channels.push(Channel { start: moving(1, -1, step), segments });
+    }
+    Made { name: "widest-steps", rig, coded, apart: false, index: 0 }
+}
+
+/// Joints that rest, in a clip whose lengths are finer than the rig's; joints with six channels and with four angles beside one that
+/// may choose.
+fn rests_and_choices() -> Made {
+    let six = [PLACE, EULER].concat();
+    let four = [&EULER[..], &[Kind::Zrotation]].concat();
+    let mut coded = motion(12);
+    coded.length_exponent = -24;
+    coded.exponentials = vec![true, false];
+    let mut made = simple("rests-and-choices", &[&six, &four, &EULER, &PLACE], 0, coded);
+    let rest = Channel { start: Start::Rest, segments: vec![] };
+    for channel in [0, 2, 13, 14, 15] {
+        made.coded.channels[channel] = rest.clone();
+    }
+    made
+}
+
 /// A loop with so many events that the fields before the first symbol cross from one block into the next.
 fn events() -> Made {
     let mut coded = motion(120);
@@ -271,6 +302,8 @@ pub fn all() -> Vec<Made> {
         exponential_choice(),
         events(),
         odd_rate(),
+        widest_steps(),
+        rests_and_choices(),
         crowd(),
         apart,
         indexed,
