@@ -20,9 +20,11 @@ pub const SLOPE: u8 = 16;
 /// The step of an acceleration (`which` is the length's index) or a slope (that + [`SLOPE`]), in raw units a frame^2 or a frame^3.
 #[inline(always)]
 pub const fn step(which: u8, channel_step: u8) -> u32 {
-    // At most 2^29 * 3; the shift is at least 30 - MAX_STEP / 2 = 1.
+    // At most 2^29 * 3.
     let scaled = STEPS[(which & 31) as usize] * mantissa(channel_step);
-    (scaled >> ((STEPS_SHIFT - (channel_step >> 1) as u32) & 31)) | 1
+    // 30 - channel_step / 2, rounded down, 1 to 30.
+    let shift = ((2 * STEPS_SHIFT as u8 + 1).wrapping_sub(channel_step) & 63) >> 1;
+    (scaled >> shift) | 1
 }
 
 /// What the last accelerations tell about the next one: which statistics it has, and whether its sign is turned around.

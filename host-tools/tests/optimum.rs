@@ -5,7 +5,7 @@ use pantin_tools::encode::clip::{Start, position_grid, velocity_grid};
 use pantin_tools::encode::entropy::{Alphabet, Sink, cost};
 use pantin_tools::encode::segment::{Running, Segment};
 use pantin_tools::fit::descent::Level;
-use pantin_tools::fit::search::{Effort, Fitted, Tube, search};
+use pantin_tools::fit::search::{Effort, Fitted, SEGMENT_BITS, Tube, search};
 
 const FRAMES: usize = 12;
 const STEP: u8 = 40;
@@ -117,7 +117,7 @@ impl Brute<'_> {
         let mut bits = Bits::default();
         running.put_mode(segment.mode, &mut bits);
         running.start(segment, Some(&mut bits));
-        cost += bits.0;
+        cost += bits.0 + SEGMENT_BITS;
         let end = (frame + segment.length()).min(FRAMES - 2);
         for now in frame..end {
             p += running.v;

@@ -79,6 +79,9 @@ const fn inverses(slope: bool) -> [f64; LONGEST + 1] {
     out
 }
 
+/// What it is worth to spare a player the reading of a segment: 1 % more bytes for 7 % fewer segments, measured on eight clips.
+pub const SEGMENT_BITS: f64 = 2.0;
+
 /// What a channel's status and step cost, about: they depend on its neighbours.
 const STATUS_BITS: f64 = 1.0;
 const STEP_BITS: f64 = 3.5;
@@ -316,7 +319,7 @@ impl<'t> Search<'t> {
                 continue;
             }
             let mode = kind << 4 | index as u8;
-            let mode_cost = from.cost + self.costs.mode(from.mode, mode);
+            let mode_cost = from.cost + self.costs.mode(from.mode, mode) + SEGMENT_BITS;
             let limit = self.least[frame] + self.effort.margin;
             if mode_cost > limit {
                 continue;
