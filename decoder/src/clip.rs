@@ -253,6 +253,7 @@ impl<'a> Clip<'a> {
     }
 
     /// Number of [`crate::ChannelState`]s that a player of this clip needs.
+    #[inline(never)]
     pub fn moving(&self) -> usize {
         let input = self.input();
         Starts::new(&self.rig, self.head.length_exponent).count(&mut Symbols { at: Cursor::start(&input, self.symbols), input })

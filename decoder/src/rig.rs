@@ -308,11 +308,12 @@ impl Iterator for Slots<'_> {
                 let axis = if kind.is_position() { kind.axis() } else { None };
                 return Some((kind, axis.and_then(|axis| self.offset.get(axis).copied()).unwrap_or(0)));
             }
-            let Some(joint) = self.joints.next() else {
+            if self.joints.left == 0 {
                 self.scalars = self.scalars.checked_sub(1)?;
                 return Some((Kind::Scalar, 0));
-            };
-            (self.kinds, self.offset) = (joint.kinds, joint.offset);
+            }
+            // A checked rig's joints can all be read.
+            self.joints.fields(&mut self.kinds, &mut self.offset).ok()?;
         }
     }
 }
@@ -327,6 +328,16 @@ pub struct Joints<'a> {
 
 impl<'a> Joints<'a> {
     fn parse(&mut self) -> Result<Joint<'a>, OpenError> {
+        let first_channel = self.first_channel;
+        let (mut kinds, mut offset) = (Kinds { halves: &[], next: 0, len: 0 }, [0; 3]);
+        let (name, parent, end_site) = self.fields(&mut kinds, &mut offset)?;
+        Ok(Joint { name, parent, offset, end_site, first_channel, kinds })
+    }
+
+    /// Reads a joint: its kinds and offset to where they belong, for stacks on which a whole joint is much; returns name, parent and
+    /// whether it is an End Site.
+    #[inline(never)]
+    fn fields(&mut self, kinds: &mut Kinds<'a>, offset: &mut [i32; 3]) -> Result<(&'a [u8], Option<u16>, bool), OpenError> {
         let head = self.bytes.byte()?;
         let len = head & 0xf;
         let end_site = head & 0x10 != 0;
@@ -338,14 +349,15 @@ impl<'a> Joints<'a> {
             return Err(OpenError::Malformed);
         }
         let parent = (parent as u16).checked_sub(1);
-        let halves = self.bytes.take(usize::from(len).div_ceil(2))?;
-        let offset = [self.bytes.zigzag()?, self.bytes.zigzag()?, self.bytes.zigzag()?];
+        *kinds = Kinds { halves: self.bytes.take(usize::from(len).div_ceil(2))?, next: 0, len };
+        for along in offset {
+            *along = self.bytes.zigzag()?;
+        }
         let name = if end_site { &[][..] } else { self.bytes.name()? };
-        let first_channel = self.first_channel;
         // At most MAX_JOINTS joints of 15 channels: fits 16 bits.
-        self.first_channel = first_channel.wrapping_add(u16::from(len));
+        self.first_channel = self.first_channel.wrapping_add(u16::from(len));
         self.left = self.left.saturating_sub(1);
-        Ok(Joint { name, parent, offset, end_site, first_channel, kinds: Kinds { halves, next: 0, len } })
+        Ok((name, parent, end_site))
     }
 }
 

@@ -83,58 +83,60 @@ impl Context {
 #[inline(never)]
 pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) {
     let mode = mode(symbols, state.mode);
-    state.mode = mode;
+    let (kind, length_index) = (mode >> 4, mode as u8 & 15);
+    state.mode = mode as u8;
     // It was due at this frame.
-    state.due = state.due.wrapping_add(length(mode));
-    let (kind, length) = (mode >> 4, mode & 15);
+    state.due = state.due.wrapping_add(length(length_index));
     if kind & 1 == 0 {
-        (state.w, state.turn) = number(symbols, state.step, length, state.w, state.turn);
+        let unit = step(length_index, state.step);
+        let context = Context::new(length_index, state.w, state.turn, unit);
+        state.turn = context.sign;
+        state.w = number(symbols, &context, unit);
+        if kind == u32::from(segment_type::W) {
+            state.k = 0;
+            return;
+        }
     }
-    let slope = match kind {
-        segment_type::K | segment_type::WK => slope(symbols, state, length | SLOPE),
-        _ => 0,
-    };
-    state.k = slope;
+    state.k = if kind == u32::from(segment_type::NONE) { 0 } else { slope(symbols, state) };
 }
 
 /// A new slope: captured motion has few.
 #[inline(never)]
-fn slope(symbols: &mut Symbols<'_>, state: &ChannelState, which: u8) -> i32 {
-    number(symbols, state.step, which, state.k, 0).0
+fn slope(symbols: &mut Symbols<'_>, state: &ChannelState) -> i32 {
+    let which = state.mode & 15 | SLOPE;
+    let unit = step(which, state.step);
+    number(symbols, &Context::new(which, state.k, 0, unit), unit)
 }
 
-/// A new acceleration or slope in raw units, and the sign of the running one, `now`.
+/// A new acceleration or slope in raw units.
 #[inline(always)]
-fn number(symbols: &mut Symbols<'_>, channel_step: u8, which: u8, now: i32, turn: i8) -> (i32, i8) {
-    let unit = step(which, channel_step);
-    let context = Context::new(which, now, turn, unit);
+fn number(symbols: &mut Symbols<'_>, context: &Context, unit: u32) -> i32 {
     let symbol = symbols.symbol_in_line(tables::number(context.index));
     let mut size = (symbol + 1) >> 1;
     if size > DIRECT {
-        size = far(symbols, size);
+        size = match size - DIRECT {
+            bits @ 1..=GROUPS => group(bits) + symbols.few_bits(bits),
+            _ => far(symbols),
+        };
     }
     // All ones if it is negative.
     let sign = -((symbol & 1) as i32) ^ context.flip;
-    ((size.wrapping_mul(unit) as i32 ^ sign).wrapping_sub(sign), context.sign)
+    (size.wrapping_mul(unit) as i32 ^ sign).wrapping_sub(sign)
 }
 
 /// The mode that follows `after`.
 #[inline(always)]
-fn mode(symbols: &mut Symbols<'_>, after: u8) -> u8 {
+fn mode(symbols: &mut Symbols<'_>, after: u8) -> u32 {
     let symbol = symbols.symbol_in_line(tables::mode(after));
     if symbol < DIRECT_MODES {
-        return symbol as u8;
+        return symbol;
     }
-    let mode = (DIRECT_MODES + symbols.bits(MODE_BITS)) as u8;
-    if mode == START_MODE { START_MODE - 1 } else { mode }
+    (DIRECT_MODES + symbols.bits(MODE_BITS)).min(u32::from(START_MODE) - 1)
 }
 
-/// A magnitude above [`DIRECT`].
+/// A magnitude behind the groups.
 #[inline(never)]
-fn far(symbols: &mut Symbols<'_>, index: u32) -> u32 {
-    if let Some(count @ 1..=GROUPS) = index.checked_sub(DIRECT) {
-        return group(count) + symbols.few_bits(count);
-    }
+fn far(symbols: &mut Symbols<'_>) -> u32 {
     let bits = symbols.bits(FAR_BITS);
     // At most 2^32 + 2^7: it may wrap, but no well-formed number is so large.
     (group(GROUPS + 1) - 1).wrapping_add(1 << bits).wrapping_add(symbols.long_bits(bits))

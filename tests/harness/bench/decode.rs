@@ -71,19 +71,28 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
 /// Going back, and seeking, with memory lent (`back` in `firmware/testsuite` says how much), on the machine that has it.
 fn backwards(machine: Machine, clips: &[Played], costs: &[Cost]) -> Result<Vec<Goal>> {
     let guest = Guest::new(machine, "back")?;
-    let (mut back, mut seeks, mut rows) = (vec![], vec![], vec![]);
+    let (mut back, mut restores, mut rows) = (vec![], vec![], vec![]);
     for (clip, cost) in clips.iter().zip(costs) {
         let counts = guest.counts(Some(&clip.path)).with_context(|| clip.name.clone())?;
-        let &[forth, home, seek] = &counts[..] else { anyhow::bail!("{} regions: expected 3", counts.len()) };
+        let &[forth, home, seek, restore] = &counts[..] else { anyhow::bail!("{} regions: expected 4", counts.len()) };
         let times = |count: u64| count as f64 / cost.steps as f64;
         back.push(times(home));
-        seeks.push(seek as f64);
-        rows.push(vec![clip.name.clone(), format!("{:.2}", times(forth)), format!("{:.2}", times(home)), seek.to_string()]);
+        restores.push(restore as f64);
+        let seeks = [seek, restore].map(|count| count.to_string());
+        rows.push(
+            [vec![clip.name.clone(), format!("{:.2}", times(forth)), format!("{:.2}", times(home))], seeks.into()].concat(),
+        );
     }
-    table::print(&["clip, with memory lent", "forth / step", "back / step", "seek to the end"], &rows);
+    table::print(&["clip, with memory lent", "forth / step", "back / step", "seek to the end", "to a snapshot"], &rows);
     Ok(vec![
         Goal::at_most("Cortex-M3: going back with memory lent, of stepping, mean", mean(&back).unwrap_or(0.0), 5.0, 2, ""),
-        Goal::at_most("Cortex-M3: instructions of a seek by lent snapshots, mean", mean(&seeks).unwrap_or(0.0), 15_000.0, 0, ""),
+        Goal::at_most(
+            "Cortex-M3: instructions of a seek to a lent snapshot, worst clip",
+            restores.into_iter().fold(0.0, f64::max),
+            15_000.0,
+            0,
+            "",
+        ),
     ])
 }
 
