@@ -140,3 +140,25 @@ pub fn magnitude_cost(table: &Table, value: i32) -> f64 {
     let bits = u32::BITS - value.unsigned_abs().leading_zeros();
     cost(table, bits) + f64::from(bits)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pantin::entropy::SIXTEENTH;
+    use pantin::segment::CONTEXTS;
+
+    #[test]
+    fn tables_are_probabilities_and_their_hints_never_lead_past_the_symbol() {
+        let few = [Alphabet::StepChange, Alphabet::Position, Alphabet::Velocity];
+        let contexts = (0..3).map(Alphabet::Status).chain((0..64).map(Alphabet::Mode));
+        let contexts = contexts.chain((0..CONTEXTS as u8).map(Alphabet::Number)).chain(few);
+        for alphabet in contexts {
+            let table = alphabet.table();
+            assert!(sizes(table).all(|size| size > 0) && sizes(table).sum::<u32>() == 1 << SCALE_BITS, "{alphabet:?}");
+            for (sixteenth, entry) in (0..16).zip(table) {
+                let hint = u32::from(entry >> SCALE_BITS);
+                assert!(stretch(table, hint).0 <= sixteenth << SIXTEENTH, "{alphabet:?}, sixteenth {sixteenth}: {hint}");
+            }
+        }
+    }
+}
