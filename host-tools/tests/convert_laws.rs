@@ -100,3 +100,18 @@ fn angles_that_begin_turns_away_are_kept() {
         convert(&motion, bound, Level::Fast);
     }
 }
+
+#[test]
+fn rotations_are_coded_as_asked() {
+    use pantin_tools::fit::descent::Plan;
+    use pantin_tools::fit::parametrize::Rotations;
+    let motion = own("walk.keys");
+    let chosen = |rotations| {
+        let coded = fit(&motion, Plan { rotations, ..Level::Fast.plan(0.5) }, 0.02, &mut |_| ()).unwrap();
+        let bytes = clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap();
+        verify(&bytes, &rig::encode(&motion.rig).unwrap(), &motion, 0.5, 0.02).unwrap_or_else(|error| panic!("{error:#}"));
+        coded.exponentials.iter().filter(|&&chosen| chosen).count()
+    };
+    let (euler, exponential) = (chosen(Rotations::Euler), chosen(Rotations::Exponential));
+    assert!(euler == 0 && exponential > 1, "{euler} and {exponential} joints by exponential maps");
+}

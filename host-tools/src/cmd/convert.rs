@@ -6,7 +6,8 @@ use crate::channel_error;
 use crate::encode::{clip, rig};
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Held;
-use crate::fit::descent::Level;
+use crate::fit::descent::{Level, Plan};
+use crate::fit::parametrize::Rotations;
 use crate::fit::{channelwise, fit};
 use crate::import;
 use crate::motion::Motion;
@@ -50,6 +51,9 @@ pub struct Arguments {
     /// How hard to look for few bytes
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
+    /// How joints with three Euler angles are coded
+    #[arg(long, value_enum, default_value = "by-cost")]
+    rotations: Rotations,
     /// Greatest error of channels that move no joint, in percent of their full scale
     #[arg(long, value_name = "PERCENT", default_value = "2", value_parser = above_zero)]
     max_scalar_error: f64,
@@ -173,7 +177,7 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8
 }
 
 fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8]) -> Result<Made> {
-    let plan = arguments.effort.plan(arguments.max_error);
+    let plan = Plan { rotations: arguments.rotations, ..arguments.effort.plan(arguments.max_error) };
     let part = arguments.max_scalar_error / 100.0;
     let bar = bar(arguments, 1000)?;
     let coded = fit(motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;

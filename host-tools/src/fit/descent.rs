@@ -2,6 +2,7 @@
 //! still leaves, pass after pass, while the price of an error falls.
 
 use super::figure::{Figure, Poses, lever};
+use super::parametrize::Rotations;
 use super::refusal::refusal;
 use super::search::{Effort, Fitted, Tube, search};
 use crate::encode::clip::Start;
@@ -21,6 +22,8 @@ pub struct Plan {
     pub both_steps: bool,
     /// The search for one channel.
     pub effort: Effort,
+    /// How joints' rotations are coded.
+    pub rotations: Rotations,
 }
 
 /// How hard to look for few bytes.
@@ -43,6 +46,7 @@ impl Level {
             prices: (10.0, 0.2),
             both_steps: thorough,
             effort: Effort { beam, margin, slopes: thorough },
+            rotations: Rotations::ByCost,
         };
 
         match self {

@@ -25,7 +25,7 @@ const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 /// Codes `motion` within the plan's bound. `progress` hears the part that is done, 0 to 1.
 pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnMut(f64)) -> Result<Coded> {
     let frame_time_ns = time(motion)?;
-    let (chosen, exponentials) = parametrize::parametrize(motion, plan.bound_cm);
+    let (chosen, exponentials) = parametrize::parametrize(motion, plan.bound_cm, plan.rotations);
     let length_exponent = raw::clip_length_exponent(&motion.rig, &motion.values);
     let scales = raw::scales(&chosen.rig, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);

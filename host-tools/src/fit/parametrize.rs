@@ -4,13 +4,24 @@ use super::figure::exponential_near;
 use crate::fk::local;
 use crate::motion::{Joint, Kind, Motion};
 
+/// How joints with three Euler angles about three axes are coded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Rotations {
+    /// Each joint as seems cheaper
+    ByCost,
+    /// As the Euler angles that the file has
+    Euler,
+    /// As exponential maps, where they stay inside half a turn
+    Exponential,
+}
+
 /// Exponential maps are chosen where they seem this much cheaper.
 const WORTHWHILE: f64 = 0.9;
 /// Their components stay inside half a turn, which an angle holds without wrapping.
 const LARGEST_DEGREES: f64 = 179.0;
 
 /// The motion with some joints' Euler angles replaced by exponential maps, and which of those that may choose were.
-pub fn parametrize(motion: &Motion, bound_cm: f64) -> (Motion, Vec<bool>) {
+pub fn parametrize(motion: &Motion, bound_cm: f64, rotations: Rotations) -> (Motion, Vec<bool>) {
     let mut out = motion.clone();
     let reach = reach_cm(motion);
     let first = motion.rig.first_channels();
@@ -29,7 +40,12 @@ pub fn parametrize(motion: &Motion, bound_cm: f64) -> (Motion, Vec<bool>) {
         let fits = exponential.iter().flatten().all(|x| x.abs() < LARGEST_DEGREES);
         let axes = joint.kinds.iter().filter(|kind| kind.is_rotation()).filter_map(|kind| kind.axis());
         let distinct = axes.fold(0, |seen, axis| seen | 1 << axis) == 7;
-        let better = distinct && fits && other < WORTHWHILE * euler;
+        let wanted = match rotations {
+            Rotations::ByCost => other < WORTHWHILE * euler,
+            Rotations::Euler => false,
+            Rotations::Exponential => true,
+        };
+        let better = distinct && fits && wanted;
         chosen.push(better);
         if better {
             for ((slot, values), kind) in
