@@ -1,0 +1,144 @@
+//! Which nodes of a scene are the figure, and what moves them.
+//!
+//! Joints are the skeleton's bones and all nodes that a curve of any stack moves. Meshes, cameras and lights that nothing moves are no part
+//! of the figure unless they carry a joint; this is the same for every stack of a file.
+
+use crate::import::one_line;
+use crate::import::posed::Role;
+use ufbx::{AnimCurve, AnimProp, AnimStack, ElementType, Scene};
+
+/// What a stack moves.
+#[derive(Debug, Default)]
+pub struct Moves {
+    /// Nodes whose place, rotation or scale changes.
+    pub nodes: Vec<bool>,
+    /// Blend channels whose weight changes.
+    pub weights: Vec<bool>,
+    /// How many curves do that.
+    pub curves: usize,
+    /// Nodes whose scale changes.
+    pub scaled: usize,
+}
+
+impl Moves {
+    /// Of one stack.
+    pub fn of(scene: &Scene, stack: &AnimStack) -> Moves {
+        let mut moves =
+            Moves { nodes: vec![false; scene.nodes.len()], weights: vec![false; scene.blend_channels.len()], ..Moves::default() };
+        for property in properties(stack) {
+            let count = curves(property).filter(|curve| varies(curve)).count();
+            if count == 0 {
+                continue;
+            }
+            let index = property.element.typed_id as usize;
+            let slot = match (property.element.type_, &*property.prop_name) {
+                (ElementType::Node, "Lcl Translation" | "Lcl Rotation" | "Lcl Scaling") => moves.nodes.get_mut(index),
+                (ElementType::BlendChannel, "DeformPercent") => moves.weights.get_mut(index),
+                _ => None,
+            };
+            if let Some(slot) = slot {
+                *slot = true;
+                moves.curves += count;
+                moves.scaled += usize::from(&*property.prop_name == "Lcl Scaling");
+            }
+        }
+        moves
+    }
+
+    /// Whether that is nothing.
+    pub fn none(&self) -> bool {
+        self.curves == 0
+    }
+}
+
+fn properties(stack: &AnimStack) -> impl Iterator<Item = &AnimProp> {
+    stack.layers.iter().flat_map(|layer| layer.anim_props.iter())
+}
+
+fn curves(property: &AnimProp) -> impl Iterator<Item = &AnimCurve> {
+    property.anim_value.curves.iter().flatten().map(|curve| &**curve)
+}
+
+/// Keys of one value with flat tangents, as exporters write for what stands still, move nothing; nor does the rounding of f32.
+fn varies(curve: &AnimCurve) -> bool {
+    const ROUNDING: f64 = 1e-5;
+    let keys = &curve.keyframes;
+    let far = |a: f64, b: f64| (a - b).abs() > ROUNDING * b.abs().max(1.0);
+    let sloped = |dy: f32| keys.len() > 1 && f64::from(dy).abs() > ROUNDING;
+    keys.iter().any(|key| far(key.value, keys[0].value) || sloped(key.left.dy) || sloped(key.right.dy))
+}
+
+/// From a stack's first key to its last, in seconds.
+pub fn span(stack: &AnimStack) -> (f64, f64) {
+    let times = properties(stack).flat_map(curves).flat_map(|curve| curve.keyframes.iter()).map(|key| key.time);
+    let (first, last) = times.fold((f64::MAX, f64::MIN), |(first, last), time| (first.min(time), last.max(time)));
+    if first <= last { (first, last) } else { (0.0, 0.0) }
+}
+
+/// Indices of all nodes, each after the one above it and before that one's next child.
+pub fn depth_first(scene: &Scene) -> Vec<usize> {
+    let mut order = Vec::with_capacity(scene.nodes.len());
+    let mut left = vec![scene.root_node.element.typed_id as usize];
+    while let Some(node) = left.pop() {
+        order.push(node);
+        left.extend(scene.nodes[node].children.iter().rev().map(|child| child.element.typed_id as usize));
+    }
+    order
+}
+
+/// The part in the figure of each node of `order`.
+pub fn roles(scene: &Scene, order: &[usize]) -> Vec<Role> {
+    let mut moved = vec![false; scene.nodes.len()];
+    for stack in scene.anim_stacks.iter() {
+        let moves = Moves::of(scene, stack);
+        moved.iter_mut().zip(moves.nodes).for_each(|(moved, moves)| *moved |= moves);
+    }
+    let mut bones: Vec<bool> = scene.nodes.iter().map(|node| node.bone.is_some()).collect();
+    let skinned = scene.skin_clusters.iter().filter_map(|cluster| cluster.bone_node.as_ref());
+    skinned.for_each(|node| bones[node.element.typed_id as usize] = true);
+    let mut role_of = vec![None; scene.nodes.len()];
+    let role = |(index, &node): (usize, &usize)| {
+        role_of[node] = Some(index);
+        let entry = &scene.nodes[node];
+        let parent = entry.parent.as_ref().and_then(|parent| role_of[parent.element.typed_id as usize]);
+        let carried = matches!(entry.attrib_type, ElementType::Unknown | ElementType::Empty | ElementType::Bone);
+        Role { parent, joint: moved[node] || bones[node], moves: moved[node], carried }
+    };
+    order.iter().enumerate().map(role).collect()
+}
+
+/// The blend channels that a curve of any stack changes.
+pub fn weights(scene: &Scene) -> Vec<usize> {
+    let stacks: Vec<Moves> = scene.anim_stacks.iter().map(|stack| Moves::of(scene, stack)).collect();
+    (0..scene.blend_channels.len()).filter(|&channel| stacks.iter().any(|moves| moves.weights[channel])).collect()
+}
+
+/// What a person would call a node.
+pub fn name(scene: &Scene, node: usize) -> String {
+    let name = one_line(&scene.nodes[node].element.name);
+    if name.trim().is_empty() { format!("node{node}") } else { name }
+}
+
+/// Sentences about what motion does not need, or cannot hold.
+pub fn unused(scene: &Scene, left_out: usize, moves: &Moves) -> Vec<String> {
+    let counts = [
+        (left_out, "nodes that nothing moves"),
+        (scene.meshes.len(), "meshes"),
+        (scene.cameras.len(), "cameras"),
+        (scene.lights.len(), "lights"),
+        (scene.materials.len(), "materials"),
+        (scene.blend_channels.len() - weights(scene).len(), "weights that nothing changes"),
+        (scene.constraints.len(), "constraints"),
+        (scene.cache_deformers.len(), "geometry caches"),
+    ];
+    let present = counts.iter().filter(|(count, _)| *count > 0);
+    let words: Vec<String> = present.map(|(count, what)| format!("{count} {what}")).collect();
+    let mut sentences = Vec::new();
+    if moves.scaled > 0 {
+        sentences.push(format!("the scale of {} nodes changes; only the places below them show it", moves.scaled));
+    }
+    if !words.is_empty() {
+        sentences.push(format!("not used: {}", words.join(", ")));
+    }
+    sentences
+}
