@@ -1,7 +1,7 @@
 //! Which nodes of a scene are the figure, and what moves them.
 //!
-//! Joints are the skeleton's bones and all nodes that a curve of any stack moves. Meshes, cameras and lights that nothing moves are no part
-//! of the figure unless they carry a joint; this is the same for every stack of a file.
+//! Joints are the skeleton's bones and the nodes that a curve of any stack moves. Meshes that nothing moves are no part of the figure unless
+//! they carry a joint; cameras, lights and handles are part of it only where there is no body. This is the same for every stack of a file.
 
 use crate::import::one_line;
 use crate::import::posed::Role;
@@ -12,6 +12,8 @@ use ufbx::{AnimCurve, AnimProp, AnimStack, ElementType, Scene};
 pub struct Moves {
     /// Nodes whose place, rotation or scale changes.
     pub nodes: Vec<bool>,
+    /// Nodes whose place changes.
+    pub shifted: Vec<bool>,
     /// Blend channels whose weight changes.
     pub weights: Vec<bool>,
     /// How many curves do that.
@@ -23,8 +25,12 @@ pub struct Moves {
 impl Moves {
     /// Of one stack.
     pub fn of(scene: &Scene, stack: &AnimStack) -> Moves {
-        let mut moves =
-            Moves { nodes: vec![false; scene.nodes.len()], weights: vec![false; scene.blend_channels.len()], ..Moves::default() };
+        let mut moves = Moves {
+            nodes: vec![false; scene.nodes.len()],
+            shifted: vec![false; scene.nodes.len()],
+            weights: vec![false; scene.blend_channels.len()],
+            ..Moves::default()
+        };
         for property in properties(stack) {
             let count = curves(property).filter(|curve| varies(curve)).count();
             if count == 0 {
@@ -39,6 +45,9 @@ impl Moves {
             if let Some(slot) = slot {
                 *slot = true;
                 moves.curves += count;
+                if &*property.prop_name == "Lcl Translation" {
+                    moves.shifted[index] = true;
+                }
                 moves.scaled += usize::from(&*property.prop_name == "Lcl Scaling");
             }
         }
@@ -88,23 +97,47 @@ pub fn depth_first(scene: &Scene) -> Vec<usize> {
 
 /// The part in the figure of each node of `order`.
 pub fn roles(scene: &Scene, order: &[usize]) -> Vec<Role> {
-    let mut moved = vec![false; scene.nodes.len()];
-    for stack in scene.anim_stacks.iter() {
-        let moves = Moves::of(scene, stack);
-        moved.iter_mut().zip(moves.nodes).for_each(|(moved, moves)| *moved |= moves);
-    }
-    let mut bones: Vec<bool> = scene.nodes.iter().map(|node| node.bone.is_some()).collect();
-    let skinned = scene.skin_clusters.iter().filter_map(|cluster| cluster.bone_node.as_ref());
-    skinned.for_each(|node| bones[node.element.typed_id as usize] = true);
+    let stacks: Vec<Moves> = scene.anim_stacks.iter().map(|stack| Moves::of(scene, stack)).collect();
+    let any = |of: fn(&Moves) -> &[bool]| {
+        (0..scene.nodes.len()).map(|node| stacks.iter().any(|moves| of(moves)[node])).collect::<Vec<bool>>()
+    };
+    let (moved, shifted) = (any(|moves| &moves.nodes), any(|moves| &moves.shifted));
+    let bones = bones(scene);
+    let aside = aside(scene, order, &bones, &moved, &shifted);
     let mut role_of = vec![None; scene.nodes.len()];
     let role = |(index, &node): (usize, &usize)| {
         role_of[node] = Some(index);
         let entry = &scene.nodes[node];
         let parent = entry.parent.as_ref().and_then(|parent| role_of[parent.element.typed_id as usize]);
-        let carried = matches!(entry.attrib_type, ElementType::Unknown | ElementType::Empty | ElementType::Bone);
-        Role { parent, joint: moved[node] || bones[node], moves: moved[node], carried }
+        let plain = matches!(entry.attrib_type, ElementType::Unknown | ElementType::Empty | ElementType::Bone);
+        let joint = (moved[node] || bones[node]) && !aside[node];
+        Role { parent, joint, moves: moved[node], carried: plain && !aside[node] }
     };
     order.iter().enumerate().map(role).collect()
+}
+
+/// The skeleton's nodes.
+fn bones(scene: &Scene) -> Vec<bool> {
+    let mut bones: Vec<bool> = scene.nodes.iter().map(|node| node.bone.is_some()).collect();
+    let skinned = scene.skin_clusters.iter().filter_map(|cluster| cluster.bone_node.as_ref());
+    skinned.for_each(|node| bones[node.element.typed_id as usize] = true);
+    bones
+}
+
+/// Nodes that move but are no part of a body: cameras and lights, and, beside a skeleton, empty nodes that change their place and carry no
+/// bone (targets, footsteps).
+fn aside(scene: &Scene, order: &[usize], bones: &[bool], moved: &[bool], shifted: &[bool]) -> Vec<bool> {
+    let mut carries = bones.to_vec();
+    for &node in order.iter().rev() {
+        if let (true, Some(parent)) = (carries[node], &scene.nodes[node].parent) {
+            carries[parent.element.typed_id as usize] = true;
+        }
+    }
+    let watches = |node: usize| matches!(scene.nodes[node].attrib_type, ElementType::Camera | ElementType::Light);
+    let skeleton = bones.contains(&true);
+    let body = skeleton || (0..moved.len()).any(|node| moved[node] && !watches(node));
+    let empty = |node: usize| matches!(scene.nodes[node].attrib_type, ElementType::Unknown | ElementType::Empty);
+    (0..moved.len()).map(|node| (body && watches(node)) || (skeleton && shifted[node] && empty(node) && !carries[node])).collect()
 }
 
 /// The blend channels that a curve of any stack changes.
@@ -122,7 +155,7 @@ pub fn name(scene: &Scene, node: usize) -> String {
 /// Sentences about what motion does not need, or cannot hold.
 pub fn unused(scene: &Scene, left_out: usize, moves: &Moves) -> Vec<String> {
     let counts = [
-        (left_out, "nodes that nothing moves"),
+        (left_out, "nodes that carry no joint"),
         (scene.meshes.len(), "meshes"),
         (scene.cameras.len(), "cameras"),
         (scene.lights.len(), "lights"),
