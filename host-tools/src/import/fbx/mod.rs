@@ -84,7 +84,7 @@ fn chosen<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s AnimStack> {
             .context("no curve changes a node's place or a blend shape's weight, so nothing moves");
     };
     let by_name = stacks.iter().find(|stack| &*stack.element.name == wanted);
-    let by_number = || wanted.parse().ok().and_then(|number: usize| stacks.iter().nth(number));
+    let by_number = || wanted.parse().ok().and_then(|number: usize| stacks.get(number));
     by_name.or_else(by_number).map(|stack| &**stack).ok_or_else(|| {
         let names = stacks.iter().enumerate().map(|(number, stack)| format!("{number} ({})", &*stack.element.name));
         anyhow!("no animation `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
