@@ -183,6 +183,10 @@ fn every_beginning_of_a_world_ends_in_an_error_or_a_motion() {
 fn worlds_that_would_fill_memory_or_stack_are_refused() {
     let deep = format!("#VRML V2.0 utf8\n{}", "Transform { children [ ".repeat(100_000));
     assert!(load(&deep).unwrap_err().contains("nodes in each other"));
+    let prototypes = format!("#VRML V2.0 utf8\n{}", "PROTO A [ ] { ".repeat(100_000));
+    assert!(load(&prototypes).unwrap_err().contains("nodes in each other"));
+    let fields = LEG.replace("center 0 -5 0", &"a 1 ".repeat(100_000));
+    assert!(load(&fields).unwrap_err().contains("more than 256 fields"));
     let lists = format!("#VRML V2.0 utf8\nA {{ b {}", "[ ".repeat(100_000));
     assert!(load(&lists).unwrap_err().contains("expected"));
     let mut laughs = format!("{LEG} DEF l0 Group {{ }}");

@@ -10,13 +10,15 @@ use super::grid::{self, Grid};
 use super::posed::{self, Affine, Node};
 use super::{Options, Source, one_line, read_bytes};
 use crate::motion::Scalar;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use nodes::Moves;
 use std::path::Path;
 use ufbx::{AnimStack, Scene, SceneRoot};
 
 /// Bytes that a scene may take: the largest real one of motion alone takes a tenth.
 const MOST_BYTES: usize = 1 << 31;
+/// Elements of the scene times frames: the evaluation looks at all of them on each.
+const MOST_WORK: usize = 1 << 30;
 /// Nodes in nodes: the deepest skeletons have about 60.
 const DEEPEST: u32 = 1000;
 /// Frames a second where the file does not say.
@@ -112,6 +114,11 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motio
     let kept: Vec<usize> = posed::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
     let weights = nodes::weights(scene);
     posed::check_size(kept.len(), weights.len(), grid)?;
+    ensure!(
+        scene.elements.len().saturating_mul(grid.frames) <= MOST_WORK,
+        "{} frames are too many for this scene; --fps takes fewer",
+        grid.frames
+    );
     let mut joint_of = vec![None; scene.nodes.len()];
     let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
     for (joint, &node) in kept.iter().enumerate() {

@@ -4,7 +4,13 @@ use super::figure::{FIELDS, Moves};
 use super::lexer::Words;
 use super::track::{Track, width};
 use super::world::{World, is_transform};
-use anyhow::Result;
+use anyhow::{Result, bail, ensure};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Fields that all clocks together may drive.
+const MOST_DRIVES: usize = 1 << 16;
+/// Numbers of all keys: an interpolator counts once for every field that it drives.
+const MOST_NUMBERS: usize = 1 << 24;
 
 /// A time sensor that drives interpolators.
 #[derive(Clone, Debug)]
@@ -43,21 +49,20 @@ impl Drive {
 }
 
 /// The time sensors that drive anything, in the file's order.
-pub fn clocks(world: &World) -> Vec<Clock> {
+pub fn clocks(world: &World) -> Result<Vec<Clock>> {
     let found = |(node, name): &(Option<usize>, String)| node.or_else(|| world.names.get(name).copied());
-    let routes: Vec<(usize, usize, &str)> = world
-        .routes
-        .iter()
-        .filter_map(|route| Some((found(&route.source)?, found(&route.target)?, route.event.as_str())))
-        .collect();
-    let mut targets = std::collections::HashMap::new();
+    let known = world.routes.iter();
+    let known = known.filter_map(|route| Some((found(&route.source)?, found(&route.target)?, route.event.as_str())));
+    let routes: BTreeSet<(usize, usize, &str)> = known.collect();
+    let mut count = 0;
+    let mut targets = HashMap::new();
     for &(source, target, event) in &routes {
         if width(world.kind(source)).is_some() {
             let drive = Drive { interpolator: source, target, field: world.set(target, event) };
             targets.entry(source).or_insert_with(Vec::new).push(drive);
         }
     }
-    let mut clocks: std::collections::BTreeMap<usize, Clock> = std::collections::BTreeMap::new();
+    let mut clocks: BTreeMap<usize, Clock> = BTreeMap::new();
     for &(source, target, event) in &routes {
         if world.kind(source) != "TimeSensor" || !event.ends_with("fraction") {
             continue;
@@ -66,9 +71,11 @@ pub fn clocks(world: &World) -> Vec<Clock> {
         let given = world.field(source, "cycleInterval").and_then(|value| value.numbers.first()).copied();
         let seconds = given.filter(|&seconds| seconds > 0.0).unwrap_or(1.0);
         let clock = clocks.entry(source).or_insert_with(|| Clock { node: source, seconds, drives: Vec::new() });
+        count += drives.len();
+        ensure!(count <= MOST_DRIVES, "time sensors drive more than {MOST_DRIVES} fields");
         clock.drives.extend(drives.iter().filter(|drive| drive.place(world).is_some() || drive.scalar(world)).cloned());
     }
-    clocks.into_values().filter(|clock| !clock.drives.is_empty()).collect()
+    Ok(clocks.into_values().filter(|clock| !clock.drives.is_empty()).collect())
 }
 
 /// What runs in one cycle.
@@ -83,9 +90,14 @@ pub struct Tracks {
 /// The tracks that these clocks drive.
 pub fn tracks(world: &World, clocks: &[&Clock], words: &Words) -> Result<Tracks> {
     let mut tracks = Tracks::default();
+    let mut numbers = 0;
     for clock in clocks {
         for drive in &clock.drives {
             let Some(track) = Track::read(world, drive.interpolator, clock.seconds, words)? else { continue };
+            numbers += track.numbers();
+            if numbers > MOST_NUMBERS {
+                bail!(words.error_at(world.nodes[clock.node].line, format!("it drives more than {MOST_NUMBERS} numbers")));
+            }
             match drive.place(world) {
                 Some(index) => {
                     tracks.moves.insert((drive.target, index), track);

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 /// Nodes in each other, those included that `USE` puts there.
 const DEEPEST: usize = 400;
 /// Nodes that are visited: `USE` of `USE` makes a small file large.
-const MOST_VISITS: usize = 1 << 18;
+const MOST_VISITS: usize = 1 << 17;
 
 /// A node with a place, once for every time that it stands in the world.
 #[derive(Clone, Copy, Debug)]
@@ -80,32 +80,65 @@ pub fn roles(world: &World, stands: &[Stand], moved: impl Fn(usize) -> bool) -> 
     stands.iter().map(role).collect()
 }
 
-/// World transforms of all stands at a time.
-pub fn evaluate(world: &World, stands: &[Stand], moves: &Moves, time: f64) -> Vec<Affine> {
+/// A node's fields where nothing moves it, in the order of [`FIELDS`]; rotations as quaternions.
+type Rest = [[f64; 4]; FIELDS.len()];
+
+/// A stand that is to be evaluated.
+pub struct Needed {
+    node: usize,
+    /// Index among those that are needed.
+    parent: Option<usize>,
+    rest: Rest,
+}
+
+/// The stands of the figure at the end, in the order of `kept`, and before them what they stand in.
+pub fn needed(world: &World, stands: &[Stand], kept: &[usize]) -> Vec<Needed> {
+    let mut under = Vec::new();
+    let mut above = kept.first().and_then(|&first| stands[first].parent);
+    while let Some(stand) = above {
+        under.push(stand);
+        above = stands[stand].parent;
+    }
+    let order: Vec<usize> = under.into_iter().rev().chain(kept.iter().copied()).collect();
+    let mut index_of = vec![None; stands.len()];
+    let entry = |(index, &stand): (usize, &usize)| {
+        index_of[stand] = Some(index);
+        let Stand { node, parent } = stands[stand];
+        Needed { node, parent: parent.and_then(|parent| index_of[parent]), rest: rest(world, node) }
+    };
+    order.iter().enumerate().map(entry).collect()
+}
+
+fn rest(world: &World, node: usize) -> Rest {
+    std::array::from_fn(|index| {
+        let (name, width) = FIELDS[index];
+        let given = world.field(node, name).map(|value| &value.numbers).filter(|numbers| numbers.len() == width);
+        let plain = [[0.0; 4], [0.0, 0.0, 1.0, 0.0], [1.0; 4], [0.0, 0.0, 1.0, 0.0], [0.0; 4]][index];
+        let given = given.map_or(plain, |numbers| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0)));
+        if width == 4 { quaternion(given) } else { given }
+    })
+}
+
+/// World transforms at a time.
+pub fn evaluate(stands: &[Needed], moves: &Moves, time: f64) -> Vec<Affine> {
     let mut worlds: Vec<Affine> = Vec::with_capacity(stands.len());
     for stand in stands {
         let above = stand.parent.map_or(UNMOVED, |parent| worlds[parent]);
-        worlds.push(product(&above, &local(world, stand.node, moves, time)));
+        worlds.push(product(&above, &local(stand, moves, time)));
     }
     worlds
 }
 
 /// Translation, center, rotation, scale in its own orientation, and back from the center.
-fn local(world: &World, node: usize, moves: &Moves, time: f64) -> Affine {
-    let field = |index: usize, rest: [f64; 4]| -> [f64; 4] {
-        let (name, width) = FIELDS[index];
-        if let Some(track) = moves.get(&(node, index)) {
-            let value = track.at(time);
-            return std::array::from_fn(|i| value.get(i).copied().unwrap_or(0.0));
-        }
-        let given = world.field(node, name).map(|value| &value.numbers).filter(|numbers| numbers.len() == width);
-        let given = given.map_or(rest, |numbers| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0)));
-        if width == 4 { quaternion(given) } else { given }
+fn local(stand: &Needed, moves: &Moves, time: f64) -> Affine {
+    let field = |index: usize| -> [f64; 4] {
+        let Some(track) = moves.get(&(stand.node, index)) else { return stand.rest[index] };
+        let value = track.at(time);
+        std::array::from_fn(|i| value.get(i).copied().unwrap_or(0.0))
     };
-    let nothing = [0.0, 0.0, 1.0, 0.0];
     let turn = |[x, y, z, w]: [f64; 4]| from_quaternion([w, x, y, z]);
-    let (rotation, leaning) = (turn(field(1, nothing)), turn(field(3, nothing)));
-    let (place, scale, center) = (field(0, [0.0; 4]), field(2, [1.0; 4]), field(4, [0.0; 4]));
+    let [place, rotation, scale, leaning, center] = [0, 1, 2, 3, 4].map(field);
+    let (rotation, leaning) = (turn(rotation), turn(leaning));
     let stretch: Matrix =
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| leaning[i][k] * scale[k] * leaning[j][k]).sum()));
     let linear = crate::fk::product(&rotation, &stretch);

@@ -35,7 +35,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let place = || path.display().to_string();
     let bytes = read_bytes(path)?;
     let (words, world) = open(path, &bytes)?;
-    let clocks = clock::clocks(&world);
+    let clocks = clock::clocks(&world).with_context(place)?;
     let chosen = chosen(&world, &clocks, options.animation.as_deref()).with_context(place)?;
     let tracks = clock::tracks(&world, &chosen, &words)?;
     if tracks.times().is_empty() {
@@ -61,7 +61,7 @@ pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
         let grid = frames(&tracks, clock, fps).with_context(|| path.display().to_string())?;
         Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: tracks.times().len() })
     };
-    clock::clocks(&world).iter().map(entry).collect()
+    clock::clocks(&world).with_context(|| path.display().to_string())?.iter().map(entry).collect()
 }
 
 fn frames(tracks: &Tracks, clock: &Clock, fps: Option<f64>) -> Result<Grid> {
@@ -110,10 +110,11 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
         let parent = stands[stand].parent.and_then(|parent| joint_of[parent]);
         joints.push(Node { name: world.name(stands[stand].node), parent, worlds: Vec::with_capacity(grid.frames) });
     }
+    let stands = figure::needed(world, &stands, &kept);
     let seconds = |frame: usize| grid.first + frame as f64 * grid.frame_time;
     for frame in 0..if joints.is_empty() { 0 } else { grid.frames } {
-        let worlds = figure::evaluate(world, &stands, &tracks.moves, seconds(frame));
-        joints.iter_mut().zip(&kept).for_each(|(joint, &stand)| joint.worlds.push(worlds[stand]));
+        let worlds = figure::evaluate(&stands, &tracks.moves, seconds(frame));
+        joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, world)| joint.worlds.push(*world));
     }
     let scalar = |(name, track): &(String, track::Track)| {
         let values: Vec<f64> = (0..grid.frames).map(|frame| track.at(seconds(frame))[0]).collect();

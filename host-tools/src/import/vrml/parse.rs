@@ -8,6 +8,8 @@ use anyhow::{Result, bail};
 
 /// Nodes and prototypes in each other.
 const DEEPEST: usize = 200;
+/// Fields of one node: those of the standard have at most 50.
+const MOST_FIELDS: usize = 256;
 /// No length, angle or time of a real world comes near it.
 const LARGEST: f64 = 1e9;
 
@@ -143,7 +145,8 @@ impl Parser {
         let kind = name(words, "a prototype's name")?;
         mark(words, b'[', "after a prototype's name")?;
         // Names of the body are its own, and its routes move every instance alike.
-        let outside = (self.world.names.clone(), self.world.routes.len());
+        let outside = (std::mem::take(&mut self.world.names), self.world.routes.len());
+        self.deeper(words)?;
         let interface = self.fields(words, b']')?;
         mark(words, b'{', "before a prototype's body")?;
         let mut first = None;
@@ -155,6 +158,7 @@ impl Parser {
             first = first.or(node);
         }
         words.next();
+        self.depth -= 1;
         self.world.names = outside.0;
         self.world.routes.truncate(outside.1);
         if let Some(first) = first {
@@ -183,10 +187,7 @@ impl Parser {
         };
         let line = words.line();
         mark(words, b'{', "after a node's type")?;
-        self.depth += 1;
-        if self.depth > DEEPEST {
-            bail!(words.error(format!("more than {DEEPEST} nodes in each other")));
-        }
+        self.deeper(words)?;
         let node = self.world.nodes.len();
         self.world.nodes.push(Node { kind, def: def.clone(), line, fields: Vec::new() });
         if let Some(def) = def {
@@ -197,11 +198,22 @@ impl Parser {
         Ok(Some(node))
     }
 
+    fn deeper(&mut self, words: &Words) -> Result<()> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            bail!(words.error(format!("more than {DEEPEST} nodes in each other")));
+        }
+        Ok(())
+    }
+
     /// Fields with their values up to the bracket `end`.
     fn fields(&mut self, words: &mut Words, end: u8) -> Result<Vec<(String, Value)>> {
         let line = words.line();
         let mut fields = Vec::new();
         loop {
+            if fields.len() > MOST_FIELDS {
+                bail!(words.error_at(line, format!("more than {MOST_FIELDS} fields")));
+            }
             match words.peek() {
                 Some(Word::Mark(found)) if found == end => break,
                 None => bail!(words.error_at(line, "the bracket that opens here is never closed")),

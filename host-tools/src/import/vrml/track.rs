@@ -47,6 +47,11 @@ impl Track {
         Ok(Some(Track { times, values, width }))
     }
 
+    /// How many numbers it holds.
+    pub fn numbers(&self) -> usize {
+        self.times.len() + self.values.len()
+    }
+
     /// The value at a time. Before the first key and after the last it is theirs; rotations are quaternions.
     pub fn at(&self, time: f64) -> Vec<f64> {
         let key = self.times.partition_point(|&key| key <= time);
