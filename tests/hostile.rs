@@ -107,6 +107,16 @@ fn gltf_files() {
 }
 
 #[test]
+fn fbx_files() {
+    holds("import_fbx", FILES);
+}
+
+#[test]
+fn vrml_files() {
+    holds("import_vrml", FILES);
+}
+
+#[test]
 fn every_door_has_its_fuzz_target() {
     let targets = files(&paths::root().join("fuzz/fuzz_targets"), |_| true);
     let mut named: Vec<&str> = DOORS.iter().map(|door| door.name).collect();

@@ -35,14 +35,14 @@ use std::path::{Path, PathBuf};
   pantin convert --list fox.glb
   pantin convert fox.glb -o walk.ptn --animation Walk --cm-per-unit 1")]
 pub struct Arguments {
-    /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, our key frames (.keys, see docs/KEYFRAMES.md), functions of time
+    /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, our key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face by Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
     /// below a row of their names (.csv, .tsv)
     input: PathBuf,
     /// The clip to write
     #[arg(short, long, required_unless_present = "list")]
     output: Option<PathBuf>,
-    /// Write nothing; list the animations of a glTF file
+    /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
     #[arg(long)]
     list: bool,
     /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm)
@@ -71,7 +71,7 @@ pub struct Arguments {
     /// Put a snapshot of the player's state into the file each so many seconds: seeking starts from the last one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
-    /// Which animation of a file that holds several (glTF): its name, or its number from 0
+    /// Which animation of a file that holds several (glTF, FBX, VRML): its name, or its number from 0
     #[arg(long, value_name = "NAME|INDEX")]
     animation: Option<String>,
     /// Write the rig to this file, and the clip without it

@@ -1,19 +1,19 @@
 //! `pantin info`.
 
 use super::Files;
-use crate::import::gltf;
+use crate::import::list;
 use anyhow::{Context, Result};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Say what a clip holds, and where its bytes went; or which animations a glTF file holds.
+/// Say what a clip holds, and where its bytes went; or which animations a glTF or FBX file or a VRML world holds.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin info walk.ptn
   pantin info --json walk.ptn
   pantin info figure.glb")]
 pub struct Arguments {
-    /// The clip, or a .glb or .gltf
+    /// The clip, or a .glb, .gltf, .fbx or .wrl
     input: PathBuf,
     /// One JSON object; `motion_bytes` is the file without its rig
     #[arg(long)]
@@ -25,7 +25,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    if arguments.input.extension().is_some_and(|extension| extension == "glb" || extension == "gltf") {
+    if list::chooses(&arguments.input) {
         return animations(&arguments.input, arguments.json);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
@@ -60,11 +60,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// The animations of a glTF file, one a line; `pantin convert --animation` takes their numbers or names.
+/// The animations of a file, one a line; `pantin convert --animation` takes their numbers or names.
 pub fn animations(path: &Path, as_json: bool) -> Result<()> {
-    let entries = gltf::list(path, None)?;
+    let entries = list::list(path, None)?;
     if as_json {
-        let object = |entry: &gltf::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
+        let object = |entry: &list::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
         println!("{}", json!(entries.iter().map(object).collect::<Vec<_>>()));
         return Ok(());
     }

@@ -2,14 +2,23 @@
 
 mod acclaim;
 pub mod amc;
+mod angles;
 mod asf;
 pub mod bvh;
 mod expression;
 pub mod fap;
 mod fap_names;
+#[cfg(feature = "fbx")]
+pub mod fbx;
+#[cfg(not(feature = "fbx"))]
+#[path = "fbx_absent.rs"]
+pub mod fbx;
 pub mod gltf;
+mod grid;
 pub mod keyframes;
+pub mod list;
 pub mod livelink;
+mod posed;
 pub mod procedural;
 mod scalars;
 mod sheet;
@@ -17,6 +26,7 @@ pub mod table;
 pub mod text;
 mod timecode;
 pub mod units;
+pub mod vrml;
 mod written;
 
 use crate::motion::Motion;
@@ -75,6 +85,8 @@ const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
     Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
     Format { name: "glTF", extensions: &["glb", "gltf"], begins: gltf::begins, read: gltf::read },
+    Format { name: "FBX", extensions: &["fbx"], begins: fbx::begins, read: fbx::read },
+    Format { name: "VRML", extensions: &["wrl", "vrml", "x3dv"], begins: vrml::begins, read: vrml::read },
     Format { name: "key frames", extensions: &["keys"], begins: keyframes::begins, read: keyframes::read },
     Format { name: "procedural motion", extensions: &["proc"], begins: procedural::begins, read: procedural::read },
     Format { name: "FAP", extensions: &["fap"], begins: fap::begins, read: fap::read },
@@ -115,6 +127,11 @@ fn format_of(path: &Path) -> Result<&'static Format> {
         bail!("{}: unknown kind of file; expected {}", place(), known.join(" or "));
     };
     Ok(format)
+}
+
+/// Messages that quote a file stay short and on their line.
+pub(crate) fn one_line(text: &str) -> String {
+    text.chars().take(200).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 /// The whole content of `path`.

@@ -85,6 +85,38 @@ pub const GLTF_WORDS: [&str; 14] = [
     "1e38",
 ];
 
+pub const FBX_WORDS: [&str; 12] = [
+    "Objects:  {",
+    "}",
+    "Model: 9, \"Model::x\", \"LimbNode\" {",
+    "C: \"OO\",1,2\n",
+    "C: \"OO\",2,1\n",
+    "*2000000000 {",
+    "a: ",
+    ",46186158000",
+    "9000000000000000000",
+    "\"UnitScaleFactor\"",
+    "-1e38",
+    "nan",
+];
+
+pub const VRML_WORDS: [&str; 14] = [
+    "DEF a ",
+    "USE a ",
+    "Transform {",
+    "children [",
+    "PROTO a [ ] {",
+    " IS a ",
+    "ROUTE a.b TO a.b ",
+    "key [",
+    "keyValue [",
+    "]",
+    "}",
+    "\"",
+    "1e9",
+    "-1e-9",
+];
+
 /// Loads a file of this kind.
 pub fn load(extension: &str, text: &[u8]) -> bool {
     in_folder(|folder| {

@@ -21,13 +21,15 @@ pub struct Door {
 const CLIPS: &[&str] = &["ptn"];
 
 /// All doors.
-pub const DOORS: [Door; 11] = [
+pub const DOORS: [Door; 13] = [
     Door { name: "open_play", enter: clips::open_play, words: &[], vectors: CLIPS },
     Door { name: "crc_fixed_play", enter: clips::crc_fixed_play, words: &[], vectors: CLIPS },
     Door { name: "rig_open", enter: clips::rig_open, words: &[], vectors: &["rig"] },
     Door { name: "import_bvh", enter: |text| imports::load("bvh", text), words: &imports::BVH_WORDS, vectors: &[] },
     Door { name: "import_keys", enter: |text| imports::load("keys", text), words: &imports::KEYS_WORDS, vectors: &[] },
     Door { name: "import_gltf", enter: |bytes| imports::load("gltf", bytes), words: &imports::GLTF_WORDS, vectors: &[] },
+    Door { name: "import_fbx", enter: |bytes| imports::load("fbx", bytes), words: &imports::FBX_WORDS, vectors: &[] },
+    Door { name: "import_vrml", enter: |text| imports::load("wrl", text), words: &imports::VRML_WORDS, vectors: &[] },
     Door { name: "import_amc", enter: imports::amc, words: &imports::AMC_WORDS, vectors: &[] },
     Door { name: "import_fap", enter: |text| imports::load("fap", text), words: &imports::FAP_WORDS, vectors: &[] },
     Door { name: "import_livelink", enter: |text| imports::load("csv", text), words: &imports::LIVELINK_WORDS, vectors: &[] },

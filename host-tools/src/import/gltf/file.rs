@@ -1,5 +1,6 @@
 //! The container: JSON, and the buffers it names, from a .glb, from data URIs, or from files beside it.
 
+pub(crate) use crate::import::one_line;
 use anyhow::{Result, anyhow, bail};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -102,11 +103,6 @@ fn missing_node(root: &Root) -> Option<String> {
         Some(format!("animations[{number}].channels[{channel}].target.node: no such node"))
     };
     root.animations.iter().enumerate().find_map(of_animation)
-}
-
-/// Messages that quote a file stay short and on their line.
-pub fn one_line(text: &str) -> String {
-    text.chars().take(200).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 fn percent_decoded(uri: &str) -> String {

@@ -1,14 +1,14 @@
 //! The channels of the joints: every node's local place and rotation on the frames.
 
-use super::angles;
 use super::file::File;
-use super::grid::Grid;
 use super::place::{Base, Rest, Stretch, settled};
 use super::scalars::Weight;
 use super::track::Track;
 use super::tree::Tree;
 use super::{Channels, POSITIONS, Target, Tracks, Values};
 use crate::fk::{Matrix, apply, from_quaternion, product};
+use crate::import::angles;
+use crate::import::grid::Grid;
 use crate::keys::sample_pieces;
 use crate::motion::{Joint, Keys, Kind, Piece};
 use anyhow::Result;

@@ -1,7 +1,8 @@
 //! The animations of a file.
 
 use super::file::File;
-use super::{grid, tracks};
+use super::tracks;
+use crate::import::grid;
 use crate::import::read_bytes;
 use anyhow::Result;
 use std::path::Path;
@@ -36,7 +37,7 @@ pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
         if count == 0 {
             return Ok(Entry { name, frames: 0, fps: 0.0, tracks: 0 });
         }
-        let grid = grid::grid(&tracks.values().collect::<Vec<_>>(), fps)?;
+        let grid = grid::grid(&tracks.values().map(|track| track.times.as_slice()).collect::<Vec<_>>(), fps)?;
         Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: count })
     };
     (0..file.root.animations.len()).map(entry).collect()

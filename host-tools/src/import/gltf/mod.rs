@@ -4,9 +4,7 @@
 //! rotations are sampled and become Euler angles. Scales that change become scalars, and in any case move the joints below.
 
 mod accessor;
-mod angles;
 mod file;
-mod grid;
 mod joints;
 mod list;
 mod place;
@@ -16,6 +14,7 @@ mod tree;
 
 pub(crate) use place::quaternion;
 
+use super::grid::{self, Grid};
 use super::{Options, Source, read_bytes, units};
 use crate::motion::{Keys, Kind, Motion, Rig};
 use anyhow::{Result, anyhow, bail, ensure};
@@ -23,7 +22,6 @@ use file::{File, one_line};
 use gltf::json::Root;
 use gltf::json::animation::Property;
 use gltf::json::validation::Checked;
-use grid::Grid;
 pub use list::{Entry, list};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -53,7 +51,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     if tracks.is_empty() {
         bail!(file.error(&format!("animations[{number}]"), "no channel moves a node or a weight"));
     }
-    let grid = grid::grid(&tracks.values().collect::<Vec<_>>(), options.fps)
+    let grid = grid::grid(&tracks.values().map(|track| track.times.as_slice()).collect::<Vec<_>>(), options.fps)
         .map_err(|error| file.error(&format!("animations[{number}]"), error))?;
     warnings.push(grid.sentence.clone());
     let tree = tree::tree(&file)?;

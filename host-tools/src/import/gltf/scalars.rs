@@ -1,9 +1,9 @@
 //! Channels that move no joint: morph weights, and scales that change.
 
 use super::file::{File, one_line};
-use super::grid::Grid;
 use super::track::Track;
 use super::{Target, Tracks, Values, joints};
+use crate::import::grid::Grid;
 use crate::keys::sample_pieces;
 use crate::motion::{Keys, Scalar};
 use anyhow::Result;

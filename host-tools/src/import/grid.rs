@@ -4,7 +4,6 @@
 //! follow each other; a usual rate within 0.05 % of it is meant. Keys farther apart than [`LONGEST`] are poses, not frames:
 //! then there are [`PLAIN_FPS`]. The last frame is the first one at or after the last key.
 
-use super::track::Track;
 use anyhow::{Result, ensure};
 use pantin::layout::MAX_FRAMES;
 
@@ -34,9 +33,14 @@ pub struct Grid {
     pub sentence: String,
 }
 
-/// The frames for `tracks`, of which there is at least one.
-pub fn grid(tracks: &[&Track], fps: Option<f64>) -> Result<Grid> {
-    let (fps, why) = match (fps, common(tracks)) {
+/// The frames for tracks with keys at these `times`, of which there is at least one.
+pub fn grid(tracks: &[&[f64]], fps: Option<f64>) -> Result<Grid> {
+    paced(tracks, fps, common(tracks))
+}
+
+/// The same where the distance of keys, in seconds, is known.
+pub fn paced(tracks: &[&[f64]], fps: Option<f64>, distance: Option<f64>) -> Result<Grid> {
+    let (fps, why) = match (fps, distance) {
         (Some(fps), _) => (fps, "as given"),
         (None, Some(seconds)) if seconds <= LONGEST => {
             let meant = USUAL.into_iter().find(|usual| (usual * seconds - 1.0).abs() < MEANT);
@@ -44,9 +48,14 @@ pub fn grid(tracks: &[&Track], fps: Option<f64>) -> Result<Grid> {
         }
         _ => (PLAIN_FPS, "as the keys are far apart; --fps overrides"),
     };
-    ensure!(fps <= MOST_FPS, "keys ask for {fps:.0} frames a second; --fps gives a rate of at most {MOST_FPS}");
-    let times = || tracks.iter().flat_map(|track| &track.times);
+    let times = || tracks.iter().flat_map(|times| times.iter());
     let (first, last) = times().fold((f64::MAX, f64::MIN), |(first, last), &time| (first.min(time), last.max(time)));
+    over(first, last, fps, why)
+}
+
+/// Frames from `first` to `last` seconds; `why` tells where the rate comes from.
+pub fn over(first: f64, last: f64, fps: f64, why: &str) -> Result<Grid> {
+    ensure!(fps <= MOST_FPS, "keys ask for {fps:.0} frames a second; --fps gives a rate of at most {MOST_FPS}");
     let steps = ((last - first) * fps - 1e-3).ceil().max(0.0);
     ensure!(
         steps < f64::from(MAX_FRAMES),
@@ -59,8 +68,9 @@ pub fn grid(tracks: &[&Track], fps: Option<f64>) -> Result<Grid> {
 }
 
 /// The commonest distance of keys, the mean of those that are alike; of equally common ones, the shortest.
-fn common(tracks: &[&Track]) -> Option<f64> {
-    let mut spaces: Vec<f64> = tracks.iter().flat_map(|track| track.times.windows(2).map(|pair| pair[1] - pair[0])).collect();
+pub fn common(tracks: &[&[f64]]) -> Option<f64> {
+    let mut spaces: Vec<f64> = tracks.iter().flat_map(|times| times.windows(2).map(|pair| pair[1] - pair[0])).collect();
+    spaces.retain(|space| *space > 0.0);
     spaces.sort_unstable_by(f64::total_cmp);
     let alike = spaces.chunk_by(|a, b| b - a < ALIKE * a);
     let most = alike.rev().max_by_key(|group| group.len())?;

@@ -1,0 +1,7 @@
+//! The door `import_fbx` of the `hostile` package, which says what must hold.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let door = hostile::door("import_fbx").expect("a door of this name");
+    let _ = (door.enter)(bytes);
+});

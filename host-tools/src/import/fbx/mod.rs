@@ -1,0 +1,156 @@
+//! FBX: one animation stack of a file as a motion of its nodes and blend shapes' weights.
+//!
+//! The `ufbx` crate evaluates layers, pivots, pre- and post-rotations and inherited scales, and turns axes and units to y up and cm; its
+//! world transforms are sampled on the frames.
+
+mod nodes;
+
+use super::gltf::Entry;
+use super::grid::{self, Grid};
+use super::posed::{self, Affine, Node};
+use super::{Options, Source, one_line, read_bytes};
+use crate::motion::Scalar;
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use nodes::Moves;
+use std::path::Path;
+use ufbx::{AnimStack, Scene, SceneRoot};
+
+/// Bytes that a scene may take: the largest real one of motion alone takes a tenth.
+const MOST_BYTES: usize = 1 << 31;
+/// Elements of the scene times frames: the evaluation looks at all of them on each.
+const MOST_WORK: usize = 1 << 30;
+/// Nodes in nodes: the deepest skeletons have about 60.
+const DEEPEST: u32 = 1000;
+/// Frames a second where the file does not say.
+const PLAIN_FPS: f64 = 30.0;
+/// Part of the figure by which a place may waver and still stand: curves are written in f32, and turns multiply their rounding.
+const STANDS: f64 = 5e-6;
+
+/// Whether `head` begins an FBX file, binary or text.
+pub fn begins(head: &[u8]) -> bool {
+    head.starts_with(b"Kaydara FBX Binary") || head.starts_with(b"; FBX")
+}
+
+/// Reads an animation stack of the FBX file `path`.
+pub fn read(path: &Path, options: &Options) -> Result<Source> {
+    let place = || path.display().to_string();
+    let scene = open(path)?;
+    let stack = chosen(&scene, options.animation.as_deref()).with_context(place)?;
+    let moves = Moves::of(&scene, stack);
+    let grid = grid(&scene, stack, options.fps).with_context(place)?;
+    let (motion, left_out) = motion(&scene, stack, &grid).with_context(place)?;
+    let mut warnings = vec![grid.sentence];
+    if moves.none() {
+        warnings.push(format!("stack `{}` moves nothing: a pose", one_line(&stack.element.name)));
+    }
+    warnings.extend(nodes::unused(&scene, left_out, &moves));
+    Ok(Source { motion, unit_known: true, warnings })
+}
+
+/// All stacks of the FBX file `path`.
+pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
+    let scene = open(path)?;
+    let entry = |stack: &AnimStack| {
+        let grid = grid(&scene, stack, fps).with_context(|| path.display().to_string())?;
+        let name = Some(one_line(&stack.element.name)).filter(|name| !name.is_empty());
+        Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: Moves::of(&scene, stack).curves })
+    };
+    scene.anim_stacks.iter().map(|stack| entry(stack)).collect()
+}
+
+fn open(path: &Path) -> Result<SceneRoot> {
+    let bytes = read_bytes(path)?;
+    let limit = || ufbx::AllocatorOpts { memory_limit: MOST_BYTES, ..Default::default() };
+    let options = ufbx::LoadOpts {
+        temp_allocator: limit(),
+        result_allocator: limit(),
+        ignore_geometry: true,
+        ignore_embedded: true,
+        node_depth_limit: DEEPEST,
+        file_format: ufbx::FileFormat::Fbx,
+        target_axes: ufbx::CoordinateAxes::right_handed_y_up(),
+        target_unit_meters: 0.01,
+        ..Default::default()
+    };
+    ufbx::load_memory(&bytes, options)
+        .map_err(|error| anyhow!("{}: not a readable FBX file: {}", path.display(), one_line(&error.description)))
+}
+
+/// The stack that the user names, by name or by number from 0, or the first that moves anything.
+fn chosen<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s AnimStack> {
+    let stacks = &scene.anim_stacks;
+    let Some(wanted) = wanted else {
+        let moving = stacks.iter().find(|stack| !Moves::of(scene, stack).none());
+        return moving
+            .map(|stack| &**stack)
+            .context("no curve changes a node's place or a blend shape's weight, so nothing moves");
+    };
+    let by_name = stacks.iter().find(|stack| &*stack.element.name == wanted);
+    let by_number = || wanted.parse().ok().and_then(|number: usize| stacks.get(number));
+    by_name.or_else(by_number).map(|stack| &**stack).ok_or_else(|| {
+        let names = stacks.iter().enumerate().map(|(number, stack)| format!("{number} ({})", &*stack.element.name));
+        anyhow!("no animation `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
+    })
+}
+
+/// The frames of a stack: as long as it says, or, where that is no time at all, as its curves are.
+fn grid(scene: &Scene, stack: &AnimStack, fps: Option<f64>) -> Result<Grid> {
+    let own = scene.settings.frames_per_second;
+    let (fps, why) = match fps {
+        Some(fps) => (fps, "as given"),
+        None if own.is_finite() && own > 0.0 => (own, "as the file says"),
+        None => (PLAIN_FPS, "as the file does not say"),
+    };
+    let (first, last) = if stack.time_end > stack.time_begin { (stack.time_begin, stack.time_end) } else { nodes::span(stack) };
+    if !(first.is_finite() && last.is_finite()) {
+        bail!("stack `{}`: its time is no number", one_line(&stack.element.name));
+    }
+    grid::over(first, last, fps, why)
+}
+
+/// The motion, and how many nodes are no part of it.
+fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motion::Motion, usize)> {
+    let order = nodes::depth_first(scene);
+    let kept: Vec<usize> = posed::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
+    let weights = nodes::weights(scene);
+    posed::check_size(kept.len(), weights.len(), grid)?;
+    ensure!(
+        scene.elements.len().saturating_mul(grid.frames) <= MOST_WORK,
+        "{} frames are too many for this scene; --fps takes fewer",
+        grid.frames
+    );
+    let mut joint_of = vec![None; scene.nodes.len()];
+    let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
+    for (joint, &node) in kept.iter().enumerate() {
+        joint_of[node] = Some(joint);
+        let parent = scene.nodes[node].parent.as_ref().and_then(|parent| joint_of[parent.element.typed_id as usize]);
+        joints.push(Node { name: nodes::name(scene, node), parent, worlds: Vec::with_capacity(grid.frames) });
+    }
+    let mut scalars: Vec<Vec<f64>> = vec![Vec::with_capacity(grid.frames); weights.len()];
+    for frame in 0..grid.frames {
+        let time = grid.first + frame as f64 * grid.frame_time;
+        let now = ufbx::evaluate_scene(scene, &stack.anim, time, ufbx::EvaluateOpts::default())
+            .map_err(|error| anyhow!("frame {frame}: {}", one_line(&error.description)))?;
+        joints.iter_mut().zip(&kept).for_each(|(joint, &node)| joint.worlds.push(affine(&now.nodes[node].node_to_world)));
+        scalars.iter_mut().zip(&weights).for_each(|(values, &channel)| values.push(now.blend_channels[channel].weight));
+    }
+    let scalars = weights.iter().zip(scalars).map(|(&channel, values)| scalar(scene, channel, values)).collect::<Result<_>>()?;
+    // The root of all, which is ufbx's own, is no node of the file.
+    let left_out = scene.nodes.len() - 1 - kept.len().min(scene.nodes.len() - 1);
+    Ok((posed::motion(joints, scalars, grid, 1.0, STANDS)?, left_out))
+}
+
+/// A weight of 1 is the whole shape; full scale is more where a weight goes beyond.
+fn scalar(scene: &Scene, channel: usize, values: Vec<f64>) -> Result<(Scalar, Vec<f64>)> {
+    let name = one_line(&scene.blend_channels[channel].element.name);
+    let name = if name.is_empty() { format!("weight{channel}") } else { name };
+    let full_scale = values.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
+    if !values.iter().all(|value| value.abs() <= 1e9) {
+        bail!("the weight `{name}` is moved beyond 1e9");
+    }
+    Ok((Scalar { name, full_scale }, values))
+}
+
+fn affine(m: &ufbx::Matrix) -> Affine {
+    [[m.m00, m.m01, m.m02, m.m03], [m.m10, m.m11, m.m12, m.m13], [m.m20, m.m21, m.m22, m.m23]]
+}

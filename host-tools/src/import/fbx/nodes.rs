@@ -1,0 +1,177 @@
+//! Which nodes of a scene are the figure, and what moves them.
+//!
+//! Joints are the skeleton's bones and the nodes that a curve of any stack moves. Meshes that nothing moves are no part of the figure unless
+//! they carry a joint; cameras, lights and handles are part of it only where there is no body. This is the same for every stack of a file.
+
+use crate::import::one_line;
+use crate::import::posed::Role;
+use ufbx::{AnimCurve, AnimProp, AnimStack, ElementType, Scene};
+
+/// What a stack moves.
+#[derive(Debug, Default)]
+pub struct Moves {
+    /// Nodes whose place, rotation or scale changes.
+    pub nodes: Vec<bool>,
+    /// Nodes whose place changes.
+    pub shifted: Vec<bool>,
+    /// Blend channels whose weight changes.
+    pub weights: Vec<bool>,
+    /// How many curves do that.
+    pub curves: usize,
+    /// Nodes whose scale changes.
+    pub scaled: usize,
+}
+
+impl Moves {
+    /// Of one stack.
+    pub fn of(scene: &Scene, stack: &AnimStack) -> Moves {
+        let mut moves = Moves {
+            nodes: vec![false; scene.nodes.len()],
+            shifted: vec![false; scene.nodes.len()],
+            weights: vec![false; scene.blend_channels.len()],
+            ..Moves::default()
+        };
+        for property in properties(stack) {
+            let count = curves(property).filter(|curve| varies(curve)).count();
+            if count == 0 {
+                continue;
+            }
+            let index = property.element.typed_id as usize;
+            let slot = match (property.element.type_, &*property.prop_name) {
+                (ElementType::Node, "Lcl Translation" | "Lcl Rotation" | "Lcl Scaling") => moves.nodes.get_mut(index),
+                (ElementType::BlendChannel, "DeformPercent") => moves.weights.get_mut(index),
+                _ => None,
+            };
+            if let Some(slot) = slot {
+                *slot = true;
+                moves.curves += count;
+                if &*property.prop_name == "Lcl Translation" {
+                    moves.shifted[index] = true;
+                }
+                moves.scaled += usize::from(&*property.prop_name == "Lcl Scaling");
+            }
+        }
+        moves
+    }
+
+    /// Whether that is nothing.
+    pub fn none(&self) -> bool {
+        self.curves == 0
+    }
+}
+
+fn properties(stack: &AnimStack) -> impl Iterator<Item = &AnimProp> {
+    stack.layers.iter().flat_map(|layer| layer.anim_props.iter())
+}
+
+fn curves(property: &AnimProp) -> impl Iterator<Item = &AnimCurve> {
+    property.anim_value.curves.iter().flatten().map(|curve| &**curve)
+}
+
+/// Keys of one value with flat tangents, as exporters write for what stands still, move nothing; nor does the rounding of f32.
+fn varies(curve: &AnimCurve) -> bool {
+    const ROUNDING: f64 = 1e-5;
+    let keys = &curve.keyframes;
+    let far = |a: f64, b: f64| (a - b).abs() > ROUNDING * b.abs().max(1.0);
+    let sloped = |dy: f32| keys.len() > 1 && f64::from(dy).abs() > ROUNDING;
+    keys.iter().any(|key| far(key.value, keys[0].value) || sloped(key.left.dy) || sloped(key.right.dy))
+}
+
+/// From a stack's first key to its last, in seconds.
+pub fn span(stack: &AnimStack) -> (f64, f64) {
+    let times = properties(stack).flat_map(curves).flat_map(|curve| curve.keyframes.iter()).map(|key| key.time);
+    let (first, last) = times.fold((f64::MAX, f64::MIN), |(first, last), time| (first.min(time), last.max(time)));
+    if first <= last { (first, last) } else { (0.0, 0.0) }
+}
+
+/// Indices of all nodes, each after the one above it and before that one's next child.
+pub fn depth_first(scene: &Scene) -> Vec<usize> {
+    let mut order = Vec::with_capacity(scene.nodes.len());
+    let mut left = vec![scene.root_node.element.typed_id as usize];
+    while let Some(node) = left.pop() {
+        order.push(node);
+        left.extend(scene.nodes[node].children.iter().rev().map(|child| child.element.typed_id as usize));
+    }
+    order
+}
+
+/// The part in the figure of each node of `order`.
+pub fn roles(scene: &Scene, order: &[usize]) -> Vec<Role> {
+    let stacks: Vec<Moves> = scene.anim_stacks.iter().map(|stack| Moves::of(scene, stack)).collect();
+    let any = |of: fn(&Moves) -> &[bool]| {
+        (0..scene.nodes.len()).map(|node| stacks.iter().any(|moves| of(moves)[node])).collect::<Vec<bool>>()
+    };
+    let (moved, shifted) = (any(|moves| &moves.nodes), any(|moves| &moves.shifted));
+    let bones = bones(scene);
+    let aside = aside(scene, order, &bones, &moved, &shifted);
+    let mut role_of = vec![None; scene.nodes.len()];
+    let role = |(index, &node): (usize, &usize)| {
+        role_of[node] = Some(index);
+        let entry = &scene.nodes[node];
+        let parent = entry.parent.as_ref().and_then(|parent| role_of[parent.element.typed_id as usize]);
+        let plain = matches!(entry.attrib_type, ElementType::Unknown | ElementType::Empty | ElementType::Bone);
+        let joint = (moved[node] || bones[node]) && !aside[node];
+        Role { parent, joint, moves: moved[node], carried: plain && !aside[node] }
+    };
+    order.iter().enumerate().map(role).collect()
+}
+
+/// The skeleton's nodes.
+fn bones(scene: &Scene) -> Vec<bool> {
+    let mut bones: Vec<bool> = scene.nodes.iter().map(|node| node.bone.is_some()).collect();
+    let skinned = scene.skin_clusters.iter().filter_map(|cluster| cluster.bone_node.as_ref());
+    skinned.for_each(|node| bones[node.element.typed_id as usize] = true);
+    bones
+}
+
+/// Nodes that move but are no part of a body: cameras and lights, and, beside a skeleton, empty nodes that change their place and carry no
+/// bone (targets, footsteps).
+fn aside(scene: &Scene, order: &[usize], bones: &[bool], moved: &[bool], shifted: &[bool]) -> Vec<bool> {
+    let mut carries = bones.to_vec();
+    for &node in order.iter().rev() {
+        if let (true, Some(parent)) = (carries[node], &scene.nodes[node].parent) {
+            carries[parent.element.typed_id as usize] = true;
+        }
+    }
+    let watches = |node: usize| matches!(scene.nodes[node].attrib_type, ElementType::Camera | ElementType::Light);
+    let skeleton = bones.contains(&true);
+    let body = skeleton || (0..moved.len()).any(|node| moved[node] && !watches(node));
+    let empty = |node: usize| matches!(scene.nodes[node].attrib_type, ElementType::Unknown | ElementType::Empty);
+    (0..moved.len()).map(|node| (body && watches(node)) || (skeleton && shifted[node] && empty(node) && !carries[node])).collect()
+}
+
+/// The blend channels that a curve of any stack changes.
+pub fn weights(scene: &Scene) -> Vec<usize> {
+    let stacks: Vec<Moves> = scene.anim_stacks.iter().map(|stack| Moves::of(scene, stack)).collect();
+    (0..scene.blend_channels.len()).filter(|&channel| stacks.iter().any(|moves| moves.weights[channel])).collect()
+}
+
+/// What a person would call a node.
+pub fn name(scene: &Scene, node: usize) -> String {
+    let name = one_line(&scene.nodes[node].element.name);
+    if name.trim().is_empty() { format!("node{node}") } else { name }
+}
+
+/// Sentences about what motion does not need, or cannot hold.
+pub fn unused(scene: &Scene, left_out: usize, moves: &Moves) -> Vec<String> {
+    let counts = [
+        (left_out, "nodes that carry no joint"),
+        (scene.meshes.len(), "meshes"),
+        (scene.cameras.len(), "cameras"),
+        (scene.lights.len(), "lights"),
+        (scene.materials.len(), "materials"),
+        (scene.blend_channels.len() - weights(scene).len(), "weights that nothing changes"),
+        (scene.constraints.len(), "constraints"),
+        (scene.cache_deformers.len(), "geometry caches"),
+    ];
+    let present = counts.iter().filter(|(count, _)| *count > 0);
+    let words: Vec<String> = present.map(|(count, what)| format!("{count} {what}")).collect();
+    let mut sentences = Vec::new();
+    if moves.scaled > 0 {
+        sentences.push(format!("the scale of {} nodes changes; only the places below them show it", moves.scaled));
+    }
+    if !words.is_empty() {
+        sentences.push(format!("not used: {}", words.join(", ")));
+    }
+    sentences
+}

@@ -1,0 +1,21 @@
+//! What stands for the FBX importer where it is not built in.
+
+use super::gltf::Entry;
+use super::{Options, Source};
+use anyhow::{Result, bail};
+use std::path::Path;
+
+/// Whether `head` begins an FBX file, binary or text.
+pub fn begins(head: &[u8]) -> bool {
+    head.starts_with(b"Kaydara FBX Binary") || head.starts_with(b"; FBX")
+}
+
+/// Says how to build with FBX.
+pub fn read(path: &Path, _: &Options) -> Result<Source> {
+    bail!("{}: this pantin is built without FBX; build it with `--features fbx`, which needs a C compiler", path.display())
+}
+
+/// Says how to build with FBX.
+pub fn list(path: &Path, _: Option<f64>) -> Result<Vec<Entry>> {
+    read(path, &Options::default()).map(|_| Vec::new())
+}

@@ -1,0 +1,143 @@
+//! VRML97 and X3D in its classic encoding: what time sensors move through interpolators, as a motion of the world's transforms.
+//!
+//! The scene graph is evaluated on the frames, with centers, scales and their orientations; rotations become Euler angles.
+
+mod clock;
+mod figure;
+mod lexer;
+mod parse;
+mod track;
+mod world;
+
+use super::gltf::Entry;
+use super::grid::{self, Grid};
+use super::posed::{self, Node};
+use super::{Options, Source, one_line, read_bytes};
+use crate::motion::{Motion, Scalar};
+use anyhow::{Context, Result, anyhow, bail};
+use clock::{Clock, Tracks};
+use lexer::Words;
+use std::collections::HashSet;
+use std::path::Path;
+use world::World;
+
+/// Part of the figure by which a place may waver and still stand. The four digits of most exporters waver by more, and are kept.
+const STANDS: f64 = 2e-5;
+
+/// Whether `head` begins a world.
+pub fn begins(head: &[u8]) -> bool {
+    let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+    head.starts_with(b"#VRML V2.0") || head.starts_with(b"#X3D V3")
+}
+
+/// Reads what the longest time sensors of the world `path` move, or the one that is asked for.
+pub fn read(path: &Path, options: &Options) -> Result<Source> {
+    let place = || path.display().to_string();
+    let bytes = read_bytes(path)?;
+    let (words, world) = open(path, &bytes)?;
+    let clocks = clock::clocks(&world).with_context(place)?;
+    let chosen = chosen(&world, &clocks, options.animation.as_deref()).with_context(place)?;
+    let tracks = clock::tracks(&world, &chosen, &words)?;
+    if tracks.times().is_empty() {
+        bail!("{}: the interpolators have no keys, so nothing moves", place());
+    }
+    let grid = frames(&tracks, chosen[0], options.fps).with_context(place)?;
+    let motion = motion(&world, &clocks, &tracks, &grid, &words).with_context(place)?;
+    let mut warnings = vec![grid.sentence.clone()];
+    warnings.extend(doubts(&world, &clocks, &chosen));
+    Ok(Source { motion, unit_known: false, warnings })
+}
+
+/// The time sensors of the world `path` that move anything.
+pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
+    let bytes = read_bytes(path)?;
+    let (words, world) = open(path, &bytes)?;
+    let entry = |clock: &Clock| {
+        let tracks = clock::tracks(&world, &[clock], &words)?;
+        let name = world.nodes[clock.node].def.as_deref().map(one_line);
+        if tracks.times().is_empty() {
+            return Ok(Entry { name, frames: 0, fps: 0.0, tracks: 0 });
+        }
+        let grid = frames(&tracks, clock, fps).with_context(|| path.display().to_string())?;
+        Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: tracks.times().len() })
+    };
+    clock::clocks(&world).with_context(|| path.display().to_string())?.iter().map(entry).collect()
+}
+
+fn frames(tracks: &Tracks, clock: &Clock, fps: Option<f64>) -> Result<Grid> {
+    let times = tracks.times();
+    grid::paced(&times, fps, track::distance(&times, clock.seconds))
+}
+
+fn open<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<(Words<'a>, World)> {
+    let words = Words::new(path, bytes);
+    if bytes.starts_with(b"\x1f\x8b") {
+        bail!("{}: the file is compressed; gunzip it first", path.display());
+    }
+    if bytes.starts_with(b"#VRML V1") {
+        bail!(words.error("VRML 1.0 has no motion; expected `#VRML V2.0`"));
+    }
+    let world = parse::world(words.clone())?;
+    Ok((words, world))
+}
+
+/// The clock that the user names, by its sensor's name or by number from 0, or those with the longest cycle.
+fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Result<Vec<&'c Clock>> {
+    let longest = clocks.iter().map(|clock| clock.seconds).fold(0.0, f64::max);
+    if clocks.is_empty() {
+        bail!("no TimeSensor moves anything through an interpolator");
+    }
+    let Some(wanted) = wanted else { return Ok(clocks.iter().filter(|clock| clock.seconds == longest).collect()) };
+    let by_name = clocks.iter().find(|clock| world.nodes[clock.node].def.as_deref() == Some(wanted));
+    let by_number = || wanted.parse().ok().and_then(|number: usize| clocks.get(number));
+    by_name.or_else(by_number).map(|clock| vec![clock]).ok_or_else(|| {
+        let names = clocks.iter().enumerate().map(|(number, clock)| format!("{number} ({})", world.name(clock.node)));
+        anyhow!("no time sensor `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
+    })
+}
+
+fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words) -> Result<Motion> {
+    let stands = figure::stands(world, words)?;
+    // The figure is the same for every clock.
+    let drives = clocks.iter().flat_map(|clock| &clock.drives);
+    let moved: HashSet<usize> = drives.filter(|drive| drive.place(world).is_some()).map(|drive| drive.target).collect();
+    let kept = posed::figure(&figure::roles(world, &stands, |node| moved.contains(&node)))?;
+    posed::check_size(kept.len(), tracks.scalars.len(), grid)?;
+    let mut joint_of = vec![None; stands.len()];
+    let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
+    for (joint, &stand) in kept.iter().enumerate() {
+        joint_of[stand] = Some(joint);
+        let parent = stands[stand].parent.and_then(|parent| joint_of[parent]);
+        joints.push(Node { name: world.name(stands[stand].node), parent, worlds: Vec::with_capacity(grid.frames) });
+    }
+    let stands = figure::needed(world, &stands, &kept);
+    let seconds = |frame: usize| grid.first + frame as f64 * grid.frame_time;
+    for frame in 0..if joints.is_empty() { 0 } else { grid.frames } {
+        let worlds = figure::evaluate(&stands, &tracks.moves, seconds(frame));
+        joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, world)| joint.worlds.push(*world));
+    }
+    let scalar = |(name, track): &(String, track::Track)| {
+        let values: Vec<f64> = (0..grid.frames).map(|frame| track.at(seconds(frame))[0]).collect();
+        let full_scale = values.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
+        (Scalar { name: name.clone(), full_scale }, values)
+    };
+    posed::motion(joints, tracks.scalars.iter().map(scalar).collect(), grid, 1.0, STANDS)
+}
+
+/// Which clock runs, and what is not used.
+fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if clocks.len() > chosen.len() {
+        let (count, first) = (clocks.len(), chosen[0]);
+        let name = world.name(first.node);
+        doubts.push(format!("{count} time sensors; `{name}` with {} s is read; --animation chooses another", first.seconds));
+    }
+    let used: HashSet<usize> = clocks.iter().flat_map(|clock| &clock.drives).map(|drive| drive.interpolator).collect();
+    let interpolators = (0..world.nodes.len()).filter(|&node| world.kind(node).ends_with("Interpolator"));
+    let unused: Vec<usize> = interpolators.filter(|node| !used.contains(node)).collect();
+    if let Some(&first) = unused.first() {
+        let line = world.nodes[first].line;
+        doubts.push(format!("{} interpolators (one in line {line}) move no joint and no number; left out", unused.len()));
+    }
+    doubts
+}
