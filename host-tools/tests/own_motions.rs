@@ -217,7 +217,7 @@ fn the_walk_is_a_walk() {
 fn the_run_is_a_run() {
     let clip = load("run");
     has_shape("run", &clip.motion, 26, 4);
-    costs(&clip, 112, 16);
+    costs(&clip, 111, 16);
     goes_on_two_legs(&clip);
     loops_smoothly(&clip);
     let [left, right] = ["left", "right"].map(|side| clearance(&clip, side));
