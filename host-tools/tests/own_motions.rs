@@ -197,7 +197,7 @@ fn loops_smoothly(clip: &Clip) {
 fn the_walk_is_a_walk() {
     let clip = load("walk");
     has_shape("walk", &clip.motion, 160, 5);
-    costs(&clip, 160, 20);
+    costs(&clip, 170, 20);
     assert_eq!(clip.motion.frame_time, 1.0 / 120.0);
     goes_on_two_legs(&clip);
     loops_smoothly(&clip);
@@ -217,7 +217,7 @@ fn the_walk_is_a_walk() {
 fn the_run_is_a_run() {
     let clip = load("run");
     has_shape("run", &clip.motion, 26, 4);
-    costs(&clip, 111, 16);
+    costs(&clip, 120, 16);
     goes_on_two_legs(&clip);
     loops_smoothly(&clip);
     let [left, right] = ["left", "right"].map(|side| clearance(&clip, side));
