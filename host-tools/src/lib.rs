@@ -2,6 +2,7 @@
 
 pub mod channel_error;
 pub mod cmd;
+pub mod edit;
 pub mod encode;
 mod euler;
 pub mod expand;

@@ -15,6 +15,7 @@ enum Command {
     Bench(cmd::bench::Bench),
     Demo(cmd::demo::Demo),
     Fuzz(cmd::fuzz::Fuzz),
+    Gallery(cmd::gallery::Gallery),
     Test(cmd::test::Test),
     Vectors(cmd::vectors::Vectors),
 }
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
         Command::Bench(bench) => bench.run(),
         Command::Demo(demo) => demo.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
+        Command::Gallery(gallery) => gallery.run(),
         Command::Test(test) => test.run(),
         Command::Vectors(vectors) => vectors.run(),
     };

@@ -6,7 +6,7 @@ use crate::motion::Motion;
 use anyhow::Result;
 
 /// Bounds for each channel, in place of --max-error.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone, Debug)]
 pub struct ChannelBound {
     /// Instead of --max-error: greatest error of each channel at every frame, in degrees for rotations and in percent for all others (of a
     /// position's way from its least to its greatest value, of a scalar's full scale, of 2 for a quaternion's components)

@@ -1,8 +1,11 @@
 //! `pantin convert`.
 
 use super::channel_bound::{ChannelBound, above_zero};
-use super::write_whole;
+use super::edits::Edits;
+use super::max_error::{self, MaxError};
+use super::{batch, errors, write_whole};
 use crate::channel_error;
+use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Held;
@@ -11,7 +14,7 @@ use crate::fit::parametrize::Rotations;
 use crate::fit::{channelwise, fit};
 use crate::import;
 use crate::motion::Motion;
-use crate::verify::{Report, verify};
+use crate::verify::verify;
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use pantin::layout::MAX_FRAMES;
@@ -22,7 +25,9 @@ use std::path::{Path, PathBuf};
 ///
 /// The bound holds: before anything is written, the clip is played by the device's own decoder and compared, joint by joint
 /// (or channel by channel) and frame by frame, with the motion. If the bound cannot be met, nothing is written.
-#[derive(clap::Args)]
+///
+/// A folder is converted with all motions in it and below it into the folder of --output; files that are up to date are left alone.
+#[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:
   pantin convert walk.bvh -o walk.ptn
   pantin convert walk.bvh -o walk.ptn --max-error 3cm
@@ -33,21 +38,27 @@ use std::path::{Path, PathBuf};
   pantin convert face.csv -o face.ptn --max-scalar-error 2
   pantin convert servos.tsv -o servos.ptn --fps 50
   pantin convert --list fox.glb
-  pantin convert fox.glb -o walk.ptn --animation Walk --cm-per-unit 1")]
+  pantin convert fox.glb -o walk.ptn --animation Walk --cm-per-unit 1
+  pantin convert walk.bvh -o walk.ptn --fps 30 --from 40 --to 71 --loop
+  pantin convert walk.bvh -o legs.ptn --joints '*Leg,*Foot'
+  pantin convert walk.bvh -o walk.ptn --drop '*Thumb*,*Finger*' --mirror
+  pantin convert walk.bvh -o walk.ptn --retarget display --map names.txt
+  pantin convert captures -o clips --jobs 4 --max-error 0.5%")]
 pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, our key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face by Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
     /// below a row of their names (.csv, .tsv)
-    input: PathBuf,
-    /// The clip to write
+    pub(super) input: PathBuf,
+    /// The clip to write, or the folder
     #[arg(short, long, required_unless_present = "list")]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
     #[arg(long)]
     list: bool,
-    /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm)
-    #[arg(long, group = "bound", default_value = "0.5cm", value_parser = length_cm)]
-    max_error: f64,
+    /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm), or
+    /// with % for a part of the figure's height
+    #[arg(long, group = "bound", default_value = "0.5cm", value_parser = max_error::parse)]
+    max_error: MaxError,
     /// How hard to look for few bytes
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
@@ -62,9 +73,12 @@ pub struct Arguments {
     /// Length of the source's unit in cm, instead of a guess
     #[arg(long)]
     cm_per_unit: Option<f64>,
-    /// Frames a second: for sources that do not say, instead of what a face's file says, and at which a table with a time is sampled
+    /// Frames a second of the clip: a file that states its rate, or has keys or times, is resampled; one that does not state any (.amc, a
+    /// table without times) has this one
     #[arg(long)]
     fps: Option<f64>,
+    #[command(flatten)]
+    edits: Edits,
     /// The .asf of an .amc, instead of the one found beside it
     #[arg(long)]
     skeleton: Option<PathBuf>,
@@ -76,28 +90,26 @@ pub struct Arguments {
     animation: Option<String>,
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
-    rig_out: Option<PathBuf>,
+    pub(super) rig_out: Option<PathBuf>,
     /// Print the measured errors as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
     /// Say nothing but errors
     #[arg(short, long)]
-    quiet: bool,
+    pub(super) quiet: bool,
+    /// How many files of a folder to convert at a time; as many as there are processors without it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(super) jobs: Option<u16>,
 }
 
 impl Arguments {
-    fn output(&self) -> &Path {
+    pub(super) fn output(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new(""))
     }
-}
 
-fn length_cm(text: &str) -> Result<f64, String> {
-    let units = [("cm", 1.0), ("mm", 0.1), ("in", 2.54), ("m", 100.0), ("", 1.0)];
-    let (number, factor) =
-        units.iter().find_map(|(unit, factor)| text.strip_suffix(unit).map(|number| (number, factor))).unwrap_or((text, &1.0));
-    match number.trim().parse::<f64>() {
-        Ok(number) if number > 0.0 && number.is_finite() => Ok(number * factor),
-        _ => Err("expected a length above 0, like 0.5cm".into()),
+    /// The same for one file of a folder, without a word.
+    pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
+        Arguments { input, output: Some(output), json: false, quiet: true, jobs: None, ..self.clone() }
     }
 }
 
@@ -106,39 +118,21 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.list {
         return super::info::animations(&arguments.input, arguments.json);
     }
-    let options = import::Options {
-        cm_per_unit: arguments.cm_per_unit,
-        fps: arguments.fps,
-        skeleton: arguments.skeleton.clone(),
-        animation: arguments.animation.clone(),
-    };
-    let imported = import::load(&arguments.input, &options)?;
-    if !arguments.quiet {
-        imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
-        eprintln!("{}", imported.units);
+    if arguments.input.is_dir() {
+        return batch::run(arguments);
     }
-    let motion = imported.motion;
-    let rig = rig::encode(&motion.rig)?;
-    let made = match arguments.channels.bounds(&motion)? {
-        Some(bounds) => by_channel(arguments, &motion, &rig, &bounds)?,
-        None => by_distance(arguments, &motion, &rig)?,
-    };
-    if let Some(path) = &arguments.rig_out {
-        write_whole(path, &rig).context("rig")?;
-    }
-    write_whole(arguments.output(), &made.bytes)?;
+    let made = convert(arguments)?;
     if arguments.json {
         println!("{}", made.json);
     }
     if !arguments.quiet {
-        let raw = motion.frames * motion.rig.channels() * 2;
+        let raw = made.frames * made.channels * 2;
         eprintln!(
-            "{}: {} frames, {} channels; {} bytes ({} per frame at 16 bits, {:.1} % saved); {}",
+            "{}: {} frames, {} channels; {} bytes ({raw} per frame at 16 bits, {:.1} % saved); {}",
             arguments.output().display(),
-            motion.frames,
-            motion.rig.channels(),
+            made.frames,
+            made.channels,
             made.bytes.len(),
-            raw,
             100.0 - 100.0 * made.bytes.len() as f64 / raw as f64,
             made.errors
         );
@@ -147,11 +141,113 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// A clip that keeps its bound.
-struct Made {
-    bytes: Vec<u8>,
+pub(super) struct Made {
+    pub bytes: Vec<u8>,
     json: serde_json::Value,
     /// The errors as a clause for the user.
     errors: String,
+    /// The same for a table's column.
+    pub cell: String,
+    pub frames: usize,
+    channels: usize,
+}
+
+/// Converts one file and writes the clip.
+pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
+    let options = import::Options {
+        cm_per_unit: arguments.cm_per_unit,
+        fps: arguments.fps,
+        skeleton: arguments.skeleton.clone(),
+        animation: arguments.animation.clone(),
+    };
+    let imported = import::load(&arguments.input, &options)?;
+    let say = |sentence: &str| {
+        if !arguments.quiet {
+            eprintln!("{sentence}")
+        }
+    };
+    imported.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+    say(&imported.units);
+    let place = || arguments.input.display().to_string();
+    let edited = arguments.edits.apply(imported.motion, arguments.fps).with_context(place)?;
+    edited.said.iter().for_each(|sentence| say(sentence));
+    let mut motion = edited.motion;
+    let mut bound = match arguments.channels.bounds(&motion)? {
+        Some(bounds) => Bound::Channels(bounds),
+        None => Bound::Distance(arguments.max_error.cm(&motion).with_context(place)?, arguments.max_scalar_error / 100.0),
+    };
+    if arguments.edits.looped {
+        let closed = bound.close(&motion).with_context(place)?;
+        closed_sentences(&closed, &motion).iter().for_each(|sentence| say(sentence));
+        motion = closed.motion;
+    }
+    let rig = rig::encode(&motion.rig)?;
+    let mut made = match &bound {
+        Bound::Channels(bounds) => by_channel(arguments, &motion, &rig, bounds)?,
+        &Bound::Distance(cm, part) => by_distance(arguments, &motion, &rig, cm, part)?,
+    };
+    if let (Some(cm), Some(fields)) = (edited.retarget_max_cm, made.json.as_object_mut()) {
+        fields.insert("retarget_max_cm".into(), json!(cm));
+    }
+    if let Some(path) = &arguments.rig_out {
+        write_whole(path, &rig).context("rig")?;
+    }
+    write_whole(arguments.output(), &made.bytes)?;
+    Ok(made)
+}
+
+/// What a conversion keeps to.
+enum Bound {
+    /// Of joints in cm, and of scalars as a part of full scale.
+    Distance(f64, f64),
+    Channels(Bounds),
+}
+
+impl Bound {
+    /// Closes a loop, and leaves of the bound what that did not take: in the end no joint is farther than all of it from the source.
+    fn close(&mut self, motion: &Motion) -> Result<Closed> {
+        let scalars = |moved: &[f64]| {
+            let parts = motion
+                .rig
+                .scalars
+                .iter()
+                .zip(&moved[motion.rig.joint_channels()..])
+                .map(|(scalar, moved)| moved / scalar.full_scale);
+            parts.fold(0.0, f64::max)
+        };
+        match self {
+            Bound::Distance(cm, part) => {
+                let closed = loop_seam::close(motion, Most::Distance(*cm, *part))?;
+                // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
+                ensure!(
+                    closed.moved_cm < 0.9 * *cm,
+                    "--loop: closing the seam moves {} by {:.3} cm; the bound is {cm} cm",
+                    closed.joint,
+                    closed.moved_cm
+                );
+                *cm -= closed.moved_cm;
+                *part -= scalars(&closed.moved);
+                Ok(closed)
+            }
+            Bound::Channels(bounds) => {
+                let closed = loop_seam::close(motion, Most::Channels(bounds))?;
+                bounds.greatest.iter_mut().zip(&closed.moved).for_each(|(greatest, moved)| *greatest -= moved);
+                Ok(closed)
+            }
+        }
+    }
+}
+
+fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
+    if motion.looped {
+        return vec!["loop: it is one already".into()];
+    }
+    let joint = if closed.joint.is_empty() { String::new() } else { format!(" ({})", closed.joint) };
+    let travel =
+        closed.travel.iter().map(|(name, way)| format!("loop: {name} goes {way:.3} units on each time round, which stays"));
+    let moved =
+        format!("loop: closing the seam moved joints by up to {:.4} cm{joint}; {} frames", closed.moved_cm, closed.motion.frames);
+    std::iter::once(moved).chain(travel).collect()
 }
 
 fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
@@ -176,46 +272,17 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8]) -> Result<Made> {
-    let plan = Plan { rotations: arguments.rotations, ..arguments.effort.plan(arguments.max_error) };
-    let part = arguments.max_scalar_error / 100.0;
+fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8], cm: f64, part: f64) -> Result<Made> {
+    let plan = Plan { rotations: arguments.rotations, ..arguments.effort.plan(cm) };
     let bar = bar(arguments, 1000)?;
     let coded = fit(motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
     bar.finish_and_clear();
     let bytes = file(arguments, &coded, rig)?;
     let not_written = || format!("{}: not written", arguments.output().display());
-    let report = verify(&bytes, rig, motion, arguments.max_error, part).with_context(not_written)?;
-    Ok(Made { bytes, json: errors_json(&report, motion), errors: errors_text(&report, motion) })
-}
-
-/// The errors of what the motion has: joints, scalars or both.
-fn errors_json(report: &Report, motion: &Motion) -> serde_json::Value {
-    let mut fields = serde_json::Map::new();
-    if !motion.rig.joints.is_empty() {
-        fields.insert("max_error_cm".into(), json!(report.max_cm));
-        fields.insert("mean_error_cm".into(), json!(report.mean_cm));
-        fields.insert("worst_joint".into(), json!(report.worst_joint));
-        fields.insert("worst_frame".into(), json!(report.worst_frame));
-    }
-    if !motion.rig.scalars.is_empty() {
-        fields.insert("max_scalar_error_percent".into(), json!(100.0 * report.max_scalar));
-        fields.insert("worst_scalar".into(), json!(report.worst_scalar));
-        fields.insert("worst_scalar_frame".into(), json!(report.worst_scalar_frame));
-    }
-    fields.into()
-}
-
-fn errors_text(report: &Report, motion: &Motion) -> String {
-    let (joint, frame) = (&report.worst_joint, report.worst_frame);
-    let joints = format!("error max {:.4} cm ({joint} at frame {frame}), mean {:.4} cm", report.max_cm, report.mean_cm);
-    let (scalar, frame) = (&report.worst_scalar, report.worst_scalar_frame);
-    let place = if scalar.is_empty() { String::new() } else { format!(" ({scalar} at frame {frame})") };
-    let scalars = format!("scalars' error max {:.3} % of full scale{place}", 100.0 * report.max_scalar);
-    match (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty()) {
-        (false, true) => joints,
-        (true, _) => scalars,
-        (false, false) => format!("{joints}; {scalars}"),
-    }
+    let report = verify(&bytes, rig, motion, cm, part).with_context(not_written)?;
+    let (json, errors, cell) =
+        (errors::to_json(&report, motion).into(), errors::to_text(&report, motion), errors::to_cell(&report, motion));
+    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels() })
 }
 
 fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bounds) -> Result<Made> {
@@ -240,5 +307,6 @@ fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bound
             format!("error max {}, a frame^2; drift max {}", worst.sentence(motion), report.drift.sentence(motion))
         }
     };
-    Ok(Made { bytes, json, errors })
+    let cell = worst.sentence(motion);
+    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels() })
 }

@@ -1,9 +1,13 @@
 //! One file a command; its arguments' doc comment is the manual.
 
+mod batch;
 mod channel_bound;
 pub mod convert;
+mod edits;
+mod errors;
 pub mod expand;
 pub mod info;
+mod max_error;
 pub mod render;
 pub mod train;
 

@@ -39,7 +39,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     if reader.frames == 0 {
         return Err(words.error("no frames; expected a line with the number 1"));
     }
-    let fps = options.fps.or(reader.fps).unwrap_or_else(|| {
+    let fps = reader.fps.or(options.fps).unwrap_or_else(|| {
         warnings.push(format!("the format states no frame rate, so {USUAL_FPS} a second; --fps overrides"));
         USUAL_FPS
     });

@@ -17,7 +17,7 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
+pub fn read(path: &Path, _: &Options) -> Result<Source> {
     let bytes = read_bytes(path)?;
     let mut reader = Reader {
         file: path.display().to_string(),
@@ -38,8 +38,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     if !reader.given.contains(&true) {
         return Err(reader.error("no mask sets a parameter, so nothing can move"));
     }
-    let fps = options.fps.unwrap_or(header.fps);
-    Ok(Source { motion: reader.motion(fps)?, unit_known: false, warnings })
+    Ok(Source { motion: reader.motion(header.fps)?, unit_known: false, warnings })
 }
 
 struct Header {

@@ -26,7 +26,7 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
+pub fn read(path: &Path, _: &Options) -> Result<Source> {
     let bytes = read_bytes(path)?;
     let mut sheet = Sheet::open(path, &bytes)?;
     let named = |column: usize, name: &str| sheet.header.get(column).is_some_and(|header| header.eq_ignore_ascii_case(name));
@@ -37,7 +37,6 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
     let rows = Rows::read(&mut sheet, names.len())?;
     let (grid, fps, mut warnings) = rows.grid(&sheet, names.len())?;
-    let fps = options.fps.unwrap_or(fps);
     if rows.untracked > 0 {
         warnings.push(format!("{} rows hold no values, the face being lost: left out", rows.untracked));
     }

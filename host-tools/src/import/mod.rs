@@ -40,8 +40,8 @@ use std::path::{Path, PathBuf};
 pub struct Options {
     /// Length of the source's unit in cm, instead of a guess.
     pub cm_per_unit: Option<f64>,
-    /// Frames a second, for a source that does not say or says nonsense; instead of what a face's file says; at which a table with a
-    /// time is sampled.
+    /// Frames a second, for a source that does not say or says nonsense, and at which one with keys or times is sampled. A source of frames
+    /// that states its rate keeps it: [`crate::edit::resample`] changes that.
     pub fps: Option<f64>,
     /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
     pub skeleton: Option<PathBuf>,
@@ -109,6 +109,12 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
     motion.rig.cm_per_unit = unit.cm_per_unit;
     unwrap_angles(&mut motion);
     Ok(Imported { motion, units: unit.sentence, warnings })
+}
+
+/// Whether a file's name says that it is of a format that [`load`] knows.
+pub fn is_motion(path: &Path) -> bool {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()))
 }
 
 fn format_of(path: &Path) -> Result<&'static Format> {

@@ -55,6 +55,13 @@ pub fn rest_height_cm(motion: &Motion) -> f64 {
     rest_height(motion) * motion.rig.cm_per_unit
 }
 
+/// Height in cm that errors are shown in percent of: the way from head to foot where names tell it, else the extent at frame 0. `None` for
+/// a motion without joints that are apart.
+pub fn figure_height_cm(motion: &Motion) -> Option<f64> {
+    let named = head_to_foot(&motion.rig.joints, &bones(motion)).map(|height| height * motion.rig.cm_per_unit);
+    Some(named.unwrap_or_else(|| posed_height_cm(motion))).filter(|&height| height > 0.0)
+}
+
 /// Extent in cm of the figure at frame 0 along the axis where it is largest, without what only carries it: the joints before the first that
 /// has several children.
 pub fn posed_height_cm(motion: &Motion) -> f64 {

@@ -20,6 +20,11 @@ impl Canvas {
         Canvas { width, pixels: vec![paper; width * height] }
     }
 
+    /// Rows of its pixels.
+    pub fn pixels(&self) -> &[u8] {
+        &self.pixels
+    }
+
     fn height(&self) -> usize {
         self.pixels.len() / self.width
     }

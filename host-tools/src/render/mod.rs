@@ -2,6 +2,7 @@
 
 pub mod canvas;
 pub mod chart;
+pub mod gallery;
 pub mod gif;
 pub mod screen;
 pub mod sheet;

@@ -1,0 +1,186 @@
+//! `pantin convert FOLDER -o FOLDER`: every motion in and below a folder.
+//!
+//! A clip that is up to date carries its source's modification time in seconds, and in the microseconds beside them a fingerprint of
+//! the source, the options and this program. So nothing but clips is written, and whatever loses the time (an edit, a copy) converts again.
+
+use super::convert::{Arguments, convert};
+use crate::import;
+use anyhow::{Context, Result, bail, ensure};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use serde_json::json;
+use std::collections::HashMap;
+use std::fs::{self, File};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// A file's outcome.
+enum Outcome {
+    Converted { frames: usize, bytes: usize, error: String, seconds: f64 },
+    UpToDate,
+    Refused(String),
+}
+
+/// Converts the folder `arguments.input` into the folder `arguments.output`. Fails if a file did.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let (from, to) = (&arguments.input, arguments.output());
+    ensure!(arguments.rig_out.is_none(), "--rig-out names one file, so it goes with one motion");
+    ensure!(!to.is_file(), "{}: a file; a folder's clips need a folder", to.display());
+    let mut found = Found::default();
+    found.look(from, to)?;
+    ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", from.display(), found.others);
+    let tasks = tasks(arguments, &found.motions);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
+    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(tasks.len() as u64) };
+    bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} files {eta}")?);
+    let convert = |task: &Arguments| {
+        let outcome = outcome(task);
+        bar.inc(1);
+        outcome
+    };
+    // One at a time from the list, so that a long file does not hold back those behind it.
+    let outcomes: Vec<Outcome> = pool.install(|| tasks.par_iter().with_max_len(1).map(convert).collect());
+    bar.finish_and_clear();
+    let refused = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Refused(_))).count();
+    if arguments.json {
+        println!("{}", json!(tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect::<Vec<_>>()));
+    } else if !arguments.quiet {
+        print!("{}", table(from, &tasks, &outcomes));
+    }
+    let fresh = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::UpToDate)).count();
+    if !arguments.quiet {
+        let done = outcomes.len() - refused - fresh;
+        eprintln!("{done} converted, {fresh} up to date, {refused} refused, {} other files passed over", found.others);
+    }
+    ensure!(refused == 0, "{refused} of {} files could not be converted", outcomes.len());
+    Ok(())
+}
+
+/// What a folder holds.
+#[derive(Default)]
+struct Found {
+    motions: Vec<PathBuf>,
+    others: usize,
+}
+
+impl Found {
+    /// Looks in `folder` and below it, in the order of names; not in `skip`, where the clips go, nor behind links to folders.
+    fn look(&mut self, folder: &Path, skip: &Path) -> Result<()> {
+        let entries = fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+        let mut paths: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+        paths.sort();
+        for path in paths {
+            let link = path.is_symlink();
+            if path.is_dir() {
+                if !link && path.canonicalize().ok() != skip.canonicalize().ok() {
+                    self.look(&path, skip)?;
+                }
+            } else if import::is_motion(&path) {
+                self.motions.push(path);
+            } else {
+                self.others += 1;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The arguments for each file. Clips are called as their sources; of sources with one name, each clip has its whole name.
+fn tasks(arguments: &Arguments, motions: &[PathBuf]) -> Vec<Arguments> {
+    let mut names: HashMap<PathBuf, usize> = HashMap::new();
+    motions.iter().for_each(|path| *names.entry(path.with_extension("")).or_default() += 1);
+    let task = |path: &PathBuf| {
+        let below = path.strip_prefix(&arguments.input).unwrap_or(path);
+        let clip = if names[&path.with_extension("")] == 1 {
+            below.with_extension("ptn")
+        } else {
+            let mut name = below.as_os_str().to_owned();
+            name.push(".ptn");
+            name.into()
+        };
+        arguments.for_file(path.clone(), arguments.output().join(clip))
+    };
+    motions.iter().map(task).collect()
+}
+
+fn outcome(task: &Arguments) -> Outcome {
+    let begun = std::time::Instant::now();
+    let convert = || -> Result<Outcome> {
+        let stamp = stamp(task)?;
+        if fs::metadata(task.output()).and_then(|clip| clip.modified()).is_ok_and(|time| time == stamp) {
+            return Ok(Outcome::UpToDate);
+        }
+        if let Some(folder) = task.output().parent() {
+            fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+        }
+        let made = convert(task)?;
+        File::options().write(true).open(task.output())?.set_modified(stamp).context("cannot set the clip's time")?;
+        let seconds = begun.elapsed().as_secs_f64();
+        Ok(Outcome::Converted { frames: made.frames, bytes: made.bytes.len(), error: made.cell, seconds })
+    };
+    match catch_unwind(AssertUnwindSafe(convert)) {
+        Ok(Ok(outcome)) => outcome,
+        Ok(Err(error)) => Outcome::Refused(format!("{error:#}").replace('\n', " ")),
+        Err(_) => Outcome::Refused("a fault of this program stopped the conversion; please report it".into()),
+    }
+}
+
+/// The time that a clip carries if it was made of this source, by these options and this program.
+fn stamp(task: &Arguments) -> Result<SystemTime> {
+    let mut hasher = DefaultHasher::new();
+    let mut take = |path: &Path| -> Result<Duration> {
+        let file = fs::metadata(path).with_context(|| path.display().to_string())?;
+        let time = file.modified()?.duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        (path.file_name(), file.len(), time).hash(&mut hasher);
+        Ok(time)
+    };
+    take(&std::env::current_exe()?)?;
+    let time = take(&task.input)?;
+    // Skeletons and buffers that lie beside some sources are part of them.
+    let folder = task.input.parent().unwrap_or(Path::new("."));
+    let mut beside: Vec<PathBuf> = fs::read_dir(folder)?.flatten().map(|entry| entry.path()).collect();
+    beside.retain(|path| {
+        path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("asf") || ending.eq_ignore_ascii_case("bin"))
+    });
+    beside.sort();
+    beside.iter().try_for_each(|path| take(path).map(|_| ()))?;
+    format!("{task:?}").hash(&mut hasher);
+    let micros = hasher.finish() % 1_000_000;
+    match SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs(time.as_secs()) + Duration::from_micros(micros)) {
+        Some(stamp) => Ok(stamp),
+        None => bail!("{}: its modification time is out of range", task.input.display()),
+    }
+}
+
+impl Outcome {
+    fn json(&self, task: &Arguments) -> serde_json::Value {
+        let file = task.input.display().to_string();
+        match self {
+            Outcome::Converted { frames, bytes, error, seconds } => {
+                json!({"file": file, "frames": frames, "bytes": bytes, "error": error, "seconds": seconds})
+            }
+            Outcome::UpToDate => json!({"file": file, "up_to_date": true}),
+            Outcome::Refused(why) => json!({"file": file, "refused": why}),
+        }
+    }
+}
+
+/// A line a file.
+fn table(root: &Path, tasks: &[Arguments], outcomes: &[Outcome]) -> String {
+    let names: Vec<String> =
+        tasks.iter().map(|task| task.input.strip_prefix(root).unwrap_or(&task.input).display().to_string()).collect();
+    let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
+    let mut out = format!("{:wide$} {:>7} {:>9}  {:26} {:>7}\n", "file", "frames", "bytes", "greatest error", "s");
+    for (name, outcome) in names.iter().zip(outcomes) {
+        out += &match outcome {
+            Outcome::Converted { frames, bytes, error, seconds } => {
+                format!("{name:wide$} {frames:7} {bytes:9}  {error:26} {seconds:7.1}\n")
+            }
+            Outcome::UpToDate => format!("{name:wide$} up to date\n"),
+            Outcome::Refused(why) => format!("{name:wide$} REFUSED: {why}\n"),
+        };
+    }
+    out
+}

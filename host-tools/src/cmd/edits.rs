@@ -1,0 +1,91 @@
+//! The flags of `pantin convert` that change the motion before it is fitted.
+
+use crate::edit::{cut::cut, mirror::mirror, pick::pick, resample::resample, retarget};
+use crate::motion::Motion;
+use anyhow::{Context, Result};
+use std::path::PathBuf;
+
+/// Changes of the motion. They apply in this order: --fps, --from and --to, --joints and --drop, --mirror, --retarget, --loop.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Edits {
+    /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (capital letters or not). A joint that is not kept goes, or is
+    /// held as in the first frame if a kept one hangs on it
+    #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
+    joints: Vec<String>,
+    /// Drop the joints and scalars whose names match, in the same way
+    #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
+    drop: Vec<String>,
+    /// First frame to take, as counted from 0 after --fps
+    #[arg(long, value_name = "FRAME")]
+    from: Option<usize>,
+    /// Last frame to take
+    #[arg(long, value_name = "FRAME")]
+    to: Option<usize>,
+    /// Exchange left and right, as a mirror at x = 0 shows the motion
+    #[arg(long)]
+    mirror: bool,
+    /// Put the motion of any humanoid figure on another body
+    #[arg(long, value_enum, value_name = "BODY")]
+    retarget: Option<Body>,
+    /// Which joints --retarget is to take where their names are unusual: a file of lines `DISPLAY-JOINT JOINT`, as in `LeftShin knee.L`
+    #[arg(long, value_name = "FILE", requires = "retarget")]
+    map: Option<PathBuf>,
+    /// Make a loop: the last frame is to be the first again. Their difference, which must be within the bound, is spread over the clip
+    #[arg(long = "loop", conflicts_with_all = ["exact", "max_accel_error"])]
+    pub looped: bool,
+}
+
+/// A body that motions can be put on.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Body {
+    /// 15 joints: hips, chest, head, and upper arm, forearm, hand, thigh, shin, foot of both sides
+    Display,
+}
+
+/// What the edits gave.
+pub struct Edited {
+    /// The motion.
+    pub motion: Motion,
+    /// How far --retarget is off.
+    pub retarget_max_cm: Option<f64>,
+    /// For the user, a sentence each.
+    pub said: Vec<String>,
+}
+
+impl Edits {
+    /// All but the loop, which depends on the bound. `fps` is the rate to have.
+    pub fn apply(&self, motion: Motion, fps: Option<f64>) -> Result<Edited> {
+        let mut said = Vec::new();
+        let mut motion = motion;
+        if let Some(fps) = fps {
+            let before = (motion.frames, 1.0 / motion.frame_time);
+            motion = resample(&motion, fps)?;
+            if (before.1 / fps - 1.0).abs() > 1e-3 {
+                said.push(format!("{} frames at {:.3} a second became {} at {fps}", before.0, before.1, motion.frames));
+            }
+        }
+        if self.from.is_some() || self.to.is_some() {
+            motion = cut(&motion, self.from, self.to)?;
+        }
+        if !self.joints.is_empty() || !self.drop.is_empty() {
+            motion = pick(&motion, &self.joints, &self.drop)?;
+        }
+        if self.mirror {
+            motion = mirror(&motion)?;
+        }
+        let mut retarget_max_cm = None;
+        if let Some(Body::Display) = self.retarget {
+            let read =
+                |path: &PathBuf| std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()));
+            let map = self.map.as_ref().map(read).transpose()?.unwrap_or_default();
+            let done = retarget::display(&motion, &map)?;
+            let pairs: Vec<String> = done.sources.iter().map(|(display, source)| format!("{display} {source}")).collect();
+            said.push(format!("display's joints: {}", pairs.join(", ")));
+            let (cm, joint, frame) = (done.max_cm, done.joint, done.frame);
+            said.push(format!("retarget: at most {cm:.2} cm from the source's joints ({joint} at frame {frame})"));
+            retarget_max_cm = Some(cm);
+            motion = done.motion;
+        }
+        Ok(Edited { motion, retarget_max_cm, said })
+    }
+}

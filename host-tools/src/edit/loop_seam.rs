@@ -1,0 +1,176 @@
+//! `--loop`: a motion whose last frame is nearly its first becomes one that comes round.
+//!
+//! The last frame is to be the first one again: half of their difference is added towards the end and half taken away towards
+//! the begin, on a straight line over the clip, and the last frame, now equal to the first, left out. So no joint moves by much more
+//! than half of the seam.
+
+use crate::euler;
+use crate::fit::bounds::Bounds;
+use crate::fk::{local, positions};
+use crate::motion::{Kind, Motion};
+use anyhow::{Result, bail, ensure};
+
+/// A loop, and what closing it took.
+#[derive(Clone, Debug)]
+pub struct Closed {
+    /// Marked as a loop.
+    pub motion: Motion,
+    /// The farthest that a joint was moved, in cm.
+    pub moved_cm: f64,
+    /// The joint.
+    pub joint: String,
+    /// The farthest that a channel's value was moved, one a channel, in the motion's units.
+    pub moved: Vec<f64>,
+    /// Channels of the root's place that do not come back: a way forward, a round.
+    pub travel: Vec<(String, f64)>,
+}
+
+/// What the seam of a motion may be.
+#[derive(Clone, Copy, Debug)]
+pub enum Most<'a> {
+    /// Greatest distance in cm of a joint in the last frame from where it is in the first, and of scalars the greatest difference as
+    /// a part of full scale.
+    Distance(f64, f64),
+    /// The greatest difference of each channel.
+    Channels(&'a Bounds),
+}
+
+/// Joints that the closed seam leaves farther than this from each other, in cm, are not closed.
+const CLOSED_CM: f64 = 1e-6;
+
+/// Closes `motion`. Refuses a seam that is more than `most`, naming its worst joint or channel.
+pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
+    if motion.looped {
+        return Ok(Closed {
+            motion: motion.clone(),
+            moved_cm: 0.0,
+            joint: String::new(),
+            moved: vec![0.0; motion.values.len()],
+            travel: Vec::new(),
+        });
+    }
+    ensure!(motion.frames > 2, "--loop: {} frames are no loop; expected 3 or more", motion.frames);
+    let mut steps = differences(motion);
+    let travel = travel(motion, &mut steps, most);
+    check(motion, &steps, &travel, most)?;
+    let last = (motion.frames - 1) as f64;
+    let part = |frame: usize| frame as f64 / last - 0.5;
+    let mut out = motion.clone();
+    for (values, step) in out.values.iter_mut().zip(&steps) {
+        values.iter_mut().enumerate().for_each(|(frame, value)| *value += step * part(frame));
+    }
+    let gap = seam(&out, &travel).0;
+    ensure!(
+        gap < CLOSED_CM,
+        "--loop: the seam's angles are too different to be closed (the pose would still jump by {gap:.3} cm)"
+    );
+    for (keys, step) in out.keys.iter_mut().zip(&steps) {
+        *keys = keys.take().filter(|_| *step == 0.0);
+    }
+    let (moved_cm, joint) = farthest(motion, &out);
+    out.values.iter_mut().for_each(|values| values.truncate(motion.frames - 1));
+    out.keys.iter_mut().for_each(|keys| *keys = None);
+    out.frames -= 1;
+    out.looped = true;
+    let moved = steps.iter().map(|step| step.abs() / 2.0).collect();
+    let named = travel.into_iter().map(|(channel, way)| (motion.rig.channel_name(channel), way)).collect();
+    Ok(Closed { motion: out, moved_cm, joint, moved, travel: named })
+}
+
+/// What takes each channel's last value to the first one's pose: angles to the nearest that turn alike.
+fn differences(motion: &Motion) -> Vec<f64> {
+    let last = motion.frames - 1;
+    let kinds = motion.rig.channel_kinds();
+    let plain = |(values, (_, kind)): (&Vec<f64>, &(Option<usize>, Kind))| {
+        let way = values[0] - values[last];
+        if kind.is_rotation() { euler::nearest(way, 0.0) } else { way }
+    };
+    let mut steps: Vec<f64> = motion.values.iter().zip(&kinds).map(plain).collect();
+    for (joint, first) in motion.rig.joints.iter().zip(motion.rig.first_channels()) {
+        let slots: Vec<usize> = (0..joint.kinds.len()).filter(|&slot| joint.kinds[slot].is_rotation()).collect();
+        let axes: Vec<usize> = slots.iter().filter_map(|&slot| joint.kinds[slot].axis()).collect();
+        if axes.len() == 3 && axes.iter().fold(0, |seen, axis| seen | 1 << axis) == 7 {
+            let turn = local(joint, |slot| motion.values[first + slot][0]).0;
+            let before = std::array::from_fn(|n| motion.values[first + slots[n]][last]);
+            let near = euler::near(&turn, [axes[0], axes[1], axes[2]], before);
+            (0..3).for_each(|n| steps[first + slots[n]] = near[n] - before[n]);
+        }
+    }
+    steps
+}
+
+/// Places of the root that are farther apart than the bound are a way that the figure goes: they stay, and are no part of the seam.
+fn travel(motion: &Motion, steps: &mut [f64], most: Most) -> Vec<(usize, f64)> {
+    let kinds = motion.rig.channel_kinds();
+    let placing = |joint: usize| motion.rig.joints[..joint].iter().all(|above| above.kinds.iter().all(|kind| kind.is_position()));
+    let mut found = Vec::new();
+    for (channel, step) in steps.iter_mut().enumerate() {
+        let (Some(joint), kind) = kinds[channel] else { continue };
+        let limit = match most {
+            Most::Distance(cm, _) => cm / motion.rig.cm_per_unit,
+            Most::Channels(bounds) => bounds.greatest[channel],
+        };
+        if kind.is_position() && placing(joint) && step.abs() > limit {
+            found.push((channel, -*step));
+            *step = 0.0;
+        }
+    }
+    found
+}
+
+/// The greatest distance, in cm, of a joint in the last frame from where it is in the first, but for the travel.
+fn seam(motion: &Motion, travel: &[(usize, f64)]) -> (f64, usize) {
+    let mut ends: Vec<Vec<f64>> = motion.values.iter().map(|values| vec![values[0], values[motion.frames - 1]]).collect();
+    travel.iter().for_each(|&(channel, _)| ends[channel][1] = ends[channel][0]);
+    let places = positions(&motion.rig, &ends, 0).into_iter().zip(positions(&motion.rig, &ends, 1));
+    greatest(places.map(|(a, b)| distance(a, b)))
+}
+
+fn greatest(distances: impl Iterator<Item = f64>) -> (f64, usize) {
+    let indexed = distances.enumerate().map(|(index, distance)| (distance, index));
+    indexed.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+}
+
+fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) -> Result<()> {
+    let rig = &motion.rig;
+    let hint = "--from and --to choose frames that are alike";
+    let limits: Vec<(usize, f64)> = match most {
+        Most::Channels(bounds) => bounds.greatest.iter().copied().enumerate().collect(),
+        Most::Distance(cm, part) => {
+            let (gap, joint) = seam(motion, travel);
+            if gap > cm {
+                let name = rig.joint_name(joint);
+                bail!(
+                    "--loop: {name} is {gap:.3} cm off in the last frame from where it is in the first; the bound is {cm} cm; {hint}"
+                );
+            }
+            rig.scalars
+                .iter()
+                .enumerate()
+                .map(|(index, scalar)| (rig.joint_channels() + index, part * scalar.full_scale))
+                .collect()
+        }
+    };
+    for (channel, limit) in limits {
+        let (name, gap) = (rig.channel_name(channel), steps[channel].abs());
+        ensure!(
+            gap <= limit,
+            "--loop: {name} differs by {gap:.4} in the last frame from the first; the bound is {limit:.4}; {hint}"
+        );
+    }
+    Ok(())
+}
+
+/// How far the farthest joint was moved in any frame, and its name.
+fn farthest(from: &Motion, to: &Motion) -> (f64, String) {
+    let at = |frame: usize| {
+        let (a, b) = (positions(&from.rig, &from.values, frame), positions(&to.rig, &to.values, frame));
+        greatest(a.into_iter().zip(b).map(|(a, b)| distance(a, b)))
+    };
+    let all = (0..from.frames).map(at).max_by(|a, b| a.0.total_cmp(&b.0));
+    all.filter(|_| !from.rig.joints.is_empty()).map_or((0.0, String::new()), |(cm, joint)| (cm, from.rig.joint_name(joint)))
+}

@@ -1,0 +1,12 @@
+//! Changes of a motion between import and fit: a `Motion` in, a `Motion` out.
+
+pub mod curve;
+pub mod cut;
+pub mod display;
+mod display_names;
+pub mod loop_seam;
+pub mod mirror;
+pub mod pick;
+pub mod resample;
+pub mod retarget;
+pub mod sides;

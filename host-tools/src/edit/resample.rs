@@ -1,0 +1,139 @@
+//! `--fps`: the same motion at another rate.
+
+use super::curve;
+use crate::euler::{self, nearest};
+use crate::fk::{Matrix, local, product};
+use crate::keys::sample_pieces;
+use crate::motion::{Keys, Kind, Motion};
+use anyhow::{Result, ensure};
+
+/// Rates closer than this, as a part, are the same.
+const SAME_RATE: f64 = 1e-4;
+/// From one frame to the next, angles that jump farther than this may have changed to another triple for the same pose: the joint's
+/// turn itself runs between them, in degrees.
+const JUMP: f64 = 20.0;
+/// Frames times channels: what importers allow, too.
+const MOST_VALUES: f64 = 1e8;
+
+/// Takes `motion` at `fps` frames a second from its first frame on.
+///
+/// Known curves stay what they are in time; frames have Catmull-Rom cubics through them, which meet every source frame. A loop keeps whole
+/// frames: it lasts up to half of a frame longer or shorter.
+pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
+    let ratio = fps * motion.frame_time;
+    if (ratio - 1.0).abs() < SAME_RATE {
+        return Ok(motion.clone());
+    }
+    let (steps, factor) = if motion.looped {
+        let frames = (motion.frames as f64 * ratio).round().max(1.0);
+        (frames - 1.0, frames / motion.frames as f64)
+    } else {
+        let whole = (1.0 / ratio).round();
+        let factor = if whole >= 1.0 && (ratio * whole - 1.0).abs() < SAME_RATE { 1.0 / whole } else { snapped(ratio) };
+        (((motion.frames - 1) as f64 * factor + 1e-9).floor(), factor)
+    };
+    ensure!((steps + 1.0) * motion.values.len() as f64 <= MOST_VALUES, "--fps {fps} gives too many frames");
+    let times: Vec<f64> = (0..=steps as usize).map(|frame| frame as f64 / factor).collect();
+    let kinds = motion.rig.channel_kinds();
+    let sampled = |(channel, values): (usize, &Vec<f64>)| {
+        let round = round(motion, channel, kinds[channel].1);
+        times.iter().map(|&t| between(values, t, round)).collect()
+    };
+    let mut values: Vec<Vec<f64>> = motion.values.iter().enumerate().map(sampled).collect();
+    turn_over_jumps(motion, &times, &mut values);
+    let mut keys = vec![None; values.len()];
+    for (channel, known) in motion.keys.iter().enumerate() {
+        if let Some(pieces) = known.as_ref().and_then(|keys| curve::pieces(keys, &motion.values[channel])) {
+            let moved = curve::moved(&pieces, 0.0, factor);
+            values[channel] = sample_pieces(&moved, times.len());
+            keys[channel] = Some(Keys::Pieces(moved));
+        }
+    }
+    for (channel, (_, kind)) in kinds.into_iter().enumerate() {
+        if kind == Kind::Scalar {
+            let full = motion.rig.scalars[channel - motion.rig.joint_channels()].full_scale;
+            values[channel].iter_mut().for_each(|value| *value = value.clamp(-full, full));
+        }
+    }
+    Ok(Motion { rig: motion.rig.clone(), frame_time: 1.0 / fps, frames: times.len(), values, keys, looped: motion.looped })
+}
+
+/// Twice as many frames are twice as many, though the file's `0.033333` says a little less.
+fn snapped(ratio: f64) -> f64 {
+    if (ratio / ratio.round().max(1.0) - 1.0).abs() < SAME_RATE { ratio.round() } else { ratio }
+}
+
+/// The source frame at or before `t`, and how far it is from there to the next.
+fn place(t: f64) -> (usize, f64) {
+    let frame = (t + 1e-9).floor();
+    (frame as usize, (t - frame).max(0.0))
+}
+
+/// The Catmull-Rom cubic through the frames at `t`; `round` is what a loop adds each time round, and nothing where there is no loop.
+fn between(values: &[f64], t: f64, round: Option<f64>) -> f64 {
+    let (frame, s) = place(t);
+    let frames = values.len() as isize;
+    let at = |frame: isize| match round {
+        Some(round) => values[frame.rem_euclid(frames) as usize] + round * frame.div_euclid(frames) as f64,
+        None => values[frame.clamp(0, frames - 1) as usize],
+    };
+    let frame = frame as isize;
+    if s < 1e-9 {
+        return at(frame);
+    }
+    let [a, b, c, d] = [-1, 0, 1, 2].map(|step| at(frame + step));
+    b + s / 2.0 * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
+}
+
+/// By how much a channel of a loop is farther each time round: places by a way forward, angles by whole turns.
+fn round(motion: &Motion, channel: usize, kind: Kind) -> Option<f64> {
+    let values = &motion.values[channel];
+    let last = values.len() - 1;
+    let way = 2.0 * values[last] - values[last.saturating_sub(1)] - values[0];
+    let whole = (way / 360.0).round() * 360.0;
+    motion.looped.then_some(if kind.is_position() {
+        way
+    } else if kind.is_rotation() {
+        whole
+    } else {
+        0.0
+    })
+}
+
+/// Puts a joint's own turn, by the shorter way, between frames of which the angles jump.
+fn turn_over_jumps(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
+    let firsts = motion.rig.first_channels();
+    for (joint, first) in motion.rig.joints.iter().zip(firsts) {
+        let slots: Vec<(usize, usize)> = (0..joint.kinds.len())
+            .filter(|&slot| joint.kinds[slot].is_rotation())
+            .filter_map(|slot| Some((first + slot, joint.kinds[slot].axis()?)))
+            .collect();
+        let &[(s0, a0), (s1, a1), (s2, a2)] = &slots[..] else { continue };
+        if (1 << a0 | 1 << a1 | 1 << a2) != 7 {
+            continue;
+        }
+        let turned = |frame: usize| local(joint, |slot| motion.values[first + slot][frame]).0;
+        let angles = |frame: usize| [s0, s1, s2].map(|slot| motion.values[slot][frame]);
+        for (index, &t) in times.iter().enumerate() {
+            let (frame, s) = place(t);
+            if s < 1e-9 || frame + 1 >= motion.frames {
+                continue;
+            }
+            let (from, to) = (angles(frame), angles(frame + 1));
+            if (0..3).all(|n| (to[n] - from[n]).abs() <= JUMP) {
+                continue;
+            }
+            let found = euler::near(&part_way(&turned(frame), &turned(frame + 1), s), [a0, a1, a2], from);
+            for (slot, (angle, before)) in [s0, s1, s2].into_iter().zip(found.into_iter().zip(from)) {
+                values[slot][index] = nearest(angle, before);
+            }
+        }
+    }
+}
+
+/// The turn that is the part `s` of the shortest way from `from` to `to`.
+fn part_way(from: &Matrix, to: &Matrix, s: f64) -> Matrix {
+    let back: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| from[column][row]));
+    let way = crate::fit::figure::exponential_near(&product(&back, to), [0.0; 3]);
+    product(from, &crate::fk::from_exponential(way.map(|x| (x * s).to_radians())))
+}
