@@ -14,7 +14,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    Convert(cmd::convert::Arguments),
+    Convert(Box<cmd::convert::Arguments>),
     Expand(cmd::expand::Arguments),
     Info(cmd::info::Arguments),
     Render(cmd::render::Arguments),
