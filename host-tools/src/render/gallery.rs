@@ -25,8 +25,8 @@ const PICTURE: [usize; 2] = [WIDTH * SCALE, HEIGHT * SCALE];
 const INSIDE: usize = PICTURE[0] * TIMES.len() + 2;
 const GAP: usize = 6;
 const LABEL: usize = 12;
-/// Joints that make a figure; what has fewer is shown as a chart.
-const FIGURE_JOINTS: usize = 4;
+/// Joints one below the other that make a limb; what has no limb is no figure, and shown as a chart.
+const LIMB: usize = 3;
 /// Strips of a chart, and the letters of their names.
 const STRIPS: usize = 8;
 const LETTERS: usize = 20;
@@ -48,8 +48,13 @@ impl Cell {
     /// Draws `clip`. `up` is the axis that is vertical by the source's format, where that says.
     pub fn of(clip: &Clip, up: Option<u8>, label: String) -> Result<Cell> {
         let rig = clip.rig();
-        let joints = rig.joints().filter(|joint| !joint.end_site).count();
-        let pixels = if joints >= FIGURE_JOINTS { figure(clip, up)? } else { chart(&expand(clip)?) };
+        let mut depths: Vec<usize> = Vec::new();
+        for joint in rig.joints() {
+            let above = joint.parent.and_then(|parent| depths.get(usize::from(parent))).copied().unwrap_or(0);
+            depths.push(above + 1);
+        }
+        // The root is where a figure stands, and no part of a limb.
+        let pixels = if depths.iter().any(|&depth| depth > LIMB) { figure(clip, up)? } else { chart(&expand(clip)?) };
         Ok(Cell { label, pixels })
     }
 
@@ -107,7 +112,8 @@ pub fn write(out: impl Write, cells: &[Cell]) -> Result<()> {
     for (index, cell) in cells.iter().enumerate() {
         let (left, top) = (GAP + index % COLUMNS * wide, GAP + index / COLUMNS * high);
         sheet.put(left, top, INSIDE, &cell.pixels);
-        text(&mut sheet, &cell.label, left, top + PICTURE[1] + 2);
+        let label: String = cell.label.chars().take(INSIDE / 6).collect();
+        text(&mut sheet, &label, left, top + PICTURE[1] + 2);
     }
     sheet.write(out)
 }
