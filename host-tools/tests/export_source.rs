@@ -49,7 +49,10 @@ fn a_c_header_holds_the_clip() {
     let (bytes, folder) = (walk(), folder("c"));
     let opened = pantin::Clip::new_checked(&bytes).unwrap();
     let header = c_header(&opened, &bytes, "walk");
-    assert!(header.contains("/*    0 hips: ") && header.contains("160 frames at 120.000 frames a second"), "{header}");
+    assert!(
+        header.contains("/*    0 root: Zposition */") && header.contains("160 frames at 120.000 frames a second"),
+        "{header}"
+    );
     std::fs::write(folder.join("walk.h"), header).unwrap();
     let main = "#include <stdio.h>\n#include \"walk.h\"\n#include \"walk.h\"\nint main(void) { return fwrite(WALK, 1, WALK_LEN, stdout) != sizeof WALK || WALK_FRAMES != 160; }\n";
     std::fs::write(folder.join("main.c"), main).unwrap();
