@@ -47,13 +47,14 @@ impl Reader<'_, '_> {
     /// As `Bytes::varint` reads it; what does not fit is lost.
     #[inline(never)]
     pub(crate) fn varint(&mut self) -> u32 {
-        let mut value = 0;
-        for shift in [0, 7, 14, 21, 28] {
+        let (mut value, mut shift) = (0, 0);
+        while shift < 35 {
             let byte = self.byte();
             value |= u32::from(byte & 0x7f) << shift;
             if byte & 0x80 == 0 {
                 break;
             }
+            shift += 7;
         }
         value
     }

@@ -20,20 +20,21 @@ impl<'a> Bytes<'a> {
     }
 
     /// LEB128: seven bits a byte, least significant first, at most five bytes.
+    #[inline(never)]
     pub fn varint(&mut self) -> Result<u32, OpenError> {
-        let mut value = 0u32;
-        for shift in [0, 7, 14, 21, 28] {
+        let (mut value, mut shift) = (0u32, 0);
+        loop {
             let byte = self.byte()?;
-            let bits = u32::from(byte & 0x7f);
-            if shift == 28 && bits > 0xf {
+            // The fifth byte is the last, with four bits.
+            if shift == 28 && byte > 0xf {
                 return Err(OpenError::Malformed);
             }
-            value |= bits << shift;
+            value |= u32::from(byte & 0x7f) << shift;
             if byte & 0x80 == 0 {
                 return Ok(value);
             }
+            shift += 7;
         }
-        Err(OpenError::Malformed)
     }
 
     /// A varint that holds a signed number as 0, -1, 1, -2, ...

@@ -176,6 +176,7 @@ pub struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     /// Checks `bytes`, all of them one rig with its CRC.
+    #[inline(never)]
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, OpenError> {
         let (body, stored) = bytes.split_last_chunk::<2>().ok_or(OpenError::Truncated)?;
         if crc::of(body) != u16::from_le_bytes(*stored) {
