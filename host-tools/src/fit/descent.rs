@@ -50,7 +50,7 @@ impl Level {
         };
 
         match self {
-            Level::Fast => plan(2, 3, 4.0, false),
+            Level::Fast => plan(2, 3, 3.0, false),
             Level::Default => plan(12, 14, 9.0, true),
             Level::Best => plan(30, 30, 14.0, true),
         }
