@@ -5,6 +5,10 @@ use std::ops::ControlFlow;
 use harness::vectors::{self, Vector};
 use hostile::noise::Noise;
 use pantin::{ChannelState, Clip, Mark, Memory, Player, Rig, Step, Stream, Undo};
+use pantin_tools::encode::clip::{self, Channel, Coded, Start};
+use pantin_tools::encode::rig;
+use pantin_tools::encode::segment::Segment;
+use pantin_tools::motion;
 
 /// Every pose of the clip, by steps.
 fn poses(clip: Clip<'_>) -> Vec<Vec<i32>> {
@@ -292,4 +296,68 @@ fn damage_stays_damage() {
     };
     stream.feed(&vector.clip);
     assert_eq!(stream.step(), Step::Damaged(first));
+}
+
+/// A clip of scalars that all move, and its rig.
+fn scalars(frames: u32, channels: usize) -> (Vec<u8>, Vec<u8>) {
+    let scalar = |index: usize| motion::Scalar { name: format!("s{index}"), full_scale: 1.0 };
+    let figure = motion::Rig { joints: vec![], scalars: (0..channels).map(scalar).collect(), cm_per_unit: 1.0 };
+    let rig = rig::encode(&figure).unwrap();
+    let channel = |index: usize| {
+        let (mut segments, mut frame) = (vec![], 0);
+        while frame + 2 < frames {
+            // Lengths of 1 to 96 frames; accelerations to either side.
+            let mode = ((index + segments.len() * 5) % 16) as u8;
+            let side = if segments.len() % 2 == 0 { 1 } else { -1 };
+            segments.push(Segment { mode, w: side * (1 + index as i32 % 5), k: 0 });
+            frame += u32::from(pantin::length(mode));
+        }
+        // From one end of the range: it runs through it and comes round.
+        Channel { start: Start::Moving { p: i32::MAX >> 20, v: 3, step: 42 }, segments }
+    };
+    let coded = Coded {
+        frames,
+        frame_time_ns: 33_333_333,
+        length_exponent: 0,
+        exponentials: vec![],
+        channels: (0..channels).map(channel).collect(),
+        events: vec![],
+        looped: false,
+    };
+    (clip::encode(&coded, &rig, false).unwrap(), rig)
+}
+
+#[test]
+fn long_clips_and_many_channels_play_by_every_route() {
+    for (frames, channels) in [(65_536, 2), (40, 1000), (40, 1023), (4, 0), (1, 1000)] {
+        let (bytes, rig) = scalars(frames, channels);
+        let clip = Clip::new_checked(&bytes).unwrap();
+        assert_eq!((clip.frames(), clip.moving()), (frames, channels));
+        let poses = poses(clip);
+        assert_eq!(poses.len(), frames as usize);
+        wander(clip, 50, 3, &mut Noise::new(u64::from(frames)));
+        let mut frame = 0;
+        let end = push(
+            Rig::new_checked(&rig).unwrap(),
+            &bytes,
+            Stream::BUFFER,
+            || 500,
+            |step, stream| {
+                if step == Step::Frame {
+                    assert!(stream.pose() == poses[frame], "frame {frame} of {frames}, {channels} channels");
+                    frame += 1;
+                }
+                ControlFlow::Continue(())
+            },
+        );
+        assert_eq!((end, frame), (Step::End, poses.len()));
+    }
+}
+
+#[test]
+fn more_channels_than_the_format_has_are_refused_by_name() {
+    let scalar = |index: usize| motion::Scalar { name: format!("s{index}"), full_scale: 1.0 };
+    let figure = motion::Rig { joints: vec![], scalars: (0..1024).map(scalar).collect(), cm_per_unit: 1.0 };
+    let error = rig::encode(&figure).unwrap_err().to_string();
+    assert!(error.contains("1023") || error.contains("1024"), "{error}");
 }
