@@ -1,27 +1,16 @@
 //! BVH in and out on captured clips, where they are at hand.
 
+#[path = "real/files.rs"]
+mod files;
+
+use files::files;
 use pantin_tools::import::{self, Options};
 use pantin_tools::motion::{Joint, Motion, Rig};
 use pantin_tools::{export, fk};
-use std::path::{Path, PathBuf};
-
-/// The BVH clips of `$PANTIN_DATA`, or of `shared/data` beside the repository.
-fn clips() -> Vec<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("PANTIN_DATA").map_or(beside, PathBuf::from);
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("skipped: no clips at {}; PANTIN_DATA names their folder", folder.display());
-        return Vec::new();
-    };
-    let mut clips: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    clips.retain(|path| path.extension().is_some_and(|extension| extension == "bvh"));
-    clips.sort();
-    clips
-}
 
 #[test]
 fn units_are_guessed_right() {
-    for clip in clips() {
+    for clip in files(&["bvh"]) {
         let name = clip.file_name().unwrap().to_string_lossy().into_owned();
         let expected = match name.as_str() {
             name if name.contains("2_metres") => 100.0,
@@ -40,7 +29,7 @@ fn what_is_written_reads_back() {
     let folder = std::env::temp_dir().join(format!("pantin-bvh-real-clips-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("back.bvh");
-    for clip in clips() {
+    for clip in files(&["bvh"]) {
         let motion = import::load(&clip, &Options::default()).unwrap().motion;
         export::bvh::save(&motion, &path).unwrap();
         let options = Options { cm_per_unit: Some(motion.rig.cm_per_unit), ..Options::default() };

@@ -1,12 +1,16 @@
 //! Captured and synthetic faces, where they are at hand: converted, played, written as a table and read back within the bound.
 
+#[path = "real/files.rs"]
+mod files;
+
+use files::files;
 use pantin_tools::encode::{clip, rig};
 use pantin_tools::expand::expand;
 use pantin_tools::export;
 use pantin_tools::fit::{descent::Level, fit};
 use pantin_tools::import::{self, Options};
 use pantin_tools::verify::verify;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Part of full scale.
 const BOUND: f64 = 0.02;
@@ -15,20 +19,13 @@ const MOST_BYTES_A_SECOND: f64 = 400.0;
 
 /// The `face_*.csv` and `fap_*.fap` files of `$PANTIN_DATA`, or of `shared/data` beside the repository.
 fn faces() -> Vec<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("PANTIN_DATA").map_or(beside, PathBuf::from);
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("skipped: no faces at {}; PANTIN_DATA names their folder", folder.display());
-        return Vec::new();
-    };
     let wanted = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         name.starts_with("face_") && name.ends_with(".csv") || name.starts_with("fap_") && name.ends_with(".fap")
     };
-    let mut faces: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(wanted).collect();
-    faces.sort();
+    let faces: Vec<PathBuf> = files(&["csv", "fap"]).into_iter().filter(wanted).collect();
     if faces.is_empty() {
-        println!("skipped: neither face_*.csv nor fap_*.fap at {}", folder.display());
+        println!("skipped: neither face_*.csv nor fap_*.fap in $PANTIN_DATA");
     }
     faces
 }

@@ -2,11 +2,14 @@
 //! conversion within a bound.
 #![cfg(feature = "fbx")]
 
+#[path = "real/probe.rs"]
+mod probe;
 mod real;
 
 use pantin_tools::fk;
 use pantin_tools::import::{self, Options};
-use pantin_tools::motion::{Joint, Motion};
+use pantin_tools::motion::Motion;
+use probe::probed;
 use real::{SAME, converts, distance, files, height};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -22,19 +25,7 @@ fn motions() -> Vec<(PathBuf, usize, Motion)> {
             (path.clone(), animation, motion)
         })
     };
-    files("fbx").into_iter().flat_map(of_file).collect()
-}
-
-/// The motion with two End Sites a joint, `length` along its own x and y: they show how it is turned.
-fn probed(motion: &Motion, length: f64) -> Motion {
-    let mut probed = motion.clone();
-    for parent in 0..motion.rig.joints.len() {
-        for offset in [[length, 0.0, 0.0], [0.0, length, 0.0]] {
-            let end = Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true };
-            probed.rig.joints.push(end);
-        }
-    }
-    probed
+    files(&["fbx"]).into_iter().flat_map(of_file).collect()
 }
 
 /// The part of `v` along an axis of the file.

@@ -1,34 +1,28 @@
 //! glTF files of others, where they are at hand: places against an evaluation of the file's own matrices, and conversion within a bound.
 
+#[path = "real/files.rs"]
+mod files;
+#[path = "real/places.rs"]
+mod places;
+#[path = "real/probe.rs"]
+mod probe;
+
+use files::files;
 use gltf::animation::util::ReadOutputs;
 use gltf::animation::{Interpolation, Property};
 use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::fit;
 use pantin_tools::import::{self, Options, units};
-use pantin_tools::motion::{Joint, Motion};
+use pantin_tools::motion::Motion;
 use pantin_tools::{encode, export, fk, verify};
+use places::{SAME, distance};
+use probe::probed;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Part of the figure's height by which places may differ from the file's.
-const SAME: f64 = 1e-4;
 /// Part of the figure's height, and of scalars' full scale, that conversions keep to.
 const BOUND: f64 = 0.005;
 const SCALAR_BOUND: f64 = 0.02;
-
-/// The glTF files of `$PANTIN_DATA`, or of `shared/data` beside the repository.
-fn files() -> Vec<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("PANTIN_DATA").map_or(beside, PathBuf::from);
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("skipped: no files at {}; PANTIN_DATA names their folder", folder.display());
-        return Vec::new();
-    };
-    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "glb" || extension == "gltf"));
-    files.sort();
-    files
-}
 
 /// Every animation of every file.
 fn motions() -> Vec<(PathBuf, usize, Motion)> {
@@ -40,7 +34,7 @@ fn motions() -> Vec<(PathBuf, usize, Motion)> {
             (path.clone(), animation, motion)
         })
     };
-    files().into_iter().flat_map(of_file).collect()
+    files(&["glb", "gltf"]).into_iter().flat_map(of_file).collect()
 }
 
 /// Keys of a node's translation, rotation or scale, read by the gltf crate.
@@ -169,22 +163,6 @@ fn buffers(path: &Path, document: &gltf::Document, blob: Option<Vec<u8>>) -> Vec
         },
     };
     document.buffers().map(read).collect()
-}
-
-/// The motion with two End Sites a joint, `length` along its own x and y: they show how it is turned.
-fn probed(motion: &Motion, length: f64) -> Motion {
-    let mut probed = motion.clone();
-    for parent in 0..motion.rig.joints.len() {
-        for offset in [[length, 0.0, 0.0], [0.0, length, 0.0]] {
-            let end = Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true };
-            probed.rig.joints.push(end);
-        }
-    }
-    probed
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }
 
 #[test]

@@ -156,7 +156,7 @@ impl World {
 
 #[test]
 fn joints_stand_where_the_scene_graph_has_them() {
-    for path in files("wrl") {
+    for path in files(&["wrl"]) {
         let motion = import::load(&path, &Options::default()).unwrap_or_else(|error| panic!("{error:#}")).motion;
         let world = parse(&std::fs::read_to_string(&path).unwrap());
         let sensor = world.nodes.values().find(|node| node.kind == "TimeSensor").unwrap();
@@ -180,7 +180,7 @@ fn joints_stand_where_the_scene_graph_has_them() {
 
 #[test]
 fn worlds_convert_and_expand_within_the_bound() {
-    for path in files("wrl") {
+    for path in files(&["wrl"]) {
         let motion = import::load(&path, &Options::default()).unwrap().motion;
         converts(&path.display().to_string(), &motion);
     }

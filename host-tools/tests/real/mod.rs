@@ -1,41 +1,25 @@
 //! Files of others, where they are at hand, and what every conversion of one must keep.
 
+mod files;
+mod places;
+
+pub use files::files;
+pub use places::{SAME, distance};
+
 use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::fit;
 use pantin_tools::import::units;
 use pantin_tools::motion::Motion;
 use pantin_tools::{encode, expand, fk, verify};
-use std::path::{Path, PathBuf};
 
-/// Part of the figure's height by which places may differ from the file's.
-pub const SAME: f64 = 1e-4;
 /// Part of the figure's height, and of scalars' full scale, that conversions keep to.
 const BOUND: f64 = 0.005;
 const SCALAR_BOUND: f64 = 0.02;
-
-/// The files of `$PANTIN_DATA`, or of `shared/data` beside the repository, with this extension.
-pub fn files(extension: &str) -> Vec<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let folder = std::env::var_os("PANTIN_DATA").map_or(beside, PathBuf::from);
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("skipped: no files at {}; PANTIN_DATA names their folder", folder.display());
-        return Vec::new();
-    };
-    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    files.retain(|path| path.extension().is_some_and(|found| found == extension));
-    files.sort();
-    files
-}
 
 /// The figure's height in cm, or 1 for what has none.
 pub fn height(motion: &Motion) -> f64 {
     let height = units::posed_height_cm(motion);
     if height > 0.0 { height } else { 1.0 }
-}
-
-/// Between two places.
-pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Converts at 0.5 % of the figure's height and 2 % of scalars' full scale, expands, and compares every place and every scalar.
