@@ -8,7 +8,8 @@ use embedded_graphics::primitives::Rectangle;
 use pantin::{Kind, layout::MAX_JOINTS};
 use pantin_figure::camera::DISTANCE;
 use pantin_figure::kinematics::Kinematics;
-use pantin_figure::{Canvas, Detail, Skeleton, Stage, Track, View};
+use pantin_figure::surface::OnTarget;
+use pantin_figure::{Canvas, Detail, Look, Skeleton, Stage, Track, View};
 use pantin_tools::motion::{Joint, Motion, Rig};
 use pantin_tools::{encode, fk, import};
 use std::path::PathBuf;
@@ -69,14 +70,14 @@ impl Case {
     /// Greatest distance of a joint from its true place, in figure units, over every `stride`-th frame.
     fn worst(&self, stride: usize) -> f64 {
         let skeleton = self.skeleton(Detail::Full);
-        let mut joints = Kinematics::new();
+        let mut joints: Kinematics<JOINTS> = Kinematics::NEW;
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
             joints.place(&skeleton, &self.pose(frame));
             let truth = self.truth(&skeleton, frame);
-            assert_eq!(truth.len(), joints.joints().len());
-            for (joint, truth) in joints.joints().iter().zip(truth) {
-                worst = worst.max(distance(joint.position.map(f64::from), truth));
+            assert_eq!(truth.len(), joints.positions().len());
+            for (bone, position) in skeleton.bones.iter().zip(joints.positions()) {
+                worst = worst.max(distance(position.map(f64::from), truth[usize::from(bone.joint)]));
             }
         }
         worst
@@ -99,9 +100,10 @@ impl Case {
             let target = stage.camera().target(stage.joints().position(hips));
             let truth = self.truth(stage.skeleton(), frame);
             // A joint above the hips only says where the clip began: it may be far away.
-            for (joint, place) in stage.joints().joints().iter().zip(&truth).skip(hips) {
-                let got = stage.camera().project(target, joint.position);
-                let want = project(&stage, view, truth[hips], target, *place);
+            let root = truth[usize::from(stage.skeleton().bones[hips].joint)];
+            for (bone, position) in stage.skeleton().bones.iter().zip(stage.joints().positions()).skip(hips) {
+                let got = stage.camera().project(target, *position);
+                let want = project(&stage, view, root, target, truth[usize::from(bone.joint)]);
                 worst = worst.max((f64::from(got.x) - want[0]).hypot(f64::from(got.y) - want[1]) / 16.0);
             }
         }
@@ -221,7 +223,7 @@ fn euler_slots_that_hold_an_exponential_map_turn_as_one() {
     let slots = with(&[Kind::Zrotation, Kind::Xrotation, Kind::Yrotation]);
     let exponent = slots.rig().length_exponent();
     let skeleton = Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, &slots.pose(0), exponent, |joint| joint == 0).unwrap();
-    let mut joints = Kinematics::new();
+    let mut joints: Kinematics<JOINTS> = Kinematics::NEW;
     joints.place(&skeleton, &slots.pose(0));
     let error = distance(joints.position(1).map(f64::from), truth.truth(&skeleton, 0)[1]);
     assert!(error / f64::from(skeleton.size) < 5e-4, "{error}");
@@ -267,23 +269,26 @@ fn a_person_is_drawn_as_a_person() {
     let case = Case::new(person());
     let canvas = Canvas { width: 40, height: 40 };
     let view = View { orbit: 0, tilt: 0, ..View::default() };
-    let mut stage = Stage::new(case.skeleton(Detail::Body), canvas, view, |visit| visit(&case.pose(0)));
+    let mut stage: Stage<JOINTS> = Stage::new(case.skeleton(Detail::Body), canvas, view, |visit| visit(&case.pose(0)));
     let mut display = MockDisplay::<BinaryColor>::new();
     display.set_allow_overdraw(true);
     display.set_allow_out_of_bounds_drawing(true);
     stage.look(&case.pose(0));
-    stage.lines().draw(&mut display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)))).unwrap();
+    let mut inside = display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)));
+    let mut surface = OnTarget::new(&mut inside);
+    stage.lines().draw_on(&mut surface, Look { ground: false, ..Look::default() });
+    surface.outcome().unwrap();
     #[rustfmt::skip]
     display.assert_pattern(&[
         "........................................",
         "...................###..................",
-        "..................##.##.................",
         "..................#...#.................",
-        "..................##.##.................",
+        "..................#...#.................",
+        "..................#...#.................",
         "...................###..................",
         "....................#...................",
         "....................#...................",
-        ".....##############################.....",
+        "..................#...#.................",
         "....................#...................",
         "....................#...................",
         "....................#...................",
@@ -293,7 +298,7 @@ fn a_person_is_drawn_as_a_person() {
         "....................#...................",
         "....................#...................",
         "....................#...................",
-        ".................######.................",
+        "..................#...#.................",
         ".................#....#.................",
         ".................#....#.................",
         "................#......#................",

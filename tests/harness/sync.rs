@@ -1,11 +1,11 @@
 //! The firmware's `sync` mode: it shows a frame, tells its number on the serial port, and waits for a byte.
 //!
-//! Firmware to host: the frame's number, 4 bytes, little endian. Host to firmware: `n` for the next frame, `q` to end
-//! with code 0. Time plays no part, so every picture is of a known frame.
+//! Firmware to host: `F` and the frame's number, 4 bytes, the least first. Host to firmware: a line feed for the next frame, `q` to end
+//! with code 0; before either, letters of the app's keys. Time plays no part, so every picture is of a known frame.
 
 use std::io::{Read, Write};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use crate::qemu::{Launch, Outcome, Qemu};
 use pantin_tools::render::screen::Picture;
@@ -18,7 +18,7 @@ pub fn play(launch: Launch, frames: usize, mut see: impl FnMut(u32, Picture) -> 
     let mut qemu = launch.argument(ARGUMENT).serial().display().start()?;
     for played in 0..frames {
         if played > 0 {
-            answer(&mut qemu, b'n')?;
+            answer(&mut qemu, b'\n')?;
         }
         let number = shown(&mut qemu)?;
         let picture = qemu.picture()?;
@@ -28,11 +28,16 @@ pub fn play(launch: Launch, frames: usize, mut see: impl FnMut(u32, Picture) -> 
     qemu.wait()
 }
 
+/// Begins the message that a frame is shown.
+const SHOWN: u8 = b'F';
+
 /// Waits until the firmware has shown a frame, and returns its number.
 fn shown(qemu: &mut Qemu) -> Result<u32> {
-    let mut number = [0; 4];
-    let read = qemu.serial()?.read_exact(&mut number);
+    let mut message = [0; 5];
+    let read = qemu.serial()?.read_exact(&mut message);
     read.context("no frame number from the firmware").map_err(|error| qemu.explain(error))?;
+    let [letter, number @ ..] = message;
+    ensure!(letter == SHOWN, "the firmware sent {letter:#x} in place of a frame's number");
     Ok(u32::from_le_bytes(number))
 }
 

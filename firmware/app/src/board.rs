@@ -1,13 +1,17 @@
 //! What a board does for the program.
 
-use crate::run::BYTES;
+use crate::keys::Key;
+use pantin_figure::surface::{Frame, Layout};
 
 /// The hardware.
 pub trait Board {
-    /// Shows a picture: rows from the top, two pixels a byte, the left one in the high half.
-    fn flush(&mut self, picture: &[u8; BYTES]);
+    /// How the display keeps its pixels.
+    type Layout: Layout;
 
-    /// Starts a timer that ticks every `nanoseconds`.
+    /// Brings the display up to date: what [`Frame::send`] names has changed.
+    fn show(&mut self, frame: &mut Frame<Self::Layout>);
+
+    /// Starts a timer that ticks every `nanoseconds`, or changes its pace.
     fn start_timer(&mut self, nanoseconds: u32);
 
     /// Waits for the timer and tells how many times it ticked since the last call: at least once.
@@ -19,10 +23,20 @@ pub trait Board {
     /// Waits for a byte from the line.
     fn receive(&mut self) -> u8;
 
+    /// A byte from the line, if one is there.
+    fn poll(&mut self) -> Option<u8>;
+
+    /// A button that was pressed since the last call.
+    fn button(&mut self) -> Option<Key> {
+        None
+    }
+
     /// Begins a stretch whose instructions an emulator counts. Costs one instruction that does nothing.
+    #[inline(always)]
     fn mark_start(&mut self) {}
 
     /// Ends it.
+    #[inline(always)]
     fn mark_stop(&mut self) {}
 }
 
@@ -31,6 +45,6 @@ pub trait Board {
 pub enum Exit {
     /// It did what it was asked to.
     Done,
-    /// The clip cannot be played on this board; the log says why.
+    /// A clip cannot be played on this board; the log says why.
     BadClip,
 }

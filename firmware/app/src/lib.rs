@@ -1,13 +1,20 @@
-//! The whole firmware but the hardware: plays a clip on a 128x64 display of 16 greys.
+//! The whole firmware but the hardware: plays clips on a small display and does what buttons and letters ask for.
 //!
 //! A board brings its display, timer and line through [`Board`]; [`run`] does the rest.
-#![no_std]
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 mod board;
+mod hud;
+pub mod keys;
+mod log;
 mod options;
 mod run;
+mod scene;
+pub mod wire;
 
 pub use board::{Board, Exit};
+pub use keys::Key;
 pub use options::{Mode, Options};
-pub use run::{BYTES, HEIGHT, WIDTH, run};
+pub use run::{NEXT, QUIT, RIG, SHOWN, run};
+pub use scene::Entry;

@@ -18,16 +18,22 @@ pub struct Options {
     pub mode: Mode,
     /// Degrees of the camera about the figure, instead of the usual view.
     pub orbit: Option<i16>,
+    /// Lines with smooth edges from the start.
+    pub smooth: bool,
+    /// Name, frame and speed on the display from the start.
+    pub hud: bool,
 }
 
 impl Options {
-    /// Reads the words `frames=N`, `sync` and `view=DEGREES`. Others are passed over: an emulator without arguments gives the
-    /// program's own path.
+    /// Reads the words `frames=N`, `sync`, `view=DEGREES`, `smooth` and `info`. Others are passed over: an emulator without arguments
+    /// gives the program's own path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
-        let mut options = Options { mode: Mode::Play, orbit: None };
+        let mut options = Options { mode: Mode::Play, orbit: None, smooth: false, hud: false };
         for word in words {
             match word.split_once('=') {
                 None if word == "sync" => options.mode = Mode::Sync,
+                None if word == "smooth" => options.smooth = true,
+                None if word == "info" => options.hud = true,
                 Some(("frames", count)) => options.mode = count.parse().map_or(options.mode, Mode::Frames),
                 Some(("view", degrees)) => options.orbit = degrees.parse().ok().or(options.orbit),
                 _ => {}

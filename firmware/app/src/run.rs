@@ -1,138 +1,222 @@
-//! The program: open the clip, then decode, place, draw and flush frame by frame.
+//! The program: open a clip, then decode, place, draw and show frame by frame, and take what is asked for in between.
 
 use crate::board::{Board, Exit};
+use crate::hud;
+use crate::keys::{Key, LETTERS};
+use crate::log::{error, info};
 use crate::options::{Mode, Options};
-use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
-use embedded_graphics::pixelcolor::Gray4;
-use embedded_graphics::pixelcolor::raw::{BigEndian, RawU4};
+use crate::scene::{Entry, Scene, Wish};
+use heapless::Deque;
 use pantin::{ChannelState, Clip, Player};
-use pantin_figure::{Canvas, Stage, View};
+use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::{Canvas, Limb, Stage};
 
-/// Pixels in a row of the display.
-pub const WIDTH: usize = 128;
-/// Rows of the display.
-pub const HEIGHT: usize = 64;
-/// Bytes of a picture.
-pub const BYTES: usize = buffer_size::<Gray4>(WIDTH, HEIGHT);
+/// In [`Mode::Sync`]: asks for the next picture. Any letter of [`LETTERS`] may come before it.
+pub const NEXT: u8 = b'\n';
+/// Ends the program.
+pub const QUIT: u8 = b'q';
+/// In [`Mode::Sync`]: a picture is on the display; its frame's number follows, in 4 bytes, the least first.
+pub const SHOWN: u8 = b'F';
 
-/// Most channels of a clip's pose, and of those that move.
-const CHANNELS: usize = 256;
-/// Most joints of the figure, without fingers and the like.
-const JOINTS: usize = 48;
+/// Wishes that wait to be granted.
+type Wishes = Deque<Wish, 8>;
 
-type Frame = Framebuffer<Gray4, RawU4, BigEndian, WIDTH, HEIGHT, BYTES>;
+/// Where to go when a clip is left.
+enum After {
+    Clip(i32),
+    Exit(Exit),
+}
 
-/// Plays the clip until the mode's end.
-pub fn run<B: Board>(clip: &[u8], options: Options, board: &mut B) -> Exit {
-    let clip = match Clip::new_checked(clip) {
+/// Plays clips until the mode's end. A clip may have up to `CHANNELS` channels, `MOVING` of them moving; its rig up to [`RIG`] joints, its figure
+/// up to `JOINTS` without fingers and the like. With no clip at all there is nothing to do.
+pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    entries: &[Entry],
+    options: Options,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> Exit {
+    let mut scene = Scene::new(&options);
+    let mut at = 0;
+    while let Some(entry) = entries.get(at) {
+        match perform::<B, CHANNELS, MOVING, JOINTS>(entry, options.mode, &mut scene, frame, board) {
+            After::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
+            After::Exit(exit) => return exit,
+        }
+    }
+    Exit::Done
+}
+
+fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    entry: &Entry,
+    mode: Mode,
+    scene: &mut Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> After {
+    let clip = match Clip::new_checked(entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
-            defmt::error!("the clip cannot be opened: {}", defmt::Display2Format(&error));
-            return Exit::BadClip;
+            error!("the clip cannot be opened: {}", error);
+            return After::Exit(Exit::BadClip);
         }
     };
-    let mut states = [ChannelState::default(); CHANNELS];
+    let mut states = [ChannelState::default(); MOVING];
     let mut pose = [0; CHANNELS];
     let mut player = match Player::new(clip, &mut states, &mut pose) {
         Ok(player) => player,
         Err(error) => {
-            defmt::error!("the clip is too big: {}", defmt::Display2Format(&error));
-            return Exit::BadClip;
+            error!("the clip is too big: {}", error);
+            return After::Exit(Exit::BadClip);
         }
     };
-    let view = View { orbit: options.orbit.unwrap_or(View::default().orbit), ..View::default() };
-    let canvas = Canvas { width: WIDTH as u16, height: HEIGHT as u16 };
-    let mut stage = match Stage::<JOINTS>::of_clip(&mut player, canvas, view) {
-        Ok(stage) => stage,
-        Err(error) => {
-            defmt::error!("the rig is too big: {}", defmt::Display2Format(&error));
-            return Exit::BadClip;
-        }
-    };
-    defmt::info!(
-        "{} frames of {} ns, {} channels, {} of them moving; {} joints drawn",
+    let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
+    let mut stage = Stage::<JOINTS>::EMPTY;
+    if let Err(error) = set_up(&mut stage, &mut player, canvas, scene) {
+        error!("the rig is too big: {}", error);
+        return After::Exit(Exit::BadClip);
+    }
+    info!(
+        "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn",
+        entry.name,
         clip.frames(),
         clip.frame_time_ns(),
         clip.rig().channels(),
         clip.moving(),
         stage.skeleton().bones.len()
     );
-    play(&mut player, &mut stage, options.mode, board);
-    Exit::Done
+    play(&mut player, &mut stage, entry, mode, scene, frame, board)
+}
+
+/// Most joints of a rig, fingers and the like among them.
+pub const RIG: usize = 96;
+
+/// In a function of its own: the workspace is given back before the first frame.
+#[inline(never)]
+fn set_up<const JOINTS: usize>(
+    stage: &mut Stage<JOINTS>,
+    player: &mut Player,
+    canvas: Canvas,
+    scene: &Scene,
+) -> Result<(), pantin_figure::Error> {
+    stage.set_up(player, canvas, scene.view, &mut [Limb::default(); RIG])
 }
 
 #[inline(never)]
-fn play<B: Board>(player: &mut Player, stage: &mut Stage<JOINTS>, mode: Mode, board: &mut B) {
-    let mut frame = Frame::new();
+fn play<B: Board, const JOINTS: usize>(
+    player: &mut Player,
+    stage: &mut Stage<JOINTS>,
+    entry: &Entry,
+    mode: Mode,
+    scene: &mut Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> After {
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
+    let mut wishes = Wishes::new();
     if mode != Mode::Sync {
-        board.start_timer(player.clip().frame_time_ns());
+        board.start_timer(scene.tick_ns(player.clip().frame_time_ns()));
     }
     loop {
         decode(player, due, board);
         place(player, stage, board);
-        draw(stage, &mut frame, board);
-        flush(&frame, board);
+        draw(stage, scene, frame, board);
+        if scene.hud {
+            hud::draw(scene, entry, [player.frame(), player.clip().frames()], frame);
+        }
+        show(frame, board);
         shown = shown.wrapping_add(1);
         due = match mode {
-            Mode::Play => {
+            Mode::Sync => match listen(player.frame(), scene, &mut wishes, board) {
+                true => scene.frames(1),
+                false => break,
+            },
+            Mode::Frames(count) if shown >= count => break,
+            Mode::Frames(_) | Mode::Play => {
                 // The clip keeps its time on a board that is too slow for every frame.
                 let ticks = board.wait_ticks();
                 late = late.wrapping_add(ticks - 1);
-                ticks
+                while let Some(key) = board.button().or_else(|| Key::of_letter(board.poll()?)) {
+                    // More keys than fit between two pictures are a mistake of theirs.
+                    let _ = wishes.push_back(scene.take(key));
+                }
+                scene.frames(if mode == Mode::Play { ticks } else { 1 })
             }
-            Mode::Frames(count) if shown >= count => break,
-            Mode::Frames(_) => {
-                late = late.wrapping_add(board.wait_ticks() - 1);
-                1
-            }
-            Mode::Sync => match next(player.frame(), board) {
-                true => 1,
-                false => break,
-            },
         };
+        while let Some(wish) = wishes.pop_front() {
+            match wish {
+                Wish::Nothing => {}
+                Wish::Aim => {
+                    stage.aim(player, scene.view);
+                }
+                Wish::Pace if mode == Mode::Sync => {}
+                Wish::Pace => board.start_timer(scene.tick_ns(player.clip().frame_time_ns())),
+                Wish::Move(frames) => due = frames,
+                Wish::Clip(steps) => return After::Clip(steps),
+                Wish::Help => help(board),
+            }
+        }
     }
-    defmt::info!("{} pictures, {} ticks late", shown, late);
+    info!("{} pictures, {} ticks late", shown, late);
+    After::Exit(Exit::Done)
 }
 
-/// Tells the other end of the line which frame is on the display; whether it wants another one.
-fn next<B: Board>(frame: u32, board: &mut B) -> bool {
+/// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture.
+fn listen<B: Board>(frame: u32, scene: &mut Scene, wishes: &mut Wishes, board: &mut B) -> bool {
+    board.send(&[SHOWN]);
     board.send(&frame.to_le_bytes());
     loop {
         match board.receive() {
-            b'n' => return true,
-            b'q' => return false,
-            _ => {}
+            NEXT => return true,
+            QUIT => return false,
+            letter => {
+                if let Some(key) = Key::of_letter(letter) {
+                    let _ = wishes.push_back(scene.take(key));
+                }
+            }
         }
     }
 }
 
+/// The letters and what they do, a line each.
+fn help<B: Board>(board: &mut B) {
+    for (letter, _, words) in LETTERS {
+        board.send(&[letter, b' ']);
+        board.send(words.as_bytes());
+        board.send(b"\r\n");
+    }
+}
+
 #[inline(never)]
-fn decode<B: Board>(player: &mut Player, frames: u32, board: &mut B) {
+fn decode<B: Board>(player: &mut Player, frames: i32, board: &mut B) {
     board.mark_start();
     for _ in 0..frames {
         player.step();
+    }
+    for _ in frames..0 {
+        let last = player.clip().frames() - 1;
+        player.seek(player.frame().checked_sub(1).unwrap_or(last));
     }
     board.mark_stop();
 }
 
 #[inline(never)]
-fn place<B: Board>(player: &Player, stage: &mut Stage<JOINTS>, board: &mut B) {
+fn place<B: Board, const JOINTS: usize>(player: &Player, stage: &mut Stage<JOINTS>, board: &mut B) {
     board.mark_start();
     stage.look(player.pose());
     board.mark_stop();
 }
 
 #[inline(never)]
-fn draw<B: Board>(stage: &Stage<JOINTS>, frame: &mut Frame, board: &mut B) {
+fn draw<B: Board, const JOINTS: usize>(stage: &Stage<JOINTS>, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
     board.mark_start();
-    let Ok(()) = stage.lines().draw(frame);
+    frame.clear();
+    stage.lines().draw_on(frame, scene.look);
     board.mark_stop();
 }
 
 #[inline(never)]
-fn flush<B: Board>(frame: &Frame, board: &mut B) {
+fn show<B: Board>(frame: &mut Frame<B::Layout>, board: &mut B) {
     board.mark_start();
-    board.flush(frame.data());
+    board.show(frame);
     board.mark_stop();
 }

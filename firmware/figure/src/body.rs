@@ -1,42 +1,82 @@
 //! Which joints of a rig make a clear figure: without fingers, toes beyond one, features of the face and bones too short to see.
 
+use crate::Error;
 use crate::names::contains;
 use crate::root::{integer_root, shift_for};
 use crate::rotation::{Vector, shift_right};
-use crate::{Error, RIG_JOINTS};
-use heapless::Vec;
 use pantin::{Joint, Rig};
 
-/// What is known of one joint of the whole rig before the figure's skeleton is built.
+/// What is known of one joint of the whole rig before the figure's skeleton is built. Lengths are in figure units.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Limb {
-    /// Index of the parent; the root has [`NO_PARENT`].
-    pub parent: u16,
-    /// Its bone in figure units: the rest offset, or what position channels put in its place. Nothing for a placement.
-    pub bone: [i16; 3],
+pub struct Limb {
+    /// Its bone: the rest offset, or what position channels put in its place. Nothing for a placement.
+    pub(crate) bone: [i16; 3],
     /// Length of the bone.
-    pub length: i32,
-    /// Longest chain of bones below it, and the child that it starts with.
-    pub reach: i32,
-    pub longest: u16,
-    pub children: u8,
-    /// Not a bone but where the figure stands.
-    pub placement: bool,
-    pub end_site: bool,
-    pub head: bool,
-    pub kept: bool,
-    /// Whether a kept joint hangs on it.
-    pub bears: bool,
-    /// In what is left of a hand: how long the finger is up to here. Elsewhere negative.
-    pub finger: i32,
+    pub(crate) length: u16,
+    /// Longest chain of bones below it, in 8 units.
+    reach: u16,
+    /// In what is left of a hand: how long the finger is up to here, in 8 units. Elsewhere [`NO_FINGER`].
+    finger: u16,
+    /// Index of the parent; the root has [`NO_PARENT`].
+    pub(crate) parent: u8,
+    /// The child that the longest chain starts with.
+    longest: u8,
+    /// Kept joints in its part of the tree, itself among them.
+    pub(crate) weight: u8,
+    /// Its index in the skeleton.
+    pub(crate) bone_index: u8,
+    flags: u8,
 }
 
-/// In place of a parent's index: more than any rig has.
-const NO_PARENT: u16 = u16::MAX;
+/// Fills a workspace.
+impl Default for Limb {
+    fn default() -> Self {
+        Limb {
+            bone: [0; 3],
+            length: 0,
+            reach: 0,
+            finger: NO_FINGER,
+            parent: NO_PARENT,
+            longest: 0,
+            weight: 0,
+            bone_index: NO_PARENT,
+            flags: 0,
+        }
+    }
+}
+
+/// Facts about a limb.
+pub(crate) mod flag {
+    /// Not a bone but where the figure stands.
+    pub const PLACEMENT: u8 = 1;
+    pub const END_SITE: u8 = 2;
+    pub const HEAD: u8 = 4;
+    pub const KEPT: u8 = 8;
+    /// A kept joint hangs on it.
+    pub const BEARS: u8 = 16;
+    /// More than one joint hangs on it, kept or not.
+    pub const FORKS: u8 = 32;
+    /// One joint does.
+    pub const PARENT: u8 = 64;
+}
+
+impl Limb {
+    pub(crate) fn is(&self, flags: u8) -> bool {
+        self.flags & flags == flags
+    }
+
+    fn set(&mut self, flag: u8, on: bool) {
+        self.flags = if on { self.flags | flag } else { self.flags & !flag };
+    }
+}
+
+/// In place of a parent's index, or of one in the skeleton.
+pub(crate) const NO_PARENT: u8 = u8::MAX;
+const NO_FINGER: u16 = u16::MAX;
 
 /// All joints of a rig, and what follows from them together.
-pub(crate) struct Limbs {
-    pub limbs: Vec<Limb, RIG_JOINTS>,
+pub(crate) struct Limbs<'w> {
+    pub limbs: &'w mut [Limb],
     /// One figure unit is 2^exponent source units.
     pub exponent: i32,
     /// Rough height of the figure: 5/4 of its longest chain of bones from the hips.
@@ -50,39 +90,31 @@ const BONE_BITS: i32 = 14;
 /// The size of a figure without bones.
 const NO_SIZE: i32 = 1 << 14;
 
-impl Limbs {
-    /// Reads the rig; where a joint's bone is a matter of position channels, as `pose` has them.
+impl<'w> Limbs<'w> {
+    /// Reads the rig; where a joint's bone is a matter of position channels, as `pose` has them. `room` is for a limb a joint.
     #[inline(never)]
-    pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8) -> Result<Self, Error> {
+    pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8, room: &'w mut [Limb]) -> Result<Self, Error> {
+        let most = room.len().min(usize::from(NO_PARENT));
+        let limbs = room.get_mut(..rig.joint_count()).filter(|limbs| limbs.len() <= most);
+        let limbs = limbs.ok_or(Error::TooManyJoints { most })?;
         let hips = placement_end(rig);
         let bones = || rig.joints().enumerate().map(|(index, joint)| bone(&joint, pose, index <= hips));
         let exponent_of = |moved| i32::from(if moved { position_exponent } else { rig.length_exponent() });
         let bits = |(raw, moved): (i32, bool)| exponent_of(moved) + 32 - raw.unsigned_abs().leading_zeros() as i32;
         let longest = bones().skip(hips + 1).flatten().filter(|&(raw, _)| raw != 0).map(bits).max();
         let exponent = longest.unwrap_or(0) - BONE_BITS;
-        let mut limbs = Vec::new();
         let mut has_head = false;
-        for ((index, joint), bone) in rig.joints().enumerate().zip(bones()) {
+        for (((index, joint), bone), limb) in rig.joints().enumerate().zip(bones()).zip(limbs.iter_mut()) {
             let bone = if index <= hips { [(0, false); 3] } else { bone };
             // Below 2^14 by the choice of the exponent.
             let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)) as i16);
             let head = !has_head && contains(joint.name(), "head");
             has_head |= head;
-            let limb = Limb {
-                parent: joint.parent.unwrap_or(NO_PARENT),
-                bone,
-                length: length(bone.map(i32::from)),
-                reach: 0,
-                longest: 0,
-                children: 0,
-                placement: index <= hips,
-                end_site: joint.end_site,
-                head,
-                kept: true,
-                bears: false,
-                finger: -1,
-            };
-            limbs.push(limb).map_err(|_| Error::TooManyJoints { most: RIG_JOINTS })?;
+            let parent = joint.parent.map_or(NO_PARENT, |parent| parent as u8);
+            *limb = Limb { bone, length: length(bone.map(i32::from)) as u16, parent, flags: flag::KEPT, ..Limb::default() };
+            limb.set(flag::PLACEMENT, index <= hips);
+            limb.set(flag::END_SITE, joint.end_site);
+            limb.set(flag::HEAD, head);
         }
         let mut limbs = Limbs { limbs, exponent, size: NO_SIZE, hips };
         limbs.measure();
@@ -94,14 +126,16 @@ impl Limbs {
         for index in (0..self.limbs.len()).rev() {
             let Limb { parent, length, reach, .. } = self.limbs[index];
             if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
-                parent.children = parent.children.saturating_add(1);
-                if length + reach >= parent.reach {
-                    parent.reach = length + reach;
-                    parent.longest = index as u16;
+                parent.set(flag::FORKS, parent.is(flag::PARENT));
+                parent.set(flag::PARENT, true);
+                let chain = reach.saturating_add(length / 8);
+                if chain >= parent.reach {
+                    parent.reach = chain;
+                    parent.longest = index as u8;
                 }
             }
         }
-        let reach = self.limbs.get(self.hips).map_or(0, |hips| hips.reach);
+        let reach = self.limbs.get(self.hips).map_or(0, |hips| i32::from(hips.reach) * 8);
         if reach > 0 {
             self.size = reach + reach / 4;
         }
@@ -110,29 +144,64 @@ impl Limbs {
     /// Drops what would only be a blot on a small display: fingers but the longest, everything in the head, and what ends a
     /// limb and is too short to see.
     pub fn prune(&mut self) {
+        let eighths = self.size / 8;
         for index in 0..self.limbs.len() {
-            let Some(parent) = self.limbs.get(usize::from(self.limbs[index].parent)) else { continue };
-            let hand = parent.children > 1 && parent.reach < self.size / 6;
+            let Some(&parent) = self.limbs.get(usize::from(self.limbs[index].parent)) else { continue };
+            let hand = parent.is(flag::FORKS) && i32::from(parent.reach) < eighths / 6;
             let finger = if hand { 0 } else { parent.finger };
-            let shows = finger < 0 || (parent.longest == index as u16 && parent.finger < self.size / 25);
-            let kept = parent.kept && !parent.head && shows;
+            let longest = parent.longest == index as u8;
+            let short = parent.finger == NO_FINGER || i32::from(parent.finger) < eighths / 25;
+            let shows = finger == NO_FINGER || (longest && short);
             let limb = &mut self.limbs[index];
-            limb.kept = kept;
-            limb.finger = if finger < 0 { finger } else { finger + limb.length };
+            limb.set(flag::KEPT, parent.is(flag::KEPT) && !parent.is(flag::HEAD) && shows);
+            limb.finger = if finger == NO_FINGER { NO_FINGER } else { finger.saturating_add(limb.length / 8).min(NO_FINGER - 1) };
         }
         self.settle(self.size / 64);
     }
 
-    /// Drops what ends a limb and is shorter than `shortest`, and marks what bears the rest.
+    /// Drops what ends a limb and is shorter than `shortest`, marks what bears the rest and counts it.
     pub fn settle(&mut self, shortest: i32) {
         for index in (0..self.limbs.len()).rev() {
             let limb = &mut self.limbs[index];
-            limb.kept &= limb.placement || limb.head || limb.bears || limb.length >= shortest;
-            let (parent, kept) = (limb.parent, limb.kept);
+            let stays =
+                limb.is(flag::PLACEMENT) || limb.is(flag::HEAD) || limb.is(flag::BEARS) || i32::from(limb.length) >= shortest;
+            let kept = limb.is(flag::KEPT) && stays;
+            limb.set(flag::KEPT, kept);
+            limb.weight = limb.weight.saturating_add(u8::from(kept));
+            let (parent, weight) = (limb.parent, limb.weight);
             if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
-                parent.bears |= kept;
+                parent.set(flag::BEARS, parent.is(flag::BEARS) || kept);
+                parent.weight = parent.weight.saturating_add(weight);
             }
         }
+    }
+
+    /// The kept joint after `index`, or the first of all, in an order in which every joint comes right after its parent or after what hangs on a sibling,
+    /// and the sibling with most on it comes last: then few rotations wait for their joints at a time.
+    pub fn after(&self, index: Option<usize>) -> Option<usize> {
+        let mut above = index.unwrap_or(usize::from(NO_PARENT));
+        let mut done = None;
+        loop {
+            if let Some(child) = self.lightest(above, done) {
+                return Some(child);
+            }
+            done = Some(above);
+            // Above the root there is nothing.
+            above = usize::from(self.limbs.get(above)?.parent);
+        }
+    }
+
+    /// The kept child of a joint that comes after `done`, its child too, or the first.
+    fn lightest(&self, parent: usize, done: Option<usize>) -> Option<usize> {
+        let key = |index: usize| self.limbs.get(index).map(|limb| (limb.weight, index));
+        let done = done.and_then(key);
+        let children =
+            self.limbs.iter().enumerate().filter(|(_, limb)| usize::from(limb.parent) == parent && limb.is(flag::KEPT));
+        children
+            .filter_map(|(index, _)| key(index))
+            .filter(|own| done.is_none_or(|done| *own > done))
+            .min()
+            .map(|(_, index)| index)
     }
 }
 

@@ -85,6 +85,10 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// Sees everything in one place.
+    pub(crate) const NOWHERE: Camera =
+        Camera { rows: [[0; 3]; 3], shift: 0, pre_shift: 0, fixed: [None; 3], centre: [0; 2], scale: 1, size: 1 };
+
     /// A camera for what `survey` saw of a figure of `size`, with a size `scale` sixteenths of a pixel (at most 2^14) big and
     /// the target in the top left corner: [`Camera::show`] moves it to its place.
     pub fn new(survey: &Survey, bearings: Bearings, size: i32, view: View, scale: i32) -> Self {
@@ -128,13 +132,27 @@ impl Camera {
     }
 
     /// Projects a place, with the camera on `target`.
+    #[inline(always)]
     pub fn project(&self, target: Vector, place: Vector) -> Projected {
+        self.magnify(self.turn(core::array::from_fn(|axis| place[axis].wrapping_sub(target[axis]))))
+    }
+
+    /// Places of a lattice about the target: its corner from there, and its steps. Everything is within two sizes of the target.
+    pub(crate) fn lattice(&self, corner: Vector, steps: [Vector; 2]) -> Lattice {
+        Lattice { corner: self.turn(corner), steps: steps.map(|step| self.turn(step)) }
+    }
+
+    /// Right, down and away, before the perspective.
+    #[inline(always)]
+    fn turn(&self, relative: Vector) -> Vector {
         let rounding = (1 << self.pre_shift) >> 1;
-        let [u, v, w]: Vector = core::array::from_fn(|axis| {
-            let relative = place[axis].wrapping_sub(target[axis]).wrapping_add(rounding) >> self.pre_shift;
-            sixteen_bits(relative)
-        });
-        let [x, y, depth] = self.rows.map(|row| row[0] * u + row[1] * v + row[2] * w);
+        let [u, v, w] = relative.map(|x| sixteen_bits(x.wrapping_add(rounding) >> self.pre_shift));
+        self.rows.map(|row| row[0] * u + row[1] * v + row[2] * w)
+    }
+
+    /// The perspective.
+    #[inline(always)]
+    fn magnify(&self, [x, y, depth]: Vector) -> Projected {
         let depth = depth >> 14;
         let magnification = magnification(depth);
         // Within 2^15 sixteenths, magnified at most twice: products stay within 2^30.
@@ -142,10 +160,29 @@ impl Camera {
         Projected { x: x + self.centre[0], y: y + self.centre[1], depth, magnification }
     }
 
+    /// Projects a place of a lattice: so many steps of each kind, at most 8, from its corner.
+    #[inline(always)]
+    pub(crate) fn project_lattice(&self, lattice: &Lattice, steps: [i32; 2]) -> Projected {
+        let Lattice { corner, steps: [a, b] } = lattice;
+        self.magnify(core::array::from_fn(|axis| corner[axis] + steps[0] * a[axis] + steps[1] * b[axis]))
+    }
+
+    /// Sixteenths of a pixel that a limb at the target's distance is across: a 50th of the figure.
+    pub fn breadth(&self) -> i32 {
+        self.scale / 50
+    }
+
     /// Sixteenths of a pixel of a length in figure units at the target's distance.
     pub fn length(&self, length: i32) -> i32 {
         (length >> self.pre_shift).min(i32::from(i16::MAX)) * self.scale / (self.size >> self.pre_shift).max(1)
     }
+}
+
+/// Equally spaced places of a plane as the camera has them before the perspective.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lattice {
+    corner: Vector,
+    steps: [Vector; 2],
 }
 
 /// Right, down and away for a view.

@@ -1,47 +1,23 @@
-//! Draws a frame's lines into any `embedded-graphics` target.
+//! Draws a frame's lines on any surface, and into any `embedded-graphics` target.
 
+use crate::ink::{Ink, Tone};
 use crate::lines::{Line, Lines, pixel};
-use embedded_graphics::pixelcolor::{BinaryColor, Gray4, Gray8, PixelColor, Rgb565, Rgb888};
-use embedded_graphics::prelude::{DrawTarget, Drawable, Point, Primitive};
-use embedded_graphics::primitives::{Circle, Line as Stroke, PrimitiveStyle, PrimitiveStyleBuilder};
+use crate::raster::{disc, dotted, line, smooth};
+use crate::surface::{OnTarget, Surface};
+use embedded_graphics::draw_target::DrawTarget;
 
-/// A display's way to show brightness.
-pub trait Ink: PixelColor {
-    /// The colour for a brightness, 0 the background; `None` leaves out what the display cannot tell from the figure.
-    fn of_shade(shade: u8) -> Option<Self>;
+/// How lines are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// The grid below the figure.
+    pub ground: bool,
+    /// Edges between the pixels' greys.
+    pub smooth: bool,
 }
 
-impl Ink for Gray4 {
-    fn of_shade(shade: u8) -> Option<Self> {
-        Some(Gray4::new(shade >> 4))
-    }
-}
-
-impl Ink for Gray8 {
-    fn of_shade(shade: u8) -> Option<Self> {
-        Some(Gray8::new(shade))
-    }
-}
-
-impl Ink for BinaryColor {
-    fn of_shade(shade: u8) -> Option<Self> {
-        match shade {
-            0 => Some(BinaryColor::Off),
-            1..64 => None,
-            _ => Some(BinaryColor::On),
-        }
-    }
-}
-
-impl Ink for Rgb565 {
-    fn of_shade(shade: u8) -> Option<Self> {
-        Some(Rgb565::new(shade >> 3, shade >> 2, shade >> 3))
-    }
-}
-
-impl Ink for Rgb888 {
-    fn of_shade(shade: u8) -> Option<Self> {
-        Some(Rgb888::new(shade, shade, shade))
+impl Default for Look {
+    fn default() -> Self {
+        Look { ground: true, smooth: false }
     }
 }
 
@@ -52,29 +28,47 @@ impl<const N: usize> Lines<N> {
         D: DrawTarget,
         D::Color: Ink,
     {
-        if let Some(background) = D::Color::of_shade(0) {
-            target.clear(background)?;
+        target.clear(D::Color::DARK)?;
+        let mut surface = OnTarget::new(target);
+        self.draw_on(&mut surface, Look::default());
+        surface.outcome()
+    }
+
+    /// Draws on a clear surface.
+    #[inline(never)]
+    pub fn draw_on<S: Surface>(&self, surface: &mut S, look: Look) {
+        if look.ground {
+            self.ground.iter().for_each(|line| stroke(line, surface, look.smooth));
         }
-        for line in self.ground.iter().chain(self.far_to_near()) {
-            stroke(line, target)?;
-        }
-        let Some(head) = self.head else { return Ok(()) };
-        let (Some(ink), Some(inside)) = (D::Color::of_shade(head.shade), D::Color::of_shade(0)) else { return Ok(()) };
-        // An odd number of pixels across, so that it stands even about the pixel in its middle.
-        let radius = pixel(head.radius.saturating_add(8)).max(1);
-        let corner = |x: i16| pixel(x) - radius;
-        let style = PrimitiveStyleBuilder::new().stroke_color(ink).stroke_width(1).fill_color(inside).build();
-        let circle = Circle::new(Point::new(corner(head.centre[0]), corner(head.centre[1])), 2 * radius as u32 + 1);
-        circle.into_styled(style).draw(target)
+        self.far_to_near().for_each(|line| stroke(line, surface, look.smooth));
+        let Some(head) = self.head else { return };
+        let ink = S::Ink::of(Tone::Middle, head.shade);
+        disc(surface, head.centre.map(pixel), pixel(head.radius.saturating_add(8)).max(1), ink, S::Ink::DARK);
     }
 }
 
-fn stroke<D>(line: &Line, target: &mut D) -> Result<(), D::Error>
-where
-    D: DrawTarget,
-    D::Color: Ink,
-{
-    let Some(ink) = D::Color::of_shade(line.shade) else { return Ok(()) };
-    let [from, to] = [line.from, line.to].map(|end| Point::new(pixel(end[0]), pixel(end[1])));
-    Stroke::new(from, to).into_styled(PrimitiveStyle::with_stroke(ink, 1)).draw(target)
+/// Draws a line in its width.
+pub fn stroke<S: Surface>(of: &Line, surface: &mut S, soft: bool) {
+    let ink = S::Ink::of(of.tone, of.shade);
+    let gap = S::Ink::gap(of.tone);
+    let [from, to] = [of.from, of.to];
+    if soft && gap == 1 {
+        let [from, to] = [from, to].map(|end| end.map(i32::from));
+        return beside(from, to, of.width, 16, |from, to| smooth(surface, from, to, ink));
+    }
+    let [from, to] = [from, to].map(|end| end.map(pixel));
+    if gap > 1 {
+        return dotted(surface, from, to, ink, gap);
+    }
+    beside(from, to, of.width, 1, |from, to| line(surface, from, to, ink));
+}
+
+/// As many lines as a stroke is wide, a pixel apart across its longer way.
+fn beside(from: [i32; 2], to: [i32; 2], width: u8, pixel: i32, mut draw: impl FnMut([i32; 2], [i32; 2])) {
+    let steep = (to[1] - from[1]).abs() > (to[0] - from[0]).abs();
+    for index in 0..i32::from(width) {
+        let aside = (index - i32::from(width) / 2) * pixel;
+        let moved = |[x, y]: [i32; 2]| if steep { [x + aside, y] } else { [x, y + aside] };
+        draw(moved(from), moved(to));
+    }
 }

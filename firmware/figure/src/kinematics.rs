@@ -1,98 +1,102 @@
-//! Forward kinematics in fixed point: from a pose to where every joint is.
+//! Forward kinematics: from a pose to where every joint is.
 
-use crate::rotation::{Rotation, Vector, shift_right};
-use crate::skeleton::{Bone, Drive, NONE, Skeleton};
+use crate::rotation::{Rotation, Turning, Vector, shift_right};
+use crate::skeleton::{Act, Bone, Drive, SLOTS, Skeleton};
 use heapless::Vec;
-
-/// Where a joint is and how it is turned, in the world.
-#[derive(Clone, Copy, Debug)]
-pub struct Placed {
-    /// In figure units.
-    pub position: Vector,
-    /// Of the joint's own axes; only kept for joints that others hang on.
-    pub rotation: Rotation,
-}
-
-impl Placed {
-    const ORIGIN: Placed = Placed { position: [0; 3], rotation: Rotation::IDENTITY };
-}
 
 /// Places stay within 2^29, some 8000 figures away, so that adding a bone never overflows.
 const FARTHEST: i32 = 1 << 29;
 
 /// The joints of one frame. Positions are within 0.05 % of the figure's height of what real numbers give.
-#[derive(Clone, Debug, Default)]
-pub struct Kinematics<const N: usize> {
-    placed: Vec<Placed, N>,
+#[derive(Clone, Debug)]
+pub struct Kinematics<const N: usize, R: Turning = Rotation> {
+    /// In figure units, in the skeleton's order.
+    positions: Vec<Vector, N>,
+    /// Those that joints wait for.
+    rotations: [R; SLOTS],
 }
 
-impl<const N: usize> Kinematics<N> {
+impl<const N: usize, R: Turning> Kinematics<N, R> {
     /// Nothing placed yet.
-    pub const fn new() -> Self {
-        Kinematics { placed: Vec::new() }
-    }
+    pub const NEW: Self = Kinematics { positions: Vec::new(), rotations: [R::NONE; SLOTS] };
 
     /// Places every joint of the skeleton. Channels that the pose lacks are 0.
+    #[inline(never)]
     pub fn place(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
-        // The skeleton has at most N bones.
-        let _ = self.placed.resize(skeleton.bones.len(), Placed::ORIGIN);
+        self.positions.clear();
         let mut drives = skeleton.drives();
-        for (index, bone) in skeleton.bones.iter().enumerate() {
+        for bone in &skeleton.bones {
             let (own, rest) = drives.split_at_checked(usize::from(bone.drives)).unwrap_or((drives, &[]));
             drives = rest;
-            let Some((before, [placed, ..])) = self.placed.split_at_mut_checked(index) else { return };
-            let parent = bone.parent.and_then(|parent| before.get(usize::from(parent))).unwrap_or(&Placed::ORIGIN);
-            placed.position = position(parent, bone, own, skeleton.position_shift, pose);
-            if bone.bears {
-                placed.rotation = parent.rotation;
-                rotate(&mut placed.rotation, own, pose);
+            let parent = bone.parent.and_then(|parent| self.positions.get(usize::from(parent))).unwrap_or(&[0; 3]);
+            let none = R::NONE;
+            let turned = self.rotations.get(usize::from(bone.parent_slot)).unwrap_or(&none);
+            let reach = if bone.moves {
+                turned.image_any(offset(bone, own, skeleton.position_shift, pose))
+            } else {
+                turned.image(bone.offset)
+            };
+            let position = core::array::from_fn(|axis| (parent[axis] + reach[axis]).clamp(-FARTHEST, FARTHEST));
+            // The skeleton has at most N bones.
+            let _ = self.positions.push(position);
+            let slot = usize::from(bone.slot);
+            if bone.slot != bone.parent_slot {
+                let copied = *turned;
+                if let Some(rotation) = self.rotations.get_mut(slot) {
+                    *rotation = copied;
+                }
+            }
+            if let Some(rotation) = self.rotations.get_mut(slot) {
+                rotate(rotation, own, pose);
             }
         }
     }
 
-    /// Joints in the skeleton's order.
-    pub fn joints(&self) -> &[Placed] {
-        &self.placed
+    /// Where the joints are, in the skeleton's order.
+    pub fn positions(&self) -> &[Vector] {
+        &self.positions
     }
 
     /// A joint's position; the origin if there is none.
     pub fn position(&self, joint: usize) -> Vector {
-        self.placed.get(joint).map_or([0; 3], |placed| placed.position)
+        self.positions.get(joint).copied().unwrap_or([0; 3])
     }
 }
 
-fn position(parent: &Placed, bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Vector {
-    let reach = if bone.moves {
-        let mut offset = bone.offset;
-        for drive in drives {
-            let Drive::Offset(channels) = drive else { continue };
-            for (component, &channel) in offset.iter_mut().zip(channels).filter(|(_, channel)| **channel != NONE) {
+impl<const N: usize, R: Turning> Default for Kinematics<N, R> {
+    fn default() -> Self {
+        Self::NEW
+    }
+}
+
+/// The offset of a joint that has position channels.
+#[inline(never)]
+fn offset(bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Vector {
+    let mut offset = bone.offset;
+    for drive in drives.iter().filter(|drive| drive.act() == Act::Offset) {
+        for (index, component) in offset.iter_mut().enumerate() {
+            if let Some(channel) = drive.member(index) {
                 *component = shift_right(value(pose, channel), position_shift);
             }
         }
-        parent.rotation.apply_any(offset)
-    } else {
-        parent.rotation.apply(bone.offset)
-    };
-    core::array::from_fn(|axis| (parent.position[axis] + reach[axis]).clamp(-FARTHEST, FARTHEST))
+    }
+    offset
 }
 
 /// Turns a rotation by everything that turns the joint.
-fn rotate(rotation: &mut Rotation, drives: &[Drive], pose: &[i32]) {
+#[inline(always)]
+fn rotate<R: Turning>(rotation: &mut R, drives: &[Drive], pose: &[i32]) {
+    let member = |drive: &Drive, index| drive.member(index).map_or(0, |channel| value(pose, channel));
     for drive in drives {
-        match *drive {
-            Drive::Offset(_) => {}
-            Drive::Turn { axis, channel } => rotation.turn(usize::from(axis), value(pose, channel)),
-            Drive::Exponential(channels) => {
-                *rotation = rotation.then(&Rotation::of_exponential(channels.map(|channel| value(pose, channel))));
-            }
-            Drive::Quaternion(channels) => {
-                *rotation = rotation.then(&Rotation::of_quaternion(channels.map(|channel| value(pose, channel))));
-            }
+        match drive.act() {
+            Act::Turn(axis) => rotation.turn(axis, value(pose, drive.channel())),
+            Act::Offset => {}
+            Act::Exponential => rotation.turn_exponential(core::array::from_fn(|index| member(drive, index))),
+            Act::Quaternion => rotation.turn_quaternion(core::array::from_fn(|index| member(drive, index))),
         }
     }
 }
 
-fn value(pose: &[i32], channel: u16) -> i32 {
-    pose.get(usize::from(channel)).copied().unwrap_or(0)
+fn value(pose: &[i32], channel: usize) -> i32 {
+    pose.get(channel).copied().unwrap_or(0)
 }

@@ -8,18 +8,23 @@
 mod body;
 pub mod camera;
 pub mod draw;
+pub mod ink;
 pub mod kinematics;
 pub mod lines;
 mod names;
+pub mod raster;
 mod root;
 pub mod rotation;
 pub mod skeleton;
 pub mod stage;
+pub mod surface;
 pub mod survey;
 pub mod trig;
 
+pub use body::Limb;
 pub use camera::{Canvas, Track, View};
-pub use draw::Ink;
+pub use draw::Look;
+pub use ink::Ink;
 pub use skeleton::{Detail, Skeleton};
 pub use stage::Stage;
 

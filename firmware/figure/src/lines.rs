@@ -1,8 +1,9 @@
 //! The figure of one frame as lines on the display, in the order in which they are drawn.
 
 use crate::camera::{Camera, PIXEL_BITS, Projected};
+use crate::ink::Tone;
 use crate::kinematics::Kinematics;
-use crate::rotation::Vector;
+use crate::rotation::{Turning, Vector};
 use crate::skeleton::{Part, Skeleton};
 use heapless::Vec;
 
@@ -17,6 +18,10 @@ pub struct Line {
     pub depth: i16,
     /// Brightness: 255 is nearest.
     pub shade: u8,
+    /// What it is of.
+    pub tone: Tone,
+    /// Pixels across.
+    pub width: u8,
 }
 
 /// The head: a circle, in sixteenths of a pixel.
@@ -62,69 +67,86 @@ pub struct Ground {
 
 impl<const N: usize> Lines<N> {
     /// Nothing to draw yet.
-    pub const fn new() -> Self {
-        Lines { ground: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None }
-    }
+    pub const NEW: Self = Lines { ground: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None };
 
     /// Lines of the ground about the target.
+    #[inline(never)]
     pub fn lay_ground(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
         self.ground.clear();
-        let half = (GROUND_ROWS / 2) << ground.spacing;
-        // The line nearest to the target.
-        let middle = target.map(|x| (x.wrapping_add(1 << (ground.spacing - 1)) >> ground.spacing) << ground.spacing);
-        for (along, across) in [((ground.axis + 1) % 3, (ground.axis + 2) % 3), ((ground.axis + 2) % 3, (ground.axis + 1) % 3)] {
-            for row in 0..GROUND_ROWS {
-                let mut ends = [[0; 3]; 2];
-                for (end, reach) in ends.iter_mut().zip([-half, half]) {
-                    end[ground.axis] = ground.height;
-                    end[along] = middle[along].wrapping_add(reach);
-                    end[across] = middle[across].wrapping_add((row << ground.spacing) - half);
-                }
-                let [from, to] = ends.map(|end| camera.project(target, end));
-                let depth = (from.depth + to.depth) / 2;
+        let spacing = 1 << ground.spacing;
+        let axes = [(ground.axis + 1) % 3, (ground.axis + 2) % 3];
+        // From the target to the corner before the line that is nearest to it.
+        let mut corner = [0; 3];
+        corner[ground.axis] = ground.height.wrapping_sub(target[ground.axis]);
+        let mut steps = [[0; 3]; 2];
+        for (axis, step) in axes.into_iter().zip(&mut steps) {
+            let past = target[axis].wrapping_add(spacing / 2) & (spacing - 1);
+            corner[axis] = spacing / 2 - past - (GROUND_ROWS / 2) * spacing;
+            step[axis] = spacing;
+        }
+        let lattice = camera.lattice(corner, steps);
+        for row in 0..GROUND_ROWS {
+            for ends in [[[0, row], [GROUND_ROWS - 1, row]], [[row, 0], [row, GROUND_ROWS - 1]]] {
+                let [from, to] = ends.map(|end| camera.project_lattice(&lattice, end));
+                let depth = (from.depth + to.depth) >> 1;
                 let shade = (GROUND_SHADE - (depth >> 9)).clamp(24, 56) as u8;
+                let line = Line { from: from.place(), to: to.place(), depth: narrow(depth), shade, tone: Tone::Ground, width: 1 };
                 // There is room for all rows.
-                let _ = self.ground.push(line(from, to, depth, shade));
+                let _ = self.ground.push(line);
             }
         }
     }
 
     /// Lines of the bones and the head.
-    pub fn lay_bones(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N>, camera: &Camera, target: Vector) {
+    #[inline(never)]
+    pub fn lay_bones<R: Turning>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N, R>, camera: &Camera, target: Vector) {
         self.bones.clear();
-        self.order.clear();
         self.head = None;
-        let mut projected: Vec<Projected, N> = Vec::new();
-        for (bone, joint) in skeleton.bones.iter().zip(joints.joints()) {
-            let end = camera.project(target, joint.position);
+        let breadth = camera.breadth();
+        let mut ends: Vec<([i16; 2], i16), N> = Vec::new();
+        for (bone, &position) in skeleton.bones.iter().zip(joints.positions()) {
+            let end = camera.project(target, position);
+            let (place, far) = (end.place(), narrow(end.depth));
             // One a bone: there is room.
-            let _ = projected.push(end);
-            let Some(start) = bone.parent.and_then(|parent| projected.get(usize::from(parent))) else { continue };
-            let depth = (start.depth + end.depth) / 2;
+            let _ = ends.push((place, far));
+            let Some(&(start, near)) = bone.parent.and_then(|parent| ends.get(usize::from(parent))) else { continue };
+            let depth = (i32::from(near) + end.depth) >> 1;
             match bone.part {
                 Part::Hidden => {}
-                Part::Bone => self.insert(line(*start, end, depth, shade(depth))),
+                Part::Bone => {
+                    // Near limbs are thicker: half as thick again at a quarter of the camera's distance.
+                    let width = ((breadth - (breadth * depth >> 14)) >> PIXEL_BITS).clamp(1, 9) as u8;
+                    let line = Line { from: start, to: place, depth: narrow(depth), shade: shade(depth), tone: bone.tone, width };
+                    let _ = self.bones.push(line);
+                }
                 Part::Crown => {
                     let radius = (camera.length(skeleton.head_radius) * end.magnification) >> 14;
-                    let centre = [middle(start.x, end.x), middle(start.y, end.y)];
+                    let centre = [0, 1].map(|axis| ((i32::from(start[axis]) + i32::from(place[axis])) >> 1) as i16);
                     self.head = Some(Head { centre, radius: narrow(radius), shade: shade(depth) });
                 }
             }
         }
+        self.sort();
     }
 
-    /// Adds a line, and its index after those of lines that are farther.
-    fn insert(&mut self, line: Line) {
-        let mut place = self.bones.len();
-        // At most one line a bone: there is room.
-        let _ = self.order.push(place as u8);
-        let _ = self.bones.push(line);
-        let depth = |index: u8| self.bones.get(usize::from(index)).map_or(0, |line| line.depth);
-        while let Some([before, here]) = self.order.get_mut(place.wrapping_sub(1)..=place)
-            && depth(*before) < line.depth
-        {
-            core::mem::swap(before, here);
-            place -= 1;
+    /// Puts the farthest first. The order of the frame before is nearly right; lines as far as each other keep that of the
+    /// skeleton, so that the outcome is the frame's alone.
+    fn sort(&mut self) {
+        if self.order.len() != self.bones.len() {
+            self.order.clear();
+            // One a bone: there is room.
+            self.order.extend((0..self.bones.len()).map(|index| index as u8));
+        }
+        let bones = &self.bones;
+        let key = |index: u8| bones.get(usize::from(index)).map_or(0, |line| i32::from(line.depth) * 256 - i32::from(index));
+        for place in 1..self.order.len() {
+            let mut place = place;
+            while let Some([before, here]) = self.order.get_mut(place.wrapping_sub(1)..=place)
+                && key(*before) < key(*here)
+            {
+                core::mem::swap(before, here);
+                place -= 1;
+            }
         }
     }
 
@@ -134,12 +156,11 @@ impl<const N: usize> Lines<N> {
     }
 }
 
-fn line(from: Projected, to: Projected, depth: i32, shade: u8) -> Line {
-    Line { from: [narrow(from.x), narrow(from.y)], to: [narrow(to.x), narrow(to.y)], depth: narrow(depth), shade }
-}
-
-fn middle(a: i32, b: i32) -> i16 {
-    narrow((a + b) / 2)
+impl Projected {
+    /// Its place on the display; farther than any display cut off.
+    fn place(&self) -> [i16; 2] {
+        [narrow(self.x), narrow(self.y)]
+    }
 }
 
 fn narrow(x: i32) -> i16 {

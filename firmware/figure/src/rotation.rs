@@ -8,6 +8,53 @@ use crate::trig::{FRACTION_BITS, HALF, ONE, series, sin_cos};
 /// A vector: Q15 for directions, figure units for places.
 pub type Vector = [i32; 3];
 
+/// What forward kinematics asks of a rotation, however it is held.
+pub trait Turning: Copy {
+    /// No rotation.
+    const NONE: Self;
+
+    /// This rotation after a turn about its own `axis` (0, 1, 2 for x, y, z) by an angle in 2^-32 turns.
+    fn turn(&mut self, axis: usize, angle: i32);
+
+    /// This rotation after one by an exponential map (axis times angle), each component in 2^-32 turns.
+    fn turn_exponential(&mut self, map: Vector);
+
+    /// This rotation after one by a quaternion w, x, y, z of any length but 0, which is taken for no rotation.
+    fn turn_quaternion(&mut self, q: [i32; 4]);
+
+    /// The image of a vector whose components lie within -2^14 .. 2^14.
+    fn image(&self, v: Vector) -> Vector;
+
+    /// The image of a vector of any length: cut off at 2^29.
+    fn image_any(&self, v: Vector) -> Vector;
+}
+
+impl Turning for Rotation {
+    const NONE: Self = Rotation::IDENTITY;
+
+    #[inline(always)]
+    fn turn(&mut self, axis: usize, angle: i32) {
+        Rotation::turn(self, axis, angle);
+    }
+
+    fn turn_exponential(&mut self, map: Vector) {
+        *self = self.then(&Rotation::of_exponential(map));
+    }
+
+    fn turn_quaternion(&mut self, q: [i32; 4]) {
+        *self = self.then(&Rotation::of_quaternion(q));
+    }
+
+    #[inline(always)]
+    fn image(&self, v: Vector) -> Vector {
+        self.apply(v)
+    }
+
+    fn image_any(&self, v: Vector) -> Vector {
+        self.apply_any(v)
+    }
+}
+
 /// A rotation as its three columns: the images of the x, y and z axes, in Q15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rotation(pub [Vector; 3]);

@@ -1,28 +1,83 @@
 //! The figure's joints, set up once from the rig in the form that forward kinematics reads frame by frame.
 
-use crate::body::{Limb, Limbs, length};
+use crate::body::{Limb, Limbs, flag, length};
+use crate::ink::Tone;
 use crate::names::{contains, is_left_of};
 use crate::rotation::{Vector, shift_right};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
 use pantin::{Joint, Kind, Rig};
 
-/// One channel, or group of channels, at work on a joint. Numbers are indices into a pose.
+/// One channel, or group of channels, at work on a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drive {
-    /// Takes the place of the offset's x, y, z, where it is not [`NONE`].
-    Offset([u16; 3]),
-    /// Turns about an axis.
-    Turn {
-        /// 0, 1, 2 for x, y, z.
-        axis: u8,
-        /// The angle's channel.
-        channel: u16,
-    },
-    /// Turns by an exponential map x, y, z.
-    Exponential([u16; 3]),
-    /// Turns by a quaternion w, x, y, z.
-    Quaternion([u16; 4]),
+pub struct Drive {
+    /// The group's channel that comes first in a pose.
+    first: u16,
+    /// What it does in the lowest three bits; above them, for a group, how far behind the first each member is, in three
+    /// bits: w, x, y, z of a quaternion, x, y, z of an offset or an exponential map. [`ABSENT`] where there is none.
+    what: u16,
+}
+
+/// What a [`Drive`] does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Act {
+    /// Turns about an axis: 0, 1, 2 for x, y, z.
+    Turn(usize),
+    /// Takes the place of the offset's components.
+    Offset,
+    /// Turns by an exponential map.
+    Exponential,
+    /// Turns by a quaternion.
+    Quaternion,
+}
+
+const ABSENT: u16 = 7;
+
+impl Drive {
+    const NOTHING: Drive = Drive { first: 0, what: 6 };
+
+    /// Of one channel.
+    fn turn(axis: u16, channel: u16) -> Drive {
+        Drive { first: channel, what: axis }
+    }
+
+    /// Of a group of up to four; `None` if its members are farther apart than there is room for.
+    fn group(act: u16, members: &[Option<u16>]) -> Option<Drive> {
+        let first = members.iter().flatten().copied().min().unwrap_or(0);
+        let mut what = act;
+        for (index, member) in members.iter().enumerate() {
+            let behind = member.map_or(ABSENT, |channel| channel - first);
+            if member.is_some() && behind >= ABSENT {
+                return None;
+            }
+            what |= behind << (3 + 3 * index);
+        }
+        Some(Drive { first, what })
+    }
+
+    /// What it does.
+    #[inline(always)]
+    pub fn act(self) -> Act {
+        match self.what & 7 {
+            axis @ 0..3 => Act::Turn(usize::from(axis)),
+            3 => Act::Offset,
+            4 => Act::Exponential,
+            _ => Act::Quaternion,
+        }
+    }
+
+    /// The channel that turns.
+    #[inline(always)]
+    pub fn channel(self) -> usize {
+        usize::from(self.first)
+    }
+
+    /// The channel of a group's member, counted from 0.
+    #[inline(always)]
+    pub fn member(self, index: usize) -> Option<usize> {
+        let behind = (self.what >> (3 + 3 * index)) & 7;
+        (behind != ABSENT).then_some(usize::from(self.first + behind))
+    }
 }
 
 /// What a joint is for the picture.
@@ -39,21 +94,33 @@ pub enum Part {
 /// One joint of the skeleton.
 #[derive(Clone, Copy, Debug)]
 pub struct Bone {
-    /// Index of the parent in the skeleton, smaller than the joint's own; `None` for the root.
-    pub parent: Option<u8>,
     /// Where it stands in its parent, in figure units.
     pub offset: Vector,
+    /// Index of the parent in the skeleton, smaller than the joint's own; `None` for the root.
+    pub parent: Option<u8>,
+    /// Its index in the rig; a crown has that of its head.
+    pub joint: u8,
     /// What it is for the picture.
     pub part: Part,
-    /// A joint that has a foot's name.
-    pub foot: bool,
+    /// Which side's.
+    pub tone: Tone,
     /// Number of entries of [`Skeleton::drives`] that are this joint's; they follow those of the joint before.
     pub drives: u8,
+    /// Where its rotation is kept while joints that hang on it wait; [`NOWHERE`] if none does.
+    pub slot: u8,
+    /// Where its parent's is; [`NOWHERE`] for the root's.
+    pub parent_slot: u8,
+    /// A joint that has a foot's name.
+    pub foot: bool,
     /// Whether it has position channels.
     pub moves: bool,
-    /// Whether another joint hangs on it, so that its rotation matters.
-    pub bears: bool,
 }
+
+/// In place of a slot.
+pub const NOWHERE: u8 = u8::MAX;
+
+/// Rotations that wait at a time: 2^k joints or more are needed to keep k waiting.
+pub const SLOTS: usize = 9;
 
 /// The joints of a figure, at most `N`, and the channels that drive them.
 ///
@@ -61,7 +128,7 @@ pub struct Bone {
 /// 2^13 .. 2^14. A person is some 2^16 high.
 #[derive(Clone, Debug)]
 pub struct Skeleton<const N: usize> {
-    /// Parents before children.
+    /// Parents before children, in an order in which few rotations wait at a time.
     pub bones: Vec<Bone, N>,
     /// The channels at work, joint by joint, in the order in which they apply; in fours, the last padded.
     drives: Vec<[Drive; DRIVES], N>,
@@ -81,9 +148,6 @@ pub struct Skeleton<const N: usize> {
     pub head_radius: i32,
 }
 
-/// In place of a channel: there is none.
-pub const NONE: u16 = u16::MAX;
-
 /// Room for drives, a joint: an offset and three turns. Joints with fewer leave room for others.
 const DRIVES: usize = 4;
 
@@ -97,9 +161,21 @@ pub enum Detail {
 }
 
 impl<const N: usize> Skeleton<N> {
-    /// Sets up a rig's figure. `pose` is any pose of the clip, `position_exponent` its step of positions (2^e source units),
-    /// and `is_exponential` tells of a joint whether the clip codes its Euler angles as an exponential map.
-    #[inline(never)]
+    /// No joints.
+    pub const EMPTY: Self = Skeleton {
+        bones: Vec::new(),
+        drives: Vec::new(),
+        driven: 0,
+        position_shift: 0,
+        exponent: 0,
+        size: 1,
+        hips: 0,
+        sides: None,
+        head_radius: 0,
+    };
+
+    /// The figure of a rig of up to 192 joints. `pose` is any pose of the clip, `position_exponent` its step of positions (2^e source
+    /// units), and `is_exponential` tells of a joint whether the clip codes its Euler angles as an exponential map.
     pub fn new(
         rig: &Rig,
         detail: Detail,
@@ -107,76 +183,121 @@ impl<const N: usize> Skeleton<N> {
         position_exponent: i8,
         is_exponential: impl Fn(usize) -> bool,
     ) -> Result<Self, Error> {
-        let mut limbs = Limbs::new(rig, pose, position_exponent)?;
+        let mut skeleton = Skeleton::EMPTY;
+        let mut room = [Limb::default(); RIG_JOINTS];
+        skeleton.set_up(rig, detail, (pose, position_exponent), is_exponential, &mut room)?;
+        Ok(skeleton)
+    }
+
+    /// [`Skeleton::new`] in place, for a rig of as many joints as `room` has elements.
+    #[inline(never)]
+    pub fn set_up(
+        &mut self,
+        rig: &Rig,
+        detail: Detail,
+        (pose, position_exponent): (&[i32], i8),
+        is_exponential: impl Fn(usize) -> bool,
+        room: &mut [Limb],
+    ) -> Result<(), Error> {
+        let mut limbs = Limbs::new(rig, pose, position_exponent, room)?;
         match detail {
             Detail::Body => limbs.prune(),
             Detail::Full => limbs.settle(0),
         }
-        let mut skeleton = Skeleton {
-            bones: Vec::new(),
-            drives: Vec::new(),
-            driven: 0,
-            position_shift: limbs.exponent - i32::from(position_exponent),
-            exponent: limbs.exponent,
-            size: limbs.size,
-            hips: limbs.hips,
-            sides: None,
-            head_radius: 0,
-        };
-        let mut kept: Vec<u8, RIG_JOINTS> = Vec::new();
-        for ((index, joint), limb) in rig.joints().enumerate().zip(&limbs.limbs) {
-            let _ = kept.push(skeleton.bones.len() as u8);
-            if !limb.kept {
-                continue;
-            }
-            let parent = kept.get(usize::from(limb.parent)).copied();
-            let turns = limb.bears || limb.head;
-            let drives = skeleton.drive(&joint, turns, is_exponential(index))?;
-            let part = if limb.placement || limb.length == 0 { Part::Hidden } else { Part::Bone };
-            let foot = contains(joint.name(), "foot") || contains(joint.name(), "ankle");
-            let moves = { joint.kinds }.any(|kind| kind.is_position());
-            let offset = match limb.placement {
-                true => joint.offset.map(|raw| skeleton.figure_units(raw, rig.length_exponent())),
-                false => limb.bone.map(i32::from),
-            };
-            skeleton.push(Bone { parent, offset, part, foot, drives, moves, bears: limb.bears })?;
-            if limb.head && detail == Detail::Body {
-                let parent = Some(skeleton.bones.len() as u8 - 1);
-                let offset = crown(&limbs, index, limb);
-                skeleton.head_radius = (length(offset) / 2).clamp(limbs.size / 22, limbs.size / 14);
-                skeleton.push(Bone { parent, offset, part: Part::Crown, foot: false, drives: 0, moves: false, bears: false })?;
-            }
+        self.clear(&limbs, limbs.exponent - i32::from(position_exponent));
+        let mut next = limbs.after(None);
+        while let Some(index) = next {
+            self.add(rig, detail, &mut limbs, index, is_exponential(index))?;
+            next = limbs.after(Some(index));
         }
-        skeleton.sides = sides(rig, &limbs).map(|pair| pair.map(|index| kept.get(index).copied().unwrap_or(0)));
-        Ok(skeleton)
+        self.hips = limbs.limbs.get(self.hips).map_or(0, |hips| usize::from(hips.bone_index));
+        self.find_sides(rig, &limbs);
+        self.keep_rotations();
+        Ok(())
     }
 
-    fn push(&mut self, bone: Bone) -> Result<(), Error> {
-        if let Some(parent) = bone.parent.and_then(|parent| self.bones.get_mut(usize::from(parent))) {
-            parent.bears = true;
+    fn clear(&mut self, limbs: &Limbs, position_shift: i32) {
+        self.bones.clear();
+        self.drives.clear();
+        self.driven = 0;
+        self.position_shift = position_shift;
+        self.exponent = limbs.exponent;
+        self.size = limbs.size;
+        self.hips = limbs.hips;
+        self.head_radius = 0;
+    }
+
+    /// Adds a joint of the rig.
+    fn add(&mut self, rig: &Rig, detail: Detail, limbs: &mut Limbs, index: usize, exponential: bool) -> Result<(), Error> {
+        let (Some(joint), Some(&limb)) = (rig.joints().nth(index), limbs.limbs.get(index)) else { return Ok(()) };
+        let (placement, head) = (limb.is(flag::PLACEMENT), limb.is(flag::HEAD));
+        let parent = limbs.limbs.get(usize::from(limb.parent)).map(|parent| parent.bone_index);
+        let drives = self.drive(&joint, limb.is(flag::BEARS) || head, exponential)?;
+        let offset = match placement {
+            true => joint.offset.map(|raw| self.figure_units(raw, rig.length_exponent())),
+            false => limb.bone.map(i32::from),
+        };
+        let bone = Bone {
+            offset,
+            parent,
+            joint: index as u8,
+            part: if placement || limb.length == 0 { Part::Hidden } else { Part::Bone },
+            tone: Tone::Middle,
+            drives,
+            slot: NOWHERE,
+            parent_slot: NOWHERE,
+            foot: contains(joint.name(), "foot") || contains(joint.name(), "ankle"),
+            moves: { joint.kinds }.any(|kind| kind.is_position()),
+        };
+        let at = self.push(bone)?;
+        if let Some(limb) = limbs.limbs.get_mut(index) {
+            limb.bone_index = at;
         }
-        self.bones.push(bone).map_err(|_| Error::TooManyJoints { most: N })
+        if head && detail == Detail::Body {
+            let offset = crown(limbs, index, &limb);
+            self.head_radius = (length(offset) / 2).clamp(limbs.size / 22, limbs.size / 14);
+            self.push(Bone { offset, parent: Some(at), part: Part::Crown, drives: 0, foot: false, moves: false, ..bone })?;
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, bone: Bone) -> Result<u8, Error> {
+        self.bones.push(bone).map_err(|_| Error::TooManyJoints { most: N })?;
+        Ok(self.bones.len() as u8 - 1)
     }
 
     /// Adds what drives a joint, and counts it. What turns one that nothing hangs on is left out.
     fn drive(&mut self, joint: &Joint, turns: bool, exponential: bool) -> Result<u8, Error> {
+        use Kind::*;
         let before = self.driven;
         let (mut moved, mut grouped) = (false, !turns);
+        let of = |kinds: &[Kind], act| {
+            let mut members = [None; 4];
+            for (member, kind) in members.iter_mut().zip(kinds) {
+                *member = joint.kinds.zip(joint.first_channel..).find(|(own, _)| own == kind).map(|(_, channel)| channel);
+            }
+            Drive::group(act, members.get(..kinds.len()).unwrap_or(&[]))
+        };
         for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
-            let axis = kind.axis().unwrap_or(0) as u8;
             let drive = match kind {
-                Kind::Scalar => continue,
+                Scalar => continue,
                 _ if kind.is_position() && moved => continue,
                 _ if kind.is_position() => {
                     moved = true;
-                    Drive::Offset([Kind::Xposition, Kind::Yposition, Kind::Zposition].map(|kind| channel_of(joint, kind)))
+                    of(&[Xposition, Yposition, Zposition], 3)
                 }
-                _ if kind.is_rotation() && !exponential && turns => Drive::Turn { axis, channel },
+                _ if kind.is_rotation() && !exponential && turns => Some(Drive::turn(kind.axis().unwrap_or(0) as u16, channel)),
                 // The rest work as a group, in the place of its first channel.
                 _ if grouped => continue,
                 _ => {
                     grouped = true;
-                    group(joint, kind)
+                    if kind.is_quaternion() {
+                        of(&[Wquaternion, Xquaternion, Yquaternion, Zquaternion], 5)
+                    } else if kind.is_exponential() {
+                        of(&[Xexponential, Yexponential, Zexponential], 4)
+                    } else {
+                        angles(joint)
+                    }
                 }
             };
             self.push_drive(drive)?;
@@ -184,12 +305,12 @@ impl<const N: usize> Skeleton<N> {
         Ok((self.driven - before) as u8)
     }
 
-    fn push_drive(&mut self, drive: Drive) -> Result<(), Error> {
+    fn push_drive(&mut self, drive: Option<Drive>) -> Result<(), Error> {
         let full = Error::TooManyChannels { most: DRIVES * N };
         if self.driven.is_multiple_of(DRIVES) {
-            self.drives.push([drive; DRIVES]).map_err(|_| full)?;
+            self.drives.push([Drive::NOTHING; DRIVES]).map_err(|_| full)?;
         }
-        *self.drives.as_flattened_mut().get_mut(self.driven).ok_or(full)? = drive;
+        *self.drives.as_flattened_mut().get_mut(self.driven).ok_or(full)? = drive.ok_or(full)?;
         self.driven += 1;
         Ok(())
     }
@@ -203,46 +324,81 @@ impl<const N: usize> Skeleton<N> {
     pub fn figure_units(&self, raw: i32, exponent: i8) -> i32 {
         shift_right(raw, self.exponent - i32::from(exponent))
     }
-}
 
-/// The first two joints, left and right, that are named as counterparts and whose bones are not the same.
-fn sides(rig: &Rig, limbs: &Limbs) -> Option<[usize; 2]> {
-    let joints = || rig.joints().zip(&limbs.limbs).enumerate().filter(|(_, (_, limb))| limb.kept);
-    joints().find_map(|(index, (joint, limb))| {
-        let mut apart = joints().filter(|(other, (_, other_limb))| *other > index && other_limb.bone != limb.bone);
-        apart.find_map(|(other, (counterpart, _))| {
-            let left = is_left_of(joint.name(), counterpart.name())?;
-            Some(if left { [index, other] } else { [other, index] })
-        })
-    })
-}
-
-/// A joint's channel of a kind.
-fn channel_of(joint: &Joint, wanted: Kind) -> u16 {
-    let mut channels = joint.kinds.zip(joint.first_channel..);
-    channels.find(|(kind, _)| *kind == wanted).map_or(NONE, |(_, channel)| channel)
-}
-
-/// A joint's quaternion or exponential map. Where a clip codes Euler angles as one, their slots hold x, y, z in turn.
-fn group(joint: &Joint, kind: Kind) -> Drive {
-    let channel_of = |kind| channel_of(joint, kind);
-    if kind.is_quaternion() {
-        Drive::Quaternion([Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion].map(channel_of))
-    } else if kind.is_exponential() {
-        Drive::Exponential([Kind::Xexponential, Kind::Yexponential, Kind::Zexponential].map(channel_of))
-    } else {
-        let mut slots = joint.kinds.zip(joint.first_channel..).filter(|(kind, _)| kind.is_rotation());
-        Drive::Exponential([(); 3].map(|()| slots.next().map_or(NONE, |(_, channel)| channel)))
+    /// Which bones are of which side: by joints whose names are counterparts, and all that hangs on them. The first pair whose
+    /// bones differ tells where the figure faces.
+    fn find_sides(&mut self, rig: &Rig, limbs: &Limbs) {
+        let mut best: Option<[usize; 2]> = None;
+        for at in 0..self.bones.len() {
+            let Some(&bone) = self.bones.get(at) else { return };
+            let above = bone.parent.and_then(|parent| self.bones.get(usize::from(parent))).map_or(Tone::Middle, |bone| bone.tone);
+            let mut tone = above;
+            let joint = usize::from(bone.joint);
+            if let Some((left, other)) = counterpart(rig, limbs, joint) {
+                tone = if left { Tone::Left } else { Tone::Right };
+                let differ = limbs.limbs.get(joint).map(|limb| limb.bone) != limbs.limbs.get(other).map(|limb| limb.bone);
+                let pair = [joint.min(other), joint.max(other)];
+                if differ && best.is_none_or(|best| pair < best) {
+                    best = Some(pair);
+                    let pair = if left { [joint, other] } else { [other, joint] };
+                    self.sides = Some(pair.map(|joint| limbs.limbs.get(joint).map_or(0, |limb| limb.bone_index)));
+                }
+            }
+            if let Some(bone) = self.bones.get_mut(at) {
+                bone.tone = tone;
+            }
+        }
+        if best.is_none() {
+            self.sides = None;
+        }
     }
+
+    /// Gives every joint that others hang on a place for its rotation until the last of those has been placed.
+    fn keep_rotations(&mut self) {
+        let mut used = [false; SLOTS];
+        for at in 0..self.bones.len() {
+            let Some(parent) = self.bones.get(at).map(|bone| bone.parent) else { return };
+            let parent_slot = parent.and_then(|parent| self.bones.get(usize::from(parent))).map_or(NOWHERE, |bone| bone.slot);
+            let rest = self.bones.get(at + 1..).unwrap_or(&[]);
+            let last = parent.is_some() && !rest.iter().any(|bone| bone.parent == parent);
+            if let Some(used) = used.get_mut(usize::from(parent_slot)).filter(|_| last) {
+                *used = false;
+            }
+            let bears = rest.iter().any(|bone| bone.parent == Some(at as u8));
+            // There is always one: the order sees to it.
+            let free = used.iter_mut().enumerate().find(|(_, used)| !**used).filter(|_| bears);
+            let slot = free.map_or(NOWHERE, |(slot, used)| {
+                *used = true;
+                slot as u8
+            });
+            if let Some(bone) = self.bones.get_mut(at) {
+                (bone.slot, bone.parent_slot) = (slot, parent_slot);
+            }
+        }
+    }
+}
+
+/// The kept joint whose name is the counterpart of a joint's, and whether the joint is the left one of them.
+fn counterpart(rig: &Rig, limbs: &Limbs, index: usize) -> Option<(bool, usize)> {
+    let own = rig.joints().nth(index)?;
+    let mut others =
+        rig.joints().zip(limbs.limbs.iter()).enumerate().filter(|(other, (_, limb))| *other != index && limb.is(flag::KEPT));
+    others.find_map(|(other, (joint, _))| Some((is_left_of(own.name(), joint.name())?, other)))
+}
+
+/// Euler angles that a clip codes as an exponential map: their slots hold x, y, z in turn.
+fn angles(joint: &Joint) -> Option<Drive> {
+    let mut slots = joint.kinds.zip(joint.first_channel..).filter(|(kind, _)| kind.is_rotation());
+    Drive::group(4, &[(); 3].map(|()| slots.next().map(|(_, channel)| channel)))
 }
 
 /// The crown in the head's own frame: its End Site, or, if that is not worth the name, as much again in the direction of the
 /// bone that leads to the head, a tenth of the figure.
 fn crown(limbs: &Limbs, index: usize, head: &Limb) -> Vector {
     let tenth = limbs.size / 10;
-    let own = limbs.limbs.iter().find(|limb| limb.end_site && usize::from(limb.parent) == index && limb.length > tenth / 3);
-    match own {
+    let worth = |limb: &&Limb| limb.is(flag::END_SITE) && usize::from(limb.parent) == index && i32::from(limb.length) > tenth / 3;
+    match limbs.limbs.iter().find(worth) {
         Some(end) => end.bone.map(i32::from),
-        None => head.bone.map(|x| i32::from(x) * 64 / (head.length / 64).max(1) * (tenth / 64) / 64),
+        None => head.bone.map(|x| i32::from(x) * 64 / (i32::from(head.length) / 64).max(1) * (tenth / 64) / 64),
     }
 }

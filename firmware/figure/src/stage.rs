@@ -1,23 +1,26 @@
 //! The whole way from a pose to a picture. What is drawn depends on the clip and the pose alone, never on frames before.
 
-use crate::Error;
+use crate::body::Limb;
 use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
-use crate::draw::Ink;
+use crate::ink::Ink;
 use crate::kinematics::Kinematics;
 use crate::lines::{Ground, Line, Lines};
+use crate::rotation::{Rotation, Turning};
 use crate::skeleton::{Detail, Skeleton};
 use crate::survey::{Bearings, Survey};
+use crate::{Error, RIG_JOINTS};
 use embedded_graphics::draw_target::DrawTarget;
 use pantin::Player;
 
 /// A figure of at most `N` joints before its camera.
 #[derive(Clone, Debug)]
-pub struct Stage<const N: usize> {
+pub struct Stage<const N: usize, R: Turning = Rotation> {
     skeleton: Skeleton<N>,
     bearings: Bearings,
+    canvas: Canvas,
     camera: Camera,
     ground: Ground,
-    joints: Kinematics<N>,
+    joints: Kinematics<N, R>,
     lines: Lines<N>,
 }
 
@@ -27,60 +30,88 @@ const TRIAL_SCALE: i32 = 1 << 14;
 /// A clip is looked at in about this many places before it plays.
 const SAMPLES: u32 = 48;
 
-impl<const N: usize> Stage<N> {
-    /// Sets up the figure and the camera for a clip, and leaves the player at frame 0.
-    #[inline(never)]
+impl<const N: usize, R: Turning> Stage<N, R> {
+    /// No figure yet.
+    pub const EMPTY: Self = Stage {
+        skeleton: Skeleton::EMPTY,
+        bearings: Bearings::UPRIGHT,
+        canvas: Canvas { width: 0, height: 0 },
+        camera: Camera::NOWHERE,
+        ground: Ground { axis: 1, height: 0, spacing: 1 },
+        joints: Kinematics::NEW,
+        lines: Lines::NEW,
+    };
+
+    /// A figure and a camera for a clip of up to 192 joints; leaves the player at frame 0.
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
+        let mut stage = Self::EMPTY;
+        stage.set_up(player, canvas, view, &mut [Limb::default(); RIG_JOINTS])?;
+        Ok(stage)
+    }
+
+    /// [`Stage::of_clip`] in place, for a rig of as many joints as `room` has elements.
+    #[inline(never)]
+    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, view: View, room: &mut [Limb]) -> Result<(), Error> {
         player.rewind();
         let clip = *player.clip();
-        let skeleton =
-            Skeleton::new(&clip.rig(), Detail::Body, player.pose(), clip.length_exponent(), |joint| clip.is_exponential(joint))?;
-        let stride = clip.frames().div_ceil(SAMPLES) as usize;
-        let stage = Stage::new(skeleton, canvas, view, |visit| {
-            for frame in (0..clip.frames()).step_by(stride) {
+        let pose = (player.pose(), clip.length_exponent());
+        self.skeleton.set_up(&clip.rig(), Detail::Body, pose, |joint| clip.is_exponential(joint), room)?;
+        self.canvas = canvas;
+        self.aim(player, view);
+        Ok(())
+    }
+
+    /// Sets the camera up for another view of the clip; leaves the player where it is.
+    #[inline(never)]
+    pub fn aim(&mut self, player: &mut Player, view: View) {
+        let (now, frames) = (player.frame(), player.clip().frames());
+        let stride = frames.div_ceil(SAMPLES) as usize;
+        self.frame(view, |visit| {
+            for frame in (0..frames).step_by(stride) {
                 player.seek(frame);
                 visit(player.pose());
             }
         });
-        player.rewind();
-        Ok(stage)
+        player.seek(now);
     }
 
     /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
     /// argument; it is called twice and must show the same ones.
-    #[inline(never)]
-    pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
-        let mut joints = Kinematics::new();
+    pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
+        let mut stage = Stage { skeleton, canvas, ..Self::EMPTY };
+        stage.frame(view, poses);
+        stage
+    }
+
+    fn frame(&mut self, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
         let mut survey = Survey::new();
         poses(&mut |pose| {
-            joints.place(&skeleton, pose);
-            survey.include(&skeleton, &joints);
+            self.joints.place(&self.skeleton, pose);
+            survey.include(&self.skeleton, &self.joints);
         });
         let bearings = survey.bearings(view.up);
-        let size = skeleton.size;
+        let size = self.skeleton.size;
         let at_scale = |scale| Camera::new(&survey, bearings, size, view, scale);
         let upwards = bearings.up[bearings.axis] > 0;
         let height = if upwards { survey.low[bearings.axis] } else { survey.high[bearings.axis] };
         // Lines a quarter to half a size apart.
         let spacing = (32 - size.leading_zeros()).saturating_sub(2).max(1);
-        let ground = Ground { axis: bearings.axis, height, spacing };
-        let camera = at_scale(TRIAL_SCALE);
-        let mut stage = Stage { skeleton, bearings, camera, ground, joints, lines: Lines::new() };
+        self.ground = Ground { axis: bearings.axis, height, spacing };
+        self.bearings = bearings;
+        self.camera = at_scale(TRIAL_SCALE);
         let mut frame = Frame::default();
         poses(&mut |pose| {
-            stage.look(pose);
-            frame.include(&stage.lines);
+            self.look(pose);
+            frame.include(&self.lines);
         });
-        let scale = frame.scale(canvas);
-        stage.camera = at_scale(scale);
-        let rows = i32::from(canvas.height) << PIXEL_BITS;
-        stage
-            .camera
-            .show((i32::from(canvas.width) << PIXEL_BITS) / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
-        stage
+        let scale = frame.scale(self.canvas);
+        self.camera = at_scale(scale);
+        let [columns, rows] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
+        self.camera.show(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
 
     /// The frame of a pose as lines.
+    #[inline(never)]
     pub fn look(&mut self, pose: &[i32]) -> &Lines<N> {
         self.joints.place(&self.skeleton, pose);
         let target = self.camera.target(self.joints.position(self.skeleton.hips));
@@ -113,13 +144,19 @@ impl<const N: usize> Stage<N> {
         &self.camera
     }
 
+    /// Moves the picture by whole pixels: a place among several figures.
+    pub fn shift(&mut self, x: i16, y: i16) {
+        let (_, _, [column, row]) = self.camera.framing();
+        self.camera.show(column + (i32::from(x) << PIXEL_BITS), row + (i32::from(y) << PIXEL_BITS));
+    }
+
     /// Up and facing, as the camera takes them.
     pub fn bearings(&self) -> Bearings {
         self.bearings
     }
 
     /// Where the joints of the last pose are.
-    pub fn joints(&self) -> &Kinematics<N> {
+    pub fn joints(&self) -> &Kinematics<N, R> {
         &self.joints
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::kinematics::Kinematics;
 use crate::root::direction;
-use crate::rotation::Vector;
+use crate::rotation::{Turning, Vector};
 use crate::skeleton::{Part, Skeleton};
 use crate::trig::ONE;
 
@@ -30,6 +30,11 @@ pub struct Bearings {
     pub facing: Vector,
 }
 
+impl Bearings {
+    /// Up along y, looking along z.
+    pub(crate) const UPRIGHT: Bearings = Bearings { axis: 1, up: [0, ONE, 0], facing: [0, 0, ONE] };
+}
+
 /// Sums of lengths up to 2^19 over a few hundred poses stay below 2^31.
 const SUM_SHIFT: u32 = 6;
 
@@ -40,12 +45,11 @@ impl Survey {
     }
 
     /// Takes in a pose.
-    pub fn include<const N: usize>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N>) {
+    pub fn include<const N: usize, R: Turning>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N, R>) {
         let mut low = [i32::MAX; 3];
         let mut high = [i32::MIN; 3];
         let (mut crown, mut feet, mut footed) = (None, [0i32; 3], 0);
-        for (index, (bone, joint)) in skeleton.bones.iter().zip(joints.joints()).enumerate() {
-            let position = joint.position;
+        for (index, (bone, &position)) in skeleton.bones.iter().zip(joints.positions()).enumerate() {
             if index >= skeleton.hips {
                 low = core::array::from_fn(|axis| low[axis].min(position[axis]));
                 high = core::array::from_fn(|axis| high[axis].max(position[axis]));

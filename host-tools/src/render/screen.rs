@@ -1,12 +1,10 @@
 //! The reference board's display: 128x64 pixels of 16 greys.
 
 use anyhow::{Context, Result};
-use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
-use embedded_graphics::pixelcolor::raw::{BigEndian, RawU4};
-use embedded_graphics::pixelcolor::{Gray4, GrayColor};
-use embedded_graphics::prelude::Point;
+use embedded_graphics::pixelcolor::GrayColor;
 use pantin::{ChannelState, Clip, Player};
-use pantin_figure::{Canvas, Stage, View};
+use pantin_figure::surface::{self, Gray4Rows};
+use pantin_figure::{Canvas, Look, Stage, View};
 
 /// Pixels in a row.
 pub const WIDTH: usize = 128;
@@ -18,7 +16,7 @@ pub const CANVAS: Canvas = Canvas { width: WIDTH as u16, height: HEIGHT as u16 }
 const JOINTS: usize = pantin_figure::RIG_JOINTS;
 
 /// What the firmware draws into: two pixels a byte, the left one in the high half.
-pub type Frame = Framebuffer<Gray4, RawU4, BigEndian, WIDTH, HEIGHT, { buffer_size::<Gray4>(WIDTH, HEIGHT) }>;
+pub type Frame = surface::Frame<Gray4Rows<WIDTH, HEIGHT, { WIDTH * HEIGHT / 2 }>>;
 
 /// One picture of the display: brightness 0 to 15 a pixel, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,9 +28,7 @@ pub struct Picture {
 impl Picture {
     /// What a framebuffer shows.
     pub fn of(frame: &Frame) -> Picture {
-        let places = (0..HEIGHT * WIDTH).map(|index| Point::new((index % WIDTH) as i32, (index / WIDTH) as i32));
-        let pixel = |place| embedded_graphics::image::GetPixel::pixel(frame, place).map_or(0, |grey: Gray4| grey.luma());
-        Picture { pixels: places.map(pixel).collect() }
+        Picture { pixels: (0..HEIGHT * WIDTH).map(|index| frame.pixel(index % WIDTH, index / WIDTH).luma()).collect() }
     }
 
     /// The picture in greys of 0 to 255, each pixel a square of `scale`.
@@ -55,7 +51,8 @@ pub fn pictures(clip: &Clip, view: View, frames: impl IntoIterator<Item = u32>) 
     let mut frame = Frame::new();
     let draw = |number| {
         player.seek(number);
-        let Ok(()) = stage.draw(player.pose(), &mut frame);
+        frame.clear();
+        stage.look(player.pose()).draw_on(&mut frame, Look::default());
         Picture::of(&frame)
     };
     Ok(frames.into_iter().map(draw).collect())

@@ -2,7 +2,9 @@
 //!
 //! Its chip select is pin 0 of port D, which the board pulls the right way by itself: port D is never touched here.
 
+use crate::board::Oled;
 use crate::registers::{gpio_c, ssi0, system};
+use pantin_figure::surface::Frame;
 
 const PIN_7: u32 = 1 << 7;
 /// The port is still shifting bits out.
@@ -21,17 +23,22 @@ pub fn start() {
     // Frames of 8 bits.
     ssi0::CR0.write(7);
     ssi0::CR1.write(2);
-    // Columns (of two pixels) and rows, first and last; row by row.
-    command(&[0x15, 0, 63, 0x75, 0, 63, 0xa0, 0]);
+    // Row by row.
+    command(&[0xa0, 0]);
 }
 
 fn command(bytes: &[u8]) {
     select(0, bytes);
 }
 
-/// Writes a picture: the window takes it from its first byte, and is back there after its last.
-pub fn show(picture: &[u8]) {
-    select(PIN_7, picture);
+/// Writes what changed of a picture.
+pub fn show(frame: &mut Frame<Oled>) {
+    for window in frame.send() {
+        let cells = window.cells::<Oled>();
+        let [columns, rows] = [cells.columns, cells.rows].map(|ends| ends.map(|end| end as u8));
+        command(&[0x15, columns[0], columns[1], 0x75, rows[0], rows[1]]);
+        frame.stretches(window).for_each(|stretch| select(PIN_7, stretch));
+    }
 }
 
 fn select(pin: u32, bytes: &[u8]) {

@@ -3,22 +3,30 @@
 #![no_main]
 
 mod board;
+mod buttons;
 mod display;
 mod faults;
 mod registers;
 
-use board::Lm3s;
+use board::{Lm3s, Oled};
 use cortex_m_rt::entry;
 use defmt_semihosting as _;
 use faults::Code;
 use pantin_app::{Exit, Options};
+use pantin_figure::surface::Frame;
 
-static CLIP: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/clip.ptn"));
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 192;
+const MOVING: usize = 104;
+const JOINTS: usize = 40;
 
 #[entry]
 fn main() -> ! {
     faults::guard_stack();
-    let exit = pantin_app::run(CLIP, options(), &mut Lm3s::new());
+    let mut frame = Frame::<Oled>::new();
+    let exit = pantin_app::run::<_, CHANNELS, MOVING, JOINTS>(CLIPS, options(), &mut frame, &mut Lm3s::new());
     faults::exit(match exit {
         Exit::Done => Code::Done,
         Exit::BadClip => Code::BadClip,

@@ -38,6 +38,20 @@ pub mod gpio_c {
     pub const DEN: Register = Register(0x4000_651c);
 }
 
+/// Port E; pins 0 to 3 are up, down, left and right.
+pub mod gpio_e {
+    use super::Register;
+    pub const PINS_0_TO_3: Register = Register(0x4002_403c);
+    pub const DEN: Register = Register(0x4002_451c);
+}
+
+/// Port F; pin 1 is select.
+pub mod gpio_f {
+    use super::Register;
+    pub const PIN_1: Register = Register(0x4002_5008);
+    pub const DEN: Register = Register(0x4002_551c);
+}
+
 /// Serial line 0 (PL011).
 pub mod uart0 {
     use super::Register;

@@ -1,0 +1,46 @@
+//! Name, frame and speed in a corner of the display, by `embedded-graphics`.
+
+use crate::scene::{Entry, Scene};
+use core::fmt::Write;
+use embedded_graphics::Drawable;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::Point;
+use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
+use embedded_graphics::text::{Baseline, Text};
+use heapless::String;
+use pantin_figure::ink::{Ink, Tone};
+
+/// Rows from which a display takes the larger letters.
+const LARGE: u32 = 160;
+/// Brightness of the letters.
+const SHADE: u8 = 200;
+
+/// Draws it.
+#[inline(never)]
+pub(crate) fn draw<D>(scene: &Scene, entry: &Entry, frame: [u32; 2], target: &mut D)
+where
+    D: DrawTarget,
+    D::Color: Ink,
+{
+    let size = target.bounding_box().size;
+    let font: &MonoFont = if size.height >= LARGE { &FONT_6X10 } else { &FONT_4X6 };
+    let style = MonoTextStyle::new(font, D::Color::of(Tone::Middle, SHADE));
+    let mut first: String<32> = String::new();
+    let mut second: String<32> = String::new();
+    // What does not fit the line is left out.
+    let _ = first.push_str(entry.name.get(..24).unwrap_or(entry.name));
+    let _ = write!(second, "{}/{} ", frame[0] + 1, frame[1]);
+    let _ = match (scene.paused, scene.pace) {
+        (true, _) => write!(second, "paused"),
+        (false, 0..) => write!(second, "x{}", 1 << scene.pace),
+        (false, slow) => write!(second, "x1/{}", 1 << -slow),
+    };
+    if scene.backwards {
+        let _ = second.push_str(" back");
+    }
+    let bottom = size.height.saturating_sub(font.character_size.height) as i32;
+    for (line, y) in [(&first, 0), (&second, bottom)] {
+        // A display that fails shows no letters; the figure's drawing tells of it.
+        let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);
+    }
+}

@@ -1,0 +1,21 @@
+//! The log, where the board has one.
+
+/// A line of the log.
+macro_rules! info {
+    ($($words:tt)*) => {{
+        #[cfg(feature = "defmt")]
+        defmt::info!($($words)*);
+    }};
+}
+
+/// A line of the log about what went wrong.
+macro_rules! error {
+    ($text:literal, $error:expr) => {{
+        #[cfg(feature = "defmt")]
+        defmt::error!($text, defmt::Display2Format(&$error));
+        #[cfg(not(feature = "defmt"))]
+        let _ = &$error;
+    }};
+}
+
+pub(crate) use {error, info};

@@ -1,0 +1,51 @@
+//! What the build scripts of all boards do: bring memory map and clips to where the linker and the program find them.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// The repository, from a board's folder.
+const ROOT: &str = "../../..";
+/// What a board plays that was told nothing else.
+const OWN: [&str; 2] = ["motions/walk.ptn", "motions/run.ptn"];
+
+/// Puts a memory map (its path from the board's folder) where the linker looks for `memory.x`.
+pub fn memory_map(path: &str) {
+    let to = out().join("memory.x");
+    println!("cargo::rerun-if-changed={path}");
+    if let Err(error) = fs::copy(path, &to) {
+        println!("cargo::error={path}: {error}: it is the board's memory map");
+    }
+    println!("cargo::rustc-link-search={}", out().display());
+}
+
+/// Passes arguments to the linker.
+pub fn link(arguments: &[&str]) {
+    arguments.iter().for_each(|argument| println!("cargo::rustc-link-arg-bins={argument}"));
+}
+
+/// Writes `clips.rs`: `CLIPS`, the clips that `PANTIN_CLIP` names (their whole paths, apart as in PATH), or our walk and run.
+pub fn clips() {
+    println!("cargo::rerun-if-env-changed=PANTIN_CLIP");
+    let paths: Vec<PathBuf> = match env::var_os("PANTIN_CLIP") {
+        Some(paths) => env::split_paths(&paths).collect(),
+        None => OWN.iter().map(|own| Path::new(ROOT).join(own)).collect(),
+    };
+    let mut list = String::new();
+    for (index, path) in paths.iter().enumerate() {
+        println!("cargo::rerun-if-changed={}", path.display());
+        let copy = out().join(format!("clip-{index}.ptn"));
+        if let Err(error) = fs::copy(path, &copy) {
+            let advice = "set PANTIN_CLIP to whole paths of clips; `cargo pantin convert IN -o OUT.ptn` makes one";
+            println!("cargo::error={}: {error}: {advice}", path.display());
+        }
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}) }},");
+    }
+    let module = format!("/// The clips that this program was built with.\nstatic CLIPS: &[pantin_app::Entry] = &[\n{list}];\n");
+    fs::write(out().join("clips.rs"), module).expect("OUT_DIR is writable");
+}
+
+fn out() -> PathBuf {
+    PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR for build scripts"))
+}

@@ -1,0 +1,151 @@
+//! Lines a pixel wide: Bresenham's, with the end points in whole pixels.
+
+use super::clip::Steps;
+use crate::surface::Surface;
+
+/// Draws a line; ends belong to it.
+#[inline(never)]
+pub fn line<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::Ink) {
+    let Some(steps) = Steps::new(from, to, surface.size()) else { return };
+    let mut cursor = start(surface, &steps);
+    // Four loops without a choice inside.
+    match (steps.steep, steps.back) {
+        (false, false) => walk::<S, false, false>(surface, &steps, &mut cursor, ink),
+        (false, true) => walk::<S, false, true>(surface, &steps, &mut cursor, ink),
+        (true, false) => walk::<S, true, false>(surface, &steps, &mut cursor, ink),
+        (true, true) => walk::<S, true, true>(surface, &steps, &mut cursor, ink),
+    }
+}
+
+/// Draws every `gap`-th pixel of a line, counted from the end at the left, or at the top of a steep one.
+#[inline(never)]
+pub fn dotted<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::Ink, gap: u32) {
+    let Some(steps) = Steps::new(from, to, surface.size()) else { return };
+    let mut cursor = start(surface, &steps);
+    let mut rest = steps.rest;
+    let mut wait = (gap - steps.first as u32 % gap) % gap;
+    for _ in steps.first..=steps.last {
+        if wait == 0 {
+            surface.put(cursor, ink);
+            wait = gap;
+        }
+        wait -= 1;
+        step::<S>(&steps, &mut cursor, &mut rest, steps.steep, steps.back);
+    }
+}
+
+fn start<S: Surface>(surface: &mut S, steps: &Steps) -> S::Cursor {
+    let [from, to] = steps.bounds();
+    surface.mark(from, to);
+    let [along, across] = steps.at;
+    if steps.steep { surface.cursor(across, along) } else { surface.cursor(along, across) }
+}
+
+#[inline(always)]
+fn walk<S: Surface, const STEEP: bool, const BACK: bool>(surface: &mut S, steps: &Steps, cursor: &mut S::Cursor, ink: S::Ink) {
+    let mut rest = steps.rest;
+    for _ in steps.first..=steps.last {
+        surface.put(*cursor, ink);
+        step::<S>(steps, cursor, &mut rest, STEEP, BACK);
+    }
+}
+
+#[inline(always)]
+fn step<S: Surface>(steps: &Steps, cursor: &mut S::Cursor, rest: &mut i32, steep: bool, back: bool) {
+    *rest += 2 * steps.short;
+    let aside = *rest >= 2 * steps.long;
+    if aside {
+        *rest -= 2 * steps.long;
+    }
+    if steep {
+        S::along(cursor, true);
+        if aside {
+            S::across(cursor, !back);
+        }
+    } else {
+        S::across(cursor, true);
+        if aside {
+            S::along(cursor, !back);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Frame, MonoPages};
+    use embedded_graphics::pixelcolor::BinaryColor;
+
+    type Small = Frame<MonoPages<32, 16, 64>>;
+    type Large = Frame<MonoPages<160, 144, 2880>>;
+
+    fn picture(frame: &Small) -> String {
+        let row = |y: usize| (0..32).map(|x| if frame.pixel(x, y).is_on() { '#' } else { '.' }).collect::<String>();
+        (0..16).map(row).map(|row| row + "\n").collect()
+    }
+
+    #[test]
+    fn a_line_is_what_it_should_be() {
+        let mut frame = Small::new();
+        line(&mut frame, [1, 1], [12, 4], BinaryColor::On);
+        line(&mut frame, [31, 2], [28, 15], BinaryColor::On);
+        dotted(&mut frame, [0, 12], [20, 12], BinaryColor::On, 5);
+        line(&mut frame, [5, 8], [5, 8], BinaryColor::On);
+        let expected = "\
+................................
+.##.............................
+...####........................#
+.......####....................#
+...........##..................#
+..............................#.
+..............................#.
+..............................#.
+.....#........................#.
+.............................#..
+.............................#..
+.............................#..
+#....#....#....#....#........#..
+............................#...
+............................#...
+............................#...
+";
+        assert_eq!(picture(&frame), expected, "{}", picture(&frame));
+    }
+
+    /// Numbers from a fixed sequence.
+    fn sequence() -> impl FnMut(i32, i32) -> i32 {
+        let mut state = 5u64;
+        move |least, most| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            least + ((state >> 33) % (most - least + 1) as u64) as i32
+        }
+    }
+
+    #[test]
+    fn a_clipped_line_is_the_whole_one_where_it_is_inside_and_marks_what_it_changes() {
+        let mut next = sequence();
+        for _ in 0..20_000 {
+            let ends = [[next(-60, 90), next(-60, 75)], [next(-60, 90), next(-60, 75)]];
+            let gap = next(1, 4) as u32;
+            let (mut small, mut large) = (Small::new(), Large::new());
+            small.send().count();
+            dotted(&mut small, ends[0], ends[1], BinaryColor::On, gap);
+            // The same on a surface that holds all of it.
+            let [from, to] = ends.map(|[x, y]| [x + 64, y + 64]);
+            dotted(&mut large, from, to, BinaryColor::On, gap);
+            if gap == 1 {
+                let mut other = Small::new();
+                line(&mut other, ends[1], ends[0], BinaryColor::On);
+                assert_eq!(picture(&small), picture(&other), "{ends:?}");
+            }
+            let windows: Vec<_> = small.send().collect();
+            for (x, y) in (0..16).flat_map(|y| (0..32).map(move |x| (x, y))) {
+                assert_eq!(small.pixel(x, y), large.pixel(x + 64, y + 64), "{ends:?} at {x} {y}\n{}", picture(&small));
+                let sent = windows.iter().any(|window| {
+                    (window.columns[0]..=window.columns[1]).contains(&x) && (window.rows[0]..=window.rows[1]).contains(&y)
+                });
+                assert!(sent || !small.pixel(x, y).is_on(), "{ends:?} at {x} {y}, {windows:?}");
+            }
+        }
+    }
+}

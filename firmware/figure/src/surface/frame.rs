@@ -1,0 +1,226 @@
+//! A framebuffer that knows what changed since it was last sent.
+
+use super::{Bands, Surface, Window};
+use crate::ink::Ink;
+use core::convert::Infallible;
+use core::marker::PhantomData;
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{OriginDimensions, Size};
+
+/// How a display keeps its pixels.
+pub trait Layout {
+    /// A unit of its memory.
+    type Cell: Cell;
+    /// All of its memory.
+    type Cells: AsRef<[Self::Cell]> + AsMut<[Self::Cell]> + Clone;
+    /// What a pixel shows.
+    type Ink: Ink;
+    /// A pixel's place.
+    type Cursor: Copy;
+    /// Columns: at most 256.
+    const WIDTH: usize;
+    /// Rows: at most 320.
+    const HEIGHT: usize;
+    /// Columns and rows of pixels in a cell.
+    const CELL: [usize; 2];
+    /// All dark.
+    const DARK: Self::Cells;
+
+    /// The place of a pixel inside.
+    fn cursor(x: usize, y: usize) -> Self::Cursor;
+    /// See [`Surface::across`].
+    fn across(cursor: &mut Self::Cursor, right: bool);
+    /// See [`Surface::along`].
+    fn along(cursor: &mut Self::Cursor, down: bool);
+    /// Sets a pixel. A cursor that has left the memory changes nothing.
+    fn put(cells: &mut [Self::Cell], cursor: Self::Cursor, ink: Self::Ink);
+    /// See [`Surface::blend`].
+    fn blend(cells: &mut [Self::Cell], cursor: Self::Cursor, ink: Self::Ink, cover: u32);
+    /// What a pixel shows.
+    fn get(cells: &[Self::Cell], cursor: Self::Cursor) -> Self::Ink;
+}
+
+/// A unit of a display's memory.
+pub trait Cell: Copy {
+    /// The bytes in which it is sent.
+    type Wire: AsRef<[u8]>;
+    /// All its pixels dark.
+    const DARK: Self;
+    /// As it is sent: the high byte first.
+    fn wire(self) -> Self::Wire;
+}
+
+impl Cell for u8 {
+    type Wire = [u8; 1];
+    const DARK: u8 = 0;
+
+    fn wire(self) -> [u8; 1] {
+        [self]
+    }
+}
+
+impl Cell for u16 {
+    type Wire = [u8; 2];
+    const DARK: u16 = 0;
+
+    fn wire(self) -> [u8; 2] {
+        self.to_be_bytes()
+    }
+}
+
+impl Window {
+    /// The window in cells: those that it touches.
+    pub fn cells<L: Layout>(&self) -> Window {
+        let [across, down] = L::CELL;
+        Window { columns: self.columns.map(|x| x / across), rows: self.rows.map(|y| y / down) }
+    }
+}
+
+/// A display's memory.
+#[derive(Clone, Debug)]
+pub struct Frame<L: Layout> {
+    cells: L::Cells,
+    /// Drawn since the last [`Frame::clear`].
+    drawn: Bands,
+    /// What the display shows otherwise: drawn before that, or darkened by it.
+    before: Bands,
+    layout: PhantomData<L>,
+}
+
+impl<L: Layout> Frame<L> {
+    /// A dark picture, of which the display has seen nothing.
+    pub fn new() -> Self {
+        const { assert!(L::WIDTH <= 256 && L::HEIGHT <= 320) };
+        Frame { cells: L::DARK, drawn: Bands::CLEAN, before: Bands::all(L::WIDTH, L::HEIGHT), layout: PhantomData }
+    }
+
+    /// Darkens what was drawn.
+    pub fn clear(&mut self) {
+        for window in self.drawn.windows(L::HEIGHT) {
+            let Window { columns: [from, to], rows: [top, bottom] } = window.cells::<L>();
+            let rows = self.cells.as_mut().chunks_exact_mut(L::WIDTH / L::CELL[0]);
+            for row in rows.take(bottom + 1).skip(top) {
+                if let Some(stretch) = row.get_mut(from..=to) {
+                    stretch.fill(L::Cell::DARK);
+                }
+            }
+        }
+        self.before.join(&self.drawn);
+        self.drawn = Bands::CLEAN;
+    }
+
+    /// The windows in which the picture may differ from what was sent. From here on all of it counts as sent.
+    pub fn send(&mut self) -> impl Iterator<Item = Window> + use<L> {
+        let mut changed = self.before;
+        changed.join(&self.drawn);
+        self.before = Bands::CLEAN;
+        Changed { bands: changed, height: L::HEIGHT, at: 0 }
+    }
+
+    /// Has everything sent once more.
+    pub fn forget(&mut self) {
+        self.before = Bands::all(L::WIDTH, L::HEIGHT);
+    }
+
+    /// The memory as the display takes it.
+    pub fn cells(&self) -> &[L::Cell] {
+        self.cells.as_ref()
+    }
+
+    /// The cells that a window touches, row by row.
+    pub fn stretches(&self, window: Window) -> impl Iterator<Item = &[L::Cell]> {
+        let Window { columns: [from, to], rows: [top, bottom] } = window.cells::<L>();
+        let rows = self.cells().chunks_exact(L::WIDTH / L::CELL[0]).take(bottom + 1).skip(top);
+        rows.filter_map(move |row| row.get(from..=to))
+    }
+
+    /// What a pixel inside shows.
+    pub fn pixel(&self, x: usize, y: usize) -> L::Ink {
+        L::get(self.cells(), L::cursor(x, y))
+    }
+}
+
+impl<L: Layout> Default for Frame<L> {
+    fn default() -> Self {
+        Frame::new()
+    }
+}
+
+/// The windows of bands that it owns.
+struct Changed {
+    bands: Bands,
+    height: usize,
+    at: usize,
+}
+
+impl Iterator for Changed {
+    type Item = Window;
+
+    fn next(&mut self) -> Option<Window> {
+        let window = self.bands.windows(self.height).nth(self.at)?;
+        self.at += 1;
+        Some(window)
+    }
+}
+
+impl<L: Layout> Surface for Frame<L> {
+    type Ink = L::Ink;
+    type Cursor = L::Cursor;
+
+    fn size(&self) -> [i32; 2] {
+        [L::WIDTH as i32, L::HEIGHT as i32]
+    }
+
+    #[inline(always)]
+    fn cursor(&self, x: i32, y: i32) -> L::Cursor {
+        L::cursor(x as usize, y as usize)
+    }
+
+    #[inline(always)]
+    fn across(cursor: &mut L::Cursor, right: bool) {
+        L::across(cursor, right);
+    }
+
+    #[inline(always)]
+    fn along(cursor: &mut L::Cursor, down: bool) {
+        L::along(cursor, down);
+    }
+
+    #[inline(always)]
+    fn put(&mut self, cursor: L::Cursor, ink: L::Ink) {
+        L::put(self.cells.as_mut(), cursor, ink);
+    }
+
+    #[inline(always)]
+    fn blend(&mut self, cursor: L::Cursor, ink: L::Ink, cover: u32) {
+        L::blend(self.cells.as_mut(), cursor, ink, cover);
+    }
+
+    fn mark(&mut self, from: [i32; 2], to: [i32; 2]) {
+        self.drawn.mark(from, to);
+    }
+}
+
+impl<L: Layout> OriginDimensions for Frame<L> {
+    fn size(&self) -> Size {
+        Size::new(L::WIDTH as u32, L::HEIGHT as u32)
+    }
+}
+
+/// For text and whatever else `embedded-graphics` draws.
+impl<L: Layout> DrawTarget for Frame<L> {
+    type Color = L::Ink;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<L::Ink>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        for Pixel(place, ink) in pixels {
+            let inside = (0..L::WIDTH as i32).contains(&place.x) && (0..L::HEIGHT as i32).contains(&place.y);
+            if inside {
+                self.mark([place.x, place.y], [place.x, place.y]);
+                L::put(self.cells.as_mut(), L::cursor(place.x as usize, place.y as usize), ink);
+            }
+        }
+        Ok(())
+    }
+}
