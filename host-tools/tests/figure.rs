@@ -1,6 +1,6 @@
 //! The figure's integers against the same in floating point: where joints are, and where they appear.
 
-use embedded_graphics::draw_target::DrawTargetExt;
+use embedded_graphics::draw_target::{DrawTarget, DrawTargetExt};
 use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::mock_display::MockDisplay;
 use embedded_graphics::pixelcolor::BinaryColor;
@@ -275,6 +275,7 @@ fn a_person_is_drawn_as_a_person() {
     display.set_allow_out_of_bounds_drawing(true);
     stage.look(&case.pose(0));
     let mut inside = display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)));
+    inside.clear(BinaryColor::Off).unwrap();
     let mut surface = OnTarget::new(&mut inside);
     stage.lines().draw_on(&mut surface, Look { ground: false, ..Look::default() });
     surface.outcome().unwrap();
@@ -288,7 +289,7 @@ fn a_person_is_drawn_as_a_person() {
         "...................###..................",
         "....................#...................",
         "....................#...................",
-        "..................#...#.................",
+        ".....##############################.....",
         "....................#...................",
         "....................#...................",
         "....................#...................",
