@@ -97,12 +97,12 @@ impl Case {
         for frame in (0..self.motion.frames).step_by(stride) {
             stage.look(&self.pose(frame));
             let hips = stage.skeleton().hips;
-            let target = stage.camera().target(stage.joints().position(hips));
+            let target = stage.target();
             let truth = self.truth(stage.skeleton(), frame);
             // A joint above the hips only says where the clip began: it may be far away.
             let root = truth[usize::from(stage.skeleton().bones[hips].joint)];
             for (bone, position) in stage.skeleton().bones.iter().zip(stage.joints().positions()).skip(hips) {
-                let got = stage.camera().project(target, *position);
+                let got = stage.camera().project(*position);
                 let want = project(&stage, view, root, target, truth[usize::from(bone.joint)]);
                 worst = worst.max((f64::from(got.x) - want[0]).hypot(f64::from(got.y) - want[1]) / 16.0);
             }

@@ -202,15 +202,15 @@ fn decode<B: Board>(player: &mut Player, frames: i32, board: &mut B) {
 #[inline(never)]
 fn place<B: Board, const JOINTS: usize>(player: &Player, stage: &mut Stage<JOINTS>, board: &mut B) {
     board.mark_start();
-    stage.look(player.pose());
+    stage.place(player.pose());
     board.mark_stop();
 }
 
 #[inline(never)]
-fn draw<B: Board, const JOINTS: usize>(stage: &Stage<JOINTS>, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
+fn draw<B: Board, const JOINTS: usize>(stage: &mut Stage<JOINTS>, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
     board.mark_start();
     frame.clear();
-    stage.lines().draw_on(frame, scene.look);
+    stage.lay().draw_on(frame, scene.look);
     board.mark_stop();
 }
 

@@ -1,8 +1,8 @@
 //! A perspective camera in integers: no division a point, no product wider than 32 bits.
 
-use crate::rotation::Vector;
+use crate::rotation::{Rotation, Vector};
 use crate::survey::{Bearings, Survey, cross};
-use crate::trig::{FRACTION_BITS, HALF, sin_cos};
+use crate::trig::{FRACTION_BITS, HALF, ONE, sin_cos};
 
 /// Fraction bits of a pixel in projected places.
 pub const PIXEL_BITS: u32 = 4;
@@ -62,19 +62,26 @@ pub struct Projected {
 pub const DISTANCE: i32 = 4;
 /// The same in units of depth: 2^15.
 const DEPTH_BITS: u32 = 15;
-/// Relative places are shifted to bring the size within 2^12 .. 2^13 and cut off to 16 bits, four sizes or more away: no
-/// point is farther than 56 756 from the target then.
+/// Bits to which a size is cut for the divisions of the set-up.
 const SIZE_BITS: u32 = 13;
-/// Longest row of the view's matrix, so that its product with such a point stays below 2^31.
+/// Longest row of the view's rotation: one that long keeps all that forward kinematics does with it within 32 bits, as its
+/// row of length 2^15 does.
 const LONGEST_ROW: i32 = 37_000;
+/// Fraction bits, of a sixteenth of a pixel, that a place keeps until the perspective.
+const SPARE: i32 = 2;
 
-/// Projects places of the world.
+/// Sees places as forward kinematics gives them in the camera's own axes: right, down and away from the target, in 2^-`fine`
+/// sixteenths of a pixel at the target's distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    /// Right, down and away in world axes. The first two give sixteenths of a pixel after `shift`, the last depth after 14.
-    rows: [Vector; 3],
+    /// From the world's axes, as columns: a rotation times a factor of at most 1.13.
+    view: Rotation,
+    /// Bits that a place loses before the perspective, and those that it keeps.
     shift: u32,
-    pre_shift: u32,
+    spare: u32,
+    /// Depth of a place that is 1 away, in 2^-`depth_shift` units of depth.
+    depth_factor: i32,
+    depth_shift: u32,
     /// Target's coordinates along the axes that the camera does not follow.
     fixed: [Option<i32>; 3],
     /// Where the target appears, in sixteenths of a pixel.
@@ -86,8 +93,17 @@ pub struct Camera {
 
 impl Camera {
     /// Sees everything in one place.
-    pub(crate) const NOWHERE: Camera =
-        Camera { rows: [[0; 3]; 3], shift: 0, pre_shift: 0, fixed: [None; 3], centre: [0; 2], scale: 1, size: 1 };
+    pub(crate) const NOWHERE: Camera = Camera {
+        view: Rotation([[0; 3]; 3]),
+        shift: 0,
+        spare: 0,
+        depth_factor: 0,
+        depth_shift: 0,
+        fixed: [None; 3],
+        centre: [0; 2],
+        scale: 1,
+        size: 1,
+    };
 
     /// A camera for what `survey` saw of a figure of `size`, with a size `scale` sixteenths of a pixel (at most 2^14) big and
     /// the target in the top left corner: [`Camera::show`] moves it to its place.
@@ -102,18 +118,34 @@ impl Camera {
             Track::Follow => size,
             Track::Fixed => (0..3).fold(size, |size, axis| size.max(survey.half_extent(axis))),
         };
-        let pre_shift = (32 - size.leading_zeros()).saturating_sub(SIZE_BITS);
-        let mut camera = Camera { rows: axes(bearings, view), shift: 16, pre_shift, fixed, centre: [0; 2], scale, size };
-        let size = (size >> pre_shift).max(1);
-        while (scale << camera.shift) / size > LONGEST_ROW && camera.shift > 0 {
-            camera.shift -= 1;
+        // The factor is scale / size * 2^fine; in Q15, with the size cut to its highest bits, a shift is all there is to choose.
+        let cut = (32 - size.leading_zeros()).saturating_sub(SIZE_BITS);
+        let short = (size >> cut).max(1);
+        let mut room = 0;
+        while (scale << (room + 1)) / short <= LONGEST_ROW && room < 16 {
+            room += 1;
         }
-        let across = (scale << camera.shift) / size;
-        let away = (1 << (DEPTH_BITS + 14)) / (DISTANCE * size);
-        for (row, length) in camera.rows.iter_mut().zip([across, across, away]) {
-            *row = row.map(|x| (x * length + HALF) >> FRACTION_BITS);
+        let factor = (scale << room) / short;
+        let fine = (room + cut) as i32 - FRACTION_BITS as i32;
+        let rows = axes(bearings, view).map(|row| row.map(|x| (x * factor + HALF) >> FRACTION_BITS));
+        let shift = (fine - SPARE).max(0);
+        let spare = fine - shift;
+        // A unit of depth is 2^-15 of DISTANCE scales. A place loses all but 2^15 of its bits, so the factor has 15 too.
+        let mut depth_bits = 0;
+        while (1 << (depth_bits + 1)) / (DISTANCE * scale) < ONE && depth_bits < 29 {
+            depth_bits += 1;
         }
-        camera
+        Camera {
+            view: Rotation(core::array::from_fn(|axis| rows.map(|row| row[axis]))),
+            shift: shift as u32,
+            spare: (MAGNIFICATION_BITS + spare) as u32,
+            depth_factor: (1 << depth_bits) / (DISTANCE * scale),
+            depth_shift: (depth_bits - DEPTH_BITS as i32 + spare).max(0) as u32,
+            fixed,
+            centre: [0; 2],
+            scale,
+            size,
+        }
     }
 
     /// Puts the target at a place of the display, in sixteenths of a pixel.
@@ -131,40 +163,20 @@ impl Camera {
         core::array::from_fn(|axis| self.fixed[axis].unwrap_or(hips[axis]))
     }
 
-    /// Projects a place, with the camera on `target`.
-    #[inline(always)]
-    pub fn project(&self, target: Vector, place: Vector) -> Projected {
-        self.magnify(self.turn(core::array::from_fn(|axis| place[axis].wrapping_sub(target[axis]))))
+    /// Turns the world into the camera's axes: forward kinematics starts from it.
+    pub fn view(&self) -> &Rotation {
+        &self.view
     }
 
-    /// Places of a lattice about the target: its corner from there, and its steps. Everything is within two sizes of the target.
-    pub(crate) fn lattice(&self, corner: Vector, steps: [Vector; 2]) -> Lattice {
-        Lattice { corner: self.turn(corner), steps: steps.map(|step| self.turn(step)) }
-    }
-
-    /// Right, down and away, before the perspective.
+    /// The perspective, for a place in the camera's axes.
     #[inline(always)]
-    fn turn(&self, relative: Vector) -> Vector {
-        let rounding = (1 << self.pre_shift) >> 1;
-        let [u, v, w] = relative.map(|x| sixteen_bits(x.wrapping_add(rounding) >> self.pre_shift));
-        self.rows.map(|row| row[0] * u + row[1] * v + row[2] * w)
-    }
-
-    /// The perspective.
-    #[inline(always)]
-    fn magnify(&self, [x, y, depth]: Vector) -> Projected {
-        let depth = depth >> 14;
+    pub fn project(&self, place: Vector) -> Projected {
+        let [x, y, away] = place.map(|x| sixteen_bits(x >> self.shift));
+        let depth = (away * self.depth_factor) >> self.depth_shift;
         let magnification = magnification(depth);
-        // Within 2^15 sixteenths, magnified at most twice: products stay within 2^30.
-        let [x, y] = [x, y].map(|x| (sixteen_bits(x >> self.shift) * magnification + (1 << 13)) >> 14);
+        // Within 2^15, magnified at most twice: products stay within 2^30.
+        let [x, y] = [x, y].map(|x| (x * magnification) >> self.spare);
         Projected { x: x + self.centre[0], y: y + self.centre[1], depth, magnification }
-    }
-
-    /// Projects a place of a lattice: so many steps of each kind, at most 8, from its corner.
-    #[inline(always)]
-    pub(crate) fn project_lattice(&self, lattice: &Lattice, steps: [i32; 2]) -> Projected {
-        let Lattice { corner, steps: [a, b] } = lattice;
-        self.magnify(core::array::from_fn(|axis| corner[axis] + steps[0] * a[axis] + steps[1] * b[axis]))
     }
 
     /// Sixteenths of a pixel that a limb at the target's distance is across: a 50th of the figure.
@@ -174,15 +186,11 @@ impl Camera {
 
     /// Sixteenths of a pixel of a length in figure units at the target's distance.
     pub fn length(&self, length: i32) -> i32 {
-        (length >> self.pre_shift).min(i32::from(i16::MAX)) * self.scale / (self.size >> self.pre_shift).max(1)
+        {
+        let cut = (32 - self.size.leading_zeros()).saturating_sub(SIZE_BITS);
+        (length >> cut).min(i32::from(i16::MAX)) * self.scale / (self.size >> cut).max(1)
     }
-}
-
-/// Equally spaced places of a plane as the camera has them before the perspective.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lattice {
-    corner: Vector,
-    steps: [Vector; 2],
+    }
 }
 
 /// Right, down and away for a view.
@@ -221,8 +229,12 @@ static MAGNIFICATION: [[i32; 2]; 128] = {
     table
 };
 
+/// Fraction bits of a magnification.
+pub(crate) const MAGNIFICATION_BITS: i32 = 14;
+
 /// Camera's distance over the point's, Q14: within 1.3e-4 at half the distance, 2e-5 at the target's.
-fn magnification(depth: i32) -> i32 {
+#[inline(always)]
+pub(crate) fn magnification(depth: i32) -> i32 {
     let distance = (depth + (1 << (DEPTH_BITS - 1))).clamp(0, (1 << DEPTH_BITS) - 1);
     let (index, place) = ((distance >> 8) as usize, distance & 0xff);
     let Some(&[from, step]) = MAGNIFICATION.get(index) else { return 1 << 14 };

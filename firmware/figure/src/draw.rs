@@ -2,7 +2,7 @@
 
 use crate::ink::{Ink, Tone};
 use crate::lines::{Line, Lines, pixel};
-use crate::raster::{disc, dotted, line, smooth};
+use crate::raster::{disc, dots, dotted, line, smooth};
 use crate::surface::{OnTarget, Surface};
 use embedded_graphics::draw_target::DrawTarget;
 
@@ -39,6 +39,7 @@ impl<const N: usize> Lines<N> {
     pub fn draw_on<S: Surface>(&self, surface: &mut S, look: Look) {
         if look.ground {
             self.ground.iter().for_each(|line| stroke(line, surface, look.smooth));
+            dots(surface, self.dots.iter().map(|dot| (dot.place.map(pixel), S::Ink::of(Tone::Ground, dot.shade))));
         }
         self.far_to_near().for_each(|line| stroke(line, surface, look.smooth));
         let Some(head) = self.head else { return };

@@ -4,13 +4,10 @@ use crate::rotation::{Rotation, Turning, Vector, shift_right};
 use crate::skeleton::{Act, Bone, Drive, SLOTS, Skeleton};
 use heapless::Vec;
 
-/// Places stay within 2^29, some 8000 figures away, so that adding a bone never overflows.
-const FARTHEST: i32 = 1 << 29;
-
-/// The joints of one frame. Positions are within 0.05 % of the figure's height of what real numbers give.
+/// The joints of one frame, in figure units of the world or of a camera. Positions in the world are within 0.05 % of the figure's height of what real numbers give.
 #[derive(Clone, Debug)]
 pub struct Kinematics<const N: usize, R: Turning = Rotation> {
-    /// In figure units, in the skeleton's order.
+    /// In the skeleton's order.
     positions: Vec<Vector, N>,
     /// Those that joints wait for.
     rotations: [R; SLOTS],
@@ -20,33 +17,40 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
     /// Nothing placed yet.
     pub const NEW: Self = Kinematics { positions: Vec::new(), rotations: [R::NONE; SLOTS] };
 
-    /// Places every joint of the skeleton. Channels that the pose lacks are 0.
-    #[inline(never)]
+    /// Places every joint of the skeleton in the world. Channels that the pose lacks are 0.
     pub fn place(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
+        self.place_in(skeleton, pose, &R::NONE, [0; 3], skeleton.bones.len());
+    }
+
+    /// Places the first `count` joints about `origin`, turned by `view`: a camera's target and its axes.
+    #[inline(never)]
+    pub fn place_in(&mut self, skeleton: &Skeleton<N>, pose: &[i32], view: &R, origin: Vector, count: usize) {
         self.positions.clear();
         let mut drives = skeleton.drives();
         for bone in &skeleton.bones {
             let (own, rest) = drives.split_at_checked(usize::from(bone.drives)).unwrap_or((drives, &[]));
             drives = rest;
-            let parent = bone.parent.and_then(|parent| self.positions.get(usize::from(parent))).unwrap_or(&[0; 3]);
-            let none = R::NONE;
-            let turned = self.rotations.get(usize::from(bone.parent_slot)).unwrap_or(&none);
-            let reach = if bone.moves {
-                turned.image_any(offset(bone, own, skeleton.position_shift, pose))
-            } else {
-                turned.image(bone.offset)
+            let turned = self.rotations.get(usize::from(bone.parent_slot)).unwrap_or(view);
+            let offset = if bone.moves { offset(bone, own, skeleton.position_shift, pose) } else { bone.offset };
+            let position = match bone.parent.and_then(|parent| self.positions.get(usize::from(parent))) {
+                None => turned.image_any(core::array::from_fn(|axis| offset[axis].wrapping_sub(origin[axis]))),
+                Some(parent) => {
+                    let reach = if bone.moves { turned.image_any(offset) } else { turned.image(offset) };
+                    core::array::from_fn(|axis| parent[axis].wrapping_add(reach[axis]))
+                }
             };
-            let position = core::array::from_fn(|axis| (parent[axis] + reach[axis]).clamp(-FARTHEST, FARTHEST));
             // The skeleton has at most N bones.
             let _ = self.positions.push(position);
-            let slot = usize::from(bone.slot);
+            if self.positions.len() >= count {
+                break;
+            }
             if bone.slot != bone.parent_slot {
                 let copied = *turned;
-                if let Some(rotation) = self.rotations.get_mut(slot) {
+                if let Some(rotation) = self.rotations.get_mut(usize::from(bone.slot)) {
                     *rotation = copied;
                 }
             }
-            if let Some(rotation) = self.rotations.get_mut(slot) {
+            if let Some(rotation) = self.rotations.get_mut(usize::from(bone.slot)) {
                 rotate(rotation, own, pose);
             }
         }

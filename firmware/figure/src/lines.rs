@@ -1,9 +1,8 @@
 //! The figure of one frame as lines on the display, in the order in which they are drawn.
 
-use crate::camera::{Camera, PIXEL_BITS, Projected};
+use crate::camera::{Camera, Canvas, MAGNIFICATION_BITS, PIXEL_BITS, Projected, magnification};
 use crate::ink::Tone;
-use crate::kinematics::Kinematics;
-use crate::rotation::{Turning, Vector};
+use crate::rotation::Vector;
 use crate::skeleton::{Part, Skeleton};
 use heapless::Vec;
 
@@ -35,11 +34,22 @@ pub struct Head {
     pub shade: u8,
 }
 
+/// A dot of the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dot {
+    /// Where, in sixteenths of a pixel: x, y.
+    pub place: [i16; 2],
+    /// Brightness.
+    pub shade: u8,
+}
+
 /// Everything that is drawn for a frame.
 #[derive(Clone, Debug, Default)]
 pub struct Lines<const N: usize> {
-    /// The ground.
+    /// The ground as a grid of lines, on a large display.
     pub ground: Vec<Line, GROUND_LINES>,
+    /// The ground as dots, on a small one.
+    pub dots: Vec<Dot, GROUND_DOTS>,
     /// Bones, in no order.
     pub bones: Vec<Line, N>,
     /// Indices of the bones, the farthest first.
@@ -48,11 +58,14 @@ pub struct Lines<const N: usize> {
     pub head: Option<Head>,
 }
 
-/// Lines of the ground along each axis, and both ways.
+/// Lines of the ground along each axis, and both ways; dots along each.
 const GROUND_ROWS: i32 = 5;
 const GROUND_LINES: usize = 2 * GROUND_ROWS as usize;
-/// Brightness of the ground at the target's distance.
+const DOT_ROWS: i32 = 7;
+const GROUND_DOTS: usize = (DOT_ROWS * DOT_ROWS) as usize;
+/// Brightness of the ground's lines and of its dots at the target's distance.
 const GROUND_SHADE: i32 = 40;
+const DOT_SHADE: i32 = 112;
 
 /// The ground: a grid that stays in its place while the camera moves on.
 #[derive(Clone, Copy, Debug)]
@@ -61,67 +74,103 @@ pub struct Ground {
     pub axis: usize,
     /// Its height along that axis.
     pub height: i32,
-    /// Between lines: 2^spacing figure units.
+    /// Between lines, or dots: 2^spacing figure units.
     pub spacing: u32,
+    /// Dots in place of lines.
+    pub dotted: bool,
+}
+
+impl Ground {
+    /// For a figure of `size` on a canvas: dots where lines would be most of the picture, an eighth to a quarter of the figure apart;
+    /// lines are twice as far apart.
+    pub(crate) fn new(axis: usize, height: i32, size: i32, canvas: Canvas) -> Ground {
+        let dotted = canvas.height < 96;
+        let finer = if dotted { 3 } else { 2 };
+        Ground { axis, height, spacing: (32 - size.leading_zeros()).saturating_sub(finer).max(1), dotted }
+    }
+
+    /// In the camera's axes: the first of `rows` places both ways about the target, and the steps between them.
+    fn lattice(&self, camera: &Camera, target: Vector, rows: i32) -> (Vector, [Vector; 2]) {
+        let spacing = 1 << self.spacing;
+        let mut corner = [0; 3];
+        corner[self.axis] = self.height.wrapping_sub(target[self.axis]);
+        let mut steps = [[0; 3]; 2];
+        for (axis, step) in [(self.axis + 1) % 3, (self.axis + 2) % 3].into_iter().zip(&mut steps) {
+            let past = target[axis].wrapping_add(spacing / 2) & (spacing - 1);
+            corner[axis] = spacing / 2 - past - (rows / 2) * spacing;
+            step[axis] = spacing;
+        }
+        let view = camera.view();
+        (view.apply_any(corner), steps.map(|step| view.apply_any(step)))
+    }
 }
 
 impl<const N: usize> Lines<N> {
     /// Nothing to draw yet.
-    pub const NEW: Self = Lines { ground: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None };
+    pub const NEW: Self = Lines { ground: Vec::new(), dots: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None };
 
-    /// Lines of the ground about the target.
+    /// The ground about the target.
     #[inline(never)]
     pub fn lay_ground(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
         self.ground.clear();
-        let spacing = 1 << ground.spacing;
-        let axes = [(ground.axis + 1) % 3, (ground.axis + 2) % 3];
-        // From the target to the corner before the line that is nearest to it.
-        let mut corner = [0; 3];
-        corner[ground.axis] = ground.height.wrapping_sub(target[ground.axis]);
-        let mut steps = [[0; 3]; 2];
-        for (axis, step) in axes.into_iter().zip(&mut steps) {
-            let past = target[axis].wrapping_add(spacing / 2) & (spacing - 1);
-            corner[axis] = spacing / 2 - past - (GROUND_ROWS / 2) * spacing;
-            step[axis] = spacing;
-        }
-        let lattice = camera.lattice(corner, steps);
-        for row in 0..GROUND_ROWS {
-            for ends in [[[0, row], [GROUND_ROWS - 1, row]], [[row, 0], [row, GROUND_ROWS - 1]]] {
-                let [from, to] = ends.map(|end| camera.project_lattice(&lattice, end));
+        self.dots.clear();
+        if ground.dotted { self.lay_dots(ground, camera, target) } else { self.lay_grid(ground, camera, target) }
+    }
+
+    fn lay_grid(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
+        let (corner, [a, b]) = ground.lattice(camera, target, GROUND_ROWS);
+        let last = |step: Vector| step.map(|x| x * (GROUND_ROWS - 1));
+        for (start, step, across) in [(corner, a, last(b)), (corner, b, last(a))] {
+            let mut start = start;
+            for _ in 0..GROUND_ROWS {
+                let from = camera.project(start);
+                let to = camera.project(sum(start, across));
                 let depth = (from.depth + to.depth) >> 1;
                 let shade = (GROUND_SHADE - (depth >> 9)).clamp(24, 56) as u8;
                 let line = Line { from: from.place(), to: to.place(), depth: narrow(depth), shade, tone: Tone::Ground, width: 1 };
                 // There is room for all rows.
                 let _ = self.ground.push(line);
+                start = sum(start, step);
             }
         }
     }
 
-    /// Lines of the bones and the head.
+    fn lay_dots(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
+        let (mut row, [a, b]) = ground.lattice(camera, target, DOT_ROWS);
+        for _ in 0..DOT_ROWS {
+            let mut place = row;
+            for _ in 0..DOT_ROWS {
+                let dot = camera.project(place);
+                let shade = (DOT_SHADE - (dot.depth >> 7)).clamp(32, 208) as u8;
+                // There is room for all of them.
+                let _ = self.dots.push(Dot { place: dot.place(), shade });
+                place = sum(place, a);
+            }
+            row = sum(row, b);
+        }
+    }
+
+    /// Lines of the bones and the head, from where the camera sees the joints.
     #[inline(never)]
-    pub fn lay_bones<R: Turning>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N, R>, camera: &Camera, target: Vector) {
+    pub fn lay_bones(&mut self, skeleton: &Skeleton<N>, seen: &[Seen], camera: &Camera) {
         self.bones.clear();
         self.head = None;
         let breadth = camera.breadth();
-        let mut ends: Vec<([i16; 2], i16), N> = Vec::new();
-        for (bone, &position) in skeleton.bones.iter().zip(joints.positions()) {
-            let end = camera.project(target, position);
-            let (place, far) = (end.place(), narrow(end.depth));
-            // One a bone: there is room.
-            let _ = ends.push((place, far));
-            let Some(&(start, near)) = bone.parent.and_then(|parent| ends.get(usize::from(parent))) else { continue };
-            let depth = (i32::from(near) + end.depth) >> 1;
+        for (bone, to) in skeleton.bones.iter().zip(seen) {
+            let Some(from) = bone.parent.and_then(|parent| seen.get(usize::from(parent))) else { continue };
+            let depth = (i32::from(from.depth) + i32::from(to.depth)) >> 1;
             match bone.part {
                 Part::Hidden => {}
                 Part::Bone => {
                     // Near limbs are thicker: half as thick again at a quarter of the camera's distance.
                     let width = ((breadth - (breadth * depth >> 14)) >> PIXEL_BITS).clamp(1, 9) as u8;
-                    let line = Line { from: start, to: place, depth: narrow(depth), shade: shade(depth), tone: bone.tone, width };
+                    let line = Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), tone: bone.tone, width };
+                    // One a bone: there is room.
                     let _ = self.bones.push(line);
                 }
                 Part::Crown => {
-                    let radius = (camera.length(skeleton.head_radius) * end.magnification) >> 14;
-                    let centre = [0, 1].map(|axis| ((i32::from(start[axis]) + i32::from(place[axis])) >> 1) as i16);
+                    let radius = (camera.length(skeleton.head_radius) * magnification(to.depth.into())) >> MAGNIFICATION_BITS;
+                    let centre = [0, 1].map(|axis| ((i32::from(from.place[axis]) + i32::from(to.place[axis])) >> 1) as i16);
                     self.head = Some(Head { centre, radius: narrow(radius), shade: shade(depth) });
                 }
             }
@@ -156,11 +205,32 @@ impl<const N: usize> Lines<N> {
     }
 }
 
+/// Where the camera sees a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seen {
+    /// Sixteenths of a pixel from the left and the top edge.
+    pub place: [i16; 2],
+    /// See [`Projected::depth`].
+    pub depth: i16,
+}
+
+impl From<Projected> for Seen {
+    #[inline(always)]
+    fn from(projected: Projected) -> Seen {
+        Seen { place: projected.place(), depth: narrow(projected.depth) }
+    }
+}
+
 impl Projected {
     /// Its place on the display; farther than any display cut off.
+    #[inline(always)]
     fn place(&self) -> [i16; 2] {
         [narrow(self.x), narrow(self.y)]
     }
+}
+
+fn sum(a: Vector, b: Vector) -> Vector {
+    core::array::from_fn(|axis| a[axis].wrapping_add(b[axis]))
 }
 
 fn narrow(x: i32) -> i16 {

@@ -13,6 +13,9 @@ pub trait Turning: Copy {
     /// No rotation.
     const NONE: Self;
 
+    /// What a camera starts from: a rotation times a factor of at most 1.13.
+    fn of_view(view: &Rotation) -> Self;
+
     /// This rotation after a turn about its own `axis` (0, 1, 2 for x, y, z) by an angle in 2^-32 turns.
     fn turn(&mut self, axis: usize, angle: i32);
 
@@ -31,6 +34,10 @@ pub trait Turning: Copy {
 
 impl Turning for Rotation {
     const NONE: Self = Rotation::IDENTITY;
+
+    fn of_view(view: &Rotation) -> Self {
+        *view
+    }
 
     #[inline(always)]
     fn turn(&mut self, axis: usize, angle: i32) {

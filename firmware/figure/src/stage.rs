@@ -4,12 +4,13 @@ use crate::body::Limb;
 use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
 use crate::ink::Ink;
 use crate::kinematics::Kinematics;
-use crate::lines::{Ground, Line, Lines};
-use crate::rotation::{Rotation, Turning};
+use crate::lines::{Ground, Line, Lines, Seen};
+use crate::rotation::{Rotation, Turning, Vector};
 use crate::skeleton::{Detail, Skeleton};
 use crate::survey::{Bearings, Survey};
 use crate::{Error, RIG_JOINTS};
 use embedded_graphics::draw_target::DrawTarget;
+use heapless::Vec;
 use pantin::Player;
 
 /// A figure of at most `N` joints before its camera.
@@ -19,8 +20,12 @@ pub struct Stage<const N: usize, R: Turning = Rotation> {
     bearings: Bearings,
     canvas: Canvas,
     camera: Camera,
+    /// The camera's axes, in the form of the joints' rotations.
+    view: R,
+    target: Vector,
     ground: Ground,
     joints: Kinematics<N, R>,
+    seen: Vec<Seen, N>,
     lines: Lines<N>,
 }
 
@@ -37,8 +42,11 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         bearings: Bearings::UPRIGHT,
         canvas: Canvas { width: 0, height: 0 },
         camera: Camera::NOWHERE,
-        ground: Ground { axis: 1, height: 0, spacing: 1 },
+        view: R::NONE,
+        target: [0; 3],
+        ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
         joints: Kinematics::NEW,
+        seen: Vec::new(),
         lines: Lines::NEW,
     };
 
@@ -91,32 +99,50 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         });
         let bearings = survey.bearings(view.up);
         let size = self.skeleton.size;
-        let at_scale = |scale| Camera::new(&survey, bearings, size, view, scale);
+        let at_scale = |scale| {
+            let camera = Camera::new(&survey, bearings, size, view, scale);
+            (R::of_view(camera.view()), camera)
+        };
         let upwards = bearings.up[bearings.axis] > 0;
         let height = if upwards { survey.low[bearings.axis] } else { survey.high[bearings.axis] };
-        // Lines a quarter to half a size apart.
-        let spacing = (32 - size.leading_zeros()).saturating_sub(2).max(1);
-        self.ground = Ground { axis: bearings.axis, height, spacing };
+        self.ground = Ground::new(bearings.axis, height, size, self.canvas);
         self.bearings = bearings;
-        self.camera = at_scale(TRIAL_SCALE);
+        (self.view, self.camera) = at_scale(TRIAL_SCALE);
         let mut frame = Frame::default();
         poses(&mut |pose| {
             self.look(pose);
             frame.include(&self.lines);
         });
         let scale = frame.scale(self.canvas);
-        self.camera = at_scale(scale);
+        (self.view, self.camera) = at_scale(scale);
         let [columns, rows] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
         self.camera.show(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
 
     /// The frame of a pose as lines.
-    #[inline(never)]
     pub fn look(&mut self, pose: &[i32]) -> &Lines<N> {
-        self.joints.place(&self.skeleton, pose);
-        let target = self.camera.target(self.joints.position(self.skeleton.hips));
-        self.lines.lay_ground(&self.ground, &self.camera, target);
-        self.lines.lay_bones(&self.skeleton, &self.joints, &self.camera, target);
+        self.place(pose);
+        self.lay()
+    }
+
+    /// The first half of [`Stage::look`]: forward kinematics, and where the camera sees the joints.
+    #[inline(never)]
+    pub fn place(&mut self, pose: &[i32]) {
+        let hips = self.skeleton.hips;
+        self.joints.place_in(&self.skeleton, pose, &R::NONE, [0; 3], hips + 1);
+        self.target = self.camera.target(self.joints.position(hips));
+        self.joints.place_in(&self.skeleton, pose, &self.view, self.target, self.skeleton.bones.len());
+        self.seen.clear();
+        let camera = &self.camera;
+        // One a joint: there is room.
+        self.seen.extend(self.joints.positions().iter().map(|&position| Seen::from(camera.project(position))));
+    }
+
+    /// The other half: lines of the ground and the bones.
+    #[inline(never)]
+    pub fn lay(&mut self) -> &Lines<N> {
+        self.lines.lay_ground(&self.ground, &self.camera, self.target);
+        self.lines.lay_bones(&self.skeleton, &self.seen, &self.camera);
         &self.lines
     }
 
@@ -155,7 +181,12 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         self.bearings
     }
 
-    /// Where the joints of the last pose are.
+    /// Where in the world the camera looked at the last pose.
+    pub fn target(&self) -> Vector {
+        self.target
+    }
+
+    /// Where the joints of the last pose are in the camera's axes.
     pub fn joints(&self) -> &Kinematics<N, R> {
         &self.joints
     }

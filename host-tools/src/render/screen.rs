@@ -16,7 +16,7 @@ pub const CANVAS: Canvas = Canvas { width: WIDTH as u16, height: HEIGHT as u16 }
 const JOINTS: usize = pantin_figure::RIG_JOINTS;
 
 /// What the firmware draws into: two pixels a byte, the left one in the high half.
-pub type Frame = surface::Frame<Gray4Rows<WIDTH, HEIGHT, { WIDTH * HEIGHT / 2 }>>;
+pub type Frame = surface::Frame<Gray4Rows<WIDTH, HEIGHT, { WIDTH * HEIGHT / 8 }>>;
 
 /// One picture of the display: brightness 0 to 15 a pixel, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]

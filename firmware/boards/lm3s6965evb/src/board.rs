@@ -20,7 +20,7 @@ const TRANSMIT_FULL: u32 = 1 << 5;
 const RECEIVE_EMPTY: u32 = 1 << 4;
 
 /// The display: 128x64 pixels of 16 greys.
-pub type Oled = Gray4Rows<128, 64, 4096>;
+pub type Oled = Gray4Rows<128, 64, 1024>;
 
 /// Timer periods since the start.
 static PERIODS: AtomicU32 = AtomicU32::new(0);

@@ -4,7 +4,7 @@
 
 use crate::board::Oled;
 use crate::registers::{gpio_c, ssi0, system};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::{Cell, Frame};
 
 const PIN_7: u32 = 1 << 7;
 /// The port is still shifting bits out.
@@ -27,27 +27,36 @@ pub fn start() {
     command(&[0xa0, 0]);
 }
 
-fn command(bytes: &[u8]) {
-    select(0, bytes);
-}
-
 /// Writes what changed of a picture.
 pub fn show(frame: &mut Frame<Oled>) {
     for window in frame.send() {
         let cells = window.cells::<Oled>();
-        let [columns, rows] = [cells.columns, cells.rows].map(|ends| ends.map(|end| end as u8));
-        command(&[0x15, columns[0], columns[1], 0x75, rows[0], rows[1]]);
-        frame.stretches(window).for_each(|stretch| select(PIN_7, stretch));
+        // Columns are bytes of two pixels, of which a cell has four.
+        let [left, right] = cells.columns.map(|column| column as u8 * 4);
+        let [top, bottom] = cells.rows.map(|row| row as u8);
+        command(&[0x15, left, right + 3, 0x75, top, bottom]);
+        gpio_c::PIN_7.write(PIN_7);
+        frame.stretches(window).flatten().for_each(|cell| send(&cell.wire()));
+        wait();
     }
 }
 
-fn select(pin: u32, bytes: &[u8]) {
-    gpio_c::PIN_7.write(pin);
+fn command(bytes: &[u8]) {
+    gpio_c::PIN_7.write(0);
+    send(bytes);
+    wait();
+}
+
+fn send(bytes: &[u8]) {
     for &byte in bytes {
         ssi0::DR.write(u32::from(byte));
         // Every byte out brings one in; were it not fetched, the port would stall after eight.
         while ssi0::SR.read() & RECEIVE_NOT_EMPTY == 0 {}
         ssi0::DR.read();
     }
+}
+
+/// Until the last bit is out: pin 7 may change then.
+fn wait() {
     while ssi0::SR.read() & BUSY != 0 {}
 }

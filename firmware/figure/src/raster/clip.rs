@@ -25,23 +25,31 @@ const FARTHEST: i32 = 1 << 12;
 
 impl Steps {
     /// The part on a surface of `size`; `None` where there is none.
+    #[inline(always)]
     pub fn new(from: [i32; 2], to: [i32; 2], size: [i32; 2]) -> Option<Self> {
-        let [from, to] = [from, to].map(|end| end.map(|x| x.clamp(-FARTHEST, FARTHEST)));
+        let inside = |[x, y]: [i32; 2]| (x as u32) < size[0] as u32 && (y as u32) < size[1] as u32;
+        if inside(from) && inside(to) { Some(Steps::whole(from, to)) } else { Steps::part(from, to, size) }
+    }
+
+    /// All of it.
+    #[inline(always)]
+    fn whole(from: [i32; 2], to: [i32; 2]) -> Self {
         let steep = (to[1] - from[1]).abs() > (to[0] - from[0]).abs();
         let turned = |[x, y]: [i32; 2]| if steep { [y, x] } else { [x, y] };
-        let (from, to, size) = (turned(from), turned(to), turned(size));
+        let (from, to) = (turned(from), turned(to));
         let (from, to) = if from[0] <= to[0] { (from, to) } else { (to, from) };
         let (long, across) = (to[0] - from[0], to[1] - from[1]);
-        let (back, short) = (across < 0, across.abs());
-        let mut steps = Steps { steep, back, long, short, first: 0, last: long, at: from, rest: long };
-        let inside = |end: [i32; 2]| (0..size[0]).contains(&end[0]) && (0..size[1]).contains(&end[1]);
-        if !(inside(from) && inside(to)) {
-            steps.clip(size)?;
-        }
-        Some(steps)
+        Steps { steep, back: across < 0, long, short: across.abs(), first: 0, last: long, at: from, rest: long }
     }
 
     #[inline(never)]
+    fn part(from: [i32; 2], to: [i32; 2], size: [i32; 2]) -> Option<Self> {
+        let [from, to] = [from, to].map(|end| end.map(|x| x.clamp(-FARTHEST, FARTHEST)));
+        let mut steps = Steps::whole(from, to);
+        steps.clip(if steps.steep { [size[1], size[0]] } else { size })?;
+        Some(steps)
+    }
+
     fn clip(&mut self, size: [i32; 2]) -> Option<()> {
         let (first, last) = (0.max(-self.at[0]), self.long.min(size[0] - 1 - self.at[0]));
         // Steps across that are inside.

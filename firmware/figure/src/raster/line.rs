@@ -43,9 +43,13 @@ fn start<S: Surface>(surface: &mut S, steps: &Steps) -> S::Cursor {
 
 #[inline(always)]
 fn walk<S: Surface, const STEEP: bool, const BACK: bool>(surface: &mut S, steps: &Steps, cursor: &mut S::Cursor, ink: S::Ink) {
-    let mut rest = steps.rest;
-    for _ in steps.first..=steps.last {
+    let (mut rest, mut left) = (steps.rest, steps.last - steps.first);
+    loop {
         surface.put(*cursor, ink);
+        if left == 0 {
+            break;
+        }
+        left -= 1;
         step::<S>(steps, cursor, &mut rest, STEEP, BACK);
     }
 }

@@ -1,10 +1,12 @@
-//! Lines and discs in integers, straight into a [`Surface`](crate::surface::Surface).
+//! Lines, dots and discs in integers, straight into a [`Surface`](crate::surface::Surface).
 
 mod clip;
 mod disc;
+mod dots;
 mod line;
 mod smooth;
 
 pub use disc::disc;
+pub use dots::dots;
 pub use line::{dotted, line};
 pub use smooth::smooth;

@@ -51,7 +51,7 @@ mod tests {
     use crate::surface::{Frame, Gray4Rows};
     use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 
-    type Small = Frame<Gray4Rows<16, 8, 64>>;
+    type Small = Frame<Gray4Rows<16, 8, 16>>;
 
     fn picture(frame: &Small) -> String {
         let row = |y: usize| (0..16).map(|x| char::from_digit(frame.pixel(x, y).luma().into(), 16).unwrap()).collect::<String>();

@@ -38,26 +38,30 @@ impl Bands {
     #[inline]
     pub fn mark(&mut self, from: [i32; 2], to: [i32; 2]) {
         let (first, last) = (from[1] as usize / BAND, to[1] as usize / BAND);
-        for stretch in self.0.iter_mut().take(last + 1).skip(first) {
+        for stretch in self.0.get_mut(first..=last).unwrap_or_default() {
             stretch[0] = stretch[0].min(from[0] as u8);
             stretch[1] = stretch[1].max(to[0] as u8);
         }
     }
 
-    /// Takes in another's.
-    pub fn join(&mut self, other: &Bands) {
-        for (own, other) in self.0.iter_mut().zip(&other.0) {
+    /// Takes in another's of the same display.
+    pub fn join(&mut self, other: &Bands, height: usize) {
+        for (own, other) in self.0.iter_mut().zip(&other.0).take(height.div_ceil(BAND)) {
             *own = [own[0].min(other[0]), own[1].max(other[1])];
         }
     }
 
-    /// A window for each band that changed, from the top, on a display of `height` rows.
+    /// The window of a band, on a display of `height` rows, if it changed.
+    #[inline(always)]
+    pub fn window(&self, band: usize, height: usize) -> Option<Window> {
+        let &[from, to] = self.0.get(band).filter(|stretch| stretch[0] <= stretch[1])?;
+        Some(Window { columns: [from.into(), to.into()], rows: [band * BAND, (band * BAND + BAND).min(height) - 1] })
+    }
+
+    /// A window for each band that changed, from the top.
+    #[inline(always)]
     pub fn windows(&self, height: usize) -> impl Iterator<Item = Window> {
-        let bands = self.0.iter().enumerate().filter(|(_, stretch)| stretch[0] <= stretch[1]);
-        bands.map(move |(band, stretch)| Window {
-            columns: stretch.map(usize::from),
-            rows: [band * BAND, (band * BAND + BAND).min(height) - 1],
-        })
+        (0..height.div_ceil(BAND)).filter_map(move |band| self.window(band, height))
     }
 }
 
@@ -74,7 +78,7 @@ mod tests {
         let windows: Vec<_> = bands.windows(64).collect();
         assert_eq!(windows, [Window { columns: [10, 20], rows: [0, 7] }, Window { columns: [3, 20], rows: [8, 15] }]);
         let mut joined = Bands::all(128, 60);
-        joined.join(&bands);
+        joined.join(&bands, 60);
         assert_eq!(joined, Bands::all(128, 60));
         assert_eq!(joined.windows(60).last(), Some(Window { columns: [0, 127], rows: [56, 59] }));
     }

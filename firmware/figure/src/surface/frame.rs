@@ -1,6 +1,6 @@
 //! A framebuffer that knows what changed since it was last sent.
 
-use super::{Bands, Surface, Window};
+use super::{BAND, Bands, Surface, Window};
 use crate::ink::Ink;
 use core::convert::Infallible;
 use core::marker::PhantomData;
@@ -47,7 +47,7 @@ pub trait Cell: Copy {
     type Wire: AsRef<[u8]>;
     /// All its pixels dark.
     const DARK: Self;
-    /// As it is sent: the high byte first.
+    /// The bytes in the order in which a display takes them.
     fn wire(self) -> Self::Wire;
 }
 
@@ -60,6 +60,16 @@ impl Cell for u8 {
     }
 }
 
+impl Cell for u32 {
+    type Wire = [u8; 4];
+    const DARK: u32 = 0;
+
+    fn wire(self) -> [u8; 4] {
+        self.to_le_bytes()
+    }
+}
+
+/// A pixel: the high byte first.
 impl Cell for u16 {
     type Wire = [u8; 2];
     const DARK: u16 = 0;
@@ -99,23 +109,27 @@ impl<L: Layout> Frame<L> {
     pub fn clear(&mut self) {
         for window in self.drawn.windows(L::HEIGHT) {
             let Window { columns: [from, to], rows: [top, bottom] } = window.cells::<L>();
-            let rows = self.cells.as_mut().chunks_exact_mut(L::WIDTH / L::CELL[0]);
-            for row in rows.take(bottom + 1).skip(top) {
-                if let Some(stretch) = row.get_mut(from..=to) {
-                    stretch.fill(L::Cell::DARK);
-                }
+            let wide = L::WIDTH / L::CELL[0];
+            let rows = self.cells.as_mut().get_mut(top * wide..(bottom + 1) * wide).unwrap_or_default();
+            // Rows in one stretch take less than their parts one by one.
+            if 2 * (to - from) >= wide {
+                rows.fill(L::Cell::DARK);
+                continue;
+            }
+            for row in rows.chunks_exact_mut(wide) {
+                row.get_mut(from..=to).unwrap_or_default().fill(L::Cell::DARK);
             }
         }
-        self.before.join(&self.drawn);
+        self.before.join(&self.drawn, L::HEIGHT);
         self.drawn = Bands::CLEAN;
     }
 
     /// The windows in which the picture may differ from what was sent. From here on all of it counts as sent.
     pub fn send(&mut self) -> impl Iterator<Item = Window> + use<L> {
         let mut changed = self.before;
-        changed.join(&self.drawn);
+        changed.join(&self.drawn, L::HEIGHT);
         self.before = Bands::CLEAN;
-        Changed { bands: changed, height: L::HEIGHT, at: 0 }
+        (0..L::HEIGHT.div_ceil(BAND)).filter_map(move |band| changed.window(band, L::HEIGHT))
     }
 
     /// Has everything sent once more.
@@ -144,23 +158,6 @@ impl<L: Layout> Frame<L> {
 impl<L: Layout> Default for Frame<L> {
     fn default() -> Self {
         Frame::new()
-    }
-}
-
-/// The windows of bands that it owns.
-struct Changed {
-    bands: Bands,
-    height: usize,
-    at: usize,
-}
-
-impl Iterator for Changed {
-    type Item = Window;
-
-    fn next(&mut self) -> Option<Window> {
-        let window = self.bands.windows(self.height).nth(self.at)?;
-        self.at += 1;
-        Some(window)
     }
 }
 

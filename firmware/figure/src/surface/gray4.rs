@@ -3,22 +3,30 @@
 use super::Layout;
 use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 
-/// The layout of a display of `WIDTH` x `HEIGHT`; `BYTES` is half their product.
+/// The layout of a display of `WIDTH` x `HEIGHT`; `WORDS` is an eighth of their product.
+///
+/// Eight pixels are a word, whose bytes go to the display with the least first: that clears four times as fast as bytes.
 #[derive(Clone, Copy, Debug)]
-pub struct Gray4Rows<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize>;
+pub struct Gray4Rows<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize>;
 
-impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Gray4Rows<WIDTH, HEIGHT, BYTES> {
-    type Cell = u8;
-    type Cells = [u8; BYTES];
+/// Where a pixel lies in its word: the left one of a byte is its high half.
+#[inline(always)]
+fn shift(cursor: usize) -> u32 {
+    ((cursor as u32 ^ 1) & 7) * 4
+}
+
+impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gray4Rows<WIDTH, HEIGHT, WORDS> {
+    type Cell = u32;
+    type Cells = [u32; WORDS];
     type Ink = Gray4;
     /// The pixel's number, row by row.
     type Cursor = usize;
     const WIDTH: usize = WIDTH;
     const HEIGHT: usize = HEIGHT;
-    const CELL: [usize; 2] = [2, 1];
-    const DARK: [u8; BYTES] = {
-        assert!(BYTES * 2 == WIDTH * HEIGHT && WIDTH % 2 == 0);
-        [0; BYTES]
+    const CELL: [usize; 2] = [8, 1];
+    const DARK: [u32; WORDS] = {
+        assert!(WORDS * 8 == WIDTH * HEIGHT && WIDTH % 8 == 0);
+        [0; WORDS]
     };
 
     #[inline(always)]
@@ -37,22 +45,22 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Gra
     }
 
     #[inline(always)]
-    fn put(cells: &mut [u8], cursor: usize, ink: Gray4) {
-        let Some(cell) = cells.get_mut(cursor >> 1) else { return };
-        let luma = ink.luma();
-        *cell = if cursor & 1 == 0 { *cell & 0x0f | luma << 4 } else { *cell & 0xf0 | luma };
+    fn put(cells: &mut [u32], cursor: usize, ink: Gray4) {
+        let Some(cell) = cells.get_mut(cursor >> 3) else { return };
+        let shift = shift(cursor);
+        *cell = *cell & !(15 << shift) | u32::from(ink.luma()) << shift;
     }
 
     #[inline(always)]
-    fn blend(cells: &mut [u8], cursor: usize, ink: Gray4, cover: u32) {
+    fn blend(cells: &mut [u32], cursor: usize, ink: Gray4, cover: u32) {
         let was = Self::get(cells, cursor).luma();
         let luma = ((u32::from(ink.luma()) * cover + 8) >> 4) as u8;
         Self::put(cells, cursor, Gray4::new(was.max(luma)));
     }
 
     #[inline(always)]
-    fn get(cells: &[u8], cursor: usize) -> Gray4 {
-        let cell = cells.get(cursor >> 1).copied().unwrap_or(0);
-        Gray4::new(if cursor & 1 == 0 { cell >> 4 } else { cell & 0x0f })
+    fn get(cells: &[u32], cursor: usize) -> Gray4 {
+        let cell = cells.get(cursor >> 3).copied().unwrap_or(0);
+        Gray4::new((cell >> shift(cursor)) as u8 & 15)
     }
 }
