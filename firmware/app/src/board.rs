@@ -1,12 +1,16 @@
 //! What a board does for the program.
 
 use crate::keys::Key;
+use pantin_figure::rotation::Turning;
 use pantin_figure::surface::{Frame, Layout};
 
 /// The hardware.
 pub trait Board {
     /// How the display keeps its pixels.
     type Layout: Layout;
+
+    /// How it turns joints: in whole numbers, or, where that is faster, in floating point.
+    type Turning: Turning;
 
     /// Brings the display up to date: what [`Frame::send`] names has changed.
     fn show(&mut self, frame: &mut Frame<Self::Layout>);

@@ -8,6 +8,7 @@ use crate::options::{Mode, Options};
 use crate::scene::{Entry, Scene, Wish};
 use heapless::Deque;
 use pantin::{ChannelState, Clip, Player};
+use pantin_figure::rotation::Turning;
 use pantin_figure::surface::{Frame, Layout};
 use pantin_figure::{Canvas, Limb, Stage};
 
@@ -70,7 +71,7 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
         }
     };
     let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
-    let mut stage = Stage::<JOINTS>::EMPTY;
+    let mut stage = Stage::<JOINTS, B::Turning>::EMPTY;
     if let Err(error) = set_up(&mut stage, &mut player, canvas, scene) {
         error!("the rig is too big: {}", error);
         return After::Exit(Exit::BadClip);
@@ -92,8 +93,8 @@ pub const RIG: usize = 96;
 
 /// In a function of its own: the workspace is given back before the first frame.
 #[inline(never)]
-fn set_up<const JOINTS: usize>(
-    stage: &mut Stage<JOINTS>,
+fn set_up<R: Turning, const JOINTS: usize>(
+    stage: &mut Stage<JOINTS, R>,
     player: &mut Player,
     canvas: Canvas,
     scene: &Scene,
@@ -104,7 +105,7 @@ fn set_up<const JOINTS: usize>(
 #[inline(never)]
 fn play<B: Board, const JOINTS: usize>(
     player: &mut Player,
-    stage: &mut Stage<JOINTS>,
+    stage: &mut Stage<JOINTS, B::Turning>,
     entry: &Entry,
     mode: Mode,
     scene: &mut Scene,
@@ -200,14 +201,14 @@ fn decode<B: Board>(player: &mut Player, frames: i32, board: &mut B) {
 }
 
 #[inline(never)]
-fn place<B: Board, const JOINTS: usize>(player: &Player, stage: &mut Stage<JOINTS>, board: &mut B) {
+fn place<B: Board, const JOINTS: usize>(player: &Player, stage: &mut Stage<JOINTS, B::Turning>, board: &mut B) {
     board.mark_start();
     stage.place(player.pose());
     board.mark_stop();
 }
 
 #[inline(never)]
-fn draw<B: Board, const JOINTS: usize>(stage: &mut Stage<JOINTS>, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
+fn draw<B: Board, const JOINTS: usize>(stage: &mut Stage<JOINTS, B::Turning>, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
     board.mark_start();
     frame.clear();
     stage.lay().draw_on(frame, scene.look);

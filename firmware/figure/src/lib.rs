@@ -15,6 +15,8 @@ mod names;
 pub mod raster;
 mod root;
 pub mod rotation;
+#[cfg(feature = "micromath")]
+pub mod rotation_float;
 pub mod skeleton;
 pub mod stage;
 pub mod surface;

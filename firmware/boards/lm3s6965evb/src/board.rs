@@ -9,6 +9,7 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use pantin_app::{Board, Key};
+use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Frame, Gray4Rows};
 
 /// One tick of the core clock as it is out of reset: 12.5 MHz.
@@ -53,6 +54,7 @@ impl Lm3s {
 
 impl Board for Lm3s {
     type Layout = Oled;
+    type Turning = Rotation;
 
     fn show(&mut self, frame: &mut Frame<Oled>) {
         display::show(frame);

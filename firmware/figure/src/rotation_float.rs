@@ -1,0 +1,138 @@
+//! Rotations in floating point, by `micromath`'s approximations: for cores with a floating-point unit.
+//!
+//! Additions, multiplications and conversions alone, in the order in which they are written: a host computes the same bits.
+
+use crate::rotation::{Rotation, Turning, Vector};
+use crate::trig::ONE;
+use core::f32::consts::TAU;
+use micromath::F32Ext;
+
+/// A rotation as the images of the x, y and z axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatRotation([[f32; 3]; 3]);
+
+/// A turn is 2^32 of an angle's units.
+const RADIANS: f32 = TAU / 4_294_967_296.0;
+
+impl FloatRotation {
+    fn then(&self, local: &[[f32; 3]; 3]) -> FloatRotation {
+        FloatRotation(local.map(|column| self.apply(column)))
+    }
+
+    #[inline(always)]
+    fn apply(&self, v: [f32; 3]) -> [f32; 3] {
+        let [x, y, z] = &self.0;
+        core::array::from_fn(|row| x[row] * v[0] + y[row] * v[1] + z[row] * v[2])
+    }
+
+    /// After a unit quaternion w, x, y, z.
+    fn turn_unit(&mut self, [w, x, y, z]: [f32; 4]) {
+        *self = self.then(&[
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]);
+    }
+}
+
+/// 1 / root: `micromath`'s estimate, and two of Newton's steps.
+fn inverse_root(x: f32) -> f32 {
+    let mut root = x.invsqrt();
+    for _ in 0..2 {
+        root *= 1.5 - 0.5 * x * root * root;
+    }
+    root
+}
+
+impl Turning for FloatRotation {
+    const NONE: Self = FloatRotation([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+
+    fn of_view(view: &Rotation) -> Self {
+        FloatRotation(view.0.map(|column| column.map(|x| x as f32 / ONE as f32)))
+    }
+
+    #[inline(always)]
+    fn turn(&mut self, axis: usize, angle: i32) {
+        let (sin, cos) = (angle as f32 * RADIANS).sin_cos();
+        let [x, y, z] = &mut self.0;
+        let (b, c) = match axis {
+            0 => (y, z),
+            1 => (z, x),
+            _ => (x, y),
+        };
+        for (b, c) in b.iter_mut().zip(c) {
+            let (from_b, from_c) = (*b, *c);
+            *b = from_b * cos + from_c * sin;
+            *c = from_c * cos - from_b * sin;
+        }
+    }
+
+    fn turn_exponential(&mut self, map: Vector) {
+        let half = map.map(|x| x as f32 * (RADIANS / 2.0));
+        let square = half.iter().map(|x| x * x).sum::<f32>();
+        // Below that the half angle's sine is the half angle.
+        if square < 1e-8 {
+            return self.turn_unit([1.0, half[0], half[1], half[2]]);
+        }
+        let inverse = inverse_root(square);
+        let (sin, cos) = (square * inverse).sin_cos();
+        self.turn_unit([cos, half[0] * inverse * sin, half[1] * inverse * sin, half[2] * inverse * sin]);
+    }
+
+    fn turn_quaternion(&mut self, q: [i32; 4]) {
+        let q = q.map(|x| x as f32 / 1_073_741_824.0);
+        let square = q.iter().map(|x| x * x).sum::<f32>();
+        if square > 0.0 {
+            let inverse = inverse_root(square);
+            self.turn_unit(q.map(|x| x * inverse));
+        }
+    }
+
+    #[inline(always)]
+    fn image(&self, v: Vector) -> Vector {
+        self.apply(v.map(|x| x as f32)).map(|x| x as i32)
+    }
+
+    fn image_any(&self, v: Vector) -> Vector {
+        self.image(v.map(|x| x.clamp(-(1 << 29), 1 << 29)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn worst(float: &FloatRotation, fixed: &Rotation) -> f32 {
+        let pairs = float.0.iter().flatten().zip(fixed.0.iter().flatten());
+        pairs.fold(0.0, |worst, (a, b)| worst.max((a - *b as f32 / ONE as f32).abs()))
+    }
+
+    #[test]
+    fn every_turn_is_that_of_the_fixed_point_rotation_within_what_the_approximations_leave() {
+        let mut state = 3u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 32) as i32
+        };
+        let mut most = [0f32; 3];
+        for _ in 0..100_000 {
+            let values = [next(), next(), next(), next()];
+            let turns: [(&dyn Fn(&mut FloatRotation), &dyn Fn(&mut Rotation)); 3] = [
+                (&|r| r.turn(1, values[0]), &|r| Turning::turn(r, 1, values[0])),
+                (
+                    &|r| r.turn_exponential([values[0], values[1], values[2]]),
+                    &|r| Turning::turn_exponential(r, [values[0], values[1], values[2]]),
+                ),
+                (&|r| r.turn_quaternion(values), &|r| Turning::turn_quaternion(r, values)),
+            ];
+            for ((float_turn, fixed_turn), most) in turns.into_iter().zip(&mut most) {
+                let (mut float, mut fixed) = (FloatRotation::NONE, Rotation::NONE);
+                float_turn(&mut float);
+                fixed_turn(&mut fixed);
+                *most = most.max(worst(&float, &fixed));
+            }
+        }
+        // `micromath`'s sine is the coarsest part: within 1.2e-3.
+        assert!(most[0] < 1.3e-3 && most[1] < 3e-3 && most[2] < 2e-4, "{most:?}");
+    }
+}
