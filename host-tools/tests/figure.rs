@@ -70,7 +70,7 @@ impl Case {
     /// Greatest distance of a joint from its true place, in figure units, over every `stride`-th frame.
     fn worst(&self, stride: usize) -> f64 {
         let skeleton = self.skeleton(Detail::Full);
-        let mut joints: Kinematics<JOINTS> = Kinematics::NEW;
+        let mut joints: Kinematics<JOINTS> = Kinematics::new();
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
             joints.place(&skeleton, &self.pose(frame));
@@ -223,7 +223,7 @@ fn euler_slots_that_hold_an_exponential_map_turn_as_one() {
     let slots = with(&[Kind::Zrotation, Kind::Xrotation, Kind::Yrotation]);
     let exponent = slots.rig().length_exponent();
     let skeleton = Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, &slots.pose(0), exponent, |joint| joint == 0).unwrap();
-    let mut joints: Kinematics<JOINTS> = Kinematics::NEW;
+    let mut joints: Kinematics<JOINTS> = Kinematics::new();
     joints.place(&skeleton, &slots.pose(0));
     let error = distance(joints.position(1).map(f64::from), truth.truth(&skeleton, 0)[1]);
     assert!(error / f64::from(skeleton.size) < 5e-4, "{error}");

@@ -3,28 +3,23 @@
 use crate::scene::{Entry, Scene};
 use core::fmt::Write;
 use embedded_graphics::Drawable;
-use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
 use heapless::String;
 use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::surface::{Frame, Layout};
 
 /// Rows from which a display takes the larger letters.
-const LARGE: u32 = 160;
+const LARGE: usize = 160;
 /// Brightness of the letters.
 const SHADE: u8 = 200;
 
 /// Draws it.
 #[inline(never)]
-pub(crate) fn draw<D>(scene: &Scene, entry: &Entry, frame: [u32; 2], target: &mut D)
-where
-    D: DrawTarget,
-    D::Color: Ink,
-{
-    let size = target.bounding_box().size;
-    let font: &MonoFont = if size.height >= LARGE { &FONT_6X10 } else { &FONT_4X6 };
-    let style = MonoTextStyle::new(font, D::Color::of(Tone::Middle, SHADE));
+pub(crate) fn draw<L: Layout>(scene: &Scene, entry: &Entry, frame: [u32; 2], target: &mut Frame<L>) {
+    let font: &MonoFont = const { if L::HEIGHT >= LARGE { &FONT_6X10 } else { &FONT_4X6 } };
+    let style = MonoTextStyle::new(font, L::Ink::of(Tone::Middle, SHADE));
     let mut first: String<32> = String::new();
     let mut second: String<32> = String::new();
     // What does not fit the line is left out.
@@ -38,7 +33,7 @@ where
     if scene.backwards {
         let _ = second.push_str(" back");
     }
-    let bottom = size.height.saturating_sub(font.character_size.height) as i32;
+    let bottom = L::HEIGHT as i32 - font.character_size.height as i32;
     for (line, y) in [(&first, 0), (&second, bottom)] {
         // A display that fails shows no letters; the figure's drawing tells of it.
         let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);

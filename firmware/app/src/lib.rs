@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod board;
+mod crowd;
 mod hud;
 pub mod keys;
 mod log;
@@ -14,6 +15,7 @@ mod scene;
 pub mod wire;
 
 pub use board::{Board, Exit};
+pub use crowd::{FIGURES, Seat, crowd};
 pub use keys::Key;
 pub use options::{Mode, Options};
 pub use run::{NEXT, QUIT, RIG, SHOWN, run};

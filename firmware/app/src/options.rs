@@ -22,19 +22,22 @@ pub struct Options {
     pub smooth: bool,
     /// Name, frame and speed on the display from the start.
     pub hud: bool,
+    /// Figures side by side.
+    pub figures: usize,
 }
 
 impl Options {
-    /// Reads the words `frames=N`, `sync`, `view=DEGREES`, `smooth` and `info`. Others are passed over: an emulator without arguments
+    /// Reads the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`. Others are passed over: an emulator without arguments
     /// gives the program's own path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
-        let mut options = Options { mode: Mode::Play, orbit: None, smooth: false, hud: false };
+        let mut options = Options { mode: Mode::Play, orbit: None, smooth: false, hud: false, figures: 1 };
         for word in words {
             match word.split_once('=') {
                 None if word == "sync" => options.mode = Mode::Sync,
                 None if word == "smooth" => options.smooth = true,
                 None if word == "info" => options.hud = true,
                 Some(("frames", count)) => options.mode = count.parse().map_or(options.mode, Mode::Frames),
+                Some(("figures", count)) => options.figures = count.parse().unwrap_or(1),
                 Some(("view", degrees)) => options.orbit = degrees.parse().ok().or(options.orbit),
                 _ => {}
             }

@@ -20,7 +20,7 @@ pub const QUIT: u8 = b'q';
 pub const SHOWN: u8 = b'F';
 
 /// Wishes that wait to be granted.
-type Wishes = Deque<Wish, 8>;
+pub(crate) type Wishes = Deque<Wish, 8>;
 
 /// Where to go when a clip is left.
 enum After {
@@ -71,7 +71,7 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
         }
     };
     let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
-    let mut stage = Stage::<JOINTS, B::Turning>::EMPTY;
+    let mut stage = Stage::<JOINTS, B::Turning>::empty();
     if let Err(error) = set_up(&mut stage, &mut player, canvas, scene) {
         error!("the rig is too big: {}", error);
         return After::Exit(Exit::BadClip);
@@ -162,7 +162,7 @@ fn play<B: Board, const JOINTS: usize>(
 }
 
 /// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture.
-fn listen<B: Board>(frame: u32, scene: &mut Scene, wishes: &mut Wishes, board: &mut B) -> bool {
+pub(crate) fn listen<B: Board>(frame: u32, scene: &mut Scene, wishes: &mut Wishes, board: &mut B) -> bool {
     board.send(&[SHOWN]);
     board.send(&frame.to_le_bytes());
     loop {
@@ -208,7 +208,12 @@ fn place<B: Board, const JOINTS: usize>(player: &Player, stage: &mut Stage<JOINT
 }
 
 #[inline(never)]
-fn draw<B: Board, const JOINTS: usize>(stage: &mut Stage<JOINTS, B::Turning>, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
+fn draw<B: Board, const JOINTS: usize>(
+    stage: &mut Stage<JOINTS, B::Turning>,
+    scene: &Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) {
     board.mark_start();
     frame.clear();
     stage.lay().draw_on(frame, scene.look);
@@ -216,7 +221,7 @@ fn draw<B: Board, const JOINTS: usize>(stage: &mut Stage<JOINTS, B::Turning>, sc
 }
 
 #[inline(never)]
-fn show<B: Board>(frame: &mut Frame<B::Layout>, board: &mut B) {
+pub(crate) fn show<B: Board>(frame: &mut Frame<B::Layout>, board: &mut B) {
     board.mark_start();
     board.show(frame);
     board.mark_stop();

@@ -187,9 +187,9 @@ impl Camera {
     /// Sixteenths of a pixel of a length in figure units at the target's distance.
     pub fn length(&self, length: i32) -> i32 {
         {
-        let cut = (32 - self.size.leading_zeros()).saturating_sub(SIZE_BITS);
-        (length >> cut).min(i32::from(i16::MAX)) * self.scale / (self.size >> cut).max(1)
-    }
+            let cut = (32 - self.size.leading_zeros()).saturating_sub(SIZE_BITS);
+            (length >> cut).min(i32::from(i16::MAX)) * self.scale / (self.size >> cut).max(1)
+        }
     }
 }
 

@@ -15,7 +15,10 @@ pub struct Kinematics<const N: usize, R: Turning = Rotation> {
 
 impl<const N: usize, R: Turning> Kinematics<N, R> {
     /// Nothing placed yet.
-    pub const NEW: Self = Kinematics { positions: Vec::new(), rotations: [R::NONE; SLOTS] };
+    #[inline]
+    pub fn new() -> Self {
+        Kinematics { positions: Vec::new(), rotations: [R::NONE; SLOTS] }
+    }
 
     /// Places every joint of the skeleton in the world. Channels that the pose lacks are 0.
     pub fn place(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
@@ -69,7 +72,7 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
 
 impl<const N: usize, R: Turning> Default for Kinematics<N, R> {
     fn default() -> Self {
-        Self::NEW
+        Self::new()
     }
 }
 

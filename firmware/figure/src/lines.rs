@@ -107,7 +107,10 @@ impl Ground {
 
 impl<const N: usize> Lines<N> {
     /// Nothing to draw yet.
-    pub const NEW: Self = Lines { ground: Vec::new(), dots: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None };
+    #[inline]
+    pub fn new() -> Self {
+        Lines { ground: Vec::new(), dots: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None }
+    }
 
     /// The ground about the target.
     #[inline(never)]
@@ -164,7 +167,8 @@ impl<const N: usize> Lines<N> {
                 Part::Bone => {
                     // Near limbs are thicker: half as thick again at a quarter of the camera's distance.
                     let width = ((breadth - (breadth * depth >> 14)) >> PIXEL_BITS).clamp(1, 9) as u8;
-                    let line = Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), tone: bone.tone, width };
+                    let line =
+                        Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), tone: bone.tone, width };
                     // One a bone: there is room.
                     let _ = self.bones.push(line);
                 }

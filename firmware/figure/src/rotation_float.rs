@@ -7,7 +7,8 @@ use crate::trig::ONE;
 use core::f32::consts::TAU;
 use micromath::F32Ext;
 
-/// A rotation as the images of the x, y and z axes.
+/// A rotation as the images of the x, y and z axes. Elements are within 1.2e-3 of the true ones after a turn about an axis, 2.6e-3
+/// after an exponential map and 1.3e-4 after a quaternion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloatRotation([[f32; 3]; 3]);
 
@@ -37,7 +38,7 @@ impl FloatRotation {
 
 /// 1 / root: `micromath`'s estimate, and two of Newton's steps.
 fn inverse_root(x: f32) -> f32 {
-    let mut root = x.invsqrt();
+    let mut root = F32Ext::invsqrt(x);
     for _ in 0..2 {
         root *= 1.5 - 0.5 * x * root * root;
     }
@@ -53,7 +54,7 @@ impl Turning for FloatRotation {
 
     #[inline(always)]
     fn turn(&mut self, axis: usize, angle: i32) {
-        let (sin, cos) = (angle as f32 * RADIANS).sin_cos();
+        let (sin, cos) = F32Ext::sin_cos(angle as f32 * RADIANS);
         let [x, y, z] = &mut self.0;
         let (b, c) = match axis {
             0 => (y, z),
@@ -75,7 +76,7 @@ impl Turning for FloatRotation {
             return self.turn_unit([1.0, half[0], half[1], half[2]]);
         }
         let inverse = inverse_root(square);
-        let (sin, cos) = (square * inverse).sin_cos();
+        let (sin, cos) = F32Ext::sin_cos(square * inverse);
         self.turn_unit([cos, half[0] * inverse * sin, half[1] * inverse * sin, half[2] * inverse * sin]);
     }
 
@@ -119,10 +120,9 @@ mod tests {
             let values = [next(), next(), next(), next()];
             let turns: [(&dyn Fn(&mut FloatRotation), &dyn Fn(&mut Rotation)); 3] = [
                 (&|r| r.turn(1, values[0]), &|r| Turning::turn(r, 1, values[0])),
-                (
-                    &|r| r.turn_exponential([values[0], values[1], values[2]]),
-                    &|r| Turning::turn_exponential(r, [values[0], values[1], values[2]]),
-                ),
+                (&|r| r.turn_exponential([values[0], values[1], values[2]]), &|r| {
+                    Turning::turn_exponential(r, [values[0], values[1], values[2]])
+                }),
                 (&|r| r.turn_quaternion(values), &|r| Turning::turn_quaternion(r, values)),
             ];
             for ((float_turn, fixed_turn), most) in turns.into_iter().zip(&mut most) {
@@ -132,7 +132,7 @@ mod tests {
                 *most = most.max(worst(&float, &fixed));
             }
         }
-        // `micromath`'s sine is the coarsest part: within 1.2e-3.
-        assert!(most[0] < 1.3e-3 && most[1] < 3e-3 && most[2] < 2e-4, "{most:?}");
+        // `micromath`'s sine is the coarsest part; quaternions need none.
+        assert!(most[0] < 1.2e-3 && most[1] < 2.6e-3 && most[2] < 1.3e-4, "{most:?}");
     }
 }

@@ -162,17 +162,20 @@ pub enum Detail {
 
 impl<const N: usize> Skeleton<N> {
     /// No joints.
-    pub const EMPTY: Self = Skeleton {
-        bones: Vec::new(),
-        drives: Vec::new(),
-        driven: 0,
-        position_shift: 0,
-        exponent: 0,
-        size: 1,
-        hips: 0,
-        sides: None,
-        head_radius: 0,
-    };
+    #[inline]
+    pub fn empty() -> Self {
+        Skeleton {
+            bones: Vec::new(),
+            drives: Vec::new(),
+            driven: 0,
+            position_shift: 0,
+            exponent: 0,
+            size: 1,
+            hips: 0,
+            sides: None,
+            head_radius: 0,
+        }
+    }
 
     /// The figure of a rig of up to 192 joints. `pose` is any pose of the clip, `position_exponent` its step of positions (2^e source
     /// units), and `is_exponential` tells of a joint whether the clip codes its Euler angles as an exponential map.
@@ -183,7 +186,7 @@ impl<const N: usize> Skeleton<N> {
         position_exponent: i8,
         is_exponential: impl Fn(usize) -> bool,
     ) -> Result<Self, Error> {
-        let mut skeleton = Skeleton::EMPTY;
+        let mut skeleton = Skeleton::empty();
         let mut room = [Limb::default(); RIG_JOINTS];
         skeleton.set_up(rig, detail, (pose, position_exponent), is_exponential, &mut room)?;
         Ok(skeleton)

@@ -37,22 +37,25 @@ const SAMPLES: u32 = 48;
 
 impl<const N: usize, R: Turning> Stage<N, R> {
     /// No figure yet.
-    pub const EMPTY: Self = Stage {
-        skeleton: Skeleton::EMPTY,
-        bearings: Bearings::UPRIGHT,
-        canvas: Canvas { width: 0, height: 0 },
-        camera: Camera::NOWHERE,
-        view: R::NONE,
-        target: [0; 3],
-        ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
-        joints: Kinematics::NEW,
-        seen: Vec::new(),
-        lines: Lines::NEW,
-    };
+    #[inline]
+    pub fn empty() -> Self {
+        Stage {
+            skeleton: Skeleton::empty(),
+            bearings: Bearings::UPRIGHT,
+            canvas: Canvas { width: 0, height: 0 },
+            camera: Camera::NOWHERE,
+            view: R::NONE,
+            target: [0; 3],
+            ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
+            joints: Kinematics::new(),
+            seen: Vec::new(),
+            lines: Lines::new(),
+        }
+    }
 
     /// A figure and a camera for a clip of up to 192 joints; leaves the player at frame 0.
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
-        let mut stage = Self::EMPTY;
+        let mut stage = Self::empty();
         stage.set_up(player, canvas, view, &mut [Limb::default(); RIG_JOINTS])?;
         Ok(stage)
     }
@@ -86,7 +89,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
     /// argument; it is called twice and must show the same ones.
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
-        let mut stage = Stage { skeleton, canvas, ..Self::EMPTY };
+        let mut stage = Stage { skeleton, canvas, ..Self::empty() };
         stage.frame(view, poses);
         stage
     }
