@@ -5,14 +5,10 @@
 mod board;
 mod buttons;
 mod display;
-mod faults;
 mod registers;
 
 use board::{Lm3s, Oled};
 use cortex_m_rt::entry;
-use defmt_semihosting as _;
-use faults::Code;
-use pantin_app::{Exit, Options};
 use pantin_figure::surface::Frame;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
@@ -24,20 +20,7 @@ const JOINTS: usize = 40;
 
 #[entry]
 fn main() -> ! {
-    faults::guard_stack();
+    board_common::cortex_m::guard_stack();
     let mut frame = Frame::<Oled>::new();
-    let exit = pantin_app::run::<_, CHANNELS, MOVING, JOINTS>(CLIPS, options(), &mut frame, &mut Lm3s::new());
-    faults::exit(match exit {
-        Exit::Done => Code::Done,
-        Exit::BadClip => Code::BadClip,
-    })
-}
-
-/// What the emulator's command line asks for.
-fn options() -> Options {
-    const ROOM: usize = 1024;
-    match semihosting::experimental::env::args::<ROOM>() {
-        Ok(words) => Options::parse((&words).into_iter().flatten()),
-        Err(_) => Options::parse([]),
-    }
+    board_common::play::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut Lm3s::new())
 }
