@@ -49,9 +49,18 @@ pub fn cargo(build: &Build) -> Result<PathBuf> {
 
 /// What a build needs beside its own words for the core library of its target.
 #[derive(Default)]
-struct Core {
-    arguments: Vec<OsString>,
-    environment: Vec<(OsString, OsString)>,
+pub struct Core {
+    /// Words for cargo.
+    pub arguments: Vec<OsString>,
+    /// Variables for it.
+    pub environment: Vec<(OsString, OsString)>,
+}
+
+impl Core {
+    /// For a Rust target of the firmware.
+    pub fn of(target: &str) -> Core {
+        if setup::is_from_source(target) { core_from_source() } else { Core::default() }
+    }
 }
 
 /// Cargo compiles core itself: unstable, so the stable compiler must be told to allow it. In a folder of its own, since build
@@ -79,7 +88,7 @@ impl Firmware {
         setup::rust_target(target)?;
         let clip = clip.map(|clip| std::path::absolute(clip).map(|clip| ("PANTIN_CLIP".into(), clip.into()))).transpose()?;
         let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
-        let core = if setup::is_from_source(target) { core_from_source() } else { Core::default() };
+        let core = Core::of(target);
         let arguments = ["--release", "--package", package, "--bin", program, "--target", target].into_iter();
         let product = cargo(&Build {
             workspace: paths::firmware(),

@@ -16,6 +16,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use harness::build::Core;
 use harness::{clips, paths, setup};
 
 use super::packages::{self, Package};
@@ -53,8 +54,8 @@ impl Test {
             for target in targets {
                 let build = format!("--release -p {name} --target {target}");
                 steps.run(&format!("{name} for {target}"), || {
-                    cargo(Workspace::Firmware, &format!("clippy {build} -- -D warnings"), false)?;
-                    cargo(Workspace::Firmware, &format!("build {build}"), false)
+                    board(&format!("clippy {build}"), "-- -D warnings", target)?;
+                    board(&format!("build {build}"), "", target)
                 });
             }
         }
@@ -96,15 +97,33 @@ fn walk() -> Result<()> {
 }
 
 fn cargo(workspace: Workspace, arguments: &str, host_only: bool) -> Result<()> {
+    let mut command = command(workspace);
+    command.args(arguments.split(' '));
+    if host_only {
+        command.env(setup::HOST_ONLY, "1");
+    }
+    finish(command, arguments)
+}
+
+/// Cargo on a board's package; `last` follows what the target's core library asks for.
+fn board(arguments: &str, last: &str, target: &str) -> Result<()> {
+    let core = Core::of(target);
+    let mut command = command(Workspace::Firmware);
+    command.args(arguments.split(' ')).args(core.arguments).args(last.split_whitespace()).envs(core.environment);
+    finish(command, arguments)
+}
+
+fn command(workspace: Workspace) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     let folder = match workspace {
         Workspace::Host => paths::root(),
         Workspace::Firmware => paths::firmware(),
     };
-    command.args(arguments.split(' ')).current_dir(folder).env("PANTIN_CLIP", clip());
-    if host_only {
-        command.env(setup::HOST_ONLY, "1");
-    }
+    command.current_dir(folder).env("PANTIN_CLIP", clip());
+    command
+}
+
+fn finish(mut command: Command, arguments: &str) -> Result<()> {
     let status = command.status().context("cannot start cargo")?;
     ensure!(status.success(), "cargo {arguments}");
     Ok(())

@@ -61,5 +61,5 @@ impl Buttons {
 fn read() -> u32 {
     let low = !gpio_e::PINS_0_TO_3.read() & 0xf;
     let select = !gpio_f::PIN_1.read() >> 1 & 1;
-    low | select * SELECT
+    low | (select * SELECT)
 }

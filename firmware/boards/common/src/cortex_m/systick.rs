@@ -1,0 +1,69 @@
+//! Ticks by the processor's own timer, which interrupts the wait for them.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::Peripherals;
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::exception;
+
+/// The timer counts 24 bits.
+const LONGEST: u32 = 1 << 24;
+
+/// Timer periods since the start.
+static PERIODS: AtomicU32 = AtomicU32::new(0);
+
+#[exception]
+fn SysTick() {
+    // Nothing else writes it.
+    PERIODS.store(PERIODS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+}
+
+/// The timer.
+pub struct SysTick {
+    timer: Option<SYST>,
+    /// Nanoseconds of a clock.
+    clock: u32,
+    /// Timer periods in a tick: more than one where a tick is longer than the timer can count.
+    periods: u32,
+    /// Periods up to the last tick that was told of.
+    told: u32,
+}
+
+impl SysTick {
+    /// With a clock of so many nanoseconds. Only the first of them ticks.
+    pub fn new(clock: u32) -> Self {
+        SysTick { timer: Peripherals::take().map(|peripherals| peripherals.SYST), clock, periods: 1, told: 0 }
+    }
+
+    /// Ticks every `nanoseconds` from now on.
+    pub fn start(&mut self, nanoseconds: u32) {
+        let clocks = nanoseconds / self.clock;
+        self.periods = clocks.div_ceil(LONGEST).max(1);
+        self.told = PERIODS.load(Ordering::Relaxed);
+        if let Some(timer) = &mut self.timer {
+            timer.set_clock_source(SystClkSource::Core);
+            timer.set_reload((clocks / self.periods).max(2) - 1);
+            timer.clear_current();
+            timer.enable_interrupt();
+            timer.enable_counter();
+        }
+    }
+
+    /// Waits for a tick and tells how many there were since the last call.
+    pub fn wait(&mut self) -> u32 {
+        loop {
+            // An interrupt between the look and the sleep ends the sleep, and is taken after it.
+            let ticks = cortex_m::interrupt::free(|_| {
+                let ticks = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.told) / self.periods;
+                if ticks == 0 {
+                    cortex_m::asm::wfi();
+                }
+                ticks
+            });
+            if ticks > 0 {
+                self.told = self.told.wrapping_add(ticks * self.periods);
+                return ticks;
+            }
+        }
+    }
+}

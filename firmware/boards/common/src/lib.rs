@@ -1,0 +1,15 @@
+//! What boards have in common.
+#![no_std]
+
+#[cfg(feature = "cortex-m")]
+pub mod cortex_m;
+mod end;
+pub mod markers;
+mod pace;
+mod play;
+mod register;
+
+pub use end::{Code, exit};
+pub use pace::Pace;
+pub use play::play;
+pub use register::Register;

@@ -1,0 +1,25 @@
+//! Pantin on QEMU's microbit: plays the clips that it was built with, and sends the pictures over its serial line.
+#![no_std]
+#![no_main]
+
+mod board;
+mod registers;
+
+use board::{Microbit, Pages};
+use cortex_m_rt::entry;
+use pantin_figure::surface::Frame;
+
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 192;
+const MOVING: usize = 104;
+const JOINTS: usize = 40;
+/// Most figures side by side.
+const SEATS: usize = 1;
+
+#[entry]
+fn main() -> ! {
+    let mut frame = Frame::<Pages>::new();
+    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Microbit::new())
+}

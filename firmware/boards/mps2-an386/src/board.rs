@@ -1,0 +1,82 @@
+//! The board's line, which carries pictures and keys, and its timer for the program.
+
+use crate::registers::uart0;
+use board_common::cortex_m::SysTick;
+use board_common::markers;
+use pantin_app::{Board, wire};
+use pantin_figure::surface::{Frame, Gray4Rows};
+
+/// One tick of the core clock: 25 MHz.
+const CLOCK_NS: u32 = 40;
+/// Clocks a bit: 115 200 bits a second.
+const BAUD_CLOCKS: u32 = 217;
+
+const TRANSMIT_FULL: u32 = 1 << 0;
+const RECEIVE_FULL: u32 = 1 << 1;
+
+/// The pictures: 128x64 pixels of 16 greys, as on the reference machine.
+pub type Oled = Gray4Rows<128, 64, 4096>;
+
+/// The board.
+pub struct Mps2 {
+    timer: SysTick,
+}
+
+impl Mps2 {
+    pub fn new() -> Self {
+        uart0::BAUDDIV.write(BAUD_CLOCKS);
+        // Transmitter and receiver.
+        uart0::CTRL.write(1 << 0 | 1 << 1);
+        Mps2 { timer: SysTick::new(CLOCK_NS) }
+    }
+}
+
+fn send(bytes: &[u8]) {
+    for &byte in bytes {
+        while uart0::STATE.read() & TRANSMIT_FULL != 0 {}
+        uart0::DATA.write(u32::from(byte));
+    }
+}
+
+impl Board for Mps2 {
+    type Layout = Oled;
+    #[cfg(not(feature = "micromath"))]
+    type Turning = pantin_figure::rotation::Rotation;
+    #[cfg(feature = "micromath")]
+    type Turning = pantin_figure::rotation_float::FloatRotation;
+
+    fn show(&mut self, frame: &mut Frame<Oled>) {
+        wire::send(frame, send);
+    }
+
+    fn start_timer(&mut self, nanoseconds: u32) {
+        self.timer.start(nanoseconds);
+    }
+
+    fn wait_ticks(&mut self) -> u32 {
+        self.timer.wait()
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        send(bytes);
+    }
+
+    fn receive(&mut self) -> u8 {
+        while uart0::STATE.read() & RECEIVE_FULL == 0 {}
+        uart0::DATA.read() as u8
+    }
+
+    fn poll(&mut self) -> Option<u8> {
+        (uart0::STATE.read() & RECEIVE_FULL != 0).then(|| uart0::DATA.read() as u8)
+    }
+
+    #[inline(always)]
+    fn mark_start(&mut self) {
+        markers::start();
+    }
+
+    #[inline(always)]
+    fn mark_stop(&mut self) {
+        markers::stop();
+    }
+}

@@ -1,0 +1,26 @@
+//! Pantin on QEMU's mps2-an386: plays the clips that it was built with, and sends the pictures over its serial line.
+#![no_std]
+#![no_main]
+
+mod board;
+mod registers;
+
+use board::{Mps2, Oled};
+use cortex_m_rt::entry;
+use pantin_figure::surface::Frame;
+
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 192;
+const MOVING: usize = 104;
+const JOINTS: usize = 40;
+/// Most figures side by side.
+const SEATS: usize = 16;
+
+#[entry]
+fn main() -> ! {
+    board_common::cortex_m::guard_stack();
+    let mut frame = Frame::<Oled>::new();
+    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Mps2::new())
+}

@@ -1,0 +1,19 @@
+//! The registers that the program uses, at their addresses (Arm DAI 0386 and DDI 0479).
+#![allow(unsafe_code)]
+
+use board_common::Register;
+
+/// The register at an address below.
+const fn at(address: usize) -> Register {
+    // Safety: every address below is a register of the machine that this program is linked for, aligned to 4 bytes.
+    unsafe { Register::at(address) }
+}
+
+/// Serial line 0 (CMSDK APB UART).
+pub mod uart0 {
+    use super::{Register, at};
+    pub const DATA: Register = at(0x4000_4000);
+    pub const STATE: Register = at(0x4000_4004);
+    pub const CTRL: Register = at(0x4000_4008);
+    pub const BAUDDIV: Register = at(0x4000_4010);
+}

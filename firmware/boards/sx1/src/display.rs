@@ -1,0 +1,66 @@
+//! The phone's display: 176x220 pixels of 16 bits, which a DMA channel brings from memory to the controller.
+#![allow(unsafe_code)]
+
+use crate::board::Lcd;
+use crate::registers::{lcd, lcd_dma};
+use core::ptr;
+use pantin_figure::surface::{Frame, Layout};
+
+/// Palette that says: no palette, 12 or 16 bits a pixel.
+const NO_PALETTE: u16 = 0x4000;
+
+const ENABLE: u32 = 1 << 0;
+/// 5, 6 and 5 bits of colour.
+const TFT: u32 = 1 << 7;
+/// What is brought: the palette alone, or the pixels alone.
+const PALETTE_ONLY: u32 = 1 << 20;
+const PIXELS_ONLY: u32 = 2 << 20;
+
+/// Bytes of the palette.
+const PALETTE: usize = 512;
+
+// Safety: the memory map places them; no Rust value lies there.
+unsafe extern "C" {
+    static mut _palette: u16;
+    static mut _pixels: u16;
+    static mut _pixels_end: u16;
+}
+
+/// Sets up controller and channel: first for the palette, then for the pixels.
+pub fn start() {
+    // Safety: the memory map leaves the room of a palette there.
+    unsafe { ptr::write_volatile(&raw mut _palette, NO_PALETTE) };
+    lcd::CONTROL.write(0);
+    lcd::TIMING_0.write(Lcd::WIDTH as u32 - 1);
+    lcd::TIMING_1.write(Lcd::HEIGHT as u32 - 1);
+    lcd::TIMING_2.write(0);
+    lcd_dma::CONTROL.write(0);
+    let palette = (&raw mut _palette).expose_provenance();
+    bring(palette, palette + PALETTE);
+    lcd::CONTROL.write(ENABLE | TFT | PALETTE_ONLY);
+    lcd::CONTROL.write(0);
+    bring((&raw mut _pixels).expose_provenance(), (&raw mut _pixels_end).expose_provenance());
+    lcd::CONTROL.write(ENABLE | TFT | PIXELS_ONLY);
+}
+
+/// Has the channel bring memory up to `end`.
+fn bring(start: usize, end: usize) {
+    let last = end - 2;
+    lcd_dma::TOP_LOW.write(start as u16);
+    lcd_dma::TOP_HIGH.write((start >> 16) as u16);
+    lcd_dma::BOTTOM_LOW.write(last as u16);
+    lcd_dma::BOTTOM_HIGH.write((last >> 16) as u16);
+}
+
+/// Copies what changed of a picture to where the channel finds it.
+pub fn show(frame: &mut Frame<Lcd>) {
+    for window in frame.send() {
+        let rows = window.rows[0]..;
+        for (row, stretch) in rows.zip(frame.stretches(window)) {
+            let at = row * Lcd::WIDTH + window.columns[0];
+            // Safety: a window lies inside the picture, for all of which the memory map leaves room there, and where no Rust
+            // value is.
+            unsafe { ptr::copy_nonoverlapping(stretch.as_ptr(), (&raw mut _pixels).add(at), stretch.len()) };
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Pantin on QEMU's sx1, the Siemens SX1: plays the clips that it was built with on the phone's display.
+#![no_std]
+#![no_main]
+
+mod board;
+mod display;
+mod log;
+mod registers;
+mod start;
+
+use board::{Lcd, Sx1};
+use pantin_figure::surface::Frame;
+
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 400;
+const MOVING: usize = 320;
+const JOINTS: usize = 80;
+/// Most figures side by side.
+const SEATS: usize = 8;
+
+fn main() -> ! {
+    let mut frame = Frame::<Lcd>::new();
+    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Sx1::new())
+}

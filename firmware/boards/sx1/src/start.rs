@@ -1,0 +1,48 @@
+//! Start and faults. Interrupts stay off.
+// Neither the first instructions nor those of a fault can be Rust: there is no stack yet.
+#![allow(unsafe_code)]
+
+use board_common::{Code, exit};
+use core::panic::PanicInfo;
+
+core::arch::global_asm!(
+    ".arm",
+    ".section .text.start, \"ax\"",
+    ".global _start",
+    "_start:",
+    "ldr sp, =_stack_top",
+    "bl board_start",
+    "_fault:",
+    // Each mode has a stack pointer of its own.
+    "ldr sp, =_stack_top",
+    "bl board_fault",
+    ".pool",
+    ".section .vectors, \"ax\"",
+    // Reset, then undefined instruction, supervisor call, the two aborts, one that is none, and the two interrupts.
+    ".rept 8",
+    "ldr pc, [pc, #24]",
+    ".endr",
+    ".word _start",
+    ".rept 7",
+    ".word _fault",
+    ".endr",
+);
+
+// Safety: nothing else is named so.
+#[unsafe(no_mangle)]
+extern "C" fn board_start() -> ! {
+    crate::main()
+}
+
+// Safety: as above.
+#[unsafe(no_mangle)]
+extern "C" fn board_fault() -> ! {
+    exit(Code::Fault)
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo) -> ! {
+    crate::log::until_panic();
+    defmt::error!("{}", defmt::Display2Format(info));
+    exit(Code::Panic)
+}
