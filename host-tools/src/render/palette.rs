@@ -10,8 +10,8 @@ pub type Rgb = [u8; 3];
 pub const FARTHEST: u8 = 80;
 /// The nearest.
 pub const NEAREST: u8 = 255;
-/// From here on a display of two colours shows ink, as [`pantin_figure::Ink`] has it.
-const INKED: u8 = 64;
+/// From here on a display of two colours shows ink, as [`pantin_figure::Ink`] has it: the figure without the ground.
+pub const INKED: u8 = 64;
 
 /// Colours by name: paper, far, near.
 const NAMED: [(&str, &str); 8] = [

@@ -31,6 +31,11 @@ impl Shades {
         if x < self.width { self.shades.get(y * self.width + x).copied().unwrap_or(0) } else { 0 }
     }
 
+    /// Turns off what is darker than `least`.
+    pub fn darken_below(&mut self, least: u8) {
+        self.shades.iter_mut().filter(|shade| **shade < least).for_each(|shade| *shade = 0);
+    }
+
     /// What it looks like.
     pub fn image(&self, palette: &Palette) -> Image {
         Image::of(self.width, self.shades.iter().map(|&shade| palette.pixel(shade)).collect())

@@ -93,7 +93,7 @@ pub struct Arguments {
 }
 
 /// An axis of the world.
-#[derive(Clone, Copy, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Axis {
     /// The first.
     X,
