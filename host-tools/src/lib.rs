@@ -12,6 +12,7 @@ pub mod fk;
 pub mod import;
 pub mod keys;
 pub mod motion;
+pub mod play;
 pub mod render;
 pub mod train;
 pub mod verify;

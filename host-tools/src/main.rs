@@ -17,7 +17,8 @@ enum Command {
     Convert(Box<cmd::convert::Arguments>),
     Expand(cmd::expand::Arguments),
     Info(cmd::info::Arguments),
-    Render(cmd::render::Arguments),
+    Play(cmd::play::Arguments),
+    Render(Box<cmd::render::Arguments>),
     Train(cmd::train::Arguments),
 }
 
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => cmd::convert::run(&arguments),
         Command::Expand(arguments) => cmd::expand::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
+        Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
     };

@@ -8,6 +8,7 @@ mod errors;
 pub mod expand;
 pub mod info;
 mod max_error;
+pub mod play;
 pub mod render;
 pub mod train;
 

@@ -1,40 +1,97 @@
-//! Animated GIFs of the display.
+//! Animated GIFs.
 
-use super::screen::{HEIGHT, Picture, WIDTH};
+use super::animation::{Animation, Beat};
+use super::image::{Area, Image};
+use super::palette::{Palette, Rgb};
+use super::screen::{Picture, WIDTH};
 use anyhow::Result;
-use gif::{Encoder, Frame, Repeat};
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::io::Write;
 
 /// Display pixels are squares of this many pixels.
 const SCALE: usize = 4;
 /// GIF times are hundredths of a second, and viewers slow down what is shorter than two.
-const SHORTEST: f64 = 0.02;
+pub const MOST_A_SECOND: f64 = 50.0;
+const TICKS: f64 = 100.0;
 
 /// How many of a clip's frames go to one picture, so that it is shown no shorter than viewers allow.
 pub fn stride(frame_time: f64) -> u32 {
-    (SHORTEST / frame_time.max(1e-6) - 1e-6).ceil().max(1.0) as u32
+    super::animation::stride(frame_time, MOST_A_SECOND)
 }
 
 /// Writes `pictures`, `seconds` apart, as an animation that repeats for ever.
 pub fn write(out: impl Write, pictures: &[Picture], seconds: f64) -> Result<()> {
-    let greys: Vec<u8> = (0..16u8).flat_map(|grey| [grey * 17; 3]).collect();
-    let mut encoder = Encoder::new(out, (WIDTH * SCALE) as u16, (HEIGHT * SCALE) as u16, &greys)?;
-    encoder.set_repeat(Repeat::Infinite)?;
-    let mut shown = 0.0;
-    for picture in pictures {
-        // Whole hundredths that never drift from the clip's own time.
-        let delay = ((shown + seconds) * 100.0).round() - (shown * 100.0f64).round();
-        shown += seconds;
-        let pixels: Vec<u8> = picture.enlarged(SCALE).iter().map(|grey| grey / 17).collect();
+    let palette = Palette::default();
+    let image = |picture: &Picture| {
+        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(grey * 17)).collect();
+        Image::of(WIDTH, pixels).enlarged(SCALE)
+    };
+    let mut gif = Gif::new(out, &palette.pixel_colours(), seconds);
+    pictures.iter().try_for_each(|picture| gif.push(&image(picture)))
+}
+
+/// A GIF that is being written. Its size is the first picture's.
+pub struct Gif<W: Write> {
+    out: Option<W>,
+    encoder: Option<Encoder<W>>,
+    colours: Vec<Rgb>,
+    indices: HashMap<Rgb, u8>,
+    shown: Vec<u8>,
+    beat: Beat,
+}
+
+impl<W: Write> Gif<W> {
+    /// A GIF of pictures `seconds` apart. It has these at most 256 colours; others take the nearest one.
+    pub fn new(out: W, colours: &[Rgb], seconds: f64) -> Gif<W> {
+        let colours = colours[..colours.len().min(256)].to_vec();
+        let beat = Beat::new(seconds, TICKS);
+        Gif { out: Some(out), encoder: None, colours, indices: HashMap::new(), shown: Vec::new(), beat }
+    }
+
+    fn index(&mut self, colour: Rgb) -> u8 {
+        let apart = |other: &Rgb| -> u32 { (0..3).map(|i| u32::from(colour[i].abs_diff(other[i])).pow(2)).sum() };
+        let nearest = || (0..self.colours.len()).min_by_key(|&index| apart(&self.colours[index])).unwrap_or(0) as u8;
+        *self.indices.entry(colour).or_insert_with(nearest)
+    }
+
+    fn indexed(&mut self, image: &Image) -> Vec<u8> {
+        let mut last = (image.pixels()[0], self.index(image.pixels()[0]));
+        let index = |&colour: &Rgb| {
+            if colour != last.0 {
+                last = (colour, self.index(colour));
+            }
+            last.1
+        };
+        image.pixels().iter().map(index).collect()
+    }
+}
+
+impl<W: Write> Animation for Gif<W> {
+    fn push(&mut self, image: &Image) -> Result<()> {
+        let (width, height) = (image.width(), image.height());
+        let pixels = self.indexed(image);
+        if let Some(out) = self.out.take() {
+            let mut encoder = Encoder::new(out, width as u16, height as u16, self.colours.as_flattened())?;
+            encoder.set_repeat(Repeat::Infinite)?;
+            self.encoder = Some(encoder);
+        }
+        let area = match self.shown.len() == pixels.len() {
+            true => Area::of_change(&self.shown, &pixels, width),
+            false => Area { left: 0, top: 0, width, height },
+        };
         let frame = Frame {
-            width: (WIDTH * SCALE) as u16,
-            height: (HEIGHT * SCALE) as u16,
-            delay: delay as u16,
-            buffer: Cow::Owned(pixels),
+            left: area.left as u16,
+            top: area.top as u16,
+            width: area.width as u16,
+            height: area.height as u16,
+            delay: self.beat.ticks() as u16,
+            dispose: DisposalMethod::Keep,
+            buffer: Cow::Owned(area.cut(&pixels, width)),
             ..Frame::default()
         };
-        encoder.write_frame(&frame)?;
+        self.shown = pixels;
+        self.encoder.as_mut().map_or(Ok(()), |encoder| Ok(encoder.write_frame(&frame)?))
     }
-    Ok(())
 }

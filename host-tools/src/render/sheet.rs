@@ -1,41 +1,82 @@
-//! Contact sheets: pictures of the display in rows, each with its frame number.
+//! Contact sheets and strips: pictures in rows, each with a label below.
 
-use super::canvas::Canvas;
+use super::image::{Image, LETTER};
+use super::palette::Palette;
 use super::screen::{HEIGHT, Picture, WIDTH};
 use anyhow::Result;
-use embedded_graphics::Drawable;
-use embedded_graphics::geometry::Point;
-use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
-use embedded_graphics::pixelcolor::Gray8;
-use embedded_graphics::text::{Baseline, Text};
 use std::io::Write;
 
 /// Pictures in a row.
 const COLUMNS: usize = 3;
 /// Display pixels are squares of this many pixels.
 const SCALE: usize = 2;
-/// Between pictures; the lower edge holds the frame number.
-const GAP: usize = 6;
-const LABEL: usize = 12;
-/// Brightness of the sheet and of its labels.
-const PAPER: u8 = 48;
-const INK: u8 = 200;
+/// Below a picture for its label.
+const LABEL: usize = LETTER[1] + 2;
 
-/// Writes pictures with their frame numbers as a PNG.
-pub fn write(out: impl Write, pictures: &[(u32, Picture)]) -> Result<()> {
-    let mut sheet = empty(pictures.len());
-    for (index, (frame, picture)) in pictures.iter().enumerate() {
-        let left = GAP + index % COLUMNS * (WIDTH * SCALE + GAP);
-        let top = GAP + index / COLUMNS * (HEIGHT * SCALE + GAP + LABEL);
-        sheet.put(left, top, WIDTH * SCALE, &picture.enlarged(SCALE));
-        let place = Point::new(left as i32, (top + HEIGHT * SCALE + 2) as i32);
-        let style = MonoTextStyle::new(&FONT_6X10, Gray8::new(INK));
-        let Ok(_) = Text::with_baseline(&format!("frame {frame}"), place, style, Baseline::Top).draw(&mut sheet);
-    }
-    sheet.write(out)
+/// Where pictures stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Of a picture: columns and rows of pixels.
+    pub picture: [usize; 2],
+    /// Pictures in a row.
+    pub columns: usize,
+    /// Rows of pictures.
+    pub rows: usize,
+    /// Pixels between pictures.
+    pub gap: usize,
 }
 
-fn empty(pictures: usize) -> Canvas {
-    let (columns, rows) = (pictures.clamp(1, COLUMNS), pictures.div_ceil(COLUMNS).max(1));
-    Canvas::new(GAP + columns * (WIDTH * SCALE + GAP), GAP + rows * (HEIGHT * SCALE + GAP + LABEL), PAPER)
+impl Layout {
+    /// The whole sheet's size.
+    pub fn size(&self) -> [usize; 2] {
+        let [width, height] = self.picture;
+        [self.gap + self.columns * (width + self.gap), self.gap + self.rows * (height + self.gap + LABEL)]
+    }
+
+    /// The upper left corner of a picture, counted row by row.
+    pub fn corner(&self, index: usize) -> [usize; 2] {
+        let [width, height] = self.picture;
+        [self.gap + index % self.columns * (width + self.gap), self.gap + index / self.columns * (height + self.gap + LABEL)]
+    }
+}
+
+/// Puts labelled pictures into their places.
+pub fn arrange(layout: Layout, cells: &[(String, Image)], palette: &Palette) -> Image {
+    let [width, height] = layout.size();
+    let mut sheet = Image::new(width, height, palette.margin());
+    for (index, (label, image)) in cells.iter().enumerate() {
+        let [left, top] = layout.corner(index);
+        sheet.put(left, top, image);
+        let letters: String = label.chars().take(layout.picture[0] / LETTER[0]).collect();
+        sheet.write_text(left + 2, top + layout.picture[1] + 2, &letters, palette.letters());
+    }
+    sheet
+}
+
+/// Writes pictures of the reference display with their frame numbers as a PNG.
+pub fn write(out: impl Write, pictures: &[(u32, Picture)]) -> Result<()> {
+    let palette = Palette::default();
+    let cell = |(frame, picture): &(u32, Picture)| {
+        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(grey * 17)).collect();
+        (format!("frame {frame}"), Image::of(WIDTH, pixels).enlarged(SCALE))
+    };
+    let cells: Vec<_> = pictures.iter().map(cell).collect();
+    let (columns, rows) = (cells.len().clamp(1, COLUMNS), cells.len().div_ceil(COLUMNS).max(1));
+    let layout = Layout { picture: [WIDTH * SCALE, HEIGHT * SCALE], columns, rows, gap: 6 };
+    arrange(layout, &cells, &palette).write_png(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_do_not_touch() {
+        let layout = Layout { picture: [10, 20], columns: 2, rows: 2, gap: 3 };
+        assert_eq!(layout.size(), [3 + 2 * 13, 3 + 2 * (23 + LABEL)]);
+        assert_eq!((layout.corner(0), layout.corner(3)), ([3, 3], [16, 3 + 23 + LABEL]));
+        let cells: Vec<_> = (0..4).map(|_| (String::new(), Image::new(10, 20, [255; 3]))).collect();
+        let sheet = arrange(layout, &cells, &Palette::default());
+        assert_eq!(sheet.pixels().iter().filter(|&&pixel| pixel == [255; 3]).count(), 4 * 200);
+    }
 }

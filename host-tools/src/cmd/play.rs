@@ -1,0 +1,171 @@
+//! `pantin play`
+
+use super::Files;
+use super::render::{Axis, Side, Size};
+use crate::expand::expand;
+use crate::play::cells::Dots;
+use crate::play::clock::Clock;
+use crate::play::colours::Colours;
+use crate::play::figure::Figure;
+use crate::play::meters::Meters;
+use crate::play::picture::{Show, Title, draw};
+use crate::play::playback::{Playback, Room};
+use crate::play::session::{Outcome, Session};
+use crate::play::settings::Settings;
+use crate::play::terminal::Terminal;
+use crate::render::figure::Memory;
+use crate::render::palette::Palette;
+use anyhow::{Context, Result, ensure};
+use pantin::Clip;
+use pantin_figure::{Track, View};
+use std::io::{IsTerminal, Write, stdin, stdout};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Play clips in the terminal, by the firmware's own figure code.
+///
+/// A clip without joints plays as bars of its channels. Keys: space pause, comma and dot step, r reverse, + and - speed, n and p next and
+/// previous clip, arrows orbit and tilt, f follow or fixed camera, g ground, d dots, ? help, q quit.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin play walk.ptn
+  pantin play walk.ptn run.ptn --palette amber --dots half
+  pantin play walk.ptn --plain --once --frames 10 --size 60x20 > frames.txt
+
+Palettes: grey, mono, oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink).
+Colours are as many as COLORTERM and TERM say the terminal has, and none if NO_COLOR is set.")]
+pub struct Arguments {
+    /// The clips
+    #[arg(required = true)]
+    inputs: Vec<PathBuf>,
+    /// The rig of clips that were made with --rig-out
+    #[arg(long)]
+    rig: Option<PathBuf>,
+    /// How pixels become letters [default: auto, which is half blocks in a terminal of many rows and else braille]
+    #[arg(long, default_value = "auto", hide_default_value = true)]
+    dots: DotsOrAuto,
+    /// The terminal's colours [default: what the environment says]
+    #[arg(long)]
+    colours: Option<Colours>,
+    /// The picture's colours: a name, or paper and ink [see below]
+    #[arg(long, default_value = "oled")]
+    palette: Palette,
+    /// Side to see it from: front, side, left, right, back, quarter, or degrees
+    #[arg(long, value_name = "SIDE", default_value = "quarter", allow_hyphen_values = true)]
+    view: Side,
+    /// The axis that is vertical, where the figure is no person and stands on its hands too
+    #[arg(long, value_enum, value_name = "AXIS")]
+    up: Option<Axis>,
+    /// Begin with the camera still instead of following the figure
+    #[arg(long)]
+    fixed: bool,
+    /// End at the end of the last clip instead of beginning anew
+    #[arg(long)]
+    once: bool,
+    /// End after so many pictures
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
+    /// Write all frames as text, one below the other and without waiting; no terminal is needed
+    #[arg(long)]
+    plain: bool,
+    /// Columns and rows of letters of --plain
+    #[arg(long, value_name = "COLUMNSxROWS", default_value = "80x24", requires = "plain")]
+    size: Size,
+}
+
+/// How pixels become letters.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum DotsOrAuto {
+    /// By the terminal's size.
+    Auto,
+    /// Two pixels a letter, each in its colour.
+    Half,
+    /// Eight pixels a letter, in one colour.
+    Braille,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let files = arguments.inputs.iter().map(|input| Files::read(input, arguments.rig.as_deref())).collect::<Result<Vec<_>>>()?;
+    let opened =
+        files.iter().zip(&arguments.inputs).map(|(file, input)| file.open().with_context(|| input.display().to_string()));
+    let clips: Vec<Clip> = opened.collect::<Result<_>>()?;
+    if arguments.plain {
+        return arguments.plainly(&clips);
+    }
+    ensure!(
+        stdin().is_terminal() && stdout().is_terminal(),
+        "play needs a terminal for its pictures and keys; --plain writes text to a pipe or a file, and pantin render pictures"
+    );
+    let settings = arguments.settings();
+    let mut session = Session::new(Terminal::enter(settings.colours)?, settings, arguments.once, arguments.frames);
+    let mut index = 0;
+    loop {
+        let clip = clips[index];
+        let title = arguments.title(&clip, index);
+        let outcome = with_show(&clip, |show| session.play(show, &title, clip.frame_time_ns()))
+            .with_context(|| arguments.inputs[index].display().to_string())?;
+        index = match outcome {
+            Outcome::Quit => break,
+            Outcome::Over if index + 1 == clips.len() => break,
+            Outcome::Over => index + 1,
+            Outcome::Clip(clips_on) => (index as isize + clips_on).rem_euclid(clips.len() as isize) as usize,
+        };
+    }
+    Ok(())
+}
+
+/// Sets up what shows a clip.
+fn with_show<T>(clip: &Clip, play: impl FnOnce(&mut dyn Show) -> Result<T>) -> Result<T> {
+    if clip.rig().joint_count() == 0 {
+        return play(&mut Meters::of(expand(clip)?));
+    }
+    let (mut room, mut memory) = (Room::of(clip), Memory::of(clip));
+    let playback = Playback::new(*clip, &mut room)?;
+    play(&mut Figure::new(playback, memory.player(*clip)?))
+}
+
+impl Arguments {
+    fn settings(&self) -> Settings {
+        let track = if self.fixed { Track::Fixed } else { Track::Follow };
+        let variable = |name: &str| std::env::var(name).ok();
+        let colours = self.colours.unwrap_or_else(|| Colours::of_environment(variable));
+        let dots = match self.dots {
+            // The letters of Linux' own console have no braille.
+            DotsOrAuto::Auto => (variable("TERM").as_deref() == Some("linux")).then_some(Dots::Half),
+            DotsOrAuto::Half => Some(Dots::Half),
+            DotsOrAuto::Braille => Some(Dots::Braille),
+        };
+        let view = View { orbit: self.view.orbit, track, up: self.up.map(|axis| axis as u8), ..View::default() };
+        Settings { view, ground: true, dots, colours, palette: self.palette.clone(), help: false }
+    }
+
+    fn title(&self, clip: &Clip, index: usize) -> Title {
+        let name = Path::new(&self.inputs[index]).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
+        Title { name, place: [index, self.inputs.len()], frames: clip.frames(), frame_time }
+    }
+
+    /// All frames of all clips, or as many as are asked for (of one clip, more than it has if it is not to play once).
+    fn plainly(&self, clips: &[Clip]) -> Result<()> {
+        let settings = Settings { colours: Colours::None, ..self.settings() };
+        let mut out = stdout().lock();
+        let mut left = self.frames.unwrap_or(u32::MAX);
+        for (index, clip) in clips.iter().enumerate() {
+            let title = self.title(clip, index);
+            let loops = !self.once && self.frames.is_some() && index + 1 == clips.len();
+            let frames = if loops { left } else { left.min(clip.frames()) };
+            with_show(clip, |show| {
+                for frame in 0..frames {
+                    let clock = Clock::new(clip.frame_time_ns(), Duration::ZERO);
+                    let grid = draw(show, &title, frame % clip.frames(), &clock, &settings, self.size.0)?;
+                    out.write_all(grid.text().as_bytes()).context("the text cannot be written")?;
+                }
+                Ok(())
+            })
+            .with_context(|| self.inputs[index].display().to_string())?;
+            left -= frames;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,166 @@
+//! `pantin render`
+
+mod options;
+mod output;
+
+use super::{Files, write_whole};
+use crate::expand::expand;
+use crate::render::chart;
+use crate::render::figure::{Figure, Look, MOST_PIXELS, Memory};
+use crate::render::palette::Palette;
+use anyhow::{Context, Result, bail, ensure};
+pub use options::{Moment, Side, Size};
+use output::{Kind, Output};
+use pantin_figure::{Track, View};
+use std::path::PathBuf;
+
+/// From so many pixels on, on the shorter side, lines are smooth unless pixels are asked for.
+const SMOOTH_FROM: usize = 240;
+
+/// Draw a clip by the firmware's own figure code: as small displays show it, or large and smooth.
+///
+/// The output's name says what it is. .gif and .apng are animations at the clip's own rate (.png with --animate, too); .png and .svg are a
+/// sheet of twelve frames, or what --frame or --strip ask for. A clip without joints is a chart of its channels over time (.png).
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin render walk.ptn -o walk.gif
+  pantin render walk.ptn -o walk.png --view front,side,quarter
+  pantin render walk.ptn -o walk.gif --size 480x480 --palette dusk --fps 25
+  pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
+  pantin render walk.ptn -o poster.png --frame 1.5s --size 1200x1600 --palette blueprint
+  pantin render face.ptn -o face.png
+
+Palettes: grey, mono, oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink) or
+RRGGBB,RRGGBB,RRGGBB (paper, far, near).")]
+pub struct Arguments {
+    /// The clip
+    input: PathBuf,
+    /// The picture to write: .gif, .apng, .png or .svg
+    #[arg(short, long)]
+    output: PathBuf,
+    /// The rig of a clip that was made with --rig-out
+    #[arg(long)]
+    rig: Option<PathBuf>,
+    /// Columns and rows of a picture
+    #[arg(long, value_name = "COLUMNSxROWS", default_value = "128x64")]
+    size: Size,
+    /// Pixels are squares of so many [default: what makes a small display's picture easy to see]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
+    scale: Option<u16>,
+    /// Colours: a name, or paper and ink [see below]
+    #[arg(long, default_value = "grey")]
+    palette: Palette,
+    /// Lines of one pixel, as the firmware draws them [default below 240 pixels]
+    #[arg(long, conflicts_with = "smooth")]
+    pixels: bool,
+    /// Smooth lines, thicker the nearer [default from 240 pixels on]
+    #[arg(long)]
+    smooth: bool,
+    /// Sides to see it from: front, side, left, right, back, quarter, or degrees (0 looks it in the face, 90 sees it walk to the left).
+    /// Of several, stills have a row each and animations show them side by side
+    #[arg(long, value_name = "SIDES", value_delimiter = ',', default_value = "quarter", allow_hyphen_values = true)]
+    view: Vec<Side>,
+    /// Degrees of the camera above the horizon
+    #[arg(long, value_name = "DEGREES", default_value_t = View::default().tilt, allow_negative_numbers = true, value_parser = clap::value_parser!(i16).range(-90..=90))]
+    tilt: i16,
+    /// The axis that is vertical, where the figure is no person and stands on its hands too
+    #[arg(long, value_enum, value_name = "AXIS")]
+    up: Option<Axis>,
+    /// Keep the camera still instead of following the figure
+    #[arg(long)]
+    fixed: bool,
+    /// First frame to show: a number, or seconds as in 1.5s
+    #[arg(long, value_name = "MOMENT")]
+    from: Option<Moment>,
+    /// Last frame to show
+    #[arg(long, value_name = "MOMENT")]
+    to: Option<Moment>,
+    /// Pictures a second of an animation [default: the clip's own, or a whole part of it if viewers cannot show it]
+    #[arg(long)]
+    fps: Option<f64>,
+    /// One frame alone
+    #[arg(long, value_name = "MOMENT", conflicts_with_all = ["strip", "from", "to"])]
+    frame: Option<Moment>,
+    /// So many frames side by side: evenly spread from --from to --to, otherwise unevenly, so as not to show one phase of each stride
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    strip: Option<u32>,
+    /// Write a .png as an animation
+    #[arg(long, conflicts_with_all = ["strip", "frame"])]
+    animate: bool,
+    /// Show no progress
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// An axis of the world.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
+    let clip = files.open().with_context(|| arguments.input.display().to_string())?;
+    let kind = arguments.kind()?;
+    let bytes = if clip.rig().joint_count() == 0 {
+        if kind != Kind::Png {
+            bail!(
+                "{}: a clip without joints has no figure to draw; a name that ends in .png gives a chart",
+                arguments.output.display()
+            );
+        }
+        let mut out = Vec::new();
+        chart::write(&mut out, &expand(&clip)?)?;
+        out
+    } else {
+        let look = arguments.look(kind)?;
+        let mut memory = Memory::of(&clip);
+        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views())?;
+        Output { arguments, figure, kind, look, frames: clip.frames(), frame_time: f64::from(clip.frame_time_ns()) * 1e-9 }
+            .bytes()?
+    };
+    write_whole(&arguments.output, &bytes)
+}
+
+impl Arguments {
+    fn kind(&self) -> Result<Kind> {
+        let extension = self.output.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        let kind = match extension.as_deref() {
+            Some("gif") => Kind::Gif,
+            Some("apng") => Kind::Apng,
+            Some("png") if self.animate => Kind::Apng,
+            Some("png") => Kind::Png,
+            Some("svg") => Kind::Svg,
+            _ => bail!("{}: expected a name that ends in .gif, .apng, .png or .svg", self.output.display()),
+        };
+        let animated = matches!(kind, Kind::Gif | Kind::Apng);
+        let name = self.output.display();
+        ensure!(!animated || (self.strip.is_none() && self.frame.is_none()), "{name}: --strip and --frame make a .png or .svg");
+        ensure!(animated || self.fps.is_none(), "{name}: --fps is for animations: .gif, .apng, or .png with --animate");
+        ensure!(kind != Kind::Svg || !self.animate, "{name}: an .svg does not move; .gif and .apng do");
+        ensure!(kind != Kind::Svg || self.scale.is_none(), "{name}: an .svg has no pixels to scale; --size says how big it is");
+        ensure!(kind != Kind::Svg || !self.pixels, "{name}: an .svg has lines, no pixels");
+        Ok(kind)
+    }
+
+    fn look(&self, kind: Kind) -> Result<Look> {
+        let [width, height] = self.size.0;
+        let smooth = self.smooth || !self.pixels && width.min(height) >= SMOOTH_FROM && !self.palette.is_mono();
+        ensure!(!(self.smooth && self.palette.is_mono()), "the palette mono has no colours between that make lines smooth");
+        let pixels = width.max(height) <= MOST_PIXELS || kind == Kind::Svg;
+        ensure!(smooth || pixels, "--size {width}x{height}: displays of pixels have at most {MOST_PIXELS} a side; --smooth more");
+        Ok(if smooth { Look::Smooth } else { Look::Pixels })
+    }
+
+    fn views(&self) -> Vec<View> {
+        let track = if self.fixed { Track::Fixed } else { Track::Follow };
+        let up = self.up.map(|axis| axis as u8);
+        self.view.iter().map(|side| View { orbit: side.orbit, tilt: self.tilt, track, up }).collect()
+    }
+}

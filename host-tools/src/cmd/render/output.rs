@@ -1,0 +1,233 @@
+//! What is shown of the clip, and in which file format.
+
+use super::Arguments;
+use crate::render::animation::{Animation, Timing};
+use crate::render::apng::{self, Apng};
+use crate::render::figure::{Figure, Look};
+use crate::render::gif::{self, Gif};
+use crate::render::image::Image;
+use crate::render::sheet::{Layout, arrange};
+use crate::render::svg;
+use anyhow::{Result, bail, ensure};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Pictures of a contact sheet of one view, and how many of them are in a row.
+const SHEET: u32 = 12;
+const COLUMNS: usize = 3;
+/// Pictures in a row of several views.
+const ROW: u32 = 6;
+/// Most pixels of a whole sheet, or of an animation's picture.
+const MOST_PIXELS: usize = 64 << 20;
+/// Pixels are enlarged so far that a picture has about as many columns.
+const EASY_TO_SEE: usize = 512;
+const EASY_TO_SEE_IN_A_SHEET: usize = 256;
+const MOST_ENLARGED: usize = 4;
+/// The fractional part of the golden ratio: its multiples leave no two alike gaps in step with anything.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+/// What the file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// An animation in 256 colours.
+    Gif,
+    /// An animation in all colours.
+    Apng,
+    /// A still.
+    Png,
+    /// Lines.
+    Svg,
+}
+
+/// A picture to be made.
+pub struct Output<'a, 'm> {
+    pub arguments: &'a Arguments,
+    pub figure: Figure<'a, 'm>,
+    pub kind: Kind,
+    pub look: Look,
+    pub frames: u32,
+    pub frame_time: f64,
+}
+
+impl Output<'_, '_> {
+    /// The file's bytes.
+    pub fn bytes(mut self) -> Result<Vec<u8>> {
+        if matches!(self.kind, Kind::Gif | Kind::Apng) {
+            return self.animation();
+        }
+        if let Some(moment) = self.arguments.frame {
+            let frame = moment.frame(self.frames, self.frame_time)?;
+            return self.frame(frame);
+        }
+        self.sheet()
+    }
+
+    /// The frames `from..to` that are asked for.
+    fn stretch(&self) -> Result<(u32, u32)> {
+        let frame = |moment: super::Moment| moment.frame(self.frames, self.frame_time);
+        let from = self.arguments.from.map(frame).transpose()?.unwrap_or(0);
+        let to = self.arguments.to.map(frame).transpose()?.unwrap_or(self.frames - 1);
+        ensure!(from <= to, "--from is frame {from}, behind --to, frame {to}");
+        Ok((from, to + 1))
+    }
+
+    fn views(&self) -> usize {
+        self.arguments.view.len()
+    }
+
+    fn scale(&self, easy: usize) -> usize {
+        let own = if self.look == Look::Smooth { 1 } else { (easy / self.arguments.size.0[0]).clamp(1, MOST_ENLARGED) };
+        self.arguments.scale.map_or(own, usize::from)
+    }
+
+    fn image(&mut self, view: usize, scale: usize) -> Image {
+        let image = self.figure.image(view, self.look, &self.arguments.palette);
+        if scale == 1 { image } else { image.enlarged(scale) }
+    }
+
+    fn animation(&mut self) -> Result<Vec<u8>> {
+        let (from, to) = self.stretch()?;
+        let most = if self.kind == Kind::Gif { gif::MOST_A_SECOND } else { apng::MOST_A_SECOND };
+        let timing = match self.arguments.fps {
+            None => Timing::of_clip(from, to, self.frame_time, most),
+            Some(fps) if (0.1..=most).contains(&fps) => Timing::at_rate(from, to, self.frame_time, fps),
+            Some(_) => bail!("--fps: viewers show from 0.1 to {most} pictures a second of this format"),
+        };
+        let scale = self.scale(EASY_TO_SEE);
+        let [width, height] = self.arguments.size.0.map(|side| side * scale);
+        let whole = [width * self.views(), height];
+        ensure_size(whole)?;
+        let mut out = Vec::new();
+        let palette = &self.arguments.palette;
+        let mut animation: Box<dyn Animation + '_> = match (self.kind, self.look) {
+            (Kind::Gif, Look::Pixels) => Box::new(Gif::new(&mut out, &palette.pixel_colours(), timing.seconds)),
+            (Kind::Gif, Look::Smooth) => Box::new(Gif::new(&mut out, &palette.smooth_colours(), timing.seconds)),
+            _ => Box::new(Apng::new(&mut out, timing.frames.len() as u32, timing.seconds)),
+        };
+        let bar = if self.arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(timing.frames.len() as u64) };
+        bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} pictures {eta}")?);
+        for &frame in &timing.frames {
+            self.figure.seek(frame);
+            let mut picture = Image::new(whole[0], whole[1], palette.paper());
+            (0..self.views()).for_each(|view| picture.put(view * width, 0, &self.image(view, scale)));
+            animation.push(&picture)?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        drop(animation);
+        Ok(out)
+    }
+
+    fn frame(&mut self, frame: u32) -> Result<Vec<u8>> {
+        ensure!(self.views() == 1, "--frame shows one view; --strip 1 shows several");
+        self.figure.seek(frame);
+        if self.kind == Kind::Svg {
+            return Ok(svg::picture(&self.figure.scene(0), self.arguments.size.0, &self.arguments.palette).into_bytes());
+        }
+        let scale = self.scale(EASY_TO_SEE);
+        ensure_size(self.arguments.size.0.map(|side| side * scale))?;
+        let mut out = Vec::new();
+        self.image(0, scale).write_png(&mut out)?;
+        Ok(out)
+    }
+
+    fn sheet(&mut self) -> Result<Vec<u8>> {
+        let (from, to) = self.stretch()?;
+        let frames = match self.arguments.strip {
+            Some(count) if self.arguments.from.or(self.arguments.to).is_some() => evenly(from, to, count),
+            Some(count) => unevenly(from, to, count),
+            None if self.views() > 1 => unevenly(from, to, ROW),
+            None => in_parts(from, to, SHEET),
+        };
+        let in_rows = self.views() == 1 && self.arguments.strip.is_none();
+        let columns = if in_rows { COLUMNS.min(frames.len()) } else { frames.len() };
+        let scale = if self.kind == Kind::Svg { 1 } else { self.scale(EASY_TO_SEE_IN_A_SHEET) };
+        let picture = self.arguments.size.0.map(|side| side * scale);
+        let rows = (frames.len() * self.views()).div_ceil(columns);
+        let gap = if self.arguments.strip.is_some() { 2 } else { 6 };
+        let layout = Layout { picture, columns, rows, gap };
+        ensure_size(layout.size())?;
+        let palette = &self.arguments.palette;
+        let mut out = Vec::new();
+        if self.kind == Kind::Svg {
+            let cells = self.cells(&frames, |output, view| output.figure.scene(view));
+            out = svg::sheet(layout, &cells, palette).into_bytes();
+        } else {
+            let cells = self.cells(&frames, |output, view| output.image(view, scale));
+            arrange(layout, &cells, palette).write_png(&mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// A row of the frames for each view, with their labels.
+    fn cells<T>(&mut self, frames: &[u32], mut draw: impl FnMut(&mut Self, usize) -> T) -> Vec<(String, T)> {
+        let mut cells = Vec::new();
+        for view in 0..self.views() {
+            for &frame in frames {
+                self.figure.seek(frame);
+                let side = if self.views() == 1 { "frame" } else { &self.arguments.view[view].name };
+                cells.push((format!("{side} {frame}"), draw(self, view)));
+            }
+        }
+        cells
+    }
+}
+
+fn ensure_size([width, height]: [usize; 2]) -> Result<()> {
+    let fits = width.saturating_mul(height) <= MOST_PIXELS && width.max(height) <= usize::from(u16::MAX);
+    ensure!(
+        fits,
+        "the whole picture would have {width}x{height} pixels, more than is sensible: choose a smaller --size or --scale"
+    );
+    Ok(())
+}
+
+/// `count` of the frames `from..to`, each the first of an equal part.
+fn in_parts(from: u32, to: u32, count: u32) -> Vec<u32> {
+    let (frames, count) = (u64::from(to - from), u64::from(count.min(to - from)));
+    (0..count).map(|index| from + (index * frames / count) as u32).collect()
+}
+
+/// `count` frames from the first to the last.
+fn evenly(from: u32, to: u32, count: u32) -> Vec<u32> {
+    let (last, parts) = (u64::from(to - 1 - from), u64::from(count.max(2) - 1));
+    let mut frames: Vec<u32> = (0..u64::from(count)).map(|index| from + ((index * last + parts / 2) / parts) as u32).collect();
+    frames.dedup();
+    frames
+}
+
+/// `count` frames all over the stretch, in no step.
+fn unevenly(from: u32, to: u32, count: u32) -> Vec<u32> {
+    let place = |index: u32| (f64::from(index) * GOLDEN + 0.25).fract();
+    let mut frames: Vec<u32> = (0..count).map(|index| from + (place(index) * f64::from(to - from)) as u32).collect();
+    frames.sort_unstable();
+    frames.dedup();
+    frames
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_spread_over_the_stretch() {
+        assert_eq!(in_parts(0, 160, 4), [0, 40, 80, 120]);
+        assert_eq!(in_parts(3, 5, 12), [3, 4]);
+        assert_eq!(evenly(20, 61, 5), [20, 30, 40, 50, 60]);
+        assert_eq!((evenly(7, 8, 3), evenly(7, 20, 1)), (vec![7], vec![7]));
+    }
+
+    #[test]
+    fn a_strip_of_a_whole_clip_is_not_in_step_with_any_gait() {
+        let frames = unevenly(0, 1000, 8);
+        assert_eq!(frames.len(), 8);
+        let gaps: Vec<u32> = frames.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!(gaps.iter().all(|gap| (60..250).contains(gap)), "{gaps:?}");
+        // For any gait between 30 and 300 frames, the poses are of several phases.
+        for gait in 30..300 {
+            let mut phases: Vec<u32> = frames.iter().map(|frame| frame % gait * 8 / gait).collect();
+            phases.sort_unstable();
+            phases.dedup();
+            assert!(phases.len() >= 3, "{gait}: {phases:?}");
+        }
+    }
+}

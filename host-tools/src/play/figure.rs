@@ -1,0 +1,60 @@
+//! The firmware's figure in a terminal.
+
+use super::cells::Grid;
+use super::colours::Colours;
+use super::picture::Show;
+use super::playback::Playback;
+use super::settings::Settings;
+use crate::render::figure::MOST_PIXELS;
+use crate::render::palette::INKED;
+use crate::render::shades::Shades;
+use anyhow::{Context, Result};
+use pantin::Player;
+use pantin_figure::{Canvas, RIG_JOINTS, Stage, View};
+
+/// A clip's figure, its camera set up anew when the terminal or the view changes.
+pub struct Figure<'a, 'm> {
+    playback: Playback<'a, 'm>,
+    /// Looks through the clip for the camera, so that the playback keeps its place.
+    scout: Player<'a, 'm>,
+    stage: Option<(Canvas, View, Stage<RIG_JOINTS>)>,
+}
+
+impl<'a, 'm> Figure<'a, 'm> {
+    /// Both at the clip's begin.
+    pub fn new(playback: Playback<'a, 'm>, scout: Player<'a, 'm>) -> Figure<'a, 'm> {
+        Figure { playback, scout, stage: None }
+    }
+
+    fn set_up(&mut self, canvas: Canvas, view: View) -> Result<()> {
+        if self.stage.as_ref().is_none_or(|(before, seen, _)| (*before, *seen) != (canvas, view)) {
+            let stage = Stage::of_clip(&mut self.scout, canvas, view).context("this figure cannot be drawn")?;
+            self.stage = Some((canvas, view, stage));
+        }
+        Ok(())
+    }
+}
+
+impl Show for Figure<'_, '_> {
+    fn draw(&mut self, frame: u32, settings: &Settings, grid: &mut Grid, rows: usize) -> Result<()> {
+        let dots = settings.dots(rows);
+        let [across, down] = dots.pixels();
+        let [width, height] = [grid.columns * across, rows * down].map(|pixels| pixels.min(MOST_PIXELS));
+        let canvas = Canvas { width: width as u16, height: height as u16 };
+        self.set_up(canvas, settings.view)?;
+        let pose = self.playback.pose(frame);
+        let mut shades = Shades::new(width, height);
+        if let Some((_, _, stage)) = &mut self.stage {
+            let Ok(()) = stage.draw(pose, &mut shades);
+        }
+        if !settings.ground {
+            shades.darken_below(INKED);
+        }
+        grid.show(&shades, rows, dots, &settings.palette, settings.colours != Colours::None);
+        Ok(())
+    }
+
+    fn has_views(&self) -> bool {
+        true
+    }
+}

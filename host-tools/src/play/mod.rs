@@ -1,0 +1,13 @@
+//! Plays clips in a terminal: the firmware's figure in braille dots or half blocks, or a clip's channels as bars.
+
+pub mod cells;
+pub mod clock;
+pub mod colours;
+pub mod figure;
+pub mod keys;
+pub mod meters;
+pub mod picture;
+pub mod playback;
+pub mod session;
+pub mod settings;
+pub mod terminal;

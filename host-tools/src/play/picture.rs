@@ -1,0 +1,75 @@
+//! One clip in a grid of cells: what fills it, and the status line below.
+
+use super::cells::Grid;
+use super::clock::Clock;
+use super::keys::HELP;
+use super::settings::Settings;
+use anyhow::Result;
+
+/// Shows a clip's frames.
+pub trait Show {
+    /// Fills the grid's first `rows` with a frame.
+    fn draw(&mut self, frame: u32, settings: &Settings, grid: &mut Grid, rows: usize) -> Result<()>;
+
+    /// Whether the view is of use.
+    fn has_views(&self) -> bool;
+}
+
+/// A clip as the status line names it.
+pub struct Title {
+    /// The file's name.
+    pub name: String,
+    /// Which clip of how many, counted from 0.
+    pub place: [usize; 2],
+    /// Its frames.
+    pub frames: u32,
+    /// Seconds of a frame.
+    pub frame_time: f64,
+}
+
+impl Title {
+    /// The status line.
+    pub fn status(&self, frame: u32, clock: &Clock, settings: &Settings, views: bool) -> String {
+        let [index, count] = self.place;
+        let place = if count > 1 { format!("{}/{count} ", index + 1) } else { String::new() };
+        let seconds = f64::from(frame) * self.frame_time;
+        let mut line = format!(" {place}{}  frame {frame}/{}  {seconds:.2} s  {}", self.name, self.frames, clock.speed());
+        if views {
+            line += &format!("  {}", settings.view_words());
+        }
+        for word in [("reverse", clock.reversed()), ("paused", clock.paused())] {
+            line += &if word.1 { format!("  {}", word.0) } else { String::new() };
+        }
+        line
+    }
+}
+
+/// Draws a frame with its status line, the last row.
+pub fn draw(
+    show: &mut dyn Show,
+    title: &Title,
+    frame: u32,
+    clock: &Clock,
+    settings: &Settings,
+    [columns, rows]: [usize; 2],
+) -> Result<Grid> {
+    let palette = &settings.palette;
+    let mut grid = Grid::new(columns, rows, palette);
+    let last = rows.saturating_sub(1);
+    if last > 0 && columns > 0 {
+        show.draw(frame, settings, &mut grid, last)?;
+    }
+    let (ink, paper) = (palette.letters(), palette.margin());
+    if settings.help && last > 0 {
+        grid.write_text(0, last - 1, &" ".repeat(columns), ink, palette.paper());
+        grid.write_text(1, last - 1, HELP, ink, palette.paper());
+    }
+    grid.write_text(0, last, &" ".repeat(columns), ink, paper);
+    let status = title.status(frame, clock, settings, show.has_views());
+    grid.write_text(0, last, &status, ink, paper);
+    let hint = "? help ";
+    if columns > status.chars().count() + hint.len() {
+        grid.write_text(columns - hint.len(), last, hint, ink, paper);
+    }
+    Ok(grid)
+}

@@ -1,0 +1,80 @@
+//! What is shown, and how: kept from clip to clip.
+
+use super::cells::Dots;
+use super::colours::Colours;
+use super::keys::Action;
+use crate::render::palette::Palette;
+use pantin_figure::{Track, View};
+
+/// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
+const ROWS_FOR_HALF: usize = 48;
+
+/// All of it.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Where the camera stands.
+    pub view: View,
+    /// Whether the ground shows.
+    pub ground: bool,
+    /// How pixels become letters; none for what the terminal's size asks for.
+    pub dots: Option<Dots>,
+    /// The terminal's colours.
+    pub colours: Colours,
+    /// The picture's.
+    pub palette: Palette,
+    /// Whether the keys are told.
+    pub help: bool,
+}
+
+impl Settings {
+    /// How pixels become letters in a picture of so many rows.
+    pub fn dots(&self, rows: usize) -> Dots {
+        self.dots.unwrap_or(if rows < ROWS_FOR_HALF { Dots::Braille } else { Dots::Half })
+    }
+
+    /// Does what a key asks for, if it is about the picture; whether it was.
+    pub fn apply(&mut self, action: Action, rows: usize) -> bool {
+        match action {
+            Action::Orbit(degrees) => self.view.orbit = (self.view.orbit + degrees + 180).rem_euclid(360) - 180,
+            Action::Tilt(degrees) => self.view.tilt = (self.view.tilt + degrees).clamp(-88, 88),
+            Action::Follow => {
+                self.view.track = if self.view.track == Track::Follow { Track::Fixed } else { Track::Follow };
+            }
+            Action::Ground => self.ground = !self.ground,
+            Action::Dots => self.dots = Some(if self.dots(rows) == Dots::Half { Dots::Braille } else { Dots::Half }),
+            Action::Help => self.help = !self.help,
+            _ => return false,
+        }
+        true
+    }
+
+    /// In a few words.
+    pub fn view_words(&self) -> String {
+        let track = if self.view.track == Track::Follow { "follow" } else { "fixed" };
+        format!("orbit {} tilt {} {track}", self.view.orbit, self.view.tilt)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_camera_goes_round_and_stays_out_of_the_poles() {
+        let mut settings = Settings {
+            view: View::default(),
+            ground: true,
+            dots: None,
+            colours: Colours::All,
+            palette: Palette::default(),
+            help: false,
+        };
+        (0..36).for_each(|_| assert!(settings.apply(Action::Orbit(10), 24)));
+        assert_eq!(settings.view, View::default());
+        (0..99).for_each(|_| assert!(settings.apply(Action::Tilt(4), 24)));
+        settings.apply(Action::Follow, 24);
+        settings.apply(Action::Dots, 24);
+        assert_eq!((settings.view_words().as_str(), settings.dots), ("orbit -50 tilt 88 fixed", Some(Dots::Half)));
+        assert!(!settings.apply(Action::Pause, 24));
+    }
+}

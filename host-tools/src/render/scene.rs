@@ -1,0 +1,97 @@
+//! A frame of the figure as strokes in pixels, thicker the nearer they are: for what draws more finely than a display does.
+
+use super::palette::{FARTHEST, NEAREST};
+use pantin_figure::Stage;
+use pantin_figure::camera::PIXEL_BITS;
+use pantin_figure::lines::Line;
+
+/// Widths of the farthest and the nearest bones, and of the ground's lines, as parts of the figure's height.
+const FAR_WIDTH: f32 = 0.011;
+const NEAR_WIDTH: f32 = 0.028;
+const GROUND_WIDTH: f32 = 0.005;
+
+/// A bone is set off from those behind it by so much paper on each side, in parts of its width.
+const CLEARANCE: f32 = 0.35;
+/// Where it joins others it is not: from its ends so many of its widths are left out. What is then less than a half has none.
+const JOINT: f32 = 2.0;
+
+/// A line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke {
+    /// One end: x, y.
+    pub from: [f32; 2],
+    /// The other end.
+    pub to: [f32; 2],
+    /// In pixels.
+    pub width: f32,
+    /// Brightness.
+    pub shade: u8,
+}
+
+impl Stroke {
+    /// The paper about a bone, to be drawn before it.
+    pub fn clearance(&self) -> Option<Stroke> {
+        let along = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
+        let length = along[0].hypot(along[1]);
+        let cut = JOINT * self.width / length;
+        let at = |part: f32| [self.from[0] + along[0] * part, self.from[1] + along[1] * part];
+        let width = self.width * (1.0 + 2.0 * CLEARANCE);
+        (cut < 0.25).then(|| Stroke { from: at(cut), to: at(1.0 - cut), width, ..*self })
+    }
+}
+
+/// The head's circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Its middle.
+    pub centre: [f32; 2],
+    /// To the middle of its line.
+    pub radius: f32,
+    /// Of its line.
+    pub width: f32,
+    /// Brightness.
+    pub shade: u8,
+}
+
+/// What is drawn, in this order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The ground.
+    pub ground: Vec<Stroke>,
+    /// From far to near.
+    pub bones: Vec<Stroke>,
+    /// The head, for a rig that names one.
+    pub head: Option<Disc>,
+}
+
+impl Scene {
+    /// The frame of a pose, `factor` times as big as the stage has it.
+    pub fn of<const N: usize>(stage: &mut Stage<N>, pose: &[i32], factor: f32) -> Scene {
+        let unit = factor / f32::from(1u8 << PIXEL_BITS);
+        let height = stage.camera().length(stage.skeleton().size) as f32 * unit;
+        let lines = stage.look(pose);
+        let place = |[x, y]: [i16; 2]| [f32::from(x) * unit, f32::from(y) * unit];
+        let stroke = |line: &Line, width: f32| Stroke {
+            from: place(line.from),
+            to: place(line.to),
+            width: (width * height).max(0.75),
+            shade: line.shade,
+        };
+        Scene {
+            ground: lines.ground.iter().map(|line| stroke(line, GROUND_WIDTH)).collect(),
+            bones: lines.far_to_near().map(|line| stroke(line, width(line.shade))).collect(),
+            head: lines.head.map(|head| Disc {
+                centre: place(head.centre),
+                radius: f32::from(head.radius) * unit,
+                width: (width(head.shade) * height).max(0.75),
+                shade: head.shade,
+            }),
+        }
+    }
+}
+
+/// Brightness tells the depth.
+fn width(shade: u8) -> f32 {
+    let near = f32::from(shade.saturating_sub(FARTHEST)) / f32::from(NEAREST - FARTHEST);
+    FAR_WIDTH + (NEAR_WIDTH - FAR_WIDTH) * near
+}

@@ -1,0 +1,56 @@
+//! Smooth pictures: anti-aliased strokes of their depth's thickness, for displays of many pixels.
+
+use super::image::Image;
+use super::palette::{Palette, Rgb};
+use super::scene::{Disc, Scene, Stroke};
+use tiny_skia::{FillRule, LineCap, Paint, PathBuilder, Pixmap, Transform};
+
+/// Draws a scene.
+pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Image {
+    // Sizes were checked where they were asked for.
+    let Some(mut pixmap) = Pixmap::new(width as u32, height as u32) else { return Image::new(width, height, palette.paper()) };
+    pixmap.fill(colour(palette.paper()));
+    for stroke in &scene.ground {
+        line(&mut pixmap, stroke, palette.ramp(stroke.shade), LineCap::Butt);
+    }
+    for bone in &scene.bones {
+        if let Some(gap) = bone.clearance() {
+            line(&mut pixmap, &gap, palette.paper(), LineCap::Butt);
+        }
+        line(&mut pixmap, bone, palette.ramp(bone.shade), LineCap::Round);
+    }
+    if let Some(head) = scene.head {
+        circle(&mut pixmap, &head, palette);
+    }
+    let pixels = pixmap.data().chunks_exact(4).map(|rgba| [rgba[0], rgba[1], rgba[2]]).collect();
+    Image::of(width, pixels)
+}
+
+fn line(pixmap: &mut Pixmap, stroke: &Stroke, ink: Rgb, line_cap: LineCap) {
+    let mut path = PathBuilder::new();
+    path.move_to(stroke.from[0], stroke.from[1]);
+    path.line_to(stroke.to[0], stroke.to[1]);
+    let style = tiny_skia::Stroke { width: stroke.width, line_cap, ..Default::default() };
+    // A line without length has no path.
+    if let Some(path) = path.finish() {
+        pixmap.stroke_path(&path, &paint(ink), &style, Transform::identity(), None);
+    }
+}
+
+fn circle(pixmap: &mut Pixmap, head: &Disc, palette: &Palette) {
+    let Some(path) = PathBuilder::from_circle(head.centre[0], head.centre[1], head.radius) else { return };
+    pixmap.fill_path(&path, &paint(palette.paper()), FillRule::Winding, Transform::identity(), None);
+    let style = tiny_skia::Stroke { width: head.width, ..Default::default() };
+    pixmap.stroke_path(&path, &paint(palette.ramp(head.shade)), &style, Transform::identity(), None);
+}
+
+fn paint(ink: Rgb) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color(colour(ink));
+    paint.anti_alias = true;
+    paint
+}
+
+fn colour([r, g, b]: Rgb) -> tiny_skia::Color {
+    tiny_skia::Color::from_rgba8(r, g, b, 255)
+}
