@@ -15,7 +15,7 @@ const TRANSMIT_FULL: u32 = 1 << 0;
 const RECEIVE_FULL: u32 = 1 << 1;
 
 /// The pictures: 128x64 pixels of 16 greys, as on the reference machine.
-pub type Oled = Gray4Rows<128, 64, 4096>;
+pub type Oled = Gray4Rows<128, 64, 1024>;
 
 /// The board.
 pub struct Mps2 {
