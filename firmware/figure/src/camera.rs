@@ -171,11 +171,12 @@ impl Camera {
     /// The perspective, for a place in the camera's axes.
     #[inline(always)]
     pub fn project(&self, place: Vector) -> Projected {
-        let [x, y, away] = place.map(|x| sixteen_bits(x >> self.shift));
+        let [x, y, away] = place;
+        let (x, y, away) = (sixteen_bits(x >> self.shift), sixteen_bits(y >> self.shift), sixteen_bits(away >> self.shift));
         let depth = (away * self.depth_factor) >> self.depth_shift;
         let magnification = magnification(depth);
         // Within 2^15, magnified at most twice: products stay within 2^30.
-        let [x, y] = [x, y].map(|x| (x * magnification) >> self.spare);
+        let (x, y) = ((x * magnification) >> self.spare, (y * magnification) >> self.spare);
         Projected { x: x + self.centre[0], y: y + self.centre[1], depth, magnification }
     }
 
@@ -212,6 +213,7 @@ fn of_degrees(degrees: i16) -> i32 {
 }
 
 /// By the saturating instruction, where the core has one.
+#[inline(always)]
 fn sixteen_bits(x: i32) -> i32 {
     x.clamp(i32::from(i16::MIN), i32::from(i16::MAX))
 }

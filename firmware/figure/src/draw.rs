@@ -57,9 +57,12 @@ pub fn stroke<S: Surface>(of: &Line, surface: &mut S, soft: bool) {
         let [from, to] = [from, to].map(|end| end.map(i32::from));
         return beside(from, to, of.width, 16, |from, to| smooth(surface, from, to, ink));
     }
-    let [from, to] = [from, to].map(|end| end.map(pixel));
+    let [from, to] = [[pixel(from[0]), pixel(from[1])], [pixel(to[0]), pixel(to[1])]];
     if gap > 1 {
         return dotted(surface, from, to, ink, gap);
+    }
+    if of.width == 1 {
+        return line(surface, from, to, ink);
     }
     beside(from, to, of.width, 1, |from, to| line(surface, from, to, ink));
 }

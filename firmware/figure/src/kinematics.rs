@@ -29,17 +29,20 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
     #[inline(never)]
     pub fn place_in(&mut self, skeleton: &Skeleton<N>, pose: &[i32], view: &R, origin: Vector, count: usize) {
         self.positions.clear();
-        let mut drives = skeleton.drives();
+        let (drives, mut at) = (skeleton.drives(), 0);
         for bone in &skeleton.bones {
-            let (own, rest) = drives.split_at_checked(usize::from(bone.drives)).unwrap_or((drives, &[]));
-            drives = rest;
+            let own = drives.get(at..at + usize::from(bone.drives)).unwrap_or_default();
+            at += own.len();
             let turned = self.rotations.get(usize::from(bone.parent_slot)).unwrap_or(view);
-            let offset = if bone.moves { offset(bone, own, skeleton.position_shift, pose) } else { bone.offset };
-            let position = match bone.parent.and_then(|parent| self.positions.get(usize::from(parent))) {
-                None => turned.image_any(core::array::from_fn(|axis| offset[axis].wrapping_sub(origin[axis]))),
-                Some(parent) => {
-                    let reach = if bone.moves { turned.image_any(offset) } else { turned.image(offset) };
-                    core::array::from_fn(|axis| parent[axis].wrapping_add(reach[axis]))
+            let parent = bone.parent.and_then(|parent| self.positions.get(usize::from(parent)));
+            let position = match parent {
+                Some(parent) if !bone.moves => {
+                    let reach = turned.image(bone.offset);
+                    [parent[0].wrapping_add(reach[0]), parent[1].wrapping_add(reach[1]), parent[2].wrapping_add(reach[2])]
+                }
+                _ => {
+                    let offset = offset(bone, own, skeleton.position_shift, pose);
+                    moved(parent, turned, offset, origin)
                 }
             };
             // The skeleton has at most N bones.
@@ -48,9 +51,15 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
                 break;
             }
             if bone.slot != bone.parent_slot {
-                let copied = *turned;
-                if let Some(rotation) = self.rotations.get_mut(usize::from(bone.slot)) {
-                    *rotation = copied;
+                let place = usize::from(bone.slot);
+                match usize::from(bone.parent_slot) {
+                    // The view, where nothing is above.
+                    parent if parent >= SLOTS => self.rotations.get_mut(place).into_iter().for_each(|own| own.become_as(view)),
+                    parent => {
+                        if let Ok([own, above]) = self.rotations.get_disjoint_mut([place, parent]) {
+                            own.become_as(above);
+                        }
+                    }
                 }
             }
             if let Some(rotation) = self.rotations.get_mut(usize::from(bone.slot)) {
@@ -76,7 +85,19 @@ impl<const N: usize, R: Turning> Default for Kinematics<N, R> {
     }
 }
 
-/// The offset of a joint that has position channels.
+/// The place of a joint that is itself moved, or that has no parent: its offset is from the origin of the world then.
+#[inline(never)]
+fn moved<R: Turning>(parent: Option<&Vector>, turned: &R, offset: Vector, origin: Vector) -> Vector {
+    match parent {
+        None => turned.image_any(core::array::from_fn(|axis| offset[axis].wrapping_sub(origin[axis]))),
+        Some(parent) => {
+            let reach = turned.image_any(offset);
+            core::array::from_fn(|axis| parent[axis].wrapping_add(reach[axis]))
+        }
+    }
+}
+
+/// The offset of a joint that may have position channels.
 #[inline(never)]
 fn offset(bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Vector {
     let mut offset = bone.offset;

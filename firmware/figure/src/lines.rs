@@ -233,10 +233,12 @@ impl Projected {
     }
 }
 
+#[inline(always)]
 fn sum(a: Vector, b: Vector) -> Vector {
-    core::array::from_fn(|axis| a[axis].wrapping_add(b[axis]))
+    [a[0].wrapping_add(b[0]), a[1].wrapping_add(b[1]), a[2].wrapping_add(b[2])]
 }
 
+#[inline(always)]
 fn narrow(x: i32) -> i16 {
     x.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
 }

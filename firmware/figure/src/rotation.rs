@@ -13,6 +13,9 @@ pub trait Turning: Copy {
     /// No rotation.
     const NONE: Self;
 
+    /// Becomes another one: number by number, since a whole one would go through the library's memory move.
+    fn become_as(&mut self, other: &Self);
+
     /// What a camera starts from: a rotation times a factor of at most 1.13.
     fn of_view(view: &Rotation) -> Self;
 
@@ -34,6 +37,13 @@ pub trait Turning: Copy {
 
 impl Turning for Rotation {
     const NONE: Self = Rotation::IDENTITY;
+
+    #[inline(always)]
+    fn become_as(&mut self, other: &Self) {
+        for (own, other) in self.0.iter_mut().zip(&other.0) {
+            (own[0], own[1], own[2]) = (other[0], other[1], other[2]);
+        }
+    }
 
     fn of_view(view: &Rotation) -> Self {
         *view
@@ -82,17 +92,22 @@ impl Rotation {
             1 => (z, x),
             _ => (x, y),
         };
-        for (b, c) in b.iter_mut().zip(c) {
+        let mix = |b: &mut i32, c: &mut i32| {
             let (from_b, from_c) = (*b, *c);
             *b = (from_b * cos + from_c * sin + HALF) >> FRACTION_BITS;
             *c = (from_c * cos - from_b * sin + HALF) >> FRACTION_BITS;
-        }
+        };
+        mix(&mut b[0], &mut c[0]);
+        mix(&mut b[1], &mut c[1]);
+        mix(&mut b[2], &mut c[2]);
     }
 
     /// The image of a vector whose components lie within -2^15 .. 2^15 and whose length is below 2^16.
+    #[inline(always)]
     pub fn apply(&self, v: Vector) -> Vector {
         let [x, y, z] = &self.0;
-        core::array::from_fn(|row| (x[row] * v[0] + y[row] * v[1] + z[row] * v[2] + HALF) >> FRACTION_BITS)
+        let row = |row: usize| (x[row] * v[0] + y[row] * v[1] + z[row] * v[2] + HALF) >> FRACTION_BITS;
+        [row(0), row(1), row(2)]
     }
 
     /// The image of a vector of any length: cut off at 2^29.

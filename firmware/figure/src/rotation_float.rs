@@ -48,6 +48,13 @@ fn inverse_root(x: f32) -> f32 {
 impl Turning for FloatRotation {
     const NONE: Self = FloatRotation([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
 
+    #[inline(always)]
+    fn become_as(&mut self, other: &Self) {
+        for (own, other) in self.0.iter_mut().zip(&other.0) {
+            (own[0], own[1], own[2]) = (other[0], other[1], other[2]);
+        }
+    }
+
     fn of_view(view: &Rotation) -> Self {
         FloatRotation(view.0.map(|column| column.map(|x| x as f32 / ONE as f32)))
     }

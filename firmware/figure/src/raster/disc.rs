@@ -15,9 +15,9 @@ pub fn disc<S: Surface>(surface: &mut S, centre: [i32; 2], radius: i32, ink: S::
         // The outline fills the row up to where the one outside ends.
         let inside = (width - 1).min(below);
         for y in [centre[1] - row, centre[1] + row] {
-            span(surface, [centre[0] - width, centre[0] + width], y, ink);
-            if inside >= 0 {
-                span(surface, [centre[0] - inside, centre[0] + inside], y, fill);
+            for (wide, ink) in [(width, ink), (inside, fill)] {
+                // Nothing inside the outermost row.
+                span(surface, [centre[0] - wide, centre[0] + wide], y, ink);
             }
         }
         below = width;
@@ -33,6 +33,7 @@ fn half_width(edge: i32, row: i32, from: i32) -> i32 {
 }
 
 /// A stretch of a row.
+#[inline(always)]
 fn span<S: Surface>(surface: &mut S, columns: [i32; 2], y: i32, ink: S::Ink) {
     let [width, height] = surface.size();
     let [from, to] = [columns[0].max(0), columns[1].min(width - 1)];

@@ -35,7 +35,7 @@ impl Bands {
     }
 
     /// Takes in a rectangle whose ends are on the display.
-    #[inline]
+    #[inline(always)]
     pub fn mark(&mut self, from: [i32; 2], to: [i32; 2]) {
         let (first, last) = (from[1] as usize / BAND, to[1] as usize / BAND);
         for stretch in self.0.get_mut(first..=last).unwrap_or_default() {

@@ -81,9 +81,10 @@ impl Cell for u16 {
 
 impl Window {
     /// The window in cells: those that it touches.
+    #[inline(always)]
     pub fn cells<L: Layout>(&self) -> Window {
-        let [across, down] = L::CELL;
-        Window { columns: self.columns.map(|x| x / across), rows: self.rows.map(|y| y / down) }
+        let ([across, down], [left, right], [top, bottom]) = (L::CELL, self.columns, self.rows);
+        Window { columns: [left / across, right / across], rows: [top / down, bottom / down] }
     }
 }
 
