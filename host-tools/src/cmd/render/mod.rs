@@ -27,7 +27,7 @@ const SMOOTH_FROM: usize = 240;
   pantin render walk.ptn -o walk.png --view front,side,quarter
   pantin render walk.ptn -o walk.gif --size 480x480 --palette dusk --fps 25
   pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
-  pantin render walk.ptn -o poster.png --frame 1.5s --size 1200x1600 --palette blueprint
+  pantin render walk.ptn -o poster.png --frame 0.5s --size 1200x1600 --palette blueprint
   pantin render face.ptn -o face.png
 
 Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink) or
