@@ -165,7 +165,7 @@ fn keys_do_what_they_say_and_the_terminal_is_left_as_it_was() {
     seat.press(",,,");
     seat.status(&[&format!("frame {}/", (frame + 158) % 160)]);
     seat.press("+r\x1b[C\x1b[Af");
-    seat.status(&["x2", "orbit -40 tilt 16 fixed", "reverse", "paused"]);
+    seat.status(&["x2", "orbit -35 tilt 17 fixed", "reverse", "paused"]);
     seat.press("?");
     let begun = Instant::now();
     while !seat.rows()[22].contains("space pause") {

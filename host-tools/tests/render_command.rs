@@ -1,7 +1,9 @@
 //! `pantin render`: what is in the files that it writes, and what it refuses.
 
-use pantin_figure::View;
+use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
+use pantin_figure::{View, surface};
 use pantin_tools::cmd::Files;
+use pantin_tools::render::figure::Memory;
 use pantin_tools::render::screen;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -180,7 +182,7 @@ fn an_svg_has_a_line_a_bone_thicker_and_brighter_the_nearer() {
 }
 
 fn drawn_bones(clip: &pantin::Clip) -> usize {
-    let mut memory = pantin_tools::render::figure::Memory::of(clip);
+    let mut memory = Memory::of(clip);
     let mut player = memory.player(*clip).unwrap();
     let canvas = pantin_figure::Canvas { width: 300, height: 400 };
     let mut stage = pantin_figure::Stage::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
@@ -195,6 +197,30 @@ fn palettes_colour_the_paper_and_the_ink() {
     let (_, pixels) = png(&folder.render("mono.png", &["--frame", "0", "--palette", "mono", "--size", "320x240"]));
     assert!(pixels.iter().all(|rgb| [[0; 3], [255; 3]].contains(rgb)));
     assert!(pixels.iter().filter(|rgb| rgb[0] == 255).count() > 100);
+}
+
+#[test]
+fn the_phones_picture_is_the_firmwares_own() {
+    type Phone = surface::Frame<surface::Rgb565Rows<176, 220, { 176 * 220 }>>;
+    let folder = Folder::new("phone");
+    let (size, pixels) =
+        png(&folder.render("a.png", &["--frame", "30", "--size", "176x220", "--palette", "phone", "--scale", "1"]));
+    assert_eq!(size, [176, 220]);
+    let files = Files::read(&folder.0.join("walk.ptn"), None).unwrap();
+    let clip = files.open().unwrap();
+    let mut memory = Memory::of(&clip);
+    let mut player = memory.player(clip).unwrap();
+    let canvas = pantin_figure::Canvas { width: 176, height: 220 };
+    let mut stage = pantin_figure::Stage::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
+    let mut frame = Phone::new();
+    player.seek(30);
+    stage.look(player.pose()).draw_on(&mut frame, pantin_figure::Look::default());
+    let shown = |index: usize| Rgb888::from(frame.pixel(index % 176, index / 176));
+    assert!((0..176 * 220).all(|index| pixels[index] == [shown(index).r(), shown(index).g(), shown(index).b()]));
+    // The figure's sides have hues of their own.
+    let orange = pixels.iter().filter(|rgb| rgb[0] > 100 && rgb[2] < rgb[0] / 2).count();
+    let blue = pixels.iter().filter(|rgb| rgb[2] > 100 && rgb[0] < rgb[2] / 2).count();
+    assert!(orange > 50 && blue > 50, "{orange} {blue}");
 }
 
 #[test]

@@ -25,14 +25,14 @@ use std::time::Duration;
 /// Play clips in the terminal, by the firmware's own figure code.
 ///
 /// A clip without joints plays as bars of its channels. Keys: space pause, comma and dot step, r reverse, + and - speed, n and p next and
-/// previous clip, arrows orbit and tilt, f follow or fixed camera, g ground, d dots, ? help, q quit.
+/// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, b braille or half blocks, ? help, q quit.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin play walk.ptn
   pantin play walk.ptn run.ptn --palette amber --dots half
   pantin play walk.ptn --plain --once --frames 10 --size 60x20 > frames.txt
 
-Palettes: grey, mono, oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink).
+Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink).
 Colours are as many as COLORTERM and TERM say the terminal has, and none if NO_COLOR is set.")]
 pub struct Arguments {
     /// The clips
@@ -48,7 +48,7 @@ pub struct Arguments {
     #[arg(long)]
     colours: Option<Colours>,
     /// The picture's colours: a name, or paper and ink [see below]
-    #[arg(long, default_value = "oled")]
+    #[arg(long, default_value = "phone")]
     palette: Palette,
     /// Side to see it from: front, side, left, right, back, quarter, or degrees
     #[arg(long, value_name = "SIDE", default_value = "quarter", allow_hyphen_values = true)]

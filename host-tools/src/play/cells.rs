@@ -1,7 +1,8 @@
 //! What a terminal shows: cells of one letter in two colours, and pixels as such letters.
 
-use crate::render::palette::{INKED, Palette, Rgb};
-use crate::render::shades::Shades;
+use crate::render::palette::{Palette, Rgb};
+use crate::render::shades::{Mark, Shades};
+use pantin_figure::ink::Tone;
 
 /// How pixels become letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -65,14 +66,14 @@ impl Grid {
         }
     }
 
-    /// Shows pixels from the upper left corner on, in as many rows as they have. In colours the ground shows, else the figure alone.
+    /// Shows pixels from the upper left corner on, in as many rows as they have.
     pub fn show(&mut self, shades: &Shades, rows: usize, dots: Dots, palette: &Palette, coloured: bool) {
         let columns = self.columns;
         for (index, cell) in self.cells.iter_mut().take(columns * rows).enumerate() {
             let (column, row) = (index % columns, index / columns);
             *cell = match dots {
                 Dots::Half => half(shades, column, row, palette, coloured),
-                Dots::Braille => braille(shades, column, row, palette, coloured),
+                Dots::Braille => braille(shades, column, row, palette),
             };
         }
     }
@@ -85,20 +86,18 @@ impl Grid {
 }
 
 fn half(shades: &Shades, column: usize, row: usize, palette: &Palette, coloured: bool) -> Cell {
-    let [upper, lower] = [0, 1].map(|below| shades.at(column, 2 * row + below));
-    if !coloured {
-        let letter = match (upper >= INKED, lower >= INKED) {
-            (false, false) => ' ',
-            (true, false) => '▀',
-            (false, true) => '▄',
-            (true, true) => '█',
-        };
-        return Cell { letter, ink: palette.letters(), paper: palette.paper() };
-    }
-    let [ink, paper] = [upper, lower].map(|shade| palette.pixel(shade));
-    match upper {
-        0 if lower == 0 => Cell { letter: ' ', ink: palette.letters(), paper },
-        _ => Cell { letter: '▀', ink, paper },
+    let marks = [0, 1].map(|below| shades.at(column, 2 * row + below));
+    let letter = match marks.map(|mark| mark.shade > 0) {
+        [false, false] => ' ',
+        [true, false] => '▀',
+        [false, true] if !coloured => '▄',
+        [true, true] if !coloured => '█',
+        [_, true] => '▀',
+    };
+    let [ink, paper] = marks.map(|mark| palette.pixel(mark.tone, mark.shade));
+    match coloured && letter != ' ' {
+        true => Cell { letter, ink, paper },
+        false => Cell { letter, ink: palette.letters(), paper: palette.paper() },
     }
 }
 
@@ -107,14 +106,15 @@ const BRAILLE: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x8
 /// The letter without dots.
 const NO_DOTS: u32 = 0x2800;
 
-fn braille(shades: &Shades, column: usize, row: usize, palette: &Palette, coloured: bool) -> Cell {
+fn braille(shades: &Shades, column: usize, row: usize, palette: &Palette) -> Cell {
     let dots = || (0..2).flat_map(|x| (0..4).map(move |y| (BRAILLE[x][y], shades.at(2 * column + x, 4 * row + y))));
-    let brightest = dots().map(|(_, shade)| shade).max().unwrap_or(0);
+    let brightness = |mark: &Mark| (mark.shade > 0 && mark.tone != Tone::Ground, mark.shade);
+    let brightest = dots().map(|(_, mark)| mark).max_by_key(brightness).unwrap_or(shades.at(usize::MAX, 0));
     // Where the figure is, it hides the ground's dots: they would have its colour.
-    let least = if brightest >= INKED || !coloured { INKED } else { 1 };
-    let bits: u32 = dots().filter(|&(_, shade)| shade >= least).map(|(bit, _)| bit).sum();
+    let shows = |mark: Mark| mark.shade > 0 && (mark.tone == Tone::Ground) <= (brightest.tone == Tone::Ground);
+    let bits: u32 = dots().filter(|&(_, mark)| shows(mark)).map(|(bit, _)| bit).sum();
     let letter = if bits == 0 { ' ' } else { char::from_u32(NO_DOTS + bits).unwrap_or(' ') };
-    let ink = if bits == 0 { palette.letters() } else { palette.pixel(brightest) };
+    let ink = if bits == 0 { palette.letters() } else { palette.pixel(brightest.tone, brightest.shade) };
     Cell { letter, ink, paper: palette.paper() }
 }
 
@@ -124,11 +124,14 @@ mod tests {
     use embedded_graphics::Pixel;
     use embedded_graphics::draw_target::DrawTarget;
     use embedded_graphics::geometry::Point;
-    use embedded_graphics::pixelcolor::Gray8;
 
-    fn shades(width: usize, height: usize, lit: &[(i32, i32, u8)]) -> Shades {
+    const FIGURE: Tone = Tone::Left;
+    const GROUND: Tone = Tone::Ground;
+
+    fn shades(width: usize, height: usize, lit: &[(i32, i32, Tone, u8)]) -> Shades {
         let mut shades = Shades::new(width, height);
-        let Ok(()) = shades.draw_iter(lit.iter().map(|&(x, y, shade)| Pixel(Point::new(x, y), Gray8::new(shade))));
+        let pixels = lit.iter().map(|&(x, y, tone, shade)| Pixel(Point::new(x, y), Mark { tone, shade }));
+        let Ok(()) = shades.draw_iter(pixels);
         shades
     }
 
@@ -144,34 +147,34 @@ mod tests {
         let dots = [['⠁', '⠂', '⠄', '⡀'], ['⠈', '⠐', '⠠', '⢀']];
         for (x, column) in dots.iter().enumerate() {
             for (y, &letter) in column.iter().enumerate() {
-                let one = shades(2, 4, &[(x as i32, y as i32, 255)]);
+                let one = shades(2, 4, &[(x as i32, y as i32, FIGURE, 255)]);
                 assert_eq!(grid(Dots::Braille, &one, true).cells[0].letter, letter);
             }
         }
-        let all: Vec<_> = (0..8).map(|i| (i % 2, i / 2, 255)).collect();
+        let all: Vec<_> = (0..8).map(|i| (i % 2, i / 2, FIGURE, 255)).collect();
         assert_eq!(grid(Dots::Braille, &shades(2, 4, &all), true).text(), "⣿\n");
         assert_eq!(grid(Dots::Braille, &shades(2, 4, &[]), true).text(), "\n");
     }
 
     #[test]
     fn the_figure_hides_the_grounds_dots_and_gives_the_colour() {
-        let both = shades(2, 4, &[(0, 0, 160), (1, 3, 40), (1, 1, 96)]);
+        let both = shades(2, 4, &[(0, 0, FIGURE, 160), (1, 3, GROUND, 200), (1, 1, FIGURE, 96)]);
         let cell = grid(Dots::Braille, &both, true).cells[0];
         assert_eq!((cell.letter, cell.ink), ('⠑', [170; 3]));
-        let ground = shades(2, 4, &[(1, 3, 40)]);
-        assert_eq!(grid(Dots::Braille, &ground, true).cells[0].letter, '⢀');
-        assert_eq!(grid(Dots::Braille, &ground, false).cells[0].letter, ' ');
+        let ground = grid(Dots::Braille, &shades(2, 4, &[(1, 3, GROUND, 40)]), true).cells[0];
+        assert_eq!((ground.letter, ground.ink), ('⢀', [34; 3]));
     }
 
     #[test]
     fn half_blocks_are_two_colours_or_two_bits() {
         let cell = |lit: &[_], coloured| grid(Dots::Half, &shades(1, 2, lit), coloured).cells[0];
-        let upper = cell(&[(0, 0, 255)], true);
+        let (above, below) = ((0, 0, FIGURE, 255), (0, 1, FIGURE, 128));
+        let upper = cell(&[above], true);
         assert_eq!((upper.letter, upper.ink, upper.paper), ('▀', [255; 3], [0; 3]));
-        let lower = cell(&[(0, 1, 128)], true);
+        let lower = cell(&[below], true);
         assert_eq!((lower.letter, lower.ink, lower.paper), ('▀', [0; 3], [136; 3]));
-        let letters = [&[][..], &[(0, 0, 255)], &[(0, 1, 255)], &[(0, 0, 255), (0, 1, 255)], &[(0, 0, 40)]];
-        assert_eq!(letters.map(|lit| cell(lit, false).letter), [' ', '▀', '▄', '█', ' ']);
+        let letters = [&[][..], &[above], &[below], &[above, below]];
+        assert_eq!(letters.map(|lit| cell(lit, false).letter), [' ', '▀', '▄', '█']);
     }
 
     #[test]

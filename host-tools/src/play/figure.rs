@@ -6,7 +6,6 @@ use super::picture::Show;
 use super::playback::Playback;
 use super::settings::Settings;
 use crate::render::figure::MOST_PIXELS;
-use crate::render::palette::INKED;
 use crate::render::shades::Shades;
 use anyhow::{Context, Result};
 use pantin::Player;
@@ -44,13 +43,11 @@ impl Show for Figure<'_, '_> {
         self.set_up(canvas, settings.view)?;
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(width, height);
+        let coloured = settings.colours != Colours::None;
         if let Some((_, _, stage)) = &mut self.stage {
-            let Ok(()) = stage.draw(pose, &mut shades);
+            shades.draw(stage.look(pose), settings.ground, !coloured || settings.palette.is_mono());
         }
-        if !settings.ground {
-            shades.darken_below(INKED);
-        }
-        grid.show(&shades, rows, dots, &settings.palette, settings.colours != Colours::None);
+        grid.show(&shades, rows, dots, &settings.palette, coloured);
         Ok(())
     }
 

@@ -19,6 +19,8 @@ pub enum Action {
     Orbit(i16),
     /// The camera above the horizon, degrees.
     Tilt(i16),
+    /// From the front, the side, or between.
+    View,
     /// Follow the figure, or keep still.
     Follow,
     /// Show the ground, or not.
@@ -32,12 +34,11 @@ pub enum Action {
 }
 
 /// Degrees of a key.
-const ORBIT: i16 = 10;
-const TILT: i16 = 4;
+const ORBIT: i16 = 15;
+const TILT: i16 = 5;
 
 /// What the help line says.
-pub const HELP: &str =
-    "space pause  , . step  r reverse  + - speed  n p clip  arrows orbit, tilt  f follow  g ground  d dots  ? help  q quit";
+pub const HELP: &str = "space pause  , . step  r reverse  + - speed  n p clip  arrows orbit, tilt  v view  f follow  g ground  b dots  ? help  q quit";
 
 /// What a key asks for.
 pub fn action(key: KeyEvent) -> Option<Action> {
@@ -56,13 +57,14 @@ pub fn action(key: KeyEvent) -> Option<Action> {
         KeyCode::Char('p' | 'P') => Action::Clip(-1),
         KeyCode::Char('+' | '=') => Action::Speed(1),
         KeyCode::Char('-' | '_') => Action::Speed(-1),
-        KeyCode::Left => Action::Orbit(-ORBIT),
-        KeyCode::Right => Action::Orbit(ORBIT),
-        KeyCode::Up => Action::Tilt(TILT),
-        KeyCode::Down => Action::Tilt(-TILT),
+        KeyCode::Left | KeyCode::Char('a' | 'A') => Action::Orbit(-ORBIT),
+        KeyCode::Right | KeyCode::Char('d' | 'D') => Action::Orbit(ORBIT),
+        KeyCode::Up | KeyCode::Char('w' | 'W') => Action::Tilt(TILT),
+        KeyCode::Down | KeyCode::Char('s' | 'S') => Action::Tilt(-TILT),
+        KeyCode::Char('v' | 'V') => Action::View,
         KeyCode::Char('f' | 'F') => Action::Follow,
         KeyCode::Char('g' | 'G') => Action::Ground,
-        KeyCode::Char('d' | 'D') => Action::Dots,
+        KeyCode::Char('b' | 'B') => Action::Dots,
         KeyCode::Char('?' | 'h' | 'H') => Action::Help,
         KeyCode::Char('q' | 'Q') | KeyCode::Esc => Action::Quit,
         _ => return None,
@@ -81,7 +83,7 @@ mod tests {
             assert!(plain(KeyCode::Char(word.chars().next().unwrap())).is_some(), "{word}");
         }
         assert_eq!(plain(KeyCode::Char(' ')), Some(Action::Pause));
-        assert_eq!((plain(KeyCode::Left), plain(KeyCode::Up)), (Some(Action::Orbit(-10)), Some(Action::Tilt(4))));
+        assert_eq!((plain(KeyCode::Left), plain(KeyCode::Up)), (Some(Action::Orbit(-15)), Some(Action::Tilt(5))));
         assert_eq!((plain(KeyCode::Char('x')), plain(KeyCode::F(1))), (None, None));
     }
 

@@ -9,6 +9,9 @@ use pantin_figure::{Track, View};
 /// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
 const ROWS_FOR_HALF: usize = 48;
 
+/// Degrees about the figure that a key goes through: three quarters, front, side, back, as on the board.
+const VIEWS: [i16; 4] = [-50, 0, 90, 140];
+
 /// All of it.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -36,7 +39,11 @@ impl Settings {
     pub fn apply(&mut self, action: Action, rows: usize) -> bool {
         match action {
             Action::Orbit(degrees) => self.view.orbit = (self.view.orbit + degrees + 180).rem_euclid(360) - 180,
-            Action::Tilt(degrees) => self.view.tilt = (self.view.tilt + degrees).clamp(-88, 88),
+            Action::Tilt(degrees) => self.view.tilt = (self.view.tilt + degrees).clamp(-30, 85),
+            Action::View => {
+                let at = VIEWS.iter().position(|orbit| *orbit == self.view.orbit);
+                self.view.orbit = VIEWS[at.map_or(0, |at| (at + 1) % VIEWS.len())];
+            }
             Action::Follow => {
                 self.view.track = if self.view.track == Track::Follow { Track::Fixed } else { Track::Follow };
             }
@@ -69,12 +76,12 @@ mod tests {
             palette: Palette::default(),
             help: false,
         };
-        (0..36).for_each(|_| assert!(settings.apply(Action::Orbit(10), 24)));
+        (0..24).for_each(|_| assert!(settings.apply(Action::Orbit(15), 24)));
         assert_eq!(settings.view, View::default());
-        (0..99).for_each(|_| assert!(settings.apply(Action::Tilt(4), 24)));
+        (0..99).for_each(|_| assert!(settings.apply(Action::Tilt(5), 24)));
         settings.apply(Action::Follow, 24);
         settings.apply(Action::Dots, 24);
-        assert_eq!((settings.view_words().as_str(), settings.dots), ("orbit -50 tilt 88 fixed", Some(Dots::Half)));
+        assert_eq!((settings.view_words().as_str(), settings.dots), ("orbit -50 tilt 85 fixed", Some(Dots::Half)));
         assert!(!settings.apply(Action::Pause, 24));
     }
 }

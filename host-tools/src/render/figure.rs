@@ -75,7 +75,7 @@ impl<'a, 'm> Figure<'a, 'm> {
             Look::Smooth => smooth::draw(&self.scene(view), width, height, palette),
             Look::Pixels => {
                 let mut shades = Shades::new(width, height);
-                let Ok(()) = self.stages[view].draw(self.player.pose(), &mut shades);
+                shades.draw(self.stages[view].look(self.player.pose()), true, palette.is_mono());
                 shades.image(palette)
             }
         }

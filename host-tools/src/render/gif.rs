@@ -6,6 +6,7 @@ use super::palette::{Palette, Rgb};
 use super::screen::{Picture, WIDTH};
 use anyhow::Result;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use pantin_figure::ink::Tone;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Write;
@@ -25,7 +26,7 @@ pub fn stride(frame_time: f64) -> u32 {
 pub fn write(out: impl Write, pictures: &[Picture], seconds: f64) -> Result<()> {
     let palette = Palette::default();
     let image = |picture: &Picture| {
-        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(grey * 17)).collect();
+        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(Tone::Middle, grey * 17)).collect();
         Image::of(WIDTH, pixels).enlarged(SCALE)
     };
     let mut gif = Gif::new(out, &palette.pixel_colours(), seconds);

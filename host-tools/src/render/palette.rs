@@ -1,22 +1,26 @@
 //! What brightness looks like: from the paper over the farthest limbs' colour to the nearest ones'.
 
 use anyhow::{Context, Result, ensure};
+use embedded_graphics::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use pantin_figure::Ink;
+use pantin_figure::ink::Tone;
 use std::str::FromStr;
 
 /// Red, green and blue, 0 to 255.
 pub type Rgb = [u8; 3];
 
-/// The figure's own scale of brightness: its farthest and nearest limbs. What is darker is the ground.
+/// The figure's own scale of brightness: its farthest and nearest limbs. The ground's lines are darker.
 pub const FARTHEST: u8 = 80;
+/// Less than the ground's farthest lines.
+const DARKEST: u8 = 8;
 /// The nearest.
 pub const NEAREST: u8 = 255;
-/// From here on a display of two colours shows ink, as [`pantin_figure::Ink`] has it: the figure without the ground.
-pub const INKED: u8 = 64;
 
 /// Colours by name: paper, far, near.
-const NAMED: [(&str, &str); 8] = [
+const NAMED: [(&str, &str); 9] = [
     ("grey", "000000,ffffff"),
     ("mono", "000000,ffffff"),
+    ("phone", "000000,ffeccd"),
     ("oled", "000000,1c5a7c,d0f6ff"),
     ("amber", "0c0600,6a3c00,ffc04a"),
     ("green", "000a04,0b5c2c,7dff9e"),
@@ -25,29 +29,43 @@ const NAMED: [(&str, &str); 8] = [
     ("dusk", "14121f,47649c,ffb56e"),
 ];
 
+/// How brightness becomes one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Scale {
+    /// Two colours alone.
+    Mono,
+    /// 16 steps, as the reference display has.
+    Grey,
+    /// The firmware's own hues: each side of the figure has one.
+    Hues,
+    /// From paper over far to near.
+    Ramp,
+}
+
 /// The colours of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Palette {
     paper: Rgb,
     far: Rgb,
     near: Rgb,
-    /// Steps of brightness on a display of pixels: 2, 16 or 256.
-    steps: u16,
+    scale: Scale,
 }
 
 impl Palette {
-    /// The colour of a display's pixel of brightness `shade`.
-    pub fn pixel(&self, shade: u8) -> Rgb {
-        match self.steps {
-            2 => self.ramp(if shade < INKED { 0 } else { NEAREST }),
-            16 => self.ramp((shade >> 4) * 17),
-            _ => self.ramp(shade),
+    /// The colour of a display's pixel.
+    pub fn pixel(&self, tone: Tone, shade: u8) -> Rgb {
+        match self.scale {
+            Scale::Mono => self.ramp(tone, if shade == 0 { 0 } else { NEAREST }),
+            Scale::Grey => self.ramp(tone, (shade >> 4) * 17),
+            Scale::Hues => rgb(Rgb565::of(tone, shade).into()),
+            Scale::Ramp => self.ramp(tone, shade),
         }
     }
 
     /// The colour of a brightness, without steps.
-    pub fn ramp(&self, shade: u8) -> Rgb {
+    pub fn ramp(&self, tone: Tone, shade: u8) -> Rgb {
         match shade {
+            _ if self.scale == Scale::Hues => rgb(Rgb888::of(tone, shade)),
             ..FARTHEST => mix(self.paper, self.far, shade, FARTHEST),
             _ => mix(self.far, self.near, shade - FARTHEST, NEAREST - FARTHEST),
         }
@@ -70,25 +88,36 @@ impl Palette {
 
     /// Whether there are two colours alone, and none between them.
     pub fn is_mono(&self) -> bool {
-        self.steps == 2
+        self.scale == Scale::Mono
     }
 
-    /// At most 256 colours in which a smooth picture is told as well as by all of them: 15 of the figure, each in 16 parts to the
-    /// paper, and the ground's and the margins'.
+    fn tones(&self) -> &'static [Tone] {
+        if self.scale == Scale::Hues { &[Tone::Middle, Tone::Left, Tone::Right] } else { &[Tone::Middle] }
+    }
+
+    /// At most 256 colours in which a smooth picture is told as well as by all of them: those of the figure, each in 16 parts to
+    /// the paper, and the ground's and the margins'.
     pub fn smooth_colours(&self) -> Vec<Rgb> {
-        let shades = (0..14u8).map(|step| FARTHEST + (u16::from(step) * 175 / 13) as u8);
-        let edges = shades.flat_map(|shade| (1..=16).map(move |part| (shade, part)));
-        let figure = edges.map(|(shade, part)| mix(self.paper, self.ramp(shade), part, 16));
-        let ground = (1..=8).map(|step| self.ramp(step * 8));
+        let steps = 14 / self.tones().len() as u16;
+        let shade = move |step: u16| FARTHEST + (step * u16::from(NEAREST - FARTHEST) / (steps - 1)) as u8;
+        let inks = self.tones().iter().flat_map(|&tone| (0..steps).map(move |step| self.ramp(tone, shade(step))));
+        let figure = inks.flat_map(|ink| (1..=16).map(move |part| mix(self.paper, ink, part, 16)));
+        let ground = (1..=24).map(|step| self.ramp(Tone::Ground, step * 8));
         [self.paper, self.margin(), self.letters()].into_iter().chain(ground).chain(figure).collect()
     }
 
-    /// The colours of pictures made of a display's pixels.
+    /// At most 256 colours of pictures made of a display's pixels: all of them, or every fourth brightness of a palette of several
+    /// hues.
     pub fn pixel_colours(&self) -> Vec<Rgb> {
-        let mut colours: Vec<Rgb> = (0..=255).map(|shade| self.pixel(shade)).collect();
-        colours.dedup();
-        colours.truncate(254);
-        colours.extend([self.margin(), self.letters()]);
+        let step = if self.tones().len() > 1 { 4 } else { 1 };
+        let shades = || (DARKEST..=NEAREST).rev().step_by(step);
+        let mut colours = vec![self.paper, self.margin(), self.letters()];
+        let tones = self.tones().iter().chain([&Tone::Ground]);
+        for colour in tones.flat_map(|&tone| shades().map(move |shade| self.pixel(tone, shade))) {
+            if !colours.contains(&colour) && colours.len() < 256 {
+                colours.push(colour);
+            }
+        }
         colours
     }
 }
@@ -96,7 +125,7 @@ impl Palette {
 impl Default for Palette {
     /// The reference display's: 16 greys.
     fn default() -> Palette {
-        Palette { paper: [0; 3], far: [FARTHEST; 3], near: [255; 3], steps: 16 }
+        Palette { paper: [0; 3], far: [FARTHEST; 3], near: [255; 3], scale: Scale::Grey }
     }
 }
 
@@ -113,13 +142,18 @@ impl FromStr for Palette {
         ensure!((2..=3).contains(&colours.len()), expected());
         let (paper, near) = (colours[0], colours[colours.len() - 1]);
         let far = if colours.len() == 3 { colours[1] } else { mix(paper, near, FARTHEST, NEAREST) };
-        let steps = match text {
-            "mono" => 2,
-            "grey" => 16,
-            _ => 256,
+        let scale = match text {
+            "mono" => Scale::Mono,
+            "grey" => Scale::Grey,
+            "phone" => Scale::Hues,
+            _ => Scale::Ramp,
         };
-        Ok(Palette { paper, far, near, steps })
+        Ok(Palette { paper, far, near, scale })
     }
+}
+
+fn rgb(colour: Rgb888) -> Rgb {
+    [colour.r(), colour.g(), colour.b()]
 }
 
 fn colour(text: &str) -> Option<Rgb> {
@@ -141,27 +175,39 @@ fn mix(from: Rgb, to: Rgb, part: u8, whole: u8) -> Rgb {
 mod tests {
     use super::*;
 
+    const MIDDLE: Tone = Tone::Middle;
+
     #[test]
     fn grey_is_the_reference_display_and_no_colour_gets_lost() {
         let grey: Palette = "grey".parse().unwrap();
         assert_eq!(grey, Palette::default());
         for shade in 0..=255u8 {
-            assert_eq!(grey.ramp(shade), [shade; 3]);
-            assert_eq!(grey.pixel(shade), [(shade >> 4) * 17; 3]);
+            assert_eq!(grey.ramp(MIDDLE, shade), [shade; 3]);
+            assert_eq!(grey.pixel(Tone::Left, shade), [(shade >> 4) * 17; 3]);
         }
         for (name, _) in NAMED {
             let palette: Palette = name.parse().unwrap();
-            assert!(palette.smooth_colours().len() <= 256 && palette.pixel_colours().len() <= 256, "{name}");
-            let ends = [palette.ramp(0), palette.ramp(FARTHEST), palette.ramp(NEAREST)];
-            assert_eq!(ends, [palette.paper, palette.far, palette.near]);
+            assert!(palette.smooth_colours().len() <= 256, "{name}");
+            assert_eq!(palette.ramp(MIDDLE, 0), palette.paper, "{name}");
+            let colours = palette.pixel_colours();
+            // A GIF's colours are exact, or one of the phone's 32 steps off where there are hues.
+            let off = if name == "phone" { 9 } else { 0 };
+            for (tone, shade) in [MIDDLE, Tone::Left, Tone::Right, Tone::Ground]
+                .into_iter()
+                .flat_map(|tone| (DARKEST..=255).map(move |s| (tone, s)))
+            {
+                let colour = palette.pixel(tone, shade);
+                let apart = |other: &Rgb| (0..3).map(|i| colour[i].abs_diff(other[i])).max();
+                assert!(colours.iter().filter_map(apart).min() <= Some(off), "{name} {tone:?} {shade}");
+            }
         }
     }
 
     #[test]
     fn two_or_three_colours_make_a_palette() {
         let own: Palette = "102030,f0e0d0".parse().unwrap();
-        assert_eq!((own.pixel(0), own.pixel(255)), ([0x10, 0x20, 0x30], [0xf0, 0xe0, 0xd0]));
-        assert_eq!("102030,0000ff,f0e0d0".parse::<Palette>().unwrap().pixel(FARTHEST), [0, 0, 255]);
+        assert_eq!((own.pixel(MIDDLE, 0), own.pixel(MIDDLE, 255)), ([0x10, 0x20, 0x30], [0xf0, 0xe0, 0xd0]));
+        assert_eq!("102030,0000ff,f0e0d0".parse::<Palette>().unwrap().pixel(MIDDLE, FARTHEST), [0, 0, 255]);
         for wrong in ["", "sepia", "102030", "10203,f0e0d0", "10203g,f0e0d0", "+10203,f0e0d0", "0,0,0,0"] {
             let error = wrong.parse::<Palette>().unwrap_err().to_string();
             assert!(error.contains("blueprint") && error.contains("RRGGBB"), "{wrong}: {error}");
@@ -169,8 +215,9 @@ mod tests {
     }
 
     #[test]
-    fn mono_leaves_the_ground_out() {
-        let mono: Palette = "mono".parse().unwrap();
-        assert_eq!([0, 56, 64, 255].map(|shade| mono.pixel(shade)[0]), [0, 0, 255, 255]);
+    fn the_phones_sides_have_their_hues() {
+        let phone: Palette = "phone".parse().unwrap();
+        let [left, right] = [Tone::Left, Tone::Right].map(|tone| phone.pixel(tone, 255));
+        assert!(left[0] > left[2] && right[2] > right[0]);
     }
 }

@@ -3,6 +3,7 @@
 use super::palette::{FARTHEST, NEAREST};
 use pantin_figure::Stage;
 use pantin_figure::camera::PIXEL_BITS;
+use pantin_figure::ink::Tone;
 use pantin_figure::lines::Line;
 
 /// Widths of the farthest and the nearest bones, and of the ground's lines, as parts of the figure's height.
@@ -24,6 +25,8 @@ pub struct Stroke {
     pub to: [f32; 2],
     /// In pixels.
     pub width: f32,
+    /// What it is of.
+    pub tone: Tone,
     /// Brightness.
     pub shade: u8,
 }
@@ -40,12 +43,12 @@ impl Stroke {
     }
 }
 
-/// The head's circle.
+/// A circle: the head, or a dot of the ground, which is full.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
     /// Its middle.
     pub centre: [f32; 2],
-    /// To the middle of its line.
+    /// To the middle of its line, in pixels.
     pub radius: f32,
     /// Of its line.
     pub width: f32,
@@ -56,8 +59,10 @@ pub struct Disc {
 /// What is drawn, in this order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The ground.
+    /// The ground as lines.
     pub ground: Vec<Stroke>,
+    /// The ground as dots: small pictures have them instead.
+    pub dots: Vec<Disc>,
     /// From far to near.
     pub bones: Vec<Stroke>,
     /// The head, for a rig that names one.
@@ -75,10 +80,16 @@ impl Scene {
             from: place(line.from),
             to: place(line.to),
             width: (width * height).max(0.75),
+            tone: line.tone,
             shade: line.shade,
         };
         Scene {
             ground: lines.ground.iter().map(|line| stroke(line, GROUND_WIDTH)).collect(),
+            dots: lines
+                .dots
+                .iter()
+                .map(|dot| Disc { centre: place(dot.place), radius: 0.5, width: 0.0, shade: dot.shade })
+                .collect(),
             bones: lines.far_to_near().map(|line| stroke(line, width(line.shade))).collect(),
             head: lines.head.map(|head| Disc {
                 centre: place(head.centre),

@@ -1,24 +1,48 @@
-//! A display of any size and 256 steps of brightness, drawn on by the firmware's own code.
+//! A display of any size, drawn on by the firmware's own code: what each pixel is of, and how bright.
 
 use super::image::Image;
 use super::palette::Palette;
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
-use embedded_graphics::pixelcolor::{Gray8, GrayColor};
+use embedded_graphics::pixelcolor::{BinaryColor, PixelColor};
+use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::lines::Lines;
+use pantin_figure::surface::OnTarget;
 use std::convert::Infallible;
 
-/// Brightness of each pixel, row by row.
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// What it is of.
+    pub tone: Tone,
+    /// How bright; 0 is dark, and of nothing.
+    pub shade: u8,
+}
+
+impl PixelColor for Mark {
+    type Raw = ();
+}
+
+impl Ink for Mark {
+    const DARK: Mark = Mark { tone: Tone::Ground, shade: 0 };
+
+    fn of(tone: Tone, shade: u8) -> Mark {
+        Mark { tone, shade }
+    }
+}
+
+/// The display's pixels.
 #[derive(Clone, Debug)]
 pub struct Shades {
     width: usize,
-    shades: Vec<u8>,
+    marks: Vec<Mark>,
 }
 
 impl Shades {
     /// A dark display.
     pub fn new(width: usize, height: usize) -> Shades {
-        Shades { width, shades: vec![0; width * height] }
+        Shades { width, marks: vec![Mark::DARK; width * height] }
     }
 
     /// Columns.
@@ -26,45 +50,67 @@ impl Shades {
         self.width
     }
 
-    /// The brightness of a pixel; of one outside, none.
-    pub fn at(&self, x: usize, y: usize) -> u8 {
-        if x < self.width { self.shades.get(y * self.width + x).copied().unwrap_or(0) } else { 0 }
+    /// What a pixel shows; one outside is dark.
+    pub fn at(&self, x: usize, y: usize) -> Mark {
+        if x < self.width { self.marks.get(y * self.width + x).copied().unwrap_or(Mark::DARK) } else { Mark::DARK }
     }
 
-    /// Turns off what is darker than `least`.
-    pub fn darken_below(&mut self, least: u8) {
-        self.shades.iter_mut().filter(|shade| **shade < least).for_each(|shade| *shade = 0);
+    /// Draws a frame's lines as the firmware does: on a display of two colours, or of more.
+    pub fn draw<const N: usize>(&mut self, lines: &Lines<N>, ground: bool, mono: bool) {
+        self.marks.fill(Mark::DARK);
+        let look = pantin_figure::Look { ground, smooth: false };
+        if mono {
+            lines.draw_on(&mut OnTarget::new(&mut Bits(self)), look);
+        } else {
+            lines.draw_on(&mut OnTarget::new(self), look);
+        }
     }
 
     /// What it looks like.
     pub fn image(&self, palette: &Palette) -> Image {
-        Image::of(self.width, self.shades.iter().map(|&shade| palette.pixel(shade)).collect())
+        Image::of(self.width, self.marks.iter().map(|mark| palette.pixel(mark.tone, mark.shade)).collect())
     }
 }
 
 impl OriginDimensions for Shades {
     fn size(&self) -> Size {
-        Size::new(self.width as u32, (self.shades.len() / self.width) as u32)
+        Size::new(self.width as u32, (self.marks.len() / self.width) as u32)
     }
 }
 
 impl DrawTarget for Shades {
-    type Color = Gray8;
+    type Color = Mark;
     type Error = Infallible;
 
-    fn draw_iter<I: IntoIterator<Item = Pixel<Gray8>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+    fn draw_iter<I: IntoIterator<Item = Pixel<Mark>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         let size = self.size();
-        for Pixel(place, grey) in pixels {
+        for Pixel(place, mark) in pixels {
             let inside = (0..size.width as i32).contains(&place.x) && (0..size.height as i32).contains(&place.y);
             if inside {
-                self.shades[place.y as usize * self.width + place.x as usize] = grey.luma();
+                self.marks[place.y as usize * self.width + place.x as usize] = mark;
             }
         }
         Ok(())
     }
+}
 
-    fn clear(&mut self, grey: Gray8) -> Result<(), Infallible> {
-        self.shades.fill(grey.luma());
-        Ok(())
+/// The same as a display of two colours.
+struct Bits<'a>(&'a mut Shades);
+
+impl OriginDimensions for Bits<'_> {
+    fn size(&self) -> Size {
+        self.0.size()
+    }
+}
+
+impl DrawTarget for Bits<'_> {
+    type Color = BinaryColor;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        let mark = |Pixel(place, bit): Pixel<BinaryColor>| {
+            Pixel(place, if bit.is_on() { Mark { tone: Tone::Middle, shade: 255 } } else { Mark::DARK })
+        };
+        self.0.draw_iter(pixels.into_iter().map(mark))
     }
 }

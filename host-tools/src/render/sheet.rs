@@ -4,6 +4,7 @@ use super::image::{Image, LETTER};
 use super::palette::Palette;
 use super::screen::{HEIGHT, Picture, WIDTH};
 use anyhow::Result;
+use pantin_figure::ink::Tone;
 use std::io::Write;
 
 /// Pictures in a row.
@@ -57,7 +58,7 @@ pub fn arrange(layout: Layout, cells: &[(String, Image)], palette: &Palette) -> 
 pub fn write(out: impl Write, pictures: &[(u32, Picture)]) -> Result<()> {
     let palette = Palette::default();
     let cell = |(frame, picture): &(u32, Picture)| {
-        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(grey * 17)).collect();
+        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(Tone::Middle, grey * 17)).collect();
         (format!("frame {frame}"), Image::of(WIDTH, pixels).enlarged(SCALE))
     };
     let cells: Vec<_> = pictures.iter().map(cell).collect();

@@ -3,6 +3,7 @@
 use super::image::Image;
 use super::palette::{Palette, Rgb};
 use super::scene::{Disc, Scene, Stroke};
+use pantin_figure::ink::Tone;
 use tiny_skia::{FillRule, LineCap, Paint, PathBuilder, Pixmap, Transform};
 
 /// Draws a scene.
@@ -11,13 +12,16 @@ pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Im
     let Some(mut pixmap) = Pixmap::new(width as u32, height as u32) else { return Image::new(width, height, palette.paper()) };
     pixmap.fill(colour(palette.paper()));
     for stroke in &scene.ground {
-        line(&mut pixmap, stroke, palette.ramp(stroke.shade), LineCap::Butt);
+        line(&mut pixmap, stroke, palette.ramp(stroke.tone, stroke.shade), LineCap::Butt);
+    }
+    for dot in &scene.dots {
+        fill(&mut pixmap, dot, palette.ramp(Tone::Ground, dot.shade));
     }
     for bone in &scene.bones {
         if let Some(gap) = bone.clearance() {
             line(&mut pixmap, &gap, palette.paper(), LineCap::Butt);
         }
-        line(&mut pixmap, bone, palette.ramp(bone.shade), LineCap::Round);
+        line(&mut pixmap, bone, palette.ramp(bone.tone, bone.shade), LineCap::Round);
     }
     if let Some(head) = scene.head {
         circle(&mut pixmap, &head, palette);
@@ -39,9 +43,15 @@ fn line(pixmap: &mut Pixmap, stroke: &Stroke, ink: Rgb, line_cap: LineCap) {
 
 fn circle(pixmap: &mut Pixmap, head: &Disc, palette: &Palette) {
     let Some(path) = PathBuilder::from_circle(head.centre[0], head.centre[1], head.radius) else { return };
-    pixmap.fill_path(&path, &paint(palette.paper()), FillRule::Winding, Transform::identity(), None);
+    fill(pixmap, head, palette.paper());
     let style = tiny_skia::Stroke { width: head.width, ..Default::default() };
-    pixmap.stroke_path(&path, &paint(palette.ramp(head.shade)), &style, Transform::identity(), None);
+    pixmap.stroke_path(&path, &paint(palette.ramp(Tone::Middle, head.shade)), &style, Transform::identity(), None);
+}
+
+fn fill(pixmap: &mut Pixmap, disc: &Disc, ink: Rgb) {
+    if let Some(path) = PathBuilder::from_circle(disc.centre[0], disc.centre[1], disc.radius) {
+        pixmap.fill_path(&path, &paint(ink), FillRule::Winding, Transform::identity(), None);
+    }
 }
 
 fn paint(ink: Rgb) -> Paint<'static> {

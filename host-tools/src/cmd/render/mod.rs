@@ -27,10 +27,10 @@ const SMOOTH_FROM: usize = 240;
   pantin render walk.ptn -o walk.png --view front,side,quarter
   pantin render walk.ptn -o walk.gif --size 480x480 --palette dusk --fps 25
   pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
-  pantin render walk.ptn -o poster.png --frame 1.5s --size 1200x1600 --palette blueprint
+  pantin render walk.ptn -o poster.png --frame 0.5s --size 1200x1600 --palette blueprint
   pantin render face.ptn -o face.png
 
-Palettes: grey, mono, oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink) or
+Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink) or
 RRGGBB,RRGGBB,RRGGBB (paper, far, near).")]
 pub struct Arguments {
     /// The clip
@@ -50,7 +50,7 @@ pub struct Arguments {
     /// Colours: a name, or paper and ink [see below]
     #[arg(long, default_value = "grey")]
     palette: Palette,
-    /// Lines of one pixel, as the firmware draws them [default below 240 pixels]
+    /// Lines of whole pixels, as the firmware draws them [default below 240 pixels]
     #[arg(long, conflicts_with = "smooth")]
     pixels: bool,
     /// Smooth lines, thicker the nearer [default from 240 pixels on]
