@@ -201,7 +201,7 @@ fn palettes_colour_the_paper_and_the_ink() {
 
 #[test]
 fn the_phones_picture_is_the_firmwares_own() {
-    type Phone = surface::Frame<surface::Rgb565Rows<176, 220, { 176 * 220 }>>;
+    type Phone = surface::Frame<surface::Rgb565Rows<176, 220, { 176 * 220 / 2 }>>;
     let folder = Folder::new("phone");
     let (size, pixels) =
         png(&folder.render("a.png", &["--frame", "30", "--size", "176x220", "--palette", "phone", "--scale", "1"]));

@@ -2,7 +2,7 @@
 
 use crate::ink::{Ink, Tone};
 use crate::lines::{Line, Lines, pixel};
-use crate::raster::{disc, dots, dotted, line, smooth};
+use crate::raster::{disc, dots, dotted, line, smooth, thick};
 use crate::surface::{OnTarget, Surface};
 use embedded_graphics::draw_target::DrawTarget;
 
@@ -55,7 +55,7 @@ pub fn stroke<S: Surface>(of: &Line, surface: &mut S, soft: bool) {
     let [from, to] = [of.from, of.to];
     if soft && gap == 1 {
         let [from, to] = [from, to].map(|end| end.map(i32::from));
-        return beside(from, to, of.width, 16, |from, to| smooth(surface, from, to, ink));
+        return beside(from, to, of.width, |from, to| smooth(surface, from, to, ink));
     }
     let [from, to] = [[pixel(from[0]), pixel(from[1])], [pixel(to[0]), pixel(to[1])]];
     if gap > 1 {
@@ -64,14 +64,14 @@ pub fn stroke<S: Surface>(of: &Line, surface: &mut S, soft: bool) {
     if of.width == 1 {
         return line(surface, from, to, ink);
     }
-    beside(from, to, of.width, 1, |from, to| line(surface, from, to, ink));
+    thick(surface, from, to, ink, of.width.into());
 }
 
-/// As many lines as a stroke is wide, a pixel apart across its longer way.
-fn beside(from: [i32; 2], to: [i32; 2], width: u8, pixel: i32, mut draw: impl FnMut([i32; 2], [i32; 2])) {
+/// As many smooth lines as a stroke is wide, a pixel apart across its longer way.
+fn beside(from: [i32; 2], to: [i32; 2], width: u8, mut draw: impl FnMut([i32; 2], [i32; 2])) {
     let steep = (to[1] - from[1]).abs() > (to[0] - from[0]).abs();
     for index in 0..i32::from(width) {
-        let aside = (index - i32::from(width) / 2) * pixel;
+        let aside = (index - i32::from(width) / 2) * 16;
         let moved = |[x, y]: [i32; 2]| if steep { [x + aside, y] } else { [x, y + aside] };
         draw(moved(from), moved(to));
     }

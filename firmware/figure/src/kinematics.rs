@@ -68,6 +68,17 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
         }
     }
 
+    /// Where one of the first joints is in the world, and the joints above it; others are not placed.
+    pub fn place_one(&mut self, skeleton: &Skeleton<N>, pose: &[i32], joint: usize) -> Vector {
+        match skeleton.bones.first() {
+            Some(root) if joint == 0 => offset(root, skeleton.drives(), skeleton.position_shift, pose),
+            _ => {
+                self.place_in(skeleton, pose, &R::NONE, [0; 3], joint + 1);
+                self.position(joint)
+            }
+        }
+    }
+
     /// Where the joints are, in the skeleton's order.
     pub fn positions(&self) -> &[Vector] {
         &self.positions
@@ -101,7 +112,7 @@ fn moved<R: Turning>(parent: Option<&Vector>, turned: &R, offset: Vector, origin
 #[inline(never)]
 fn offset(bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Vector {
     let mut offset = bone.offset;
-    for drive in drives.iter().filter(|drive| drive.act() == Act::Offset) {
+    for drive in drives.iter().take(bone.drives.into()).filter(|drive| drive.act() == Act::Offset) {
         for (index, component) in offset.iter_mut().enumerate() {
             if let Some(channel) = drive.member(index) {
                 *component = shift_right(value(pose, channel), position_shift);

@@ -46,7 +46,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
             camera: Camera::NOWHERE,
             view: R::NONE,
             target: [0; 3],
-            ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
+            ground: Ground { axis: 1, height: 0, spacing: 1, dots: 0 },
             joints: Kinematics::new(),
             seen: Vec::new(),
             lines: Lines::new(),
@@ -132,8 +132,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     #[inline(never)]
     pub fn place(&mut self, pose: &[i32]) {
         let hips = self.skeleton.hips;
-        self.joints.place_in(&self.skeleton, pose, &R::NONE, [0; 3], hips + 1);
-        self.target = self.camera.target(self.joints.position(hips));
+        self.target = self.camera.target(self.joints.place_one(&self.skeleton, pose, hips));
         self.joints.place_in(&self.skeleton, pose, &self.view, self.target, self.skeleton.bones.len());
         self.seen.clear();
         let camera = &self.camera;

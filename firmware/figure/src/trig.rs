@@ -63,7 +63,7 @@ pub fn sin_cos(angle: i32) -> (i32, i32) {
     let nearest = (angle as u32).wrapping_add(1 << 23);
     let [sin, cos] = CIRCLE.get((nearest >> 24) as usize).copied().unwrap_or([0; 2]);
     // At most 2^-9 turns either way: in radians 0.0123, in Q20 less than 2^14. Its third power is below 1e-6.
-    let rest = ((nearest & 0xff_ffff) as i32 - (1 << 23)) >> 8;
+    let rest = ((nearest >> 8) & 0xffff) as i32 - (1 << 15);
     let rest = (rest * 25_736) >> 16;
     // Half its square in Q27.
     let half_square = (rest * rest) >> 14;

@@ -8,7 +8,7 @@ use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Frame, Rgb565Rows};
 
 /// The display: 176x220 pixels of 16 bits.
-pub type Lcd = Rgb565Rows<176, 220, 38720>;
+pub type Lcd = Rgb565Rows<176, 220, 19360>;
 
 /// Counts of the timer a microsecond.
 const RATE: u32 = 6;

@@ -4,7 +4,7 @@
 use crate::board::Lcd;
 use crate::registers::{lcd, lcd_dma};
 use core::ptr;
-use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::surface::{Frame, Layout, Pair};
 
 /// Palette that says: no palette, 12 or 16 bits a pixel.
 const NO_PALETTE: u16 = 0x4000;
@@ -22,8 +22,8 @@ const PALETTE: usize = 512;
 // Safety: the memory map places them; no Rust value lies there.
 unsafe extern "C" {
     static mut _palette: u16;
-    static mut _pixels: u16;
-    static mut _pixels_end: u16;
+    static mut _pixels: Pair;
+    static mut _pixels_end: Pair;
 }
 
 /// Sets up controller and channel: first for the palette, then for the pixels.
@@ -55,9 +55,9 @@ fn bring(start: usize, end: usize) {
 /// Copies what changed of a picture to where the channel finds it.
 pub fn show(frame: &mut Frame<Lcd>) {
     for window in frame.send() {
-        let rows = window.rows[0]..;
-        for (row, stretch) in rows.zip(frame.stretches(window)) {
-            let at = row * Lcd::WIDTH + window.columns[0];
+        let cells = window.cells::<Lcd>();
+        for (row, stretch) in (cells.rows[0]..).zip(frame.stretches(window)) {
+            let at = row * (Lcd::WIDTH / Lcd::CELL[0]) + cells.columns[0];
             // Safety: a window lies inside the picture, for all of which the memory map leaves room there, and where no Rust
             // value is.
             unsafe { ptr::copy_nonoverlapping(stretch.as_ptr(), (&raw mut _pixels).add(at), stretch.len()) };

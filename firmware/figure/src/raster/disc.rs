@@ -6,6 +6,12 @@ use crate::surface::Surface;
 #[inline(never)]
 pub fn disc<S: Surface>(surface: &mut S, centre: [i32; 2], radius: i32, ink: S::Ink, fill: S::Ink) {
     let radius = radius.clamp(0, 128);
+    let [width, height] = surface.size();
+    let (least, most) = ([centre[0] - radius, centre[1] - radius], [centre[0] + radius, centre[1] + radius]);
+    if most[0] < 0 || most[1] < 0 || least[0] >= width || least[1] >= height {
+        return;
+    }
+    surface.mark([least[0].max(0), least[1].max(0)], [most[0].min(width - 1), most[1].min(height - 1)]);
     // Half the width of a row: the greatest x with x^2 + y^2 <= r^2 + r, a circle of radius r + 1/2.
     let edge = radius * radius + radius;
     let (mut below, mut width) = (-1, half_width(edge, radius, 0));
@@ -15,10 +21,10 @@ pub fn disc<S: Surface>(surface: &mut S, centre: [i32; 2], radius: i32, ink: S::
         // The outline fills the row up to where the one outside ends.
         let inside = (width - 1).min(below);
         for y in [centre[1] - row, centre[1] + row] {
-            for (wide, ink) in [(width, ink), (inside, fill)] {
-                // Nothing inside the outermost row.
-                span(surface, [centre[0] - wide, centre[0] + wide], y, ink);
-            }
+            // The edge on both sides of what is inside: nothing is, in the outermost row.
+            span(surface, [centre[0] - width, centre[0] - inside - 1], y, ink);
+            span(surface, [centre[0] - inside, centre[0] + inside], y, fill);
+            span(surface, [centre[0] + inside + 1, centre[0] + width], y, ink);
         }
         below = width;
     }
@@ -40,12 +46,8 @@ fn span<S: Surface>(surface: &mut S, columns: [i32; 2], y: i32, ink: S::Ink) {
     if from > to || !(0..height).contains(&y) {
         return;
     }
-    surface.mark([from, y], [to, y]);
-    let mut cursor = surface.cursor(from, y);
-    for _ in from..=to {
-        surface.put(cursor, ink);
-        S::across(&mut cursor, true);
-    }
+    let cursor = surface.cursor(from, y);
+    surface.span(cursor, (to - from + 1) as usize, ink);
 }
 
 #[cfg(test)]

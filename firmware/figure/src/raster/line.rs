@@ -41,6 +41,37 @@ fn start<S: Surface>(surface: &mut S, steps: &Steps) -> S::Cursor {
     if steps.steep { surface.cursor(across, along) } else { surface.cursor(along, across) }
 }
 
+/// Draws a line several pixels wide, across its longer way; what would lie outside is left out.
+#[inline(never)]
+pub fn thick<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::Ink, width: i32) {
+    let [columns, rows] = surface.size();
+    let steep = (to[1] - from[1]).abs() > (to[0] - from[0]).abs();
+    let moved = |[x, y]: [i32; 2], aside: i32| if steep { [x + aside, y] } else { [x, y + aside] };
+    let (first, last) = (-(width / 2), width - width / 2 - 1);
+    let within = |[x, y]: [i32; 2]| (0..columns).contains(&x) && (0..rows).contains(&y);
+    if ![from, to].iter().all(|&end| within(moved(end, first)) && within(moved(end, last))) {
+        return (first..=last).for_each(|aside| line(surface, moved(from, aside), moved(to, aside), ink));
+    }
+    let Some(steps) = Steps::new(moved(from, first), moved(to, first), [columns, rows]) else { return };
+    let mut cursor = start(surface, &steps);
+    let [least, most] = steps.bounds();
+    surface.mark(least, moved(most, last - first));
+    let (mut rest, mut left) = (steps.rest, steps.last - steps.first);
+    loop {
+        let mut beside = cursor;
+        surface.put(beside, ink);
+        for _ in 1..width {
+            if steep { S::across(&mut beside, true) } else { S::along(&mut beside, true) }
+            surface.put(beside, ink);
+        }
+        if left == 0 {
+            break;
+        }
+        left -= 1;
+        step::<S>(&steps, &mut cursor, &mut rest, steep, steps.back);
+    }
+}
+
 #[inline(always)]
 fn walk<S: Surface, const STEEP: bool, const BACK: bool>(surface: &mut S, steps: &Steps, cursor: &mut S::Cursor, ink: S::Ink) {
     let (mut rest, mut left) = (steps.rest, steps.last - steps.first);
@@ -114,6 +145,23 @@ mod tests {
 ............................#...
 ";
         assert_eq!(picture(&frame), expected, "{}", picture(&frame));
+    }
+
+    #[test]
+    fn a_thick_line_is_thin_ones_beside_each_other() {
+        let mut next = sequence();
+        for _ in 0..5_000 {
+            let ends = [[next(-9, 40), next(-9, 24)], [next(-9, 40), next(-9, 24)]];
+            let width = next(2, 4);
+            let (mut whole, mut parts) = (Small::new(), Small::new());
+            thick(&mut whole, ends[0], ends[1], BinaryColor::On, width);
+            let steep = (ends[1][1] - ends[0][1]).abs() > (ends[1][0] - ends[0][0]).abs();
+            for aside in -(width / 2)..width - width / 2 {
+                let [from, to] = ends.map(|[x, y]| if steep { [x + aside, y] } else { [x, y + aside] });
+                line(&mut parts, from, to, BinaryColor::On);
+            }
+            assert_eq!(picture(&whole), picture(&parts), "{ends:?} {width}");
+        }
     }
 
     /// Numbers from a fixed sequence.

@@ -8,5 +8,5 @@ mod smooth;
 
 pub use disc::disc;
 pub use dots::dots;
-pub use line::{dotted, line};
+pub use line::{dotted, line, thick};
 pub use smooth::smooth;

@@ -12,7 +12,7 @@ pub use frame::{Cell, Frame, Layout};
 pub use gray4::Gray4Rows;
 pub use mono::MonoPages;
 pub use on_target::OnTarget;
-pub use rgb565::Rgb565Rows;
+pub use rgb565::{Pair, Rgb565Rows};
 
 use crate::ink::Ink;
 
@@ -38,6 +38,15 @@ pub trait Surface {
 
     /// Sets a pixel.
     fn put(&mut self, cursor: Self::Cursor, ink: Self::Ink);
+
+    /// Sets so many pixels from a place to the right.
+    #[inline]
+    fn span(&mut self, mut cursor: Self::Cursor, count: usize, ink: Self::Ink) {
+        for _ in 0..count {
+            self.put(cursor, ink);
+            Self::across(&mut cursor, true);
+        }
+    }
 
     /// Brightens a pixel towards the ink: `cover` of 16 parts of it, and never darker than it was.
     fn blend(&mut self, cursor: Self::Cursor, ink: Self::Ink, cover: u32);

@@ -1,29 +1,44 @@
 //! Rows from the top, 16 bits a pixel, red in the highest five: ST7789, ILI9341 (high byte first on the wire), OMAP's LCD.
 
-use super::Layout;
+use super::{Cell, Layout};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 
-/// The layout of a display of `WIDTH` x `HEIGHT`; `PIXELS` is their product.
+/// The layout of a display of `WIDTH` x `HEIGHT`; `PAIRS` is half their product.
 #[derive(Clone, Copy, Debug)]
-pub struct Rgb565Rows<const WIDTH: usize, const HEIGHT: usize, const PIXELS: usize>;
+pub struct Rgb565Rows<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize>;
 
-/// Red and blue of two pixel's colours, and green, apart: each has room above it.
+/// Two pixels, the left one in the low half: a picture is cleared and copied by words.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Pair(pub u32);
+
+impl Cell for Pair {
+    type Wire = [u8; 4];
+    const DARK: Pair = Pair(0);
+
+    fn wire(self) -> [u8; 4] {
+        let [low, high, right_low, right_high] = self.0.to_le_bytes();
+        [high, low, right_high, right_low]
+    }
+}
+
+/// Red and blue of a colour, and green, apart: each has room above it.
 const RED_BLUE: u32 = 0xf81f;
 const GREEN: u32 = 0x07e0;
 
-impl<const WIDTH: usize, const HEIGHT: usize, const PIXELS: usize> Layout for Rgb565Rows<WIDTH, HEIGHT, PIXELS> {
-    type Cell = u16;
-    type Cells = [u16; PIXELS];
+impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb565Rows<WIDTH, HEIGHT, PAIRS> {
+    type Cell = Pair;
+    type Cells = [Pair; PAIRS];
     type Ink = Rgb565;
     /// The pixel's number, row by row.
     type Cursor = usize;
     const WIDTH: usize = WIDTH;
     const HEIGHT: usize = HEIGHT;
-    const CELL: [usize; 2] = [1, 1];
-    const DARK: [u16; PIXELS] = {
-        assert!(PIXELS == WIDTH * HEIGHT);
-        [0; PIXELS]
+    const CELL: [usize; 2] = [2, 1];
+    const DARK: [Pair; PAIRS] = {
+        assert!(PAIRS * 2 == WIDTH * HEIGHT && WIDTH % 2 == 0);
+        [Pair(0); PAIRS]
     };
 
     #[inline(always)]
@@ -42,25 +57,25 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PIXELS: usize> Layout for Rg
     }
 
     #[inline(always)]
-    fn put(cells: &mut [u16], cursor: usize, ink: Rgb565) {
-        if let Some(cell) = cells.get_mut(cursor) {
-            *cell = RawU16::from(ink).into_inner();
-        }
+    fn put(cells: &mut [Pair], cursor: usize, ink: Rgb565) {
+        let Some(Pair(cell)) = cells.get_mut(cursor >> 1) else { return };
+        let shift = (cursor & 1) * 16;
+        *cell = *cell & !(0xffff << shift) | u32::from(RawU16::from(ink).into_inner()) << shift;
     }
 
     #[inline(always)]
-    fn blend(cells: &mut [u16], cursor: usize, ink: Rgb565, cover: u32) {
-        let Some(cell) = cells.get_mut(cursor) else { return };
-        let was = Rgb565::from(RawU16::new(*cell));
+    fn blend(cells: &mut [Pair], cursor: usize, ink: Rgb565, cover: u32) {
+        let was = Self::get(cells, cursor);
         let full = u32::from(RawU16::from(ink).into_inner());
         let scaled = ((full & RED_BLUE) * cover >> 4 & RED_BLUE) | ((full & GREEN) * cover >> 4 & GREEN);
         let scaled = Rgb565::from(RawU16::new(scaled as u16));
         let brighter = Rgb565::new(was.r().max(scaled.r()), was.g().max(scaled.g()), was.b().max(scaled.b()));
-        *cell = RawU16::from(brighter).into_inner();
+        Self::put(cells, cursor, brighter);
     }
 
     #[inline(always)]
-    fn get(cells: &[u16], cursor: usize) -> Rgb565 {
-        RawU16::new(cells.get(cursor).copied().unwrap_or(0)).into()
+    fn get(cells: &[Pair], cursor: usize) -> Rgb565 {
+        let cell = cells.get(cursor >> 1).map_or(0, |cell| cell.0);
+        RawU16::new((cell >> ((cursor & 1) * 16)) as u16).into()
     }
 }
