@@ -180,9 +180,9 @@ impl Camera {
         Projected { x: x + self.centre[0], y: y + self.centre[1], depth, magnification }
     }
 
-    /// Sixteenths of a pixel that a limb at the target's distance is across: a 50th of the figure.
+    /// Sixteenths of a pixel that a limb at the target's distance is across: a 64th of the figure.
     pub fn breadth(&self) -> i32 {
-        self.scale / 50
+        self.scale / 64
     }
 
     /// Sixteenths of a pixel of a length in figure units at the target's distance.

@@ -61,10 +61,8 @@ pub struct Lines<const N: usize> {
 /// Lines of the ground along each axis, and both ways; dots along each.
 const GROUND_ROWS: i32 = 5;
 const GROUND_LINES: usize = 2 * GROUND_ROWS as usize;
-const DOT_ROWS: i32 = 9;
+const DOT_ROWS: i32 = 7;
 const GROUND_DOTS: usize = (DOT_ROWS * DOT_ROWS) as usize;
-/// Dots along each axis on the smallest displays.
-const FEW_DOT_ROWS: i32 = 7;
 /// Brightness of the ground's lines and of its dots at the target's distance.
 const GROUND_SHADE: i32 = 40;
 const DOT_SHADE: i32 = 112;
@@ -78,21 +76,17 @@ pub struct Ground {
     pub height: i32,
     /// Between lines, or dots: 2^spacing figure units.
     pub spacing: u32,
-    /// Dots along each axis, in place of lines; 0 for lines.
-    pub dots: i32,
+    /// Dots in place of lines.
+    pub dotted: bool,
 }
 
 impl Ground {
     /// For a figure of `size` on a canvas: dots where lines would be most of the picture, an eighth to a quarter of the figure apart;
     /// lines are twice as far apart.
     pub(crate) fn new(axis: usize, height: i32, size: i32, canvas: Canvas) -> Ground {
-        let dots = match u32::from(canvas.width) * u32::from(canvas.height) {
-            ..10_000 => FEW_DOT_ROWS,
-            ..45_000 => DOT_ROWS,
-            _ => 0,
-        };
-        let finer = if dots > 0 { 3 } else { 2 };
-        Ground { axis, height, spacing: (32 - size.leading_zeros()).saturating_sub(finer).max(1), dots }
+        let dotted = u32::from(canvas.width) * u32::from(canvas.height) < 45_000;
+        let finer = if dotted { 3 } else { 2 };
+        Ground { axis, height, spacing: (32 - size.leading_zeros()).saturating_sub(finer).max(1), dotted }
     }
 
     /// In the camera's axes: the first of `rows` places both ways about the target, and the steps between them.
@@ -123,7 +117,7 @@ impl<const N: usize> Lines<N> {
     pub fn lay_ground(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
         self.ground.clear();
         self.dots.clear();
-        if ground.dots > 0 { self.lay_dots(ground, camera, target) } else { self.lay_grid(ground, camera, target) }
+        if ground.dotted { self.lay_dots(ground, camera, target) } else { self.lay_grid(ground, camera, target) }
     }
 
     fn lay_grid(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
@@ -145,10 +139,12 @@ impl<const N: usize> Lines<N> {
     }
 
     fn lay_dots(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
-        let (mut row, [a, b]) = ground.lattice(camera, target, ground.dots);
-        for _ in 0..ground.dots {
-            let mut place = row;
-            for _ in 0..ground.dots {
+        let (mut row, [a, b]) = ground.lattice(camera, target, DOT_ROWS);
+        for index in 0..DOT_ROWS {
+            // Without the corners: the longest way to a dot along the axes is one more than to the end of a middle row.
+            let cut = ((index - DOT_ROWS / 2).abs() - 1).max(0);
+            let mut place = sum(row, [a[0] * cut, a[1] * cut, a[2] * cut]);
+            for _ in 2 * cut..DOT_ROWS {
                 let dot = camera.project(place);
                 let shade = (DOT_SHADE - (dot.depth >> 7)).clamp(32, 208) as u8;
                 // There is room for all of them.

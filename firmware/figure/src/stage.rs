@@ -46,7 +46,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
             camera: Camera::NOWHERE,
             view: R::NONE,
             target: [0; 3],
-            ground: Ground { axis: 1, height: 0, spacing: 1, dots: 0 },
+            ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
             joints: Kinematics::new(),
             seen: Vec::new(),
             lines: Lines::new(),

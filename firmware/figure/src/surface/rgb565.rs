@@ -8,18 +8,18 @@ use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Rows<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize>;
 
-/// Two pixels, the left one in the low half: a picture is cleared and copied by words.
+/// Two pixels in a word: a picture is cleared and copied by words, and drawn by halves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(transparent)]
-pub struct Pair(pub u32);
+#[repr(C, align(4))]
+pub struct Pair(pub [u16; 2]);
 
 impl Cell for Pair {
     type Wire = [u8; 4];
-    const DARK: Pair = Pair(0);
+    const DARK: Pair = Pair([0; 2]);
 
     fn wire(self) -> [u8; 4] {
-        let [low, high, right_low, right_high] = self.0.to_le_bytes();
-        [high, low, right_high, right_low]
+        let [[a, b], [c, d]] = self.0.map(u16::to_be_bytes);
+        [a, b, c, d]
     }
 }
 
@@ -38,7 +38,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     const CELL: [usize; 2] = [2, 1];
     const DARK: [Pair; PAIRS] = {
         assert!(PAIRS * 2 == WIDTH * HEIGHT && WIDTH % 2 == 0);
-        [Pair(0); PAIRS]
+        [Pair([0; 2]); PAIRS]
     };
 
     #[inline(always)]
@@ -58,9 +58,9 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
 
     #[inline(always)]
     fn put(cells: &mut [Pair], cursor: usize, ink: Rgb565) {
-        let Some(Pair(cell)) = cells.get_mut(cursor >> 1) else { return };
-        let shift = (cursor & 1) * 16;
-        *cell = *cell & !(0xffff << shift) | u32::from(RawU16::from(ink).into_inner()) << shift;
+        if let Some(Pair(pixels)) = cells.get_mut(cursor >> 1) {
+            pixels[cursor & 1] = RawU16::from(ink).into_inner();
+        }
     }
 
     #[inline(always)]
@@ -75,7 +75,6 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
 
     #[inline(always)]
     fn get(cells: &[Pair], cursor: usize) -> Rgb565 {
-        let cell = cells.get(cursor >> 1).map_or(0, |cell| cell.0);
-        RawU16::new((cell >> ((cursor & 1) * 16)) as u16).into()
+        RawU16::new(cells.get(cursor >> 1).map_or(0, |pair| pair.0[cursor & 1])).into()
     }
 }
