@@ -133,8 +133,22 @@ fn await_one(qemu: &mut Qemu, what: &str, pictures: &[&Picture]) -> usize {
         if let Some(index) = pictures.iter().position(|expected| **expected == picture) {
             return index;
         }
-        assert!(Instant::now() < deadline, "{what}: the display shows none of the {} pictures", pictures.len());
+        if Instant::now() > deadline {
+            let differences = pictures.iter().filter_map(|expected| screen::difference(&picture, expected));
+            let least = differences.min_by_key(|difference| difference.count).unwrap();
+            panic!("{what}: the display shows none of {} pictures; of the nearest, {least}", pictures.len());
+        }
         thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Long enough for the program, which looks at the buttons between two pictures.
+const HELD: Duration = Duration::from_millis(100);
+
+fn tap(qemu: &mut Qemu, button: &str) {
+    for down in [true, false] {
+        qemu.control().unwrap().key(button, down).unwrap();
+        thread::sleep(HELD);
     }
 }
 
@@ -142,13 +156,12 @@ fn await_one(qemu: &mut Qemu, what: &str, pictures: &[&Picture]) -> usize {
 fn press(qemu: &mut Qemu, buttons: &[&str], expected: &Picture) {
     for button in buttons {
         qemu.control().unwrap().key(button, true).unwrap();
-        // The program looks at the buttons between two pictures.
-        thread::sleep(Duration::from_millis(60));
+        thread::sleep(HELD);
     }
     await_one(qemu, &format!("{buttons:?} held"), &[expected]);
     for button in buttons.iter().rev() {
         qemu.control().unwrap().key(button, false).unwrap();
-        thread::sleep(Duration::from_millis(60));
+        thread::sleep(HELD);
     }
 }
 
@@ -159,17 +172,16 @@ fn lm3s6965evb_has_buttons() {
     }
     let firmware = firmware(LM3S6965EVB);
     let mut qemu = Launch::new(LM3S6965EVB, firmware.elf()).argument("info").display().start().unwrap();
-    // The emulator holds every line low until its key is let go.
-    for button in ["up", "down", "left", "right", "ctrl"] {
-        qemu.control().unwrap().key(button, false).unwrap();
+    while qemu.picture().unwrap().is_dark() {
+        thread::sleep(HELD);
     }
+    // The emulator holds every line low until its key was once pressed and let go.
+    ["up", "down", "left", "right", "ctrl"].iter().for_each(|button| tap(&mut qemu, button));
     // Every frame of the walk, paused there, as the display says in words.
     let steps = vec![&b"."[..]; 160];
     let paused = expected(LM3S6965EVB, &["info"], &steps);
     let pictures: Vec<&Picture> = paused[1..].iter().map(|(_, picture)| picture).collect();
-    qemu.control().unwrap().key("ctrl", true).unwrap();
-    thread::sleep(Duration::from_millis(200));
-    qemu.control().unwrap().key("ctrl", false).unwrap();
+    tap(&mut qemu, "ctrl");
     let at = await_one(&mut qemu, "select", &pictures);
     let after = |keys: &[&[u8]]| {
         let begun: Vec<&[u8]> = steps[..=at].iter().chain(keys).copied().collect();
@@ -181,6 +193,13 @@ fn lm3s6965evb_has_buttons() {
     press(&mut qemu, &["left"], &after(&[b"d", b"a"]));
     press(&mut qemu, &["ctrl", "down"], &after(&[b"r"]));
     press(&mut qemu, &["ctrl", "up"], &after(&[b"r", b"n"]));
-    // Plays again, backwards, and faster.
-    press(&mut qemu, &["up"], &after(&[b"r", b"n", b"+"]));
+    // Plays the run again, backwards, then faster, then slower.
+    let mut letters = vec![&b"."[..], b"r", b"n"];
+    for (button, letter) in [("ctrl", b" "), ("up", b"+"), ("down", b"-"), ("down", b"-")] {
+        letters.push(letter);
+        let playing = expected(LM3S6965EVB, &["info"], &[&letters[..], &[&b""[..]; 26]].concat());
+        let playing: Vec<&Picture> = playing[letters.len()..].iter().map(|(_, picture)| picture).collect();
+        tap(&mut qemu, button);
+        await_one(&mut qemu, button, &playing);
+    }
 }
