@@ -1,64 +1,205 @@
-//! What the board's display shows is what the host draws for the same frame, pixel by pixel.
+//! What the boards' displays show is what the same program shows on the host, pixel by pixel, whatever keys it gets.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use harness::build::Firmware;
+use harness::display::Picture;
 use harness::icount::{self, FRAME_REGIONS};
-use harness::qemu::{LM3S6965EVB, Launch};
-use harness::{clips, defmt_log, paths, screen, setup, sync};
-use pantin_tools::cmd::Files;
-use pantin_tools::render::screen as host;
+use harness::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, SX1};
+use harness::sync::Session;
+use harness::{clips, defmt_log, paths, screen, setup, simulator};
+use tempfile::TempDir;
 
-/// Plays up to `most` frames of a motion on the board and compares each with the host's.
-fn shows_what_the_host_draws(motion: &Path, most: usize) {
+/// Frames of our walk, of our run, and of a captured walk.
+const FRAMES: [usize; 3] = [160, 26, 50];
+
+/// The clips that all firmware here is built with: ours, and a captured one where there are any.
+static CLIPS: LazyLock<(TempDir, Vec<PathBuf>)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let path = clips::convert(motion, folder.path()).unwrap();
-    let files = Files::read(&path, None).unwrap();
-    let clip = files.open().unwrap();
-    let frames = most.min(clip.frames() as usize);
-    let expected = host::pictures(&clip, Default::default(), 0..frames as u32).unwrap();
-    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, Some(&path)).unwrap();
+    let mut motions = ["motions/walk.keys", "motions/run.keys"].map(|own| paths::root().join(own)).to_vec();
+    motions.extend(paths::data().map(|data| data.join("bvh_bandai1_walk.bvh")));
+    let clips = motions.iter().map(|motion| clips::convert(motion, folder.path()).unwrap()).collect();
+    (folder, clips)
+});
+
+fn firmware(machine: Machine) -> Firmware {
+    let clips: Vec<&Path> = CLIPS.1.iter().map(PathBuf::as_path).collect();
+    Firmware::build(machine.name, machine.name, machine.target, &clips).unwrap()
+}
+
+fn expected(machine: Machine, words: &[&str], keys: &[&[u8]]) -> Vec<(u32, Picture)> {
+    simulator::play(machine.display.unwrap(), &CLIPS.1, words, keys).unwrap()
+}
+
+/// Plays a picture, and one more after each of the keys' letters, and compares each with the host's.
+fn shows_what_the_host_shows(machine: Machine, keys: &[&[u8]]) {
+    let expected = expected(machine, &[], keys);
+    let firmware = firmware(machine);
+    let folder = tempfile::tempdir().unwrap();
     let counts = folder.path().join("counts");
-    let plugin = icount::plugin(LM3S6965EVB.emulator).unwrap();
-    let launch = Launch::new(LM3S6965EVB, firmware.elf()).counting(&plugin, &counts);
-    let mut shown = 0;
-    let outcome = sync::play(launch, frames, |number, seen| {
-        assert_eq!(number as usize, shown);
-        if let Some(difference) = screen::difference(&seen, &expected[shown]) {
-            panic!("{}, frame {number}: {difference}", motion.display());
+    let plugin = icount::plugin(machine.emulator).unwrap();
+    let launch = Launch::new(machine, firmware.elf()).counting(&plugin, &counts);
+    let mut session = Session::start(launch).unwrap();
+    for (index, (number, picture)) in expected.iter().enumerate() {
+        let letters = index.checked_sub(1).map_or(&[][..], |before| keys[before]);
+        let shown = session.next(letters).unwrap_or_else(|error| panic!("{}, picture {index}: {error:#}", machine.name));
+        let after = letters.escape_ascii();
+        assert_eq!(shown.0, *number, "{}, picture {index} after \"{after}\"", machine.name);
+        if let Some(difference) = screen::difference(&shown.1, picture) {
+            panic!("{}, picture {index} of frame {number} after \"{after}\": {difference}", machine.name);
         }
-        shown += 1;
-        Ok(())
-    });
-    let outcome = outcome.unwrap();
+    }
+    let outcome = session.end().unwrap();
     let log = defmt_log::decode(firmware.elf(), &outcome.stdout).unwrap();
-    assert_eq!((outcome.code, shown), (0, frames), "{log:?}");
+    assert_eq!(outcome.code, 0, "{log:?}");
     let stats = icount::by_kind(&icount::read(&counts).unwrap(), FRAME_REGIONS.len()).unwrap();
-    assert!(stats.iter().all(|kind| kind.regions == frames), "{stats:?}");
-    let drawn = expected.iter().filter(|picture| picture.pixels.iter().any(|&grey| grey > 0)).count();
-    assert_eq!(drawn, frames, "every picture shows something");
+    assert!(stats.iter().all(|kind| kind.regions == expected.len()), "{stats:?}");
+    assert!(expected.iter().all(|(_, picture)| !picture.is_dark()), "every picture shows something");
+    println!("{}: {} pictures are equal", machine.name, expected.len());
 }
 
-#[test]
-fn our_walk_looks_the_same_on_the_board() {
-    if !setup::host_only("the walk on lm3s6965evb") {
-        shows_what_the_host_draws(&paths::root().join("motions/walk.keys"), 160);
-    }
-}
-
-#[test]
-fn our_run_looks_the_same_on_the_board() {
-    if !setup::host_only("the run on lm3s6965evb") {
-        shows_what_the_host_draws(&paths::root().join("motions/run.keys"), 26);
-    }
-}
-
-#[test]
-fn a_captured_walk_looks_the_same_on_the_board() {
-    if setup::host_only("a captured walk on lm3s6965evb") {
+fn plays_all_clips(machine: Machine) {
+    if setup::host_only(&format!("clips on {}", machine.name)) {
         return;
     }
-    if let Some(data) = paths::data() {
-        shows_what_the_host_draws(&data.join("bvh_bandai1_walk.bvh"), 100);
+    let mut keys = vec![];
+    for frames in &FRAMES[..CLIPS.1.len()] {
+        keys.extend(vec![&b""[..]; frames - 1]);
+        keys.push(b"n");
+    }
+    shows_what_the_host_shows(machine, &keys);
+}
+
+#[test]
+fn lm3s6965evb_plays_all_clips_as_the_host_does() {
+    plays_all_clips(LM3S6965EVB);
+}
+
+#[test]
+fn microbit_plays_all_clips_as_the_host_does() {
+    plays_all_clips(MICROBIT);
+}
+
+#[test]
+fn mps2_an386_plays_all_clips_as_the_host_does() {
+    plays_all_clips(MPS2_AN386);
+}
+
+#[test]
+fn sx1_plays_all_clips_as_the_host_does() {
+    plays_all_clips(SX1);
+}
+
+/// Every letter but that for the list, alone and in company.
+const KEYS: [&[u8]; 37] = [
+    b"", b"i", b"v", b"v", b"v", b"v", b"w", b"ww", b"sssss", b"a", b"dd", b"f", b"", b"f", b"r", b"", b"r", b".", b".", b",",
+    b",,,", b" ", b"", b"+", b"--", b"l", b"g", b"n", b"g", b"vw", b"n", b"lr", b"p", b"i", b" ", b"x\0Q", b"p",
+];
+
+fn takes_keys(machine: Machine) {
+    if !setup::host_only(&format!("keys on {}", machine.name)) {
+        shows_what_the_host_shows(machine, &KEYS);
+    }
+}
+
+#[test]
+fn lm3s6965evb_takes_keys_as_the_host_does() {
+    takes_keys(LM3S6965EVB);
+}
+
+#[test]
+fn microbit_takes_keys_as_the_host_does() {
+    takes_keys(MICROBIT);
+}
+
+#[test]
+fn mps2_an386_takes_keys_as_the_host_does() {
+    takes_keys(MPS2_AN386);
+}
+
+#[test]
+fn sx1_takes_keys_as_the_host_does() {
+    takes_keys(SX1);
+}
+
+/// Waits until the display shows one of the pictures, and tells which.
+fn await_one(qemu: &mut Qemu, what: &str, pictures: &[&Picture]) -> usize {
+    let deadline = Instant::now() + Duration::from_secs(20);
+    loop {
+        let picture = qemu.picture().unwrap();
+        if let Some(index) = pictures.iter().position(|expected| **expected == picture) {
+            return index;
+        }
+        if Instant::now() > deadline {
+            let differences = pictures.iter().filter_map(|expected| screen::difference(&picture, expected));
+            let least = differences.min_by_key(|difference| difference.count).unwrap();
+            panic!("{what}: the display shows none of {} pictures; of the nearest, {least}", pictures.len());
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Long enough for the program, which looks at the buttons between two pictures.
+const HELD: Duration = Duration::from_millis(100);
+
+fn tap(qemu: &mut Qemu, button: &str) {
+    for down in [true, false] {
+        qemu.control().unwrap().key(button, down).unwrap();
+        thread::sleep(HELD);
+    }
+}
+
+/// Holds the buttons down, the last one last, until the display shows the picture.
+fn press(qemu: &mut Qemu, buttons: &[&str], expected: &Picture) {
+    for button in buttons {
+        qemu.control().unwrap().key(button, true).unwrap();
+        thread::sleep(HELD);
+    }
+    await_one(qemu, &format!("{buttons:?} held"), &[expected]);
+    for button in buttons.iter().rev() {
+        qemu.control().unwrap().key(button, false).unwrap();
+        thread::sleep(HELD);
+    }
+}
+
+#[test]
+fn lm3s6965evb_has_buttons() {
+    if setup::host_only("buttons on lm3s6965evb") {
+        return;
+    }
+    let firmware = firmware(LM3S6965EVB);
+    let mut qemu = Launch::new(LM3S6965EVB, firmware.elf()).argument("info").display().start().unwrap();
+    while qemu.picture().unwrap().is_dark() {
+        thread::sleep(HELD);
+    }
+    // The emulator holds every line low until its key was once pressed and let go.
+    ["up", "down", "left", "right", "ctrl"].iter().for_each(|button| tap(&mut qemu, button));
+    // Every frame of the walk, paused there, as the display says in words.
+    let steps = vec![&b"."[..]; 160];
+    let paused = expected(LM3S6965EVB, &["info"], &steps);
+    let pictures: Vec<&Picture> = paused[1..].iter().map(|(_, picture)| picture).collect();
+    tap(&mut qemu, "ctrl");
+    let at = await_one(&mut qemu, "select", &pictures);
+    let after = |keys: &[&[u8]]| {
+        let begun: Vec<&[u8]> = steps[..=at].iter().chain(keys).copied().collect();
+        expected(LM3S6965EVB, &["info"], &begun).pop().unwrap().1
+    };
+    press(&mut qemu, &["ctrl", "right"], &after(&[b"."]));
+    press(&mut qemu, &["ctrl", "left"], &after(&[b".", b","]));
+    press(&mut qemu, &["right"], &after(&[b"d"]));
+    press(&mut qemu, &["left"], &after(&[b"d", b"a"]));
+    press(&mut qemu, &["ctrl", "down"], &after(&[b"r"]));
+    press(&mut qemu, &["ctrl", "up"], &after(&[b"r", b"n"]));
+    // Plays the run again, backwards, then faster, then slower.
+    let mut letters = vec![&b"."[..], b"r", b"n"];
+    for (button, letter) in [("ctrl", b" "), ("up", b"+"), ("down", b"-"), ("down", b"-")] {
+        letters.push(letter);
+        let playing = expected(LM3S6965EVB, &["info"], &[&letters[..], &[&b""[..]; 26]].concat());
+        let playing: Vec<&Picture> = playing[letters.len()..].iter().map(|(_, picture)| picture).collect();
+        tap(&mut qemu, button);
+        await_one(&mut qemu, button, &playing);
     }
 }

@@ -7,7 +7,7 @@ use harness::setup;
 
 fn counts_of(machine: Machine) -> Vec<u64> {
     let plugin = icount::plugin(machine.emulator).unwrap();
-    let program = Firmware::build("testsuite", "known-loop", machine.target, None).unwrap();
+    let program = Firmware::build("testsuite", "known-loop", machine.target, &[]).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let counts = folder.path().join("counts");
     let outcome = Launch::new(machine, program.elf()).counting(&plugin, &counts).start().unwrap().wait().unwrap();

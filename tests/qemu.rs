@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use harness::build::Firmware;
 use harness::defmt_log;
+use harness::display::{OLED, Picture};
 use harness::qemu::{LM3S6965EVB, Launch, Outcome};
 use harness::{screen, setup, sync};
-use pantin_tools::render::screen::Picture;
 
 fn endings() -> Firmware {
-    Firmware::build("testsuite", "endings", LM3S6965EVB.target, None).unwrap()
+    Firmware::build("testsuite", "endings", LM3S6965EVB.target, &[]).unwrap()
 }
 
 fn run(program: &Firmware, words: &[&str]) -> Outcome {
@@ -72,8 +72,7 @@ fn a_display_that_nothing_drew_on_is_black_and_keys_are_taken() {
     let program = endings();
     let mut qemu = Launch::new(LM3S6965EVB, program.elf()).argument("spin").display().start().unwrap();
     let picture = qemu.picture().unwrap();
-    assert_eq!(picture.pixels.len(), 128 * 64);
-    assert!(picture.pixels.iter().all(|&grey| grey == 0), "{picture:?}");
+    assert_eq!(picture, Picture::dark(OLED));
     for down in [true, false] {
         qemu.control().unwrap().key("up", down).unwrap();
     }
@@ -88,12 +87,12 @@ fn every_pixel_of_every_frame_is_read_back() {
     if setup::host_only("frames in step") {
         return;
     }
-    let program = Firmware::build("testsuite", "panel", LM3S6965EVB.target, None).unwrap();
+    let program = Firmware::build("testsuite", "panel", LM3S6965EVB.target, &[]).unwrap();
     let mut seen = 0;
     let outcome = sync::play(Launch::new(LM3S6965EVB, program.elf()), 5, |frame, picture| {
         assert_eq!(frame, seen);
         let greys = (0..64).flat_map(|y| (0..128).map(move |x| (x / 8 + y + frame as usize) % 16));
-        let expected = Picture { pixels: greys.map(|grey| grey as u8).collect() };
+        let expected = Picture { display: OLED, pixels: greys.map(|grey| grey as u16).collect() };
         if let Some(difference) = screen::difference(&picture, &expected) {
             panic!("frame {frame}: {difference}");
         }
@@ -120,7 +119,7 @@ fn the_log_is_decoded_up_to_the_panic() {
     if setup::host_only("the log") {
         return;
     }
-    let program = Firmware::build("testsuite", "log", LM3S6965EVB.target, None).unwrap();
+    let program = Firmware::build("testsuite", "log", LM3S6965EVB.target, &[]).unwrap();
     let outcome = run(&program, &[]);
     assert_eq!(outcome.code, 101, "{}", outcome.stderr);
     let lines = defmt_log::decode(program.elf(), &outcome.stdout).unwrap();

@@ -80,13 +80,15 @@ pub struct Firmware {
 }
 
 impl Firmware {
-    /// Builds a program of the firmware workspace for a Rust target, with a clip embedded where it plays one.
-    pub fn build(package: &str, program: &str, target: &str, clip: Option<&Path>) -> Result<Self> {
+    /// Builds a program of the firmware workspace for a Rust target, with clips embedded where it plays any; its own where none are named.
+    pub fn build(package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         setup::rust_target(target)?;
-        let clip = clip.map(|clip| std::path::absolute(clip).map(|clip| ("PANTIN_CLIP".into(), clip.into()))).transpose()?;
+        let clips: Vec<PathBuf> = clips.iter().map(std::path::absolute).collect::<Result<_, _>>()?;
+        let joined = std::env::join_paths(&clips).context("a clip's path holds what separates paths")?;
+        let clip = (!clips.is_empty()).then(|| ("PANTIN_CLIP".into(), joined));
         let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
         let core = Core::of(target);
         let arguments = ["--release", "--package", package, "--bin", program, "--target", target].into_iter();

@@ -99,7 +99,7 @@ fn agree(way: &str, expected: &[u16], found: &[u16]) -> Result<()> {
 
 fn emulated(machine: Machine) -> Result<(Duration, BTreeMap<String, Crcs>)> {
     setup::emulator(machine.emulator)?;
-    let image = Firmware::build("conformance-image", "conformance", machine.target, None)?;
+    let image = Firmware::build("conformance-image", "conformance", machine.target, &[])?;
     let started = Instant::now();
     let outcome = Launch::new(machine, image.elf()).limit(LIMIT).start()?.wait()?;
     ensure!(outcome.code == 0, "the image ended with code {}: {}", outcome.code, outcome.stderr.trim());
@@ -108,7 +108,7 @@ fn emulated(machine: Machine) -> Result<(Duration, BTreeMap<String, Crcs>)> {
 
 fn node() -> Result<(Duration, BTreeMap<String, Crcs>)> {
     let node = setup::emulator("node")?;
-    let image = Firmware::build("conformance-image", "conformance", WASM, None)?;
+    let image = Firmware::build("conformance-image", "conformance", WASM, &[])?;
     let started = Instant::now();
     let output = Command::new(node).arg(script()).arg(image.elf()).stdin(Stdio::null()).output().context("cannot start node")?;
     let words = String::from_utf8_lossy(&output.stderr);

@@ -23,7 +23,7 @@ pub struct Image {
 impl Image {
     /// Builds and reads a program of `firmware/testsuite` for the smallest processor.
     pub fn read(program: &str) -> Result<Self> {
-        let firmware = Firmware::build("testsuite", program, MICROBIT.target, None)?;
+        let firmware = Firmware::build("testsuite", program, MICROBIT.target, &[])?;
         let bytes = std::fs::read(firmware.elf())?;
         let elf = object::File::parse(&*bytes).context("the image is no ELF file")?;
         let size = |name| elf.section_by_name(name).map_or(0, |section| section.size());

@@ -8,9 +8,9 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow, bail};
-use pantin_tools::render::screen::Picture;
 use tempfile::TempDir;
 
+use crate::display::{self, Display, Picture, Way};
 use crate::qmp::Qmp;
 use crate::{screen, setup};
 
@@ -28,22 +28,28 @@ pub struct Machine {
     pub target: &'static str,
     /// What else QEMU must be told.
     pub options: &'static [&'static str],
+    /// What its firmware shows pictures on.
+    pub display: Option<Display>,
 }
 
 /// Cortex-M3 with 64 KiB RAM, 256 KiB flash and an OLED of 128x64 pixels in 16 greys.
-pub const LM3S6965EVB: Machine =
-    Machine { emulator: "qemu-system-arm", name: "lm3s6965evb", target: "thumbv7m-none-eabi", options: &[] };
+pub const LM3S6965EVB: Machine = arm("lm3s6965evb", "thumbv7m-none-eabi", display::OLED);
 
 /// Cortex-M0 with 16 KiB RAM and 256 KiB flash.
-pub const MICROBIT: Machine =
-    Machine { emulator: "qemu-system-arm", name: "microbit", target: "thumbv6m-none-eabi", options: &[] };
+pub const MICROBIT: Machine = arm("microbit", "thumbv6m-none-eabi", display::PAGES);
 
 /// Cortex-M4F with 4 MiB of each.
-pub const MPS2_AN386: Machine =
-    Machine { emulator: "qemu-system-arm", name: "mps2-an386", target: "thumbv7em-none-eabihf", options: &[] };
+pub const MPS2_AN386: Machine = arm("mps2-an386", "thumbv7em-none-eabihf", display::GREYS);
 
 /// ARM925T, ARMv4T: Siemens SX1, a phone of 2003.
-pub const SX1: Machine = Machine { emulator: "qemu-system-arm", name: "sx1", target: "armv4t-none-eabi", options: &[] };
+pub const SX1: Machine = arm("sx1", "armv4t-none-eabi", display::LCD);
+
+/// The machines that play clips on a display.
+pub const BOARDS: [Machine; 4] = [LM3S6965EVB, MICROBIT, MPS2_AN386, SX1];
+
+const fn arm(name: &'static str, target: &'static str, display: Display) -> Machine {
+    Machine { emulator: "qemu-system-arm", name, target, options: &[], display: Some(display) }
+}
 
 /// RV32IMAC, entered without firmware.
 pub const VIRT: Machine = Machine {
@@ -51,6 +57,7 @@ pub const VIRT: Machine = Machine {
     name: "virt",
     target: "riscv32imac-unknown-none-elf",
     options: &["-bios", "none"],
+    display: None,
 };
 
 /// What to start, and with what attached.
@@ -67,6 +74,11 @@ pub struct Launch {
 }
 
 impl Launch {
+    /// The machine.
+    pub fn machine(&self) -> Machine {
+        self.machine
+    }
+
     /// A run of `elf`, for 60 s at most, with semihosting and nothing else.
     pub fn new(machine: Machine, elf: &Path) -> Self {
         let limit = Duration::from_secs(60);
@@ -122,7 +134,8 @@ impl Launch {
         let (stdout, stderr) = (collect(child.stdout.take()), collect(child.stderr.take()));
         let deadline = Instant::now() + self.limit;
         let limit = self.limit;
-        let mut qemu = Qemu { child, stdout, stderr, directory, serial: None, control: None, limit, deadline };
+        let machine = self.machine;
+        let mut qemu = Qemu { machine, child, stdout, stderr, directory, serial: None, control: None, limit, deadline };
         qemu.serial = serial.map(|socket| qemu.accept(&socket)).transpose()?;
         if let Some(socket) = control {
             let stream = qemu.accept(&socket)?;
@@ -172,6 +185,7 @@ pub struct Outcome {
 
 /// A running QEMU. Dropping it kills it.
 pub struct Qemu {
+    machine: Machine,
     child: Child,
     stdout: JoinHandle<Vec<u8>>,
     stderr: JoinHandle<Vec<u8>>,
@@ -202,12 +216,20 @@ impl Qemu {
         self.control.as_mut().context("this run has no display")
     }
 
-    /// What the display shows now, on a machine whose window shows each pixel of 16 greys as 4x4.
+    /// The machine.
+    pub fn machine(&self) -> Machine {
+        self.machine
+    }
+
+    /// What the display in QEMU's window shows now.
     pub fn picture(&mut self) -> Result<Picture> {
+        let Some(display @ Display { way: Way::Window(scale), .. }) = self.machine.display else {
+            bail!("QEMU shows no display of {}", self.machine.name);
+        };
         let path = self.directory.path().join("screen.ppm");
         self.control()?.screendump(&path).map_err(|error| self.explain(error))?;
         let dump = std::fs::read(&path).context("QEMU left no picture")?;
-        screen::from_window(&dump)
+        screen::from_window(&dump, display, scale)
     }
 
     /// Waits for the end and says how it went; an error if the time limit comes first.

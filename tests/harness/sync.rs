@@ -1,47 +1,74 @@
 //! The firmware's `sync` mode: it shows a frame, tells its number on the serial port, and waits for a byte.
 //!
-//! Firmware to host: `F` and the frame's number, 4 bytes, the least first. Host to firmware: a line feed for the next frame, `q` to end
-//! with code 0; before either, letters of the app's keys. Time plays no part, so every picture is of a known frame.
+//! Firmware to host: `F` and the frame's number, 4 bytes, the least first; before it, on a machine without a display of its own, the
+//! windows that changed. Host to firmware: a line feed for the next frame, `q` to end with code 0; before either, letters of the
+//! app's keys. Time plays no part, so every picture is of a known frame.
 
-use std::io::{Read, Write};
+use std::io::{BufReader, Write};
+use std::os::unix::net::UnixStream;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 
+use crate::display::{Picture, Way};
 use crate::qemu::{Launch, Outcome, Qemu};
-use pantin_tools::render::screen::Picture;
+use crate::wire::{self, Memory};
 
 /// The word that asks for this mode on the semihosting command line.
 pub const ARGUMENT: &str = "sync";
 
+/// A firmware that plays in step.
+pub struct Session {
+    qemu: Qemu,
+    line: BufReader<UnixStream>,
+    memory: Option<Memory>,
+    begun: bool,
+}
+
+impl Session {
+    /// Starts it.
+    pub fn start(launch: Launch) -> Result<Self> {
+        let display = launch.machine().display.context("this machine shows no pictures")?;
+        let launch = launch.argument(ARGUMENT).serial();
+        let mut qemu = if display.way == Way::Wire { launch } else { launch.display() }.start()?;
+        let line = BufReader::new(qemu.serial()?.try_clone()?);
+        let memory = (display.way == Way::Wire).then(|| Memory::new(display));
+        Ok(Self { qemu, line, memory, begun: false })
+    }
+
+    /// The next picture, after these letters of keys, and the number that the firmware gives it. The first one takes no letters.
+    pub fn next(&mut self, keys: &[u8]) -> Result<(u32, Picture)> {
+        if self.begun {
+            self.answer(&[keys, &[pantin_app::NEXT]].concat())?;
+        }
+        self.begun = true;
+        // Sets the time that reading may take.
+        self.qemu.serial()?;
+        let number = wire::shown(&mut self.line, self.memory.as_mut()).map_err(|error| self.qemu.explain(error))?;
+        let picture = match &self.memory {
+            Some(memory) => memory.picture(),
+            None => self.qemu.picture()?,
+        };
+        Ok((number, picture))
+    }
+
+    /// Ends the firmware and waits for that.
+    pub fn end(mut self) -> Result<Outcome> {
+        self.answer(&[pantin_app::QUIT])?;
+        self.qemu.wait()
+    }
+
+    fn answer(&mut self, bytes: &[u8]) -> Result<()> {
+        let written = self.qemu.serial()?.write_all(bytes);
+        written.context("the firmware takes no answer").map_err(|error| self.qemu.explain(error))
+    }
+}
+
 /// Plays the first `frames` frames and hands each picture, with the number that the firmware gave it, to `see`.
 pub fn play(launch: Launch, frames: usize, mut see: impl FnMut(u32, Picture) -> Result<()>) -> Result<Outcome> {
-    let mut qemu = launch.argument(ARGUMENT).serial().display().start()?;
-    for played in 0..frames {
-        if played > 0 {
-            answer(&mut qemu, b'\n')?;
-        }
-        let number = shown(&mut qemu)?;
-        let picture = qemu.picture()?;
+    let mut session = Session::start(launch)?;
+    for _ in 0..frames {
+        let (number, picture) = session.next(&[])?;
         see(number, picture)?;
     }
-    answer(&mut qemu, b'q')?;
-    qemu.wait()
-}
-
-/// Begins the message that a frame is shown.
-const SHOWN: u8 = b'F';
-
-/// Waits until the firmware has shown a frame, and returns its number.
-fn shown(qemu: &mut Qemu) -> Result<u32> {
-    let mut message = [0; 5];
-    let read = qemu.serial()?.read_exact(&mut message);
-    read.context("no frame number from the firmware").map_err(|error| qemu.explain(error))?;
-    let [letter, number @ ..] = message;
-    ensure!(letter == SHOWN, "the firmware sent {letter:#x} in place of a frame's number");
-    Ok(u32::from_le_bytes(number))
-}
-
-fn answer(qemu: &mut Qemu, byte: u8) -> Result<()> {
-    let written = qemu.serial()?.write_all(&[byte]);
-    written.context("the firmware takes no answer").map_err(|error| qemu.explain(error))
+    session.end()
 }

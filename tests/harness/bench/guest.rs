@@ -20,7 +20,7 @@ pub struct Guest {
 impl Guest {
     /// Builds it.
     pub fn new(machine: Machine, program: &str) -> Result<Self> {
-        let firmware = Firmware::build("testsuite", program, machine.target, None)?;
+        let firmware = Firmware::build("testsuite", program, machine.target, &[])?;
         Ok(Self { machine, firmware, plugin: icount::plugin(machine.emulator)? })
     }
 

@@ -13,9 +13,9 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use harness::display::Picture;
 use harness::{build, paths, setup};
 use pantin_tools::cmd::write_whole;
-use pantin_tools::render::screen::Picture;
 use pantin_tools::render::{gif, sheet};
 
 use super::steps::say;
@@ -90,17 +90,22 @@ impl Demo {
 
     fn write_pictures(&self, shown: &[Picture], rate: f64) -> Result<()> {
         let stride = gif::stride(1.0 / rate) as usize;
-        let animated: Vec<_> = shown.iter().step_by(stride).cloned().collect();
+        let animated: Vec<_> = shown.iter().step_by(stride).map(greys).collect();
         let mut animation = vec![];
         gif::write(&mut animation, &animated, stride as f64 / rate)?;
         write_whole(&self.out.join("demo.gif"), &animation)?;
         let chosen = SHEET.min(shown.len());
         let frames = (0..chosen).map(|index| index * shown.len() / chosen);
-        let labelled: Vec<_> = frames.map(|frame| (frame as u32, shown[frame].clone())).collect();
+        let labelled: Vec<_> = frames.map(|frame| (frame as u32, greys(&shown[frame]))).collect();
         let mut pictures = vec![];
         sheet::write(&mut pictures, &labelled)?;
         write_whole(&self.out.join("demo-sheet.png"), &pictures)
     }
+}
+
+/// A picture of the reference display as the host tool draws them.
+fn greys(picture: &Picture) -> pantin_tools::render::screen::Picture {
+    pantin_tools::render::screen::Picture { pixels: picture.pixels.iter().map(|&grey| grey as u8).collect() }
 }
 
 /// Runs the host tool, whose stderr a person sees, and returns its stdout.

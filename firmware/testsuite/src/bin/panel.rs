@@ -34,9 +34,9 @@ fn main() -> ! {
     }
     for frame in 0_u32.. {
         draw(frame);
-        frame.to_le_bytes().into_iter().for_each(|byte| write(UART_DATA, byte.into()));
+        [&b"F"[..], &frame.to_le_bytes()[..]].into_iter().flatten().for_each(|&byte| write(UART_DATA, byte.into()));
         match receive() {
-            b'n' => {}
+            b'\n' => {}
             b'q' => break,
             _ => semihosting::process::exit(1),
         }

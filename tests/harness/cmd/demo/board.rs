@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use anyhow::{Result, ensure};
 use harness::build::Firmware;
+use harness::display::Picture;
 use harness::icount::{self, Stats};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::{defmt_log, setup, sync};
-use pantin_tools::render::screen::Picture;
 
 use crate::cmd::steps::{progress, say};
 
@@ -26,7 +26,7 @@ pub struct Play {
 /// Plays the first `frames` frames of a clip.
 pub fn play(clip: &Path, frames: usize) -> Result<Play> {
     say("building the firmware");
-    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, Some(clip))?;
+    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, &[clip])?;
     let folder = tempfile::tempdir()?;
     let counts = folder.path().join("counts");
     let mut launch = Launch::new(LM3S6965EVB, firmware.elf()).limit(LIMIT);

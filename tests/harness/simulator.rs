@@ -1,0 +1,129 @@
+//! The firmware's program on the host, before a display of the host's memory: what every machine's pictures must equal.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
+use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
+use pantin_app::{Board, Entry, Exit, Options};
+use pantin_figure::rotation::Rotation;
+use pantin_figure::surface::{Frame, Gray4Rows, Layout, MonoPages, Rgb565Rows};
+
+use crate::display::{Depth, Display, Picture};
+use crate::sync;
+
+/// More than any board has room for: the pictures do not depend on it.
+const CHANNELS: usize = 1024;
+const MOVING: usize = 1024;
+const JOINTS: usize = 96;
+
+/// A clip's file and its name, as a firmware is built with it.
+pub struct File {
+    name: String,
+    bytes: Vec<u8>,
+}
+
+impl File {
+    /// Reads it.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        Ok(Self { name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), bytes })
+    }
+}
+
+/// The pictures of a display that plays `clips` in step, with their frames' numbers: the first, then one after each of the keys'
+/// letters. `words` are those of the firmware's command line.
+pub fn play(display: Display, clips: &[PathBuf], words: &[&str], keys: &[&[u8]]) -> Result<Vec<(u32, Picture)>> {
+    let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
+    let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes }).collect();
+    let options = Options::parse(words.iter().copied().chain([sync::ARGUMENT]));
+    match (display.width, display.height, display.depth) {
+        (128, 64, Depth::Mono) => simulate::<MonoPages<128, 64, 1024>>(display, &entries, options, keys),
+        (128, 64, Depth::Gray4) => simulate::<Gray4Rows<128, 64, 1024>>(display, &entries, options, keys),
+        (176, 220, Depth::Rgb565) => simulate::<Rgb565Rows<176, 220, 38720>>(display, &entries, options, keys),
+        _ => anyhow::bail!("no machine has a display like {display:?}"),
+    }
+}
+
+fn simulate<L: Layout<Ink: Value>>(
+    display: Display,
+    entries: &[Entry],
+    options: Options,
+    keys: &[&[u8]],
+) -> Result<Vec<(u32, Picture)>> {
+    let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
+    wishes.push_back(pantin_app::QUIT);
+    let mut simulator = Simulator { display, wishes, told: vec![], shown: vec![], layout: std::marker::PhantomData };
+    // The display's memory and the player's would be much of a test thread's stack.
+    let mut frame = Box::new(Frame::<L>::new());
+    let exit = pantin_app::run::<_, CHANNELS, MOVING, JOINTS>(entries, options, &mut frame, &mut simulator);
+    ensure!(exit == Exit::Done, "a clip cannot be played");
+    ensure!(simulator.told.len() == 5 * simulator.shown.len(), "the program told something else than frames' numbers");
+    let numbers =
+        simulator.told.chunks_exact(5).map(|message| u32::from_le_bytes([message[1], message[2], message[3], message[4]]));
+    Ok(numbers.zip(simulator.shown).collect())
+}
+
+/// The board.
+struct Simulator<L> {
+    display: Display,
+    /// Bytes that the other end of the line sends.
+    wishes: VecDeque<u8>,
+    /// Bytes that it gets.
+    told: Vec<u8>,
+    shown: Vec<Picture>,
+    layout: std::marker::PhantomData<L>,
+}
+
+impl<L: Layout<Ink: Value>> Board for Simulator<L> {
+    type Layout = L;
+    type Turning = Rotation;
+
+    fn show(&mut self, frame: &mut Frame<L>) {
+        let Display { width, height, .. } = self.display;
+        let pixels = (0..width * height).map(|index| frame.pixel(index % width, index / width).value()).collect();
+        self.shown.push(Picture { display: self.display, pixels });
+    }
+
+    fn start_timer(&mut self, _nanoseconds: u32) {}
+
+    fn wait_ticks(&mut self) -> u32 {
+        1
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.told.extend(bytes);
+    }
+
+    fn receive(&mut self) -> u8 {
+        self.wishes.pop_front().unwrap_or(pantin_app::QUIT)
+    }
+
+    fn poll(&mut self) -> Option<u8> {
+        None
+    }
+}
+
+/// A pixel as [`Depth`] counts it.
+trait Value {
+    fn value(self) -> u16;
+}
+
+impl Value for BinaryColor {
+    fn value(self) -> u16 {
+        self.is_on().into()
+    }
+}
+
+impl Value for Gray4 {
+    fn value(self) -> u16 {
+        self.luma().into()
+    }
+}
+
+impl Value for Rgb565 {
+    fn value(self) -> u16 {
+        RawU16::from(self).into_inner()
+    }
+}
