@@ -2,6 +2,7 @@
 
 /// Why bytes could not be opened as a rig or a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum OpenError {
     /// The file does not begin with the magic of a clip: it is something else.
@@ -20,6 +21,7 @@ pub enum OpenError {
 
 /// The memory lent to a player is too small for the clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TooSmall {
     /// What the clip needs, in elements of the slice that was too small.
     pub needed: usize,

@@ -1,7 +1,6 @@
 //! Name, frame and speed in a corner of the display, by `embedded-graphics`.
 
 use crate::scene::{Entry, Scene};
-use core::fmt::Write;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
@@ -24,12 +23,19 @@ pub(crate) fn draw<L: Layout>(scene: &Scene, entry: &Entry, frame: [u32; 2], tar
     let mut second: String<32> = String::new();
     // What does not fit the line is left out.
     let _ = first.push_str(entry.name.get(..24).unwrap_or(entry.name));
-    let _ = write!(second, "{}/{} ", frame[0] + 1, frame[1]);
-    let _ = match (scene.paused, scene.pace) {
-        (true, _) => write!(second, "paused"),
-        (false, 0..) => write!(second, "x{}", 1 << scene.pace),
-        (false, slow) => write!(second, "x1/{}", 1 << -slow),
-    };
+    number(&mut second, frame[0] + 1);
+    let _ = second.push('/');
+    number(&mut second, frame[1]);
+    let _ = second.push(' ');
+    match (scene.paused, scene.pace) {
+        (true, _) => {
+            let _ = second.push_str("paused");
+        }
+        (false, pace) => {
+            let _ = second.push_str(if pace < 0 { "x1/" } else { "x" });
+            number(&mut second, 1 << pace.unsigned_abs());
+        }
+    }
     if scene.backwards {
         let _ = second.push_str(" back");
     }
@@ -38,4 +44,12 @@ pub(crate) fn draw<L: Layout>(scene: &Scene, entry: &Entry, frame: [u32; 2], tar
         // A display that fails shows no letters; the figure's drawing tells of it.
         let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);
     }
+}
+
+/// The digits of a number: without the library's formatting, which is larger than all of this.
+fn number(line: &mut String<32>, value: u32) {
+    if value >= 10 {
+        number(line, value / 10);
+    }
+    let _ = line.push(char::from(b'0' + (value % 10) as u8));
 }

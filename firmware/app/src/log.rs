@@ -12,7 +12,7 @@ macro_rules! info {
 macro_rules! error {
     ($text:literal, $error:expr) => {{
         #[cfg(feature = "defmt")]
-        defmt::error!($text, defmt::Display2Format(&$error));
+        defmt::error!($text, $error);
         #[cfg(not(feature = "defmt"))]
         let _ = &$error;
     }};

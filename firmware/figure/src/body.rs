@@ -124,7 +124,7 @@ impl<'w> Limbs<'w> {
     /// Reaches, from the ends of the limbs upwards, and the size.
     fn measure(&mut self) {
         for index in (0..self.limbs.len()).rev() {
-            let Limb { parent, length, reach, .. } = self.limbs[index];
+            let Some(&Limb { parent, length, reach, .. }) = self.limbs.get(index) else { return };
             if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
                 parent.set(flag::FORKS, parent.is(flag::PARENT));
                 parent.set(flag::PARENT, true);
@@ -146,13 +146,14 @@ impl<'w> Limbs<'w> {
     pub fn prune(&mut self) {
         let eighths = self.size / 8;
         for index in 0..self.limbs.len() {
-            let Some(&parent) = self.limbs.get(usize::from(self.limbs[index].parent)) else { continue };
+            let parent = self.limbs.get(index).map_or(NO_PARENT, |limb| limb.parent);
+            let Some(&parent) = self.limbs.get(usize::from(parent)) else { continue };
             let hand = parent.is(flag::FORKS) && i32::from(parent.reach) < eighths / 6;
             let finger = if hand { 0 } else { parent.finger };
             let longest = parent.longest == index as u8;
             let short = parent.finger == NO_FINGER || i32::from(parent.finger) < eighths / 25;
             let shows = finger == NO_FINGER || (longest && short);
-            let limb = &mut self.limbs[index];
+            let Some(limb) = self.limbs.get_mut(index) else { return };
             limb.set(flag::KEPT, parent.is(flag::KEPT) && !parent.is(flag::HEAD) && shows);
             limb.finger = if finger == NO_FINGER { NO_FINGER } else { finger.saturating_add(limb.length / 8).min(NO_FINGER - 1) };
         }
@@ -162,7 +163,7 @@ impl<'w> Limbs<'w> {
     /// Drops what ends a limb and is shorter than `shortest`, marks what bears the rest and counts it.
     pub fn settle(&mut self, shortest: i32) {
         for index in (0..self.limbs.len()).rev() {
-            let limb = &mut self.limbs[index];
+            let Some(limb) = self.limbs.get_mut(index) else { return };
             let stays =
                 limb.is(flag::PLACEMENT) || limb.is(flag::HEAD) || limb.is(flag::BEARS) || i32::from(limb.length) >= shortest;
             let kept = limb.is(flag::KEPT) && stays;

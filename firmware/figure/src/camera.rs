@@ -202,7 +202,9 @@ fn axes(bearings: Bearings, view: View) -> [Vector; 3] {
     let level: Vector = core::array::from_fn(|axis| (cos * bearings.facing[axis] + sin * left[axis] + HALF) >> FRACTION_BITS);
     let (sin, cos) = sin_cos(of_degrees(view.tilt));
     let mix = |a: i32, b: i32| -> Vector {
-        core::array::from_fn(|axis| (a * level[axis] + b * bearings.up[axis] + HALF) >> FRACTION_BITS)
+        let one = |level: i32, up: i32| (a * level + b * up + HALF) >> FRACTION_BITS;
+        let up = bearings.up;
+        [one(level[0], up[0]), one(level[1], up[1]), one(level[2], up[2])]
     };
     [cross(bearings.up, level), mix(sin, -cos), mix(-cos, -sin)]
 }
@@ -219,13 +221,13 @@ fn sixteen_bits(x: i32) -> i32 {
 }
 
 /// Distances from half to one and a half times the camera's, in 128 steps: value at the start of each, and step to the next.
-static MAGNIFICATION: [[i32; 2]; 128] = {
-    let mut table = [[0; 2]; 128];
+static MAGNIFICATION: [(u16, i16); 128] = {
+    let mut table = [(0, 0); 128];
     let mut distance = 64;
     while distance < 192 {
         let from = ((1 << 21) + distance / 2) / distance;
         let to = ((1 << 21) + distance / 2) / (distance + 1);
-        table[distance as usize - 64] = [from, to - from];
+        table[distance as usize - 64] = (from as u16, (to - from) as i16);
         distance += 1;
     }
     table
@@ -239,6 +241,6 @@ pub(crate) const MAGNIFICATION_BITS: i32 = 14;
 pub(crate) fn magnification(depth: i32) -> i32 {
     let distance = (depth + (1 << (DEPTH_BITS - 1))).clamp(0, (1 << DEPTH_BITS) - 1);
     let (index, place) = ((distance >> 8) as usize, distance & 0xff);
-    let Some(&[from, step]) = MAGNIFICATION.get(index) else { return 1 << 14 };
-    from + ((step * place) >> 8)
+    let Some(&(from, step)) = MAGNIFICATION.get(index) else { return 1 << 14 };
+    i32::from(from) + ((i32::from(step) * place) >> 8)
 }

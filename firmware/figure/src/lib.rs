@@ -35,6 +35,7 @@ pub const RIG_JOINTS: usize = 192;
 
 /// Why a rig makes no figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
     /// More joints than there is room for.
     TooManyJoints {

@@ -93,9 +93,11 @@ impl Ground {
     fn lattice(&self, camera: &Camera, target: Vector, rows: i32) -> (Vector, [Vector; 2]) {
         let spacing = 1 << self.spacing;
         let mut corner = [0; 3];
-        corner[self.axis] = self.height.wrapping_sub(target[self.axis]);
+        let axis = self.axis % 3;
+        corner[axis] = self.height.wrapping_sub(target[axis]);
         let mut steps = [[0; 3]; 2];
-        for (axis, step) in [(self.axis + 1) % 3, (self.axis + 2) % 3].into_iter().zip(&mut steps) {
+        for (next, step) in (1..).zip(&mut steps) {
+            let axis = (axis + next) % 3;
             let past = target[axis].wrapping_add(spacing / 2) & (spacing - 1);
             corner[axis] = spacing / 2 - past - (rows / 2) * spacing;
             step[axis] = spacing;
@@ -190,7 +192,9 @@ impl<const N: usize> Lines<N> {
         if self.order.len() != self.bones.len() {
             self.order.clear();
             // One a bone: there is room.
-            self.order.extend((0..self.bones.len()).map(|index| index as u8));
+            for index in 0..self.bones.len() {
+                let _ = self.order.push(index as u8);
+            }
         }
         let bones = &self.bones;
         let key = |index: u8| bones.get(usize::from(index)).map_or(0, |line| i32::from(line.depth) * 256 - i32::from(index));

@@ -155,7 +155,8 @@ impl Rotation {
         let index = (square >> 24) as usize;
         let place = ((square >> 12) & 0xfff) as i32;
         let (Some(from), Some(to)) = (HALF_ANGLE.get(index), HALF_ANGLE.get(index + 1)) else { return Rotation::IDENTITY };
-        let [w, scale] = [0, 1].map(|i| from[i] + (((to[i] - from[i]) * place) >> 12));
+        let between = |from: i32, to: i32| from + (((to - from) * place) >> 12);
+        let (w, scale) = (between(from[0], to[0]), between(from[1], to[1]));
         // Components in 17 bits, the scale's 16 and 7 bits apart: all products fit.
         let [x, y, z] = map.map(|x| {
             let x = shift_right(x, 15);

@@ -258,7 +258,7 @@ impl<const N: usize> Skeleton<N> {
         }
         if head && detail == Detail::Body {
             let offset = crown(limbs, index, &limb);
-            self.head_radius = (length(offset) / 2).clamp(limbs.size / 22, limbs.size / 14);
+            self.head_radius = (length(offset) / 2).max(limbs.size / 22).min(limbs.size / 14);
             self.push(Bone { offset, parent: Some(at), part: Part::Crown, drives: 0, foot: false, moves: false, ..bone })?;
         }
         Ok(())

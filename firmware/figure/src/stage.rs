@@ -76,11 +76,13 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     #[inline(never)]
     pub fn aim(&mut self, player: &mut Player, view: View) {
         let (now, frames) = (player.frame(), player.clip().frames());
-        let stride = frames.div_ceil(SAMPLES) as usize;
+        let stride = frames.div_ceil(SAMPLES).max(1);
         self.frame(view, |visit| {
-            for frame in (0..frames).step_by(stride) {
+            let mut frame = 0;
+            while frame < frames {
                 player.seek(frame);
                 visit(player.pose());
+                frame += stride;
             }
         });
         player.seek(now);
@@ -137,7 +139,9 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         self.seen.clear();
         let camera = &self.camera;
         // One a joint: there is room.
-        self.seen.extend(self.joints.positions().iter().map(|&position| Seen::from(camera.project(position))));
+        for &position in self.joints.positions() {
+            let _ = self.seen.push(Seen::from(camera.project(position)));
+        }
     }
 
     /// The other half: lines of the ground and the bones.

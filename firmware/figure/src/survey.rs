@@ -66,7 +66,7 @@ impl Survey {
             add(&mut self.leftward, joints.position(usize::from(left)), joints.position(usize::from(right)));
         }
         match crown {
-            Some(crown) if footed > 0 => add(&mut self.upright, crown, feet.map(|x| x / footed * 16)),
+            Some(crown) if footed > 0 => add(&mut self.upright, crown, feet.map(|x| x.checked_div(footed).unwrap_or(0) * 16)),
             _ => add(&mut self.upright, [0, high[1], high[2]], [0, low[1], low[2]]),
         }
         self.low = core::array::from_fn(|axis| low[axis].min(self.low[axis]));
@@ -80,6 +80,7 @@ impl Survey {
 
     /// Half the extent along an axis.
     pub fn half_extent(&self, axis: usize) -> i32 {
+        let axis = axis % 3;
         (self.high[axis] >> 1).saturating_sub(self.low[axis] >> 1)
     }
 

@@ -1,9 +1,14 @@
 //! The program, with what the emulator's command line asks for.
 
 use crate::end::{Code, exit};
+#[cfg(feature = "several")]
 use heapless::Vec;
-use pantin_app::{Board, Entry, Exit, Options, Seat, crowd, run};
+use pantin_app::{Board, Entry, Exit, Options, run};
+#[cfg(feature = "several")]
+use pantin_app::{Seat, crowd};
 use pantin_figure::surface::Frame;
+#[allow(deprecated)]
+use semihosting::sys::arm_compat::{CommandLine, sys_get_cmdline};
 
 /// Letters of a command line: an emulator without arguments gives the program's own path, and a longer one counts as none.
 const ROOM: usize = 512;
@@ -15,16 +20,15 @@ pub fn play<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: 
     board: &mut B,
 ) -> ! {
     let options = options();
-    exit(
-        match options.figures {
-            ..2 => run::<B, CHANNELS, MOVING, JOINTS>(clips, options, frame, board),
-            _ => several::<B, CHANNELS, MOVING, JOINTS, SEATS>(clips, options, frame, board),
-        }
-        .into(),
-    )
+    #[cfg(feature = "several")]
+    if options.figures > 1 {
+        exit(several::<B, CHANNELS, MOVING, JOINTS, SEATS>(clips, options, frame, board).into())
+    }
+    exit(run::<B, CHANNELS, MOVING, JOINTS>(clips, options, frame, board).into())
 }
 
 /// In a function of its own: the seats take memory only where several figures are asked for.
+#[cfg(feature = "several")]
 #[inline(never)]
 fn several<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize, const SEATS: usize>(
     clips: &[Entry],
@@ -42,10 +46,14 @@ fn several<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
 /// In a function of its own: the room is given back.
 #[inline(never)]
 fn options() -> Options {
-    match semihosting::experimental::env::args::<ROOM>() {
-        Ok(words) => Options::parse((&words).into_iter().flatten()),
-        Err(_) => Options::parse([]),
-    }
+    let mut room = [0; ROOM];
+    let mut line = CommandLine { ptr: room.as_mut_ptr(), size: ROOM };
+    // Safety: the room is as large as it says and lives until the line has been read.
+    // The safer call that the library has beside it slices, and so brings in panics.
+    #[allow(unsafe_code, deprecated)]
+    let told = unsafe { sys_get_cmdline(&mut line) };
+    let text = told.ok().and_then(|()| core::str::from_utf8(room.get(..line.size)?).ok());
+    Options::parse(text.unwrap_or("").split(' '))
 }
 
 impl From<Exit> for Code {

@@ -43,6 +43,9 @@ extern "C" fn board_fault() -> ! {
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     crate::log::until_panic();
-    defmt::error!("{}", defmt::Display2Format(info));
+    // Where, without its words: those would bring in the library's formatting.
+    if let Some(place) = info.location() {
+        defmt::error!("panic in {}, line {}", place.file(), place.line());
+    }
     exit(Code::Panic)
 }

@@ -12,7 +12,10 @@ fn panic(info: &PanicInfo) -> ! {
     // A panic of the log itself would come round for ever.
     if !PANICKED.load(Ordering::Relaxed) {
         PANICKED.store(true, Ordering::Relaxed);
-        defmt::error!("{}", defmt::Display2Format(info));
+        // Where, without its words: those would bring in the library's formatting.
+        if let Some(place) = info.location() {
+            defmt::error!("panic in {}, line {}", place.file(), place.line());
+        }
     }
     exit(Code::Panic)
 }

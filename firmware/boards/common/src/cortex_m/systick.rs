@@ -37,12 +37,12 @@ impl SysTick {
 
     /// Ticks every `nanoseconds` from now on.
     pub fn start(&mut self, nanoseconds: u32) {
-        let clocks = nanoseconds / self.clock;
+        let clocks = nanoseconds.checked_div(self.clock).unwrap_or(LONGEST);
         self.periods = clocks.div_ceil(LONGEST).max(1);
         self.told = PERIODS.load(Ordering::Relaxed);
         if let Some(timer) = &mut self.timer {
             timer.set_clock_source(SystClkSource::Core);
-            timer.set_reload((clocks / self.periods).max(2) - 1);
+            timer.set_reload(clocks.checked_div(self.periods).unwrap_or(0).max(2) - 1);
             timer.clear_current();
             timer.enable_interrupt();
             timer.enable_counter();
@@ -54,7 +54,7 @@ impl SysTick {
         loop {
             // An interrupt between the look and the sleep ends the sleep, and is taken after it.
             let ticks = cortex_m::interrupt::free(|_| {
-                let ticks = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.told) / self.periods;
+                let ticks = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.told).checked_div(self.periods).unwrap_or(1);
                 if ticks == 0 {
                     cortex_m::asm::wfi();
                 }
