@@ -11,6 +11,8 @@ use harness::icount::{self, FRAME_REGIONS};
 use harness::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, SX1};
 use harness::sync::Session;
 use harness::{clips, defmt_log, paths, screen, setup, simulator};
+use pantin_figure::rotation::Rotation;
+use pantin_figure::rotation_float::FloatRotation;
 use tempfile::TempDir;
 
 /// Frames of our walk, of our run, and of a captured walk.
@@ -31,13 +33,15 @@ fn firmware(machine: Machine) -> Firmware {
 }
 
 fn expected(machine: Machine, words: &[&str], keys: &[&[u8]]) -> Vec<(u32, Picture)> {
-    simulator::play(machine.display.unwrap(), &CLIPS.1, words, keys).unwrap()
+    simulator::play::<Rotation>(machine.display.unwrap(), &CLIPS.1, words, keys).unwrap()
 }
 
 /// Plays a picture, and one more after each of the keys' letters, and compares each with the host's.
 fn shows_what_the_host_shows(machine: Machine, keys: &[&[u8]]) {
-    let expected = expected(machine, &[], keys);
-    let firmware = firmware(machine);
+    shows(machine, &firmware(machine), &expected(machine, &[], keys), keys);
+}
+
+fn shows(machine: Machine, firmware: &Firmware, expected: &[(u32, Picture)], keys: &[&[u8]]) {
     let folder = tempfile::tempdir().unwrap();
     let counts = folder.path().join("counts");
     let plugin = icount::plugin(machine.emulator).unwrap();
@@ -61,16 +65,16 @@ fn shows_what_the_host_shows(machine: Machine, keys: &[&[u8]]) {
     println!("{}: {} pictures are equal", machine.name, expected.len());
 }
 
+/// No letters after a picture but those for the next clip after its last one.
+fn through_all_clips() -> Vec<&'static [u8]> {
+    let through = |&frames: &usize| std::iter::repeat_n(&b""[..], frames - 1).chain([&b"n"[..]]);
+    FRAMES[..CLIPS.1.len()].iter().flat_map(through).collect()
+}
+
 fn plays_all_clips(machine: Machine) {
-    if setup::host_only(&format!("clips on {}", machine.name)) {
-        return;
+    if !setup::host_only(&format!("clips on {}", machine.name)) {
+        shows_what_the_host_shows(machine, &through_all_clips());
     }
-    let mut keys = vec![];
-    for frames in &FRAMES[..CLIPS.1.len()] {
-        keys.extend(vec![&b""[..]; frames - 1]);
-        keys.push(b"n");
-    }
-    shows_what_the_host_shows(machine, &keys);
 }
 
 #[test]
@@ -86,6 +90,19 @@ fn microbit_plays_all_clips_as_the_host_does() {
 #[test]
 fn mps2_an386_plays_all_clips_as_the_host_does() {
     plays_all_clips(MPS2_AN386);
+}
+
+#[test]
+fn mps2_an386_plays_all_clips_in_floating_point_as_the_host_does() {
+    if setup::host_only("clips in floating point on mps2-an386") {
+        return;
+    }
+    let machine = MPS2_AN386;
+    let clips: Vec<&Path> = CLIPS.1.iter().map(PathBuf::as_path).collect();
+    let firmware = Firmware::featuring("micromath", machine.name, machine.name, machine.target, &clips).unwrap();
+    let keys = through_all_clips();
+    let expected = simulator::play::<FloatRotation>(machine.display.unwrap(), &CLIPS.1, &[], &keys).unwrap();
+    shows(machine, &firmware, &expected, &keys);
 }
 
 #[test]

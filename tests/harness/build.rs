@@ -82,6 +82,11 @@ pub struct Firmware {
 impl Firmware {
     /// Builds a program of the firmware workspace for a Rust target, with clips embedded where it plays any; its own where none are named.
     pub fn build(package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
+        Self::featuring("", package, program, target, clips)
+    }
+
+    /// Builds it with features of its package, apart by commas.
+    pub fn featuring(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -91,7 +96,8 @@ impl Firmware {
         let clip = (!clips.is_empty()).then(|| ("PANTIN_CLIP".into(), joined));
         let log = std::env::var_os("DEFMT_LOG").unwrap_or("info".into());
         let core = Core::of(target);
-        let arguments = ["--release", "--package", package, "--bin", program, "--target", target].into_iter();
+        let arguments =
+            ["--release", "--package", package, "--bin", program, "--target", target, "--features", features].into_iter();
         let product = cargo(&Build {
             workspace: paths::firmware(),
             arguments: arguments.map(OsString::from).chain(core.arguments).collect(),

@@ -1,13 +1,14 @@
 //! The firmware's program on the host, before a display of the host's memory: what every machine's pictures must equal.
 
 use std::collections::VecDeque;
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
 use pantin_app::{Board, Entry, Exit, Options};
-use pantin_figure::rotation::Rotation;
+use pantin_figure::rotation::Turning;
 use pantin_figure::surface::{Frame, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
 use crate::display::{Depth, Display, Picture};
@@ -33,20 +34,20 @@ impl File {
 }
 
 /// The pictures of a display that plays `clips` in step, with their frames' numbers: the first, then one after each of the keys'
-/// letters. `words` are those of the firmware's command line.
-pub fn play(display: Display, clips: &[PathBuf], words: &[&str], keys: &[&[u8]]) -> Result<Vec<(u32, Picture)>> {
+/// letters. `words` are those of the firmware's command line; `R` is what turns its joints.
+pub fn play<R: Turning>(display: Display, clips: &[PathBuf], words: &[&str], keys: &[&[u8]]) -> Result<Vec<(u32, Picture)>> {
     let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
     let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes }).collect();
     let options = Options::parse(words.iter().copied().chain([sync::ARGUMENT]));
     match (display.width, display.height, display.depth) {
-        (128, 64, Depth::Mono) => simulate::<MonoPages<128, 64, 1024>>(display, &entries, options, keys),
-        (128, 64, Depth::Gray4) => simulate::<Gray4Rows<128, 64, 1024>>(display, &entries, options, keys),
-        (176, 220, Depth::Rgb565) => simulate::<Rgb565Rows<176, 220, 19360>>(display, &entries, options, keys),
+        (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, keys),
+        (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, keys),
+        (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 38720>>(display, &entries, options, keys),
         _ => anyhow::bail!("no machine has a display like {display:?}"),
     }
 }
 
-fn simulate<L: Layout<Ink: Value>>(
+fn simulate<R: Turning, L: Layout<Ink: Value>>(
     display: Display,
     entries: &[Entry],
     options: Options,
@@ -54,7 +55,7 @@ fn simulate<L: Layout<Ink: Value>>(
 ) -> Result<Vec<(u32, Picture)>> {
     let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     wishes.push_back(pantin_app::QUIT);
-    let mut simulator = Simulator { display, wishes, told: vec![], shown: vec![], layout: std::marker::PhantomData };
+    let mut simulator = Simulator::<R, L> { display, wishes, told: vec![], shown: vec![], kind: PhantomData };
     // The display's memory and the player's would be much of a test thread's stack.
     let mut frame = Box::new(Frame::<L>::new());
     let exit = pantin_app::run::<_, CHANNELS, MOVING, JOINTS>(entries, options, &mut frame, &mut simulator);
@@ -66,19 +67,19 @@ fn simulate<L: Layout<Ink: Value>>(
 }
 
 /// The board.
-struct Simulator<L> {
+struct Simulator<R, L> {
     display: Display,
     /// Bytes that the other end of the line sends.
     wishes: VecDeque<u8>,
     /// Bytes that it gets.
     told: Vec<u8>,
     shown: Vec<Picture>,
-    layout: std::marker::PhantomData<L>,
+    kind: PhantomData<(R, L)>,
 }
 
-impl<L: Layout<Ink: Value>> Board for Simulator<L> {
+impl<R: Turning, L: Layout<Ink: Value>> Board for Simulator<R, L> {
     type Layout = L;
-    type Turning = Rotation;
+    type Turning = R;
 
     fn show(&mut self, frame: &mut Frame<L>) {
         let Display { width, height, .. } = self.display;
