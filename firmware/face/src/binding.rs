@@ -12,7 +12,6 @@ struct Drive {
     channel: u16,
     shape: u8,
     sides: [bool; 2],
-    one_way: bool,
     mantissa: i8,
     shift: i8,
 }
@@ -34,8 +33,9 @@ impl Binding {
             for name in model.names().filter(|name| name.hash == wanted) {
                 known = true;
                 let channel = (rig.joint_channels() + index) as u16;
-                let one_way = model.shapes().nth(usize::from(name.shape)).is_some_and(|shape| shape.kind == crate::shape::Kind::Whole);
-                let _ = binding.drives.push(Drive::new(channel, name, one_way, scalar.exponent));
+                let shift = scalar.exponent.saturating_add(name.exponent);
+                let Name { shape, sides, mantissa, .. } = name;
+                let _ = binding.drives.push(Drive { channel, shape, sides, mantissa, shift });
             }
             binding.names += u16::from(known);
         }
@@ -52,19 +52,10 @@ impl Binding {
         weights.clear();
         for drive in &self.drives {
             let raw = pose.get(usize::from(drive.channel)).map_or(0, |raw| raw >> 16);
-            // 2^15 times 2^7.
+            // 2^15 times 2^7. What is below nothing in the end is nothing: two opposites may share a channel.
             let value = shifted(raw * i32::from(drive.mantissa), drive.shift);
-            // What pushes a unit below nothing belongs to its opposite, which has a name of its own.
-            let value = if drive.one_way { value.max(0) } else { value };
             weights.add(usize::from(drive.shape), drive.sides, value);
         }
-    }
-}
-
-impl Drive {
-    fn new(channel: u16, name: Name, one_way: bool, exponent: i8) -> Drive {
-        let shift = exponent.saturating_add(name.exponent);
-        Drive { channel, shape: name.shape, sides: name.sides, one_way, mantissa: name.mantissa, shift }
     }
 }
 

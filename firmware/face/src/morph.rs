@@ -79,6 +79,13 @@ impl<const N: usize> Morph<N> {
 
     /// Puts the vertices where `weights` have them. The head's own turn is left to [`crate::Look`].
     pub fn place(&mut self, model: &Model, weights: &Weights) {
+        self.place_open(model, weights);
+        aperture::close(model, &mut self.places, weights);
+        (self.head, self.pivot) = model.head(weights);
+    }
+
+    /// The same, but what is behind lids and lips is where it would be without them, and the head stays.
+    pub fn place_open(&mut self, model: &Model, weights: &Weights) {
         self.neutral(model);
         for (shape, pair) in model.shapes().zip(weights.pairs()) {
             if pair != [0; 2] && shape.kind != Kind::Head {
@@ -90,8 +97,6 @@ impl<const N: usize> Morph<N> {
                 self.turn(model, &shape, pair);
             }
         }
-        aperture::close(model, &mut self.places, weights);
-        (self.head, self.pivot) = model.head(weights);
     }
 
     fn neutral(&mut self, model: &Model) {

@@ -2,7 +2,7 @@
 
 use super::blueprint::{Blueprint, Curve, Opening};
 use super::head::Head;
-use super::{extra, names, paper};
+use super::{extra, faps, names, paper};
 use anyhow::Result;
 
 /// A step is 2^-7 mm: the head keeps within 16 bits.
@@ -41,7 +41,7 @@ pub fn neutral(head: &Head) -> Blueprint {
 }
 
 /// Millimetres that a tongue that is put out goes over the lower lip.
-const TONGUE_DROP: f64 = 30.0;
+const TONGUE_DROP: f64 = 40.0;
 
 /// Pantin's own face.
 pub fn face(head: &Head) -> Result<Blueprint> {
@@ -49,6 +49,8 @@ pub fn face(head: &Head) -> Result<Blueprint> {
     shapes.extend(extra::units(head));
     let names = names::drives(&shapes)?;
     let mut face = Blueprint { shapes, names, ..neutral(head) };
+    let parameters = faps::drives(head, &face)?;
+    face.names.extend(parameters);
     let tongue = face.shape("tongue_out").map(|shape| (shape, TONGUE_DROP));
     face.openings.iter_mut().filter(|entry| !entry.opening.paired).for_each(|entry| entry.release = tongue);
     Ok(face)

@@ -11,7 +11,7 @@ pub const TABLE: &str = include_str!("units.txt");
 
 /// The left eyeball, and what the head turns about: the joint of skull and neck.
 const EYEBALL: Vector = [32.0, 0.0, 62.0];
-const NECK: Vector = [0.0, -55.0, -22.0];
+const NECK: Vector = [0.0, -42.0, -12.0];
 /// Degrees of a whole gaze aside, and up.
 pub const GAZE: [f64; 2] = [32.0, 26.0];
 /// Degrees of a whole turn of the head about x, y, z.
@@ -113,7 +113,10 @@ fn head_turns() -> [Shape; 3] {
 /// The region that unit 1 turns, pushed aside and forwards: FACS 30 and 29, ARKit jawLeft and jawForward.
 fn jaw(head: &Head) -> [Shape; 2] {
     let region = jaw_region(head);
-    let moved = |way: Vector| region.iter().map(|&index| (index, way)).collect();
+    // In proportion to how far below the axis a point is, for the joints are held where they are.
+    let (axis, chin) = (head.at("2.13")[1], head.at("2.1")[1]);
+    let depth = |index: usize| ((axis - head.points[index][1]) / (axis - chin) * 1.5).clamp(0.0, 1.0);
+    let moved = |way: Vector| region.iter().map(|&index| (index, way.map(|x| x * depth(index)))).collect();
     let aside = Shape { deltas: moved([JAW[0], 0.0, 0.0]), ..shape("jaw_side", Interpolation::Cosine, false) };
     let ahead = Shape { deltas: moved([0.0, 0.0, JAW[1]]), ..shape("jaw_forward", Interpolation::Cosine, false) };
     [finish(head, aside, true, &[]), finish(head, ahead, false, &[])]

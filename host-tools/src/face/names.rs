@@ -21,14 +21,18 @@ pub fn drives(shapes: &[Shape]) -> Result<Vec<Drive>> {
 
 fn own(shape: usize, entry: &Shape) -> Vec<Drive> {
     let drive = |suffix: &str, sides| Drive { name: format!("{}{suffix}", entry.name), shape, sides, gain: 1.0 };
-    let whole = matches!(entry.name.as_str(), "mouth_side" | "jaw_side");
-    match (entry.sided, whole) {
+    match (entry.sided, goes_aside(&entry.name)) {
         (true, _) => vec![drive("", [true, true]), drive("_left", [true, false]), drive("_right", [false, true])],
         (false, true) => vec![drive("_left", [true, false]), drive("_right", [false, true])],
         // A head turns once: by the weight of the stored side.
         (false, false) if entry.name.starts_with("head_") => vec![drive("", [true, false])],
         (false, false) => vec![drive("", [true, true])],
     }
+}
+
+/// Whether a unit goes to one side as a whole: its mirror image is its opposite.
+pub fn goes_aside(name: &str) -> bool {
+    matches!(name, "mouth_side" | "jaw_side")
 }
 
 /// `name = unit weight unit weight ...`
@@ -41,12 +45,4 @@ fn parse(line: &str, units: &[Drive]) -> Result<Vec<Drive>> {
         Ok(Drive { name: name.trim().into(), gain: pair[1].parse()?, ..unit.clone() })
     });
     driven.collect()
-}
-
-/// The weights of a name's drives at a value: what a channel of that name and value would give.
-pub fn weigh(drives: &[Drive], name: &str, value: f64, weights: &mut pantin_face::Weights) {
-    for drive in drives.iter().filter(|drive| drive.name == name) {
-        let weight = (drive.gain * value * f64::from(pantin_face::FULL)).round() as i32;
-        weights.add(drive.shape, drive.sides, weight);
-    }
 }
