@@ -40,8 +40,10 @@ pub struct Look<const N: usize> {
     facing: Vec<i8, N>,
 }
 
-/// Parts of the display's height that the face takes, in 64ths.
-const FILLED: i32 = 62;
+/// The display's height is 64 of these parts, the face's down to the end of its neck so many: that end may leave the display.
+const FILLED: i32 = 67;
+/// Parts above it.
+const ABOVE: i32 = 1;
 /// Pixels of the face's height from which on more is drawn.
 const DETAILS: [i32; 3] = [96, 150, 190];
 /// Brightness of the mesh and of the outline.
@@ -64,14 +66,14 @@ impl<const N: usize> Look<N> {
         }
         let (height, width) = (high[1].wrapping_sub(low[1]).max(1), high[0].max(low[0].wrapping_neg()).wrapping_mul(2).max(1));
         let rows = (i32::from(canvas.height) << PIXEL_BITS) * FILLED / 64;
-        let columns = (i32::from(canvas.width) << PIXEL_BITS) * FILLED / 64;
+        let columns = i32::from(canvas.width) << PIXEL_BITS;
         // Sixteenths of a pixel a step, Q16, by whichever side is tighter; steps number at least 1, canvases at most 2^15 sixteenths.
         let fit = |room: i32, size: i32| (room << 14) / size << 2;
         let scale = fit(rows.min(1 << 16), height).min(fit(columns.min(1 << 16), width)).clamp(1, 1 << 20);
         let shift = (32 - scale.leading_zeros()).saturating_sub(15);
         let covered = (height >> 4) * (scale >> 4) >> (8 + PIXEL_BITS);
         let detail = DETAILS.iter().filter(|&&least| covered >= least).count() as u8;
-        let middle = core::array::from_fn(|axis| if axis == 1 { low[1].wrapping_add(high[1]) / 2 } else { 0 });
+        let middle = core::array::from_fn(|axis| if axis == 1 { high[1] - height / FILLED * (32 - ABOVE) } else { 0 });
         let nearer = ((1 << 28) / (height << DISTANCE_BITS)).min(1 << 14);
         let mut look = Look { canvas, nearer, rows: [[0; 3]; 3], scale: scale >> shift, shift: 16 - shift, middle, detail, points: Vec::new(), facing: Vec::new() };
         look.aim(view);
