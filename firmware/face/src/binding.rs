@@ -21,7 +21,11 @@ struct Drive {
 pub struct Binding {
     drives: Vec<Drive, BINDINGS>,
     names: u16,
+    scalars: u16,
 }
+
+/// A clip with so many known names is a face whatever else it holds.
+const FEW: u16 = 3;
 
 impl Binding {
     /// Looks up the names of `rig`'s scalars among those that `model` knows. What finds no room is left out.
@@ -38,13 +42,19 @@ impl Binding {
                 let _ = binding.drives.push(Drive { channel, shape, sides, mantissa, shift });
             }
             binding.names += u16::from(known);
+            binding.scalars += 1;
         }
         binding
     }
 
-    /// Number of the clip's scalars that drive something: a clip without is no face.
+    /// Number of the clip's scalars that drive something.
     pub fn names(&self) -> usize {
         usize::from(self.names)
+    }
+
+    /// Whether the clip is a face: a few of its scalars drive one, or all of them. A lone name among others may mean anything.
+    pub fn is_face(&self) -> bool {
+        self.names >= FEW || (self.names > 0 && self.names == self.scalars)
     }
 
     /// The weights of a pose.

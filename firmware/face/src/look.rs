@@ -41,7 +41,7 @@ pub struct Look<const N: usize> {
 }
 
 /// The display's height is 64 of these parts, the face's down to the end of its neck so many: that end may leave the display.
-const FILLED: i32 = 67;
+const FILLED: i32 = 65;
 /// Parts above it.
 const ABOVE: i32 = 1;
 /// Pixels of the face's height from which on more is drawn.

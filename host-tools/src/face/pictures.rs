@@ -7,13 +7,10 @@ use anyhow::Result;
 use pantin::{ChannelState, Clip, Player};
 use pantin_face::{Binding, View, Weights};
 
-/// A clip with fewer names that the face knows is no face.
-pub const FEWEST: usize = 3;
-
 /// Whether a clip drives a face.
 pub fn binds(clip: &Clip) -> Result<bool> {
     let face = Face::new()?;
-    Ok(Binding::of(&clip.rig(), &face.model()?).names() >= FEWEST)
+    Ok(Binding::of(&clip.rig(), &face.model()?).is_face())
 }
 
 /// Draws the face at a clip's `frames`, which must ascend, on the reference board's display.
