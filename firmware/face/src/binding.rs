@@ -1,7 +1,7 @@
 //! Which of a clip's scalars drive which shapes: found by name once, then a multiplication and a shift each.
 
-use crate::morph::Weights;
 use crate::model::{Model, Name, hash};
+use crate::morph::Weights;
 use crate::{BINDINGS, FULL};
 use heapless::Vec;
 use pantin::Rig;

@@ -1,9 +1,9 @@
 //! A face before its camera: vertices on the display, what looks away, and the lines that are left.
 
+use crate::bytes::Bytes;
 use crate::curve::Curve;
 use crate::model::Model;
 use crate::morph::Morph;
-use crate::bytes::Bytes;
 use heapless::Vec;
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
@@ -68,14 +68,24 @@ impl<const N: usize> Look<N> {
         let rows = (i32::from(canvas.height) << PIXEL_BITS) * FILLED / 64;
         let columns = i32::from(canvas.width) << PIXEL_BITS;
         // Sixteenths of a pixel a step, Q16, by whichever side is tighter; steps number at least 1, canvases at most 2^15 sixteenths.
-        let fit = |room: i32, size: i32| (room << 14) / size << 2;
+        let fit = |room: i32, size: i32| ((room << 14) / size) << 2;
         let scale = fit(rows.min(1 << 16), height).min(fit(columns.min(1 << 16), width)).clamp(1, 1 << 20);
         let shift = (32 - scale.leading_zeros()).saturating_sub(15);
-        let covered = (height >> 4) * (scale >> 4) >> (8 + PIXEL_BITS);
+        let covered = ((height >> 4) * (scale >> 4)) >> (8 + PIXEL_BITS);
         let detail = DETAILS.iter().filter(|&&least| covered >= least).count() as u8;
         let middle = core::array::from_fn(|axis| if axis == 1 { high[1] - height / FILLED * (32 - ABOVE) } else { 0 });
         let nearer = ((1 << 28) / (height << DISTANCE_BITS)).min(1 << 14);
-        let mut look = Look { canvas, nearer, rows: [[0; 3]; 3], scale: scale >> shift, shift: 16 - shift, middle, detail, points: Vec::new(), facing: Vec::new() };
+        let mut look = Look {
+            canvas,
+            nearer,
+            rows: [[0; 3]; 3],
+            scale: scale >> shift,
+            shift: 16 - shift,
+            middle,
+            detail,
+            points: Vec::new(),
+            facing: Vec::new(),
+        };
         look.aim(view);
         look
     }
@@ -168,8 +178,15 @@ impl<const N: usize> Look<N> {
                 return;
             }
             // The corner that is alone on its side.
-            let apex = if away[0] == away[1] { 2 } else if away[0] == away[2] { 1 } else { 0 };
-            let [apex, other, third] = [apex, (apex + 1) % 3, (apex + 2) % 3].map(|corner| self.end(corners.get(corner).copied().unwrap_or(0)));
+            let apex = if away[0] == away[1] {
+                2
+            } else if away[0] == away[2] {
+                1
+            } else {
+                0
+            };
+            let [apex, other, third] =
+                [apex, (apex + 1) % 3, (apex + 2) % 3].map(|corner| self.end(corners.get(corner).copied().unwrap_or(0)));
             out(line(apex.towards(other, 0), apex.towards(third, 0), OUTLINE));
         });
     }

@@ -134,7 +134,12 @@ impl<const N: usize> Morph<N> {
     fn turn(&mut self, model: &Model, shape: &Shape, pair: [i32; 2]) {
         let pair = pair.map(|weight| whole(shape.kind, weight));
         for turn in shape.turns() {
-            turn::apply(&turn, shape.interpolation, Sides { pair, middles: model.middles(), pairs: model.pairs() }, &mut self.places);
+            turn::apply(
+                &turn,
+                shape.interpolation,
+                Sides { pair, middles: model.middles(), pairs: model.pairs() },
+                &mut self.places,
+            );
         }
     }
 }

@@ -12,7 +12,12 @@ const LEAST: f64 = 0.5;
 pub fn encode(blueprint: &Blueprint) -> Result<Vec<u8>> {
     let vertices = blueprint.vertices();
     ensure!(vertices <= 1 << 15, "{vertices} vertices; a model holds at most {}", 1 << 15);
-    ensure!(blueprint.shapes.len() <= pantin_face::SHAPES, "{} shapes; a model holds at most {}", blueprint.shapes.len(), pantin_face::SHAPES);
+    ensure!(
+        blueprint.shapes.len() <= pantin_face::SHAPES,
+        "{} shapes; a model holds at most {}",
+        blueprint.shapes.len(),
+        pantin_face::SHAPES
+    );
     let wide = vertices > 256;
     let mut out = Writer { bytes: vec![VERSION, if wide { WIDE } else { 0 }, (-blueprint.fraction_bits) as u8], wide };
     for count in [blueprint.middles, blueprint.pairs, blueprint.triangles.len(), blueprint.outline, blueprint.names.len()] {
@@ -106,16 +111,20 @@ impl Writer {
             Kind::Head => 8,
         };
         let scale = scale(shape, step);
-        ensure!(scale <= u16::MAX, "the shape {} moves points too far for a model of {step} steps a unit", shape.name);
+        ensure!(
+            scale <= f64::from(u16::MAX),
+            "the unit {} moves points too far for a model of {step} steps a unit of length",
+            shape.name
+        );
         let mut deltas = Writer { bytes: Vec::new(), wide: self.wide };
-        deltas.runs(blueprint, shape, step, f64::from(scale) / 256.0);
+        deltas.runs(blueprint, shape, step, scale / 256.0);
         let mut turns = Writer { bytes: Vec::new(), wide: self.wide };
         for turn in &shape.turns {
             turns.turn(blueprint, turn, step)?;
         }
         ensure!(deltas.bytes.len() <= usize::from(u16::MAX), "the shape {} moves too many points", shape.name);
         self.bytes.push(interpolation | kind);
-        self.short(usize::from(scale));
+        self.short(scale as usize);
         self.short(deltas.bytes.len());
         self.short(turns.bytes.len());
         self.bytes.extend(deltas.bytes);
@@ -140,7 +149,8 @@ impl Writer {
     }
 
     fn turn(&mut self, blueprint: &Blueprint, turn: &Turn, step: f64) -> Result<()> {
-        let mut members: Vec<(usize, u8)> = turn.members.iter().map(|&(index, part)| (index, (part * 255.0).round() as u8)).collect();
+        let mut members: Vec<(usize, u8)> =
+            turn.members.iter().map(|&(index, part)| (index, (part * 255.0).round() as u8)).collect();
         members.sort_by_key(|entry| entry.0);
         let mut parts = Vec::new();
         for run in runs(blueprint, &members) {
@@ -158,10 +168,10 @@ impl Writer {
     }
 }
 
-/// Steps that a delta of 1 is, Q8: so that the longest way takes 127.
-fn scale(shape: &Shape, step: f64) -> u16 {
+/// Steps that a delta of 1 is, Q8, a whole number: so that the longest way takes 127.
+fn scale(shape: &Shape, step: f64) -> f64 {
     let longest = shape.deltas.iter().flat_map(|(_, way)| way).fold(0f64, |longest, x| longest.max(x.abs()));
-    (longest * step / 127.0 * 256.0).ceil().clamp(0.0, 65535.0) as u16
+    (longest * step / 127.0 * 256.0).ceil()
 }
 
 /// Entries of neighbouring points, at most 255 a run, none over the borders between middle, left and right.

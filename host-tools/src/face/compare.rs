@@ -41,7 +41,8 @@ pub fn under(face: &Blueprint, interpolation: Interpolation) -> Blueprint {
 
 /// Writes the picture: a row an action, the three weights under each interpolation.
 pub fn write(out: impl Write, face: &Face) -> Result<()> {
-    let models = METHODS.iter().map(|&(method, _)| compact::encode(&under(&face.blueprint, method))).collect::<Result<Vec<_>>>()?;
+    let models =
+        METHODS.iter().map(|&(method, _)| compact::encode(&under(&face.blueprint, method))).collect::<Result<Vec<_>>>()?;
     let canvas = pantin_figure::Canvas { width: SIZE[0] as u16, height: SIZE[1] as u16 };
     let mut cells = Vec::new();
     for (label, action) in ACTIONS {

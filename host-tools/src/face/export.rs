@@ -96,11 +96,14 @@ struct Buffers {
 impl Buffers {
     fn places(&mut self, places: &[Vector]) -> usize {
         let metres: Vec<[f32; 3]> = places.iter().map(|place| place.map(|x| (x * METRES) as f32)).collect();
-        let bound = |pick: fn(f32, f32) -> f32| [0, 1, 2].map(|axis| metres.iter().map(|place| place[axis]).reduce(pick).unwrap_or(0.0));
+        let bound =
+            |pick: fn(f32, f32) -> f32| [0, 1, 2].map(|axis| metres.iter().map(|place| place[axis]).reduce(pick).unwrap_or(0.0));
         let (least, most) = (bound(f32::min), bound(f32::max));
         self.add(metres.iter().flatten().flat_map(|x| x.to_le_bytes()).collect());
         let view = self.views.len() - 1;
-        self.accessors.push(json!({"bufferView": view, "componentType": FLOAT, "count": places.len(), "type": "VEC3", "min": least, "max": most}));
+        self.accessors.push(
+            json!({"bufferView": view, "componentType": FLOAT, "count": places.len(), "type": "VEC3", "min": least, "max": most}),
+        );
         self.accessors.len() - 1
     }
 

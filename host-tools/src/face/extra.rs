@@ -21,6 +21,9 @@ const JAW: [f64; 2] = [8.0, 7.0];
 /// How far the crease of the lid follows it, as a part of its angle.
 const CREASE: f64 = 0.12;
 
+/// Points that the skin about them follows, and how far.
+type Leaders = Vec<(usize, f64)>;
+
 /// All of them.
 pub fn units(head: &Head) -> Vec<Shape> {
     let mut units = vec![lid(head)];
@@ -34,7 +37,7 @@ pub fn units(head: &Head) -> Vec<Shape> {
 
 /// The units of a table.
 pub fn table(head: &Head, table: &str) -> Result<Vec<Shape>> {
-    let mut units: Vec<(Shape, bool, Vec<(usize, f64)>)> = Vec::new();
+    let mut units: Vec<(Shape, bool, Leaders)> = Vec::new();
     for (number, line) in table.lines().enumerate() {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
         match words[..] {
@@ -63,7 +66,8 @@ fn finish(head: &Head, mut shape: Shape, whole: bool, leaders: &[(usize, f64)]) 
     if whole {
         // As given is the left half; the right half goes the same way.
         shape.deltas.retain(|entry| entry.0 < head.middles + head.pairs);
-        let right: Vec<_> = shape.deltas.iter().filter(|entry| entry.0 >= head.middles).map(|&(index, way)| (head.mirror(index), way)).collect();
+        let right: Vec<_> =
+            shape.deltas.iter().filter(|entry| entry.0 >= head.middles).map(|&(index, way)| (head.mirror(index), way)).collect();
         shape.deltas.extend(right);
     } else {
         shape.deltas.retain(|entry| entry.0 < head.middles + head.pairs);
@@ -93,8 +97,10 @@ fn lid(head: &Head) -> Shape {
 /// Outwards and up, and by negative weights inwards and down.
 fn gaze(head: &Head) -> [Shape; 2] {
     let left = head.middles..head.middles + head.pairs;
-    let members: Vec<(usize, f64)> =
-        left.filter(|&index| head.label(index).starts_with("iris") || head.label(index).starts_with("pupil")).map(|index| (index, 1.0)).collect();
+    let members: Vec<(usize, f64)> = left
+        .filter(|&index| head.label(index).starts_with("iris") || head.label(index).starts_with("pupil"))
+        .map(|index| (index, 1.0))
+        .collect();
     let turned = |name: &str, axis, degrees| {
         let turn = Turn { axis, centre: EYEBALL, degrees, members: members.clone() };
         Shape { kind: Kind::Signed, turns: vec![turn], ..shape(name, Interpolation::Spherical, true) }

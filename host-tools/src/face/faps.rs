@@ -18,8 +18,14 @@ pub fn drives(head: &Head, face: &Blueprint) -> Result<Vec<Drive>> {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
         if let [name, unit, point, axis, part, driven] = words[..] {
             let part: f64 = part.parse()?;
-            let driven = face.names.iter().find(|drive| drive.name == driven).with_context(|| format!("faps.txt, line {}", number + 1))?;
-            let gain = part * if unit == "AU" { angle(point, axis)? } else { length(head, unit)? / PARTS / way(head, face, driven, point, axis)? };
+            let driven =
+                face.names.iter().find(|drive| drive.name == driven).with_context(|| format!("faps.txt, line {}", number + 1))?;
+            let gain = part
+                * if unit == "AU" {
+                    angle(point, axis)?
+                } else {
+                    length(head, unit)? / PARTS / way(head, face, driven, point, axis)?
+                };
             drives.push(Drive { name: name.into(), gain, ..driven.clone() });
             if name.contains("_l_") && unit != "AU" {
                 let [stored, mirrored] = driven.sides;

@@ -138,9 +138,7 @@ impl Head {
                 name(&format!("-{}", row.name), image)?;
             }
         }
-        for index in middles..rows.len() {
-            labels.push(format!("-{}", rows[index].name));
-        }
+        labels.extend(rows[middles..].iter().map(|row| format!("-{}", row.name)));
         let fixed = rows.iter().enumerate().filter(|(_, row)| row.fixed).flat_map(|(index, _)| {
             let image = if index < middles { None } else { Some(index + pairs) };
             [Some(index), image].into_iter().flatten()
@@ -156,9 +154,10 @@ impl Head {
         let stored: Vec<usize> = (0..rows.len()).filter(|&index| self.skin[index]).collect();
         let mut triangles = skin::triangles(&self.points, &stored, self.middles);
         let closes = |triangle: &Triangle| {
-            self.openings.iter().any(|opening| {
-                triangle.iter().all(|corner| opening.upper.contains(corner) || opening.lower.contains(corner))
-            }) || triangle.iter().all(|corner| self.fixed.contains(corner))
+            self.openings
+                .iter()
+                .any(|opening| triangle.iter().all(|corner| opening.upper.contains(corner) || opening.lower.contains(corner)))
+                || triangle.iter().all(|corner| self.fixed.contains(corner))
         };
         triangles.retain(|triangle| !closes(triangle));
         self.triangles = triangles;
@@ -216,7 +215,8 @@ impl Head {
         let mut path = Vec::new();
         for word in words {
             if *word == "|" {
-                let back: Vec<usize> = path.iter().rev().map(|&index| self.mirror(index)).filter(|index| !path.contains(index)).collect();
+                let back: Vec<usize> =
+                    path.iter().rev().map(|&index| self.mirror(index)).filter(|index| !path.contains(index)).collect();
                 path.extend(back);
             } else {
                 path.push(self.find(word)?);
@@ -227,7 +227,9 @@ impl Head {
 
     fn parse_curve(&self, line: &str) -> Result<Curve> {
         let words: Vec<&str> = line.split_whitespace().collect();
-        let [name, detail, shade, options, points @ ..] = &words[..] else { bail!("expected name, detail, brightness, options, points") };
+        let [name, detail, shade, options, points @ ..] = &words[..] else {
+            bail!("expected name, detail, brightness, options, points")
+        };
         Ok(Curve {
             name: name.to_string(),
             detail: detail.parse()?,

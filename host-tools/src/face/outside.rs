@@ -50,13 +50,17 @@ pub fn model(path: &Path) -> Result<Blueprint> {
 }
 
 fn of_target(ways: &[Vector], name: &str) -> Shape {
-    Shape { deltas: ways.iter().copied().enumerate().filter(|(_, way)| *way != [0.0; 3]).collect(), ..shape(name, Interpolation::Linear, false) }
+    Shape {
+        deltas: ways.iter().copied().enumerate().filter(|(_, way)| *way != [0.0; 3]).collect(),
+        ..shape(name, Interpolation::Linear, false)
+    }
 }
 
 /// The finest step with which no sum of all targets leaves 16 bits.
 fn fraction_bits(mesh: &Mesh) -> i8 {
     let farthest = (0..mesh.points.len()).flat_map(|index| {
-        let reach = |axis: usize| mesh.points[index][axis].abs() + mesh.targets.iter().map(|ways| ways[index][axis].abs()).sum::<f64>();
+        let reach =
+            |axis: usize| mesh.points[index][axis].abs() + mesh.targets.iter().map(|ways| ways[index][axis].abs()).sum::<f64>();
         [reach(0), reach(1), reach(2)]
     });
     let farthest = farthest.fold(1e-6, f64::max);

@@ -110,7 +110,10 @@ fn following(name: &str, head: &Head, ways: Vec<(usize, Vector)>, led: &[&str]) 
 /// Adds the skin within each leader's reach, but for what has a way already and for the edges of lips and lids.
 pub fn follow(head: &Head, ways: Vec<(usize, Vector)>, leaders: &[(usize, f64)]) -> Vec<(usize, Vector)> {
     let bound = |index: usize| {
-        let edges = head.openings.iter().any(|opening| [index, head.mirror(index)].iter().any(|i| opening.upper.contains(i) || opening.lower.contains(i)));
+        let edges = head
+            .openings
+            .iter()
+            .any(|opening| [index, head.mirror(index)].iter().any(|i| opening.upper.contains(i) || opening.lower.contains(i)));
         let lips = head.curves.iter().filter(|curve| curve.name.starts_with("lip")).any(|curve| curve.points.contains(&index));
         edges || lips || !head.is_skin(index)
     };
@@ -140,7 +143,8 @@ fn raise(head: &Head) -> f64 {
 fn brow_inner_lower(head: &Head) -> Shape {
     let down = -raise(head);
     let part = |name: &str, part: f64| (head.find(name).expect("a point of the brow"), [0.0, down * part, 0.0]);
-    let ways = vec![part("4.1", 1.0), part("brow-in-low", 1.0), part("brow-in-top", 0.6), part("brow-low", 0.55), part("brow-top", 0.1)];
+    let ways =
+        vec![part("4.1", 1.0), part("brow-in-low", 1.0), part("brow-in-top", 0.6), part("brow-low", 0.55), part("brow-top", 0.1)];
     following("brow_inner_lower", head, ways, &["4.1"])
 }
 

@@ -14,7 +14,8 @@ const NEAREST: f64 = 1e-9;
 pub fn triangles(points: &[Vector], stored: &[usize], middles: usize) -> Vec<Triangle> {
     // Symmetric directions: a hull of both halves has the middle as an edge wherever two neighbours in the middle are near enough.
     let mut indices = stored.to_vec();
-    let images: Vec<(usize, Vector)> = stored.iter().filter(|&&index| index >= middles).map(|&index| (index, mirror(points[index]))).collect();
+    let images: Vec<(usize, Vector)> =
+        stored.iter().filter(|&&index| index >= middles).map(|&index| (index, mirror(points[index]))).collect();
     let mut directions: Vec<Vector> = stored.iter().map(|&index| unit(minus(points[index], CENTRE))).collect();
     for (index, image) in images {
         indices.push(index);
@@ -45,7 +46,8 @@ fn hull(points: &[Vector]) -> Vec<Triangle> {
 
 /// A tetrahedron to start with: four corners with the most room between them.
 fn first(points: &[Vector]) -> Vec<Triangle> {
-    let farthest = |way: Vector| (0..points.len()).max_by(|&a, &b| dot(points[a], way).total_cmp(&dot(points[b], way))).unwrap_or(0);
+    let farthest =
+        |way: Vector| (0..points.len()).max_by(|&a, &b| dot(points[a], way).total_cmp(&dot(points[b], way))).unwrap_or(0);
     let corners = [[1.0, 0.3, 0.2], [-1.0, 0.3, 0.25], [0.1, -1.0, 0.6], [0.05, -0.4, -1.0]].map(farthest);
     let [a, b, c, d] = corners;
     let outwards = |[a, b, c]: Triangle, inside: usize| {

@@ -18,7 +18,10 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let face = Face::new()?;
-    println!("the mouth opens by {:.1} degrees; length of the jaw on the way, of that at rest:", paper::opening_angle(&face.head));
+    println!(
+        "the mouth opens by {:.1} degrees; length of the jaw on the way, of that at rest:",
+        paper::opening_angle(&face.head)
+    );
     for (method, name) in METHODS {
         let jaw = jaw(&face, method)?;
         println!("  {name:10} {:6.2} to {:6.2} %", jaw.shortest * 100.0, jaw.longest * 100.0);

@@ -28,7 +28,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let bytes = compact::encode(&blueprint)?;
     let moved: usize = blueprint.shapes.iter().map(|shape| shape.deltas.len()).sum();
     let whole = blueprint.shapes.len() * (blueprint.middles + blueprint.pairs);
-    println!("{} bytes: {} vertices, {} units, {} names", bytes.len(), blueprint.vertices(), blueprint.shapes.len(), blueprint.names.len());
+    println!(
+        "{} bytes: {} vertices, {} units, {} names",
+        bytes.len(),
+        blueprint.vertices(),
+        blueprint.shapes.len(),
+        blueprint.names.len()
+    );
     println!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12);
     let error = error::greatest(&blueprint, &bytes)?;
     println!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0);

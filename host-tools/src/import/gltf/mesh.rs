@@ -25,7 +25,9 @@ pub struct Mesh {
 pub fn read(path: &Path) -> Result<Mesh> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     let file = File::open(path, &bytes)?;
-    let with_targets = |mesh: &&gltf::json::Mesh| mesh.primitives.iter().any(|part| part.targets.as_ref().is_some_and(|targets| !targets.is_empty()));
+    let with_targets = |mesh: &&gltf::json::Mesh| {
+        mesh.primitives.iter().any(|part| part.targets.as_ref().is_some_and(|targets| !targets.is_empty()))
+    };
     let meshes = &file.root.meshes;
     let mesh = meshes.iter().find(with_targets).or(meshes.first()).with_context(|| format!("{}: no mesh", path.display()))?;
     let mut out = Mesh::default();
@@ -46,7 +48,12 @@ pub fn read(path: &Path) -> Result<Mesh> {
                 out.targets.push(Vec::new());
             }
             let ways = morph.positions.map(|index| places(&file, index.value())).transpose()?.unwrap_or_default();
-            ensure!(ways.is_empty() || ways.len() == count, "{}: target {target} has {} points, its mesh {count}", path.display(), ways.len());
+            ensure!(
+                ways.is_empty() || ways.len() == count,
+                "{}: target {target} has {} points, its mesh {count}",
+                path.display(),
+                ways.len()
+            );
             out.targets[target].resize(first, [0.0; 3]);
             out.targets[target].extend(ways);
         }
@@ -54,7 +61,9 @@ pub fn read(path: &Path) -> Result<Mesh> {
     out.targets.iter_mut().for_each(|ways| ways.resize(out.points.len(), [0.0; 3]));
     let named = target_names(mesh);
     let prefix = mesh.name.clone().unwrap_or_else(|| "mesh".into());
-    out.names = (0..out.targets.len()).map(|index| named.get(index).cloned().unwrap_or_else(|| format!("{prefix}.weights[{index}]"))).collect();
+    out.names = (0..out.targets.len())
+        .map(|index| named.get(index).cloned().unwrap_or_else(|| format!("{prefix}.weights[{index}]")))
+        .collect();
     Ok(out)
 }
 
