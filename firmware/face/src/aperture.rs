@@ -3,6 +3,7 @@
 use crate::bytes::Bytes;
 use crate::model::{Error, Model, NO_SHAPE};
 use crate::morph::{Place, Weights};
+use heapless::Vec;
 
 struct Aperture<'a> {
     mirrored: bool,
@@ -44,6 +45,7 @@ pub(crate) fn check(bytes: &mut Bytes, count: u8, model: &Model) -> Result<(), E
 }
 
 /// Brings members between the edges.
+#[inline(never)]
 pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
     let mut bytes = Bytes(model.apertures);
     while let Ok(aperture) = Aperture::parse(&mut bytes, model.wide) {
@@ -53,66 +55,63 @@ pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
             if mirrored && !aperture.mirrored {
                 break;
             }
-            let edge = |indices| Edge { indices, wide: model.wide, mirror: mirrored.then_some(*model) };
+            let image = |index| usize::from(if mirrored { model.mirror(index) } else { index });
+            let edge = |indices| Edge::new(each(indices, model.wide).map(image), places);
             let (upper, lower) = (edge(aperture.upper), edge(aperture.lower));
-            for index in edge(aperture.members).indices() {
-                let Some(&[x, y, z]) = places.get(index) else { continue };
-                let x = upper.within(places, x);
-                let lowest = i32::from(lower.height(places, x)) - drop;
-                let y = i32::from(y).min(i32::from(upper.height(places, x))).max(lowest) as i16;
-                if let Some(place) = places.get_mut(index) {
-                    *place = [x, y, z];
-                }
+            for index in each(aperture.members, model.wide).map(image) {
+                let Some(place) = places.get_mut(index) else { continue };
+                let x = place[0].clamp(upper.least, upper.most.max(upper.least));
+                let lowest = i32::from(lower.height(x)) - drop;
+                let y = i32::from(place[1]).min(i32::from(upper.height(x))).max(lowest) as i16;
+                *place = [x, y, place[2]];
             }
         }
     }
 }
 
-/// A row of vertices from one corner to the other, or its mirror image.
-struct Edge<'a> {
-    indices: &'a [u8],
-    wide: bool,
-    mirror: Option<Model<'a>>,
+fn each(indices: &[u8], wide: bool) -> impl Iterator<Item = u16> {
+    let mut bytes = Bytes(indices);
+    core::iter::from_fn(move || bytes.index(wide).ok())
 }
 
-impl Edge<'_> {
-    fn indices(&self) -> impl Iterator<Item = usize> + '_ {
-        let mut bytes = Bytes(self.indices);
-        core::iter::from_fn(move || {
-            let index = bytes.index(self.wide).ok()?;
-            Some(usize::from(self.mirror.map_or(index, |model| model.mirror(index))))
-        })
-    }
+/// Most vertices of an edge; further ones are left out.
+const EDGE: usize = 16;
 
-    fn vertices<'p>(&'p self, places: &'p [Place]) -> impl Iterator<Item = Place> + 'p {
-        self.indices().map(|index| places.get(index).copied().unwrap_or_default())
-    }
+/// A row of vertices from one corner to the other.
+struct Edge {
+    vertices: Vec<[i16; 2], EDGE>,
+    least: i16,
+    most: i16,
+}
 
-    /// `x`, or the nearer corner's.
-    fn within(&self, places: &[Place], x: i16) -> i16 {
-        let xs = || self.vertices(places).map(|place| place[0]);
-        x.min(xs().max().unwrap_or(x)).max(xs().min().unwrap_or(x))
+impl Edge {
+    fn new(indices: impl Iterator<Item = usize>, places: &[Place]) -> Edge {
+        let mut edge = Edge { vertices: Vec::new(), least: i16::MAX, most: i16::MIN };
+        for &[x, y, _] in indices.filter_map(|index| places.get(index)) {
+            let _ = edge.vertices.push([x, y]);
+            edge.least = edge.least.min(x);
+            edge.most = edge.most.max(x);
+        }
+        edge
     }
 
     /// The height of the edge at `x`, which is inside.
-    fn height(&self, places: &[Place], x: i16) -> i16 {
-        let mut vertices = self.vertices(places);
-        let Some(mut from) = vertices.next() else { return 0 };
-        for to in vertices {
+    fn height(&self, x: i16) -> i16 {
+        for pair in self.vertices.windows(2) {
+            let &[from, to] = pair else { continue };
             if from[0].min(to[0]) <= x && x <= from[0].max(to[0]) {
                 return between(from, to, x);
             }
-            from = to;
         }
-        from[1]
+        self.vertices.last().map_or(0, |last| last[1])
     }
 }
 
-/// Height at `x` between two vertices, by halving: within 1/64 of the way from one to the other.
-fn between(from: Place, to: Place, x: i16) -> i16 {
-    let ([mut a, mut b], x) = ([from, to].map(|place| [i32::from(place[0]), i32::from(place[1])]), i32::from(x));
+/// Height at `x` between two vertices, by halving: within 1/32 of the way from one to the other.
+fn between(from: [i16; 2], to: [i16; 2], x: i16) -> i16 {
+    let (mut a, mut b, x) = ([i32::from(from[0]), i32::from(from[1])], [i32::from(to[0]), i32::from(to[1])], i32::from(x));
     let ascending = a[0] <= b[0];
-    for _ in 0..6 {
+    for _ in 0..4 {
         let middle = [(a[0] + b[0]) >> 1, (a[1] + b[1]) >> 1];
         if (x <= middle[0]) == ascending { b = middle } else { a = middle }
     }

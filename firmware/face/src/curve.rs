@@ -57,6 +57,16 @@ impl<'a> Curve<'a> {
         }
     }
 
+    /// Its vertices but the first.
+    #[inline(always)]
+    pub(crate) fn each_further(&self, mut visit: impl FnMut(u16)) {
+        if self.wide {
+            self.indices.as_chunks().0.iter().skip(1).for_each(|&bytes| visit(u16::from_le_bytes(bytes)));
+        } else {
+            self.indices.iter().skip(1).for_each(|&byte| visit(u16::from(byte)));
+        }
+    }
+
     /// Its vertices.
     pub fn vertices(&self) -> impl Iterator<Item = u16> + '_ {
         (0..self.len()).map(|place| self.vertex(place))
@@ -80,6 +90,9 @@ impl<'a> Curves<'a> {
             let curve = Curve::parse(bytes, model.wide)?;
             for index in curve.vertices() {
                 model.check_index(index)?;
+                if curve.mirrored && usize::from(index) >= model.middles() + model.pairs() {
+                    return Err(Error::Malformed);
+                }
             }
         }
         Ok(())

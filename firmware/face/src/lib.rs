@@ -19,7 +19,9 @@ pub mod curve;
 pub mod look;
 pub mod model;
 pub mod morph;
+mod seen;
 pub mod shape;
+mod strokes;
 mod turn;
 
 pub use binding::Binding;

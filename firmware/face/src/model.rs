@@ -3,7 +3,7 @@
 use crate::SHAPES;
 use crate::bytes::Bytes;
 use crate::curve::Curves;
-use crate::shape::{Kind, Shapes};
+use crate::shape::Shapes;
 
 /// The only version.
 pub const VERSION: u8 = 1;
@@ -101,7 +101,7 @@ impl<'a> Model<'a> {
             shape_count,
             names: &[],
         };
-        model.check_indices(model.triangles)?;
+        model.check_stored(model.triangles)?;
         model.check_indices(model.fixed)?;
         model.curves = consumed(&mut bytes, |bytes| Curves::check(bytes, curves, &model))?;
         model.apertures = consumed(&mut bytes, |bytes| crate::aperture::check(bytes, apertures, &model))?;
@@ -118,6 +118,18 @@ impl<'a> Model<'a> {
         let mut indices = Bytes(indices);
         while !indices.0.is_empty() {
             self.check_index(indices.index(self.wide)?)?;
+        }
+        Ok(())
+    }
+
+    /// What is mirrored lies in the middle or left.
+    fn check_stored(&self, indices: &[u8]) -> Result<(), Error> {
+        let stored = usize::from(self.middles) + usize::from(self.pairs);
+        let mut indices = Bytes(indices);
+        while !indices.0.is_empty() {
+            if usize::from(indices.index(self.wide)?) >= stored {
+                return Err(Error::Malformed);
+            }
         }
         Ok(())
     }
@@ -165,6 +177,12 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// What makes vertices in the middle or left into their mirror images.
+    #[inline(always)]
+    pub(crate) fn image(&self) -> Image {
+        Image { middles: self.middles, pairs: self.pairs }
+    }
+
     /// One step of a vertex is 2^`step_exponent` of the model's units (millimetres of Pantin's own face).
     pub fn step_exponent(&self) -> i8 {
         self.step_exponent
@@ -194,22 +212,19 @@ impl<'a> Model<'a> {
     pub fn names(&self) -> impl Iterator<Item = Name> {
         self.names.chunks_exact(NAME_LEN).filter_map(Name::parse)
     }
+}
 
-    /// Angles of the head in 2^-32 turns, about the axes x, y and z, and what it turns about.
-    pub(crate) fn head(&self, weights: &crate::Weights) -> ([i32; 3], [i16; 3]) {
-        let (mut angles, mut pivot) = ([0i32; 3], [0; 3]);
-        for (shape, [weight, _]) in self.shapes().zip(weights.pairs()) {
-            if shape.kind != Kind::Head {
-                continue;
-            }
-            for turn in shape.turns() {
-                pivot = turn.centre;
-                if let Some(angle) = angles.get_mut(turn.axis) {
-                    *angle = angle.wrapping_add((i32::from(turn.angle) * weight).wrapping_shl(1));
-                }
-            }
-        }
-        (angles, pivot)
+/// Mirror images of vertices in the middle or left.
+#[derive(Clone, Copy)]
+pub(crate) struct Image {
+    middles: u16,
+    pairs: u16,
+}
+
+impl Image {
+    #[inline(always)]
+    pub fn of(self, index: u16) -> u16 {
+        if index < self.middles { index } else { index.wrapping_add(self.pairs) }
     }
 }
 

@@ -4,7 +4,6 @@ use crate::model::{Error, Model};
 use crate::shape::{Interpolation, Kind, Run, Shape};
 use crate::turn::{self, Sides};
 use crate::{FULL, SHAPES, aperture};
-use heapless::Vec;
 use pantin_figure::trig::{ONE, sin_cos};
 
 /// A vertex, in steps of the model.
@@ -56,9 +55,10 @@ impl Weights {
 /// The vertices of a face of at most `N`.
 #[derive(Clone, Debug)]
 pub struct Morph<const N: usize> {
-    pub(crate) places: Vec<Place, N>,
-    pub(crate) head: [i32; 3],
-    pub(crate) pivot: Place,
+    places: [Place; N],
+    vertices: usize,
+    head: [i32; 3],
+    pivot: Place,
 }
 
 impl<const N: usize> Morph<N> {
@@ -67,89 +67,107 @@ impl<const N: usize> Morph<N> {
         if model.vertices() > N {
             return Err(Error::TooManyVertices { most: N });
         }
-        let mut morph = Morph { places: Vec::new(), head: [0; 3], pivot: [0; 3] };
-        morph.neutral(model);
+        let mut morph = Morph { places: [[0; 3]; N], vertices: model.vertices(), head: [0; 3], pivot: [0; 3] };
+        neutral(model, &mut morph.places);
         Ok(morph)
     }
 
     /// The vertices, in the order of the model.
     pub fn places(&self) -> &[Place] {
-        &self.places
+        self.places.get(..self.vertices).unwrap_or(&[])
+    }
+
+    /// How the head turns: angles in 2^-32 turns about x, y, z, and what it turns about.
+    pub(crate) fn turn(&self) -> ([i32; 3], Place) {
+        (self.head, self.pivot)
     }
 
     /// Puts the vertices where `weights` have them. The head's own turn is left to [`crate::Look`].
     pub fn place(&mut self, model: &Model, weights: &Weights) {
         self.place_open(model, weights);
         aperture::close(model, &mut self.places, weights);
-        (self.head, self.pivot) = model.head(weights);
     }
 
-    /// The same, but what is behind lids and lips is where it would be without them, and the head stays.
+    /// The same, but what is behind lids and lips is where it would be without them.
     pub fn place_open(&mut self, model: &Model, weights: &Weights) {
-        self.neutral(model);
-        for (shape, pair) in model.shapes().zip(weights.pairs()) {
-            if pair != [0; 2] && shape.kind != Kind::Head {
-                self.add(model, &shape, pair);
-            }
-        }
-        for (shape, pair) in model.shapes().zip(weights.pairs()) {
-            if pair != [0; 2] && shape.kind != Kind::Head && shape.turns_something() {
-                self.turn(model, &shape, pair);
-            }
-        }
+        neutral(model, &mut self.places);
+        (self.head, self.pivot) = apply(model, weights, &mut self.places);
     }
+}
 
-    fn neutral(&mut self, model: &Model) {
-        self.places.clear();
-        let stored = || model.points.as_chunks::<6>().0.iter().map(|point| coordinates(*point));
-        // There is room: checked in `new`.
-        self.places.extend(stored().take(N));
-        let right = stored().skip(model.middles()).map(|[x, y, z]| [x.wrapping_neg(), y, z]);
-        self.places.extend(right.take(N - self.places.len()));
-    }
-
-    fn add(&mut self, model: &Model, shape: &Shape, pair: [i32; 2]) {
-        // Q15 times Q8 to Q8: at most 2^16.
-        let factors = pair.map(|weight| (eased(shape.interpolation, whole(shape.kind, weight)) * i32::from(shape.scale)) >> 15);
-        for run in shape.runs() {
-            if factors[0] != 0 {
-                self.add_run(run, run.first, factors[0], factors[0]);
-            }
-            if factors[1] != 0 {
-                self.add_run(run, model.mirror(run.first), -factors[1], factors[1]);
-            }
+/// Applies the shapes one after the other, and returns how the head turns.
+#[inline(never)]
+fn apply(model: &Model, weights: &Weights, places: &mut [Place]) -> ([i32; 3], Place) {
+    let (mut head, mut pivot) = ([0i32; 3], [0; 3]);
+    for (shape, pair) in model.shapes().zip(weights.pairs()) {
+        if pair == [0; 2] && shape.kind != Kind::Head {
+            continue;
         }
-    }
-
-    /// `across` is the factor of x.
-    fn add_run(&mut self, run: Run, first: u16, across: i32, factor: i32) {
-        let Some(places) = self.places.get_mut(usize::from(first)..) else { return };
-        for (place, delta) in places.iter_mut().zip(run.deltas) {
-            // A delta of 2^7 times a factor of 2^16, in Q8.
-            let along = |x: i16, delta: u8, factor: i32| x.wrapping_add(((i32::from(delta as i8) * factor + 128) >> 8) as i16);
-            *place = [along(place[0], delta[0], across), along(place[1], delta[1], factor), along(place[2], delta[2], factor)];
+        let pair = if shape.kind == Kind::Whole { pair.map(|weight| weight.max(0)) } else { pair };
+        if shape.kind == Kind::Head {
+            for turn in shape.turns() {
+                pivot = turn.centre;
+                if let Some(angle) = head.get_mut(turn.axis) {
+                    *angle = angle.wrapping_add((i32::from(turn.angle) * pair[0]).wrapping_shl(1));
+                }
+            }
+            continue;
         }
-    }
-
-    fn turn(&mut self, model: &Model, shape: &Shape, pair: [i32; 2]) {
-        let pair = pair.map(|weight| whole(shape.kind, weight));
+        add(model, &shape, pair, places);
         for turn in shape.turns() {
-            turn::apply(
-                &turn,
-                shape.interpolation,
-                Sides { pair, middles: model.middles(), pairs: model.pairs() },
-                &mut self.places,
-            );
+            let sides = Sides { pair, middles: model.middles(), pairs: model.pairs() };
+            turn::apply(&turn, shape.interpolation, sides, places);
+        }
+    }
+    (head, pivot)
+}
+
+#[inline(never)]
+fn neutral(model: &Model, places: &mut [Place]) {
+    let points = model.points.as_chunks::<6>().0;
+    for (place, point) in places.iter_mut().zip(points) {
+        *place = coordinates(*point);
+    }
+    let (stored, right) = places.split_at_mut(points.len().min(places.len()));
+    let left = stored.get(model.middles()..).unwrap_or(&[]);
+    for (place, &[x, y, z]) in right.iter_mut().zip(left) {
+        *place = [x.wrapping_neg(), y, z];
+    }
+}
+
+/// Adds a shape's deltas.
+fn add(model: &Model, shape: &Shape, pair: [i32; 2], places: &mut [Place]) {
+    if !shape.moves_something() {
+        return;
+    }
+    // Q15 times Q8 to Q8: at most 2^16.
+    let factor = |weight| (eased(shape.interpolation, weight) * i32::from(shape.scale)) >> 15;
+    let stored = factor(pair[0]);
+    let mirrored = if pair[1] == pair[0] { stored } else { factor(pair[1]) };
+    for run in shape.runs() {
+        if stored != 0 {
+            add_run(run, run.first, [stored, stored], places);
+        }
+        if mirrored != 0 {
+            add_run(run, model.mirror(run.first), [-mirrored, mirrored], places);
         }
     }
 }
 
-pub(crate) fn coordinates([a, b, c, d, e, f]: [u8; 6]) -> Place {
-    [[a, b], [c, d], [e, f]].map(i16::from_le_bytes)
+/// The first factor is that of x.
+#[inline]
+fn add_run(run: Run, first: u16, [across, factor]: [i32; 2], places: &mut [Place]) {
+    let Some(places) = places.get_mut(usize::from(first)..) else { return };
+    for (place, delta) in places.iter_mut().zip(run.deltas) {
+        // A delta of 2^7 times a factor of 2^16, in Q8.
+        let along = |x: i16, delta: u8, factor: i32| x.wrapping_add(((i32::from(delta as i8) * factor + 128) >> 8) as i16);
+        *place = [along(place[0], delta[0], across), along(place[1], delta[1], factor), along(place[2], delta[2], factor)];
+    }
 }
 
-fn whole(kind: Kind, weight: i32) -> i32 {
-    if kind == Kind::Whole { weight.max(0) } else { weight }
+#[inline(always)]
+pub(crate) fn coordinates([a, b, c, d, e, f]: [u8; 6]) -> Place {
+    [i16::from_le_bytes([a, b]), i16::from_le_bytes([c, d]), i16::from_le_bytes([e, f])]
 }
 
 /// The part of the way that a weight has gone, Q15.

@@ -111,9 +111,9 @@ impl<'a> Shape<'a> {
         core::iter::from_fn(move || turn(&mut bytes, wide).ok())
     }
 
-    /// What moves nothing costs nothing.
-    pub(crate) fn turns_something(&self) -> bool {
-        !self.turns.is_empty()
+    /// Whether it has deltas.
+    pub(crate) fn moves_something(&self) -> bool {
+        !self.deltas.is_empty()
     }
 }
 

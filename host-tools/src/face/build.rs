@@ -47,6 +47,8 @@ const TONGUE_DROP: f64 = 40.0;
 pub fn face(head: &Head) -> Result<Blueprint> {
     let mut shapes = paper::units(head);
     shapes.extend(extra::units(head));
+    // What turns goes on from where deltas have brought it.
+    shapes.sort_by_key(|shape| !shape.turns.is_empty());
     let names = names::drives(&shapes)?;
     let mut face = Blueprint { shapes, names, ..neutral(head) };
     let parameters = faps::drives(head, &face)?;

@@ -100,7 +100,7 @@ const POSES: [(&str, &str, i16); 64] = [
     ("mouth_left", "mouth_left", 0),
     ("jaw_left", "jaw_left", 0),
     ("jaw_forward, from aside", "jaw_forward", -60),
-    ("1 and mouth_close", "open_mouth=0.25,mouth_close=0.25", 0),
+    ("1 and mouth_close", "open_mouth=0.25,mouth_close=0.5", 0),
     ("tongue_out", "open_mouth=0.3,tongue_out", 0),
     ("tongue_up", "open_mouth=0.3,tongue_up", 0),
     ("p, b, m", "viseme_pp", 0),
