@@ -7,8 +7,10 @@ use crate::seen::Seen;
 use crate::strokes::{self, Screen};
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
+use pantin_figure::draw::stroke;
 use pantin_figure::lines::Line;
 use pantin_figure::rotation::{Rotation, Vector};
+use pantin_figure::surface::Surface;
 
 /// From where a face is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,6 +85,12 @@ impl<const N: usize> Look<N> {
     /// The places of the vertices on the display, in sixteenths of a pixel.
     pub fn points(&self) -> &[[i16; 2]] {
         self.points.get(..self.vertices).unwrap_or(&[])
+    }
+
+    /// Draws the face on a clear surface.
+    #[inline(never)]
+    pub fn draw_on<S: Surface>(&self, model: &Model, surface: &mut S) {
+        self.lines(model, |line| stroke(&line, surface, false));
     }
 
     /// Gives the lines of the face, the brighter ones after the darker ones.

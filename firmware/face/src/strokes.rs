@@ -2,6 +2,7 @@
 
 use crate::curve::Curve;
 use crate::model::Model;
+use pantin_figure::ink::Tone;
 use pantin_figure::lines::Line;
 
 /// Brightness of the mesh and of the outline.
@@ -212,7 +213,7 @@ fn visible(from: End, to: End, shade: u8, out: &mut impl FnMut(Line)) {
 }
 
 fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
-    Line { from, to, depth: 0, shade }
+    Line { from, to, depth: 0, shade, tone: Tone::Middle, width: 1 }
 }
 
 /// The first `most` triangles of the stored half, and their mirror images.

@@ -2,6 +2,7 @@
 
 pub mod blueprint;
 pub mod build;
+pub mod cast;
 pub mod compact;
 pub mod compare;
 pub mod draw;
@@ -15,7 +16,6 @@ pub mod head;
 pub mod names;
 pub mod outside;
 pub mod paper;
-pub mod pictures;
 pub mod pose;
 pub mod sheet;
 mod skin;
