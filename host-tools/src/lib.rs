@@ -7,6 +7,7 @@ pub mod encode;
 mod euler;
 pub mod expand;
 pub mod export;
+pub mod face;
 pub mod fit;
 pub mod fk;
 pub mod import;

@@ -16,6 +16,7 @@ struct Arguments {
 enum Command {
     Convert(Box<cmd::convert::Arguments>),
     Expand(cmd::expand::Arguments),
+    Face(cmd::face::Arguments),
     Info(cmd::info::Arguments),
     Play(cmd::play::Arguments),
     Render(Box<cmd::render::Arguments>),
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Convert(arguments) => cmd::convert::run(&arguments),
         Command::Expand(arguments) => cmd::expand::run(&arguments),
+        Command::Face(arguments) => cmd::face::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
         Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),

@@ -6,6 +6,7 @@ pub mod convert;
 mod edits;
 mod errors;
 pub mod expand;
+pub mod face;
 pub mod info;
 mod max_error;
 pub mod play;

@@ -1,10 +1,11 @@
-//! A clip's figure before one camera or several.
+//! A clip's figure, or its face, before one camera or several.
 
 use super::image::Image;
 use super::palette::Palette;
 use super::scene::Scene;
 use super::shades::Shades;
 use super::smooth;
+use crate::face::cast::Cast;
 use anyhow::{Context, Result};
 use pantin::{ChannelState, Clip, Player};
 use pantin_figure::{Canvas, RIG_JOINTS, Stage, View};
@@ -39,10 +40,16 @@ impl Memory {
     }
 }
 
+/// What is before the cameras.
+enum Shown {
+    Body(Vec<Stage<RIG_JOINTS>>),
+    Face(Box<Cast>),
+}
+
 /// The figure of one frame after another, each view by its own camera.
 pub struct Figure<'a, 'm> {
     player: Player<'a, 'm>,
-    stages: Vec<Stage<RIG_JOINTS>>,
+    shown: Shown,
     size: [usize; 2],
     factor: usize,
 }
@@ -53,9 +60,14 @@ impl<'a, 'm> Figure<'a, 'm> {
         let factor = size[0].max(size[1]).div_ceil(MOST_PIXELS);
         let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
         let canvas = Canvas { width, height };
-        let stage = |view: &View| Stage::of_clip(&mut player, canvas, *view).context("this figure cannot be drawn");
-        let stages = views.iter().map(stage).collect::<Result<_>>()?;
-        Ok(Figure { player, stages, size, factor })
+        let shown = match Cast::of_clip(player.clip(), canvas, views)? {
+            Some(cast) => Shown::Face(Box::new(cast)),
+            None => {
+                let stage = |view: &View| Stage::of_clip(&mut player, canvas, *view).context("this figure cannot be drawn");
+                Shown::Body(views.iter().map(stage).collect::<Result<_>>()?)
+            }
+        };
+        Ok(Figure { player, shown, size, factor })
     }
 
     /// Goes to a frame.
@@ -65,7 +77,11 @@ impl<'a, 'm> Figure<'a, 'm> {
 
     /// The frame as a view's camera sees it.
     pub fn scene(&mut self, view: usize) -> Scene {
-        Scene::of(&mut self.stages[view], self.player.pose(), self.factor as f32)
+        let [width, height] = self.size.map(|pixels| pixels as f32);
+        match &mut self.shown {
+            Shown::Body(stages) => Scene::of(&mut stages[view], self.player.pose(), self.factor as f32),
+            Shown::Face(cast) => Scene::of_face(&cast.lines(self.player.pose(), view), self.factor as f32, width.min(height)),
+        }
     }
 
     /// The same as a picture. Pixels are at most [`MOST_PIXELS`] a side.
@@ -75,7 +91,10 @@ impl<'a, 'm> Figure<'a, 'm> {
             Look::Smooth => smooth::draw(&self.scene(view), width, height, palette),
             Look::Pixels => {
                 let mut shades = Shades::new(width, height);
-                shades.draw(self.stages[view].look(self.player.pose()), true, palette.is_mono());
+                match &mut self.shown {
+                    Shown::Body(stages) => shades.draw(stages[view].look(self.player.pose()), true, palette.is_mono()),
+                    Shown::Face(cast) => shades.draw_lines(&cast.lines(self.player.pose(), view), palette.is_mono()),
+                }
                 shades.image(palette)
             }
         }

@@ -101,6 +101,26 @@ impl Scene {
     }
 }
 
+/// Width of a face's lines, as a part of the picture's shorter side.
+const FACE_WIDTH: f32 = 0.0055;
+
+impl Scene {
+    /// The lines of a face, `factor` times as big as they are given, for a picture whose shorter side has `side` pixels. Later ones lie over
+    /// earlier ones, and none is set off from those behind it.
+    pub fn of_face(lines: &[Line], factor: f32, side: f32) -> Scene {
+        let unit = factor / f32::from(1u8 << PIXEL_BITS);
+        let place = |[x, y]: [i16; 2]| [f32::from(x) * unit, f32::from(y) * unit];
+        let stroke = |line: &Line| Stroke {
+            from: place(line.from),
+            to: place(line.to),
+            width: (FACE_WIDTH * side).max(1.0),
+            tone: line.tone,
+            shade: line.shade,
+        };
+        Scene { ground: lines.iter().map(stroke).collect(), dots: Vec::new(), bones: Vec::new(), head: None }
+    }
+}
+
 /// Brightness tells the depth.
 fn width(shade: u8) -> f32 {
     let near = f32::from(shade.saturating_sub(FARTHEST)) / f32::from(NEAREST - FARTHEST);

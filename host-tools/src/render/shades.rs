@@ -7,7 +7,8 @@ use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::{BinaryColor, PixelColor};
 use pantin_figure::ink::{Ink, Tone};
-use pantin_figure::lines::Lines;
+use pantin_figure::draw::stroke;
+use pantin_figure::lines::{Line, Lines};
 use pantin_figure::surface::OnTarget;
 use std::convert::Infallible;
 
@@ -63,6 +64,19 @@ impl Shades {
             lines.draw_on(&mut OnTarget::new(&mut Bits(self)), look);
         } else {
             lines.draw_on(&mut OnTarget::new(self), look);
+        }
+    }
+
+    /// Draws lines in their order, as the firmware does.
+    pub fn draw_lines(&mut self, lines: &[Line], mono: bool) {
+        self.marks.fill(Mark::DARK);
+        if mono {
+            let mut bits = Bits(self);
+            let mut surface = OnTarget::new(&mut bits);
+            lines.iter().for_each(|line| stroke(line, &mut surface, false));
+        } else {
+            let mut surface = OnTarget::new(self);
+            lines.iter().for_each(|line| stroke(line, &mut surface, false));
         }
     }
 

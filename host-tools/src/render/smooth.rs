@@ -12,7 +12,7 @@ pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Im
     let Some(mut pixmap) = Pixmap::new(width as u32, height as u32) else { return Image::new(width, height, palette.paper()) };
     pixmap.fill(colour(palette.paper()));
     for stroke in &scene.ground {
-        line(&mut pixmap, stroke, palette.ramp(stroke.tone, stroke.shade), LineCap::Butt);
+        line(&mut pixmap, stroke, palette.ramp(stroke.tone, stroke.shade), cap(stroke));
     }
     for dot in &scene.dots {
         fill(&mut pixmap, dot, palette.ramp(Tone::Ground, dot.shade));
@@ -28,6 +28,11 @@ pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Im
     }
     let pixels = pixmap.data().chunks_exact(4).map(|rgba| [rgba[0], rgba[1], rgba[2]]).collect();
     Image::of(width, pixels)
+}
+
+/// The lines of a face join; the ground's cross.
+fn cap(stroke: &Stroke) -> LineCap {
+    if stroke.tone == Tone::Ground { LineCap::Butt } else { LineCap::Round }
 }
 
 fn line(pixmap: &mut Pixmap, stroke: &Stroke, ink: Rgb, line_cap: LineCap) {

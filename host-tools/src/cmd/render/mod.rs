@@ -5,6 +5,7 @@ mod output;
 
 use super::{Files, write_whole};
 use crate::expand::expand;
+use crate::face::cast::is_face;
 use crate::render::chart;
 use crate::render::figure::{Figure, Look, MOST_PIXELS, Memory};
 use crate::render::palette::Palette;
@@ -20,7 +21,8 @@ const SMOOTH_FROM: usize = 240;
 /// Draw a clip by the firmware's own figure code: as small displays show it, or large and smooth.
 ///
 /// The output's name says what it is. .gif and .apng are animations at the clip's own rate (.png with --animate, too); .png and .svg are a
-/// sheet of twelve frames, or what --frame or --strip ask for. A clip without joints is a chart of its channels over time (.png).
+/// sheet of twelve frames, or what --frame or --strip ask for. A clip without joints is a face, if its scalars bear names that docs/FACE.md has, or a
+/// chart of its channels over time (.png).
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin render walk.ptn -o walk.gif
@@ -57,12 +59,12 @@ pub struct Arguments {
     #[arg(long)]
     smooth: bool,
     /// Sides to see it from: front, side, left, right, back, quarter, or degrees (0 looks it in the face, 90 sees it walk to the left).
-    /// Of several, stills have a row each and animations show them side by side
-    #[arg(long, value_name = "SIDES", value_delimiter = ',', default_value = "quarter", allow_hyphen_values = true)]
+    /// Of several, stills have a row each and animations show them side by side [default: quarter; a face: front]
+    #[arg(long, value_name = "SIDES", value_delimiter = ',', allow_hyphen_values = true)]
     view: Vec<Side>,
-    /// Degrees of the camera above the horizon
-    #[arg(long, value_name = "DEGREES", default_value_t = View::default().tilt, allow_negative_numbers = true, value_parser = clap::value_parser!(i16).range(-90..=90))]
-    tilt: i16,
+    /// Degrees of the camera above the horizon [default: 12; a face: 0]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = clap::value_parser!(i16).range(-90..=90))]
+    tilt: Option<i16>,
     /// The axis that is vertical, where the figure is no person and stands on its hands too
     #[arg(long, value_enum, value_name = "AXIS")]
     up: Option<Axis>,
@@ -108,7 +110,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let kind = arguments.kind()?;
-    let bytes = if clip.rig().joint_count() == 0 {
+    let face = is_face(&clip)?;
+    let bytes = if clip.rig().joint_count() == 0 && !face {
         if kind != Kind::Png {
             bail!(
                 "{}: a clip without joints has no figure to draw; a name that ends in .png gives a chart",
@@ -121,9 +124,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     } else {
         let look = arguments.look(kind)?;
         let mut memory = Memory::of(&clip);
-        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views())?;
-        Output { arguments, figure, kind, look, frames: clip.frames(), frame_time: f64::from(clip.frame_time_ns()) * 1e-9 }
-            .bytes()?
+        let sides = arguments.sides(face);
+        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views(&sides, face))?;
+        let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
+        Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.bytes()?
     };
     write_whole(&arguments.output, &bytes)
 }
@@ -158,9 +162,16 @@ impl Arguments {
         Ok(if smooth { Look::Smooth } else { Look::Pixels })
     }
 
-    fn views(&self) -> Vec<View> {
+    /// Those asked for; a face is looked in the eyes otherwise.
+    fn sides(&self, face: bool) -> Vec<Side> {
+        let orbit = if face { 0 } else { View::default().orbit };
+        if self.view.is_empty() { vec![Side { name: "frame".into(), orbit }] } else { self.view.clone() }
+    }
+
+    fn views(&self, sides: &[Side], face: bool) -> Vec<View> {
         let track = if self.fixed { Track::Fixed } else { Track::Follow };
         let up = self.up.map(|axis| axis as u8);
-        self.view.iter().map(|side| View { orbit: side.orbit, tilt: self.tilt, track, up }).collect()
+        let tilt = self.tilt.unwrap_or(if face { 0 } else { View::default().tilt });
+        sides.iter().map(|side| View { orbit: side.orbit, tilt, track, up }).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! What is shown of the clip, and in which file format.
 
-use super::Arguments;
+use super::{Arguments, Side};
 use crate::render::animation::{Animation, Timing};
 use crate::render::apng::{self, Apng};
 use crate::render::figure::{Figure, Look};
@@ -41,6 +41,7 @@ pub enum Kind {
 /// A picture to be made.
 pub struct Output<'a, 'm> {
     pub arguments: &'a Arguments,
+    pub sides: Vec<Side>,
     pub figure: Figure<'a, 'm>,
     pub kind: Kind,
     pub look: Look,
@@ -71,7 +72,7 @@ impl Output<'_, '_> {
     }
 
     fn views(&self) -> usize {
-        self.arguments.view.len()
+        self.sides.len()
     }
 
     fn scale(&self, easy: usize) -> usize {
@@ -164,7 +165,7 @@ impl Output<'_, '_> {
         for view in 0..self.views() {
             for &frame in frames {
                 self.figure.seek(frame);
-                let side = if self.views() == 1 { "frame" } else { &self.arguments.view[view].name };
+                let side = if self.views() == 1 { "frame" } else { &self.sides[view].name };
                 cells.push((format!("{side} {frame}"), draw(self, view)));
             }
         }

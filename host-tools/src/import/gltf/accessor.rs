@@ -18,6 +18,11 @@ pub fn numbers(file: &File, index: usize, components: usize) -> Result<Vec<f64>>
     read(file, index, components).map_err(|error| file.error(&at, format!("{error:#}")))
 }
 
+/// The whole numbers of an accessor of single numbers.
+pub fn indices(file: &File, index: usize) -> Result<Vec<usize>> {
+    Ok(numbers(file, index, 1)?.into_iter().map(|x| x as usize).collect())
+}
+
 fn read(file: &File, index: usize, components: usize) -> Result<Vec<f64>> {
     let accessor = file.root.accessors.get(index).context("no such accessor")?;
     let Checked::Valid(kind) = accessor.type_ else { anyhow::bail!("unknown type") };

@@ -7,6 +7,7 @@ mod accessor;
 mod file;
 mod joints;
 mod list;
+pub mod mesh;
 mod place;
 mod scalars;
 mod track;

@@ -54,7 +54,7 @@ pub fn weights(file: &File, tracks: &Tracks, grid: &Grid) -> Result<Vec<Weight>>
 }
 
 /// The names that most exporters put beside a mesh.
-fn target_names(mesh: &gltf::json::Mesh) -> Vec<String> {
+pub(super) fn target_names(mesh: &gltf::json::Mesh) -> Vec<String> {
     let extras = mesh.extras.as_ref().and_then(|extras| serde_json::from_str::<serde_json::Value>(extras.get()).ok());
     let names = extras.as_ref().and_then(|extras| extras["targetNames"].as_array()).into_iter().flatten();
     names.map(|name| one_line(name.as_str().unwrap_or_default())).collect()

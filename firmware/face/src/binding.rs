@@ -1,0 +1,81 @@
+//! Which of a clip's scalars drive which shapes: found by name once, then a multiplication and a shift each.
+
+use crate::model::{Model, Name, hash};
+use crate::morph::Weights;
+use crate::{BINDINGS, FULL};
+use heapless::Vec;
+use pantin::Rig;
+
+/// One scalar that drives one shape.
+#[derive(Clone, Copy, Debug)]
+struct Drive {
+    channel: u16,
+    shape: u8,
+    sides: [bool; 2],
+    mantissa: i8,
+    shift: i8,
+}
+
+/// How a clip drives a face.
+#[derive(Clone, Debug, Default)]
+pub struct Binding {
+    drives: Vec<Drive, BINDINGS>,
+    names: u16,
+    scalars: u16,
+}
+
+/// A clip with so many known names is a face whatever else it holds.
+const FEW: u16 = 3;
+
+impl Binding {
+    /// Looks up the names of `rig`'s scalars among those that `model` knows. What finds no room is left out.
+    pub fn of(rig: &Rig, model: &Model) -> Binding {
+        let mut binding = Binding::default();
+        for (index, scalar) in rig.scalars().enumerate() {
+            let wanted = hash(scalar.name().as_bytes());
+            let mut known = false;
+            for name in model.names().filter(|name| name.hash == wanted) {
+                known = true;
+                let channel = (rig.joint_channels() + index) as u16;
+                let shift = scalar.exponent.saturating_add(name.exponent);
+                let Name { shape, sides, mantissa, .. } = name;
+                let _ = binding.drives.push(Drive { channel, shape, sides, mantissa, shift });
+            }
+            binding.names += u16::from(known);
+            binding.scalars += 1;
+        }
+        binding
+    }
+
+    /// Number of the clip's scalars that drive something.
+    pub fn names(&self) -> usize {
+        usize::from(self.names)
+    }
+
+    /// Whether the clip is a face: a few of its scalars drive one, or all of them. A lone name among others may mean anything.
+    pub fn is_face(&self) -> bool {
+        self.names >= FEW || (self.names > 0 && self.names == self.scalars)
+    }
+
+    /// The weights of a pose.
+    pub fn weigh(&self, pose: &[i32], weights: &mut Weights) {
+        weights.clear();
+        for drive in &self.drives {
+            let raw = pose.get(usize::from(drive.channel)).map_or(0, |raw| raw >> 16);
+            // 2^15 times 2^7. What is below nothing in the end is nothing: two opposites may share a channel.
+            let value = shifted(raw * i32::from(drive.mantissa), drive.shift);
+            weights.add(usize::from(drive.shape), drive.sides, value);
+        }
+    }
+}
+
+/// Within two whole weights.
+fn shifted(value: i32, shift: i8) -> i32 {
+    let value = match shift {
+        ..-30 => 0,
+        -30..0 => value >> -i32::from(shift),
+        0..8 => value << shift,
+        _ => value.signum() * 2 * FULL,
+    };
+    value.clamp(-2 * FULL, 2 * FULL)
+}

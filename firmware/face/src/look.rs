@@ -1,0 +1,162 @@
+//! A face before its camera: vertices on the display, and which of them look away.
+
+use crate::bytes::Bytes;
+use crate::model::Model;
+use crate::morph::{Morph, Place, coordinates};
+use crate::seen::Seen;
+use crate::strokes::{self, Screen};
+use pantin_figure::Canvas;
+use pantin_figure::camera::PIXEL_BITS;
+use pantin_figure::draw::stroke;
+use pantin_figure::lines::Line;
+use pantin_figure::rotation::{Rotation, Vector};
+use pantin_figure::surface::Surface;
+
+/// From where a face is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct View {
+    /// Degrees about the vertical: 0 looks the face in the eyes, 90 sees it look to the left.
+    pub orbit: i16,
+    /// Degrees above the horizon.
+    pub tilt: i16,
+}
+
+/// The camera.
+#[derive(Clone, Debug)]
+pub(crate) struct Camera {
+    /// Where the face is drawn, in sixteenths of a pixel.
+    pub centre: [i32; 2],
+    /// Right, up and towards the camera, Q15.
+    pub rows: [Vector; 3],
+    /// Steps times Q15 rows times this (below 2^15) are sixteenths of a pixel after 15 and `shift` bits.
+    pub scale: i32,
+    pub shift: u32,
+    /// Magnification a step towards the camera, Q28: at most 2^14.
+    pub nearer: i32,
+    /// What stands in the middle of the display.
+    pub middle: Vector,
+}
+
+/// A camera and what it sees of a face of at most `N` vertices.
+#[derive(Clone, Debug)]
+pub struct Look<const N: usize> {
+    camera: Camera,
+    detail: u8,
+    vertices: usize,
+    /// Sixteenths of a pixel.
+    points: [[i16; 2]; N],
+    /// Cosine of the angle between a vertex's normal and the way to the camera, 127 is 1.
+    facing: [i8; N],
+}
+
+/// The display's height is 64 of these parts, the face's down to the end of its neck so many: that end may leave the display.
+const FILLED: i32 = 65;
+/// Parts above it.
+const ABOVE: i32 = 1;
+/// Pixels of the face's height from which on more is drawn.
+const DETAILS: [i32; 3] = [96, 150, 190];
+/// The camera is so many times the face's height away, as a power of two.
+const DISTANCE_BITS: u32 = 2;
+
+impl<const N: usize> Look<N> {
+    /// A camera for a display.
+    pub fn new(model: &Model, canvas: Canvas, view: View) -> Self {
+        let (camera, detail) = frame(model, canvas);
+        let vertices = model.vertices().min(N);
+        let mut look = Look { camera, detail, vertices, points: [[0; 2]; N], facing: [0; N] };
+        look.aim(view);
+        look
+    }
+
+    /// Looks from elsewhere.
+    pub fn aim(&mut self, view: View) {
+        let mut turned = Rotation::IDENTITY;
+        turned.turn(0, of_degrees(view.tilt));
+        turned.turn(1, of_degrees(-view.orbit));
+        let [x, y, z] = turned.0;
+        self.camera.rows = core::array::from_fn(|row| [x[row], y[row], z[row]]);
+    }
+
+    /// Puts the vertices on the display.
+    pub fn project(&mut self, model: &Model, morph: &Morph<N>) {
+        project(model, &self.camera, morph.places(), morph.turn(), &mut self.points, &mut self.facing);
+    }
+
+    /// The places of the vertices on the display, in sixteenths of a pixel.
+    pub fn points(&self) -> &[[i16; 2]] {
+        self.points.get(..self.vertices).unwrap_or(&[])
+    }
+
+    /// Draws the face on a clear surface.
+    #[inline(never)]
+    pub fn draw_on<S: Surface>(&self, model: &Model, surface: &mut S) {
+        self.lines(model, |line| stroke(&line, surface, false));
+    }
+
+    /// Gives the lines of the face, the brighter ones after the darker ones.
+    pub fn lines(&self, model: &Model, mut out: impl FnMut(Line)) {
+        strokes::draw(model, Screen { points: &self.points, facing: &self.facing }, self.detail, &mut out);
+    }
+}
+
+/// The camera for a display, not aimed yet, and how much is drawn at its size.
+fn frame(model: &Model, canvas: Canvas) -> (Camera, u8) {
+    let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+    for point in model.points.as_chunks::<6>().0 {
+        for ((low, high), x) in low.iter_mut().zip(&mut high).zip(coordinates(*point)) {
+            *low = (*low).min(i32::from(x));
+            *high = (*high).max(i32::from(x));
+        }
+    }
+    // A model has at least one point.
+    let (height, width) = ((high[1] - low[1]).max(1), (2 * high[0].max(-low[0])).max(1));
+    let [columns, rows] = [canvas.width, canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
+    // Sixteenths of a pixel a step, Q16, by whichever side is tighter; canvases count for at most 2^16 sixteenths.
+    let fit = |room: i32, size: i32| ((room.min(1 << 16) << 14) / size) << 2;
+    let scale = fit(rows * FILLED / 64, height).min(fit(columns, width)).clamp(1, 1 << 20);
+    let excess = (32 - scale.leading_zeros()).saturating_sub(15);
+    let covered = ((height >> 4) * (scale >> 4)) >> (8 + PIXEL_BITS);
+    let camera = Camera {
+        centre: [columns / 2, rows / 2],
+        rows: [[0; 3]; 3],
+        scale: scale >> excess,
+        shift: 16 - excess,
+        nearer: ((1 << 28) / (height << DISTANCE_BITS)).min(1 << 14),
+        middle: [0, high[1] - height / FILLED * (32 - ABOVE), 0],
+    };
+    (camera, DETAILS.iter().filter(|&&least| covered >= least).count() as u8)
+}
+
+fn project(
+    model: &Model,
+    camera: &Camera,
+    places: &[Place],
+    ([x, y, z], pivot): ([i32; 3], Place),
+    points: &mut [[i16; 2]],
+    facing: &mut [i8],
+) {
+    let mut head = Rotation::IDENTITY;
+    for (axis, angle) in [(1, y), (0, x), (2, z)] {
+        head.turn(axis, angle);
+    }
+    let pivot = pivot.map(i32::from);
+    let carried = head.apply_any(pivot);
+    let whole = Seen::new(camera, &head, core::array::from_fn(|axis| pivot[axis] - carried[axis] - camera.middle[axis]));
+    whole.points(places, points);
+    whole.facing(model, facing);
+    if model.fixed.is_empty() || (x, y, z) == (0, 0, 0) {
+        return;
+    }
+    let still = Seen::new(camera, &Rotation::IDENTITY, camera.middle.map(|x| -x));
+    let mut fixed = Bytes(model.fixed);
+    while let Ok(index) = fixed.index(model.wide) {
+        if let (Some(point), Some(&place)) = (points.get_mut(usize::from(index)), places.get(usize::from(index))) {
+            *point = still.point(place);
+        }
+    }
+}
+
+/// Degrees in 2^-32 turns.
+fn of_degrees(degrees: i16) -> i32 {
+    i32::from(degrees).wrapping_mul(11_930_465)
+}

@@ -1,0 +1,182 @@
+//! Weights become vertices: neutral places, plus deltas, then turned.
+
+use crate::model::{Error, Model};
+use crate::shape::{Interpolation, Kind, Run, Shape};
+use crate::turn::{self, Sides};
+use crate::{FULL, SHAPES, aperture};
+use pantin_figure::trig::{ONE, sin_cos};
+
+/// A vertex, in steps of the model.
+pub type Place = [i16; 3];
+
+/// Weights of a model's shapes, Q15: each as it is stored (or its left side), and mirrored (or its right side).
+#[derive(Clone, Debug)]
+pub struct Weights([[i32; 2]; SHAPES]);
+
+impl Default for Weights {
+    fn default() -> Self {
+        Weights([[0; 2]; SHAPES])
+    }
+}
+
+impl Weights {
+    /// The neutral face.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Back to the neutral face.
+    pub fn clear(&mut self) {
+        self.0 = [[0; 2]; SHAPES];
+    }
+
+    /// Adds to a shape's weights.
+    #[inline]
+    pub fn add(&mut self, shape: usize, sides: [bool; 2], weight: i32) {
+        let Some(pair) = self.0.get_mut(shape) else { return };
+        for (total, driven) in pair.iter_mut().zip(sides) {
+            if driven {
+                *total = total.saturating_add(weight);
+            }
+        }
+    }
+
+    /// The two weights of each shape.
+    pub fn pairs(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
+        self.0.iter().map(|pair| pair.map(|weight| weight.clamp(-FULL, FULL)))
+    }
+
+    /// The two weights of a shape.
+    pub fn of(&self, shape: usize) -> [i32; 2] {
+        self.0.get(shape).map_or([0; 2], |pair| pair.map(|weight| weight.clamp(-FULL, FULL)))
+    }
+}
+
+/// The vertices of a face of at most `N`.
+#[derive(Clone, Debug)]
+pub struct Morph<const N: usize> {
+    places: [Place; N],
+    vertices: usize,
+    head: [i32; 3],
+    pivot: Place,
+}
+
+impl<const N: usize> Morph<N> {
+    /// The neutral face.
+    pub fn new(model: &Model) -> Result<Self, Error> {
+        if model.vertices() > N {
+            return Err(Error::TooManyVertices { most: N });
+        }
+        let mut morph = Morph { places: [[0; 3]; N], vertices: model.vertices(), head: [0; 3], pivot: [0; 3] };
+        neutral(model, &mut morph.places);
+        Ok(morph)
+    }
+
+    /// The vertices, in the order of the model.
+    pub fn places(&self) -> &[Place] {
+        self.places.get(..self.vertices).unwrap_or(&[])
+    }
+
+    /// How the head turns: angles in 2^-32 turns about x, y, z, and what it turns about.
+    pub(crate) fn turn(&self) -> ([i32; 3], Place) {
+        (self.head, self.pivot)
+    }
+
+    /// Puts the vertices where `weights` have them. The head's own turn is left to [`crate::Look`].
+    pub fn place(&mut self, model: &Model, weights: &Weights) {
+        self.place_open(model, weights);
+        aperture::close(model, &mut self.places, weights);
+    }
+
+    /// The same, but what is behind lids and lips is where it would be without them.
+    pub fn place_open(&mut self, model: &Model, weights: &Weights) {
+        neutral(model, &mut self.places);
+        (self.head, self.pivot) = apply(model, weights, &mut self.places);
+    }
+}
+
+/// Applies the shapes one after the other, and returns how the head turns.
+#[inline(never)]
+fn apply(model: &Model, weights: &Weights, places: &mut [Place]) -> ([i32; 3], Place) {
+    let (mut head, mut pivot) = ([0i32; 3], [0; 3]);
+    for (shape, pair) in model.shapes().zip(weights.pairs()) {
+        if pair == [0; 2] && shape.kind != Kind::Head {
+            continue;
+        }
+        let pair = if shape.kind == Kind::Whole { pair.map(|weight| weight.max(0)) } else { pair };
+        if shape.kind == Kind::Head {
+            for turn in shape.turns() {
+                pivot = turn.centre;
+                if let Some(angle) = head.get_mut(turn.axis) {
+                    *angle = angle.wrapping_add((i32::from(turn.angle) * pair[0]).wrapping_shl(1));
+                }
+            }
+            continue;
+        }
+        add(model, &shape, pair, places);
+        for turn in shape.turns() {
+            let sides = Sides { pair, middles: model.middles(), pairs: model.pairs() };
+            turn::apply(&turn, shape.interpolation, sides, places);
+        }
+    }
+    (head, pivot)
+}
+
+#[inline(never)]
+fn neutral(model: &Model, places: &mut [Place]) {
+    let points = model.points.as_chunks::<6>().0;
+    for (place, point) in places.iter_mut().zip(points) {
+        *place = coordinates(*point);
+    }
+    let (stored, right) = places.split_at_mut(points.len().min(places.len()));
+    let left = stored.get(model.middles()..).unwrap_or(&[]);
+    for (place, &[x, y, z]) in right.iter_mut().zip(left) {
+        *place = [x.wrapping_neg(), y, z];
+    }
+}
+
+/// Adds a shape's deltas.
+fn add(model: &Model, shape: &Shape, pair: [i32; 2], places: &mut [Place]) {
+    if !shape.moves_something() {
+        return;
+    }
+    // Q15 times Q8 to Q8: at most 2^16.
+    let factor = |weight| (eased(shape.interpolation, weight) * i32::from(shape.scale)) >> 15;
+    let stored = factor(pair[0]);
+    let mirrored = if pair[1] == pair[0] { stored } else { factor(pair[1]) };
+    for run in shape.runs() {
+        if stored != 0 {
+            add_run(run, run.first, [stored, stored], places);
+        }
+        if mirrored != 0 {
+            add_run(run, model.mirror(run.first), [-mirrored, mirrored], places);
+        }
+    }
+}
+
+/// The first factor is that of x.
+#[inline]
+fn add_run(run: Run, first: u16, [across, factor]: [i32; 2], places: &mut [Place]) {
+    let Some(places) = places.get_mut(usize::from(first)..) else { return };
+    for (place, delta) in places.iter_mut().zip(run.deltas) {
+        // A delta of 2^7 times a factor of 2^16, in Q8.
+        let along = |x: i16, delta: u8, factor: i32| x.wrapping_add(((i32::from(delta as i8) * factor + 128) >> 8) as i16);
+        *place = [along(place[0], delta[0], across), along(place[1], delta[1], factor), along(place[2], delta[2], factor)];
+    }
+}
+
+#[inline(always)]
+pub(crate) fn coordinates([a, b, c, d, e, f]: [u8; 6]) -> Place {
+    [i16::from_le_bytes([a, b]), i16::from_le_bytes([c, d]), i16::from_le_bytes([e, f])]
+}
+
+/// The part of the way that a weight has gone, Q15.
+pub(crate) fn eased(interpolation: Interpolation, weight: i32) -> i32 {
+    if interpolation != Interpolation::Cosine {
+        return weight;
+    }
+    // A whole weight is half a turn.
+    let (_, cos) = sin_cos(weight.wrapping_shl(16));
+    let way = (ONE - cos) >> 1;
+    if weight < 0 { -way } else { way }
+}

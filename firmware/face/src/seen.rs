@@ -1,0 +1,98 @@
+//! Vertices through the camera: nine multiplications for the place, two for perspective, no division.
+
+use crate::look::Camera;
+use crate::model::Model;
+use crate::morph::Place;
+use pantin_figure::rotation::{Rotation, Vector};
+use pantin_figure::trig::FRACTION_BITS;
+
+/// Places in one orientation, before the camera.
+pub(crate) struct Seen {
+    /// Right and down: sixteenths of a pixel after `shift`.
+    across: [Vector; 2],
+    /// Added before the shift.
+    offset: [i32; 2],
+    shift: u32,
+    centre: [i32; 2],
+    /// Towards the camera, Q15.
+    towards: Vector,
+    nearer: i32,
+}
+
+impl Seen {
+    /// `offset` is added to places after `head` has turned them.
+    pub fn new(camera: &Camera, head: &Rotation, offset: Vector) -> Seen {
+        let [right, up, towards] = camera.rows;
+        let rows = [right, up.map(|x| -x)];
+        // A row of length 1 in Q15 times a scale below 2^15.
+        let scaled = |row: Vector| row.map(|x| (x * camera.scale + (1 << 14)) >> 15);
+        let moved = |row: Vector| {
+            let along = scaled(row).into_iter().zip(offset).fold(0i32, |sum, (a, b)| sum.wrapping_add(a.wrapping_mul(b)));
+            along.wrapping_add((1 << camera.shift) >> 1)
+        };
+        Seen {
+            across: rows.map(|row| scaled(row_times(row, head))),
+            offset: rows.map(moved),
+            shift: camera.shift,
+            centre: camera.centre,
+            towards: row_times(towards, head),
+            nearer: camera.nearer,
+        }
+    }
+
+    /// All places.
+    #[inline(never)]
+    pub fn points(&self, places: &[Place], points: &mut [[i16; 2]]) {
+        for (point, &place) in points.iter_mut().zip(places) {
+            *point = self.point(place);
+        }
+    }
+
+    /// Rows are no longer than 2^15, places no farther than 2^15.8: sums stay below 2^31.
+    #[inline(always)]
+    pub fn point(&self, place: Place) -> [i16; 2] {
+        let (x, y, z) = (i32::from(place[0]), i32::from(place[1]), i32::from(place[2]));
+        let along =
+            |row: &Vector| row[0].wrapping_mul(x).wrapping_add(row[1].wrapping_mul(y)).wrapping_add(row[2].wrapping_mul(z));
+        // Perspective, to the first order: 1 / (1 - z / d) is taken for 1 + z / d.
+        let magnification = (1 << 12) + (((along(&self.towards) >> FRACTION_BITS) * self.nearer) >> 16);
+        let [right, down] = &self.across;
+        [self.onto(along(right), magnification, 0), self.onto(along(down), magnification, 1)]
+    }
+
+    /// On a display a place is within 2^15 sixteenths, magnified at most twice.
+    #[inline(always)]
+    fn onto(&self, along: i32, magnification: i32, axis: usize) -> i16 {
+        let flat = along.wrapping_add(self.offset[axis]) >> self.shift;
+        (flat.wrapping_mul(magnification) >> 12).wrapping_add(self.centre[axis]) as i16
+    }
+
+    /// How far each vertex's surface looks towards the camera, 127 is straight: mirror images share two of three products.
+    #[inline(never)]
+    pub fn facing(&self, model: &Model, facing: &mut [i8]) {
+        let [a, b, c] = self.towards;
+        let normals = model.normals.as_chunks::<3>().0;
+        // Normals are at most 127 long: a sum is below 2^22, and fits 8 bits after the shift.
+        let parts = |normal: &[u8; 3]| {
+            let [x, y, z] = *normal;
+            (a * i32::from(x as i8), b * i32::from(y as i8) + c * i32::from(z as i8))
+        };
+        let (middles, pairs) = facing.split_at_mut(model.middles().min(facing.len()));
+        for (out, normal) in middles.iter_mut().zip(normals) {
+            let (across, along) = parts(normal);
+            *out = ((along + across) >> FRACTION_BITS) as i8;
+        }
+        let (left, right) = pairs.split_at_mut(model.pairs().min(pairs.len()));
+        let rest = normals.get(model.middles()..).unwrap_or(&[]);
+        for ((left, right), normal) in left.iter_mut().zip(right).zip(rest) {
+            let (across, along) = parts(normal);
+            *left = ((along + across) >> FRACTION_BITS) as i8;
+            *right = ((along - across) >> FRACTION_BITS) as i8;
+        }
+    }
+}
+
+/// A row vector times a rotation.
+fn row_times(row: Vector, rotation: &Rotation) -> Vector {
+    rotation.0.map(|column| (row[0] * column[0] + row[1] * column[1] + row[2] * column[2] + (1 << 14)) >> 15)
+}

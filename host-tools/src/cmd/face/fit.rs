@@ -1,0 +1,78 @@
+//! `pantin face fit`
+
+use crate::cmd::Files;
+use crate::face::{Face, fit, outside};
+use anyhow::{Context, Result, bail, ensure};
+use pantin::{ChannelState, Player};
+use pantin_face::{Binding, Morph, VERTICES, Weights};
+use std::fs;
+use std::path::PathBuf;
+
+/// Weights below it are left out of what is printed.
+const LEAST: f64 = 0.005;
+
+/// Find the units whose sum comes nearest to a face, and say what is left.
+///
+/// The face is a pose of Pantin's own mesh, an .obj or .glb as `pantin face export` writes them, changed at will; or a frame of a clip.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin face fit joy.obj
+  pantin face fit talk.ptn --frame 120")]
+pub struct Arguments {
+    /// The face: .obj, .glb or a clip
+    target: PathBuf,
+    /// The frame of a clip
+    #[arg(long, default_value_t = 0)]
+    frame: u32,
+    /// The rig of a clip that was made with --rig-out
+    #[arg(long)]
+    rig: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let face = Face::new()?;
+    let path = &arguments.target;
+    let place = || path.display().to_string();
+    let target = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("obj") => outside::obj_points(&fs::read_to_string(path).with_context(place)?).with_context(place)?,
+        Some("glb" | "gltf") => outside::glb_points(path)?,
+        Some("ptn") => frame(arguments, &face)?,
+        _ => bail!("{}: expected an .obj, a .glb or a clip (.ptn)", place()),
+    };
+    let fit = fit::fit(&face.blueprint, &target).with_context(place)?;
+    for (shape, pair) in face.blueprint.shapes.iter().zip(&fit.pairs) {
+        match *pair {
+            [left, right] if left == right && left.abs() >= LEAST => println!("{:24} {left:6.3}", shape.name),
+            _ => {
+                for (side, weight) in ["left", "right"].iter().zip(pair).filter(|(_, weight)| weight.abs() >= LEAST) {
+                    println!("{:24} {weight:6.3}", format!("{}_{side}", shape.name));
+                }
+            }
+        }
+    }
+    println!("residual {:.3} mm (root mean square; {:.3} mm from the neutral face)", fit.residual, fit.before);
+    println!("worst {:.3} mm at {}", fit.worst.0, face.head.label(fit.worst.1));
+    Ok(())
+}
+
+/// The face at a clip's frame, as the device has it.
+fn frame(arguments: &Arguments, face: &Face) -> Result<Vec<[f64; 3]>> {
+    let place = || arguments.target.display().to_string();
+    let files = Files::read(&arguments.target, arguments.rig.as_deref())?;
+    let clip = files.open().with_context(place)?;
+    ensure!(arguments.frame < clip.frames(), "{}: frame {} of {}", place(), arguments.frame, clip.frames());
+    let model = face.model()?;
+    let binding = Binding::of(&clip.rig(), &model);
+    ensure!(binding.names() > 0, "{}: no channel bears a name that the face knows; docs/FACE.md lists them", place());
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; clip.rig().channels()];
+    let mut player = Player::new(clip, &mut states, &mut pose)?;
+    player.seek(arguments.frame);
+    let mut weights = Weights::new();
+    binding.weigh(player.pose(), &mut weights);
+    let mut morph = Morph::<VERTICES>::new(&model)?;
+    morph.place_open(&model, &weights);
+    let step = f64::from(model.step_exponent()).exp2();
+    Ok(morph.places().iter().map(|place| place.map(|x| f64::from(x) * step)).collect())
+}

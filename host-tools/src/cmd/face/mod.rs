@@ -1,0 +1,36 @@
+//! `pantin face`: one file a sub-command.
+
+mod compare;
+mod export;
+mod fit;
+mod model;
+mod sheet;
+
+use anyhow::Result;
+
+/// Pantin's face: its units in pictures, its interpolations compared, its model written, poses taken apart.
+#[derive(clap::Args)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(clap::Subcommand)]
+enum Command {
+    Compare(compare::Arguments),
+    Export(export::Arguments),
+    Fit(fit::Arguments),
+    Model(model::Arguments),
+    Sheet(sheet::Arguments),
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    match &arguments.command {
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
+        Command::Fit(arguments) => fit::run(arguments),
+        Command::Model(arguments) => model::run(arguments),
+        Command::Sheet(arguments) => sheet::run(arguments),
+    }
+}

@@ -1,0 +1,22 @@
+//! `pantin face sheet`
+
+use crate::cmd::write_whole;
+use crate::face::{Face, sheet};
+use anyhow::Result;
+use std::path::PathBuf;
+
+/// Draw every unit and emotion of the face, labelled.
+#[derive(clap::Args)]
+#[command(after_help = "Example:\n  pantin face sheet -o sheet.png")]
+pub struct Arguments {
+    /// The picture to write (PNG)
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let mut out = Vec::new();
+    sheet::units(&mut out, &Face::new()?)?;
+    write_whole(&arguments.output, &out)
+}

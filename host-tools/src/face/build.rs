@@ -1,0 +1,59 @@
+//! Pantin's own face: the head, and all that moves on it.
+
+use super::blueprint::{Blueprint, Curve, Opening};
+use super::head::Head;
+use super::{extra, faps, names, paper};
+use anyhow::Result;
+
+/// A step is 2^-7 mm: the head keeps within 16 bits.
+pub const FRACTION_BITS: i8 = 7;
+
+/// The head without anything that moves it.
+pub fn neutral(head: &Head) -> Blueprint {
+    let stored = head.middles + head.pairs;
+    let curve = |curve: &super::head::Curve| Curve {
+        detail: curve.detail,
+        shade: curve.shade,
+        paired: curve.paired,
+        closed: curve.closed,
+        straight: false,
+        points: curve.points.clone(),
+    };
+    let opening = |opening: &super::head::Opening| Opening { opening: opening.clone(), release: None };
+    // Below the jaw the surface turns away in many places at once: there the jaw's own curve is the outline.
+    let below = ["submental", "submental-side", "throat", "neck-front-side"].map(|name| head.find(name).ok());
+    let (inner, outer): (Vec<_>, Vec<_>) =
+        head.triangles.iter().partition(|triangle| triangle.iter().any(|&corner| below.contains(&Some(corner))));
+    let outline = outer.len();
+    Blueprint {
+        middles: head.middles,
+        pairs: head.pairs,
+        fraction_bits: FRACTION_BITS,
+        points: head.points[..stored].to_vec(),
+        normals: head.normals[..stored].to_vec(),
+        outline,
+        triangles: outer.into_iter().chain(inner).collect(),
+        fixed: head.fixed.clone(),
+        curves: head.curves.iter().map(curve).collect(),
+        openings: head.openings.iter().map(opening).collect(),
+        ..Blueprint::default()
+    }
+}
+
+/// Millimetres that a tongue that is put out goes over the lower lip.
+const TONGUE_DROP: f64 = 40.0;
+
+/// Pantin's own face.
+pub fn face(head: &Head) -> Result<Blueprint> {
+    let mut shapes = paper::units(head);
+    shapes.extend(extra::units(head));
+    // What turns goes on from where deltas have brought it.
+    shapes.sort_by_key(|shape| !shape.turns.is_empty());
+    let names = names::drives(&shapes)?;
+    let mut face = Blueprint { shapes, names, ..neutral(head) };
+    let parameters = faps::drives(head, &face)?;
+    face.names.extend(parameters);
+    let tongue = face.shape("tongue_out").map(|shape| (shape, TONGUE_DROP));
+    face.openings.iter_mut().filter(|entry| !entry.opening.paired).for_each(|entry| entry.release = tongue);
+    Ok(face)
+}

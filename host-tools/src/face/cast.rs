@@ -1,0 +1,49 @@
+//! A clip's face before one camera or several, by the device's own code.
+
+use anyhow::Result;
+use pantin::Clip;
+use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
+use pantin_figure::Canvas;
+use pantin_figure::lines::Line;
+
+/// The model that devices have, too.
+pub static MODEL: &[u8] = include_bytes!("../../../motions/face.model");
+
+/// Whether a clip is a face and nothing else.
+pub fn is_face(clip: &Clip) -> Result<bool> {
+    Ok(clip.rig().joint_count() == 0 && Binding::of(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
+}
+
+/// The face that a clip drives.
+pub struct Cast {
+    model: Model<'static>,
+    binding: Binding,
+    weights: Weights,
+    morph: Morph<VERTICES>,
+    looks: Vec<Look<VERTICES>>,
+}
+
+impl Cast {
+    /// Sets up the cameras, for a clip that is a face.
+    pub fn of_clip(clip: &Clip, canvas: Canvas, views: &[pantin_figure::View]) -> Result<Option<Cast>> {
+        if !is_face(clip)? {
+            return Ok(None);
+        }
+        let model = Model::new_checked(MODEL)?;
+        let view = |view: &pantin_figure::View| View { orbit: view.orbit, tilt: view.tilt };
+        let looks = views.iter().map(|seen| Look::new(&model, canvas, view(seen))).collect();
+        let (binding, weights, morph) = (Binding::of(&clip.rig(), &model), Weights::new(), Morph::new(&model)?);
+        Ok(Some(Cast { model, binding, weights, morph, looks }))
+    }
+
+    /// The lines of a pose as a view's camera sees it.
+    pub fn lines(&mut self, pose: &[i32], view: usize) -> Vec<Line> {
+        self.binding.weigh(pose, &mut self.weights);
+        self.morph.place(&self.model, &self.weights);
+        let look = &mut self.looks[view];
+        look.project(&self.model, &self.morph);
+        let mut lines = Vec::new();
+        look.lines(&self.model, |line| lines.push(line));
+        lines
+    }
+}

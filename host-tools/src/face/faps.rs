@@ -1,0 +1,71 @@
+//! MPEG-4's parameters on our units: how much a parameter moves a feature point, over how much the unit does.
+
+use super::blueprint::{Blueprint, Drive};
+use super::exact;
+use super::head::Head;
+use anyhow::{Context, Result, bail};
+
+const TABLE: &str = include_str!("faps.txt");
+/// A value of so many is the whole of a length.
+const PARTS: f64 = 1024.0;
+/// Radians of an angle of 1.
+const ANGLE: f64 = 1e-5;
+
+/// The drives of all parameters; `face` has the units and their names already.
+pub fn drives(head: &Head, face: &Blueprint) -> Result<Vec<Drive>> {
+    let mut drives = Vec::new();
+    for (number, line) in TABLE.lines().enumerate() {
+        let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
+        if let [name, unit, point, axis, part, driven] = words[..] {
+            let part: f64 = part.parse()?;
+            let driven =
+                face.names.iter().find(|drive| drive.name == driven).with_context(|| format!("faps.txt, line {}", number + 1))?;
+            let gain = part
+                * if unit == "AU" {
+                    angle(point, axis)?
+                } else {
+                    length(head, unit)? / PARTS / way(head, face, driven, point, axis)?
+                };
+            drives.push(Drive { name: name.into(), gain, ..driven.clone() });
+            if name.contains("_l_") && unit != "AU" {
+                let [stored, mirrored] = driven.sides;
+                drives.push(Drive { name: name.replace("_l_", "_r_"), gain, sides: [mirrored, stored], shape: driven.shape });
+            }
+        } else if !words.is_empty() {
+            bail!("faps.txt, line {}: expected six words", number + 1);
+        }
+    }
+    Ok(drives)
+}
+
+fn angle(degrees: &str, sign: &str) -> Result<f64> {
+    let whole = degrees.parse::<f64>()?.to_radians();
+    Ok(if sign == "-" { -ANGLE / whole } else { ANGLE / whole })
+}
+
+/// MPEG-4's units of length on our neutral face, in millimetres.
+fn length(head: &Head, unit: &str) -> Result<f64> {
+    let eyes = [32.0, 0.6];
+    Ok(match unit {
+        "MNS" => head.at("9.15")[1] - head.at("2.2")[1],
+        "MW" => 2.0 * head.at("8.3")[0],
+        "ES" => 2.0 * eyes[0],
+        "ENS" => eyes[1] - head.at("9.15")[1],
+        "IRISD" => head.at("3.1")[1] - head.at("3.3")[1],
+        _ => bail!("{unit} is no unit of length"),
+    })
+}
+
+/// Millimetres that a whole unit moves a feature point along an axis (`+x`).
+fn way(head: &Head, face: &Blueprint, drive: &Drive, point: &str, axis: &str) -> Result<f64> {
+    let mut weights = vec![[0.0; 2]; face.shapes.len()];
+    weights[drive.shape] = drive.sides.map(|driven| f64::from(u8::from(driven)));
+    let (index, (sign, axis)) = (head.find(point)?, axis.split_at(1));
+    let along = match axis {
+        "x" => 0,
+        "y" => 1,
+        _ => 2,
+    };
+    let moved = exact::places(face, &weights)[index][along] - head.points[index][along];
+    Ok(if sign == "-" { -moved } else { moved })
+}

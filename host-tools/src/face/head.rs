@@ -1,0 +1,302 @@
+//! The neutral head as `head.txt` has it: named points, curves through them, openings.
+
+use super::skin::{self, Triangle};
+use anyhow::{Context, Result, bail, ensure};
+use std::collections::HashMap;
+
+/// The table that the model is made of.
+pub const TABLE: &str = include_str!("head.txt");
+
+/// A place or a way in millimetres.
+pub type Vector = [f64; 3];
+
+/// A curve that is drawn.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// What it is.
+    pub name: String,
+    /// From which size on it is drawn.
+    pub detail: u8,
+    /// Brightness.
+    pub shade: u8,
+    /// Whether its mirror image is drawn too.
+    pub paired: bool,
+    /// Whether it runs back to its first point.
+    pub closed: bool,
+    /// Its points.
+    pub points: Vec<usize>,
+}
+
+/// An opening: upper edge, lower edge, and what is behind.
+#[derive(Clone, Debug)]
+pub struct Opening {
+    /// Whether there is a mirror image of it.
+    pub paired: bool,
+    /// From one corner to the other.
+    pub upper: Vec<usize>,
+    /// Between the same corners.
+    pub lower: Vec<usize>,
+    /// Points that are drawn no farther than the edges.
+    pub members: Vec<usize>,
+}
+
+/// The neutral head. Points in the middle come first, then the left ones, then their mirror images.
+#[derive(Clone, Debug)]
+pub struct Head {
+    /// Points in the middle.
+    pub middles: usize,
+    /// Points of the left half.
+    pub pairs: usize,
+    /// Where all points are.
+    pub points: Vec<Vector>,
+    /// Unit vectors away from the surface.
+    pub normals: Vec<Vector>,
+    /// Triangles of the left half of the skin, seen from outside anticlockwise.
+    pub triangles: Vec<Triangle>,
+    /// Points that stay when the head turns.
+    pub fixed: Vec<usize>,
+    /// Curves in the order in which they are drawn.
+    pub curves: Vec<Curve>,
+    /// The eyes and the mouth.
+    pub openings: Vec<Opening>,
+    names: HashMap<String, usize>,
+    labels: Vec<String>,
+    /// Number of points of the stored half that are skin, by index.
+    skin: Vec<bool>,
+}
+
+/// A row of the table's points.
+struct Row {
+    name: String,
+    features: [String; 2],
+    place: Vector,
+    normal: Option<Vector>,
+    fixed: bool,
+    skin: bool,
+}
+
+impl Head {
+    /// Pantin's own head.
+    pub fn new() -> Head {
+        // The table is part of the program, and tested.
+        Head::parse(TABLE).expect("head.txt")
+    }
+
+    /// Reads a table.
+    pub fn parse(table: &str) -> Result<Head> {
+        let mut sections: HashMap<&str, Vec<(usize, &str)>> = HashMap::new();
+        let mut section = "";
+        for (number, line) in table.lines().enumerate() {
+            let line = line.split('#').next().unwrap_or("").trim();
+            if matches!(line, "skin" | "loose" | "curves" | "openings") {
+                section = line;
+            } else if !line.is_empty() {
+                sections.entry(section).or_default().push((number + 1, line));
+            }
+        }
+        let mut rows = Vec::new();
+        for (name, skin) in [("skin", true), ("loose", false)] {
+            for (number, line) in sections.remove(name).unwrap_or_default() {
+                rows.push(Row::parse(line, skin).with_context(|| format!("line {number}"))?);
+            }
+        }
+        // A stable sort: the table's order otherwise.
+        rows.sort_by_key(|row| row.place[0] > 0.0);
+        let mut head = Head::of_rows(&rows)?;
+        for (number, line) in sections.remove("curves").unwrap_or_default() {
+            let curve = head.parse_curve(line).with_context(|| format!("line {number}"))?;
+            head.curves.push(curve);
+        }
+        for (number, line) in sections.remove("openings").unwrap_or_default() {
+            let opening = head.parse_opening(line).with_context(|| format!("line {number}"))?;
+            head.openings.push(opening);
+        }
+        head.dress(&rows);
+        Ok(head)
+    }
+
+    fn of_rows(rows: &[Row]) -> Result<Head> {
+        let middles = rows.iter().filter(|row| row.place[0] == 0.0).count();
+        let pairs = rows.len() - middles;
+        let right = rows[middles..].iter().map(|row| mirror(row.place));
+        let points = rows.iter().map(|row| row.place).chain(right).collect();
+        let (mut names, mut labels) = (HashMap::new(), Vec::new());
+        for (index, row) in rows.iter().enumerate() {
+            labels.push(row.name.clone());
+            let image = if index < middles { index } else { index + pairs };
+            let mut name = |name: &str, index: usize| -> Result<()> {
+                if name == "-" || (image == index && name == row.name && index >= middles) {
+                    return Ok(());
+                }
+                ensure!(names.insert(name.to_string(), index).is_none_or(|old| old == index), "two points are called {name}");
+                Ok(())
+            };
+            name(&row.name, index)?;
+            name(&row.features[0], index)?;
+            name(&row.features[1], image)?;
+            if image != index {
+                name(&format!("-{}", row.name), image)?;
+            }
+        }
+        labels.extend(rows[middles..].iter().map(|row| format!("-{}", row.name)));
+        let fixed = rows.iter().enumerate().filter(|(_, row)| row.fixed).flat_map(|(index, _)| {
+            let image = if index < middles { None } else { Some(index + pairs) };
+            [Some(index), image].into_iter().flatten()
+        });
+        let fixed = fixed.collect();
+        let skin = rows.iter().map(|row| row.skin).collect();
+        let (normals, triangles, curves, openings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Ok(Head { middles, pairs, points, normals, triangles, fixed, curves, openings, names, labels, skin })
+    }
+
+    /// The skin's triangles, without those that close an opening, and all normals.
+    fn dress(&mut self, rows: &[Row]) {
+        let stored: Vec<usize> = (0..rows.len()).filter(|&index| self.skin[index]).collect();
+        let mut triangles = skin::triangles(&self.points, &stored, self.middles);
+        let closes = |triangle: &Triangle| {
+            self.openings
+                .iter()
+                .any(|opening| triangle.iter().all(|corner| opening.upper.contains(corner) || opening.lower.contains(corner)))
+                || triangle.iter().all(|corner| self.fixed.contains(corner))
+        };
+        triangles.retain(|triangle| !closes(triangle));
+        self.triangles = triangles;
+        self.normals = skin::normals(self);
+        for (index, row) in rows.iter().enumerate() {
+            let normal = match row.normal {
+                Some(normal) => unit(normal),
+                None if row.skin => continue,
+                None => skin::normal_near(self, &stored, self.points[index]),
+            };
+            self.normals[index] = normal;
+            let image = self.mirror(index);
+            if image != index {
+                self.normals[image] = mirror(normal);
+            }
+        }
+    }
+
+    /// Whether a stored point is of the skin.
+    pub fn is_skin(&self, index: usize) -> bool {
+        self.skin[self.stored(index)]
+    }
+
+    /// The point of the stored half for any point.
+    pub fn stored(&self, index: usize) -> usize {
+        if index >= self.middles + self.pairs { index - self.pairs } else { index }
+    }
+
+    /// The point that mirrors another.
+    pub fn mirror(&self, index: usize) -> usize {
+        match index {
+            index if index < self.middles => index,
+            index if index < self.middles + self.pairs => index + self.pairs,
+            _ => index - self.pairs,
+        }
+    }
+
+    /// The point of a name or of an MPEG-4 feature point; `-name` is the mirror image.
+    pub fn find(&self, name: &str) -> Result<usize> {
+        self.names.get(name).copied().with_context(|| format!("no point is called {name}"))
+    }
+
+    /// Where a point that the table is known to have is.
+    pub fn at(&self, name: &str) -> Vector {
+        self.points[self.find(name).expect("a point of head.txt")]
+    }
+
+    /// What a point is called.
+    pub fn label(&self, index: usize) -> &str {
+        &self.labels[index]
+    }
+
+    /// Points one after the other; `|` goes back over the mirror images.
+    fn path(&self, words: &[&str]) -> Result<Vec<usize>> {
+        let mut path = Vec::new();
+        for word in words {
+            if *word == "|" {
+                let back: Vec<usize> =
+                    path.iter().rev().map(|&index| self.mirror(index)).filter(|index| !path.contains(index)).collect();
+                path.extend(back);
+            } else {
+                path.push(self.find(word)?);
+            }
+        }
+        Ok(path)
+    }
+
+    fn parse_curve(&self, line: &str) -> Result<Curve> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [name, detail, shade, options, points @ ..] = &words[..] else {
+            bail!("expected name, detail, brightness, options, points")
+        };
+        Ok(Curve {
+            name: name.to_string(),
+            detail: detail.parse()?,
+            shade: shade.parse()?,
+            paired: options.contains("paired"),
+            closed: options.contains("closed"),
+            points: self.path(points)?,
+        })
+    }
+
+    fn parse_opening(&self, line: &str) -> Result<Opening> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [_, options, rest @ ..] = &words[..] else { bail!("expected name, options, points") };
+        let parts: Vec<Vec<usize>> = rest.split(|word| *word == "/").map(|part| self.path(part)).collect::<Result<_>>()?;
+        let [upper, lower, members] = <[Vec<usize>; 3]>::try_from(parts).ok().context("expected upper / lower / members")?;
+        Ok(Opening { paired: options.contains("paired"), upper, lower, members })
+    }
+}
+
+impl Default for Head {
+    fn default() -> Self {
+        Head::new()
+    }
+}
+
+impl Row {
+    fn parse(line: &str, skin: bool) -> Result<Row> {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [name, features, x, y, z, rest @ ..] = &words[..] else { bail!("expected name, feature points, x, y, z") };
+        let features = features.split_once('/').unwrap_or((features, "-"));
+        let normal = match rest {
+            ["normal", x, y, z] => Some([x.parse()?, y.parse()?, z.parse()?]),
+            _ => None,
+        };
+        let place = [x.parse()?, y.parse()?, z.parse()?];
+        let features = [features.0.to_string(), features.1.to_string()];
+        Ok(Row { name: name.to_string(), features, place, normal, fixed: rest.contains(&"fixed"), skin })
+    }
+}
+
+/// The mirror image of a place or way.
+pub fn mirror([x, y, z]: Vector) -> Vector {
+    [-x, y, z]
+}
+
+/// Of length 1.
+pub fn unit(v: Vector) -> Vector {
+    let length = dot(v, v).sqrt().max(1e-12);
+    v.map(|x| x / length)
+}
+
+/// The inner product.
+pub fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The outer product.
+pub fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The way from `b` to `a`.
+pub fn minus(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a` and `part` of `b`.
+pub fn plus(a: Vector, b: Vector, part: f64) -> Vector {
+    [a[0] + b[0] * part, a[1] + b[1] * part, a[2] + b[2] * part]
+}

@@ -1,0 +1,51 @@
+//! The face: its head, its units by the paper's algorithms, and the model that devices play (docs/FACE.md).
+
+pub mod blueprint;
+pub mod build;
+pub mod cast;
+pub mod compact;
+pub mod compare;
+pub mod draw;
+pub mod error;
+pub mod exact;
+pub mod export;
+mod extra;
+mod faps;
+pub mod fit;
+pub mod head;
+pub mod names;
+pub mod outside;
+pub mod paper;
+pub mod pose;
+pub mod sheet;
+mod skin;
+
+use anyhow::Result;
+use blueprint::Blueprint;
+use head::Head;
+use pantin_face::Model;
+
+/// Pantin's own face, and its bytes.
+pub struct Face {
+    /// The neutral head, with the names of its points.
+    pub head: Head,
+    /// The face in full precision.
+    pub blueprint: Blueprint,
+    /// What the device has of it.
+    pub bytes: Vec<u8>,
+}
+
+impl Face {
+    /// Builds it.
+    pub fn new() -> Result<Face> {
+        let head = Head::new();
+        let blueprint = build::face(&head)?;
+        let bytes = compact::encode(&blueprint)?;
+        Ok(Face { head, blueprint, bytes })
+    }
+
+    /// The face as the device sees it.
+    pub fn model(&self) -> Result<Model<'_>> {
+        Ok(Model::new_checked(&self.bytes)?)
+    }
+}

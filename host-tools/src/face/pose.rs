@@ -1,0 +1,44 @@
+//! Poses written as sums, `joy=0.5,blink_left=1`.
+
+use super::blueprint::{Blueprint, Drive};
+use anyhow::{Context, Result, bail};
+use pantin_face::{FULL, Weights};
+
+/// A pair of weights a shape.
+pub type Pairs = Vec<[f64; 2]>;
+
+/// The weights of a sum of names, each with a value, 1 where none is given.
+pub fn parse(face: &Blueprint, sum: &str) -> Result<Pairs> {
+    let mut pairs = vec![[0.0; 2]; face.shapes.len()];
+    for term in sum.split([',', '+']).map(str::trim).filter(|term| !term.is_empty()) {
+        let (name, value) = term.split_once('=').unwrap_or((term, "1"));
+        let value: f64 = value.trim().parse().with_context(|| format!("{term}: expected name=number"))?;
+        add(face, name.trim(), value, &mut pairs)?;
+    }
+    Ok(pairs)
+}
+
+/// Adds what a channel called `name` would give at a value.
+pub fn add(face: &Blueprint, name: &str, value: f64, pairs: &mut Pairs) -> Result<()> {
+    let driven: Vec<&Drive> = face.names.iter().filter(|drive| drive.name == name).collect();
+    if driven.is_empty() {
+        bail!("no unit of the face is called {name}; docs/FACE.md lists them");
+    }
+    for drive in driven {
+        for (weight, driven) in pairs[drive.shape].iter_mut().zip(drive.sides) {
+            *weight += if driven { drive.gain * value } else { 0.0 };
+        }
+    }
+    Ok(())
+}
+
+/// The same as the device has it.
+pub fn weights(pairs: &Pairs) -> Weights {
+    let mut weights = Weights::new();
+    for (shape, pair) in pairs.iter().enumerate() {
+        for (sides, weight) in [[true, false], [false, true]].into_iter().zip(pair) {
+            weights.add(shape, sides, (weight * f64::from(FULL)).round() as i32);
+        }
+    }
+    weights
+}

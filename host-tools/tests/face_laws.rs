@@ -1,0 +1,237 @@
+//! The geometric law of each action unit of the paper (docs/METHOD.md 3.1), and of the interpolations (3.3, 3.4).
+
+use pantin_face::shape::Interpolation;
+use pantin_tools::face::compare::{jaw, under};
+use pantin_tools::face::head::{Vector, dot, minus, plus};
+use pantin_tools::face::{Face, exact, paper, pose};
+
+fn face() -> Face {
+    Face::new().unwrap()
+}
+
+fn posed(face: &Face, sum: &str) -> Vec<Vector> {
+    exact::places(&face.blueprint, &pose::parse(&face.blueprint, sum).unwrap())
+}
+
+fn height(face: &Face, places: &[Vector], point: &str) -> f64 {
+    places[face.head.find(point).unwrap()][1]
+}
+
+fn distance(a: Vector, b: Vector) -> f64 {
+    dot(minus(a, b), minus(a, b)).sqrt()
+}
+
+/// Ends of the named points, against a height of the neutral face.
+fn at_height(face: &Face, places: &[Vector], points: &[&str], neutral: &str) {
+    for point in points {
+        let gap = height(face, places, point) - face.head.at(neutral)[1];
+        assert!(gap.abs() < 1e-9, "{point} ends {gap} mm above {neutral}");
+    }
+}
+
+#[test]
+fn every_feature_point_that_the_method_uses_is_named() {
+    let face = face();
+    let groups: [(u8, &[u8]); 8] = [
+        (2, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14]),
+        (3, &[1, 2, 3, 4, 7, 8, 9, 10, 11, 12]),
+        (4, &[1, 2, 3, 4, 5, 6]),
+        (5, &[1, 2, 3, 4]),
+        (6, &[1]),
+        (8, &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]),
+        (9, &[1, 2, 3, 10]),
+        (10, &[1, 2]),
+    ];
+    for (group, points) in groups {
+        for point in points {
+            face.head.find(&format!("{group}.{point}")).unwrap();
+        }
+    }
+    for pair in [("2.4", "2.5"), ("8.10", "8.9"), ("5.1", "5.2"), ("2.13", "2.14"), ("4.1", "4.2")] {
+        let [left, right] = [pair.0, pair.1].map(|point| face.head.at(point));
+        assert!(left[0] > 0.0, "the face's left is +x");
+        assert_eq!([-left[0], left[1], left[2]], right);
+    }
+}
+
+#[test]
+fn the_head_has_its_proportions_and_no_triangle_crosses_the_middle() {
+    let face = face();
+    let head = &face.head;
+    assert!((150..=220).contains(&head.points.len()), "{} points", head.points.len());
+    let (crown, chin) = (head.at("11.4")[1], head.at("2.1")[1]);
+    let middle = (crown + chin) / 2.0;
+    assert!(((head.at("3.7")[1] + head.at("3.11")[1]) / 2.0 - middle).abs() < 5.0, "the eyes are half way up");
+    let (inner, outer) = (head.at("3.11")[0], head.at("3.7")[0]);
+    assert!((2.0 * inner / (outer - inner) - 1.0).abs() < 0.1, "an eye's width lies between the eyes");
+    let thirds = [head.at("4.3")[1] - head.at("9.15")[1], head.at("9.15")[1] - chin];
+    assert!((thirds[0] / thirds[1] - 1.25).abs() < 0.15, "{thirds:?}");
+    // Each edge off the middle belongs to two triangles of the half, but where eyes, mouth and neck are open.
+    for triangle in &head.triangles {
+        assert!(triangle.iter().any(|&corner| corner >= head.middles), "a triangle in the middle");
+    }
+    for index in (0..head.points.len()).filter(|&index| head.is_skin(index)) {
+        assert!(
+            head.triangles.iter().flatten().any(|&corner| corner == head.stored(index)),
+            "{} is in no triangle",
+            head.label(index)
+        );
+    }
+}
+
+#[test]
+fn opening_brings_the_lower_lip_onto_the_line_from_the_jaws_axis_to_the_chin() {
+    let face = face();
+    let places = posed(&face, "open_mouth");
+    let axis = plus(face.head.at("2.13"), minus(face.head.at("2.14"), face.head.at("2.13")), 0.5);
+    let lip = minus(places[face.head.find("2.3").unwrap()], axis);
+    let chin = minus(face.head.at("2.1"), axis);
+    let between = (dot(lip, chin) / (dot(lip, lip) * dot(chin, chin)).sqrt()).acos().to_degrees();
+    assert!(between < 1e-5, "{between} degrees beside the line");
+    assert!(paper::opening_angle(&face.head) > 20.0);
+}
+
+#[test]
+fn opening_turns_what_the_curve_bounds_and_nothing_else() {
+    let face = face();
+    let places = posed(&face, "open_mouth");
+    let neutral = face.blueprint.neutral();
+    let moved = |point: &str| places[face.head.find(point).unwrap()] != neutral[face.head.find(point).unwrap()];
+    for point in ["2.1", "2.3", "2.8", "2.9", "2.10", "2.11", "2.12", "8.2", "8.7", "8.8", "6.1"] {
+        assert!(moved(point), "{point} is inside");
+    }
+    for point in [
+        "2.13",
+        "2.14",
+        "5.1",
+        "5.2",
+        "8.3",
+        "8.4",
+        "2.4",
+        "2.5",
+        "2.2",
+        "2.6",
+        "8.1",
+        "9.10",
+        "9.3",
+        "3.3",
+        "throat",
+        "neck-side",
+    ] {
+        assert!(!moved(point), "{point} is on the curve or outside");
+    }
+}
+
+#[test]
+fn a_smile_raises_the_corners_to_the_cupids_bow() {
+    let face = face();
+    let places = posed(&face, "smile");
+    at_height(&face, &places, &["8.3", "8.4", "8.5", "8.6", "8.9", "8.10"], "8.10");
+    at_height(&face, &places, &["2.4", "2.5", "2.8", "2.9"], "8.5");
+}
+
+#[test]
+fn lowered_corners_sink_to_the_lower_lip() {
+    let face = face();
+    let places = posed(&face, "lower_corners");
+    at_height(&face, &places, &["8.3", "8.4", "8.7", "8.8", "8.2"], "8.2");
+    at_height(&face, &places, &["2.4", "2.5", "2.6", "2.7"], "2.8");
+}
+
+#[test]
+fn lips_never_pass_through_each_other() {
+    let face = face();
+    for step in 0..=100 {
+        for sum in ["smile", "lower_corners", "smile_left", "lower_corners_right", "open_mouth"] {
+            let places = posed(&face, &format!("{sum}={}", f64::from(step) / 100.0));
+            for (upper, lower) in [("2.2", "2.3"), ("2.6", "2.8"), ("2.7", "2.9")] {
+                let gap = height(&face, &places, upper) - height(&face, &places, lower);
+                assert!(gap >= 0.0, "{sum} at {step} %: {upper} is {gap} mm above {lower}");
+            }
+        }
+    }
+}
+
+#[test]
+fn brows_go_by_as_much_outside_as_inside() {
+    let face = face();
+    let raised = posed(&face, "brow_outer_raise");
+    at_height(&face, &raised, &["4.5", "4.6"], "4.3");
+    let up = height(&face, &raised, "4.5") - face.head.at("4.5")[1];
+    let lowered = posed(&face, "brow_inner_lower");
+    for point in ["4.1", "4.2"] {
+        assert!((height(&face, &lowered, point) - face.head.at(point)[1] + up).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn puffed_cheeks_are_a_fifth_farther_apart_and_fall_off_by_the_cosine_law() {
+    let face = face();
+    let places = posed(&face, "puff_cheeks");
+    let (left, right) = (face.head.find("5.1").unwrap(), face.head.find("5.2").unwrap());
+    let growth = distance(places[left], places[right]) / distance(face.head.at("5.1"), face.head.at("5.2"));
+    assert!((growth - 1.2).abs() < 1e-9, "{growth}");
+    let reach = paper::puff_reach(&face.head);
+    let centre = plus(face.head.at("5.1"), minus(face.head.at("5.2"), face.head.at("5.1")), 0.5);
+    let puffed = posed(&face, "puff_cheeks_left");
+    let mut seen = 0;
+    for index in (0..face.head.points.len()).filter(|&index| face.head.is_skin(index)) {
+        let place = face.head.points[index];
+        let part = paper::cosine_law(distance(place, face.head.at("5.1")), reach);
+        let growth = distance(puffed[index], centre) / distance(place, centre) - 1.0;
+        assert!((growth - 0.2 * part).abs() < 1e-9, "{}: {growth}, not {}", face.head.label(index), 0.2 * part);
+        seen += usize::from(part > 0.0);
+    }
+    assert!(seen >= 8, "{seen} points of the cheek");
+}
+
+#[test]
+fn units_are_symmetric_and_their_sides_add_up() {
+    let face = face();
+    let neutral = face.blueprint.neutral();
+    let ways =
+        |sum: &str| -> Vec<Vector> { posed(&face, sum).iter().zip(&neutral).map(|(&to, &from)| minus(to, from)).collect() };
+    for shape in face.blueprint.shapes.iter().filter(|shape| shape.sided && shape.turns.is_empty()) {
+        let (left, right, both) =
+            (ways(&format!("{}_left", shape.name)), ways(&format!("{}_right", shape.name)), ways(&shape.name));
+        for index in 0..neutral.len() {
+            let image = left[face.blueprint.mirror(index)];
+            assert!(distance(right[index], [-image[0], image[1], image[2]]) < 1e-9, "{} is not symmetric", shape.name);
+            let sum = plus(left[index], right[index], 1.0);
+            assert!(distance(sum, both[index]) < 1e-9, "{}: the sides do not add up", shape.name);
+        }
+    }
+}
+
+#[test]
+fn a_spherical_opening_keeps_the_jaws_length_and_a_straight_one_does_not() {
+    let face = face();
+    let spherical = jaw(&face, Interpolation::Spherical).unwrap();
+    assert!(spherical.shortest > 0.99 && spherical.longest < 1.01, "{spherical:?}");
+    let linear = jaw(&face, Interpolation::Linear).unwrap();
+    assert!(linear.shortest < 0.99, "{linear:?}");
+    // All ways end at the same place.
+    let ends = [Interpolation::Linear, Interpolation::Cosine, Interpolation::Spherical].map(|interpolation| {
+        let face = under(&face.blueprint, interpolation);
+        exact::places(&face, &pose::parse(&face, "joy+sadness+open_mouth").unwrap())
+    });
+    for end in &ends {
+        assert!(end.iter().zip(&ends[0]).all(|(&a, &b)| distance(a, b) < 1e-9));
+    }
+}
+
+#[test]
+fn a_closed_lid_meets_the_lower_one_and_stays_on_the_eyeball() {
+    let face = face();
+    let closed = posed(&face, "blink");
+    for (upper, lower) in [("3.1", "3.3"), ("3.2", "3.4"), ("lid-upper-in", "lid-lower-in"), ("lid-upper-out", "lid-lower-out")] {
+        let gap = height(&face, &closed, upper) - face.head.at(lower)[1];
+        assert!(gap.abs() < 0.1, "{upper} stops {gap} mm above {lower}");
+    }
+    let eyeball = [face.head.at("3.1")[0], 0.0, 62.0];
+    let radius = distance(face.head.at("3.1"), eyeball);
+    for step in 0..=20 {
+        let places = posed(&face, &format!("blink={}", f64::from(step) / 20.0));
+        assert!((distance(places[face.head.find("3.1").unwrap()], eyeball) / radius - 1.0).abs() < 0.01);
+    }
+}

@@ -1,0 +1,178 @@
+//! The model that devices play: the committed bytes, the device's arithmetic against full precision, hostile bytes, names.
+
+use pantin_face::model::{Error, hash};
+use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
+use pantin_figure::Canvas;
+use pantin_tools::face::cast::{Cast, is_face};
+use pantin_tools::face::{Face, error, export, fit, outside, pose};
+use pantin_tools::import;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A clip of others, or nothing where there is none.
+fn data(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("PANTIN_DATA").map_or_else(|| repository().join("../shared/data"), PathBuf::from);
+    let path = folder.join(name);
+    if !path.exists() {
+        eprintln!("skipped: {name} is not in $PANTIN_DATA");
+    }
+    path.exists().then_some(path)
+}
+
+#[test]
+fn the_committed_model_is_what_the_tables_make() {
+    let committed = std::fs::read(repository().join("motions/face.model")).unwrap();
+    let face = Face::new().unwrap();
+    assert!(
+        committed == face.bytes,
+        "the face has changed: write motions/face.model anew by `pantin face model -o motions/face.model`"
+    );
+    assert!(face.bytes.len() <= 8 << 10, "{} bytes", face.bytes.len());
+    assert!(size_of::<Morph<VERTICES>>() + size_of::<Look<VERTICES>>() + size_of::<Binding>() + size_of::<Weights>() <= 6 << 10);
+}
+
+#[test]
+fn the_device_keeps_within_a_tenth_of_a_percent() {
+    let face = Face::new().unwrap();
+    let error = error::greatest(&face.blueprint, &face.bytes).unwrap();
+    assert!(error.part < 0.001, "{error:?}");
+}
+
+/// Plays and draws a model, whatever it is.
+fn play(model: &Model) {
+    let Ok(mut morph) = Morph::<512>::new(model) else { return };
+    for view in [View::default(), View { orbit: 70, tilt: -30 }] {
+        let mut look = Look::<512>::new(model, pantin_figure::Canvas { width: 240, height: 240 }, view);
+        for weight in [0, 20_000, 1 << 15, -(1 << 15)] {
+            let mut weights = Weights::new();
+            (0..model.shape_count()).for_each(|shape| weights.add(shape, [true, shape % 2 == 0], weight));
+            morph.place(model, &weights);
+            look.project(model, &morph);
+            let mut lines = 0;
+            look.lines(model, |_| lines += 1);
+            assert!(lines < 1 << 16);
+        }
+    }
+}
+
+#[test]
+fn hostile_bytes_are_refused_or_harmless() {
+    let bytes = Face::new().unwrap().bytes;
+    play(&Model::new_checked(&bytes).unwrap());
+    for len in 0..bytes.len() {
+        assert!(Model::new_checked(&bytes[..len]).is_err(), "{len} bytes are taken for all");
+    }
+    assert_eq!(Model::new_checked(&[9]).unwrap_err(), Error::UnsupportedVersion(9));
+    let mut state = 7u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state >> 8
+    };
+    for bit in (0..bytes.len() * 8).step_by(5) {
+        let mut bad = bytes.clone();
+        bad[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(model) = Model::new_checked(&bad) {
+            play(&model);
+        }
+    }
+    for _ in 0..2000 {
+        let mut bad = bytes.clone();
+        for _ in 0..1 + random() % 6 {
+            let place = random() as usize % bad.len();
+            bad[place] = random() as u8;
+        }
+        if let Ok(model) = Model::new_checked(&bad) {
+            play(&model);
+        }
+    }
+}
+
+#[test]
+fn names_are_told_apart_by_their_hashes() {
+    let face = Face::new().unwrap();
+    let names: HashSet<&str> = face.blueprint.names.iter().map(|drive| drive.name.as_str()).collect();
+    let hashes: HashSet<u32> = names.iter().map(|name| hash(name.as_bytes())).collect();
+    assert_eq!(names.len(), hashes.len());
+}
+
+#[test]
+fn all_that_arkit_tracks_is_known_but_the_eyes_own_angles() {
+    let Some(path) = data("face_neurosync_angry_arkit.csv") else { return };
+    let motion = import::load(&path, &import::Options::default()).unwrap().motion;
+    let face = Face::new().unwrap();
+    for scalar in &motion.rig.scalars {
+        let known = pose::parse(&face.blueprint, &scalar.name).is_ok();
+        let angle = scalar.name.starts_with("LeftEye") || scalar.name.starts_with("RightEye");
+        assert_ne!(known, angle, "{}", scalar.name);
+    }
+}
+
+#[test]
+fn a_pose_is_taken_apart_into_its_units() {
+    let face = Face::new().unwrap();
+    for sum in ["joy=0.7,wink_left=1,open_mouth=0.3", "sadness=0.5", "surprise=0.6,look_left=0.5,puff_cheeks_right=0.9"] {
+        let pairs = pose::parse(&face.blueprint, sum).unwrap();
+        let target = outside::obj_points(&export::obj(&face, &pairs).unwrap()).unwrap();
+        let fit = fit::fit(&face.blueprint, &target).unwrap();
+        assert!(fit.residual < 0.05, "{sum}: {} mm are left of {}", fit.residual, fit.before);
+        for ((shape, wanted), found) in face.blueprint.shapes.iter().zip(&pairs).zip(&fit.pairs) {
+            for (wanted, found) in wanted.iter().zip(found) {
+                assert!((wanted - found).abs() < 0.05, "{sum}: {} is found {found}, not {wanted}", shape.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn meshes_from_outside_become_models() {
+    for (name, vertices, targets) in [("gltf_khronos_morph-cube.glb", 24, 2), ("gltf_khronos_morph-stress.gltf", 1528, 8)] {
+        let Some(path) = data(name) else { continue };
+        let blueprint = outside::model(&path).unwrap();
+        let bytes = pantin_tools::face::compact::encode(&blueprint).unwrap();
+        let model = Model::new_checked(&bytes).unwrap();
+        assert_eq!((model.vertices(), model.shape_count()), (vertices, targets));
+        let error = error::greatest(&blueprint, &bytes).unwrap();
+        assert!(error.part < 0.001, "{name}: {error:?}");
+    }
+}
+
+#[test]
+fn own_motions_are_small_faces_that_begin_and_end_at_rest() {
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(repository().join("motions/face")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert_eq!(files.len(), 16);
+    let folder = std::env::temp_dir().join(format!("pantin-face-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut total = 0;
+    for file in &files {
+        let clip = folder.join(file.file_name().unwrap()).with_extension("ptn");
+        let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
+            .args(["convert", "--max-scalar-error", "2", "-o"])
+            .args([&clip, file])
+            .output()
+            .unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        let bytes = std::fs::read(&clip).unwrap();
+        total += bytes.len();
+        let clip = pantin::Clip::new_checked(&bytes).unwrap();
+        assert!(clip.frames() > 30 && is_face(&clip).unwrap(), "{}", file.display());
+        let motion = import::load(file, &import::Options::default()).unwrap().motion;
+        let rests = |values: &Vec<f64>| values[0].abs() < 1e-9 && values[values.len() - 1].abs() < 1e-9;
+        assert!(motion.values.iter().all(rests), "{}: begins or ends with a face", file.display());
+        let view = pantin_figure::View { orbit: 0, tilt: 0, ..Default::default() };
+        let mut cast = Cast::of_clip(&clip, Canvas { width: 128, height: 64 }, &[view]).unwrap().unwrap();
+        let mut states = vec![pantin::ChannelState::default(); clip.moving()];
+        let mut pose = vec![0; clip.rig().channels()];
+        let mut player = pantin::Player::new(clip, &mut states, &mut pose).unwrap();
+        let before = cast.lines(player.pose(), 0);
+        player.seek(clip.frames() / 2);
+        assert_ne!(cast.lines(player.pose(), 0), before, "{}: nothing happens", file.display());
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(total <= 2 << 10, "{total} bytes");
+}
