@@ -4,7 +4,7 @@
 //! ```text
 //! $ cargo xtask strips motions/run.keys
 //! ```
-//! leaves a picture for each board and motion, `strips/sx1-run.png`: a row a view.
+//! leaves a picture for each board and motion, `strips/sx1-run.png`: two rows a view.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -26,6 +26,8 @@ use super::steps::say;
 const VIEWS: [(i16, &str); 3] = [(0, "front"), (90, "side"), (-50, "three quarters")];
 /// Pictures of a motion in a view.
 const COUNT: u32 = 8;
+/// And in a row of them.
+const COLUMNS: usize = 4;
 /// They are taken out of this time: a step or two.
 const SECONDS: f64 = 1.4;
 /// The longest that a board may play.
@@ -66,7 +68,7 @@ impl Strips {
                     film.frames.iter().zip(&films[index]).map(move |(frame, picture)| (format!("{name}, frame {frame}"), picture))
                 });
                 let path = self.out.join(format!("{}-{}.png", board.name, film.name()));
-                write_whole(&path, &pictures::sheet(&rows.collect::<Vec<_>>(), film.frames.len())?)?;
+                write_whole(&path, &pictures::sheet(&rows.collect::<Vec<_>>(), COLUMNS)?)?;
                 say(&format!("wrote {}", path.display()));
             }
         }
