@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use harness::build::Firmware;
 use harness::display::Picture;
 use harness::icount::{self, FRAME_REGIONS};
-use harness::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, SX1};
+use harness::qemu::{BOARDS, LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, SX1};
 use harness::sync::Session;
 use harness::{clips, defmt_log, paths, screen, setup, simulator};
 use pantin_figure::rotation::Rotation;
@@ -218,5 +218,27 @@ fn lm3s6965evb_has_buttons() {
         let playing: Vec<&Picture> = playing[letters.len()..].iter().map(|(_, picture)| picture).collect();
         tap(&mut qemu, button);
         await_one(&mut qemu, button, &playing);
+    }
+}
+
+#[test]
+fn every_board_plays_at_its_own_pace_and_ends() {
+    if setup::host_only("boards at their own pace") {
+        return;
+    }
+    // Our walk has 120 frames a second. Emulated timers are the host's: none is early, and all may be late.
+    const PICTURES: u32 = 40;
+    for machine in BOARDS {
+        let firmware = firmware(machine);
+        let begun = Instant::now();
+        let launch = Launch::new(machine, firmware.elf()).argument(format!("frames={PICTURES}"));
+        let outcome = launch.start().unwrap().wait().unwrap();
+        let took = begun.elapsed();
+        let log = defmt_log::decode(firmware.elf(), &outcome.stdout).unwrap();
+        assert_eq!(outcome.code, 0, "{}: {log:?}", machine.name);
+        let last = log.last().unwrap();
+        assert!(last.starts_with(&format!("INFO {PICTURES} pictures, ")), "{}: {last}", machine.name);
+        assert!(took >= Duration::from_secs(1) * (PICTURES - 1) / 120, "{}: {took:?}", machine.name);
+        println!("{}: {last}, {took:?}", machine.name);
     }
 }

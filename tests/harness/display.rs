@@ -1,5 +1,7 @@
 //! The displays of the emulated machines, and pictures of them.
 
+use pantin_tools::render::image::Image;
+
 /// What a pixel's value means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
@@ -60,6 +62,12 @@ impl Picture {
     /// Whether nothing is lit.
     pub fn is_dark(&self) -> bool {
         self.pixels.iter().all(|&value| value == 0)
+    }
+
+    /// In colours, each pixel a square of `scale`.
+    pub fn image(&self, scale: usize) -> Image {
+        let colours = self.pixels.iter().map(|&value| self.display.depth.rgb(value)).collect();
+        Image::of(self.display.width, colours).enlarged(scale)
     }
 }
 

@@ -47,6 +47,14 @@ pub const SX1: Machine = arm("sx1", "armv4t-none-eabi", display::LCD);
 /// The machines that play clips on a display.
 pub const BOARDS: [Machine; 4] = [LM3S6965EVB, MICROBIT, MPS2_AN386, SX1];
 
+/// The machine of [`BOARDS`] of this name.
+pub fn board(name: &str) -> Result<Machine> {
+    BOARDS.into_iter().find(|board| board.name == name).with_context(|| {
+        let names: Vec<&str> = BOARDS.iter().map(|board| board.name).collect();
+        format!("no board is called {name}; there are {}", names.join(", "))
+    })
+}
+
 const fn arm(name: &'static str, target: &'static str, display: Display) -> Machine {
     Machine { emulator: "qemu-system-arm", name, target, options: &[], display: Some(display) }
 }

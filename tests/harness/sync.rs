@@ -37,18 +37,26 @@ impl Session {
 
     /// The next picture, after these letters of keys, and the number that the firmware gives it. The first one takes no letters.
     pub fn next(&mut self, keys: &[u8]) -> Result<(u32, Picture)> {
+        Ok((self.step(keys)?, self.picture()?))
+    }
+
+    /// Goes on to the next picture without looking at it.
+    pub fn step(&mut self, keys: &[u8]) -> Result<u32> {
         if self.begun {
             self.answer(&[keys, &[pantin_app::NEXT]].concat())?;
         }
         self.begun = true;
         // Sets the time that reading may take.
         self.qemu.serial()?;
-        let number = wire::shown(&mut self.line, self.memory.as_mut()).map_err(|error| self.qemu.explain(error))?;
-        let picture = match &self.memory {
-            Some(memory) => memory.picture(),
-            None => self.qemu.picture()?,
-        };
-        Ok((number, picture))
+        wire::shown(&mut self.line, self.memory.as_mut()).map_err(|error| self.qemu.explain(error))
+    }
+
+    /// What is shown.
+    pub fn picture(&mut self) -> Result<Picture> {
+        match &self.memory {
+            Some(memory) => Ok(memory.picture()),
+            None => self.qemu.picture(),
+        }
     }
 
     /// Ends the firmware and waits for that.

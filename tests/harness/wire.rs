@@ -17,7 +17,7 @@ const fn cell(depth: Depth) -> [usize; 3] {
     match depth {
         Depth::Mono => [1, 8, 1],
         Depth::Gray4 => [8, 1, 4],
-        Depth::Rgb565 => [1, 1, 2],
+        Depth::Rgb565 => [2, 1, 4],
     }
 }
 

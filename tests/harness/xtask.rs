@@ -16,6 +16,7 @@ enum Command {
     Demo(cmd::demo::Demo),
     Fuzz(cmd::fuzz::Fuzz),
     Gallery(cmd::gallery::Gallery),
+    Strips(cmd::strips::Strips),
     Test(cmd::test::Test),
     Vectors(cmd::vectors::Vectors),
 }
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
         Command::Demo(demo) => demo.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Gallery(gallery) => gallery.run(),
+        Command::Strips(strips) => strips.run(),
         Command::Test(test) => test.run(),
         Command::Vectors(vectors) => vectors.run(),
     };

@@ -1,7 +1,7 @@
-//! `cargo xtask demo [MOTION] [--out DIR]`: a motion, from its file to the display of an emulated board.
+//! `cargo xtask demo [MOTION] [--board NAME] [--out DIR]`: a motion, from its file to the display of an emulated board.
 //!
 //! ```text
-//! $ cargo xtask demo motions/run.keys
+//! $ cargo xtask demo motions/run.keys --board sx1
 //! ```
 //! leaves `demo/demo.gif`, `demo/demo-sheet.png` and the clip itself, and prints a table of what it cost.
 
@@ -14,21 +14,26 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use harness::display::Picture;
-use harness::{build, paths, setup};
+use harness::{build, paths, qemu, setup};
 use pantin_tools::cmd::write_whole;
-use pantin_tools::render::{gif, sheet};
 
+use super::pictures;
 use super::steps::say;
 use report::{Clip, Report};
 
 /// Pictures on the contact sheet.
 const SHEET: usize = 12;
+/// Pictures in a row of it.
+const COLUMNS: usize = 3;
 
 /// Plays a motion on the display of an emulated board, and shows what it costs.
 #[derive(Args)]
 pub struct Demo {
     /// The motion file; our own walk if none is given
     motion: Option<PathBuf>,
+    /// The machine: lm3s6965evb, microbit, mps2-an386 or sx1
+    #[arg(long, default_value = "lm3s6965evb")]
+    board: String,
     /// Where the pictures and the clip go
     #[arg(long, default_value = "demo")]
     out: PathBuf,
@@ -47,6 +52,7 @@ impl Demo {
     /// Converts, plays, writes the pictures, prints the table.
     pub fn run(self) -> Result<()> {
         ensure!(self.frames > 0, "--frames 0 leaves nothing to show");
+        let machine = qemu::board(&self.board)?;
         let motion = self.motion.clone().unwrap_or_else(|| paths::root().join("motions/walk.keys"));
         ensure!(motion.exists(), "{}: no such file", motion.display());
         say(&format!("converting {}", motion.display()));
@@ -56,22 +62,16 @@ impl Demo {
         if frames < clip.frames {
             say(&format!("showing the first {frames} of {} frames (--frames says how many)", clip.frames));
         }
-        let counts = match setup::install_emulator("qemu-system-arm") {
-            Ok(_) => {
-                let play = board::play(&clip.path, frames)?;
-                self.write_pictures(&play.pictures, clip.rate)?;
-                play.counts
-            }
+        let play = match setup::install_emulator(machine.emulator) {
+            Ok(_) => board::play(machine, &clip.path, frames)?,
             Err(missing) => {
-                say(&format!("{missing:#}\nplaying in the built-in host display instead"));
-                for name in ["demo.gif", "demo-sheet.png"] {
-                    run(Command::new(&tool).arg("render").arg(&clip.path).arg("-o").arg(self.out.join(name)))?;
-                }
-                None
+                say(&format!("{missing:#}\nplaying the board's program on this machine instead"));
+                board::simulate(machine, &clip.path, frames)?
             }
         };
+        self.write_pictures(&play.pictures, clip.rate)?;
         say(&format!("wrote {} and demo-sheet.png", self.out.join("demo.gif").display()));
-        print!("{}", Report { clip: &clip, counts });
+        print!("{}", Report { clip: &clip, counts: play.counts });
         Ok(())
     }
 
@@ -89,23 +89,12 @@ impl Demo {
     }
 
     fn write_pictures(&self, shown: &[Picture], rate: f64) -> Result<()> {
-        let stride = gif::stride(1.0 / rate) as usize;
-        let animated: Vec<_> = shown.iter().step_by(stride).map(greys).collect();
-        let mut animation = vec![];
-        gif::write(&mut animation, &animated, stride as f64 / rate)?;
-        write_whole(&self.out.join("demo.gif"), &animation)?;
+        write_whole(&self.out.join("demo.gif"), &pictures::animation(shown, rate)?)?;
         let chosen = SHEET.min(shown.len());
         let frames = (0..chosen).map(|index| index * shown.len() / chosen);
-        let labelled: Vec<_> = frames.map(|frame| (frame as u32, greys(&shown[frame]))).collect();
-        let mut pictures = vec![];
-        sheet::write(&mut pictures, &labelled)?;
-        write_whole(&self.out.join("demo-sheet.png"), &pictures)
+        let labelled: Vec<_> = frames.map(|frame| (format!("frame {frame}"), &shown[frame])).collect();
+        write_whole(&self.out.join("demo-sheet.png"), &pictures::sheet(&labelled, COLUMNS)?)
     }
-}
-
-/// A picture of the reference display as the host tool draws them.
-fn greys(picture: &Picture) -> pantin_tools::render::screen::Picture {
-    pantin_tools::render::screen::Picture { pixels: picture.pixels.iter().map(|&grey| grey as u8).collect() }
 }
 
 /// Runs the host tool, whose stderr a person sees, and returns its stdout.

@@ -6,6 +6,8 @@ pub mod demo;
 pub mod fuzz;
 pub mod gallery;
 mod packages;
+mod pictures;
 pub mod steps;
+pub mod strips;
 pub mod test;
 pub mod vectors;

@@ -61,7 +61,11 @@ pub fn thick<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::
         let mut beside = cursor;
         surface.put(beside, ink);
         for _ in 1..width {
-            if steep { S::across(&mut beside, true) } else { S::along(&mut beside, true) }
+            if steep {
+                S::across(&mut beside, true)
+            } else {
+                S::along(&mut beside, true)
+            }
             surface.put(beside, ink);
         }
         if left == 0 {

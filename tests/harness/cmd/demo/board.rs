@@ -1,14 +1,15 @@
-//! The clip on the reference board: built into its firmware, booted, played frame by frame.
+//! The clip on a board: built into its firmware, booted, played frame by frame.
 
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use harness::build::Firmware;
 use harness::display::Picture;
 use harness::icount::{self, Stats};
-use harness::qemu::{LM3S6965EVB, Launch};
-use harness::{defmt_log, setup, sync};
+use harness::qemu::{Launch, Machine};
+use harness::{defmt_log, setup, simulator, sync};
+use pantin_figure::rotation::Rotation;
 
 use crate::cmd::steps::{progress, say};
 
@@ -24,19 +25,19 @@ pub struct Play {
 }
 
 /// Plays the first `frames` frames of a clip.
-pub fn play(clip: &Path, frames: usize) -> Result<Play> {
+pub fn play(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
     say("building the firmware");
-    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, &[clip])?;
+    let firmware = Firmware::build(machine.name, machine.name, machine.target, &[clip])?;
     let folder = tempfile::tempdir()?;
     let counts = folder.path().join("counts");
-    let mut launch = Launch::new(LM3S6965EVB, firmware.elf()).limit(LIMIT);
-    let counting = setup::takes_plugins(LM3S6965EVB.emulator);
+    let mut launch = Launch::new(machine, firmware.elf()).limit(LIMIT);
+    let counting = setup::takes_plugins(machine.emulator);
     if counting {
-        launch = launch.counting(&icount::plugin(LM3S6965EVB.emulator)?, &counts);
+        launch = launch.counting(&icount::plugin(machine.emulator)?, &counts);
     } else {
         say("this QEMU takes no plugins: instructions are not counted");
     }
-    say("playing on QEMU's lm3s6965evb");
+    say(&format!("playing on QEMU's {}", machine.name));
     let mut pictures = vec![];
     let outcome = sync::play(launch, frames, |number, picture| {
         ensure!(number as usize == pictures.len(), "the board shows frame {number}, expected {}", pictures.len());
@@ -49,4 +50,11 @@ pub fn play(clip: &Path, frames: usize) -> Result<Play> {
     ensure!(outcome.code == 0, "the board ended with code {}: {}", outcome.code, outcome.stderr.trim());
     let counts = counting.then(|| icount::by_kind(&icount::read(&counts)?, icount::FRAME_REGIONS.len())).transpose()?;
     Ok(Play { pictures, counts })
+}
+
+/// The same by the board's program on this machine.
+pub fn simulate(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
+    let display = machine.display.context("this machine shows no pictures")?;
+    let shown = simulator::play::<Rotation>(display, &[clip.into()], &[], &vec![&b""[..]; frames - 1])?;
+    Ok(Play { pictures: shown.into_iter().map(|(_, picture)| picture).collect(), counts: None })
 }
