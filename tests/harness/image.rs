@@ -1,7 +1,9 @@
 //! What a linked image holds: bytes of code and constants, and the names of its symbols.
 
+use std::path::Path;
+
 use anyhow::{Context, Result};
-use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SymbolKind};
 
 use crate::build::Firmware;
 use crate::qemu::MICROBIT;
@@ -18,6 +20,13 @@ pub struct Image {
     pub tables: u64,
     /// Names and bytes of functions and tables, the largest first.
     pub symbols: Vec<(String, u64)>,
+}
+
+/// Bytes that an image takes of the flash: all that is loaded from it.
+pub fn loaded(elf: &Path) -> Result<u64> {
+    let bytes = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+    let file = object::File::parse(&*bytes).context("the image is no ELF file")?;
+    Ok(file.segments().map(|segment| segment.file_range().1).sum())
 }
 
 impl Image {

@@ -6,8 +6,10 @@
 
 use std::io::{BufReader, Write};
 use std::os::unix::net::UnixStream;
+use std::path::Path;
 
 use anyhow::{Context, Result};
+use serde_json::json;
 
 use crate::display::{Picture, Way};
 use crate::qemu::{Launch, Outcome, Qemu};
@@ -57,6 +59,13 @@ impl Session {
             Some(memory) => Ok(memory.picture()),
             None => self.qemu.picture(),
         }
+    }
+
+    /// Writes so many bytes of the machine's memory to a file.
+    pub fn memory(&mut self, start: u32, length: usize, path: &Path) -> Result<()> {
+        let path = path.to_str().context("QMP names files in UTF-8")?;
+        let words = json!({ "val": start, "size": length, "filename": path });
+        self.qemu.control()?.execute("pmemsave", words).map(drop)
     }
 
     /// Ends the firmware and waits for that.

@@ -5,6 +5,7 @@ mod decimation;
 mod decode;
 mod error;
 mod footprint;
+mod frame;
 mod goals;
 mod guest;
 mod host;
@@ -41,6 +42,8 @@ pub enum Part {
     Footprint,
     /// Time a pose on this machine, and encoding speed
     Host,
+    /// Guest instructions of a frame on every machine, the firmware's size and memory, and how many figures fit
+    Frame,
     /// Additions against polynomials, and a clip against a per-frame file over a link
     Argument,
 }
@@ -76,6 +79,7 @@ impl Part {
             Self::Decode => decode::run(setting),
             Self::Footprint => footprint::run(setting),
             Self::Host => host::run(setting),
+            Self::Frame => frame::run(setting),
             Self::Argument => argument::run(setting),
         }
     }
