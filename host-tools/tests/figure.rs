@@ -95,7 +95,7 @@ impl Case {
         let mut stage = self.stage(view);
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
-            stage.look(&self.pose(frame));
+            stage.place(&self.pose(frame));
             let hips = stage.skeleton().hips;
             let target = stage.target();
             let truth = self.truth(stage.skeleton(), frame);
@@ -273,11 +273,11 @@ fn a_person_is_drawn_as_a_person() {
     let mut display = MockDisplay::<BinaryColor>::new();
     display.set_allow_overdraw(true);
     display.set_allow_out_of_bounds_drawing(true);
-    stage.look(&case.pose(0));
+    stage.place(&case.pose(0));
     let mut inside = display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)));
     inside.clear(BinaryColor::Off).unwrap();
     let mut surface = OnTarget::new(&mut inside);
-    stage.lines().draw_on(&mut surface, Look { ground: false, ..Look::default() });
+    stage.draw_on(&mut surface, Look { ground: false, ..Look::default() });
     surface.outcome().unwrap();
     #[rustfmt::skip]
     display.assert_pattern(&[

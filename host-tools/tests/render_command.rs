@@ -214,7 +214,8 @@ fn the_phones_picture_is_the_firmwares_own() {
     let mut stage = pantin_figure::Stage::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
     let mut frame = Phone::new();
     player.seek(30);
-    stage.look(player.pose()).draw_on(&mut frame, pantin_figure::Look::default());
+    stage.place(player.pose());
+    stage.draw_on(&mut frame, pantin_figure::Look::default());
     let shown = |index: usize| Rgb888::from(frame.pixel(index % 176, index / 176));
     assert!((0..176 * 220).all(|index| pixels[index] == [shown(index).r(), shown(index).g(), shown(index).b()]));
     // The figure's sides have hues of their own.

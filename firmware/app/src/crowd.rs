@@ -3,13 +3,13 @@
 use crate::board::{Board, Exit};
 use crate::log::error;
 use crate::options::{Mode, Options};
-use crate::run::{RIG, Wishes, listen, show};
+use crate::run::{Wishes, listen, set_up, show};
 use crate::scene::{Entry, Scene};
 use heapless::Vec;
 use pantin::{ChannelState, Clip, Player};
 use pantin_figure::rotation::Turning;
 use pantin_figure::surface::{Frame, Layout};
-use pantin_figure::{Canvas, Limb, Stage};
+use pantin_figure::{Canvas, Stage};
 
 /// Most figures.
 pub const FIGURES: usize = 16;
@@ -23,7 +23,7 @@ pub struct Seat<R: Turning, const CHANNELS: usize, const MOVING: usize, const JO
 
 impl<R: Turning, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Seat<R, CHANNELS, MOVING, JOINTS> {
     /// Nobody sits there.
-    #[inline]
+    #[inline(always)]
     pub fn empty() -> Self {
         Seat { states: [ChannelState::default(); MOVING], pose: [0; CHANNELS], stage: Stage::empty() }
     }
@@ -86,7 +86,8 @@ fn sit<R: Turning, const JOINTS: usize>(
 ) -> Result<(), pantin_figure::Error> {
     let share = width / count;
     let canvas = Canvas { width: (share * 3 / 2) as u16, height: height as u16 };
-    stage.set_up(player, canvas, scene.view, &mut [Limb::default(); RIG])?;
+    set_up(stage, player, canvas)?;
+    stage.aim(player, scene.view);
     stage.shift((share * index + share / 2) as i16 - (canvas.width / 2) as i16, 0);
     Ok(())
 }
@@ -152,7 +153,7 @@ fn draw<B: Board, const JOINTS: usize>(
     board.mark_start();
     frame.clear();
     for actor in actors {
-        actor.stage.lay().draw_on(frame, scene.look);
+        actor.stage.draw_on(frame, scene.look);
     }
     board.mark_stop();
 }

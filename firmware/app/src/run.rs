@@ -72,10 +72,11 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
     };
     let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
     let mut stage = Stage::<JOINTS, B::Turning>::empty();
-    if let Err(error) = set_up(&mut stage, &mut player, canvas, scene) {
+    if let Err(error) = set_up(&mut stage, &mut player, canvas) {
         error!("the rig is too big: {}", error);
         return After::Exit(Exit::BadClip);
     }
+    stage.aim(&mut player, scene.view);
     info!(
         "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn",
         entry.name,
@@ -89,17 +90,16 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
 }
 
 /// Most joints of a rig, fingers and the like among them.
-pub const RIG: usize = 96;
+pub const RIG: usize = 64;
 
 /// In a function of its own: the workspace is given back before the first frame.
 #[inline(never)]
-fn set_up<R: Turning, const JOINTS: usize>(
+pub(crate) fn set_up<R: Turning, const JOINTS: usize>(
     stage: &mut Stage<JOINTS, R>,
     player: &mut Player,
     canvas: Canvas,
-    scene: &Scene,
 ) -> Result<(), pantin_figure::Error> {
-    stage.set_up(player, canvas, scene.view, &mut [Limb::default(); RIG])
+    stage.set_up(player, canvas, &mut [Limb::default(); RIG])
 }
 
 #[inline(never)]
@@ -216,7 +216,7 @@ fn draw<B: Board, const JOINTS: usize>(
 ) {
     board.mark_start();
     frame.clear();
-    stage.lay().draw_on(frame, scene.look);
+    stage.draw_on(frame, scene.look);
     board.mark_stop();
 }
 

@@ -19,29 +19,17 @@ pub struct Limb {
     finger: u16,
     /// Index of the parent; the root has [`NO_PARENT`].
     pub(crate) parent: u8,
-    /// The child that the longest chain starts with.
-    longest: u8,
     /// Kept joints in its part of the tree, itself among them.
     pub(crate) weight: u8,
-    /// Its index in the skeleton.
-    pub(crate) bone_index: u8,
+    /// The child that the longest chain starts with, and later its index in the skeleton.
+    pub(crate) link: u8,
     flags: u8,
 }
 
 /// Fills a workspace.
 impl Default for Limb {
     fn default() -> Self {
-        Limb {
-            bone: [0; 3],
-            length: 0,
-            reach: 0,
-            finger: NO_FINGER,
-            parent: NO_PARENT,
-            longest: 0,
-            weight: 0,
-            bone_index: NO_PARENT,
-            flags: 0,
-        }
+        Limb { bone: [0; 3], length: 0, reach: 0, finger: NO_FINGER, parent: NO_PARENT, weight: 0, link: NO_PARENT, flags: 0 }
     }
 }
 
@@ -131,7 +119,7 @@ impl<'w> Limbs<'w> {
                 let chain = reach.saturating_add(length / 8);
                 if chain >= parent.reach {
                     parent.reach = chain;
-                    parent.longest = index as u8;
+                    parent.link = index as u8;
                 }
             }
         }
@@ -150,7 +138,7 @@ impl<'w> Limbs<'w> {
             let Some(&parent) = self.limbs.get(usize::from(parent)) else { continue };
             let hand = parent.is(flag::FORKS) && i32::from(parent.reach) < eighths / 6;
             let finger = if hand { 0 } else { parent.finger };
-            let longest = parent.longest == index as u8;
+            let longest = parent.link == index as u8;
             let short = parent.finger == NO_FINGER || i32::from(parent.finger) < eighths / 25;
             let shows = finger == NO_FINGER || (longest && short);
             let Some(limb) = self.limbs.get_mut(index) else { return };

@@ -1,8 +1,10 @@
 //! Draws a frame's lines on any surface, and into any `embedded-graphics` target.
 
 use crate::ink::{Ink, Tone};
-use crate::lines::{Line, Lines, pixel};
-use crate::raster::{disc, dots, dotted, line, smooth, thick};
+use crate::lines::{Line, pixel};
+use crate::raster::{Dots, disc, dotted, line, smooth, thick};
+use crate::rotation::Turning;
+use crate::stage::Stage;
 use crate::surface::{OnTarget, Surface};
 use embedded_graphics::draw_target::DrawTarget;
 
@@ -21,30 +23,36 @@ impl Default for Look {
     }
 }
 
-impl<const N: usize> Lines<N> {
-    /// Clears the target and draws the ground, the bones from far to near, and the head.
-    pub fn draw<D>(&self, target: &mut D) -> Result<(), D::Error>
+impl<const N: usize, R: Turning> Stage<N, R> {
+    /// Draws the pose that was placed last on a clear surface: the ground, the bones from far to near, and the head.
+    #[inline(never)]
+    pub fn draw_on<S: Surface>(&mut self, surface: &mut S, look: Look) {
+        if look.ground && self.ground().dotted {
+            let mut dots = Dots::on(surface);
+            self.each_dot(|dot| dots.put([pixel(dot.place[0]), pixel(dot.place[1])], S::Ink::of(Tone::Ground, dot.shade)));
+            dots.mark();
+        } else if look.ground {
+            self.each_ground_line(|line| stroke(&line, surface, look.smooth));
+        }
+        self.sort();
+        self.each_bone(|line| stroke(&line, surface, look.smooth));
+        if let Some(head) = self.head() {
+            let ink = S::Ink::of(Tone::Middle, head.shade);
+            disc(surface, head.centre.map(pixel), pixel(head.radius.saturating_add(8)).max(1), ink, S::Ink::DARK);
+        }
+    }
+
+    /// Clears the target and draws the figure in a pose.
+    pub fn draw<D>(&mut self, pose: &[i32], target: &mut D) -> Result<(), D::Error>
     where
         D: DrawTarget,
         D::Color: Ink,
     {
         target.clear(D::Color::DARK)?;
+        self.place(pose);
         let mut surface = OnTarget::new(target);
         self.draw_on(&mut surface, Look::default());
         surface.outcome()
-    }
-
-    /// Draws on a clear surface.
-    #[inline(never)]
-    pub fn draw_on<S: Surface>(&self, surface: &mut S, look: Look) {
-        if look.ground {
-            self.ground.iter().for_each(|line| stroke(line, surface, look.smooth));
-            dots(surface, self.dots.iter().map(|dot| (dot.place.map(pixel), S::Ink::of(Tone::Ground, dot.shade))));
-        }
-        self.far_to_near().for_each(|line| stroke(line, surface, look.smooth));
-        let Some(head) = self.head else { return };
-        let ink = S::Ink::of(Tone::Middle, head.shade);
-        disc(surface, head.centre.map(pixel), pixel(head.radius.saturating_add(8)).max(1), ink, S::Ink::DARK);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Forward kinematics: from a pose to where every joint is.
 
 use crate::rotation::{Rotation, Turning, Vector, shift_right};
-use crate::skeleton::{Act, Bone, Drive, SLOTS, Skeleton};
+use crate::skeleton::{Act, Bone, Drive, Part, SLOTS, Skeleton};
 use heapless::Vec;
 
 /// The joints of one frame, in figure units of the world or of a camera. Positions in the world are within 0.05 % of the figure's height of what real numbers give.
@@ -15,7 +15,7 @@ pub struct Kinematics<const N: usize, R: Turning = Rotation> {
 
 impl<const N: usize, R: Turning> Kinematics<N, R> {
     /// Nothing placed yet.
-    #[inline]
+    #[inline(always)]
     pub fn new() -> Self {
         Kinematics { positions: Vec::new(), rotations: [R::NONE; SLOTS] }
     }
@@ -37,11 +37,12 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
             let parent = bone.parent.and_then(|parent| self.positions.get(usize::from(parent)));
             let position = match parent {
                 Some(parent) if !bone.moves => {
-                    let reach = turned.image(bone.offset);
+                    let [x, y, z] = bone.offset;
+                    let reach = turned.image([x.into(), y.into(), z.into()]);
                     [parent[0].wrapping_add(reach[0]), parent[1].wrapping_add(reach[1]), parent[2].wrapping_add(reach[2])]
                 }
                 _ => {
-                    let offset = offset(bone, own, skeleton.position_shift, pose);
+                    let offset = offset(skeleton, bone, self.positions.len(), own, pose);
                     moved(parent, turned, offset, origin)
                 }
             };
@@ -71,7 +72,7 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
     /// Where one of the first joints is in the world, and the joints above it; others are not placed.
     pub fn place_one(&mut self, skeleton: &Skeleton<N>, pose: &[i32], joint: usize) -> Vector {
         match skeleton.bones.first() {
-            Some(root) if joint == 0 => offset(root, skeleton.drives(), skeleton.position_shift, pose),
+            Some(root) if joint == 0 => offset(skeleton, root, 0, skeleton.drives(), pose),
             _ => {
                 self.place_in(skeleton, pose, &R::NONE, [0; 3], joint + 1);
                 self.position(joint)
@@ -110,12 +111,15 @@ fn moved<R: Turning>(parent: Option<&Vector>, turned: &R, offset: Vector, origin
 
 /// The offset of a joint that may have position channels.
 #[inline(never)]
-fn offset(bone: &Bone, drives: &[Drive], position_shift: i32, pose: &[i32]) -> Vector {
-    let mut offset = bone.offset;
+fn offset<const N: usize>(skeleton: &Skeleton<N>, bone: &Bone, index: usize, drives: &[Drive], pose: &[i32]) -> Vector {
+    let mut offset = bone.offset.map(i32::from);
+    if let Some(place) = skeleton.places.get(index).filter(|_| index <= skeleton.hips && bone.part == Part::Hidden) {
+        offset = *place;
+    }
     for drive in drives.iter().take(bone.drives.into()).filter(|drive| drive.act() == Act::Offset) {
         for (index, component) in offset.iter_mut().enumerate() {
             if let Some(channel) = drive.member(index) {
-                *component = shift_right(value(pose, channel), position_shift);
+                *component = shift_right(value(pose, channel), skeleton.position_shift);
             }
         }
     }

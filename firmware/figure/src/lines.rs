@@ -1,9 +1,9 @@
-//! The figure of one frame as lines on the display, in the order in which they are drawn.
+//! What a frame is made of: lines and dots of the ground, lines of the bones, the head.
 
 use crate::camera::{Camera, Canvas, MAGNIFICATION_BITS, PIXEL_BITS, Projected, magnification};
 use crate::ink::Tone;
 use crate::rotation::Vector;
-use crate::skeleton::{Part, Skeleton};
+use crate::skeleton::Bone;
 use heapless::Vec;
 
 /// A line on the display, in sixteenths of a pixel.
@@ -43,17 +43,15 @@ pub struct Dot {
     pub shade: u8,
 }
 
-/// Everything that is drawn for a frame.
+/// Everything that is drawn for a frame, gathered: for who draws it otherwise than [`Stage::draw_on`](crate::Stage::draw_on).
 #[derive(Clone, Debug, Default)]
 pub struct Lines<const N: usize> {
     /// The ground as a grid of lines, on a large display.
     pub ground: Vec<Line, GROUND_LINES>,
     /// The ground as dots, on a small one.
     pub dots: Vec<Dot, GROUND_DOTS>,
-    /// Bones, in no order.
+    /// Bones, from far to near.
     pub bones: Vec<Line, N>,
-    /// Indices of the bones, the farthest first.
-    pub order: Vec<u8, N>,
     /// The head, for a rig that names one.
     pub head: Option<Head>,
 }
@@ -107,23 +105,11 @@ impl Ground {
     }
 }
 
-impl<const N: usize> Lines<N> {
-    /// Nothing to draw yet.
-    #[inline]
-    pub fn new() -> Self {
-        Lines { ground: Vec::new(), dots: Vec::new(), bones: Vec::new(), order: Vec::new(), head: None }
-    }
-
-    /// The ground about the target.
-    #[inline(never)]
-    pub fn lay_ground(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
-        self.ground.clear();
-        self.dots.clear();
-        if ground.dotted { self.lay_dots(ground, camera, target) } else { self.lay_grid(ground, camera, target) }
-    }
-
-    fn lay_grid(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
-        let (corner, [a, b]) = ground.lattice(camera, target, GROUND_ROWS);
+impl Ground {
+    /// Shows every line of the grid about the target.
+    #[inline(always)]
+    pub(crate) fn each_line(&self, camera: &Camera, target: Vector, mut show: impl FnMut(Line)) {
+        let (corner, [a, b]) = self.lattice(camera, target, GROUND_ROWS);
         let last = |step: Vector| step.map(|x| x * (GROUND_ROWS - 1));
         for (start, step, across) in [(corner, a, last(b)), (corner, b, last(a))] {
             let mut start = start;
@@ -132,16 +118,16 @@ impl<const N: usize> Lines<N> {
                 let to = camera.project(sum(start, across));
                 let depth = (from.depth + to.depth) >> 1;
                 let shade = (GROUND_SHADE - (depth >> 9)).clamp(24, 56) as u8;
-                let line = Line { from: from.place(), to: to.place(), depth: narrow(depth), shade, tone: Tone::Ground, width: 1 };
-                // There is room for all rows.
-                let _ = self.ground.push(line);
+                show(Line { from: from.place(), to: to.place(), depth: narrow(depth), shade, tone: Tone::Ground, width: 1 });
                 start = sum(start, step);
             }
         }
     }
 
-    fn lay_dots(&mut self, ground: &Ground, camera: &Camera, target: Vector) {
-        let (mut row, [a, b]) = ground.lattice(camera, target, DOT_ROWS);
+    /// Shows every dot about the target.
+    #[inline(always)]
+    pub(crate) fn each_dot(&self, camera: &Camera, target: Vector, mut show: impl FnMut(Dot)) {
+        let (mut row, [a, b]) = self.lattice(camera, target, DOT_ROWS);
         for index in 0..DOT_ROWS {
             // Without the corners: the longest way to a dot along the axes is one more than to the end of a middle row.
             let cut = ((index - DOT_ROWS / 2).abs() - 1).max(0);
@@ -149,70 +135,41 @@ impl<const N: usize> Lines<N> {
             for _ in 2 * cut..DOT_ROWS {
                 let dot = camera.project(place);
                 let shade = (DOT_SHADE - (dot.depth >> 7)).clamp(32, 208) as u8;
-                // There is room for all of them.
-                let _ = self.dots.push(Dot { place: dot.place(), shade });
+                show(Dot { place: dot.place(), shade });
                 place = sum(place, a);
             }
             row = sum(row, b);
         }
     }
+}
 
-    /// Lines of the bones and the head, from where the camera sees the joints.
-    #[inline(never)]
-    pub fn lay_bones(&mut self, skeleton: &Skeleton<N>, seen: &[Seen], camera: &Camera) {
-        self.bones.clear();
-        self.head = None;
+impl Bone {
+    /// The line from where the camera sees its parent to where it sees the joint.
+    #[inline(always)]
+    pub(crate) fn line(&self, from: Seen, to: Seen, camera: &Camera) -> Line {
+        let depth = between(from, to);
+        // Near limbs are thicker: half as thick again at a quarter of the camera's distance.
         let breadth = camera.breadth();
-        for (bone, to) in skeleton.bones.iter().zip(seen) {
-            let Some(from) = bone.parent.and_then(|parent| seen.get(usize::from(parent))) else { continue };
-            let depth = (i32::from(from.depth) + i32::from(to.depth)) >> 1;
-            match bone.part {
-                Part::Hidden => {}
-                Part::Bone => {
-                    // Near limbs are thicker: half as thick again at a quarter of the camera's distance.
-                    let width = ((breadth - (breadth * depth >> 14)) >> PIXEL_BITS).clamp(1, 9) as u8;
-                    let line =
-                        Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), tone: bone.tone, width };
-                    // One a bone: there is room.
-                    let _ = self.bones.push(line);
-                }
-                Part::Crown => {
-                    let radius = (camera.length(skeleton.head_radius) * magnification(to.depth.into())) >> MAGNIFICATION_BITS;
-                    let centre = [0, 1].map(|axis| ((i32::from(from.place[axis]) + i32::from(to.place[axis])) >> 1) as i16);
-                    self.head = Some(Head { centre, radius: narrow(radius), shade: shade(depth) });
-                }
-            }
-        }
-        self.sort();
+        let width = ((breadth - ((breadth * depth) >> 14)) >> PIXEL_BITS).clamp(1, 9) as u8;
+        Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), tone: self.tone, width }
     }
+}
 
-    /// Puts the farthest first. The order of the frame before is nearly right; lines as far as each other keep that of the
-    /// skeleton, so that the outcome is the frame's alone.
-    fn sort(&mut self) {
-        if self.order.len() != self.bones.len() {
-            self.order.clear();
-            // One a bone: there is room.
-            for index in 0..self.bones.len() {
-                let _ = self.order.push(index as u8);
-            }
-        }
-        let bones = &self.bones;
-        let key = |index: u8| bones.get(usize::from(index)).map_or(0, |line| i32::from(line.depth) * 256 - i32::from(index));
-        for place in 1..self.order.len() {
-            let mut place = place;
-            while let Some([before, here]) = self.order.get_mut(place.wrapping_sub(1)..=place)
-                && key(*before) < key(*here)
-            {
-                core::mem::swap(before, here);
-                place -= 1;
-            }
-        }
+impl Head {
+    /// Between the head's joint and the crown.
+    pub(crate) fn new(from: Seen, to: Seen, camera: &Camera, radius: i32) -> Head {
+        let depth = between(from, to);
+        let radius = (camera.length(radius) * magnification(to.depth.into())) >> MAGNIFICATION_BITS;
+        let middle = |from: i16, to: i16| ((i32::from(from) + i32::from(to)) >> 1) as i16;
+        let centre = [middle(from.place[0], to.place[0]), middle(from.place[1], to.place[1])];
+        Head { centre, radius: narrow(radius), shade: shade(depth) }
     }
+}
 
-    /// Bones in the order in which they are drawn: from far to near.
-    pub fn far_to_near(&self) -> impl Iterator<Item = &Line> {
-        self.order.iter().filter_map(|&index| self.bones.get(usize::from(index)))
-    }
+/// Depth of the middle.
+#[inline(always)]
+pub(crate) fn between(from: Seen, to: Seen) -> i32 {
+    (i32::from(from.depth) + i32::from(to.depth)) >> 1
 }
 
 /// Where the camera sees a joint.

@@ -94,8 +94,8 @@ pub enum Part {
 /// One joint of the skeleton.
 #[derive(Clone, Copy, Debug)]
 pub struct Bone {
-    /// Where it stands in its parent, in figure units.
-    pub offset: Vector,
+    /// Where it stands in its parent, in figure units; of a placement, see [`Skeleton::places`].
+    pub offset: [i16; 3],
     /// Index of the parent in the skeleton, smaller than the joint's own; `None` for the root.
     pub parent: Option<u8>,
     /// Its index in the rig; a crown has that of its head.
@@ -134,6 +134,8 @@ pub struct Skeleton<const N: usize> {
     drives: Vec<[Drive; DRIVES], N>,
     /// How many they are.
     driven: usize,
+    /// Where the joints that only place the figure stand in their parents: at most the first two.
+    pub places: [Vector; PLACES],
     /// Right shift that brings a position channel's value to figure units.
     pub position_shift: i32,
     /// One figure unit is 2^exponent source units.
@@ -147,6 +149,9 @@ pub struct Skeleton<const N: usize> {
     /// Radius of the head.
     pub head_radius: i32,
 }
+
+/// Joints that may place a figure.
+pub const PLACES: usize = 2;
 
 /// Room for drives, a joint: an offset and three turns. Joints with fewer leave room for others.
 const DRIVES: usize = 4;
@@ -162,12 +167,13 @@ pub enum Detail {
 
 impl<const N: usize> Skeleton<N> {
     /// No joints.
-    #[inline]
+    #[inline(always)]
     pub fn empty() -> Self {
         Skeleton {
             bones: Vec::new(),
             drives: Vec::new(),
             driven: 0,
+            places: [[0; 3]; PLACES],
             position_shift: 0,
             exponent: 0,
             size: 1,
@@ -213,7 +219,7 @@ impl<const N: usize> Skeleton<N> {
             self.add(rig, detail, &mut limbs, index, is_exponential(index))?;
             next = limbs.after(Some(index));
         }
-        self.hips = limbs.limbs.get(self.hips).map_or(0, |hips| usize::from(hips.bone_index));
+        self.hips = limbs.limbs.get(self.hips).map_or(0, |hips| usize::from(hips.link));
         self.find_sides(rig, &limbs);
         self.keep_rotations();
         Ok(())
@@ -234,14 +240,13 @@ impl<const N: usize> Skeleton<N> {
     fn add(&mut self, rig: &Rig, detail: Detail, limbs: &mut Limbs, index: usize, exponential: bool) -> Result<(), Error> {
         let (Some(joint), Some(&limb)) = (rig.joints().nth(index), limbs.limbs.get(index)) else { return Ok(()) };
         let (placement, head) = (limb.is(flag::PLACEMENT), limb.is(flag::HEAD));
-        let parent = limbs.limbs.get(usize::from(limb.parent)).map(|parent| parent.bone_index);
+        let parent = limbs.limbs.get(usize::from(limb.parent)).map(|parent| parent.link);
         let drives = self.drive(&joint, limb.is(flag::BEARS) || head, exponential)?;
-        let offset = match placement {
-            true => joint.offset.map(|raw| self.figure_units(raw, rig.length_exponent())),
-            false => limb.bone.map(i32::from),
-        };
+        if placement && let Some(place) = self.places.get_mut(index) {
+            *place = joint.offset.map(|raw| shift_right(raw, limbs.exponent - i32::from(rig.length_exponent())));
+        }
         let bone = Bone {
-            offset,
+            offset: limb.bone,
             parent,
             joint: index as u8,
             part: if placement || limb.length == 0 { Part::Hidden } else { Part::Bone },
@@ -254,11 +259,11 @@ impl<const N: usize> Skeleton<N> {
         };
         let at = self.push(bone)?;
         if let Some(limb) = limbs.limbs.get_mut(index) {
-            limb.bone_index = at;
+            limb.link = at;
         }
         if head && detail == Detail::Body {
             let offset = crown(limbs, index, &limb);
-            self.head_radius = (length(offset) / 2).max(limbs.size / 22).min(limbs.size / 14);
+            self.head_radius = (length(offset.map(i32::from)) / 2).max(limbs.size / 22).min(limbs.size / 14);
             self.push(Bone { offset, parent: Some(at), part: Part::Crown, drives: 0, foot: false, moves: false, ..bone })?;
         }
         Ok(())
@@ -344,7 +349,7 @@ impl<const N: usize> Skeleton<N> {
                 if differ && best.is_none_or(|best| pair < best) {
                     best = Some(pair);
                     let pair = if left { [joint, other] } else { [other, joint] };
-                    self.sides = Some(pair.map(|joint| limbs.limbs.get(joint).map_or(0, |limb| limb.bone_index)));
+                    self.sides = Some(pair.map(|joint| limbs.limbs.get(joint).map_or(0, |limb| limb.link)));
                 }
             }
             if let Some(bone) = self.bones.get_mut(at) {
@@ -397,11 +402,11 @@ fn angles(joint: &Joint) -> Option<Drive> {
 
 /// The crown in the head's own frame: its End Site, or, if that is not worth the name, as much again in the direction of the
 /// bone that leads to the head, a tenth of the figure.
-fn crown(limbs: &Limbs, index: usize, head: &Limb) -> Vector {
+fn crown(limbs: &Limbs, index: usize, head: &Limb) -> [i16; 3] {
     let tenth = limbs.size / 10;
     let worth = |limb: &&Limb| limb.is(flag::END_SITE) && usize::from(limb.parent) == index && i32::from(limb.length) > tenth / 3;
     match limbs.limbs.iter().find(worth) {
-        Some(end) => end.bone.map(i32::from),
-        None => head.bone.map(|x| i32::from(x) * 64 / (i32::from(head.length) / 64).max(1) * (tenth / 64) / 64),
+        Some(end) => end.bone,
+        None => head.bone.map(|x| (i32::from(x) * 64 / (i32::from(head.length) / 64).max(1) * (tenth / 64) / 64) as i16),
     }
 }

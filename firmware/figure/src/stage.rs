@@ -2,14 +2,12 @@
 
 use crate::body::Limb;
 use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
-use crate::ink::Ink;
 use crate::kinematics::Kinematics;
-use crate::lines::{Ground, Line, Lines, Seen};
+use crate::lines::{Dot, Ground, Head, Line, Lines, Seen};
 use crate::rotation::{Rotation, Turning, Vector};
-use crate::skeleton::{Detail, Skeleton};
+use crate::skeleton::{Detail, Part, Skeleton};
 use crate::survey::{Bearings, Survey};
 use crate::{Error, RIG_JOINTS};
-use embedded_graphics::draw_target::DrawTarget;
 use heapless::Vec;
 use pantin::Player;
 
@@ -26,7 +24,8 @@ pub struct Stage<const N: usize, R: Turning = Rotation> {
     ground: Ground,
     joints: Kinematics<N, R>,
     seen: Vec<Seen, N>,
-    lines: Lines<N>,
+    /// Indices of the bones that are drawn, the farthest first.
+    order: Vec<u8, N>,
 }
 
 /// Scale at which a clip is looked at before the final scale is known: 2^14 sixteenths of a pixel a size.
@@ -37,7 +36,7 @@ const SAMPLES: u32 = 48;
 
 impl<const N: usize, R: Turning> Stage<N, R> {
     /// No figure yet.
-    #[inline]
+    #[inline(always)]
     pub fn empty() -> Self {
         Stage {
             skeleton: Skeleton::empty(),
@@ -49,26 +48,28 @@ impl<const N: usize, R: Turning> Stage<N, R> {
             ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
             joints: Kinematics::new(),
             seen: Vec::new(),
-            lines: Lines::new(),
+            order: Vec::new(),
         }
     }
 
     /// A figure and a camera for a clip of up to 192 joints; leaves the player at frame 0.
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
         let mut stage = Self::empty();
-        stage.set_up(player, canvas, view, &mut [Limb::default(); RIG_JOINTS])?;
+        stage.set_up(player, canvas, &mut [Limb::default(); RIG_JOINTS])?;
+        stage.aim(player, view);
         Ok(stage)
     }
 
-    /// [`Stage::of_clip`] in place, for a rig of as many joints as `room` has elements.
+    /// The first half of [`Stage::of_clip`] in place, for a rig of as many joints as `room` has elements. [`Stage::aim`] is the other
+    /// half: the room is given back before it.
     #[inline(never)]
-    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, view: View, room: &mut [Limb]) -> Result<(), Error> {
+    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, room: &mut [Limb]) -> Result<(), Error> {
         player.rewind();
         let clip = *player.clip();
         let pose = (player.pose(), clip.length_exponent());
         self.skeleton.set_up(&clip.rig(), Detail::Body, pose, |joint| clip.is_exponential(joint), room)?;
         self.canvas = canvas;
-        self.aim(player, view);
+        self.choose();
         Ok(())
     }
 
@@ -92,6 +93,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     /// argument; it is called twice and must show the same ones.
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
         let mut stage = Stage { skeleton, canvas, ..Self::empty() };
+        stage.choose();
         stage.frame(view, poses);
         stage
     }
@@ -115,8 +117,8 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         (self.view, self.camera) = at_scale(TRIAL_SCALE);
         let mut frame = Frame::default();
         poses(&mut |pose| {
-            self.look(pose);
-            frame.include(&self.lines);
+            self.place(pose);
+            frame.include(self);
         });
         let scale = frame.scale(self.canvas);
         (self.view, self.camera) = at_scale(scale);
@@ -124,13 +126,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         self.camera.show(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
 
-    /// The frame of a pose as lines.
-    pub fn look(&mut self, pose: &[i32]) -> &Lines<N> {
-        self.place(pose);
-        self.lay()
-    }
-
-    /// The first half of [`Stage::look`]: forward kinematics, and where the camera sees the joints.
+    /// Forward kinematics of a pose, and where the camera sees the joints.
     #[inline(never)]
     pub fn place(&mut self, pose: &[i32]) {
         let hips = self.skeleton.hips;
@@ -144,26 +140,105 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         }
     }
 
-    /// The other half: lines of the ground and the bones.
+    /// Shows every line of the ground, on a canvas that is large enough for lines.
+    #[inline(always)]
+    pub fn each_ground_line(&self, show: impl FnMut(Line)) {
+        self.ground.each_line(&self.camera, self.target, show);
+    }
+
+    /// Shows every dot of the ground, on a smaller one.
+    #[inline(always)]
+    pub fn each_dot(&self, show: impl FnMut(Dot)) {
+        self.ground.each_dot(&self.camera, self.target, show);
+    }
+
+    /// Shows every bone, as far as they were sorted from far to near.
+    #[inline(always)]
+    pub fn each_bone(&self, mut show: impl FnMut(Line)) {
+        for &index in &self.order {
+            let Some(bone) = self.skeleton.bones.get(usize::from(index)) else { continue };
+            if let Some((from, to)) = self.ends(index) {
+                show(bone.line(from, to, &self.camera));
+            }
+        }
+    }
+
+    /// Where the camera sees a joint's parent, and the joint.
+    #[inline(always)]
+    fn ends(&self, index: u8) -> Option<(Seen, Seen)> {
+        let parent = self.skeleton.bones.get(usize::from(index))?.parent?;
+        Some((*self.seen.get(usize::from(parent))?, *self.seen.get(usize::from(index))?))
+    }
+
+    /// The head, for a rig that names one.
+    pub fn head(&self) -> Option<Head> {
+        let crown = self.skeleton.bones.iter().position(|bone| bone.part == Part::Crown)?;
+        let (from, to) = self.ends(crown as u8)?;
+        Some(Head::new(from, to, &self.camera, self.skeleton.head_radius))
+    }
+
+    /// Which bones are drawn.
+    fn choose(&mut self) {
+        self.order.clear();
+        for (index, bone) in self.skeleton.bones.iter().enumerate() {
+            if bone.part == Part::Bone && bone.parent.is_some() {
+                // One a bone: there is room.
+                let _ = self.order.push(index as u8);
+            }
+        }
+    }
+
+    /// Puts the farthest bone first. The order of the frame before is nearly right; bones as far as each other keep that of the
+    /// skeleton, so that the outcome is the frame's alone.
     #[inline(never)]
-    pub fn lay(&mut self) -> &Lines<N> {
-        self.lines.lay_ground(&self.ground, &self.camera, self.target);
-        self.lines.lay_bones(&self.skeleton, &self.seen, &self.camera);
-        &self.lines
+    pub fn sort(&mut self) {
+        // Twice the depth of a bone's middle, then its index.
+        let key = |stage: &Self, index: u8| {
+            let ends = stage.ends(index);
+            ends.map_or(0, |(from, to)| (i32::from(from.depth) + i32::from(to.depth)) * 256 - i32::from(index))
+        };
+        for place in 1..self.order.len() {
+            let Some(&moving) = self.order.get(place) else { return };
+            let (own, mut place) = (key(self, moving), place);
+            while let Some(&before) = self.order.get(place.wrapping_sub(1))
+                && key(self, before) < own
+            {
+                if let Some(here) = self.order.get_mut(place) {
+                    *here = before;
+                }
+                place -= 1;
+            }
+            if let Some(here) = self.order.get_mut(place) {
+                *here = moving;
+            }
+        }
     }
 
-    /// The lines of the last pose that was looked at.
-    pub fn lines(&self) -> &Lines<N> {
-        &self.lines
+    /// The frame of a pose, gathered.
+    pub fn look(&mut self, pose: &[i32]) -> Lines<N> {
+        self.place(pose);
+        self.sort();
+        let mut lines = Lines::default();
+        // There is room for all of them.
+        if self.ground.dotted {
+            self.each_dot(|dot| {
+                let _ = lines.dots.push(dot);
+            });
+        } else {
+            self.each_ground_line(|line| {
+                let _ = lines.ground.push(line);
+            });
+        }
+        self.each_bone(|line| {
+            let _ = lines.bones.push(line);
+        });
+        lines.head = self.head();
+        lines
     }
 
-    /// Clears the target and draws the figure in a pose.
-    pub fn draw<D>(&mut self, pose: &[i32], target: &mut D) -> Result<(), D::Error>
-    where
-        D: DrawTarget,
-        D::Color: Ink,
-    {
-        self.look(pose).draw(target)
+    /// The ground.
+    pub fn ground(&self) -> &Ground {
+        &self.ground
     }
 
     /// The figure's joints.
@@ -207,12 +282,12 @@ struct Frame {
 }
 
 impl Frame {
-    fn include<const N: usize>(&mut self, lines: &Lines<N>) {
-        for &Line { from, to, .. } in &lines.bones {
+    fn include<const N: usize, R: Turning>(&mut self, stage: &Stage<N, R>) {
+        stage.each_bone(|Line { from, to, .. }| {
             self.widen(from, 0);
             self.widen(to, 0);
-        }
-        if let Some(head) = lines.head {
+        });
+        if let Some(head) = stage.head() {
             self.widen(head.centre, head.radius);
         }
     }

@@ -45,7 +45,7 @@ impl Show for Figure<'_, '_> {
         let mut shades = Shades::new(width, height);
         let coloured = settings.colours != Colours::None;
         if let Some((_, _, stage)) = &mut self.stage {
-            shades.draw(stage.look(pose), settings.ground, !coloured || settings.palette.is_mono());
+            shades.draw(stage, pose, settings.ground, !coloured || settings.palette.is_mono());
         }
         grid.show(&shades, rows, dots, &settings.palette, coloured);
         Ok(())

@@ -92,7 +92,7 @@ impl<'a, 'm> Figure<'a, 'm> {
             Look::Pixels => {
                 let mut shades = Shades::new(width, height);
                 match &mut self.shown {
-                    Shown::Body(stages) => shades.draw(stages[view].look(self.player.pose()), true, palette.is_mono()),
+                    Shown::Body(stages) => shades.draw(&mut stages[view], self.player.pose(), true, palette.is_mono()),
                     Shown::Face(cast) => shades.draw_lines(&cast.lines(self.player.pose(), view), palette.is_mono()),
                 }
                 shades.image(palette)

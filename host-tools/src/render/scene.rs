@@ -90,7 +90,7 @@ impl Scene {
                 .iter()
                 .map(|dot| Disc { centre: place(dot.place), radius: 0.5, width: 0.0, shade: dot.shade })
                 .collect(),
-            bones: lines.far_to_near().map(|line| stroke(line, width(line.shade))).collect(),
+            bones: lines.bones.iter().map(|line| stroke(line, width(line.shade))).collect(),
             head: lines.head.map(|head| Disc {
                 centre: place(head.centre),
                 radius: f32::from(head.radius) * unit,

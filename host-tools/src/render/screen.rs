@@ -52,7 +52,8 @@ pub fn pictures(clip: &Clip, view: View, frames: impl IntoIterator<Item = u32>) 
     let draw = |number| {
         player.seek(number);
         frame.clear();
-        stage.look(player.pose()).draw_on(&mut frame, Look::default());
+        stage.place(player.pose());
+        stage.draw_on(&mut frame, Look::default());
         Picture::of(&frame)
     };
     Ok(frames.into_iter().map(draw).collect())

@@ -6,9 +6,10 @@ use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::{BinaryColor, PixelColor};
-use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::Stage;
 use pantin_figure::draw::stroke;
-use pantin_figure::lines::{Line, Lines};
+use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::lines::Line;
 use pantin_figure::surface::OnTarget;
 use std::convert::Infallible;
 
@@ -56,14 +57,15 @@ impl Shades {
         if x < self.width { self.marks.get(y * self.width + x).copied().unwrap_or(Mark::DARK) } else { Mark::DARK }
     }
 
-    /// Draws a frame's lines as the firmware does: on a display of two colours, or of more.
-    pub fn draw<const N: usize>(&mut self, lines: &Lines<N>, ground: bool, mono: bool) {
+    /// Draws a pose as the firmware does: on a display of two colours, or of more.
+    pub fn draw<const N: usize>(&mut self, stage: &mut Stage<N>, pose: &[i32], ground: bool, mono: bool) {
+        stage.place(pose);
         self.marks.fill(Mark::DARK);
         let look = pantin_figure::Look { ground, smooth: false };
         if mono {
-            lines.draw_on(&mut OnTarget::new(&mut Bits(self)), look);
+            stage.draw_on(&mut OnTarget::new(&mut Bits(self)), look);
         } else {
-            lines.draw_on(&mut OnTarget::new(self), look);
+            stage.draw_on(&mut OnTarget::new(self), look);
         }
     }
 

@@ -98,12 +98,7 @@ fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> 
         .collect();
     table::print(&["clip", "decode", "kinematics and camera", "clear and draw", "flush, least"], &rows);
     let values = [whole[0].mean(), whole[1].mean(), body[1].mean(), whole[2].mean()];
-    let what = [
-        "decode, 31 joints",
-        "kinematics and camera, 31 joints",
-        "kinematics and camera, display body",
-        "clear and draw",
-    ];
+    let what = ["decode, 31 joints", "kinematics and camera, 31 joints", "kinematics and camera, display body", "clear and draw"];
     Ok(what
         .iter()
         .zip(values)

@@ -2,20 +2,37 @@
 
 use crate::surface::Surface;
 
-/// Sets the pixels that are on the surface.
-#[inline(always)]
-pub fn dots<S: Surface>(surface: &mut S, dots: impl IntoIterator<Item = ([i32; 2], S::Ink)>) {
-    let [width, height] = surface.size();
-    let (mut least, mut most) = ([width, height], [-1; 2]);
-    for ([x, y], ink) in dots {
-        if (0..width).contains(&x) && (0..height).contains(&y) {
-            least = [least[0].min(x), least[1].min(y)];
-            most = [most[0].max(x), most[1].max(y)];
-            let cursor = surface.cursor(x, y);
-            surface.put(cursor, ink);
+/// Sets pixels that are on the surface, and keeps the rectangle that they lie in.
+pub struct Dots<'a, S: Surface> {
+    surface: &'a mut S,
+    size: [i32; 2],
+    least: [i32; 2],
+    most: [i32; 2],
+}
+
+impl<'a, S: Surface> Dots<'a, S> {
+    /// None yet.
+    #[inline(always)]
+    pub fn on(surface: &'a mut S) -> Self {
+        let size = surface.size();
+        Dots { surface, size, least: size, most: [-1; 2] }
+    }
+
+    /// One.
+    #[inline(always)]
+    pub fn put(&mut self, [x, y]: [i32; 2], ink: S::Ink) {
+        if (x as u32) < self.size[0] as u32 && (y as u32) < self.size[1] as u32 {
+            self.least = [self.least[0].min(x), self.least[1].min(y)];
+            self.most = [self.most[0].max(x), self.most[1].max(y)];
+            let cursor = self.surface.cursor(x, y);
+            self.surface.put(cursor, ink);
         }
     }
-    if most[0] >= 0 {
-        surface.mark(least, most);
+
+    /// Tells the surface where they are.
+    pub fn mark(self) {
+        if self.most[0] >= 0 {
+            self.surface.mark(self.least, self.most);
+        }
     }
 }

@@ -7,6 +7,6 @@ mod line;
 mod smooth;
 
 pub use disc::disc;
-pub use dots::dots;
+pub use dots::Dots;
 pub use line::{dotted, line, thick};
 pub use smooth::smooth;
