@@ -34,7 +34,11 @@ pub(crate) fn check(bytes: &mut Bytes, count: u8, model: &Model) -> Result<(), E
         if aperture.release != NO_SHAPE && usize::from(aperture.release) >= model.shape_count() {
             return Err(Error::Malformed);
         }
-        for indices in [aperture.upper, aperture.lower, aperture.members] {
+        let mut members = Bytes(aperture.members);
+        while !members.0.is_empty() {
+            model.check_run(members.index(model.wide)?, 1)?;
+        }
+        for indices in [aperture.upper, aperture.lower] {
             let mut indices = Bytes(indices);
             while !indices.0.is_empty() {
                 model.check_index(indices.index(model.wide)?)?;
@@ -61,9 +65,15 @@ pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
             for index in each(aperture.members, model.wide).map(image) {
                 let Some(place) = places.get_mut(index) else { continue };
                 let x = place[0].clamp(upper.least, upper.most.max(upper.least));
-                let lowest = i32::from(lower.height(x)) - drop;
-                let y = i32::from(place[1]).min(i32::from(upper.height(x))).max(lowest) as i16;
-                *place = [x, y, place[2]];
+                let mut y = i32::from(place[1]);
+                // Below all of the upper edge, or above all of the lower one, there is nothing to look up.
+                if y > i32::from(upper.lowest) {
+                    y = y.min(i32::from(upper.height(x)));
+                }
+                if y < i32::from(lower.highest) {
+                    y = y.max(i32::from(lower.height(x)) - drop);
+                }
+                *place = [x, y as i16, place[2]];
             }
         }
     }
@@ -82,15 +92,20 @@ struct Edge {
     vertices: Vec<[i16; 2], EDGE>,
     least: i16,
     most: i16,
+    lowest: i16,
+    highest: i16,
 }
 
 impl Edge {
     fn new(indices: impl Iterator<Item = usize>, places: &[Place]) -> Edge {
-        let mut edge = Edge { vertices: Vec::new(), least: i16::MAX, most: i16::MIN };
+        let (least, most, lowest, highest) = (i16::MAX, i16::MIN, i16::MAX, i16::MIN);
+        let mut edge = Edge { vertices: Vec::new(), least, most, lowest, highest };
         for &[x, y, _] in indices.filter_map(|index| places.get(index)) {
             let _ = edge.vertices.push([x, y]);
             edge.least = edge.least.min(x);
             edge.most = edge.most.max(x);
+            edge.lowest = edge.lowest.min(y);
+            edge.highest = edge.highest.max(y);
         }
         edge
     }

@@ -19,6 +19,7 @@ pub mod curve;
 pub mod look;
 pub mod model;
 pub mod morph;
+mod outline;
 mod seen;
 pub mod shape;
 mod strokes;

@@ -3,7 +3,8 @@
 use crate::bytes::Bytes;
 use crate::model::Model;
 use crate::morph::{Morph, Place, coordinates};
-use crate::seen::Seen;
+use crate::outline::Outline;
+use crate::seen::{self, Seen};
 use crate::strokes::{self, Screen};
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
@@ -47,7 +48,13 @@ pub struct Look<const N: usize> {
     points: [[i16; 2]; N],
     /// Cosine of the angle between a vertex's normal and the way to the camera, 127 is 1.
     facing: [i8; N],
+    outline: Outline,
+    /// How the head was turned when all of this was found.
+    before: Option<Turned>,
 }
+
+/// The head's angles, and what it turns about.
+type Turned = ([i32; 3], Place);
 
 /// The display's height is 64 of these parts, the face's down to the end of its neck so many: that end may leave the display.
 const FILLED: i32 = 65;
@@ -63,7 +70,8 @@ impl<const N: usize> Look<N> {
     pub fn new(model: &Model, canvas: Canvas, view: View) -> Self {
         let (camera, detail) = frame(model, canvas);
         let vertices = model.vertices().min(N);
-        let mut look = Look { camera, detail, vertices, points: [[0; 2]; N], facing: [0; N] };
+        let mut look =
+            Look { camera, detail, vertices, points: [[0; 2]; N], facing: [0; N], outline: Outline::default(), before: None };
         look.aim(view);
         look
     }
@@ -74,12 +82,21 @@ impl<const N: usize> Look<N> {
         turned.turn(0, of_degrees(view.tilt));
         turned.turn(1, of_degrees(-view.orbit));
         let [x, y, z] = turned.0;
+        self.before = None;
         self.camera.rows = core::array::from_fn(|row| [x[row], y[row], z[row]]);
     }
 
     /// Puts the vertices on the display.
     pub fn project(&mut self, model: &Model, morph: &Morph<N>) {
-        project(model, &self.camera, morph.places(), morph.turn(), &mut self.points, &mut self.facing);
+        let head = morph.turn();
+        let all = self.before != Some(head);
+        let towards = project(model, &self.camera, morph.places(), head, all, &mut self.points);
+        // Where surfaces look, and what makes the outline, depends on the head's turn alone.
+        if all {
+            seen::facing(model, towards, &mut self.facing);
+            self.outline.of(model, &self.facing);
+            self.before = Some(head);
+        }
     }
 
     /// The places of the vertices on the display, in sixteenths of a pixel.
@@ -95,7 +112,8 @@ impl<const N: usize> Look<N> {
 
     /// Gives the lines of the face, the brighter ones after the darker ones.
     pub fn lines(&self, model: &Model, mut out: impl FnMut(Line)) {
-        strokes::draw(model, Screen { points: &self.points, facing: &self.facing }, self.detail, &mut out);
+        let screen = Screen { points: &self.points, facing: &self.facing, outline: &self.outline };
+        strokes::draw(model, screen, self.detail, &mut out);
     }
 }
 
@@ -127,14 +145,9 @@ fn frame(model: &Model, canvas: Canvas) -> (Camera, u8) {
     (camera, DETAILS.iter().filter(|&&least| covered >= least).count() as u8)
 }
 
-fn project(
-    model: &Model,
-    camera: &Camera,
-    places: &[Place],
-    ([x, y, z], pivot): ([i32; 3], Place),
-    points: &mut [[i16; 2]],
-    facing: &mut [i8],
-) {
+/// Puts the vertices on the display: all, or those that may move. Returns what `facing` is then to be asked about.
+fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: bool, points: &mut [[i16; 2]]) -> Vector {
+    let ([x, y, z], pivot) = head;
     let mut head = Rotation::IDENTITY;
     for (axis, angle) in [(1, y), (0, x), (2, z)] {
         head.turn(axis, angle);
@@ -142,11 +155,15 @@ fn project(
     let pivot = pivot.map(i32::from);
     let carried = head.apply_any(pivot);
     let whole = Seen::new(camera, &head, core::array::from_fn(|axis| pivot[axis] - carried[axis] - camera.middle[axis]));
-    whole.points(places, points);
-    whole.facing(model, facing);
-    if model.fixed.is_empty() || (x, y, z) == (0, 0, 0) {
-        return;
+    if !all {
+        for [from, to] in model.moving() {
+            if let (Some(places), Some(points)) = (places.get(from..to), points.get_mut(from..to)) {
+                whole.points(places, points);
+            }
+        }
+        return whole.towards;
     }
+    whole.points(places, points);
     let still = Seen::new(camera, &Rotation::IDENTITY, camera.middle.map(|x| -x));
     let mut fixed = Bytes(model.fixed);
     while let Ok(index) = fixed.index(model.wide) {
@@ -154,6 +171,7 @@ fn project(
             *point = still.point(place);
         }
     }
+    whole.towards
 }
 
 /// Degrees in 2^-32 turns.

@@ -50,6 +50,7 @@ pub struct Model<'a> {
     step_exponent: i8,
     middles: u16,
     pairs: u16,
+    moving: [u16; 2],
     outline: u16,
     pub(crate) points: &'a [u8],
     pub(crate) normals: &'a [u8],
@@ -72,13 +73,18 @@ impl<'a> Model<'a> {
         }
         let flags = bytes.byte()?;
         let step_exponent = bytes.byte()? as i8;
-        let [middles, pairs, triangles, outline, names] = [(); 5].map(|()| bytes.short());
-        let (middles, pairs, triangles, outline, names) = (middles?, pairs?, triangles?, outline?, names?);
+        let [middles, pairs, moving_middles, moving_pairs] = [(); 4].map(|()| bytes.short());
+        let (middles, pairs, moving) = (middles?, pairs?, [moving_middles?, moving_pairs?]);
+        let [triangles, outline, names] = [(); 3].map(|()| bytes.short());
+        let (triangles, outline, names) = (triangles?, outline?, names?);
         let [fixed, curves, apertures, shape_count] = bytes.array()?;
         let wide = flags & WIDE != 0;
         let vertices = usize::from(middles) + 2 * usize::from(pairs);
         let stored = usize::from(middles) + usize::from(pairs);
         if flags & !WIDE != 0 || vertices > if wide { 1 << 15 } else { 1 << 8 } || vertices == 0 || outline > triangles {
+            return Err(Error::Malformed);
+        }
+        if moving[0] > middles || moving[1] > pairs {
             return Err(Error::Malformed);
         }
         if usize::from(shape_count) > SHAPES || !(-24..=24).contains(&step_exponent) {
@@ -90,6 +96,7 @@ impl<'a> Model<'a> {
             step_exponent,
             middles,
             pairs,
+            moving,
             outline,
             points: bytes.take(stored * 6)?,
             normals: bytes.take(stored * 3)?,
@@ -138,16 +145,21 @@ impl<'a> Model<'a> {
         if usize::from(index) < self.vertices() { Ok(()) } else { Err(Error::Malformed) }
     }
 
-    /// Vertices `first..first + count`, which are all in the middle, all left, or all right.
+    /// Vertices `first..first + count`, which are all in the middle, all left, or all right, and of those that may move.
     pub(crate) fn check_run(&self, first: u16, count: u8) -> Result<(), Error> {
         let (first, end) = (usize::from(first), usize::from(first) + usize::from(count));
-        let (middles, left) = (usize::from(self.middles), usize::from(self.middles) + usize::from(self.pairs));
-        let within = |from: usize, to: usize| first >= from && end <= to;
-        if count > 0 && (within(0, middles) || within(middles, left) || within(left, self.vertices())) {
+        if count > 0 && self.moving().into_iter().any(|[from, to]| first >= from && end <= to) {
             Ok(())
         } else {
             Err(Error::Malformed)
         }
+    }
+
+    /// The vertices that may move, from one index to another: in the middle, left, right.
+    pub(crate) fn moving(&self) -> [[usize; 2]; 3] {
+        let [middles, pairs] = self.moving.map(usize::from);
+        let (left, right) = (self.middles(), self.middles() + self.pairs());
+        [[0, middles], [left, left + pairs], [right, right + pairs]]
     }
 
     /// Number of vertices: those in the middle, then the left ones, then their mirror images.

@@ -15,7 +15,7 @@ pub(crate) struct Seen {
     shift: u32,
     centre: [i32; 2],
     /// Towards the camera, Q15.
-    towards: Vector,
+    pub towards: Vector,
     nearer: i32,
 }
 
@@ -66,29 +66,28 @@ impl Seen {
         let flat = along.wrapping_add(self.offset[axis]) >> self.shift;
         (flat.wrapping_mul(magnification) >> 12).wrapping_add(self.centre[axis]) as i16
     }
+}
 
-    /// How far each vertex's surface looks towards the camera, 127 is straight: mirror images share two of three products.
-    #[inline(never)]
-    pub fn facing(&self, model: &Model, facing: &mut [i8]) {
-        let [a, b, c] = self.towards;
-        let normals = model.normals.as_chunks::<3>().0;
-        // Normals are at most 127 long: a sum is below 2^22, and fits 8 bits after the shift.
-        let parts = |normal: &[u8; 3]| {
-            let [x, y, z] = *normal;
-            (a * i32::from(x as i8), b * i32::from(y as i8) + c * i32::from(z as i8))
-        };
-        let (middles, pairs) = facing.split_at_mut(model.middles().min(facing.len()));
-        for (out, normal) in middles.iter_mut().zip(normals) {
-            let (across, along) = parts(normal);
-            *out = ((along + across) >> FRACTION_BITS) as i8;
-        }
-        let (left, right) = pairs.split_at_mut(model.pairs().min(pairs.len()));
-        let rest = normals.get(model.middles()..).unwrap_or(&[]);
-        for ((left, right), normal) in left.iter_mut().zip(right).zip(rest) {
-            let (across, along) = parts(normal);
-            *left = ((along + across) >> FRACTION_BITS) as i8;
-            *right = ((along - across) >> FRACTION_BITS) as i8;
-        }
+/// How far each vertex's surface looks along a way to the camera (Q15), 127 is straight: mirror images share two of three products.
+#[inline(never)]
+pub(crate) fn facing(model: &Model, [a, b, c]: Vector, facing: &mut [i8]) {
+    let normals = model.normals.as_chunks::<3>().0;
+    // Normals are at most 127 long: a sum is below 2^22, and fits 8 bits after the shift.
+    let parts = |normal: &[u8; 3]| {
+        let [x, y, z] = *normal;
+        (a * i32::from(x as i8), b * i32::from(y as i8) + c * i32::from(z as i8))
+    };
+    let (middles, pairs) = facing.split_at_mut(model.middles().min(facing.len()));
+    for (out, normal) in middles.iter_mut().zip(normals) {
+        let (across, along) = parts(normal);
+        *out = ((along + across) >> FRACTION_BITS) as i8;
+    }
+    let (left, right) = pairs.split_at_mut(model.pairs().min(pairs.len()));
+    let rest = normals.get(model.middles()..).unwrap_or(&[]);
+    for ((left, right), normal) in left.iter_mut().zip(right).zip(rest) {
+        let (across, along) = parts(normal);
+        *left = ((along + across) >> FRACTION_BITS) as i8;
+        *right = ((along - across) >> FRACTION_BITS) as i8;
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::curve::Curve;
 use crate::model::Model;
+use crate::outline::{Outline, each_triangle};
 use pantin_figure::ink::Tone;
 use pantin_figure::lines::Line;
 
-/// Brightness of the mesh and of the outline.
+/// Brightness of the mesh.
 const MESH: u8 = 44;
-const OUTLINE: u8 = 200;
 /// The mesh is drawn from this detail on.
 const MESH_DETAIL: u8 = 3;
 /// Curves end where they turn away by more than this, in 127ths.
@@ -18,6 +18,7 @@ const GRAZING: i8 = 4;
 pub(crate) struct Screen<'s> {
     pub points: &'s [[i16; 2]],
     pub facing: &'s [i8],
+    pub outline: &'s Outline,
 }
 
 /// All lines, the brighter ones after the darker ones.
@@ -26,7 +27,7 @@ pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl FnM
     if detail >= MESH_DETAIL {
         screen.mesh(model, out);
     }
-    screen.outline(model, out);
+    screen.outline.lines(model, screen, out);
     for curve in model.curves().filter(|curve| curve.detail <= detail) {
         let fine = if curve.straight { &[][..] } else { FINE.get(usize::from(detail)).copied().unwrap_or(&[]) };
         for mirrored in [false, true] {
@@ -44,12 +45,12 @@ pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl FnM
 
 impl Screen<'_> {
     #[inline(always)]
-    fn facing(&self, index: u16) -> i8 {
+    pub fn facing(&self, index: u16) -> i8 {
         self.facing.get(usize::from(index)).copied().unwrap_or(-127)
     }
 
     #[inline(always)]
-    fn end(&self, index: u16) -> End {
+    pub fn end(&self, index: u16) -> End {
         End { at: self.points.get(usize::from(index)).copied().unwrap_or_default(), facing: self.facing(index) }
     }
 
@@ -68,37 +69,9 @@ impl Screen<'_> {
         });
     }
 
-    /// Where the surface turns away: a line through each triangle with corners on both sides.
-    fn outline(&self, model: &Model, out: &mut impl FnMut(Line)) {
-        each_triangle(
-            model,
-            model.outline(),
-            #[inline(always)]
-            |corners| {
-                let [x, y, z] = corners;
-                let (first, second, third) = (self.facing(x), self.facing(y), self.facing(z));
-                // Most triangles have all corners on one side: no two signs differ.
-                if (first ^ second) | (first ^ third) >= 0 {
-                    return;
-                }
-                let (a, b, c) = (first < 0, second < 0, third < 0);
-                // The corner that is alone on its side comes first.
-                let (apex, one, other) = if a == b {
-                    (z, x, y)
-                } else if a == c {
-                    (y, z, x)
-                } else {
-                    (x, y, z)
-                };
-                let [from, to] = self.crossings(apex, [one, other]);
-                out(line(from, to, OUTLINE));
-            },
-        );
-    }
-
     /// Where the two edges at an apex turn away.
     #[inline(never)]
-    fn crossings(&self, apex: u16, [one, other]: [u16; 2]) -> [[i16; 2]; 2] {
+    pub fn crossings(&self, apex: u16, [one, other]: [u16; 2]) -> [[i16; 2]; 2] {
         let apex = self.end(apex);
         [apex.towards(self.end(one), 0), apex.towards(self.end(other), 0)]
     }
@@ -159,14 +132,14 @@ const FINE: [&[[i32; 4]]; 4] = [
 
 /// A vertex on the display.
 #[derive(Clone, Copy)]
-struct End {
+pub(crate) struct End {
     at: [i16; 2],
     facing: i8,
 }
 
 impl End {
     /// Where the way to `other`, on the other side of `level`, crosses it.
-    fn towards(self, other: End, level: i8) -> [i16; 2] {
+    pub fn towards(self, other: End, level: i8) -> [i16; 2] {
         let (from, to) = (i32::from(self.facing) - i32::from(level), i32::from(other.facing) - i32::from(level));
         // At most 2^8 times 2^15; the way is Q8.
         let way = (from.abs() * RECIPROCALS.get((from - to).unsigned_abs() as usize).map_or(0, |&x| i32::from(x))) >> 7;
@@ -212,26 +185,6 @@ fn visible(from: End, to: End, shade: u8, out: &mut impl FnMut(Line)) {
     }
 }
 
-fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
+pub(crate) fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
     Line { from, to, depth: 0, shade, tone: Tone::Middle, width: 1 }
-}
-
-/// The first `most` triangles of the stored half, and their mirror images.
-#[inline(always)]
-fn each_triangle(model: &Model, most: usize, mut visit: impl FnMut([u16; 3])) {
-    let image = model.image();
-    let mut both = |a: u16, b: u16, c: u16| {
-        visit([a, b, c]);
-        // No triangle is its own image: one in the middle would be flat.
-        visit([image.of(a), image.of(c), image.of(b)]);
-    };
-    if model.wide {
-        for &[a, b, c, d, e, f] in model.triangles.as_chunks::<6>().0.iter().take(most) {
-            both(u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
-        }
-    } else {
-        for &[a, b, c] in model.triangles.as_chunks::<3>().0.iter().take(most) {
-            both(u16::from(a), u16::from(b), u16::from(c));
-        }
-    }
 }

@@ -20,10 +20,13 @@ pub fn neutral(head: &Head) -> Blueprint {
         points: curve.points.clone(),
     };
     let opening = |opening: &super::head::Opening| Opening { opening: opening.clone(), release: None };
-    // Below the jaw the surface turns away in many places at once: there the jaw's own curve is the outline.
-    let below = ["submental", "submental-side", "throat", "neck-front-side"].map(|name| head.find(name).ok());
-    let (inner, outer): (Vec<_>, Vec<_>) =
-        head.triangles.iter().partition(|triangle| triangle.iter().any(|&corner| below.contains(&Some(corner))));
+    // Below the jaw and in the eye's socket the surface turns away in many places at once: there the jaw's own curve is the
+    // outline, and the lids are.
+    let hollow =
+        ["submental", "submental-side", "throat", "neck-front-side", "bag", "bag-out", "crease", "crease-out", "crease-end"];
+    let hollow: Vec<usize> = hollow.iter().filter_map(|name| head.find(name).ok()).collect();
+    let within = |corner: &usize| hollow.contains(corner) || head.openings.iter().any(|eye| eye.paired && eye.edges(*corner));
+    let (inner, outer): (Vec<_>, Vec<_>) = head.triangles.iter().partition(|triangle| triangle.iter().any(within));
     let outline = outer.len();
     Blueprint {
         middles: head.middles,

@@ -20,7 +20,16 @@ pub fn encode(blueprint: &Blueprint) -> Result<Vec<u8>> {
     );
     let wide = vertices > 256;
     let mut out = Writer { bytes: vec![VERSION, if wide { WIDE } else { 0 }, (-blueprint.fraction_bits) as u8], wide };
-    for count in [blueprint.middles, blueprint.pairs, blueprint.triangles.len(), blueprint.outline, blueprint.names.len()] {
+    let moving = moving(blueprint);
+    for count in [
+        blueprint.middles,
+        blueprint.pairs,
+        moving[0],
+        moving[1],
+        blueprint.triangles.len(),
+        blueprint.outline,
+        blueprint.names.len(),
+    ] {
         out.short(count);
     }
     for count in [blueprint.fixed.len(), blueprint.curves.len(), blueprint.openings.len(), blueprint.shapes.len()] {
@@ -60,6 +69,34 @@ pub fn encode(blueprint: &Blueprint) -> Result<Vec<u8>> {
         out.bytes.extend([drive.shape as u8 | stored << 6 | mirrored << 7, mantissa as u8, exponent as u8]);
     }
     Ok(out.bytes)
+}
+
+/// How many of the first points in the middle, and of the first pairs, hold all that moves or lies in an opening.
+fn moving(blueprint: &Blueprint) -> [usize; 2] {
+    let step = f64::from(blueprint.fraction_bits).exp2();
+    let shapes = blueprint.shapes.iter();
+    let moved = shapes.flat_map(|shape| deltas(shape, step).into_iter().map(|entry| entry.0).chain(members(shape)));
+    let behind = blueprint.openings.iter().flat_map(|entry| entry.opening.members.iter().copied());
+    let (middles, left) = (blueprint.middles, blueprint.middles + blueprint.pairs);
+    moved.chain(behind).fold([0, 0], |[middle, pair], index| match index {
+        index if index < middles => [middle.max(index + 1), pair],
+        index if index < left => [middle, pair.max(index + 1 - middles)],
+        index => [middle, pair.max(index + 1 - left)],
+    })
+}
+
+fn members(shape: &Shape) -> impl Iterator<Item = usize> {
+    shape.turns.iter().flat_map(|turn| turn.members.iter().map(|member| member.0))
+}
+
+/// A shape's deltas in units of its scale, but for those that come to nothing.
+fn deltas(shape: &Shape, step: f64) -> Vec<(usize, [i8; 3])> {
+    let unit = scale(shape, step) / 256.0;
+    let far = shape.deltas.iter().filter(|(_, way)| way.iter().any(|x| (x * step).abs() >= LEAST));
+    let whole = far.map(|&(index, way)| (index, way.map(|x| (x * step / unit).round() as i8)));
+    let mut deltas: Vec<_> = whole.filter(|(_, way)| *way != [0; 3]).collect();
+    deltas.sort_by_key(|entry| entry.0);
+    deltas
 }
 
 /// The nearest mantissa * 2^exponent with a mantissa of 7 bits and a sign.
@@ -116,32 +153,24 @@ impl Writer {
             "the unit {} moves points too far for a model of {step} steps a unit of length",
             shape.name
         );
-        let mut deltas = Writer { bytes: Vec::new(), wide: self.wide };
-        deltas.runs(blueprint, shape, step, scale / 256.0);
+        let mut moved = Writer { bytes: Vec::new(), wide: self.wide };
+        moved.runs(blueprint, &deltas(shape, step));
         let mut turns = Writer { bytes: Vec::new(), wide: self.wide };
         for turn in &shape.turns {
             turns.turn(blueprint, turn, step)?;
         }
-        ensure!(deltas.bytes.len() <= usize::from(u16::MAX), "the shape {} moves too many points", shape.name);
+        ensure!(moved.bytes.len() <= usize::from(u16::MAX), "the shape {} moves too many points", shape.name);
         self.bytes.push(interpolation | kind);
         self.short(scale as usize);
-        self.short(deltas.bytes.len());
+        self.short(moved.bytes.len());
         self.short(turns.bytes.len());
-        self.bytes.extend(deltas.bytes);
+        self.bytes.extend(moved.bytes);
         self.bytes.extend(turns.bytes);
         Ok(())
     }
 
-    fn runs(&mut self, blueprint: &Blueprint, shape: &Shape, step: f64, unit: f64) {
-        let mut moved: Vec<(usize, [i8; 3])> = shape
-            .deltas
-            .iter()
-            .filter(|(_, way)| way.iter().any(|x| (x * step).abs() >= LEAST))
-            .map(|&(index, way)| (index, way.map(|x| (x * step / unit).round() as i8)))
-            .filter(|(_, way)| *way != [0; 3])
-            .collect();
-        moved.sort_by_key(|entry| entry.0);
-        for run in runs(blueprint, &moved) {
+    fn runs(&mut self, blueprint: &Blueprint, deltas: &[(usize, [i8; 3])]) {
+        for run in runs(blueprint, deltas) {
             self.index(run[0].0);
             self.bytes.push(run.len() as u8);
             self.bytes.extend(run.iter().flat_map(|(_, way)| way.map(|x| x as u8)));

@@ -40,6 +40,13 @@ pub struct Opening {
     pub members: Vec<usize>,
 }
 
+impl Opening {
+    /// Whether a point is on its edges.
+    pub fn edges(&self, point: usize) -> bool {
+        self.upper.contains(&point) || self.lower.contains(&point)
+    }
+}
+
 /// The neutral head. Points in the middle come first, then the left ones, then their mirror images.
 #[derive(Clone, Debug)]
 pub struct Head {
@@ -88,14 +95,14 @@ impl Head {
         let mut section = "";
         for (number, line) in table.lines().enumerate() {
             let line = line.split('#').next().unwrap_or("").trim();
-            if matches!(line, "skin" | "loose" | "curves" | "openings") {
+            if matches!(line, "skin" | "loose" | "skull" | "ears" | "curves" | "openings") {
                 section = line;
             } else if !line.is_empty() {
                 sections.entry(section).or_default().push((number + 1, line));
             }
         }
         let mut rows = Vec::new();
-        for (name, skin) in [("skin", true), ("loose", false)] {
+        for (name, skin) in [("skin", true), ("loose", false), ("skull", true), ("ears", false)] {
             for (number, line) in sections.remove(name).unwrap_or_default() {
                 rows.push(Row::parse(line, skin).with_context(|| format!("line {number}"))?);
             }
@@ -154,9 +161,7 @@ impl Head {
         let stored: Vec<usize> = (0..rows.len()).filter(|&index| self.skin[index]).collect();
         let mut triangles = skin::triangles(&self.points, &stored, self.middles);
         let closes = |triangle: &Triangle| {
-            self.openings
-                .iter()
-                .any(|opening| triangle.iter().all(|corner| opening.upper.contains(corner) || opening.lower.contains(corner)))
+            self.openings.iter().any(|opening| triangle.iter().all(|corner| opening.edges(*corner)))
                 || triangle.iter().all(|corner| self.fixed.contains(corner))
         };
         triangles.retain(|triangle| !closes(triangle));
