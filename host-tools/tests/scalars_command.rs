@@ -91,7 +91,7 @@ fn a_chart_is_drawn_and_what_cannot_be_is_refused() {
     assert!(pantin(&["convert", &source, "-o", &clip, "--effort", "fast"]).status.success());
     assert!(pantin(&["render", &clip, "-o", &chart]).status.success());
     assert!(std::fs::read(&chart).unwrap().starts_with(b"\x89PNG"));
-    for (output, part) in [("x.gif", "without joints"), ("x.bvh", "expected a name that ends in .gif or .png")] {
+    for (output, part) in [("x.gif", "without joints"), ("x.bvh", "expected a name that ends in .gif, .apng, .png or .svg")] {
         let refused = pantin(&["render", &clip, "-o", &folder.path(output)]);
         assert!(!refused.status.success() && stderr(&refused).contains(part), "{}", stderr(&refused));
     }

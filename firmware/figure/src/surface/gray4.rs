@@ -25,7 +25,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
     const HEIGHT: usize = HEIGHT;
     const CELL: [usize; 2] = [8, 1];
     const DARK: [u32; WORDS] = {
-        assert!(WORDS * 8 == WIDTH * HEIGHT && WIDTH % 8 == 0);
+        assert!(WORDS * 8 == WIDTH * HEIGHT && WIDTH.is_multiple_of(8));
         [0; WORDS]
     };
 

@@ -23,7 +23,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
     const HEIGHT: usize = HEIGHT;
     const CELL: [usize; 2] = [1, BAND];
     const DARK: [u8; BYTES] = {
-        assert!(BYTES * 8 == WIDTH * HEIGHT && HEIGHT % BAND == 0);
+        assert!(BYTES * 8 == WIDTH * HEIGHT && HEIGHT.is_multiple_of(BAND));
         [0; BYTES]
     };
 

@@ -37,7 +37,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     const HEIGHT: usize = HEIGHT;
     const CELL: [usize; 2] = [2, 1];
     const DARK: [Pair; PAIRS] = {
-        assert!(PAIRS * 2 == WIDTH * HEIGHT && WIDTH % 2 == 0);
+        assert!(PAIRS * 2 == WIDTH * HEIGHT && WIDTH.is_multiple_of(2));
         [Pair([0; 2]); PAIRS]
     };
 
@@ -67,7 +67,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     fn blend(cells: &mut [Pair], cursor: usize, ink: Rgb565, cover: u32) {
         let was = Self::get(cells, cursor);
         let full = u32::from(RawU16::from(ink).into_inner());
-        let scaled = ((full & RED_BLUE) * cover >> 4 & RED_BLUE) | ((full & GREEN) * cover >> 4 & GREEN);
+        let scaled = ((((full & RED_BLUE) * cover) >> 4) & RED_BLUE) | ((((full & GREEN) * cover) >> 4) & GREEN);
         let scaled = Rgb565::from(RawU16::new(scaled as u16));
         let brighter = Rgb565::new(was.r().max(scaled.r()), was.g().max(scaled.g()), was.b().max(scaled.b()));
         Self::put(cells, cursor, brighter);
