@@ -64,7 +64,7 @@ impl Ink for BinaryColor {
 /// Red, green and blue of a tone at full brightness.
 const fn hue(tone: Tone) -> [u32; 3] {
     match tone {
-        Tone::Ground => [90, 200, 170],
+        Tone::Ground => [170, 255, 230],
         Tone::Middle => [255, 236, 205],
         Tone::Left => [255, 160, 60],
         Tone::Right => [80, 190, 255],
