@@ -90,7 +90,7 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
 }
 
 /// Most joints of a rig, fingers and the like among them.
-pub const RIG: usize = 64;
+pub const RIG: usize = if cfg!(feature = "large") { 192 } else { 60 };
 
 /// In a function of its own: the workspace is given back before the first frame.
 #[inline(never)]

@@ -14,9 +14,9 @@ use pantin_figure::surface::Frame;
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 144;
-const MOVING: usize = 96;
-const JOINTS: usize = 40;
+const CHANNELS: usize = if cfg!(feature = "large") { 400 } else { 144 };
+const MOVING: usize = if cfg!(feature = "large") { 256 } else { 96 };
+const JOINTS: usize = if cfg!(feature = "large") { 64 } else { 36 };
 /// Most figures side by side.
 const SEATS: usize = 4;
 

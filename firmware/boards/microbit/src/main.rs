@@ -14,7 +14,7 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 /// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
 const CHANNELS: usize = 144;
 const MOVING: usize = 96;
-const JOINTS: usize = 40;
+const JOINTS: usize = 36;
 /// Most figures side by side.
 const SEATS: usize = 1;
 

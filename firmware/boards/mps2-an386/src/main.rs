@@ -12,9 +12,9 @@ use pantin_figure::surface::Frame;
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 144;
-const MOVING: usize = 96;
-const JOINTS: usize = 40;
+const CHANNELS: usize = 400;
+const MOVING: usize = 320;
+const JOINTS: usize = 80;
 /// Most figures side by side.
 const SEATS: usize = 16;
 
