@@ -4,6 +4,7 @@ mod argument;
 mod decimation;
 mod decode;
 mod error;
+mod face;
 mod footprint;
 mod goals;
 mod guest;
@@ -43,6 +44,8 @@ pub enum Part {
     Host,
     /// Additions against polynomials, and a clip against a per-frame file over a link
     Argument,
+    /// Recorded faces: bits a second, and how smooth they are
+    Face,
 }
 
 /// What every part works with.
@@ -77,6 +80,7 @@ impl Part {
             Self::Footprint => footprint::run(setting),
             Self::Host => host::run(setting),
             Self::Argument => argument::run(setting),
+            Self::Face => face::run(setting),
         }
     }
 
