@@ -15,7 +15,7 @@ pub struct ChannelState {
     pub(crate) due: u8,
     /// Mode of the running segment.
     pub(crate) mode: u8,
-    /// Index of the channel's step.
+    /// Index of the channel's step; above MAX_STEP by how many moving channels back the one stands that it follows.
     pub(crate) step: u8,
     /// Sign of the acceleration that the last new one took over from, 0 if it was small: a context of the next.
     pub(crate) turn: i8,

@@ -3,7 +3,7 @@
 /// First bytes of every clip.
 pub const MAGIC: [u8; 2] = *b"Pn";
 /// Version byte: values from 0xe0 are experimental and promise nothing.
-pub const VERSION: u8 = 0xe4;
+pub const VERSION: u8 = 0xe5;
 
 /// Flag: the rig stands in the file, after the flags.
 pub const HAS_RIG: u8 = 1;
@@ -98,6 +98,25 @@ pub const FAR_BITS: u32 = 5;
 pub const fn group(bits: u32) -> u32 {
     DIRECT - 1 + (1 << bits)
 }
+
+/// A channel's status: how it begins, and whether it has segments of its own.
+pub mod status {
+    /// It rests where the rig has it.
+    pub const RESTS: u8 = 0;
+    /// It holds one value.
+    pub const CONSTANT: u8 = 1;
+    /// It moves by segments of its own.
+    pub const MOVES: u8 = 2;
+    /// It moves as a channel before it does.
+    pub const FOLLOWS: u8 = 3;
+}
+/// How many statuses there are.
+pub const STATUSES: usize = 4;
+/// Bits that say how many moving channels back, less one, the channel stands that one follows.
+pub const FOLLOW_BITS: u32 = 5;
+
+/// In place of a scalar's exponent: this and more scalars are named by Live Link Face's list.
+pub const LISTED: i8 = 127;
 
 /// Largest index of a channel's step: 1, 1, 2, 3, 4, 6, 8, 12, ... raw units.
 pub const MAX_STEP: u8 = 59;

@@ -14,6 +14,7 @@ pub mod format {}
 mod history;
 mod index;
 pub mod layout;
+pub mod names;
 mod opening;
 mod player;
 mod position;

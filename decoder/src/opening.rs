@@ -2,7 +2,8 @@
 
 use crate::channel::{ChannelState, step_size};
 use crate::entropy::{Symbols, Table};
-use crate::layout::{FIRST_STEP, MAX_STEP, STEP_BITS, STEP_CHANGES};
+use crate::layout::{FIRST_STEP, FOLLOW_BITS, MAX_STEP, STEP_BITS, STEP_CHANGES, status};
+use crate::position::{self, Channels};
 use crate::rig::{Kind, Rig, Slots};
 use crate::tables;
 
@@ -20,13 +21,17 @@ impl Default for Opening {
 }
 
 impl Opening {
-    /// The next channel's start: its position unless it rests, and velocity and index of its step if it moves.
+    /// The next channel's start: its position unless it rests, and velocity and index of its step if it moves. One that follows
+    /// has the index [`MAX_STEP`] + how many of the moving channels before it it goes back.
     #[inline(never)]
     fn read(&mut self, symbols: &mut Symbols<'_>, kind: Kind) -> (Option<i32>, Option<(i32, u8)>) {
         let status = symbols.symbol(tables::status(self.status)) as u8;
-        self.status = status.min(2);
-        if status == 0 {
+        self.status = status;
+        if status == status::RESTS {
             return (None, None);
+        }
+        if status == status::FOLLOWS {
+            return (None, Some((0, MAX_STEP + 1 + symbols.bits(FOLLOW_BITS) as u8)));
         }
         let class = usize::from(kind.is_position());
         let change = symbols.symbol(&tables::STEP_CHANGE);
@@ -41,7 +46,7 @@ impl Opening {
         }
         let grid = step_size(step);
         let p = magnitude(symbols, &tables::POSITION).wrapping_mul((grid >> 1).max(1) as i32);
-        if status == 1 {
+        if status == status::CONSTANT {
             return (Some(p), None);
         }
         let v = magnitude(symbols, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
@@ -100,7 +105,11 @@ impl<'a> Starts<'a> {
         pose: &mut [i32],
     ) -> Opened {
         while symbols.at.position <= dry_at {
-            let Some((kind, rest)) = self.slots.next() else { return Opened::Done };
+            let Some((kind, rest)) = self.slots.next() else {
+                let states = states.get_mut(..usize::from(self.moving)).unwrap_or(&mut []);
+                position::follow(&mut Channels { states, pose });
+                return Opened::Done;
+            };
             let (p, start) = self.opening.read(symbols, kind);
             if let Some(value) = pose.get_mut(usize::from(self.slot)) {
                 *value = p.unwrap_or(shifted(rest, self.shift));

@@ -4,6 +4,7 @@ use crate::blocks::Input;
 use crate::channel::ChannelState;
 use crate::entropy::{Cursor, Symbols};
 use crate::history::History;
+use crate::layout::MAX_STEP;
 use crate::segment;
 
 /// All of a player's state but the channels and the pose.
@@ -40,6 +41,25 @@ fn first_due(states: &[ChannelState], now: u8) -> usize {
     before + rest.iter().take_while(|state| state.due != now).count()
 }
 
+/// Makes the channels that follow what their leaders are: all of them stand at the same frame.
+#[inline(never)]
+pub(crate) fn follow(channels: &mut Channels<'_>) {
+    let mut index = 0usize;
+    while let Some((before, [state, ..])) = channels.states.split_at_mut_checked(index) {
+        // None for one that does not follow, and for one that follows what is not there, as no well-formed one does.
+        let leader = before.get(index.wrapping_sub(usize::from(state.step.saturating_sub(MAX_STEP))));
+        if let Some(leader) = leader {
+            state.v = leader.v;
+            (state.w, state.k, state.mode, state.due) = (leader.w, leader.k, leader.mode, leader.due);
+            let p = channels.pose.get(usize::from(leader.slot)).copied();
+            if let (Some(p), Some(value)) = (p, channels.pose.get_mut(usize::from(state.slot))) {
+                *value = p;
+            }
+        }
+        index += 1;
+    }
+}
+
 impl Position {
     /// Reads the segments that start at this frame, in the order of channels, and keeps in `history` what undoes it. False if
     /// the input ran dry: call again when it holds more.
@@ -68,6 +88,7 @@ impl Position {
             self.next += 1;
         }
         self.cursor = symbols.at;
+        follow(channels);
         true
     }
 
@@ -97,11 +118,15 @@ impl Position {
     pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>) {
         let now = self.frame as u8;
         let mut symbols = Symbols { at: self.cursor, input: *input };
+        let mut followers = false;
         for state in channels.states.iter_mut() {
             if state.due == now {
-                segment::read(state, &mut symbols);
+                followers |= segment::read(state, &mut symbols);
             }
             state.add(channels.pose);
+        }
+        if followers {
+            follow(channels);
         }
         self.cursor = symbols.at;
         self.frame += 1;
@@ -130,6 +155,8 @@ impl Position {
         self.cursor = symbols.at;
         self.next = 0;
         self.hop_all(channels, false);
+        // What was made of them on the way is of no account.
+        follow(channels);
     }
 
     /// Moves every channel between this frame and the start of its segment: `back` to the start, else from it.

@@ -3,8 +3,8 @@
 //! A rig's bytes depend on nothing but the figure, so that many clips may share one by its [`Rig::id`].
 
 use crate::bytes::Bytes;
-use crate::layout::{MAX_CHANNELS, MAX_JOINTS};
-use crate::{OpenError, crc};
+use crate::layout::{LISTED, MAX_CHANNELS, MAX_JOINTS};
+use crate::{OpenError, crc, names};
 
 /// What one channel of a joint drives. A joint applies its channels in the order of its list, as BVH does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,18 +145,27 @@ impl<'a> Joint<'a> {
     }
 }
 
+/// In place of the index of a name in a list: the rig has the name's bytes.
+const SPELLED: u8 = 255;
+
 /// One channel that moves no joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar<'a> {
     name: &'a [u8],
+    /// Its name's index in the list, where it has no bytes.
+    listed: u8,
     /// A pose's value times 2^(exponent - 31) is the scalar: it lies within -2^exponent .. 2^exponent.
     pub exponent: i8,
 }
 
 impl<'a> Scalar<'a> {
-    /// Its name; empty for one that is not UTF-8.
+    /// Its name; empty for one that is not UTF-8, or that no list has.
     pub fn name(&self) -> &'a str {
-        core::str::from_utf8(self.name).unwrap_or("")
+        if self.listed == SPELLED {
+            core::str::from_utf8(self.name).unwrap_or("")
+        } else {
+            names::nth(names::LIVE_LINK, self.listed)
+        }
     }
 }
 
@@ -204,17 +213,17 @@ impl<'a> Rig<'a> {
         };
         let mut walk = rig.joints();
         for index in 0..rig.joints {
-            let joint = walk.parse()?;
-            if joint.parent.map_or(index != 0, |parent| parent >= index) {
-                return Err(OpenError::Malformed);
-            }
+            let mut kinds = Kinds { halves: &[], next: 0, len: 0 };
+            let (_, parent, _) = walk.fields(&mut kinds, &mut [0; 3])?;
+            let len = usize::from(kinds.len);
             // A kind that is none ends the walk early; a scalar belongs to no joint.
-            if joint.kinds.take_while(|&kind| kind != Kind::Scalar).count() != usize::from(joint.kinds.len) {
+            let known = kinds.take_while(|&kind| kind != Kind::Scalar).count() == len;
+            if parent.map_or(index != 0, |parent| parent >= index) || !known {
                 return Err(OpenError::Malformed);
             }
         }
         rig.joint_channels = walk.first_channel;
-        let mut walk = Scalars { bytes: walk.bytes, left: rig.scalars };
+        let mut walk = Scalars::new(walk.bytes, rig.scalars);
         for _ in 0..rig.scalars {
             walk.parse()?;
         }
@@ -238,7 +247,7 @@ impl<'a> Rig<'a> {
     pub fn scalars(&self) -> Scalars<'a> {
         let mut joints = self.joints();
         joints.by_ref().for_each(drop);
-        Scalars { bytes: joints.bytes, left: self.scalars }
+        Scalars::new(joints.bytes, self.scalars)
     }
 
     /// Number of joints, End Sites included.
@@ -375,14 +384,35 @@ impl<'a> Iterator for Joints<'a> {
 pub struct Scalars<'a> {
     bytes: Bytes<'a>,
     left: u16,
+    /// The last one that a list named, and how many after it are named by the list too.
+    listed: u8,
+    more: u8,
+    exponent: i8,
 }
 
 impl<'a> Scalars<'a> {
+    fn new(bytes: Bytes<'a>, left: u16) -> Scalars<'a> {
+        Scalars { bytes, left, listed: 0, more: 0, exponent: 0 }
+    }
+
     fn parse(&mut self) -> Result<Scalar<'a>, OpenError> {
-        let exponent = self.bytes.byte()? as i8;
-        let name = self.bytes.name()?;
         self.left = self.left.saturating_sub(1);
-        Ok(Scalar { name, exponent })
+        self.listed = self.listed.wrapping_add(1);
+        let mut name = &[][..];
+        if self.more == 0 {
+            self.exponent = self.bytes.byte()? as i8;
+            self.listed = SPELLED;
+            if self.exponent == LISTED {
+                self.listed = self.bytes.byte()?;
+                self.more = self.bytes.byte()?;
+                self.exponent = self.bytes.byte()? as i8;
+            } else {
+                name = self.bytes.name()?;
+            }
+        } else {
+            self.more -= 1;
+        }
+        Ok(Scalar { name, listed: self.listed, exponent: self.exponent })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::channel::{ChannelState, length, mantissa};
 use crate::entropy::Symbols;
-use crate::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
+use crate::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
 use crate::tables;
 
 /// Bytes that one segment takes at most, CRC included: a mode's symbol and 4 bits, then twice a number's symbol, 5 bits and
@@ -41,12 +41,14 @@ pub struct Context {
 /// Contexts of w and k together.
 pub const CONTEXTS: usize = 96;
 
-/// The first context of a length, or of a length's slopes: 12 a class.
-const FIRST_CONTEXTS: [u8; 32] = {
-    let mut first = [0; 32];
+/// Contexts of accelerations: 12 a class of lengths. As many of slopes follow.
+const ACCELERATIONS: u8 = 48;
+/// The first context of a length.
+const FIRST_CONTEXTS: [u8; 16] = {
+    let mut first = [0; 16];
     let mut i = 0;
-    while i < 32 {
-        first[i] = 12 * (LENGTH_CLASSES[i % 16] + 4 * (i / 16) as u8);
+    while i < 16 {
+        first[i] = 12 * LENGTH_CLASSES[i];
         i += 1;
     }
     first
@@ -73,15 +75,19 @@ impl Context {
                 }
             }
         }
-        let first = FIRST_CONTEXTS[(which & 31) as usize];
+        let first = FIRST_CONTEXTS[(which & 15) as usize] + if which & SLOPE == 0 { 0 } else { ACCELERATIONS };
         let index = first as i32 + a + (turn ^ flip) - flip + 1;
         Context { index: index as u8, flip, sign: sign as i8 }
     }
 }
 
-/// Reads the segment that follows the one that `state` has ended.
+/// Reads the segment that follows the one that `state` has ended. True if it is one that follows:
+/// [`crate::position::follow`] is for it once all have read.
 #[inline(never)]
-pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) {
+pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) -> bool {
+    if state.step > MAX_STEP {
+        return true;
+    }
     let mode = mode(symbols, state.mode);
     let (kind, length_index) = (mode >> 4, mode as u8 & 15);
     state.mode = mode as u8;
@@ -94,10 +100,11 @@ pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) {
         state.w = number(symbols, &context, unit);
         if kind == u32::from(segment_type::W) {
             state.k = 0;
-            return;
+            return false;
         }
     }
     state.k = if kind == u32::from(segment_type::NONE) { 0 } else { slope(symbols, state) };
+    false
 }
 
 /// A new slope: captured motion has few.

@@ -124,8 +124,8 @@ static NUMBER: [[u16; 27]; 16] = [
     ],
 ];
 
-/// Rest, constant, moving: after a channel that rests, is constant, moves.
-static STATUS: [[u16; 3]; 3] = [[0, 1432, 1926], [0, 1354, 1768], [0, 614, 1045]];
+/// Rest, constant, moving, following: after a channel that rests, is constant, moves, follows.
+static STATUS: [[u16; 4]; 4] = [[0, 1421, 1911, 4064], [0, 1333, 1741, 4032], [0, 595, 1013, 8064], [0, 384, 4749, 10752]];
 
 /// By how much a channel's step index differs from the last one's: 0, -1, 1, ...
 pub static STEP_CHANGE: [u16; 25] = [

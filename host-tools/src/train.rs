@@ -3,6 +3,7 @@
 use crate::encode::clip::{Coded, symbols};
 use crate::encode::entropy::{Alphabet, Sink, sizes};
 use pantin::entropy::{SCALE_BITS, SIXTEENTH};
+use pantin::layout::{STATUSES, status};
 use pantin::segment::{CONTEXTS, DIRECT_MODES};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,6 +13,9 @@ const MODE_TABLES: usize = 8;
 const NUMBER_TABLES: usize = 16;
 /// How much a table of all contexts counts in each: a symbol never seen must still have a code.
 const PRIOR: f64 = 12.0;
+
+/// The part of channels that follow, by the status of the one before: faces have them, the motions to count are bodies'.
+const FOLLOWING: [f64; STATUSES] = [1.0 / 128.0, 1.0 / 64.0, 1.0 / 32.0, 3.0 / 8.0];
 
 /// How often each symbol came.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +44,14 @@ impl Counts {
         self.counts.get(&alphabet).cloned().unwrap_or_else(|| vec![0.0; sizes(alphabet.table()).count()])
     }
 
+    /// What comes after a channel of a status.
+    fn status(&self, after: u8) -> Vec<f64> {
+        let mut row = self.row(Alphabet::Status(after.min(status::MOVES)));
+        let part = FOLLOWING[usize::from(after)];
+        row[usize::from(status::FOLLOWS)] = row.iter().sum::<f64>() * part / (1.0 - part);
+        row
+    }
+
     /// The text of `decoder/src/tables.rs`.
     pub fn tables(&self, trained_on: &str) -> String {
         let modes = (0..64).map(|after| self.row(Alphabet::Mode(after))).collect();
@@ -63,9 +75,9 @@ impl Counts {
         item("Which of [`NUMBER`] a context has.", "const NUMBER_IN", "[u8; 128]".into(), format!("{number_in:?}"));
         let doc = "Accelerations and slopes in their steps, by index of magnitude: 0, -1, 1, -2, ...";
         item(doc, "static NUMBER", format!("[[u16; {}]; {}]", number[0].len(), number.len()), format!("{number:?}"));
-        let status: Vec<Entries> = (0..3).map(|after| rounded(&self.row(Alphabet::Status(after)), &|_| 0.1)).collect();
-        let doc = "Rest, constant, moving: after a channel that rests, is constant, moves.";
-        item(doc, "static STATUS", "[[u16; 3]; 3]".into(), format!("{status:?}"));
+        let status: Vec<Entries> = (0..STATUSES as u8).map(|after| rounded(&self.status(after), &|_| 0.1)).collect();
+        let doc = "Rest, constant, moving, following: after a channel that rests, is constant, moves, follows.";
+        item(doc, "static STATUS", format!("[[u16; {STATUSES}]; {STATUSES}]"), format!("{status:?}"));
         let bell = |i: usize| 0.8f64.powi((i as i32 - 6).abs()).max(0.01);
         for (alphabet, name, doc, prior) in [
             (

@@ -4,11 +4,11 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
-const VERSION = 0xe4, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, BLOCK = 256, CRC_BYTES = 2;
+const VERSION = 0xe5, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, BLOCK = 256, CRC_BYTES = 2;
 const FRAME_RATES = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 const LENGTHS = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 const LENGTH_CLASSES = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];
-const RESTS = 0, CONSTANT = 1, MOVES = 2, TYPE_W = 0, TYPE_K = 1, TYPE_WK = 2;
+const RESTS = 0, CONSTANT = 1, FOLLOWS = 3, LISTED = 127, TYPE_W = 0, TYPE_K = 1, TYPE_WK = 2;
 const START_MODE = 63, FIRST_STEP = 44, STEP_CHANGES = 24, MAX_STEP = 59, LOW = 2 ** 16;
 const SCALAR = 13, isPosition = (kind) => kind <= 2, isEuler = (kind) => kind >= 3 && kind <= 5;
 
@@ -48,7 +48,7 @@ class Fields {
   name() { return new TextDecoder().decode(this.take(this.varint())); }
 }
 
-function readRig(bytes) { // [2]
+function readRig(bytes, tables) { // [2]
   const end = bytes.length - CRC_BYTES, body = bytes.subarray(0, Math.max(end, 0)), fields = new Fields(body, "rig");
   need(end >= 0 && crc16(body) === (bytes[end] | (bytes[end + 1] << 8)), "The rig's CRC is wrong.");
   const unit = fields.varint(), offsetExponent = fields.i8(), joints = [], scalars = [], channels = [];
@@ -68,7 +68,16 @@ function readRig(bytes) { // [2]
     joints.push({ parent, isEnd, kinds, offset, name: isEnd ? "" : fields.name() });
     channels.push(...kinds.map((kind) => ({ kind, joint: j })));
   }
-  for (let i = 0; i < scalarCount; i++) scalars.push({ exponent: fields.i8(), name: fields.name() });
+  while (scalars.length < scalarCount) {
+    const exponent = fields.i8();
+    if (exponent !== LISTED) scalars.push({ exponent, name: fields.name() });
+    else {
+      const first = fields.u8(), more = fields.u8(), itsExponent = fields.i8();
+      for (let i = first; i <= first + more && scalars.length < scalarCount; i++) {
+        scalars.push({ exponent: itsExponent, name: tables.live_link[i] ?? "" });
+      }
+    }
+  }
   channels.push(...scalars.map((_, i) => ({ kind: SCALAR, scalar: i })));
   need(fields.at === end && channels.length <= 1023, "Bytes stand before the rig's CRC, or it has more than 1023 channels.");
   const id = body.reduce((hash, byte) => Math.imul(hash ^ byte, 0x01000193), 0x811c9dc5) >>> 0;
@@ -160,18 +169,24 @@ function restValue(rig, { kind, joint }, clipExponent) {
   return d >= 0 ? offset << (d % 32) : offset >> Math.min(-d, 31);
 }
 
-function readStarts(symbols, tables, rig, clipExponent) { // [8]
+function readStarts(symbols, tables, rig, clipExponent, moving) { // [8]
   let status = RESTS, lastStep = [FIRST_STEP, FIRST_STEP]; // of either class
+  const moves = (channel) => { moving.push(channel); return channel; };
   return rig.channels.map((channel) => {
     status = symbols.symbol(tables.status[status]);
-    if (status === RESTS) return { status, p: restValue(rig, channel, clipExponent) };
+    const rests = { p: restValue(rig, channel, clipExponent) };
+    if (status === RESTS) return rests;
+    if (status === FOLLOWS) {
+      const leader = moving.length - 1 - symbols.bits(5), stands = { ...rests, v: 0, w: 0, k: 0, mode: START_MODE, ends: 0 };
+      return moves({ ...stands, ...moving[leader], turn: 0, leader });
+    }
     const c = symbols.symbol(tables.step_change), itsClass = isPosition(channel.kind) ? 1 : 0;
     const told = c < STEP_CHANGES ? (lastStep[itsClass] + unzigzag(c)) & 255 : symbols.bits(6);
     const step = (lastStep[itsClass] = Math.min(told, MAX_STEP)), S = channelStep(step);
     const p = Math.imul(symbols.magnitude(tables.position), Math.max(S >> 1, 1));
-    if (status === CONSTANT) return { status, p };
+    if (status === CONSTANT) return { p };
     const v = Math.imul(symbols.magnitude(tables.velocity), Math.max(S >> 2, 1));
-    return { status, step, p, v, w: 0, k: 0, mode: START_MODE, turn: 0, ends: 0 }; // `ends`: the frame
+    return moves({ step, p, v, w: 0, k: 0, mode: START_MODE, turn: 0, ends: 0 }); // `ends`: the frame
   });
 }
 
@@ -201,15 +216,19 @@ function readSegment(symbols, tables, channel, frame) { // [9]
 class Player {
   constructor(clip, snapshot) {
     Object.assign(this, { clip, frame: 0, symbols: new Symbols(clip.payload, clip.symbolsAt) });
-    this.channels = readStarts(this.symbols, clip.tables, clip.rig, clip.length_exponent);
-    this.moving = this.channels.filter((channel) => channel.status === MOVES);
+    this.moving = []; // those that follow among them, with the index of their leader there
+    this.channels = readStarts(this.symbols, clip.tables, clip.rig, clip.length_exponent, this.moving);
     if (snapshot) Object.assign(this, { frame: snapshot.frame, symbols: new Symbols(clip.payload, snapshot.at, snapshot.x) });
     if (snapshot) this.moving.forEach((channel, i) => Object.assign(channel, snapshot.channels[i]));
   }
   pose() { return this.channels.map((channel) => channel.p); }
   step() {
     const due = this.moving.filter((channel) => channel.ends === this.frame && this.frame + 2 < this.clip.frames);
-    for (const channel of due) readSegment(this.symbols, this.clip.tables, channel, this.frame);
+    for (const channel of due) {
+      const leader = this.moving[channel.leader];
+      if (leader) Object.assign(channel, { w: leader.w, k: leader.k, mode: leader.mode, ends: leader.ends });
+      else if (channel.leader === undefined) readSegment(this.symbols, this.clip.tables, channel, this.frame);
+    }
     for (const c of this.moving) [c.p, c.v, c.w] = [(c.p + c.v) | 0, (c.v + c.w) | 0, (c.w + c.k) | 0];
     this.frame++;
   }
@@ -247,7 +266,7 @@ export function decode(clipBytes, tables, rigBytes) {
   const motion = file.take(file.varint()), index = flags & HAS_INDEX ? file.take(file.varint()) : null;
   need(file.at === clipBytes.length, "Bytes follow the last part.");
   need(itsRig, "The clip has no rig of its own, and none was given.");
-  const rig = readRig(itsRig), { payload, lastCrc } = readBlocks(motion, [...before, ...u32Bytes(motion.length)], "motion");
+  const rig = readRig(itsRig, tables), { payload, lastCrc } = readBlocks(motion, [...before, ...u32Bytes(motion.length)], "motion");
   const fields = new Fields(payload, "motion", true), head = readHead(fields, flags, rig);
   const clip = {
     ...head, looped: (flags & LOOPED) !== 0, joints: rig.joints.length, channels: rig.channels.length,

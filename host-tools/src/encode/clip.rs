@@ -28,6 +28,11 @@ pub enum Start {
         /// Index of the channel's step.
         step: u8,
     },
+    /// It moves as a channel before it.
+    Follows {
+        /// The channel's index.
+        leader: usize,
+    },
 }
 
 /// First values are multiples of this: half a channel step.
@@ -45,7 +50,7 @@ pub fn velocity_grid(step: u8) -> i32 {
 pub struct Channel {
     /// How it begins.
     pub start: Start,
-    /// Its segments; none unless it moves.
+    /// Its segments; none unless it moves by its own.
     pub segments: Vec<Segment>,
 }
 
@@ -187,15 +192,23 @@ struct Opening {
 }
 
 impl Opening {
-    fn put(&mut self, start: &Start, position: bool, out: &mut dyn Sink) {
+    /// `moving` lists the channels before that move.
+    fn put(&mut self, start: &Start, position: bool, moving: &[usize], out: &mut dyn Sink) {
         let (status, step, p) = match *start {
-            Start::Rest => (0, 0, 0),
-            Start::Constant { p, step } => (1, step, p),
-            Start::Moving { p, step, .. } => (2, step, p),
+            Start::Rest => (status::RESTS, 0, 0),
+            Start::Constant { p, step } => (status::CONSTANT, step, p),
+            Start::Moving { p, step, .. } => (status::MOVES, step, p),
+            Start::Follows { .. } => (status::FOLLOWS, 0, 0),
         };
-        out.symbol(Alphabet::Status(self.status), status);
-        self.status = status as u8;
-        if status == 0 {
+        out.symbol(Alphabet::Status(self.status), u32::from(status));
+        self.status = status;
+        if let Start::Follows { leader } = *start {
+            // The fit chooses leaders that are near enough.
+            let back = moving.iter().rev().position(|&channel| channel == leader).unwrap_or(0);
+            out.bits(back as u32, FOLLOW_BITS);
+            return;
+        }
+        if status == status::RESTS {
             return;
         }
         let before = std::mem::replace(&mut self.steps[usize::from(position)], step);
@@ -216,9 +229,12 @@ impl Opening {
 pub fn symbols(coded: &Coded, rig: &pantin::Rig<'_>, out: &mut dyn Sink) {
     let mut opening = Opening { status: 0, steps: [FIRST_STEP; 2] };
     let kinds = rig.joints().flat_map(|joint| joint.kinds).map(pantin::Kind::is_position).chain(std::iter::repeat(false));
-    let mut running = Vec::new();
+    let (mut running, mut moving) = (Vec::new(), Vec::new());
     for (index, (channel, position)) in coded.channels.iter().zip(kinds).enumerate() {
-        opening.put(&channel.start, position, out);
+        opening.put(&channel.start, position, &moving, out);
+        if matches!(channel.start, Start::Moving { .. } | Start::Follows { .. }) {
+            moving.push(index);
+        }
         if let Start::Moving { v, step, .. } = channel.start {
             let v = v.wrapping_mul(velocity_grid(step));
             running.push((index, 0, Running { v, w: 0, k: 0, turn: 0, mode: START_MODE, step }, 0));

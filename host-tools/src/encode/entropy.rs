@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn tables_are_probabilities_and_their_hints_never_lead_past_the_symbol() {
         let few = [Alphabet::StepChange, Alphabet::Position, Alphabet::Velocity];
-        let contexts = (0..3).map(Alphabet::Status).chain((0..64).map(Alphabet::Mode));
+        let contexts = (0..pantin::layout::STATUSES as u8).map(Alphabet::Status).chain((0..64).map(Alphabet::Mode));
         let contexts = contexts.chain((0..CONTEXTS as u8).map(Alphabet::Number)).chain(few);
         for alphabet in contexts {
             let table = alphabet.table();

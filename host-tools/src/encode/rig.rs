@@ -1,7 +1,7 @@
 //! The rig's bytes.
 
 use super::varint;
-use crate::motion::{Joint, Kind, Rig};
+use crate::motion::{Joint, Kind, Rig, Scalar};
 use anyhow::{Result, bail, ensure};
 use pantin::{crc, layout};
 
@@ -65,13 +65,29 @@ pub fn encode(rig: &Rig) -> Result<Vec<u8>> {
             varint::put_name(&mut out, &joint.name);
         }
     }
-    for scalar in &rig.scalars {
-        out.push(scalar_exponent(scalar.full_scale) as u8);
-        varint::put_name(&mut out, &scalar.name);
-    }
+    put_scalars(&mut out, &rig.scalars);
     let crc = crc::of(&out);
     out.extend_from_slice(&crc.to_le_bytes());
     Ok(out)
+}
+
+/// The scalars: those that stand together in Live Link Face's list, and have the same exponent, by where they stand there.
+fn put_scalars(out: &mut Vec<u8>, scalars: &[Scalar]) {
+    let list: Vec<&str> = pantin::names::LIVE_LINK.split(' ').collect();
+    let mut left = scalars;
+    while let Some(scalar) = left.first() {
+        let exponent = scalar_exponent(scalar.full_scale);
+        let Some(first) = list.iter().position(|&name| name == scalar.name) else {
+            out.push(exponent as u8);
+            varint::put_name(out, &scalar.name);
+            left = &left[1..];
+            continue;
+        };
+        let same = |(scalar, name): &(&Scalar, &&str)| scalar.name == **name && scalar_exponent(scalar.full_scale) == exponent;
+        let count = left.iter().zip(&list[first..]).take_while(same).count();
+        out.extend([layout::LISTED as u8, first as u8, count as u8 - 1, exponent as u8]);
+        left = &left[count..];
+    }
 }
 
 fn code(kind: Kind) -> u8 {
@@ -97,7 +113,7 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
             .map(|scalar| {
                 // The greatest raw value: 2^exponent itself would ask for one exponent more.
                 let full_scale = f64::from(i32::MAX) * (f64::from(scalar.exponent) - 31.0).exp2();
-                crate::motion::Scalar { name: scalar.name().to_string(), full_scale }
+                Scalar { name: scalar.name().to_string(), full_scale }
             })
             .collect(),
         cm_per_unit: f64::from(rig.micro_cm_per_unit()) * 1e-6,
@@ -139,6 +155,34 @@ mod tests {
         expected.scalars[0].full_scale = 2.0 - (-30f64).exp2();
         assert_eq!(scalar_exponent(back.scalars[0].full_scale), scalar_exponent(1.0));
         assert_eq!(back, expected);
+    }
+
+    #[test]
+    fn a_face_has_its_names_by_a_list() {
+        let named = |names: &[&str]| {
+            let scalars = names.iter().map(|&name| Scalar { name: name.into(), full_scale: 1.0 }).collect();
+            Rig { joints: vec![], scalars, cm_per_unit: 1.0 }
+        };
+        let all: Vec<&str> = pantin::names::LIVE_LINK.split(' ').collect();
+        let mut turned = all.clone();
+        turned.swap(3, 4);
+        for (names, most) in
+            [(&all[..], 12), (&all[..52], 12), (&all[60..], 12), (&turned[..], 24), (&["jawOpen", "JawOpen"], 21)]
+        {
+            let bytes = encode(&named(names)).unwrap();
+            assert!(bytes.len() <= most, "{} names take {} bytes", names.len(), bytes.len());
+            let rig = pantin::Rig::new_checked(&bytes).unwrap();
+            assert!(rig.scalars().map(|scalar| scalar.name()).eq(names.iter().copied()));
+            assert!(rig.scalars().all(|scalar| scalar.exponent == scalar_exponent(1.0)));
+        }
+    }
+
+    #[test]
+    fn a_list_that_ends_too_soon_has_no_more_names() {
+        let mut bytes = vec![0xc0, 0x84, 0x3d, 0, 0, 3, 127, 59, 9, 1];
+        bytes.extend(crc::of(&bytes).to_le_bytes());
+        let rig = pantin::Rig::new_checked(&bytes).unwrap();
+        assert!(rig.scalars().map(|scalar| scalar.name()).eq(["RightEyePitch", "RightEyeRoll", ""]));
     }
 
     #[test]

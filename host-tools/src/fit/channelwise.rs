@@ -154,7 +154,7 @@ impl Aim<'_> {
         let lo = x.iter().map(|x| (x - self.bound).max(-room)).collect();
         let hi = x.iter().map(|x| (x + self.bound).min(room)).collect();
         let (a, b) = (vec![PRICE / (self.bound * self.bound); x.len()], vec![0.0; x.len()]);
-        Tube { x, lo, hi, a, b }
+        Tube { x, lo, hi, a, b, bend: f64::INFINITY }
     }
 
     /// Channel steps around the one that is as large as the bound.

@@ -57,9 +57,6 @@ impl Level {
     }
 }
 
-/// Raw values of a scalar: beyond them it would come round from the other side.
-const LEAST: f64 = i32::MIN as f64;
-const MOST: f64 = i32::MAX as f64;
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
 /// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
@@ -90,8 +87,6 @@ pub struct Descent<'m> {
     scales: &'m [f64],
     /// Where the rig has each channel at rest, raw.
     rests: &'m [i32],
-    /// Greatest error allowed a scalar, raw.
-    scalar_bounds: &'m [f64],
     original: &'m Poses,
     poses: Poses,
     values: Vec<Vec<f64>>,
@@ -111,7 +106,6 @@ impl<'m> Descent<'m> {
         targets: &'m [Vec<f64>],
         scales: &'m [f64],
         rests: &'m [i32],
-        scalar_bounds: &'m [f64],
         original: &'m Poses,
         seconds_a_frame: f64,
     ) -> Self {
@@ -119,21 +113,7 @@ impl<'m> Descent<'m> {
         let poses = figure.poses(&values);
         let codes = vec![None; targets.len()];
         let improved = vec![0; targets.len()];
-        Descent {
-            figure,
-            plan,
-            first_part,
-            targets,
-            scales,
-            rests,
-            scalar_bounds,
-            original,
-            poses,
-            values,
-            codes,
-            improved,
-            seconds_a_frame,
-        }
+        Descent { figure, plan, first_part, targets, scales, rests, original, poses, values, codes, improved, seconds_a_frame }
     }
 
     /// All passes. `progress` hears the part that is done, 0 to 1.
@@ -235,20 +215,13 @@ impl<'m> Descent<'m> {
     fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64], shrink: f64) -> Tube {
         let frames = self.figure.frames;
         let target = &self.targets[channel];
-        if self.figure.channels[channel].0.is_none() {
-            let bound = self.scalar_bounds[channel] * USED;
-            let a = price / (4.0 * bound * bound);
-            let lo = target.iter().map(|x| (x - bound).max(LEAST)).collect();
-            let hi = target.iter().map(|x| (x + bound).min(MOST)).collect();
-            return Tube { x: target.clone(), lo, hi, a: vec![a; frames], b: vec![0.0; frames] };
-        }
         let scale = self.scales[channel];
         let translates = self.figure.translates(channel);
         let trust = if translates { f64::MAX } else { TRUST_DEGREES / scale.abs() };
         // Many joints below share one error: their sum counts as the root of their number.
         let share = price / (self.plan.bound_cm.powi(2) * (moved.len().max(1) as f64).sqrt());
-        let mut tube =
-            Tube { x: target.clone(), lo: vec![0.0; frames], hi: vec![0.0; frames], a: vec![0.0; frames], b: vec![0.0; frames] };
+        let zeros = || vec![0.0; frames];
+        let mut tube = Tube { x: target.clone(), lo: zeros(), hi: zeros(), a: zeros(), b: zeros(), bend: f64::INFINITY };
         let center = self.figure.channels[channel].0.map(|joint| &self.poses.places[joint]);
         let Some(center) = center else { return tube };
         for frame in 0..frames {
@@ -338,7 +311,7 @@ fn objective(code: &Fitted, tube: &Tube) -> f64 {
 
 fn step_of(code: &Fitted) -> Option<u8> {
     match code.start {
-        Start::Rest => None,
+        Start::Rest | Start::Follows { .. } => None,
         Start::Constant { step, .. } | Start::Moving { step, .. } => Some(step),
     }
 }

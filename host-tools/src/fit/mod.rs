@@ -9,6 +9,7 @@ pub mod figure;
 pub mod parametrize;
 pub mod raw;
 pub mod refusal;
+pub mod scalars;
 pub mod search;
 
 use crate::encode::clip::{Channel, Coded};
@@ -18,6 +19,7 @@ use anyhow::{Result, anyhow, ensure};
 use descent::{Descent, Plan};
 use figure::Figure;
 use pantin::layout::MAX_FRAMES;
+use scalars::Aim;
 
 /// Parts of the bound that first codes may fill, until all channels find one: those that come late need room.
 const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
@@ -41,15 +43,16 @@ pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnM
     }
     let figure = Figure::new(played, motion.frames);
     let joint_channels = motion.rig.joint_channels();
-    let scalar_bound = |channel: usize| {
-        channel.checked_sub(joint_channels).map_or(0.0, |s| motion.rig.scalars[s].full_scale * scalar_part / scales[channel])
+    let aim = |channel: usize| {
+        let full_scale = motion.rig.scalars[channel - joint_channels].full_scale;
+        Aim { target: targets[channel].clone(), bound: full_scale * scalar_part / scales[channel] }
     };
-    let scalar_bounds: Vec<f64> = (0..targets.len()).map(scalar_bound).collect();
+    let aims: Vec<Aim> = (joint_channels..targets.len()).map(aim).collect();
+    let targets = &targets[..joint_channels];
     let mut failed = None;
     let mut codes = None;
     for first_part in FIRST_PARTS {
-        let descent =
-            Descent::new(&figure, plan, first_part, &targets, &scales, &rests, &scalar_bounds, &original, motion.frame_time);
+        let descent = Descent::new(&figure, plan, first_part, targets, &scales, &rests, &original, motion.frame_time);
         match descent.run(progress) {
             Ok(found) => {
                 codes = Some(found);
@@ -58,7 +61,8 @@ pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnM
             Err(error) => failed = Some(error),
         }
     }
-    let codes = codes.ok_or_else(|| failed.unwrap_or_else(|| anyhow!("no attempt was made")))?;
+    let mut codes = codes.ok_or_else(|| failed.unwrap_or_else(|| anyhow!("no attempt was made")))?;
+    codes.extend(scalars::fit(&motion.rig, &aims, plan.effort)?);
     Ok(Coded {
         frames: motion.frames as u32,
         frame_time_ns,

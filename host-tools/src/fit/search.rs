@@ -23,6 +23,8 @@ pub struct Tube {
     pub a: Vec<f64>,
     /// Half of the linear price.
     pub b: Vec<f64>,
+    /// Greatest second difference of [`search`]'s path.
+    pub bend: f64,
 }
 
 impl Tube {
@@ -287,6 +289,12 @@ impl<'t> Search<'t> {
         // The price of the segment so far is s0 + 2 g s1 + g^2 s2 for a new number g.
         let (mut s0, mut s1, mut s2) = (0.0, 0.0, 0.0);
         let mut index = 0;
+        if slope && from.w.abs() > tube.bend {
+            return;
+        }
+        if !slope {
+            (least, most) = (-tube.bend, tube.bend);
+        }
         let inverses = if slope { &INVERSE_C3 } else { &INVERSE_C2 };
         for (m, &inverse) in inverses.iter().enumerate().take(rest + 1).skip(1) {
             let n = m as f64;
@@ -298,6 +306,11 @@ impl<'t> Search<'t> {
             if c > 0.0 {
                 least = least.max(lo * inverse);
                 most = most.min(hi * inverse);
+                if slope {
+                    // The second difference there is the carried acceleration, and m - 1 slopes.
+                    least = least.max((-tube.bend - from.w) / (n - 1.0));
+                    most = most.min((tube.bend - from.w) / (n - 1.0));
+                }
             } else if lo > 0.0 || hi < 0.0 {
                 return;
             }

@@ -4,6 +4,7 @@ mod argument;
 mod decimation;
 mod decode;
 mod error;
+mod face;
 mod footprint;
 mod frame;
 mod goals;
@@ -46,6 +47,8 @@ pub enum Part {
     Frame,
     /// Additions against polynomials, and a clip against a per-frame file over a link
     Argument,
+    /// Recorded faces: bits a second, and how smooth they are
+    Face,
 }
 
 /// What every part works with.
@@ -81,6 +84,7 @@ impl Part {
             Self::Host => host::run(setting),
             Self::Frame => frame::run(setting),
             Self::Argument => argument::run(setting),
+            Self::Face => face::run(setting),
         }
     }
 

@@ -31,7 +31,7 @@ fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u32>>, Vec<usize
 pub fn text() -> String {
     let (mode, mode_after) = shared((0..64).map(Alphabet::Mode));
     let (number, number_in) = shared((0..CONTEXTS as u8).map(Alphabet::Number));
-    let status: Vec<Vec<u32>> = (0..3).map(|after| list(Alphabet::Status(after))).collect();
+    let status: Vec<Vec<u32>> = (0..layout::STATUSES as u8).map(|after| list(Alphabet::Status(after))).collect();
     let kinds: Vec<String> = Kind::ALL.iter().map(|kind| format!("{kind:?}")).collect();
     json::text(&[
         ("magic", json!(layout::MAGIC)),
@@ -69,6 +69,10 @@ pub fn text() -> String {
         ("first_step", json!(layout::FIRST_STEP)),
         ("step_changes", json!(layout::STEP_CHANGES)),
         ("step_bits", json!(layout::STEP_BITS)),
+        ("statuses", json!(layout::STATUSES)),
+        ("follow_bits", json!(layout::FOLLOW_BITS)),
+        ("listed", json!(layout::LISTED)),
+        ("live_link", json!(pantin::names::LIVE_LINK.split(' ').collect::<Vec<_>>())),
         ("mode_after", json!(mode_after)),
         ("mode", json!(mode)),
         ("number_in", json!(number_in)),

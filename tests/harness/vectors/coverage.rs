@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use anyhow::Result;
-use pantin::layout::{FAR, FAR_BITS, LENGTHS, START_MODE, STEP_CHANGES};
+use pantin::layout::{FAR, FAR_BITS, FOLLOW_BITS, LENGTHS, START_MODE, STATUSES, STEP_CHANGES, status};
 use pantin_tools::encode::clip::symbols;
 use pantin_tools::encode::entropy::{Alphabet, Sink};
 use pantin_tools::encode::rig;
@@ -11,12 +11,13 @@ use pantin_tools::encode::segment::mode_symbol;
 
 use super::synthetic::Made;
 
-/// Symbols by alphabet, and the counts of bits that far numbers had.
+/// Symbols by alphabet, the counts of bits that far numbers had, and the ways back to those that others follow.
 #[derive(Default)]
 struct Seen {
     symbols: BTreeSet<(Alphabet, u32)>,
     modes: BTreeSet<u8>,
     far_bits: BTreeSet<u32>,
+    backs: BTreeSet<u32>,
     /// The last symbol, which tells what the bits behind it are.
     last: Option<(Alphabet, u32)>,
 }
@@ -38,6 +39,9 @@ impl Sink for Seen {
             Some((Alphabet::Mode(_), symbol)) => {
                 let named = |mode: &u8| mode_symbol(*mode) == (symbol, Some(value));
                 self.modes.extend((0..START_MODE).filter(named));
+            }
+            Some((Alphabet::Status(_), symbol)) if symbol == u32::from(status::FOLLOWS) => {
+                self.backs.insert(value);
             }
             _ => {}
         }
@@ -69,10 +73,13 @@ pub fn left_out(motions: &[Made]) -> Result<Vec<String>> {
     for bits in 0..30 {
         wants(seen.far_bits.contains(&bits), format!("a far number of {bits} bits"));
     }
-    for after in 0..3 {
-        for status in 0..3 {
+    for after in 0..STATUSES as u8 {
+        for status in 0..STATUSES as u32 {
             wants(seen.symbols.contains(&(Alphabet::Status(after), status)), format!("status {status} after {after}"));
         }
+    }
+    for back in 0..1 << FOLLOW_BITS {
+        wants(seen.backs.contains(&back), format!("one that follows {back} channels back"));
     }
     for (alphabet, last) in [(Alphabet::StepChange, STEP_CHANGES), (Alphabet::Position, 32), (Alphabet::Velocity, 31)] {
         for symbol in 0..=last {

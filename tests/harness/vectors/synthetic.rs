@@ -288,6 +288,34 @@ fn crowd() -> Made {
     Made { name: "channels-300", rig, coded, apart: false, index: 0 }
 }
 
+/// Channels that follow another, every way back that there is, some of them one that follows itself, among channels of every status;
+/// of angles, of positions and of scalars with names by a list.
+fn followers() -> Made {
+    let mut rig = figure(&[vec![&EULER as &[Kind]; 12], vec![&PLACE as &[Kind]; 4]].concat(), 60);
+    let names = pantin::names::LIVE_LINK.split(' ').filter(|&name| name != "TongueOut");
+    rig.scalars.iter_mut().zip(names).for_each(|(scalar, name)| scalar.name = name.into());
+    let mut coded = motion(30);
+    let mut noise = Noise::new(29);
+    let (mut moves, mut back) = (vec![], 0);
+    for channel in 0..rig.channels() {
+        let leader = moves.len().checked_sub(back % 32 + 1).map(|at| moves[at]);
+        let made = match (noise.below(8), leader) {
+            (0, _) => Channel { start: Start::Rest, segments: vec![] },
+            (1, _) => Channel { start: constant(noise.between(-99, 99), 44), segments: vec![] },
+            (2..6, Some(leader)) => {
+                back += 1;
+                Channel { start: Start::Follows { leader }, segments: vec![] }
+            }
+            _ => lively(coded.frames, moving(noise.between(-90, 90), noise.between(-9, 9), 40 + channel as u8 % 7), &mut noise),
+        };
+        if !matches!(made.start, Start::Rest | Start::Constant { .. }) {
+            moves.push(channel);
+        }
+        coded.channels.push(made);
+    }
+    Made { name: "followers", rig, coded, apart: false, index: 13 }
+}
+
 /// All of them.
 pub fn all() -> Vec<Made> {
     let mut apart = simple("rig-apart", &[&PLACE, &EULER, &EULER], 0, motion(20));
@@ -305,6 +333,7 @@ pub fn all() -> Vec<Made> {
         widest_steps(),
         rests_and_choices(),
         crowd(),
+        followers(),
         apart,
         indexed,
         simple("quaternion", &[&QUATERNION, &QUATERNION], 0, motion(40)),

@@ -47,6 +47,7 @@ fn walk(bytes: &[u8]) -> bool {
     }
     assert_eq!((rig.joints().count(), channels), (rig.joint_count(), rig.joint_channels()));
     assert_eq!(rig.scalars().count() + channels, rig.channels());
+    rig.scalars().for_each(|scalar| assert!(scalar.name().len() <= bytes.len().max(20)));
     assert_eq!(rig.id(), Rig::new_checked(bytes).map_or(0, |again| again.id()));
     true
 }

@@ -1,0 +1,132 @@
+//! Recorded faces at 2 % of full scale: bits a second with and without the channels' names, how smooth they are played, and what a plain
+//! coder of first differences takes at best for the same error.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use harness::paths;
+use pantin_tools::expand::expand;
+use pantin_tools::import::{self, Options};
+use pantin_tools::motion::Motion;
+
+use super::{Goal, Setting, table};
+use crate::cmd::steps::say;
+
+/// Greatest error, in percent of full scale.
+const PERCENT: f64 = 2.0;
+/// Name, file, and kbit a second at most with the names.
+const RECORDINGS: [(&str, &str, f64); 2] =
+    [("angry", "face_neurosync_angry_arkit.csv", 0.75), ("fearful", "face_neurosync_fearful_arkit.csv", 0.4)];
+/// What ours may take of the plain coder's bits.
+const OF_PLAIN: f64 = 0.7;
+/// What a second difference may be of the source's greatest.
+const BEND: f64 = 1.5;
+
+/// All that is measured of faces.
+pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
+    recordings(setting)
+}
+
+/// One recording; rates in kbit a second.
+struct Row {
+    name: &'static str,
+    most: f64,
+    bytes: [usize; 2],
+    rates: [f64; 2],
+    plain: f64,
+    bends: Bends,
+}
+
+fn recordings(setting: &Setting) -> Result<Vec<Goal>> {
+    let Some(data) = paths::data() else { return Ok(vec![]) };
+    let mut rows = vec![];
+    for (name, file, most) in RECORDINGS {
+        let path = data.join(file);
+        if path.is_file() {
+            rows.push(measure(setting, name, &path, most)?);
+        } else {
+            say(&format!("   {}: not there", path.display()));
+        }
+    }
+    print(&rows);
+    Ok(rows.iter().flat_map(goals).collect())
+}
+
+fn measure(setting: &Setting, name: &'static str, path: &Path, most: f64) -> Result<Row> {
+    let motion = import::load(path, &Options::default())?.motion;
+    let options = ["--max-scalar-error".to_owned(), PERCENT.to_string()];
+    let made = setting.tool.converted(path, &format!("face-{name}-{PERCENT}percent"), &options)?;
+    let bytes = std::fs::read(&made.clip).with_context(|| made.clip.display().to_string())?;
+    let clip = pantin::Clip::new_checked(&bytes)?;
+    let seconds = motion.frames as f64 * motion.frame_time;
+    let rate = |bits: f64| bits / seconds / 1000.0;
+    let bytes = [bytes.len(), bytes.len() - clip.rig_len()];
+    Ok(Row {
+        name,
+        most,
+        bytes,
+        rates: bytes.map(|bytes| rate(8.0 * bytes as f64)),
+        plain: rate(plain_bits(&motion)),
+        bends: Bends::of(&motion, &expand(&clip)?),
+    })
+}
+
+/// Bits of every channel's first differences, its values rounded to steps of twice the bound, under an ideal static code of its own that costs
+/// nothing to tell.
+fn plain_bits(motion: &Motion) -> f64 {
+    let channel = |(values, full_scale): (&Vec<f64>, f64)| {
+        let step = 2.0 * PERCENT / 100.0 * full_scale;
+        let rounded: Vec<i64> = values.iter().map(|value| (value / step).round() as i64).collect();
+        let mut counts = BTreeMap::<i64, f64>::new();
+        rounded.windows(2).for_each(|pair| *counts.entry(pair[1] - pair[0]).or_default() += 1.0);
+        let total: f64 = counts.values().sum();
+        counts.values().map(|count| -count * (count / total).log2()).sum::<f64>()
+    };
+    motion.values.iter().zip(motion.rig.scalars.iter().map(|scalar| scalar.full_scale)).map(channel).sum()
+}
+
+/// Greatest second differences of what is played, as parts of the source's.
+struct Bends {
+    /// Of any channel's against any channel's.
+    all: f64,
+    /// Of a channel's against its own, and that channel's name.
+    worst: (f64, String),
+}
+
+impl Bends {
+    fn of(source: &Motion, played: &Motion) -> Bends {
+        let greatest = |values: &Vec<f64>| values.windows(3).fold(0.0, |most: f64, x| most.max((x[0] + x[2] - 2.0 * x[1]).abs()));
+        let [ours, theirs] = [played, source].map(|motion| motion.values.iter().map(greatest).collect::<Vec<_>>());
+        let most = |bends: &[f64]| bends.iter().copied().fold(0.0, f64::max);
+        let parts = ours.iter().zip(&theirs).map(|(ours, theirs)| if *ours == 0.0 { 0.0 } else { ours / theirs });
+        let worst = parts.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+        Bends { all: most(&ours) / most(&theirs), worst: (worst.1, source.rig.channel_name(worst.0)) }
+    }
+}
+
+fn print(rows: &[Row]) {
+    let header =
+        ["recording", "bytes", "without rig", "kbit/s", "without rig", "plain", "0.7 of it", "bend", "worst channel", ""];
+    let line = |row: &Row| {
+        let mut line = vec![row.name.to_owned()];
+        line.extend(row.bytes.map(|bytes| bytes.to_string()));
+        line.extend(row.rates.map(|rate| format!("{rate:.3}")));
+        line.extend([row.plain, OF_PLAIN * row.plain].map(|rate| format!("{rate:.3}")));
+        line.extend([row.bends.all, row.bends.worst.0].map(|part| format!("{part:.2}")));
+        line.push(row.bends.worst.1.clone());
+        line
+    };
+    table::print(&header, &rows.iter().map(line).collect::<Vec<_>>());
+}
+
+fn goals(row: &Row) -> Vec<Goal> {
+    let of = |what: &str| format!("face {}, {PERCENT} % of full scale: {what}", row.name);
+    vec![
+        Goal::at_most(of("with its channels' names"), row.rates[0], row.most, 3, "kbit/s"),
+        Goal::at_most(of("of a plain first-difference coder's ideal entropy"), row.rates[0] / row.plain, OF_PLAIN, 2, ""),
+        Goal::told(of("motion alone"), format!("{:.3} kbit/s", row.rates[1])),
+        Goal::at_most(of("greatest second difference, of the source's"), row.bends.all, BEND, 2, ""),
+        Goal::at_most(of("the same, worst channel"), row.bends.worst.0, BEND, 2, ""),
+    ]
+}
