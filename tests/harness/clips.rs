@@ -4,8 +4,24 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use pantin::Clip;
+use pantin_face::{Binding, Model};
+use pantin_tools::face::cast::MODEL;
 
 use crate::build;
+
+/// The feature of the boards' packages that draws faces, where any of the clips drives one; else none.
+pub fn feature(clips: &[&Path]) -> Result<&'static str> {
+    let model = Model::new_checked(MODEL).map_err(|error| anyhow::anyhow!("{error}"))?;
+    for path in clips {
+        let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let clip = Clip::new_checked(&bytes).map_err(|error| anyhow::anyhow!("{}: {error}", path.display()))?;
+        if Binding::of(&clip.rig(), &model).is_face() {
+            return Ok("face");
+        }
+    }
+    Ok("")
+}
 
 /// Converts a motion with the tool's own defaults into a clip in `folder`.
 pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {

@@ -61,7 +61,7 @@ impl Strips {
         for board in boards {
             say(&format!("playing on QEMU's {}", board.name));
             let clips: Vec<&Path> = films.iter().map(|film| film.clip.as_path()).collect();
-            let firmware = Firmware::build(board.name, board.name, board.target, &clips)?;
+            let firmware = Firmware::featuring(clips::feature(&clips)?, board.name, board.name, board.target, &clips)?;
             let views = VIEWS.iter().map(|(view, _)| play(board, &firmware, *view, &films)).collect::<Result<Vec<_>>>()?;
             for (index, film) in films.iter().enumerate() {
                 let rows = VIEWS.iter().zip(&views).flat_map(|((_, name), films)| {
