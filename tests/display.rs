@@ -7,10 +7,8 @@ use std::time::{Duration, Instant};
 
 use harness::build::Firmware;
 use harness::display::Picture;
-use harness::icount::{self, FRAME_REGIONS};
 use harness::qemu::{BOARDS, LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, SX1};
-use harness::sync::Session;
-use harness::{clips, defmt_log, paths, screen, setup, simulator};
+use harness::{clips, defmt_log, equal, paths, screen, setup, simulator};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::rotation_float::FloatRotation;
 use tempfile::TempDir;
@@ -38,31 +36,7 @@ fn expected(machine: Machine, words: &[&str], keys: &[&[u8]]) -> Vec<(u32, Pictu
 
 /// Plays a picture, and one more after each of the keys' letters, and compares each with the host's.
 fn shows_what_the_host_shows(machine: Machine, keys: &[&[u8]]) {
-    shows(machine, &firmware(machine), &expected(machine, &[], keys), keys);
-}
-
-fn shows(machine: Machine, firmware: &Firmware, expected: &[(u32, Picture)], keys: &[&[u8]]) {
-    let folder = tempfile::tempdir().unwrap();
-    let counts = folder.path().join("counts");
-    let plugin = icount::plugin(machine.emulator).unwrap();
-    let launch = Launch::new(machine, firmware.elf()).counting(&plugin, &counts);
-    let mut session = Session::start(launch).unwrap();
-    for (index, (number, picture)) in expected.iter().enumerate() {
-        let letters = index.checked_sub(1).map_or(&[][..], |before| keys[before]);
-        let shown = session.next(letters).unwrap_or_else(|error| panic!("{}, picture {index}: {error:#}", machine.name));
-        let after = letters.escape_ascii();
-        assert_eq!(shown.0, *number, "{}, picture {index} after \"{after}\"", machine.name);
-        if let Some(difference) = screen::difference(&shown.1, picture) {
-            panic!("{}, picture {index} of frame {number} after \"{after}\": {difference}", machine.name);
-        }
-    }
-    let outcome = session.end().unwrap();
-    let log = defmt_log::decode(firmware.elf(), &outcome.stdout).unwrap();
-    assert_eq!(outcome.code, 0, "{log:?}");
-    let stats = icount::by_kind(&icount::read(&counts).unwrap(), FRAME_REGIONS.len()).unwrap();
-    assert!(stats.iter().all(|kind| kind.regions == expected.len()), "{stats:?}");
-    assert!(expected.iter().all(|(_, picture)| !picture.is_dark()), "every picture shows something");
-    println!("{}: {} pictures are equal", machine.name, expected.len());
+    equal::shows(machine, &firmware(machine), &expected(machine, &[], keys), keys);
 }
 
 /// No letters after a picture but those for the next clip after its last one.
@@ -102,7 +76,7 @@ fn mps2_an386_plays_all_clips_in_floating_point_as_the_host_does() {
     let firmware = Firmware::featuring("micromath", machine.name, machine.name, machine.target, &clips).unwrap();
     let keys = through_all_clips();
     let expected = simulator::play::<FloatRotation>(machine.display.unwrap(), &CLIPS.1, &[], &keys).unwrap();
-    shows(machine, &firmware, &expected, &keys);
+    equal::shows(machine, &firmware, &expected, &keys);
 }
 
 #[test]

@@ -4,8 +4,32 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use pantin::Clip;
+use pantin_face::{Binding, Model};
+use pantin_tools::face::cast::MODEL;
 
 use crate::build;
+use crate::qemu::{LM3S6965EVB, Machine};
+
+/// The feature of the boards' packages that draws faces, where any of the clips drives one; else none.
+pub fn feature(clips: &[&Path]) -> Result<&'static str> {
+    let model = Model::new_checked(MODEL).map_err(|error| anyhow::anyhow!("{error}"))?;
+    for path in clips {
+        let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let clip = Clip::new_checked(&bytes).map_err(|error| anyhow::anyhow!("{}: {error}", path.display()))?;
+        if Binding::of(&clip.rig(), &model).is_face() {
+            return Ok("face");
+        }
+    }
+    Ok("")
+}
+
+/// Features with which a board plays any clips: with faces where one drives a face, and on the reference board with room for
+/// rigs that its small memory is not meant for.
+pub fn features(machine: Machine, clips: &[&Path]) -> Result<String> {
+    let large = if machine.name == LM3S6965EVB.name { "large" } else { "" };
+    Ok([large, feature(clips)?].into_iter().filter(|feature| !feature.is_empty()).collect::<Vec<_>>().join(","))
+}
 
 /// Converts a motion with the tool's own defaults into a clip in `folder`.
 pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {

@@ -5,6 +5,7 @@ pub mod clips;
 pub mod conformance;
 pub mod defmt_log;
 pub mod display;
+pub mod equal;
 pub mod icount;
 pub mod image;
 pub mod paths;

@@ -12,6 +12,7 @@ mod log;
 mod options;
 mod run;
 mod scene;
+mod show;
 pub mod wire;
 
 pub use board::{Board, Exit};

@@ -10,6 +10,10 @@ macro_rules! info {
 
 /// A line of the log about what went wrong.
 macro_rules! error {
+    ($text:literal) => {{
+        #[cfg(feature = "defmt")]
+        defmt::error!($text);
+    }};
     ($text:literal, $error:expr) => {{
         #[cfg(feature = "defmt")]
         defmt::error!($text, $error);

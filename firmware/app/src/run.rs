@@ -6,10 +6,11 @@ use crate::keys::{Key, LETTERS};
 use crate::log::{error, info};
 use crate::options::{Mode, Options};
 use crate::scene::{Entry, Scene, Wish};
+use crate::show::{self, Show};
 use heapless::Deque;
 use pantin::{ChannelState, Clip, Player};
 use pantin_figure::rotation::Turning;
-use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::surface::Frame;
 use pantin_figure::{Canvas, Limb, Stage};
 
 /// In [`Mode::Sync`]: asks for the next picture. Any letter of [`LETTERS`] may come before it.
@@ -23,7 +24,7 @@ pub const SHOWN: u8 = b'F';
 pub(crate) type Wishes = Deque<Wish, 8>;
 
 /// Where to go when a clip is left.
-enum After {
+pub(crate) enum After {
     Clip(i32),
     Exit(Exit),
 }
@@ -70,23 +71,7 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
             return After::Exit(Exit::BadClip);
         }
     };
-    let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
-    let mut stage = Stage::<JOINTS, B::Turning>::empty();
-    if let Err(error) = set_up(&mut stage, &mut player, canvas) {
-        error!("the rig is too big: {}", error);
-        return After::Exit(Exit::BadClip);
-    }
-    stage.aim(&mut player, scene.view);
-    info!(
-        "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn",
-        entry.name,
-        clip.frames(),
-        clip.frame_time_ns(),
-        clip.rig().channels(),
-        clip.moving(),
-        stage.skeleton().bones.len()
-    );
-    play(&mut player, &mut stage, entry, mode, scene, frame, board)
+    show::on_stage::<B, JOINTS>(&mut player, entry, mode, scene, frame, board)
 }
 
 /// Most joints of a rig, fingers and the like among them.
@@ -102,10 +87,11 @@ pub(crate) fn set_up<R: Turning, const JOINTS: usize>(
     stage.set_up(player, canvas, &mut [Limb::default(); RIG])
 }
 
+/// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
 #[inline(never)]
-fn play<B: Board, const JOINTS: usize>(
+pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(
     player: &mut Player,
-    stage: &mut Stage<JOINTS, B::Turning>,
+    stage: &mut S,
     entry: &Entry,
     mode: Mode,
     scene: &mut Scene,
@@ -201,22 +187,17 @@ fn decode<B: Board>(player: &mut Player, frames: i32, board: &mut B) {
 }
 
 #[inline(never)]
-fn place<B: Board, const JOINTS: usize>(player: &Player, stage: &mut Stage<JOINTS, B::Turning>, board: &mut B) {
+fn place<B: Board, S: Show<B::Layout> + ?Sized>(player: &Player, stage: &mut S, board: &mut B) {
     board.mark_start();
     stage.place(player.pose());
     board.mark_stop();
 }
 
 #[inline(never)]
-fn draw<B: Board, const JOINTS: usize>(
-    stage: &mut Stage<JOINTS, B::Turning>,
-    scene: &Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
-) {
+fn draw<B: Board, S: Show<B::Layout> + ?Sized>(stage: &mut S, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
     board.mark_start();
     frame.clear();
-    stage.draw_on(frame, scene.look);
+    stage.draw(frame, scene.look);
     board.mark_stop();
 }
 

@@ -17,6 +17,9 @@ pub struct Entry<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scene {
     pub view: View,
+    /// The view from which a face is seen straight ahead: the usual one, but where degrees were asked for, those of the face are meant.
+    #[cfg(feature = "face")]
+    pub ahead: View,
     pub look: Look,
     pub paused: bool,
     /// Frames run backwards.
@@ -52,7 +55,16 @@ impl Scene {
     pub fn new(options: &Options) -> Scene {
         let view = View { orbit: options.orbit.unwrap_or(View::default().orbit), ..View::default() };
         let look = Look { smooth: options.smooth, ..Look::default() };
-        Scene { view, look, paused: false, backwards: false, pace: 0, hud: options.hud }
+        Scene {
+            view,
+            #[cfg(feature = "face")]
+            ahead: View { orbit: options.orbit.map_or(View::default().orbit, |_| 0), ..View::default() },
+            look,
+            paused: false,
+            backwards: false,
+            pace: 0,
+            hud: options.hud,
+        }
     }
 
     /// Takes a key.

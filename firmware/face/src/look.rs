@@ -86,6 +86,13 @@ impl<const N: usize> Look<N> {
         self.camera.rows = core::array::from_fn(|row| [x[row], y[row], z[row]]);
     }
 
+    /// Moves the picture by whole pixels: a place beside a figure.
+    pub fn shift(&mut self, x: i16, y: i16) {
+        self.before = None;
+        self.camera.centre[0] += i32::from(x) << PIXEL_BITS;
+        self.camera.centre[1] += i32::from(y) << PIXEL_BITS;
+    }
+
     /// Puts the vertices on the display.
     pub fn project(&mut self, model: &Model, morph: &Morph<N>) {
         let head = morph.turn();

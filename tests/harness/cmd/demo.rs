@@ -40,6 +40,9 @@ pub struct Demo {
     /// Largest error at any joint, as in 0.5cm
     #[arg(long)]
     max_error: Option<String>,
+    /// Largest error of channels that move no joint, a face's for one, in percent of their full scale
+    #[arg(long, value_name = "PERCENT")]
+    max_scalar_error: Option<f64>,
     /// Length of the file's unit, where the guess is wrong
     #[arg(long)]
     cm_per_unit: Option<f64>,
@@ -82,6 +85,7 @@ impl Demo {
         let mut convert = Command::new(tool);
         convert.arg("convert").arg(motion).arg("-o").arg(&path).arg("--json");
         convert.args(self.max_error.iter().flat_map(|error| ["--max-error", error]));
+        convert.args(self.max_scalar_error.iter().flat_map(|error| ["--max-scalar-error".to_owned(), error.to_string()]));
         convert.args(self.cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]));
         let converted = run(&mut convert)?;
         let info = run(Command::new(tool).args(["info", "--json"]).arg(&path))?;

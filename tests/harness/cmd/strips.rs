@@ -13,7 +13,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use harness::build::Firmware;
 use harness::display::Picture;
-use harness::qemu::{self, BOARDS, LM3S6965EVB, Launch, Machine};
+use harness::qemu::{self, BOARDS, Launch, Machine};
 use harness::sync::Session;
 use harness::{clips, paths, setup};
 use pantin::Clip;
@@ -61,8 +61,7 @@ impl Strips {
         for board in boards {
             say(&format!("playing on QEMU's {}", board.name));
             let clips: Vec<&Path> = films.iter().map(|film| film.clip.as_path()).collect();
-            let features = if board.name == LM3S6965EVB.name { "large" } else { "" };
-            let firmware = Firmware::featuring(features, board.name, board.name, board.target, &clips)?;
+            let firmware = Firmware::featuring(&clips::features(board, &clips)?, board.name, board.name, board.target, &clips)?;
             let views = VIEWS.iter().map(|(view, _)| play(board, &firmware, *view, &films)).collect::<Result<Vec<_>>>()?;
             for (index, film) in films.iter().enumerate() {
                 let rows = VIEWS.iter().zip(&views).flat_map(|((_, name), films)| {

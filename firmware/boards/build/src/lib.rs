@@ -7,7 +7,9 @@ use std::{env, fs};
 /// The repository, from a board's folder.
 const ROOT: &str = "../../..";
 /// What a board plays that was told nothing else.
-const OWN: [&str; 2] = ["motions/walk.ptn", "motions/run.ptn"];
+const OWN: [&str; 2] = ["walk", "run"];
+/// What it plays beside them where it draws faces.
+const FACES: [&str; 5] = ["greet", "face/hello", "face/joy", "face/surprise", "face/wink"];
 
 /// Puts a memory map (its path from the board's folder) where the linker looks for `memory.x`.
 pub fn memory_map(path: &str) {
@@ -24,12 +26,17 @@ pub fn link(arguments: &[&str]) {
     arguments.iter().for_each(|argument| println!("cargo::rustc-link-arg-bins={argument}"));
 }
 
-/// Writes `clips.rs`: `CLIPS`, the clips that `PANTIN_CLIP` names (their whole paths, apart as in PATH), or our walk and run.
+/// Writes `clips.rs`: `CLIPS`, the clips that `PANTIN_CLIP` names (their whole paths, apart as in PATH), or our own:
+/// walk and run, and with the feature `face` of the board's package a greeting and expressions.
 pub fn clips() {
     println!("cargo::rerun-if-env-changed=PANTIN_CLIP");
     let paths: Vec<PathBuf> = match env::var_os("PANTIN_CLIP") {
         Some(paths) => env::split_paths(&paths).collect(),
-        None => OWN.iter().map(|own| Path::new(ROOT).join(own)).collect(),
+        None => {
+            let faces: &[&str] = if env::var_os("CARGO_FEATURE_FACE").is_some() { &FACES } else { &[] };
+            let own = OWN.iter().chain(faces);
+            own.map(|own| Path::new(ROOT).join("motions").join(own).with_extension("ptn")).collect()
+        }
     };
     let mut list = String::new();
     for (index, path) in paths.iter().enumerate() {

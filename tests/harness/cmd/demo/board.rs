@@ -7,8 +7,8 @@ use anyhow::{Context, Result, ensure};
 use harness::build::Firmware;
 use harness::display::Picture;
 use harness::icount::{self, Stats};
-use harness::qemu::{LM3S6965EVB, Launch, Machine};
-use harness::{defmt_log, setup, simulator, sync};
+use harness::qemu::{Launch, Machine};
+use harness::{clips, defmt_log, setup, simulator, sync};
 use pantin_figure::rotation::Rotation;
 
 use crate::cmd::steps::{progress, say};
@@ -27,9 +27,7 @@ pub struct Play {
 /// Plays the first `frames` frames of a clip.
 pub fn play(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
     say("building the firmware");
-    // Any rig, not only those that the board's small memory is meant for.
-    let features = if machine.name == LM3S6965EVB.name { "large" } else { "" };
-    let firmware = Firmware::featuring(features, machine.name, machine.name, machine.target, &[clip])?;
+    let firmware = Firmware::featuring(&clips::features(machine, &[clip])?, machine.name, machine.name, machine.target, &[clip])?;
     let folder = tempfile::tempdir()?;
     let counts = folder.path().join("counts");
     let mut launch = Launch::new(machine, firmware.elf()).limit(LIMIT);

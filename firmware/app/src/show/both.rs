@@ -1,0 +1,90 @@
+//! A body and its face: side by side on a wide display, the face in a corner of a tall one.
+
+use super::Show;
+use super::face::Face;
+use crate::board::{Board, Exit};
+use crate::log::{error, info};
+use crate::options::Mode;
+use crate::run::{After, play, set_up};
+use crate::scene::{Entry, Scene};
+use pantin::Player;
+use pantin_figure::rotation::Turning;
+use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::{Canvas, Look, Stage, View};
+
+/// The parts of the display: the body's, and the face's square at the top right.
+struct Parts {
+    body: Canvas,
+    face: Canvas,
+    /// First column of the face's.
+    column: i16,
+}
+
+impl Parts {
+    fn of<L: Layout>() -> Parts {
+        let (width, height) = (L::WIDTH as u16, L::HEIGHT as u16);
+        let wide = 2 * width >= 3 * height;
+        let side = if wide { height } else { width / 5 * 2 };
+        let body = if wide { width - side } else { width };
+        Parts { body: Canvas { width: body, height }, face: Canvas { width: side, height: side }, column: (width - side) as i16 }
+    }
+}
+
+/// Both.
+struct Both<const N: usize, R: Turning> {
+    stage: Stage<N, R>,
+    face: Face,
+}
+
+impl<L: Layout, const N: usize, R: Turning> Show<L> for Both<N, R> {
+    fn place(&mut self, pose: &[i32]) {
+        self.stage.place(pose);
+        self.face.place(pose);
+    }
+
+    fn draw(&mut self, frame: &mut Frame<L>, look: Look) {
+        self.stage.draw_on(frame, look);
+        self.face.draw(frame);
+    }
+
+    fn aim(&mut self, player: &mut Player, view: View) {
+        self.stage.aim(player, view);
+        self.face.aim(view);
+    }
+}
+
+/// Plays them.
+#[inline(never)]
+pub(super) fn perform<B: Board, const JOINTS: usize>(
+    player: &mut Player,
+    entry: &Entry,
+    mode: Mode,
+    scene: &mut Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> After {
+    let parts = Parts::of::<B::Layout>();
+    let mut stage = Stage::<JOINTS, B::Turning>::empty();
+    if let Err(error) = set_up(&mut stage, player, parts.body) {
+        error!("the rig is too big: {}", error);
+        return After::Exit(Exit::BadClip);
+    }
+    stage.aim(player, scene.view);
+    let Some(face) = Face::of_clip(player.clip(), parts.face, [parts.column, 0], scene) else {
+        error!("the face's model is no use");
+        return After::Exit(Exit::BadClip);
+    };
+    info!(
+        "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
+        entry.name,
+        player.clip().frames(),
+        player.clip().frame_time_ns(),
+        player.clip().rig().channels(),
+        player.clip().moving(),
+        stage.skeleton().bones.len(),
+        face.names()
+    );
+    let mut both = Both { stage, face };
+    let both: &mut dyn Show<B::Layout> = &mut both;
+    play(player, both, entry, mode, scene, frame, board)
+}

@@ -1,0 +1,114 @@
+//! A face.
+
+use super::Show;
+use crate::board::{Board, Exit};
+use crate::log::{error, info};
+use crate::options::Mode;
+use crate::run::{After, play};
+use crate::scene::{Entry, Scene};
+use pantin::{Clip, Player};
+use pantin_face::{Binding, Model, Morph, VERTICES, Weights};
+use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::{Canvas, Look, View};
+
+/// Pantin's own face: docs/FACE.md.
+static MODEL: &[u8] = include_bytes!("../../../../motions/face.model");
+
+/// Whether a clip drives a face. In a function of its own: what the names are bound to is given back.
+#[inline(never)]
+pub(super) fn is_in(clip: &Clip) -> bool {
+    Model::new_checked(MODEL).is_ok_and(|model| Binding::of(&clip.rig(), &model).is_face())
+}
+
+/// A face before its camera.
+pub(super) struct Face {
+    model: Model<'static>,
+    binding: Binding,
+    morph: Morph<VERTICES>,
+    look: pantin_face::Look<VERTICES>,
+    /// From where it is seen straight ahead.
+    ahead: View,
+}
+
+impl Face {
+    /// The face that a clip drives, for a part of the display with its first column and row; none where the model is no use.
+    #[inline(always)]
+    pub(super) fn of_clip(clip: &Clip, canvas: Canvas, corner: [i16; 2], scene: &Scene) -> Option<Face> {
+        let model = Model::new_checked(MODEL).ok()?;
+        let morph = Morph::new(&model).ok()?;
+        let binding = Binding::of(&clip.rig(), &model);
+        let mut look = pantin_face::Look::new(&model, canvas, from(scene.view, scene.ahead));
+        look.shift(corner[0], corner[1]);
+        Some(Face { model, binding, morph, look, ahead: scene.ahead })
+    }
+
+    /// Number of the clip's scalars that drive it.
+    #[cfg(feature = "defmt")]
+    pub(super) fn names(&self) -> usize {
+        self.binding.names()
+    }
+
+    #[inline(never)]
+    pub(super) fn place(&mut self, pose: &[i32]) {
+        let mut weights = Weights::new();
+        self.binding.weigh(pose, &mut weights);
+        self.morph.place(&self.model, &weights);
+        self.look.project(&self.model, &self.morph);
+    }
+
+    pub(super) fn draw<L: Layout>(&mut self, frame: &mut Frame<L>) {
+        self.look.draw_on(&self.model, frame);
+    }
+
+    pub(super) fn aim(&mut self, view: View) {
+        self.look.aim(from(view, self.ahead));
+    }
+}
+
+/// A face is turned by as much as the view is away from where that is straight ahead.
+fn from(view: View, ahead: View) -> pantin_face::View {
+    pantin_face::View { orbit: view.orbit - ahead.orbit, tilt: view.tilt - ahead.tilt }
+}
+
+impl<L: Layout> Show<L> for Face {
+    fn place(&mut self, pose: &[i32]) {
+        Face::place(self, pose);
+    }
+
+    fn draw(&mut self, frame: &mut Frame<L>, _look: Look) {
+        Face::draw(self, frame);
+    }
+
+    fn aim(&mut self, _player: &mut Player, view: View) {
+        Face::aim(self, view);
+    }
+}
+
+/// Plays it on the whole display.
+#[inline(never)]
+pub(super) fn perform<B: Board>(
+    player: &mut Player,
+    entry: &Entry,
+    mode: Mode,
+    scene: &mut Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> After {
+    let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
+    let Some(mut face) = Face::of_clip(player.clip(), canvas, [0, 0], scene) else {
+        error!("the face's model is no use");
+        return After::Exit(Exit::BadClip);
+    };
+    player.rewind();
+    info!(
+        "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
+        entry.name,
+        player.clip().frames(),
+        player.clip().frame_time_ns(),
+        player.clip().rig().channels(),
+        player.clip().moving(),
+        face.names()
+    );
+    let face: &mut dyn Show<B::Layout> = &mut face;
+    play(player, face, entry, mode, scene, frame, board)
+}

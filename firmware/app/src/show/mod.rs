@@ -1,0 +1,46 @@
+//! What a clip is drawn as: a body, and with the feature `face` a face, or both.
+
+mod body;
+#[cfg(feature = "face")]
+mod both;
+#[cfg(feature = "face")]
+mod face;
+
+use crate::board::Board;
+use crate::options::Mode;
+use crate::run::After;
+use crate::scene::{Entry, Scene};
+use pantin::Player;
+use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::{Look, View};
+
+/// What is before the camera.
+pub(crate) trait Show<L: Layout> {
+    /// Puts it where a pose has it.
+    fn place(&mut self, pose: &[i32]);
+
+    /// Draws that on a clear display.
+    fn draw(&mut self, frame: &mut Frame<L>, look: Look);
+
+    /// Sets the camera up for another view; leaves the player where it is.
+    fn aim(&mut self, player: &mut Player, view: View);
+}
+
+/// Plays the clip as what it is. Each kind has its room in a function of its own: the largest counts, not their sum.
+pub(crate) fn on_stage<B: Board, const JOINTS: usize>(
+    player: &mut Player,
+    entry: &Entry,
+    mode: Mode,
+    scene: &mut Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> After {
+    #[cfg(feature = "face")]
+    if face::is_in(player.clip()) {
+        return match player.clip().rig().joint_count() {
+            0 => face::perform(player, entry, mode, scene, frame, board),
+            _ => both::perform::<B, JOINTS>(player, entry, mode, scene, frame, board),
+        };
+    }
+    body::perform::<B, JOINTS>(player, entry, mode, scene, frame, board)
+}
