@@ -1,9 +1,9 @@
 //! The outline: where the surface turns away, a line through each triangle with corners on both sides.
 
 use crate::model::Model;
-use crate::strokes::{Screen, line};
+use crate::pen::Paint;
+use crate::strokes::{Screen, between, way};
 use heapless::Vec;
-use pantin_figure::lines::Line;
 
 /// Brightness.
 const SHADE: u8 = 200;
@@ -13,9 +13,35 @@ const KEPT: usize = 96;
 /// The triangles that make the outline, as long as the head keeps its turn.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outline {
-    /// The corner that is alone on its side, and the two others.
-    triangles: Vec<[u16; 3], KEPT>,
+    triangles: Vec<Crossed, KEPT>,
     overflown: bool,
+}
+
+/// A triangle that the outline crosses.
+#[derive(Clone, Copy, Debug)]
+struct Crossed {
+    /// The corner that is alone on its side, and the two others.
+    corners: [u16; 3],
+    /// The part of the way to these, Q8, at which the surface turns away.
+    ways: [u16; 2],
+}
+
+impl Crossed {
+    fn new(corners: [u16; 3], facing: &[i8]) -> Self {
+        let of = |index: u16| i32::from(facing.get(usize::from(index)).copied().unwrap_or(0));
+        let [apex, one, other] = corners;
+        Crossed { corners, ways: [way(of(apex), of(one)) as u16, way(of(apex), of(other)) as u16] }
+    }
+
+    #[inline(always)]
+    fn draw(&self, points: &[[i16; 2]], out: &mut impl Paint) {
+        let at = |index: u16| points.get(usize::from(index)).copied().unwrap_or_default();
+        let [apex, one, other] = self.corners;
+        let apex = at(apex);
+        out.line(between(apex, at(one), self.ways[0].into()), between(apex, at(other), self.ways[1].into()));
+        // It is long, and goes all about the face: what it covers is told line by line.
+        out.end();
+    }
 }
 
 impl Outline {
@@ -24,20 +50,17 @@ impl Outline {
     pub fn of(&mut self, model: &Model, facing: &[i8]) {
         self.triangles.clear();
         self.overflown = false;
-        each_crossed(model, facing, |corners| self.overflown |= self.triangles.push(corners).is_err());
+        each_crossed(model, facing, |corners| self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err());
     }
 
     /// Draws them.
     #[inline]
-    pub fn lines(&self, model: &Model, screen: Screen, out: &mut impl FnMut(Line)) {
-        let mut draw = |[apex, one, other]: [u16; 3]| {
-            let [from, to] = screen.crossings(apex, [one, other]);
-            out(line(from, to, SHADE));
-        };
+    pub fn lines(&self, model: &Model, screen: Screen, out: &mut impl Paint) {
+        out.begin(SHADE);
         if self.overflown {
-            each_crossed(model, screen.facing, draw);
+            each_crossed(model, screen.facing, |corners| Crossed::new(corners, screen.facing).draw(screen.points, out));
         } else {
-            self.triangles.iter().for_each(|&corners| draw(corners));
+            self.triangles.iter().for_each(|crossed| crossed.draw(screen.points, out));
         }
     }
 }
