@@ -49,6 +49,8 @@ pub(crate) struct Pen<'a, S: Surface> {
     size: [i32; 2],
     shade: u8,
     ink: S::Ink,
+    /// Where the line before ended, in pixels: it need not be set again.
+    at: [i32; 2],
     least: [i32; 2],
     most: [i32; 2],
 }
@@ -56,71 +58,87 @@ pub(crate) struct Pen<'a, S: Surface> {
 impl<'a, S: Surface> Pen<'a, S> {
     pub fn on(surface: &'a mut S) -> Self {
         let size = surface.size();
-        Pen { surface, size, shade: 0, ink: S::Ink::DARK, least: size, most: [-1; 2] }
+        Pen { surface, size, shade: 0, ink: S::Ink::DARK, at: [-1; 2], least: size, most: [-1; 2] }
     }
 
-    /// Sets the pixels of a line from the end at the left, or at the top of a steep one: `along` pixels that way.
+    /// Sets a pixel and `count` further ones of a line that goes `along` by `aside` from the end at the left, or at the top of a
+    /// steep one.
     #[inline(always)]
-    fn walk<const STEEP: bool, const BACK: bool>(&mut self, [x, y]: [i32; 2], along: i32, aside: i32) {
-        let mut cursor = self.surface.cursor(x, y);
-        let (mut rest, mut left) = (-along, along);
+    fn walk<const STEEP: bool, const BACK: bool>(&mut self, mut cursor: S::Cursor, [along, aside]: [i32; 2], mut count: i32) {
+        let (ink, rise, fall) = (self.ink, 2 * aside, 2 * along);
+        let mut rest = -along;
+        let surface = &mut *self.surface;
         loop {
-            self.surface.put(cursor, self.ink);
-            if left == 0 {
-                break;
+            surface.put(cursor, ink);
+            count -= 1;
+            if count < 0 {
+                return;
             }
-            left -= 1;
-            rest += 2 * aside;
             if STEEP { S::along(&mut cursor, true) } else { S::across(&mut cursor, true) }
+            rest += rise;
             if rest >= 0 {
-                rest -= 2 * along;
+                rest -= fall;
                 if STEEP { S::across(&mut cursor, !BACK) } else { S::along(&mut cursor, !BACK) }
             }
         }
     }
 
-    /// Takes a rectangle into that of the stroke.
+    /// Takes a pixel into the rectangle of the stroke.
     #[inline(always)]
-    fn cover(&mut self, left: i32, top: i32, right: i32, bottom: i32) {
-        self.least = [self.least[0].min(left), self.least[1].min(top)];
-        self.most = [self.most[0].max(right), self.most[1].max(bottom)];
+    fn cover(&mut self, [x, y]: [i32; 2]) {
+        self.least = [self.least[0].min(x), self.least[1].min(y)];
+        self.most = [self.most[0].max(x), self.most[1].max(y)];
+    }
+
+    /// Whether a pixel lies on the surface.
+    #[inline(always)]
+    fn holds(&self, [x, y]: [i32; 2]) -> bool {
+        (x as u32) < self.size[0] as u32 && (y as u32) < self.size[1] as u32
+    }
+
+    /// A line that may leave the surface.
+    #[inline(never)]
+    fn cut(&mut self, from: [i16; 2], to: [i16; 2]) {
+        self.at = [-1; 2];
+        stroke(&line(from, to, self.shade), self.surface, false);
     }
 }
 
 impl<S: Surface> Paint for Pen<'_, S> {
     #[inline(always)]
     fn begin(&mut self, shade: u8) {
-        (self.shade, self.ink) = (shade, S::Ink::of(Tone::Middle, shade));
+        (self.shade, self.ink, self.at) = (shade, S::Ink::of(Tone::Middle, shade), [-1; 2]);
     }
 
     #[inline(never)]
     fn line(&mut self, from: [i16; 2], to: [i16; 2]) {
         let (a, b) = ([pixel(from[0]), pixel(from[1])], [pixel(to[0]), pixel(to[1])]);
-        let [columns, rows] = self.size;
-        let inside = |[x, y]: [i32; 2]| (x as u32) < columns as u32 && (y as u32) < rows as u32;
-        if !inside(a) || !inside(b) {
-            return stroke(&line(from, to, self.shade), self.surface, false);
+        let goes_on = a == self.at;
+        if !self.holds(b) || !(goes_on || self.holds(a)) {
+            return self.cut(from, to);
         }
+        if !goes_on {
+            self.cover(a);
+        }
+        self.cover(b);
+        self.at = b;
         let (x, y) = (b[0] - a[0], b[1] - a[1]);
+        if goes_on && x.abs().max(y.abs()) <= 1 {
+            let cursor = self.surface.cursor(b[0], b[1]);
+            return self.surface.put(cursor, self.ink);
+        }
         let steep = y.abs() > x.abs();
-        let (a, b, x, y) = if (if steep { y } else { x }) < 0 { (b, a, -x, -y) } else { (a, b, x, y) };
-        match (steep, (if steep { x } else { y }) < 0) {
-            (false, false) => {
-                self.cover(a[0], a[1], b[0], b[1]);
-                self.walk::<false, false>(a, x, y);
-            }
-            (false, true) => {
-                self.cover(a[0], b[1], b[0], a[1]);
-                self.walk::<false, true>(a, x, -y);
-            }
-            (true, false) => {
-                self.cover(a[0], a[1], b[0], b[1]);
-                self.walk::<true, false>(a, y, x);
-            }
-            (true, true) => {
-                self.cover(b[0], a[1], a[0], b[1]);
-                self.walk::<true, true>(a, y, -x);
-            }
+        let (along, aside) = if steep { (y, x) } else { (x, y) };
+        let turned = along < 0;
+        // What the line before has set need not be set again where it comes last.
+        let (start, along, aside, count) =
+            if turned { (b, -along, -aside, -along - i32::from(goes_on)) } else { (a, along, aside, along) };
+        let cursor = self.surface.cursor(start[0], start[1]);
+        match (steep, aside < 0) {
+            (false, false) => self.walk::<false, false>(cursor, [along, aside], count),
+            (false, true) => self.walk::<false, true>(cursor, [along, -aside], count),
+            (true, false) => self.walk::<true, false>(cursor, [along, aside], count),
+            (true, true) => self.walk::<true, true>(cursor, [along, -aside], count),
         }
     }
 
@@ -129,6 +147,44 @@ impl<S: Surface> Paint for Pen<'_, S> {
         if self.most[0] >= 0 {
             self.surface.mark(self.least, self.most);
             (self.least, self.most) = (self.size, [-1; 2]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pantin_figure::surface::{Frame, Gray4Rows};
+
+    type Small = Frame<Gray4Rows<32, 24, 96>>;
+
+    #[test]
+    fn a_pen_sets_what_strokes_do_and_marks_what_it_sets() {
+        let mut state = 7u64;
+        let mut next = |least: i16, most: i16| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            least + ((state >> 33) % (most - least + 1) as u64) as i16
+        };
+        for round in 0..20_000 {
+            let (mut by_pen, mut by_strokes) = (Small::new(), Small::new());
+            by_pen.send().count();
+            let mut pen = Pen::on(&mut by_pen);
+            // Strokes of short and long lines, most of them on the surface, some with a gap.
+            let reach = if round % 2 == 0 { 40 } else { 400 };
+            let mut at = [next(-50, 550), next(-50, 420)];
+            for shade in [80, 240] {
+                pen.begin(shade);
+                for _ in 0..4 {
+                    let to = [at[0].saturating_add(next(-reach, reach)), at[1].saturating_add(next(-reach, reach))];
+                    pen.line(at, to);
+                    stroke(&line(at, to, shade), &mut by_strokes, false);
+                    at = if next(0, 5) == 0 { [next(-50, 550), next(-50, 420)] } else { to };
+                }
+                pen.end();
+            }
+            assert_eq!(by_pen.cells(), by_strokes.cells(), "round {round}");
+            by_pen.clear();
+            assert!(by_pen.cells().iter().all(|&cell| cell == 0), "round {round}: not all is cleared");
         }
     }
 }
