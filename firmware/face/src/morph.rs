@@ -45,7 +45,10 @@ impl Weights {
     /// The two weights of each shape.
     #[inline(always)]
     pub fn pairs(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
-        self.0.iter().map(|&[stored, mirrored]| [stored.clamp(-FULL, FULL), mirrored.clamp(-FULL, FULL)])
+        self.0.iter().map(|&pair| match pair {
+            [0, 0] => pair,
+            [stored, mirrored] => [stored.clamp(-FULL, FULL), mirrored.clamp(-FULL, FULL)],
+        })
     }
 
     /// The two weights of a shape.

@@ -27,6 +27,7 @@ struct Crossed {
 }
 
 impl Crossed {
+    #[inline]
     fn new(corners: [u16; 3], facing: &[i8]) -> Self {
         let of = |index: u16| i32::from(facing.get(usize::from(index)).copied().unwrap_or(0));
         let [apex, one, other] = corners;
@@ -50,7 +51,12 @@ impl Outline {
     pub fn of(&mut self, model: &Model, facing: &[i8]) {
         self.triangles.clear();
         self.overflown = false;
-        each_crossed(model, facing, |corners| self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err());
+        each_crossed(model, facing, |corners| self.keep(corners, facing));
+    }
+
+    #[inline(never)]
+    fn keep(&mut self, corners: [u16; 3], facing: &[i8]) {
+        self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err();
     }
 
     /// Draws them.

@@ -55,10 +55,13 @@ pub(crate) struct Pen<'a, S: Surface> {
     most: [i32; 2],
 }
 
+/// No pixel of any line.
+const NOWHERE: [i32; 2] = [i32::MAX; 2];
+
 impl<'a, S: Surface> Pen<'a, S> {
     pub fn on(surface: &'a mut S) -> Self {
         let size = surface.size();
-        Pen { surface, size, shade: 0, ink: S::Ink::DARK, at: [-1; 2], least: size, most: [-1; 2] }
+        Pen { surface, size, shade: 0, ink: S::Ink::DARK, at: NOWHERE, least: size, most: [-1; 2] }
     }
 
     /// Sets a pixel and `count` further ones of a line that goes `along` by `aside` from the end at the left, or at the top of a
@@ -99,7 +102,7 @@ impl<'a, S: Surface> Pen<'a, S> {
     /// A line that may leave the surface.
     #[inline(never)]
     fn cut(&mut self, from: [i16; 2], to: [i16; 2]) {
-        self.at = [-1; 2];
+        self.at = NOWHERE;
         stroke(&line(from, to, self.shade), self.surface, false);
     }
 }
@@ -107,7 +110,7 @@ impl<'a, S: Surface> Pen<'a, S> {
 impl<S: Surface> Paint for Pen<'_, S> {
     #[inline(always)]
     fn begin(&mut self, shade: u8) {
-        (self.shade, self.ink, self.at) = (shade, S::Ink::of(Tone::Middle, shade), [-1; 2]);
+        (self.shade, self.ink, self.at) = (shade, S::Ink::of(Tone::Middle, shade), NOWHERE);
     }
 
     #[inline(never)]

@@ -141,6 +141,7 @@ impl End {
 }
 
 /// The part of the way, Q8, at which what is `from` here and `to` at its end passes 0: their signs differ, both are below 2^8.
+#[inline]
 pub(crate) fn way(from: i32, to: i32) -> i32 {
     (from.abs() * RECIPROCALS.get((from - to).unsigned_abs() as usize).map_or(0, |&x| i32::from(x))) >> 7
 }
