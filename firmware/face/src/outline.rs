@@ -74,9 +74,14 @@ impl Outline {
 #[inline(always)]
 fn each_crossed(model: &Model, facing: &[i8], mut visit: impl FnMut([u16; 3])) {
     let of = |index: u16| facing.get(usize::from(index)).copied().unwrap_or(0);
-    each_triangle(model, model.outline(), |[x, y, z]| {
+    let signs = signs(model, facing);
+    // Most triangles and their images have all corners on one side: no two signs differ.
+    let crossed = |[x, y, z]: [u16; 3]| {
+        let [a, b, c] = [signs[usize::from(x as u8)], signs[usize::from(y as u8)], signs[usize::from(z as u8)]];
+        model.wide || (a ^ b) | (a ^ c) != 0
+    };
+    each_triangle(model, model.outline(), crossed, |[x, y, z]| {
         let (a, b, c) = (of(x), of(y), of(z));
-        // Most triangles have all corners on one side: no two signs differ.
         if (a ^ b) | (a ^ c) >= 0 {
             return;
         }
@@ -90,11 +95,30 @@ fn each_crossed(model: &Model, facing: &[i8], mut visit: impl FnMut([u16; 3])) {
     });
 }
 
-/// The first `most` triangles of the stored half, and their mirror images.
+/// Which stored vertices look away (bit 0), and which of their images (bit 1); of no use for wide models.
 #[inline(always)]
-pub(crate) fn each_triangle(model: &Model, most: usize, mut visit: impl FnMut([u16; 3])) {
+fn signs(model: &Model, facing: &[i8]) -> [u8; 256] {
+    let mut signs = [0; 256];
+    let (middles, left) = facing.split_at_checked(model.middles()).unwrap_or((facing, &[]));
+    let right = left.get(model.pairs()..).unwrap_or(&[]);
+    for (sign, &own) in signs.iter_mut().zip(middles) {
+        *sign = (own as u8 >> 7) * 3;
+    }
+    let rest = signs.get_mut(model.middles()..).unwrap_or_default();
+    for ((sign, &own), &image) in rest.iter_mut().zip(left).zip(right) {
+        *sign = own as u8 >> 7 | (image as u8 >> 7) << 1;
+    }
+    signs
+}
+
+/// Of the first `most` triangles of the stored half those that are `wanted`, and their mirror images.
+#[inline(always)]
+pub(crate) fn each_triangle(model: &Model, most: usize, wanted: impl Fn([u16; 3]) -> bool, mut visit: impl FnMut([u16; 3])) {
     let (image, halves) = (model.image(), model.pairs() > 0);
     let mut both = |a: u16, b: u16, c: u16| {
+        if !wanted([a, b, c]) {
+            return;
+        }
         visit([a, b, c]);
         // A model without halves has no images; otherwise no triangle is its own: one in the middle would be flat.
         if halves {

@@ -77,7 +77,11 @@ impl<'a, S: Surface> Pen<'a, S> {
             if count < 0 {
                 return;
             }
-            if STEEP { S::along(&mut cursor, true) } else { S::across(&mut cursor, true) }
+            if STEEP {
+                S::along(&mut cursor, true)
+            } else {
+                S::across(&mut cursor, true)
+            }
             rest += rise;
             if rest >= 0 {
                 rest -= fall;

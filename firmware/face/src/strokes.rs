@@ -58,17 +58,22 @@ impl Screen<'_> {
     /// Edges between triangles that look here, each once: it runs the other way in its other triangle.
     fn mesh(&self, model: &Model, out: &mut impl Paint) {
         out.begin(MESH);
-        each_triangle(model, usize::MAX, |corners| {
-            let ends = corners.map(|index| self.end(index));
-            if ends.iter().all(|end| end.facing <= GRAZING) {
-                return;
-            }
-            for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-                if corners[from] < corners[to] {
-                    visible(ends[from], ends[to], out);
+        each_triangle(
+            model,
+            usize::MAX,
+            |_| true,
+            |corners| {
+                let ends = corners.map(|index| self.end(index));
+                if ends.iter().all(|end| end.facing <= GRAZING) {
+                    return;
                 }
-            }
-        });
+                for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+                    if corners[from] < corners[to] {
+                        visible(ends[from], ends[to], out);
+                    }
+                }
+            },
+        );
         out.end();
     }
 
