@@ -46,7 +46,6 @@ fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
 /// Sets the pixels that [`stroke`] would, and tells the surface of a whole stroke at once.
 pub(crate) struct Pen<'a, S: Surface> {
     surface: &'a mut S,
-    size: [i32; 2],
     shade: u8,
     ink: S::Ink,
     /// Where the line before ended, in pixels: it need not be set again.
@@ -60,8 +59,7 @@ const NOWHERE: [i32; 2] = [i32::MAX; 2];
 
 impl<'a, S: Surface> Pen<'a, S> {
     pub fn on(surface: &'a mut S) -> Self {
-        let size = surface.size();
-        Pen { surface, size, shade: 0, ink: S::Ink::DARK, at: NOWHERE, least: size, most: [-1; 2] }
+        Pen { surface, shade: 0, ink: S::Ink::DARK, at: NOWHERE, least: NOWHERE, most: [-1; 2] }
     }
 
     /// Sets a pixel and `count` further ones of a line that goes `along` by `aside` from the end at the left, or at the top of a
@@ -100,7 +98,8 @@ impl<'a, S: Surface> Pen<'a, S> {
     /// Whether a pixel lies on the surface.
     #[inline(always)]
     fn holds(&self, [x, y]: [i32; 2]) -> bool {
-        (x as u32) < self.size[0] as u32 && (y as u32) < self.size[1] as u32
+        let [columns, rows] = self.surface.size();
+        (x as u32) < columns as u32 && (y as u32) < rows as u32
     }
 
     /// A line that may leave the surface.
@@ -121,7 +120,7 @@ impl<S: Surface> Paint for Pen<'_, S> {
     fn line(&mut self, from: [i16; 2], to: [i16; 2]) {
         let (a, b) = ([pixel(from[0]), pixel(from[1])], [pixel(to[0]), pixel(to[1])]);
         let goes_on = a == self.at;
-        if !self.holds(b) || !(goes_on || self.holds(a)) {
+        if !self.holds(a) || !self.holds(b) {
             return self.cut(from, to);
         }
         if !goes_on {
@@ -153,7 +152,7 @@ impl<S: Surface> Paint for Pen<'_, S> {
     fn end(&mut self) {
         if self.most[0] >= 0 {
             self.surface.mark(self.least, self.most);
-            (self.least, self.most) = (self.size, [-1; 2]);
+            (self.least, self.most) = (NOWHERE, [-1; 2]);
         }
     }
 }
