@@ -123,12 +123,18 @@ impl Edge {
 }
 
 /// Height at `x` between two vertices, by halving: within 1/32 of the way from one to the other.
+#[inline(always)]
 fn between(from: [i16; 2], to: [i16; 2], x: i16) -> i16 {
-    let (mut a, mut b, x) = ([i32::from(from[0]), i32::from(from[1])], [i32::from(to[0]), i32::from(to[1])], i32::from(x));
-    let ascending = a[0] <= b[0];
-    for _ in 0..4 {
-        let middle = [(a[0] + b[0]) >> 1, (a[1] + b[1]) >> 1];
-        if (x <= middle[0]) == ascending { b = middle } else { a = middle }
-    }
-    ((a[1] + b[1]) >> 1) as i16
+    let x = i32::from(x);
+    let (from, to) = if from[0] <= to[0] { (from, to) } else { (to, from) };
+    let (from, to) = ([i32::from(from[0]), i32::from(from[1])], [i32::from(to[0]), i32::from(to[1])]);
+    let [[_, a], [_, b]] = halved(halved(halved(halved([from, to], x), x), x), x);
+    ((a + b) >> 1) as i16
+}
+
+/// The half in which `x` lies.
+#[inline(always)]
+fn halved([from, to]: [[i32; 2]; 2], x: i32) -> [[i32; 2]; 2] {
+    let middle = [(from[0] + to[0]) >> 1, (from[1] + to[1]) >> 1];
+    if x <= middle[0] { [from, middle] } else { [middle, to] }
 }

@@ -62,6 +62,9 @@ impl Binding {
         weights.clear();
         for drive in &self.drives {
             let raw = pose.get(usize::from(drive.channel)).map_or(0, |raw| raw >> 16);
+            if raw == 0 {
+                continue;
+            }
             // 2^15 times 2^7. What is below nothing in the end is nothing: two opposites may share a channel.
             let value = shifted(raw * i32::from(drive.mantissa), drive.shift);
             weights.add(usize::from(drive.shape), drive.sides, value);
@@ -70,6 +73,7 @@ impl Binding {
 }
 
 /// Within two whole weights.
+#[inline(always)]
 fn shifted(value: i32, shift: i8) -> i32 {
     let value = match shift {
         ..-30 => 0,

@@ -20,6 +20,7 @@ pub mod look;
 pub mod model;
 pub mod morph;
 mod outline;
+mod pen;
 mod seen;
 pub mod shape;
 mod strokes;

@@ -4,11 +4,11 @@ use crate::bytes::Bytes;
 use crate::model::Model;
 use crate::morph::{Morph, Place, coordinates};
 use crate::outline::Outline;
+use crate::pen::{Each, Paint, Pen};
 use crate::seen::{self, Seen};
 use crate::strokes::{self, Screen};
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
-use pantin_figure::draw::stroke;
 use pantin_figure::lines::Line;
 use pantin_figure::rotation::{Rotation, Vector};
 use pantin_figure::surface::Surface;
@@ -114,13 +114,18 @@ impl<const N: usize> Look<N> {
     /// Draws the face on a clear surface.
     #[inline(never)]
     pub fn draw_on<S: Surface>(&self, model: &Model, surface: &mut S) {
-        self.lines(model, |line| stroke(&line, surface, false));
+        self.paint(model, &mut Pen::on(surface));
     }
 
     /// Gives the lines of the face, the brighter ones after the darker ones.
-    pub fn lines(&self, model: &Model, mut out: impl FnMut(Line)) {
+    pub fn lines(&self, model: &Model, out: impl FnMut(Line)) {
+        self.paint(model, &mut Each::new(out));
+    }
+
+    #[inline(always)]
+    fn paint(&self, model: &Model, out: &mut impl Paint) {
         let screen = Screen { points: &self.points, facing: &self.facing, outline: &self.outline };
-        strokes::draw(model, screen, self.detail, &mut out);
+        strokes::draw(model, screen, self.detail, out);
     }
 }
 

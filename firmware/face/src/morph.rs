@@ -31,19 +31,24 @@ impl Weights {
     }
 
     /// Adds to a shape's weights.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, shape: usize, sides: [bool; 2], weight: i32) {
         let Some(pair) = self.0.get_mut(shape) else { return };
-        for (total, driven) in pair.iter_mut().zip(sides) {
-            if driven {
-                *total = total.saturating_add(weight);
-            }
+        if sides[0] {
+            pair[0] = pair[0].saturating_add(weight);
+        }
+        if sides[1] {
+            pair[1] = pair[1].saturating_add(weight);
         }
     }
 
     /// The two weights of each shape.
+    #[inline(always)]
     pub fn pairs(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
-        self.0.iter().map(|pair| pair.map(|weight| weight.clamp(-FULL, FULL)))
+        self.0.iter().map(|&pair| match pair {
+            [0, 0] => pair,
+            [stored, mirrored] => [stored.clamp(-FULL, FULL), mirrored.clamp(-FULL, FULL)],
+        })
     }
 
     /// The two weights of a shape.
@@ -107,7 +112,7 @@ fn apply(model: &Model, weights: &Weights, places: &mut [Place]) -> ([i32; 3], P
         if pair == [0; 2] && shape.kind != Kind::Head {
             continue;
         }
-        let pair = if shape.kind == Kind::Whole { pair.map(|weight| weight.max(0)) } else { pair };
+        let pair = if shape.kind == Kind::Whole { [pair[0].max(0), pair[1].max(0)] } else { pair };
         if shape.kind == Kind::Head {
             for turn in shape.turns() {
                 pivot = turn.centre;

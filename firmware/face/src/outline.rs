@@ -1,9 +1,9 @@
 //! The outline: where the surface turns away, a line through each triangle with corners on both sides.
 
 use crate::model::Model;
-use crate::strokes::{Screen, line};
+use crate::pen::Paint;
+use crate::strokes::{Screen, between, way};
 use heapless::Vec;
-use pantin_figure::lines::Line;
 
 /// Brightness.
 const SHADE: u8 = 200;
@@ -13,9 +13,36 @@ const KEPT: usize = 96;
 /// The triangles that make the outline, as long as the head keeps its turn.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outline {
-    /// The corner that is alone on its side, and the two others.
-    triangles: Vec<[u16; 3], KEPT>,
+    triangles: Vec<Crossed, KEPT>,
     overflown: bool,
+}
+
+/// A triangle that the outline crosses.
+#[derive(Clone, Copy, Debug)]
+struct Crossed {
+    /// The corner that is alone on its side, and the two others.
+    corners: [u16; 3],
+    /// The part of the way to these, Q8, at which the surface turns away.
+    ways: [u16; 2],
+}
+
+impl Crossed {
+    #[inline]
+    fn new(corners: [u16; 3], facing: &[i8]) -> Self {
+        let of = |index: u16| i32::from(facing.get(usize::from(index)).copied().unwrap_or(0));
+        let [apex, one, other] = corners;
+        Crossed { corners, ways: [way(of(apex), of(one)) as u16, way(of(apex), of(other)) as u16] }
+    }
+
+    #[inline(always)]
+    fn draw(&self, points: &[[i16; 2]], out: &mut impl Paint) {
+        let at = |index: u16| points.get(usize::from(index)).copied().unwrap_or_default();
+        let [apex, one, other] = self.corners;
+        let apex = at(apex);
+        out.line(between(apex, at(one), self.ways[0].into()), between(apex, at(other), self.ways[1].into()));
+        // It is long, and goes all about the face: what it covers is told line by line.
+        out.end();
+    }
 }
 
 impl Outline {
@@ -24,20 +51,22 @@ impl Outline {
     pub fn of(&mut self, model: &Model, facing: &[i8]) {
         self.triangles.clear();
         self.overflown = false;
-        each_crossed(model, facing, |corners| self.overflown |= self.triangles.push(corners).is_err());
+        each_crossed(model, facing, |corners| self.keep(corners, facing));
+    }
+
+    #[inline(never)]
+    fn keep(&mut self, corners: [u16; 3], facing: &[i8]) {
+        self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err();
     }
 
     /// Draws them.
     #[inline]
-    pub fn lines(&self, model: &Model, screen: Screen, out: &mut impl FnMut(Line)) {
-        let mut draw = |[apex, one, other]: [u16; 3]| {
-            let [from, to] = screen.crossings(apex, [one, other]);
-            out(line(from, to, SHADE));
-        };
+    pub fn lines(&self, model: &Model, screen: Screen, out: &mut impl Paint) {
+        out.begin(SHADE);
         if self.overflown {
-            each_crossed(model, screen.facing, draw);
+            each_crossed(model, screen.facing, |corners| Crossed::new(corners, screen.facing).draw(screen.points, out));
         } else {
-            self.triangles.iter().for_each(|&corners| draw(corners));
+            self.triangles.iter().for_each(|crossed| crossed.draw(screen.points, out));
         }
     }
 }
@@ -45,9 +74,14 @@ impl Outline {
 #[inline(always)]
 fn each_crossed(model: &Model, facing: &[i8], mut visit: impl FnMut([u16; 3])) {
     let of = |index: u16| facing.get(usize::from(index)).copied().unwrap_or(0);
-    each_triangle(model, model.outline(), |[x, y, z]| {
+    let signs = signs(model, facing);
+    // Most triangles and their images have all corners on one side: no two signs differ.
+    let crossed = |[x, y, z]: [u16; 3]| {
+        let [a, b, c] = [signs[usize::from(x as u8)], signs[usize::from(y as u8)], signs[usize::from(z as u8)]];
+        model.wide || (a ^ b) | (a ^ c) != 0
+    };
+    each_triangle(model, model.outline(), crossed, |[x, y, z]| {
         let (a, b, c) = (of(x), of(y), of(z));
-        // Most triangles have all corners on one side: no two signs differ.
         if (a ^ b) | (a ^ c) >= 0 {
             return;
         }
@@ -61,11 +95,30 @@ fn each_crossed(model: &Model, facing: &[i8], mut visit: impl FnMut([u16; 3])) {
     });
 }
 
-/// The first `most` triangles of the stored half, and their mirror images.
+/// Which stored vertices look away (bit 0), and which of their images (bit 1); of no use for wide models.
 #[inline(always)]
-pub(crate) fn each_triangle(model: &Model, most: usize, mut visit: impl FnMut([u16; 3])) {
+fn signs(model: &Model, facing: &[i8]) -> [u8; 256] {
+    let mut signs = [0; 256];
+    let (middles, left) = facing.split_at_checked(model.middles()).unwrap_or((facing, &[]));
+    let right = left.get(model.pairs()..).unwrap_or(&[]);
+    for (sign, &own) in signs.iter_mut().zip(middles) {
+        *sign = (own as u8 >> 7) * 3;
+    }
+    let rest = signs.get_mut(model.middles()..).unwrap_or_default();
+    for ((sign, &own), &image) in rest.iter_mut().zip(left).zip(right) {
+        *sign = own as u8 >> 7 | (image as u8 >> 7) << 1;
+    }
+    signs
+}
+
+/// Of the first `most` triangles of the stored half those that are `wanted`, and their mirror images.
+#[inline(always)]
+pub(crate) fn each_triangle(model: &Model, most: usize, wanted: impl Fn([u16; 3]) -> bool, mut visit: impl FnMut([u16; 3])) {
     let (image, halves) = (model.image(), model.pairs() > 0);
     let mut both = |a: u16, b: u16, c: u16| {
+        if !wanted([a, b, c]) {
+            return;
+        }
         visit([a, b, c]);
         // A model without halves has no images; otherwise no triangle is its own: one in the middle would be flat.
         if halves {

@@ -73,8 +73,9 @@ pub struct Members {
 }
 
 impl<'a> Shape<'a> {
+    #[inline(always)]
     fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, Error> {
-        let head = bytes.byte()?;
+        let [head, a, b, c, d, e, f] = bytes.array()?;
         let interpolation = match head & 3 {
             0 => Interpolation::Linear,
             1 => Interpolation::Cosine,
@@ -87,8 +88,7 @@ impl<'a> Shape<'a> {
             2 => Kind::Head,
             _ => return Err(Error::Malformed),
         };
-        let scale = bytes.short()?;
-        let (deltas, turns) = (bytes.short()?, bytes.short()?);
+        let (scale, deltas, turns) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
         Ok(Shape {
             interpolation,
             kind,
@@ -100,6 +100,7 @@ impl<'a> Shape<'a> {
     }
 
     /// Its deltas.
+    #[inline(always)]
     pub fn runs(&self) -> impl Iterator<Item = Run<'a>> {
         let (mut bytes, wide) = (Bytes(self.deltas), self.wide);
         core::iter::from_fn(move || run(&mut bytes, wide).ok())
@@ -117,6 +118,7 @@ impl<'a> Shape<'a> {
     }
 }
 
+#[inline(always)]
 fn run<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<Run<'a>, Error> {
     let first = bytes.index(wide)?;
     let count = bytes.byte()?;
@@ -180,6 +182,7 @@ impl<'a> Shapes<'a> {
 impl<'a> Iterator for Shapes<'a> {
     type Item = Shape<'a>;
 
+    #[inline(always)]
     fn next(&mut self) -> Option<Shape<'a>> {
         self.left = self.left.checked_sub(1)?;
         Shape::parse(&mut self.bytes, self.wide).ok()

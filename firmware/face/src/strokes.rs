@@ -3,8 +3,7 @@
 use crate::curve::Curve;
 use crate::model::Model;
 use crate::outline::{Outline, each_triangle};
-use pantin_figure::ink::Tone;
-use pantin_figure::lines::Line;
+use crate::pen::Paint;
 
 /// Brightness of the mesh.
 const MESH: u8 = 44;
@@ -23,7 +22,7 @@ pub(crate) struct Screen<'s> {
 
 /// All lines, the brighter ones after the darker ones.
 #[inline]
-pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl FnMut(Line)) {
+pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl Paint) {
     if detail >= MESH_DETAIL {
         screen.mesh(model, out);
     }
@@ -34,11 +33,13 @@ pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl FnM
             if mirrored && !curve.mirrored {
                 break;
             }
+            out.begin(curve.shade);
             if fine.is_empty() {
                 screen.straight(model, &curve, mirrored, out);
             } else {
                 screen.smooth(model, &curve, mirrored, fine, out);
             }
+            out.end();
         }
     }
 }
@@ -55,45 +56,45 @@ impl Screen<'_> {
     }
 
     /// Edges between triangles that look here, each once: it runs the other way in its other triangle.
-    fn mesh(&self, model: &Model, out: &mut impl FnMut(Line)) {
-        each_triangle(model, usize::MAX, |corners| {
-            let ends = corners.map(|index| self.end(index));
-            if ends.iter().all(|end| end.facing <= GRAZING) {
-                return;
-            }
-            for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-                if corners[from] < corners[to] {
-                    visible(ends[from], ends[to], MESH, out);
+    fn mesh(&self, model: &Model, out: &mut impl Paint) {
+        out.begin(MESH);
+        each_triangle(
+            model,
+            usize::MAX,
+            |_| true,
+            |corners| {
+                let ends = corners.map(|index| self.end(index));
+                if ends.iter().all(|end| end.facing <= GRAZING) {
+                    return;
                 }
-            }
-        });
-    }
-
-    /// Where the two edges at an apex turn away.
-    #[inline(never)]
-    pub fn crossings(&self, apex: u16, [one, other]: [u16; 2]) -> [[i16; 2]; 2] {
-        let apex = self.end(apex);
-        [apex.towards(self.end(one), 0), apex.towards(self.end(other), 0)]
+                for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+                    if corners[from] < corners[to] {
+                        visible(ends[from], ends[to], out);
+                    }
+                }
+            },
+        );
+        out.end();
     }
 
     /// A curve with corners at its vertices.
-    fn straight(&self, model: &Model, curve: &Curve, mirrored: bool, out: &mut impl FnMut(Line)) {
+    fn straight(&self, model: &Model, curve: &Curve, mirrored: bool, out: &mut impl Paint) {
         let image = model.image();
         let end = |index| self.end(if mirrored { image.of(index) } else { index });
         let first = end(curve.vertex(0));
         let mut from = first;
         curve.each_further(|index| {
             let to = end(index);
-            visible(from, to, curve.shade, out);
+            visible(from, to, out);
             from = to;
         });
         if curve.closed {
-            visible(from, first, curve.shade, out);
+            visible(from, first, out);
         }
     }
 
     /// A curve that bends: between two vertices it goes on as those before and after them say.
-    fn smooth(&self, model: &Model, curve: &Curve, mirrored: bool, fine: &[[i32; 4]], out: &mut impl FnMut(Line)) {
+    fn smooth(&self, model: &Model, curve: &Curve, mirrored: bool, fine: &[[i32; 4]], out: &mut impl Paint) {
         let len = curve.len();
         let at = |place: usize| {
             let place = match place {
@@ -111,10 +112,10 @@ impl Screen<'_> {
                 let mut last = from;
                 for weights in fine {
                     let next = blend(ends, weights);
-                    visible(last, next, curve.shade, out);
+                    visible(last, next, out);
                     last = next;
                 }
-                visible(last, to, curve.shade, out);
+                visible(last, to, out);
             }
             ends = [from, to, ends[3], at(segment + 3)];
         }
@@ -138,16 +139,24 @@ pub(crate) struct End {
 }
 
 impl End {
-    /// Where the way to `other`, on the other side of `level`, crosses it.
-    pub fn towards(self, other: End, level: i8) -> [i16; 2] {
-        let (from, to) = (i32::from(self.facing) - i32::from(level), i32::from(other.facing) - i32::from(level));
-        // At most 2^8 times 2^15; the way is Q8.
-        let way = (from.abs() * RECIPROCALS.get((from - to).unsigned_abs() as usize).map_or(0, |&x| i32::from(x))) >> 7;
-        core::array::from_fn(|axis| {
-            let (a, b) = (i32::from(self.at[axis]), i32::from(other.at[axis]));
-            (a + (((b - a) * way) >> 8)) as i16
-        })
+    /// Where the way to `other`, on the other side of where curves end, crosses it.
+    fn towards(self, other: End) -> [i16; 2] {
+        between(self.at, other.at, way(i32::from(self.facing) - i32::from(GRAZING), i32::from(other.facing) - i32::from(GRAZING)))
     }
+}
+
+/// The part of the way, Q8, at which what is `from` here and `to` at its end passes 0: their signs differ, both are below 2^8.
+#[inline]
+pub(crate) fn way(from: i32, to: i32) -> i32 {
+    (from.abs() * RECIPROCALS.get((from - to).unsigned_abs() as usize).map_or(0, |&x| i32::from(x))) >> 7
+}
+
+/// A place on the way from one to another, Q8.
+#[inline(always)]
+pub(crate) fn between(from: [i16; 2], to: [i16; 2], way: i32) -> [i16; 2] {
+    let (x, y) = (i32::from(from[0]), i32::from(from[1]));
+    let (across, down) = (i32::from(to[0]) - x, i32::from(to[1]) - y);
+    [(x + ((across * way) >> 8)) as i16, (y + ((down * way) >> 8)) as i16]
 }
 
 /// A vertex between the second and the third; it looks where the nearer of them does.
@@ -176,15 +185,11 @@ static RECIPROCALS: [u16; 256] = {
 
 /// The part of a line that looks here.
 #[inline(always)]
-fn visible(from: End, to: End, shade: u8, out: &mut impl FnMut(Line)) {
+fn visible(from: End, to: End, out: &mut impl Paint) {
     match (from.facing > GRAZING, to.facing > GRAZING) {
-        (true, true) => out(line(from.at, to.at, shade)),
-        (true, false) => out(line(from.at, from.towards(to, GRAZING), shade)),
-        (false, true) => out(line(to.at, to.towards(from, GRAZING), shade)),
+        (true, true) => out.line(from.at, to.at),
+        (true, false) => out.line(from.at, from.towards(to)),
+        (false, true) => out.line(to.at, to.towards(from)),
         (false, false) => {}
     }
-}
-
-pub(crate) fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
-    Line { from, to, depth: 0, shade, tone: Tone::Middle, width: 1 }
 }

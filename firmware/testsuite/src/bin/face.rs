@@ -1,4 +1,5 @@
-//! Plays a clip that drives the face, with markers around a frame's weights and vertices, their projection, and its lines.
+//! Plays a clip that drives the face, with markers around a frame's weights and vertices, their projection, its lines, and
+//! clearing and drawing a display of greys and one of dots.
 #![no_std]
 #![no_main]
 
@@ -7,6 +8,7 @@ use core::hint::black_box;
 use pantin::{ChannelState, Clip, Player};
 use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
 use pantin_figure::Canvas;
+use pantin_figure::surface::{Frame, Gray4Rows, Layout, MonoPages};
 use testsuite::{clip, markers};
 
 /// Most channels of a clip that drives a face.
@@ -15,6 +17,9 @@ const CHANNELS: usize = 80;
 const FRAMES: u32 = 240;
 
 static MODEL: &[u8] = include_bytes!("../../../../motions/face.model");
+
+type Greys = Frame<Gray4Rows<128, 64, 1024>>;
+type Dots = Frame<MonoPages<128, 64, 1024>>;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -29,11 +34,15 @@ fn main() -> ! {
     let Ok(mut morph) = Morph::<VERTICES>::new(&model) else { panic!() };
     let mut look = Look::<VERTICES>::new(&model, Canvas { width: 128, height: 64 }, View::default());
     let mut weights = Weights::new();
+    let mut greys = Greys::new();
+    let mut dots = Dots::new();
     for _ in 1..clip.frames().min(FRAMES) {
         player.step();
         place(&model, &binding, player.pose(), &mut weights, &mut morph);
         project(&model, &morph, &mut look);
         black_box(lines(&model, &look));
+        draw(&model, &look, &mut greys);
+        draw(&model, &look, &mut dots);
     }
     semihosting::process::exit(0)
 }
@@ -60,4 +69,12 @@ fn lines(model: &Model, look: &Look<VERTICES>) -> u32 {
     look.lines(model, |line| sum ^= line.from[0] as u32 ^ line.to[1] as u32);
     markers::stop();
     sum
+}
+
+#[inline(never)]
+fn draw<L: Layout>(model: &Model, look: &Look<VERTICES>, frame: &mut Frame<L>) {
+    markers::start();
+    frame.clear();
+    look.draw_on(model, frame);
+    markers::stop();
 }

@@ -1,0 +1,196 @@
+//! Strokes of a face on a surface: many short lines, of which the beginning costs more than the pixels.
+
+use pantin_figure::draw::stroke;
+use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::lines::{Line, pixel};
+use pantin_figure::surface::Surface;
+
+/// Takes lines, in strokes of one brightness.
+pub(crate) trait Paint {
+    /// A stroke begins.
+    fn begin(&mut self, shade: u8);
+    /// A line of it.
+    fn line(&mut self, from: [i16; 2], to: [i16; 2]);
+    /// The stroke ends.
+    fn end(&mut self) {}
+}
+
+/// Gives each line to a function.
+pub(crate) struct Each<F> {
+    out: F,
+    shade: u8,
+}
+
+impl<F: FnMut(Line)> Each<F> {
+    pub fn new(out: F) -> Self {
+        Each { out, shade: 0 }
+    }
+}
+
+impl<F: FnMut(Line)> Paint for Each<F> {
+    #[inline(always)]
+    fn begin(&mut self, shade: u8) {
+        self.shade = shade;
+    }
+
+    #[inline(always)]
+    fn line(&mut self, from: [i16; 2], to: [i16; 2]) {
+        (self.out)(line(from, to, self.shade));
+    }
+}
+
+fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
+    Line { from, to, depth: 0, shade, tone: Tone::Middle, width: 1 }
+}
+
+/// Sets the pixels that [`stroke`] would, and tells the surface of a whole stroke at once.
+pub(crate) struct Pen<'a, S: Surface> {
+    surface: &'a mut S,
+    shade: u8,
+    ink: S::Ink,
+    /// Where the line before ended, in pixels: it need not be set again.
+    at: [i32; 2],
+    least: [i32; 2],
+    most: [i32; 2],
+}
+
+/// No pixel of any line.
+const NOWHERE: [i32; 2] = [i32::MAX; 2];
+
+impl<'a, S: Surface> Pen<'a, S> {
+    pub fn on(surface: &'a mut S) -> Self {
+        Pen { surface, shade: 0, ink: S::Ink::DARK, at: NOWHERE, least: NOWHERE, most: [-1; 2] }
+    }
+
+    /// Sets a pixel and `count` further ones of a line that goes `along` by `aside` from the end at the left, or at the top of a
+    /// steep one.
+    #[inline(always)]
+    fn walk<const STEEP: bool, const BACK: bool>(&mut self, mut cursor: S::Cursor, [along, aside]: [i32; 2], mut count: i32) {
+        let (ink, rise, fall) = (self.ink, 2 * aside, 2 * along);
+        let mut rest = -along;
+        let surface = &mut *self.surface;
+        loop {
+            surface.put(cursor, ink);
+            count -= 1;
+            if count < 0 {
+                return;
+            }
+            if STEEP {
+                S::along(&mut cursor, true)
+            } else {
+                S::across(&mut cursor, true)
+            }
+            rest += rise;
+            if rest >= 0 {
+                rest -= fall;
+                if STEEP { S::across(&mut cursor, !BACK) } else { S::along(&mut cursor, !BACK) }
+            }
+        }
+    }
+
+    /// Takes a pixel into the rectangle of the stroke.
+    #[inline(always)]
+    fn cover(&mut self, [x, y]: [i32; 2]) {
+        self.least = [self.least[0].min(x), self.least[1].min(y)];
+        self.most = [self.most[0].max(x), self.most[1].max(y)];
+    }
+
+    /// Whether a pixel lies on the surface.
+    #[inline(always)]
+    fn holds(&self, [x, y]: [i32; 2]) -> bool {
+        let [columns, rows] = self.surface.size();
+        (x as u32) < columns as u32 && (y as u32) < rows as u32
+    }
+
+    /// A line that may leave the surface.
+    #[inline(never)]
+    fn cut(&mut self, from: [i16; 2], to: [i16; 2]) {
+        self.at = NOWHERE;
+        stroke(&line(from, to, self.shade), self.surface, false);
+    }
+}
+
+impl<S: Surface> Paint for Pen<'_, S> {
+    #[inline(always)]
+    fn begin(&mut self, shade: u8) {
+        (self.shade, self.ink, self.at) = (shade, S::Ink::of(Tone::Middle, shade), NOWHERE);
+    }
+
+    #[inline(never)]
+    fn line(&mut self, from: [i16; 2], to: [i16; 2]) {
+        let (a, b) = ([pixel(from[0]), pixel(from[1])], [pixel(to[0]), pixel(to[1])]);
+        let goes_on = a == self.at;
+        if !self.holds(a) || !self.holds(b) {
+            return self.cut(from, to);
+        }
+        if !goes_on {
+            self.cover(a);
+        }
+        self.cover(b);
+        self.at = b;
+        let (x, y) = (b[0] - a[0], b[1] - a[1]);
+        if goes_on && x.abs().max(y.abs()) <= 1 {
+            let cursor = self.surface.cursor(b[0], b[1]);
+            return self.surface.put(cursor, self.ink);
+        }
+        let steep = y.abs() > x.abs();
+        let (along, aside) = if steep { (y, x) } else { (x, y) };
+        let turned = along < 0;
+        // What the line before has set need not be set again where it comes last.
+        let (start, along, aside, count) =
+            if turned { (b, -along, -aside, -along - i32::from(goes_on)) } else { (a, along, aside, along) };
+        let cursor = self.surface.cursor(start[0], start[1]);
+        match (steep, aside < 0) {
+            (false, false) => self.walk::<false, false>(cursor, [along, aside], count),
+            (false, true) => self.walk::<false, true>(cursor, [along, -aside], count),
+            (true, false) => self.walk::<true, false>(cursor, [along, aside], count),
+            (true, true) => self.walk::<true, true>(cursor, [along, -aside], count),
+        }
+    }
+
+    #[inline(always)]
+    fn end(&mut self) {
+        if self.most[0] >= 0 {
+            self.surface.mark(self.least, self.most);
+            (self.least, self.most) = (NOWHERE, [-1; 2]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pantin_figure::surface::{Frame, Gray4Rows};
+
+    type Small = Frame<Gray4Rows<32, 24, 96>>;
+
+    #[test]
+    fn a_pen_sets_what_strokes_do_and_marks_what_it_sets() {
+        let mut state = 7u64;
+        let mut next = |least: i16, most: i16| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            least + ((state >> 33) % (most - least + 1) as u64) as i16
+        };
+        for round in 0..20_000 {
+            let (mut by_pen, mut by_strokes) = (Small::new(), Small::new());
+            by_pen.send().count();
+            let mut pen = Pen::on(&mut by_pen);
+            // Strokes of short and long lines, most of them on the surface, some with a gap.
+            let reach = if round % 2 == 0 { 40 } else { 400 };
+            let mut at = [next(-50, 550), next(-50, 420)];
+            for shade in [80, 240] {
+                pen.begin(shade);
+                for _ in 0..4 {
+                    let to = [at[0].saturating_add(next(-reach, reach)), at[1].saturating_add(next(-reach, reach))];
+                    pen.line(at, to);
+                    stroke(&line(at, to, shade), &mut by_strokes, false);
+                    at = if next(0, 5) == 0 { [next(-50, 550), next(-50, 420)] } else { to };
+                }
+                pen.end();
+            }
+            assert_eq!(by_pen.cells(), by_strokes.cells(), "round {round}");
+            by_pen.clear();
+            assert!(by_pen.cells().iter().all(|&cell| cell == 0), "round {round}: not all is cleared");
+        }
+    }
+}
