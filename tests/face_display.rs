@@ -21,7 +21,7 @@ static PARTS: LazyLock<(TempDir, Vec<Part>)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let own = |name: &str, pictures| Part { clip: paths::root().join("motions").join(name), pictures };
     let mut parts = vec![own("face/hello.ptn", 60), own("greet.ptn", 60), own("face/wink.ptn", 20)];
-    let recorded = paths::data().map(|data| data.join("face_neurosync_angry.csv")).filter(|path| path.exists());
+    let recorded = paths::data().map(|data| data.join("face_neurosync_angry_arkit.csv")).filter(|path| path.exists());
     match recorded {
         Some(motion) => parts.push(Part { clip: clips::convert(&motion, folder.path()).unwrap(), pictures: 50 }),
         None => println!("skipped: no recorded face in $PANTIN_DATA"),

@@ -1,7 +1,7 @@
 //! A body and its face: side by side on a wide display, the face in a corner of a tall one.
 
 use super::Show;
-use super::face::Face;
+use super::face::{self, Face};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::options::Mode;
@@ -31,12 +31,12 @@ impl Parts {
 }
 
 /// Both.
-struct Both<const N: usize, R: Turning> {
-    stage: Stage<N, R>,
-    face: Face,
+struct Both<'a, const N: usize, R: Turning> {
+    stage: &'a mut Stage<N, R>,
+    face: Face<'a>,
 }
 
-impl<L: Layout, const N: usize, R: Turning> Show<L> for Both<N, R> {
+impl<L: Layout, const N: usize, R: Turning> Show<L> for Both<'_, N, R> {
     fn place(&mut self, pose: &[i32]) {
         self.stage.place(pose);
         self.face.place(pose);
@@ -70,21 +70,36 @@ pub(super) fn perform<B: Board, const JOINTS: usize>(
         return After::Exit(Exit::BadClip);
     }
     stage.aim(player, scene.view);
-    let Some(face) = Face::of_clip(player.clip(), parts.face, [parts.column, 0], scene) else {
-        error!("the face's model is no use");
-        return After::Exit(Exit::BadClip);
-    };
-    info!(
-        "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
-        entry.name,
-        player.clip().frames(),
-        player.clip().frame_time_ns(),
-        player.clip().rig().channels(),
-        player.clip().moving(),
-        stage.skeleton().bones.len(),
-        face.names()
-    );
-    let mut both = Both { stage, face };
-    let both: &mut dyn Show<B::Layout> = &mut both;
-    play(player, both, entry, mode, scene, frame, board)
+    beside(player, &mut stage, entry, mode, scene, frame, board)
+}
+
+/// Makes room for the face once the body is set up, which takes room of its own.
+#[inline(never)]
+fn beside<B: Board, const JOINTS: usize>(
+    player: &mut Player,
+    stage: &mut Stage<JOINTS, B::Turning>,
+    entry: &Entry,
+    mode: Mode,
+    scene: &mut Scene,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> After {
+    let clip = *player.clip();
+    let parts = Parts::of::<B::Layout>();
+    let now = *scene;
+    let after = face::with(&clip, parts.face, parts.column, &now, |face| {
+        info!(
+            "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
+            entry.name,
+            clip.frames(),
+            clip.frame_time_ns(),
+            clip.rig().channels(),
+            clip.moving(),
+            stage.skeleton().bones.len(),
+            face.names()
+        );
+        let both: &mut dyn Show<B::Layout> = &mut Both { stage, face };
+        play(player, both, entry, mode, scene, frame, board)
+    });
+    after.unwrap_or_else(face::no_model)
 }

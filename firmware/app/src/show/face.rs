@@ -21,27 +21,29 @@ pub(super) fn is_in(clip: &Clip) -> bool {
 }
 
 /// A face before its camera.
-pub(super) struct Face {
-    model: Model<'static>,
-    binding: Binding,
-    morph: Morph<VERTICES>,
-    look: pantin_face::Look<VERTICES>,
+pub(super) struct Face<'a> {
+    model: &'a Model<'static>,
+    binding: &'a Binding,
+    morph: &'a mut Morph<VERTICES>,
+    look: &'a mut pantin_face::Look<VERTICES>,
     /// From where it is seen straight ahead.
     ahead: View,
 }
 
-impl Face {
-    /// The face that a clip drives, for a part of the display with its first column and row; none where the model is no use.
-    #[inline(always)]
-    pub(super) fn of_clip(clip: &Clip, canvas: Canvas, corner: [i16; 2], scene: &Scene) -> Option<Face> {
-        let model = Model::new_checked(MODEL).ok()?;
-        let morph = Morph::new(&model).ok()?;
-        let binding = Binding::of(&clip.rig(), &model);
-        let mut look = pantin_face::Look::new(&model, canvas, from(scene.view, scene.ahead));
-        look.shift(corner[0], corner[1]);
-        Some(Face { model, binding, morph, look, ahead: scene.ahead })
-    }
+/// Shows the face that a clip drives on a part of the display, given with its first column; none where the model is no use. What a face
+/// needs stays where it was made, in the caller: it is too large to be handed on.
+#[inline(always)]
+pub(super) fn with<T>(clip: &Clip, canvas: Canvas, column: i16, scene: &Scene, then: impl FnOnce(Face) -> T) -> Option<T> {
+    let model = Model::new_checked(MODEL).ok()?;
+    let binding = Binding::of(&clip.rig(), &model);
+    let mut morph = Morph::new(&model);
+    let mut look = pantin_face::Look::new(&model, canvas, from(scene.view, scene.ahead));
+    look.shift(column, 0);
+    let morph = morph.as_mut().ok()?;
+    Some(then(Face { model: &model, binding: &binding, morph, look: &mut look, ahead: scene.ahead }))
+}
 
+impl Face<'_> {
     /// Number of the clip's scalars that drive it.
     #[cfg(feature = "defmt")]
     pub(super) fn names(&self) -> usize {
@@ -52,12 +54,12 @@ impl Face {
     pub(super) fn place(&mut self, pose: &[i32]) {
         let mut weights = Weights::new();
         self.binding.weigh(pose, &mut weights);
-        self.morph.place(&self.model, &weights);
-        self.look.project(&self.model, &self.morph);
+        self.morph.place(self.model, &weights);
+        self.look.project(self.model, self.morph);
     }
 
     pub(super) fn draw<L: Layout>(&mut self, frame: &mut Frame<L>) {
-        self.look.draw_on(&self.model, frame);
+        self.look.draw_on(self.model, frame);
     }
 
     pub(super) fn aim(&mut self, view: View) {
@@ -70,7 +72,7 @@ fn from(view: View, ahead: View) -> pantin_face::View {
     pantin_face::View { orbit: view.orbit - ahead.orbit, tilt: view.tilt - ahead.tilt }
 }
 
-impl<L: Layout> Show<L> for Face {
+impl<L: Layout> Show<L> for Face<'_> {
     fn place(&mut self, pose: &[i32]) {
         Face::place(self, pose);
     }
@@ -94,21 +96,28 @@ pub(super) fn perform<B: Board>(
     frame: &mut Frame<B::Layout>,
     board: &mut B,
 ) -> After {
+    let clip = *player.clip();
     let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
-    let Some(mut face) = Face::of_clip(player.clip(), canvas, [0, 0], scene) else {
-        error!("the face's model is no use");
-        return After::Exit(Exit::BadClip);
-    };
-    player.rewind();
-    info!(
-        "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
-        entry.name,
-        player.clip().frames(),
-        player.clip().frame_time_ns(),
-        player.clip().rig().channels(),
-        player.clip().moving(),
-        face.names()
-    );
-    let face: &mut dyn Show<B::Layout> = &mut face;
-    play(player, face, entry, mode, scene, frame, board)
+    let now = *scene;
+    let after = with(&clip, canvas, 0, &now, |mut face| {
+        player.rewind();
+        info!(
+            "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
+            entry.name,
+            clip.frames(),
+            clip.frame_time_ns(),
+            clip.rig().channels(),
+            clip.moving(),
+            face.names()
+        );
+        let face: &mut dyn Show<B::Layout> = &mut face;
+        play(player, face, entry, mode, scene, frame, board)
+    });
+    after.unwrap_or_else(no_model)
+}
+
+/// The model is the program's own; its bytes may have been damaged.
+pub(super) fn no_model() -> After {
+    error!("the face's model is no use");
+    After::Exit(Exit::BadClip)
 }

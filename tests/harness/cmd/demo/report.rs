@@ -20,8 +20,8 @@ pub struct Clip {
     bytes: f64,
     motion_bytes: f64,
     per_frame_bytes: f64,
-    max_error_cm: f64,
-    mean_error_cm: f64,
+    /// What the conversion's errors are called, and how great they are.
+    errors: Vec<(&'static str, String)>,
 }
 
 impl Clip {
@@ -39,10 +39,20 @@ impl Clip {
             bytes: number(&info, "file_bytes")?,
             motion_bytes: number(&info, "motion_bytes")?,
             per_frame_bytes: number(&info, "per_frame_bytes")?,
-            max_error_cm: number(&converted, "max_error_cm")?,
-            mean_error_cm: number(&converted, "mean_error_cm")?,
+            errors: errors(&converted),
         })
     }
+}
+
+/// The errors of joints, of channels that move none, or both.
+fn errors(converted: &Value) -> Vec<(&'static str, String)> {
+    let kinds = [
+        ("max_error_cm", "max error at any joint", "cm"),
+        ("mean_error_cm", "mean error", "cm"),
+        ("max_scalar_error_percent", "max error of other channels", "% of full scale"),
+    ];
+    let error = |(key, name, unit)| converted[key].as_f64().map(|value: f64| (name, format!("{value:.3} {unit}")));
+    kinds.into_iter().filter_map(error).collect()
 }
 
 /// The table.
@@ -64,10 +74,8 @@ impl fmt::Display for Report<'_> {
             ("bytes of the clip's motion", clip.motion_bytes.to_string()),
             ("bytes of the clip with its rig", clip.bytes.to_string()),
             ("saving of the motion", format!("{:.1} %", 100.0 * (1.0 - clip.motion_bytes / clip.per_frame_bytes))),
-            ("max error at any joint", format!("{:.3} cm", clip.max_error_cm)),
-            ("mean error", format!("{:.3} cm", clip.mean_error_cm)),
         ];
-        for (name, value) in rows {
+        for (name, value) in rows.iter().chain(&clip.errors) {
             writeln!(formatter, "{name:<34} {value}")?;
         }
         let Some(counts) = &self.counts else {
