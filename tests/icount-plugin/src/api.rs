@@ -42,6 +42,7 @@ unsafe extern "C" {
         flags: c_int,
         data: *mut c_void,
     );
+    fn qemu_plugin_insn_vaddr(instruction: *const Instruction) -> u64;
     fn qemu_plugin_insn_size(instruction: *const Instruction) -> usize;
     fn qemu_plugin_insn_data();
 }
@@ -59,11 +60,16 @@ impl Bytes {
     }
 }
 
+/// Bytes of a page of the smallest kind that QEMU has for ARM.
+const PAGE: u64 = 1024;
+
 /// Reads an instruction's bytes from a QEMU of the given interface version.
 ///
 /// # Safety
 /// `instruction` must be alive: from QEMU, during the translation callback.
 pub unsafe fn bytes_of(instruction: *const Instruction, interface: c_int) -> Bytes {
+    // SAFETY: the instruction is alive, as the caller promises.
+    let last = unsafe { qemu_plugin_insn_vaddr(instruction) } % PAGE == PAGE - 4;
     type Lent = unsafe extern "C" fn(*const Instruction) -> *const u8;
     type Copied = unsafe extern "C" fn(*const Instruction, *mut u8, usize) -> usize;
     let function = qemu_plugin_insn_data as unsafe extern "C" fn();
@@ -82,5 +88,7 @@ pub unsafe fn bytes_of(instruction: *const Instruction, interface: c_int) -> Byt
             std::mem::transmute::<unsafe extern "C" fn(), Copied>(function)(instruction, bytes.as_mut_ptr(), length)
         }
     };
-    Bytes { bytes, length }
+    // QEMU looks past a Thumb instruction of two bytes there, and takes what it sees for a part of it.
+    let two = last && length == 4 && matches!(bytes, [0xc9 | 0xd2, 0x46, ..]);
+    Bytes { bytes, length: if two { 2 } else { length } }
 }
