@@ -3,6 +3,7 @@
 use pantin_figure::draw::stroke;
 use pantin_figure::ink::{Ink, Tone};
 use pantin_figure::lines::{Line, pixel};
+use pantin_figure::raster::{Pace, walk};
 use pantin_figure::surface::Surface;
 
 /// Takes lines, in strokes of one brightness.
@@ -62,32 +63,6 @@ impl<'a, S: Surface> Pen<'a, S> {
         Pen { surface, shade: 0, ink: S::Ink::DARK, at: NOWHERE, least: NOWHERE, most: [-1; 2] }
     }
 
-    /// Sets a pixel and `count` further ones of a line that goes `along` by `aside` from the end at the left, or at the top of a
-    /// steep one.
-    #[inline(always)]
-    fn walk<const STEEP: bool, const BACK: bool>(&mut self, mut cursor: S::Cursor, [along, aside]: [i32; 2], mut count: i32) {
-        let (ink, rise, fall) = (self.ink, 2 * aside, 2 * along);
-        let mut rest = -along;
-        let surface = &mut *self.surface;
-        loop {
-            surface.put(cursor, ink);
-            count -= 1;
-            if count < 0 {
-                return;
-            }
-            if STEEP {
-                S::along(&mut cursor, true)
-            } else {
-                S::across(&mut cursor, true)
-            }
-            rest += rise;
-            if rest >= 0 {
-                rest -= fall;
-                if STEEP { S::across(&mut cursor, !BACK) } else { S::along(&mut cursor, !BACK) }
-            }
-        }
-    }
-
     /// Takes a pixel into the rectangle of the stroke.
     #[inline(always)]
     fn cover(&mut self, [x, y]: [i32; 2]) {
@@ -140,12 +115,8 @@ impl<S: Surface> Paint for Pen<'_, S> {
         let (start, along, aside, count) =
             if turned { (b, -along, -aside, -along - i32::from(goes_on)) } else { (a, along, aside, along) };
         let cursor = self.surface.cursor(start[0], start[1]);
-        match (steep, aside < 0) {
-            (false, false) => self.walk::<false, false>(cursor, [along, aside], count),
-            (false, true) => self.walk::<false, true>(cursor, [along, -aside], count),
-            (true, false) => self.walk::<true, false>(cursor, [along, aside], count),
-            (true, true) => self.walk::<true, true>(cursor, [along, -aside], count),
-        }
+        let pace = Pace::new(steep, aside < 0, along, aside.abs());
+        walk(self.surface, cursor, pace, count, self.ink);
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Filled discs with an outline.
 
-use crate::surface::Surface;
+use crate::surface::{Cursor, Surface};
 
 /// Draws a disc about a pixel: what lies within `radius` (at most 128) of it, its edge in `ink`, the inside in `fill`.
 #[inline(never)]
@@ -46,8 +46,11 @@ fn span<S: Surface>(surface: &mut S, columns: [i32; 2], y: i32, ink: S::Ink) {
     if from > to || !(0..height).contains(&y) {
         return;
     }
-    let cursor = surface.cursor(from, y);
-    surface.span(cursor, (to - from + 1) as usize, ink);
+    let mut cursor = surface.cursor(from, y);
+    for _ in from..=to {
+        surface.put(cursor, ink);
+        cursor.across(true);
+    }
 }
 
 #[cfg(test)]

@@ -1,28 +1,24 @@
 //! Lines a pixel wide: Bresenham's, with the end points in whole pixels.
 
 use super::clip::Steps;
-use crate::surface::Surface;
+use crate::surface::{Cursor, Surface};
 
 /// Draws a line; ends belong to it.
 #[inline(never)]
 pub fn line<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::Ink) {
     let Some(steps) = Steps::new(from, to, surface.size()) else { return };
-    let mut cursor = start(surface, &steps);
-    // Four loops without a choice inside.
-    match (steps.steep, steps.back) {
-        (false, false) => walk::<S, false, false>(surface, &steps, &mut cursor, ink),
-        (false, true) => walk::<S, false, true>(surface, &steps, &mut cursor, ink),
-        (true, false) => walk::<S, true, false>(surface, &steps, &mut cursor, ink),
-        (true, true) => walk::<S, true, true>(surface, &steps, &mut cursor, ink),
-    }
+    let [from, to] = steps.bounds();
+    surface.mark(from, to);
+    walk(surface, start(surface, &steps), steps.pace(), steps.last - steps.first, ink);
 }
 
 /// Draws every `gap`-th pixel of a line, counted from the end at the left, or at the top of a steep one.
 #[inline(never)]
 pub fn dotted<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::Ink, gap: u32) {
     let Some(steps) = Steps::new(from, to, surface.size()) else { return };
-    let mut cursor = start(surface, &steps);
-    let mut rest = steps.rest;
+    let [from, to] = steps.bounds();
+    surface.mark(from, to);
+    let (mut cursor, mut pace) = (start(surface, &steps), steps.pace());
     let mut wait = (gap - steps.first as u32 % gap) % gap;
     for _ in steps.first..=steps.last {
         if wait == 0 {
@@ -30,15 +26,9 @@ pub fn dotted<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S:
             wait = gap;
         }
         wait -= 1;
-        step::<S>(&steps, &mut cursor, &mut rest, steps.steep, steps.back);
+        let Pace { steep, back, .. } = pace;
+        pace.step(&mut cursor, steep, back);
     }
-}
-
-fn start<S: Surface>(surface: &mut S, steps: &Steps) -> S::Cursor {
-    let [from, to] = steps.bounds();
-    surface.mark(from, to);
-    let [along, across] = steps.at;
-    if steps.steep { surface.cursor(across, along) } else { surface.cursor(along, across) }
 }
 
 /// Draws a line several pixels wide, across its longer way; what would lie outside is left out.
@@ -53,18 +43,17 @@ pub fn thick<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::
         return (first..=last).for_each(|aside| line(surface, moved(from, aside), moved(to, aside), ink));
     }
     let Some(steps) = Steps::new(moved(from, first), moved(to, first), [columns, rows]) else { return };
-    let mut cursor = start(surface, &steps);
     let [least, most] = steps.bounds();
     surface.mark(least, moved(most, last - first));
-    let (mut rest, mut left) = (steps.rest, steps.last - steps.first);
+    let (mut cursor, mut pace, mut left) = (start(surface, &steps), steps.pace(), steps.last - steps.first);
     loop {
         let mut beside = cursor;
         surface.put(beside, ink);
         for _ in 1..width {
             if steep {
-                S::across(&mut beside, true)
+                beside.across(true)
             } else {
-                S::along(&mut beside, true)
+                beside.along(true)
             }
             surface.put(beside, ink);
         }
@@ -72,40 +61,95 @@ pub fn thick<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S::
             break;
         }
         left -= 1;
-        step::<S>(&steps, &mut cursor, &mut rest, steep, steps.back);
+        pace.step(&mut cursor, steep, steps.back);
+    }
+}
+
+/// The cursor of the first step.
+#[inline(always)]
+fn start<S: Surface>(surface: &S, steps: &Steps) -> S::Cursor {
+    let [along, across] = steps.at;
+    if steps.steep { surface.cursor(across, along) } else { surface.cursor(along, across) }
+}
+
+/// How a line goes on: a pixel along its longer way each step, and one aside where `rest` comes to 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// Whether the longer way is down the rows.
+    pub steep: bool,
+    /// Whether the shorter way runs against the coordinate.
+    pub back: bool,
+    /// Added to `rest` a step: twice the pixels across.
+    pub rise: i32,
+    /// Taken from it with a step aside: twice the pixels along.
+    pub fall: i32,
+    /// Negative.
+    pub rest: i32,
+}
+
+impl Pace {
+    /// Of a whole line that goes so many pixels along, and as many or fewer aside.
+    #[inline(always)]
+    pub fn new(steep: bool, back: bool, along: i32, aside: i32) -> Pace {
+        Pace { steep, back, rise: 2 * aside, fall: 2 * along, rest: -along }
+    }
+
+    #[inline(always)]
+    fn step<C: Cursor>(&mut self, cursor: &mut C, steep: bool, back: bool) {
+        self.rest += self.rise;
+        let aside = self.rest >= 0;
+        if aside {
+            self.rest -= self.fall;
+        }
+        if steep {
+            cursor.along(true);
+            if aside {
+                cursor.across(!back);
+            }
+        } else {
+            cursor.across(true);
+            if aside {
+                cursor.along(!back);
+            }
+        }
+    }
+}
+
+impl Steps {
+    /// From its first step on.
+    #[inline(always)]
+    fn pace(&self) -> Pace {
+        Pace { rest: self.rest - 2 * self.long, ..Pace::new(self.steep, self.back, self.long, self.short) }
+    }
+}
+
+/// Sets a pixel and `left` further ones of a line that stays on the surface.
+#[inline(always)]
+pub fn walk<S: Surface>(surface: &mut S, cursor: S::Cursor, pace: Pace, left: i32, ink: S::Ink) {
+    // Four loops without a choice inside.
+    match (pace.steep, pace.back) {
+        (false, false) => walk_so::<S, false, false>(surface, cursor, pace, left, ink),
+        (false, true) => walk_so::<S, false, true>(surface, cursor, pace, left, ink),
+        (true, false) => walk_so::<S, true, false>(surface, cursor, pace, left, ink),
+        (true, true) => walk_so::<S, true, true>(surface, cursor, pace, left, ink),
     }
 }
 
 #[inline(always)]
-fn walk<S: Surface, const STEEP: bool, const BACK: bool>(surface: &mut S, steps: &Steps, cursor: &mut S::Cursor, ink: S::Ink) {
-    let (mut rest, mut left) = (steps.rest, steps.last - steps.first);
+fn walk_so<S: Surface, const STEEP: bool, const BACK: bool>(
+    surface: &mut S,
+    mut cursor: S::Cursor,
+    mut pace: Pace,
+    mut left: i32,
+    ink: S::Ink,
+) {
     loop {
-        surface.put(*cursor, ink);
-        if left == 0 {
-            break;
-        }
+        surface.put(cursor, ink);
         left -= 1;
-        step::<S>(steps, cursor, &mut rest, STEEP, BACK);
-    }
-}
-
-#[inline(always)]
-fn step<S: Surface>(steps: &Steps, cursor: &mut S::Cursor, rest: &mut i32, steep: bool, back: bool) {
-    *rest += 2 * steps.short;
-    let aside = *rest >= 2 * steps.long;
-    if aside {
-        *rest -= 2 * steps.long;
-    }
-    if steep {
-        S::along(cursor, true);
-        if aside {
-            S::across(cursor, !back);
+        if left < 0 {
+            return;
         }
-    } else {
-        S::across(cursor, true);
-        if aside {
-            S::along(cursor, !back);
-        }
+        pace.step(&mut cursor, STEEP, BACK);
     }
 }
 

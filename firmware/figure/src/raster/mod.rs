@@ -8,5 +8,5 @@ mod smooth;
 
 pub use disc::disc;
 pub use dots::Dots;
-pub use line::{dotted, line, thick};
+pub use line::{Pace, dotted, line, thick, walk};
 pub use smooth::smooth;

@@ -51,17 +51,13 @@ impl Bands {
         }
     }
 
-    /// The window of a band, on a display of `height` rows, if it changed.
+    /// A window for each band that changed, from the top of a display of `height` rows.
     #[inline(always)]
-    pub fn window(&self, band: usize, height: usize) -> Option<Window> {
-        let &[from, to] = self.0.get(band).filter(|stretch| stretch[0] <= stretch[1])?;
-        Some(Window { columns: [from.into(), to.into()], rows: [band * BAND, (band * BAND + BAND).min(height) - 1] })
-    }
-
-    /// A window for each band that changed, from the top.
-    #[inline(always)]
-    pub fn windows(&self, height: usize) -> impl Iterator<Item = Window> {
-        (0..height.div_ceil(BAND)).filter_map(move |band| self.window(band, height))
+    pub fn windows(self, height: usize) -> impl Iterator<Item = Window> {
+        (0..height.div_ceil(BAND)).filter_map(move |band| {
+            let &[from, to] = self.0.get(band).filter(|stretch| stretch[0] <= stretch[1])?;
+            Some(Window { columns: [from.into(), to.into()], rows: [band * BAND, (band * BAND + BAND).min(height) - 1] })
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! A framebuffer that knows what changed since it was last sent.
 
-use super::{BAND, Bands, Surface, Window};
+use super::{Bands, Cursor, Surface, Window};
 use crate::ink::Ink;
 use core::convert::Infallible;
 use core::marker::PhantomData;
@@ -17,7 +17,7 @@ pub trait Layout {
     /// What a pixel shows.
     type Ink: Ink;
     /// A pixel's place.
-    type Cursor: Copy;
+    type Cursor: Cursor;
     /// Columns: at most 256.
     const WIDTH: usize;
     /// Rows: at most 320.
@@ -29,10 +29,6 @@ pub trait Layout {
 
     /// The place of a pixel inside.
     fn cursor(x: usize, y: usize) -> Self::Cursor;
-    /// See [`Surface::across`].
-    fn across(cursor: &mut Self::Cursor, right: bool);
-    /// See [`Surface::along`].
-    fn along(cursor: &mut Self::Cursor, down: bool);
     /// Sets a pixel. A cursor that has left the memory changes nothing.
     fn put(cells: &mut [Self::Cell], cursor: Self::Cursor, ink: Self::Ink);
     /// See [`Surface::blend`].
@@ -120,12 +116,7 @@ impl<L: Layout> Frame<L> {
         let mut changed = self.before;
         changed.join(&self.drawn, L::HEIGHT);
         self.before = Bands::CLEAN;
-        (0..L::HEIGHT.div_ceil(BAND)).filter_map(move |band| changed.window(band, L::HEIGHT))
-    }
-
-    /// Has everything sent once more.
-    pub fn forget(&mut self) {
-        self.before = Bands::all(L::WIDTH, L::HEIGHT);
+        changed.windows(L::HEIGHT)
     }
 
     /// The memory as the display takes it.
@@ -176,16 +167,6 @@ impl<L: Layout> Surface for Frame<L> {
     #[inline(always)]
     fn cursor(&self, x: i32, y: i32) -> L::Cursor {
         L::cursor(x as usize, y as usize)
-    }
-
-    #[inline(always)]
-    fn across(cursor: &mut L::Cursor, right: bool) {
-        L::across(cursor, right);
-    }
-
-    #[inline(always)]
-    fn along(cursor: &mut L::Cursor, down: bool) {
-        L::along(cursor, down);
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Any `embedded-graphics` target as a surface: the same pixels, one by one.
 
-use super::Surface;
+use super::{Cursor, Surface};
 use crate::ink::Ink;
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
@@ -27,37 +27,43 @@ impl<'a, D: DrawTarget> OnTarget<'a, D> {
     }
 }
 
+/// A point as a cursor.
+#[derive(Clone, Copy, Debug)]
+pub struct Place(Point);
+
+impl Cursor for Place {
+    fn across(&mut self, right: bool) {
+        self.0.x += if right { 1 } else { -1 };
+    }
+
+    fn along(&mut self, down: bool) {
+        self.0.y += if down { 1 } else { -1 };
+    }
+}
+
 impl<D: DrawTarget> Surface for OnTarget<'_, D>
 where
     D::Color: Ink,
 {
     type Ink = D::Color;
-    type Cursor = Point;
+    type Cursor = Place;
 
     fn size(&self) -> [i32; 2] {
         self.size
     }
 
-    fn cursor(&self, x: i32, y: i32) -> Point {
-        Point::new(x, y)
+    fn cursor(&self, x: i32, y: i32) -> Place {
+        Place(Point::new(x, y))
     }
 
-    fn across(cursor: &mut Point, right: bool) {
-        cursor.x += if right { 1 } else { -1 };
-    }
-
-    fn along(cursor: &mut Point, down: bool) {
-        cursor.y += if down { 1 } else { -1 };
-    }
-
-    fn put(&mut self, cursor: Point, ink: D::Color) {
+    fn put(&mut self, cursor: Place, ink: D::Color) {
         if self.outcome.is_ok() {
-            self.outcome = self.target.draw_iter([Pixel(cursor, ink)]);
+            self.outcome = self.target.draw_iter([Pixel(cursor.0, ink)]);
         }
     }
 
     /// A target's pixels cannot be read: those that are covered by half or more are set.
-    fn blend(&mut self, cursor: Point, ink: D::Color, cover: u32) {
+    fn blend(&mut self, cursor: Place, ink: D::Color, cover: u32) {
         if cover >= 8 {
             self.put(cursor, ink);
         }

@@ -1,6 +1,6 @@
 //! Rows from the top, 16 bits a pixel, red in the highest five: ST7789, ILI9341 (high byte first on the wire), OMAP's LCD.
 
-use super::{Cell, Layout};
+use super::{Cell, InRows, Layout};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{Rgb565, RgbColor};
 
@@ -31,8 +31,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     type Cell = Pair;
     type Cells = [Pair; PAIRS];
     type Ink = Rgb565;
-    /// The pixel's number, row by row.
-    type Cursor = usize;
+    type Cursor = InRows<WIDTH>;
     const WIDTH: usize = WIDTH;
     const HEIGHT: usize = HEIGHT;
     const CELL: [usize; 2] = [2, 1];
@@ -42,29 +41,19 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     };
 
     #[inline(always)]
-    fn cursor(x: usize, y: usize) -> usize {
-        y * WIDTH + x
+    fn cursor(x: usize, y: usize) -> InRows<WIDTH> {
+        InRows::at(x, y)
     }
 
     #[inline(always)]
-    fn across(cursor: &mut usize, right: bool) {
-        *cursor = if right { cursor.wrapping_add(1) } else { cursor.wrapping_sub(1) };
-    }
-
-    #[inline(always)]
-    fn along(cursor: &mut usize, down: bool) {
-        *cursor = if down { cursor.wrapping_add(WIDTH) } else { cursor.wrapping_sub(WIDTH) };
-    }
-
-    #[inline(always)]
-    fn put(cells: &mut [Pair], cursor: usize, ink: Rgb565) {
-        if let Some(Pair(pixels)) = cells.get_mut(cursor >> 1) {
-            pixels[cursor & 1] = RawU16::from(ink).into_inner();
+    fn put(cells: &mut [Pair], cursor: InRows<WIDTH>, ink: Rgb565) {
+        if let Some(Pair(pixels)) = cells.get_mut(cursor.0 >> 1) {
+            pixels[cursor.0 & 1] = RawU16::from(ink).into_inner();
         }
     }
 
     #[inline(always)]
-    fn blend(cells: &mut [Pair], cursor: usize, ink: Rgb565, cover: u32) {
+    fn blend(cells: &mut [Pair], cursor: InRows<WIDTH>, ink: Rgb565, cover: u32) {
         let was = Self::get(cells, cursor);
         let full = u32::from(RawU16::from(ink).into_inner());
         let scaled = ((((full & RED_BLUE) * cover) >> 4) & RED_BLUE) | ((((full & GREEN) * cover) >> 4) & GREEN);
@@ -74,7 +63,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
     }
 
     #[inline(always)]
-    fn get(cells: &[Pair], cursor: usize) -> Rgb565 {
-        RawU16::new(cells.get(cursor >> 1).map_or(0, |pair| pair.0[cursor & 1])).into()
+    fn get(cells: &[Pair], cursor: InRows<WIDTH>) -> Rgb565 {
+        RawU16::new(cells.get(cursor.0 >> 1).map_or(0, |pair| pair.0[cursor.0 & 1])).into()
     }
 }
