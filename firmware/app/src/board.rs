@@ -24,11 +24,17 @@ pub trait Board {
     /// Sends bytes over the board's line.
     fn send(&mut self, bytes: &[u8]);
 
-    /// Waits for a byte from the line.
-    fn receive(&mut self) -> u8;
-
     /// A byte from the line, if one is there.
     fn poll(&mut self) -> Option<u8>;
+
+    /// Waits for a byte from the line.
+    fn receive(&mut self) -> u8 {
+        loop {
+            if let Some(byte) = self.poll() {
+                return byte;
+            }
+        }
+    }
 
     /// A button that was pressed since the last call.
     fn button(&mut self) -> Option<Key> {

@@ -2,8 +2,9 @@
 #![no_std]
 
 pub mod clip;
-pub mod markers;
 pub mod paint;
+
+pub use markers;
 
 use core::panic::PanicInfo;
 

@@ -4,12 +4,12 @@
 #[cfg(feature = "cortex-m")]
 pub mod cortex_m;
 mod end;
-pub mod markers;
 mod pace;
 mod play;
 mod register;
 
 pub use end::{Code, exit};
+pub use markers;
 pub use pace::Pace;
 pub use play::play;
 pub use register::Register;

@@ -54,11 +54,6 @@ impl Board for Lm3s {
         }
     }
 
-    fn receive(&mut self) -> u8 {
-        while uart0::FR.read() & RECEIVE_EMPTY != 0 {}
-        uart0::DR.read() as u8
-    }
-
     fn poll(&mut self) -> Option<u8> {
         (uart0::FR.read() & RECEIVE_EMPTY == 0).then(|| uart0::DR.read() as u8)
     }

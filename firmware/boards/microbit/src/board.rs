@@ -57,24 +57,11 @@ impl Board for Microbit {
     }
 
     fn wait_ticks(&mut self) -> u32 {
-        loop {
-            match self.pace.ticks(now()) {
-                0 => {}
-                ticks => return ticks,
-            }
-        }
+        self.pace.wait(now)
     }
 
     fn send(&mut self, bytes: &[u8]) {
         send(bytes);
-    }
-
-    fn receive(&mut self) -> u8 {
-        loop {
-            if let Some(byte) = self.poll() {
-                return byte;
-            }
-        }
     }
 
     fn poll(&mut self) -> Option<u8> {

@@ -61,11 +61,6 @@ impl Board for Mps2 {
         send(bytes);
     }
 
-    fn receive(&mut self) -> u8 {
-        while uart0::STATE.read() & RECEIVE_FULL == 0 {}
-        uart0::DATA.read() as u8
-    }
-
     fn poll(&mut self) -> Option<u8> {
         (uart0::STATE.read() & RECEIVE_FULL != 0).then(|| uart0::DATA.read() as u8)
     }

@@ -49,12 +49,7 @@ impl Board for Sx1 {
     }
 
     fn wait_ticks(&mut self) -> u32 {
-        loop {
-            match self.pace.ticks(now()) {
-                0 => {}
-                ticks => return ticks,
-            }
-        }
+        self.pace.wait(now)
     }
 
     fn send(&mut self, bytes: &[u8]) {
@@ -62,11 +57,6 @@ impl Board for Sx1 {
             while uart1::LINE_STATUS.read() & TRANSMITTER_EMPTY == 0 {}
             uart1::DATA.write(byte);
         }
-    }
-
-    fn receive(&mut self) -> u8 {
-        while uart1::LINE_STATUS.read() & RECEIVED == 0 {}
-        uart1::DATA.read()
     }
 
     fn poll(&mut self) -> Option<u8> {
