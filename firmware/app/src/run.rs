@@ -40,7 +40,7 @@ pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
     let mut scene = Scene::new(&options);
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
-        match perform::<B, CHANNELS, MOVING, JOINTS>(entry, options.mode, &mut scene, frame, board) {
+        match perform::<B, CHANNELS, MOVING, JOINTS>(Scenery { entry, mode: options.mode, scene: &mut scene, frame, board }) {
             After::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             After::Exit(exit) => return exit,
         }
@@ -48,14 +48,17 @@ pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
     Exit::Done
 }
 
-fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
-    entry: &Entry,
-    mode: Mode,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
-) -> After {
-    let clip = match Clip::new_checked(entry.bytes) {
+/// What a clip is played with.
+pub(crate) struct Scenery<'a, B: Board> {
+    pub entry: &'a Entry<'a>,
+    pub mode: Mode,
+    pub scene: &'a mut Scene,
+    pub frame: &'a mut Frame<B::Layout>,
+    pub board: &'a mut B,
+}
+
+fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(scenery: Scenery<B>) -> After {
+    let clip = match Clip::new_checked(scenery.entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
             error!("the clip cannot be opened: {}", error);
@@ -71,7 +74,7 @@ fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
             return After::Exit(Exit::BadClip);
         }
     };
-    show::on_stage::<B, JOINTS>(&mut player, entry, mode, scene, frame, board)
+    show::on_stage::<B, JOINTS>(&mut player, scenery)
 }
 
 /// Most joints of a rig, fingers and the like among them.
@@ -89,15 +92,8 @@ pub(crate) fn set_up<R: Turning, const JOINTS: usize>(
 
 /// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
 #[inline(never)]
-pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(
-    player: &mut Player,
-    stage: &mut S,
-    entry: &Entry,
-    mode: Mode,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
-) -> After {
+pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, stage: &mut S, scenery: Scenery<B>) -> After {
+    let Scenery { entry, mode, scene, frame, board } = scenery;
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
     let mut wishes = Wishes::new();
     if mode != Mode::Sync {

@@ -1,12 +1,10 @@
 //! A body and its face: side by side on a wide display, the face in a corner of a tall one.
 
-use super::Show;
 use super::face::{self, Face};
+use super::{Show, display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
-use crate::options::Mode;
-use crate::run::{After, play, set_up};
-use crate::scene::{Entry, Scene};
+use crate::run::{After, Scenery, play, set_up};
 use pantin::Player;
 use pantin_figure::rotation::Turning;
 use pantin_figure::surface::{Frame, Layout};
@@ -22,7 +20,7 @@ struct Parts {
 
 impl Parts {
     fn of<L: Layout>() -> Parts {
-        let (width, height) = (L::WIDTH as u16, L::HEIGHT as u16);
+        let Canvas { width, height } = display::<L>();
         let wide = 2 * width >= 3 * height;
         let side = if wide { height } else { width / 5 * 2 };
         let body = if wide { width - side } else { width };
@@ -55,22 +53,15 @@ impl<L: Layout, const N: usize, R: Turning> Show<L> for Both<'_, N, R> {
 
 /// Plays them.
 #[inline(never)]
-pub(super) fn perform<B: Board, const JOINTS: usize>(
-    player: &mut Player,
-    entry: &Entry,
-    mode: Mode,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
-) -> After {
+pub(super) fn perform<B: Board, const JOINTS: usize>(player: &mut Player, scenery: Scenery<B>) -> After {
     let parts = Parts::of::<B::Layout>();
     let mut stage = Stage::<JOINTS, B::Turning>::empty();
     if let Err(error) = set_up(&mut stage, player, parts.body) {
         error!("the rig is too big: {}", error);
         return After::Exit(Exit::BadClip);
     }
-    stage.aim(player, scene.view);
-    beside(player, &mut stage, entry, mode, scene, frame, board)
+    stage.aim(player, scenery.scene.view);
+    beside(player, &mut stage, parts, scenery)
 }
 
 /// Makes room for the face once the body is set up, which takes room of its own.
@@ -78,19 +69,15 @@ pub(super) fn perform<B: Board, const JOINTS: usize>(
 fn beside<B: Board, const JOINTS: usize>(
     player: &mut Player,
     stage: &mut Stage<JOINTS, B::Turning>,
-    entry: &Entry,
-    mode: Mode,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
+    parts: Parts,
+    scenery: Scenery<B>,
 ) -> After {
     let clip = *player.clip();
-    let parts = Parts::of::<B::Layout>();
-    let now = *scene;
+    let now = *scenery.scene;
     let after = face::with(&clip, parts.face, parts.column, &now, |face| {
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
-            entry.name,
+            scenery.entry.name,
             clip.frames(),
             clip.frame_time_ns(),
             clip.rig().channels(),
@@ -99,7 +86,7 @@ fn beside<B: Board, const JOINTS: usize>(
             face.names()
         );
         let both: &mut dyn Show<B::Layout> = &mut Both { stage, face };
-        play(player, both, entry, mode, scene, frame, board)
+        play(player, both, scenery)
     });
     after.unwrap_or_else(face::no_model)
 }

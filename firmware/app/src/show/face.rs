@@ -1,11 +1,10 @@
 //! A face.
 
-use super::Show;
+use super::{Show, display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
-use crate::options::Mode;
-use crate::run::{After, play};
-use crate::scene::{Entry, Scene};
+use crate::run::{After, Scenery, play};
+use crate::scene::Scene;
 use pantin::{Clip, Player};
 use pantin_face::{Binding, Model, Morph, VERTICES, Weights};
 use pantin_figure::surface::{Frame, Layout};
@@ -88,22 +87,13 @@ impl<L: Layout> Show<L> for Face<'_> {
 
 /// Plays it on the whole display.
 #[inline(never)]
-pub(super) fn perform<B: Board>(
-    player: &mut Player,
-    entry: &Entry,
-    mode: Mode,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
-) -> After {
+pub(super) fn perform<B: Board>(player: &mut Player, scenery: Scenery<B>) -> After {
     let clip = *player.clip();
-    let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
-    let now = *scene;
-    let after = with(&clip, canvas, 0, &now, |mut face| {
-        player.rewind();
+    let now = *scenery.scene;
+    let after = with(&clip, display::<B::Layout>(), 0, &now, |mut face| {
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
-            entry.name,
+            scenery.entry.name,
             clip.frames(),
             clip.frame_time_ns(),
             clip.rig().channels(),
@@ -111,7 +101,7 @@ pub(super) fn perform<B: Board>(
             face.names()
         );
         let face: &mut dyn Show<B::Layout> = &mut face;
-        play(player, face, entry, mode, scene, frame, board)
+        play(player, face, scenery)
     });
     after.unwrap_or_else(no_model)
 }

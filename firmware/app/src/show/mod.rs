@@ -7,12 +7,10 @@ mod both;
 mod face;
 
 use crate::board::Board;
-use crate::options::Mode;
-use crate::run::After;
-use crate::scene::{Entry, Scene};
+use crate::run::{After, Scenery};
 use pantin::Player;
 use pantin_figure::surface::{Frame, Layout};
-use pantin_figure::{Look, View};
+use pantin_figure::{Canvas, Look, View};
 
 /// What is before the camera.
 pub(crate) trait Show<L: Layout> {
@@ -27,20 +25,18 @@ pub(crate) trait Show<L: Layout> {
 }
 
 /// Plays the clip as what it is. Each kind has its room in a function of its own: the largest counts, not their sum.
-pub(crate) fn on_stage<B: Board, const JOINTS: usize>(
-    player: &mut Player,
-    entry: &Entry,
-    mode: Mode,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
-    board: &mut B,
-) -> After {
+pub(crate) fn on_stage<B: Board, const JOINTS: usize>(player: &mut Player, scenery: Scenery<B>) -> After {
     #[cfg(feature = "face")]
     if face::is_in(player.clip()) {
         return match player.clip().rig().joint_count() {
-            0 => face::perform(player, entry, mode, scene, frame, board),
-            _ => both::perform::<B, JOINTS>(player, entry, mode, scene, frame, board),
+            0 => face::perform(player, scenery),
+            _ => both::perform::<B, JOINTS>(player, scenery),
         };
     }
-    body::perform::<B, JOINTS>(player, entry, mode, scene, frame, board)
+    body::perform::<B, JOINTS>(player, scenery)
+}
+
+/// All of a board's display.
+fn display<L: Layout>() -> Canvas {
+    Canvas { width: L::WIDTH as u16, height: L::HEIGHT as u16 }
 }
