@@ -23,14 +23,11 @@ pub struct ChannelState {
 
 impl Default for ChannelState {
     fn default() -> Self {
-        ChannelState::RESTING
+        ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, turn: 0 }
     }
 }
 
 impl ChannelState {
-    /// What fills the memory that is lent to a player.
-    pub const RESTING: ChannelState = ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, turn: 0 };
-
     /// Becomes `other`, field by field: as a whole it would drag the library's memory move into small images.
     pub(crate) fn become_as(&mut self, other: &ChannelState) {
         (self.v, self.w, self.k) = (other.v, other.w, other.k);

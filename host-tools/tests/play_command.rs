@@ -243,7 +243,7 @@ fn a_signal_restores_the_terminal_and_a_hangup_ends_it() {
 
 /// Runs in the terminal of the test below.
 #[test]
-#[ignore = "panics on purpose"]
+#[ignore = "panics on purpose: a_panic_restores_the_terminal_and_is_read runs it"]
 fn panics_while_it_plays() {
     let _terminal = Terminal::enter(Colours::All).unwrap();
     panic!("on purpose");

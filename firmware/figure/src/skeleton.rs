@@ -328,11 +328,6 @@ impl<const N: usize> Skeleton<N> {
         self.drives.as_flattened()
     }
 
-    /// The figure units of a length in the rig's or a clip's steps of 2^`exponent` source units.
-    pub fn figure_units(&self, raw: i32, exponent: i8) -> i32 {
-        shift_right(raw, self.exponent - i32::from(exponent))
-    }
-
     /// Which bones are of which side: by joints whose names are counterparts, and all that hangs on them. The first pair whose
     /// bones differ tells where the figure faces.
     fn find_sides(&mut self, rig: &Rig, limbs: &Limbs) {

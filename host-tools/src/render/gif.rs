@@ -2,36 +2,16 @@
 
 use super::animation::{Animation, Beat};
 use super::image::{Area, Image};
-use super::palette::{Palette, Rgb};
-use super::screen::{Picture, WIDTH};
+use super::palette::Rgb;
 use anyhow::Result;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
-use pantin_figure::ink::Tone;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Write;
 
-/// Display pixels are squares of this many pixels.
-const SCALE: usize = 4;
 /// GIF times are hundredths of a second, and viewers slow down what is shorter than two.
 pub const MOST_A_SECOND: f64 = 50.0;
 const TICKS: f64 = 100.0;
-
-/// How many of a clip's frames go to one picture, so that it is shown no shorter than viewers allow.
-pub fn stride(frame_time: f64) -> u32 {
-    super::animation::stride(frame_time, MOST_A_SECOND)
-}
-
-/// Writes `pictures`, `seconds` apart, as an animation that repeats for ever.
-pub fn write(out: impl Write, pictures: &[Picture], seconds: f64) -> Result<()> {
-    let palette = Palette::default();
-    let image = |picture: &Picture| {
-        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(Tone::Middle, grey * 17)).collect();
-        Image::of(WIDTH, pixels).enlarged(SCALE)
-    };
-    let mut gif = Gif::new(out, &palette.pixel_colours(), seconds);
-    pictures.iter().try_for_each(|picture| gif.push(&image(picture)))
-}
 
 /// A GIF that is being written. Its size is the first picture's.
 pub struct Gif<W: Write> {

@@ -2,15 +2,7 @@
 
 use super::image::{Image, LETTER};
 use super::palette::Palette;
-use super::screen::{HEIGHT, Picture, WIDTH};
-use anyhow::Result;
-use pantin_figure::ink::Tone;
-use std::io::Write;
 
-/// Pictures in a row.
-const COLUMNS: usize = 3;
-/// Display pixels are squares of this many pixels.
-const SCALE: usize = 2;
 /// Below a picture for its label.
 const LABEL: usize = LETTER[1] + 2;
 
@@ -52,19 +44,6 @@ pub fn arrange(layout: Layout, cells: &[(String, Image)], palette: &Palette) -> 
         sheet.write_text(left + 2, top + layout.picture[1] + 2, &letters, palette.letters());
     }
     sheet
-}
-
-/// Writes pictures of the reference display with their frame numbers as a PNG.
-pub fn write(out: impl Write, pictures: &[(u32, Picture)]) -> Result<()> {
-    let palette = Palette::default();
-    let cell = |(frame, picture): &(u32, Picture)| {
-        let pixels = picture.pixels.iter().map(|&grey| palette.pixel(Tone::Middle, grey * 17)).collect();
-        (format!("frame {frame}"), Image::of(WIDTH, pixels).enlarged(SCALE))
-    };
-    let cells: Vec<_> = pictures.iter().map(cell).collect();
-    let (columns, rows) = (cells.len().clamp(1, COLUMNS), cells.len().div_ceil(COLUMNS).max(1));
-    let layout = Layout { picture: [WIDTH * SCALE, HEIGHT * SCALE], columns, rows, gap: 6 };
-    arrange(layout, &cells, &palette).write_png(out)
 }
 
 #[cfg(test)]
