@@ -60,28 +60,34 @@ pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
                 break;
             }
             let image = |index| usize::from(if mirrored { model.mirror(index) } else { index });
-            let edge = |indices| Edge::new(each(indices, model.wide).map(image), places);
-            let (upper, lower) = (edge(aperture.upper), edge(aperture.lower));
-            for index in each(aperture.members, model.wide).map(image) {
-                let Some(place) = places.get_mut(index) else { continue };
-                let x = place[0].clamp(upper.least, upper.most.max(upper.least));
-                let mut y = i32::from(place[1]);
-                // Below all of the upper edge, or above all of the lower one, there is nothing to look up.
-                if y > i32::from(upper.lowest) {
-                    y = y.min(i32::from(upper.height(x)));
+            let (mut upper, mut lower) = (Edge::EMPTY, Edge::EMPTY);
+            each(aperture.upper, model.wide, |index| upper.add(places, image(index)));
+            each(aperture.lower, model.wide, |index| lower.add(places, image(index)));
+            let (above, below) = (upper.inner(), lower.inner());
+            each(aperture.members, model.wide, |index| {
+                let Some(place) = places.get_mut(image(index)) else { return };
+                let (x, mut y) = (i32::from(place[0]).max(upper.least).min(upper.most), i32::from(place[1]));
+                if !above.holds(x) || y > above.lowest {
+                    y = y.min(upper.height(x));
                 }
-                if y < i32::from(lower.highest) {
-                    y = y.max(i32::from(lower.height(x)) - drop);
+                if !below.holds(x) || y < below.highest {
+                    y = y.max(lower.height(x) - drop);
                 }
-                *place = [x, y as i16, place[2]];
-            }
+                *place = [x as i16, y as i16, place[2]];
+            });
         }
     }
 }
 
-fn each(indices: &[u8], wide: bool) -> impl Iterator<Item = u16> {
-    let mut bytes = Bytes(indices);
-    core::iter::from_fn(move || bytes.index(wide).ok())
+#[inline(always)]
+fn each(indices: &[u8], wide: bool, mut visit: impl FnMut(u16)) {
+    for bytes in indices.chunks_exact(1 << u32::from(wide)) {
+        match *bytes {
+            [index] => visit(u16::from(index)),
+            [low, high] => visit(u16::from_le_bytes([low, high])),
+            _ => {}
+        }
+    }
 }
 
 /// Most vertices of an edge; further ones are left out.
@@ -90,46 +96,71 @@ const EDGE: usize = 16;
 /// A row of vertices from one corner to the other.
 struct Edge {
     vertices: Vec<[i16; 2], EDGE>,
-    least: i16,
-    most: i16,
-    lowest: i16,
-    highest: i16,
+    least: i32,
+    most: i32,
 }
 
 impl Edge {
-    fn new(indices: impl Iterator<Item = usize>, places: &[Place]) -> Edge {
-        let (least, most, lowest, highest) = (i16::MAX, i16::MIN, i16::MAX, i16::MIN);
-        let mut edge = Edge { vertices: Vec::new(), least, most, lowest, highest };
-        for &[x, y, _] in indices.filter_map(|index| places.get(index)) {
-            let _ = edge.vertices.push([x, y]);
-            edge.least = edge.least.min(x);
-            edge.most = edge.most.max(x);
-            edge.lowest = edge.lowest.min(y);
-            edge.highest = edge.highest.max(y);
+    const EMPTY: Edge = Edge { vertices: Vec::new(), least: i32::MAX, most: i32::MIN };
+
+    #[inline(always)]
+    fn add(&mut self, places: &[Place], index: usize) {
+        let Some(&[x, y, _]) = places.get(index) else { return };
+        let _ = self.vertices.push([x, y]);
+        (self.least, self.most) = (self.least.min(x.into()), self.most.max(x.into()));
+    }
+
+    /// Its vertices but the corners.
+    #[inline(always)]
+    fn inner(&self) -> Inner {
+        let mut inner = Inner { least: i32::MAX, most: i32::MIN, lowest: i32::MAX, highest: i32::MIN };
+        let corners = self.vertices.len().saturating_sub(1);
+        for &[x, y] in self.vertices.get(1..corners).unwrap_or(&[]) {
+            let (x, y) = (i32::from(x), i32::from(y));
+            inner = Inner {
+                least: inner.least.min(x),
+                most: inner.most.max(x),
+                lowest: inner.lowest.min(y),
+                highest: inner.highest.max(y),
+            };
         }
-        edge
+        inner
     }
 
     /// The height of the edge at `x`, which is inside.
-    fn height(&self, x: i16) -> i16 {
+    fn height(&self, x: i32) -> i32 {
         for pair in self.vertices.windows(2) {
             let &[from, to] = pair else { continue };
-            if from[0].min(to[0]) <= x && x <= from[0].max(to[0]) {
+            if i32::from(from[0].min(to[0])) <= x && x <= i32::from(from[0].max(to[0])) {
                 return between(from, to, x);
             }
         }
-        self.vertices.last().map_or(0, |last| last[1])
+        self.vertices.last().map_or(0, |last| last[1].into())
+    }
+}
+
+/// What an edge's vertices between its corners span: a member there, and on the near side of all of them, need not look up its height.
+struct Inner {
+    least: i32,
+    most: i32,
+    lowest: i32,
+    highest: i32,
+}
+
+impl Inner {
+    #[inline(always)]
+    fn holds(&self, x: i32) -> bool {
+        self.least <= x && x <= self.most
     }
 }
 
 /// Height at `x` between two vertices, by halving: within 1/32 of the way from one to the other.
 #[inline(always)]
-fn between(from: [i16; 2], to: [i16; 2], x: i16) -> i16 {
-    let x = i32::from(x);
+fn between(from: [i16; 2], to: [i16; 2], x: i32) -> i32 {
     let (from, to) = if from[0] <= to[0] { (from, to) } else { (to, from) };
     let (from, to) = ([i32::from(from[0]), i32::from(from[1])], [i32::from(to[0]), i32::from(to[1])]);
     let [[_, a], [_, b]] = halved(halved(halved(halved([from, to], x), x), x), x);
-    ((a + b) >> 1) as i16
+    (a + b) >> 1
 }
 
 /// The half in which `x` lies.

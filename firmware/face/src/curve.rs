@@ -57,19 +57,14 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Its vertices but the first.
-    #[inline(always)]
-    pub(crate) fn each_further(&self, mut visit: impl FnMut(u16)) {
-        if self.wide {
-            self.indices.as_chunks().0.iter().skip(1).for_each(|&bytes| visit(u16::from_le_bytes(bytes)));
-        } else {
-            self.indices.iter().skip(1).for_each(|&byte| visit(u16::from(byte)));
-        }
-    }
-
     /// Its vertices.
+    #[inline(always)]
     pub fn vertices(&self) -> impl Iterator<Item = u16> + '_ {
-        (0..self.len()).map(|place| self.vertex(place))
+        self.indices.chunks_exact(1 << u32::from(self.wide)).map(|bytes| match *bytes {
+            [index] => u16::from(index),
+            [low, high] => u16::from_le_bytes([low, high]),
+            _ => 0,
+        })
     }
 }
 

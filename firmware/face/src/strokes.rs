@@ -83,11 +83,11 @@ impl Screen<'_> {
         let end = |index| self.end(if mirrored { image.of(index) } else { index });
         let first = end(curve.vertex(0));
         let mut from = first;
-        curve.each_further(|index| {
+        for index in curve.vertices().skip(1) {
             let to = end(index);
             visible(from, to, out);
             from = to;
-        });
+        }
         if curve.closed {
             visible(from, first, out);
         }

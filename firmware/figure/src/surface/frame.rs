@@ -61,7 +61,7 @@ impl Cell for u32 {
     const DARK: u32 = 0;
 
     fn wire(self) -> [u8; 4] {
-        self.to_le_bytes()
+        self.to_be_bytes()
     }
 }
 

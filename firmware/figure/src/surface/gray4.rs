@@ -1,25 +1,58 @@
 //! Rows from the top, two pixels of 16 greys a byte, the left one in the high half: SSD0323, SSD1322, SSD1327.
 
-use super::{InRows, Layout};
+use super::{Cursor, Layout};
 use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 
 /// The layout of a display of `WIDTH` x `HEIGHT`; `WORDS` is an eighth of their product.
 ///
-/// Eight pixels are a word, whose bytes go to the display with the least first: that clears four times as fast as bytes.
+/// Eight pixels are a word, the left one in its highest half byte: that clears four times as fast as bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Gray4Rows<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize>;
 
-/// Where a pixel lies in its word: the left one of a byte is its high half.
+/// A word of rows of `WIDTH` pixels, and the bits of the pixel in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Nibble<const WIDTH: usize> {
+    word: usize,
+    mask: u32,
+}
+
+/// The left and the right pixel of a word.
+const LEFT: u32 = 15 << 28;
+const RIGHT: u32 = 15;
+
+impl<const WIDTH: usize> Cursor for Nibble<WIDTH> {
+    #[inline(always)]
+    fn across(&mut self, right: bool) {
+        if right {
+            self.mask = self.mask.rotate_right(4);
+            if self.mask == LEFT {
+                self.word = self.word.wrapping_add(1);
+            }
+        } else {
+            self.mask = self.mask.rotate_left(4);
+            if self.mask == RIGHT {
+                self.word = self.word.wrapping_sub(1);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn along(&mut self, down: bool) {
+        self.word = if down { self.word.wrapping_add(WIDTH / 8) } else { self.word.wrapping_sub(WIDTH / 8) };
+    }
+}
+
+/// The same grey in all pixels of a word.
 #[inline(always)]
-fn shift(number: usize) -> u32 {
-    ((number as u32 ^ 1) & 7) * 4
+fn everywhere(ink: Gray4) -> u32 {
+    u32::from(ink.luma()) * 0x1111_1111
 }
 
 impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gray4Rows<WIDTH, HEIGHT, WORDS> {
     type Cell = u32;
     type Cells = [u32; WORDS];
     type Ink = Gray4;
-    type Cursor = InRows<WIDTH>;
+    type Cursor = Nibble<WIDTH>;
     const WIDTH: usize = WIDTH;
     const HEIGHT: usize = HEIGHT;
     const CELL: [usize; 2] = [8, 1];
@@ -29,27 +62,26 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
     };
 
     #[inline(always)]
-    fn cursor(x: usize, y: usize) -> InRows<WIDTH> {
-        InRows::at(x, y)
+    fn cursor(x: usize, y: usize) -> Nibble<WIDTH> {
+        Nibble { word: (y * WIDTH + x) / 8, mask: LEFT >> (x % 8 * 4) }
     }
 
     #[inline(always)]
-    fn put(cells: &mut [u32], cursor: InRows<WIDTH>, ink: Gray4) {
-        let Some(cell) = cells.get_mut(cursor.0 >> 3) else { return };
-        let shift = shift(cursor.0);
-        *cell = *cell & !(15 << shift) | u32::from(ink.luma()) << shift;
+    fn put(cells: &mut [u32], cursor: Nibble<WIDTH>, ink: Gray4) {
+        let Some(cell) = cells.get_mut(cursor.word) else { return };
+        *cell ^= (*cell ^ everywhere(ink)) & cursor.mask;
     }
 
     #[inline(always)]
-    fn blend(cells: &mut [u32], cursor: InRows<WIDTH>, ink: Gray4, cover: u32) {
+    fn blend(cells: &mut [u32], cursor: Nibble<WIDTH>, ink: Gray4, cover: u32) {
         let was = Self::get(cells, cursor).luma();
         let luma = ((u32::from(ink.luma()) * cover + 8) >> 4) as u8;
         Self::put(cells, cursor, Gray4::new(was.max(luma)));
     }
 
     #[inline(always)]
-    fn get(cells: &[u32], cursor: InRows<WIDTH>) -> Gray4 {
-        let cell = cells.get(cursor.0 >> 3).copied().unwrap_or(0);
-        Gray4::new((cell >> shift(cursor.0)) as u8 & 15)
+    fn get(cells: &[u32], cursor: Nibble<WIDTH>) -> Gray4 {
+        let cell = cells.get(cursor.word).copied().unwrap_or(0);
+        Gray4::new(((cell & cursor.mask) >> cursor.mask.trailing_zeros()) as u8)
     }
 }
