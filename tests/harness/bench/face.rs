@@ -1,15 +1,17 @@
 //! Recorded faces at 2 % of full scale: bits a second with and without the channels' names, how smooth they are played, and what a plain
-//! coder of first differences takes at best for the same error.
+//! coder of first differences takes at best for the same error. Then what our own clips, the model and a frame take.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use harness::paths;
+use harness::qemu::{LM3S6965EVB, MICROBIT, Machine};
 use pantin_tools::expand::expand;
 use pantin_tools::import::{self, Options};
 use pantin_tools::motion::Motion;
 
+use super::board::{self, PICTURES, played};
 use super::{Goal, Setting, table};
 use crate::cmd::steps::say;
 
@@ -25,8 +27,98 @@ const BEND: f64 = 1.5;
 
 /// All that is measured of faces.
 pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
-    recordings(setting)
+    let (mut goals, mut played) = recordings(setting)?;
+    goals.push(own(setting, &mut played)?);
+    goals.extend(frames(&played)?);
+    let memory = board::memory("face", &played[0].1)?;
+    goals.push(Goal::at_most(
+        format!("RAM beside the framebuffer, {} on Cortex-M3", played[0].0),
+        memory as f64,
+        RAM,
+        0,
+        "bytes",
+    ));
+    let model = std::fs::metadata(paths::root().join("motions/face.model")).context("motions/face.model")?.len();
+    goals.push(Goal::at_most("the face's model in flash", model as f64, MODEL, 0, "bytes"));
+    Ok(goals)
 }
+
+/// Clips, with what they are called.
+type Clips = Vec<(String, PathBuf)>;
+
+/// Most bytes of our own clips together, of RAM and of the model.
+const OWN: f64 = 2048.0;
+const RAM: f64 = 6144.0;
+const MODEL: f64 = 8192.0;
+/// Least frames and seconds of one of our own clips, and how many there are at least.
+const LEAST_FRAMES: u32 = 30;
+const LEAST_SECONDS: f64 = 1.0;
+const LEAST_CLIPS: usize = 16;
+
+/// Our own clips, at least a second each, at 30 frames a second or more.
+fn own(setting: &Setting, clips: &mut Clips) -> Result<Goal> {
+    let folder = paths::root().join("motions/face");
+    let mut sources: Vec<_> = std::fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+    sources.retain(|path| path.extension().is_some_and(|extension| extension == "keys"));
+    sources.sort();
+    ensure!(sources.len() >= LEAST_CLIPS, "{}: {} clips, not {LEAST_CLIPS}", folder.display(), sources.len());
+    let mut sum = 0;
+    let mut rows = vec![];
+    for source in &sources {
+        let name = source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let options = ["--max-scalar-error".to_owned(), PERCENT.to_string()];
+        let made = setting.tool.converted(source, &format!("face-own-{name}"), &options)?;
+        let bytes = std::fs::read(&made.clip)?;
+        let clip = pantin::Clip::new_checked(&bytes)?;
+        let seconds = f64::from(clip.frames()) * f64::from(clip.frame_time_ns()) / 1e9;
+        ensure!(clip.frames() >= LEAST_FRAMES && seconds >= LEAST_SECONDS, "{name} lasts {seconds} s");
+        rows.push(vec![name.clone(), bytes.len().to_string(), clip.frames().to_string(), format!("{seconds:.1}")]);
+        sum += bytes.len();
+        clips.push((name, made.clip));
+    }
+    table::print(&["own clip", "bytes", "frames", "seconds"], &rows);
+    Ok(Goal::at_most(format!("our {} clips together, {PERCENT} % of full scale", rows.len()), sum as f64, OWN, 0, "bytes"))
+}
+
+/// Machines, and most instructions of a frame.
+const FRAMES: [(&str, Machine, f64); 2] = [("M3, 128x64, 4 bits", LM3S6965EVB, 60e3), ("M0, 128x64, 1 bit", MICROBIT, 120e3)];
+
+/// Instructions of a frame in the whole program: weights, morph and projection, then clear and draw.
+fn frames(clips: &Clips) -> Result<Vec<Goal>> {
+    let mut goals = vec![];
+    for (machine_name, machine, most) in FRAMES {
+        say(&format!("   instructions a frame of a face, {machine_name} ({}), mean of {} pictures", machine.name, PICTURES - 1));
+        let (mut rows, mut own) = (vec![], vec![]);
+        let files: Vec<&Path> = clips.iter().map(|(_, clip)| clip.as_path()).collect();
+        for ((name, _), stats) in clips.iter().zip(played(machine, "face", &files, &[])?) {
+            let cost = stats[1].mean() + stats[2].mean();
+            rows.push(vec![
+                name.clone(),
+                format!("{:.0}", stats[1].mean()),
+                format!("{:.0}", stats[2].mean()),
+                format!("{cost:.0}"),
+            ]);
+            if name.starts_with(RECORDED) {
+                goals.push(Goal::at_most(format!("instructions a frame, {machine_name}: {name}"), cost, most, 0, ""));
+            } else {
+                own.push(cost);
+            }
+        }
+        table::print(&["clip", "morph and project", "clear and draw", "together"], &rows);
+        let worst = own.iter().copied().fold(0.0, f64::max);
+        goals.push(Goal::at_most(
+            format!("instructions a frame, {machine_name}: the dearest of our own clips"),
+            worst,
+            most,
+            0,
+            "",
+        ));
+    }
+    Ok(goals)
+}
+
+/// Begins the names of recordings.
+const RECORDED: &str = "recorded";
 
 /// One recording; rates in kbit a second.
 struct Row {
@@ -38,22 +130,25 @@ struct Row {
     bends: Bends,
 }
 
-fn recordings(setting: &Setting) -> Result<Vec<Goal>> {
-    let Some(data) = paths::data() else { return Ok(vec![]) };
-    let mut rows = vec![];
+/// What is measured of recordings, and their clips.
+fn recordings(setting: &Setting) -> Result<(Vec<Goal>, Clips)> {
+    let (mut rows, mut clips) = (vec![], vec![]);
+    let Some(data) = paths::data() else { return Ok((vec![], clips)) };
     for (name, file, most) in RECORDINGS {
         let path = data.join(file);
         if path.is_file() {
-            rows.push(measure(setting, name, &path, most)?);
+            let (row, clip) = measure(setting, name, &path, most)?;
+            rows.push(row);
+            clips.push((format!("{RECORDED} {name}"), clip));
         } else {
             say(&format!("   {}: not there", path.display()));
         }
     }
     print(&rows);
-    Ok(rows.iter().flat_map(goals).collect())
+    Ok((rows.iter().flat_map(goals).collect(), clips))
 }
 
-fn measure(setting: &Setting, name: &'static str, path: &Path, most: f64) -> Result<Row> {
+fn measure(setting: &Setting, name: &'static str, path: &Path, most: f64) -> Result<(Row, PathBuf)> {
     let motion = import::load(path, &Options::default())?.motion;
     let options = ["--max-scalar-error".to_owned(), PERCENT.to_string()];
     let made = setting.tool.converted(path, &format!("face-{name}-{PERCENT}percent"), &options)?;
@@ -62,14 +157,15 @@ fn measure(setting: &Setting, name: &'static str, path: &Path, most: f64) -> Res
     let seconds = motion.frames as f64 * motion.frame_time;
     let rate = |bits: f64| bits / seconds / 1000.0;
     let bytes = [bytes.len(), bytes.len() - clip.rig_len()];
-    Ok(Row {
+    let row = Row {
         name,
         most,
         bytes,
         rates: bytes.map(|bytes| rate(8.0 * bytes as f64)),
         plain: rate(plain_bits(&motion)),
         bends: Bends::of(&motion, &expand(&clip)?),
-    })
+    };
+    Ok((row, made.clip))
 }
 
 /// Bits of every channel's first differences, its values rounded to steps of twice the bound, under an ideal static code of its own that costs

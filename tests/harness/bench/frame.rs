@@ -3,18 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::Result;
 use harness::build::Firmware;
-use harness::icount::{self, FRAME_REGIONS, Stats};
-use harness::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, SX1};
-use harness::sync::Session;
+use harness::icount::Stats;
+use harness::qemu::{LM3S6965EVB, MICROBIT, MPS2_AN386, Machine, SX1};
 use harness::{image, paths};
 
+use super::board::{self, PICTURES, played};
 use super::{Goal, Setting, reference, table, tool};
 use crate::cmd::steps::say;
 
-/// Pictures of a run.
-const PICTURES: usize = 60;
 const BOUND_CM: f64 = 1.0;
 
 /// A column of the table.
@@ -61,30 +59,15 @@ fn clips(setting: &Setting) -> Result<[(String, PathBuf); 2]> {
     Ok([(name.clone(), whole.clip), (format!("{name} on the display's body"), body.clip)])
 }
 
-/// Plays a clip in step; the counts of each kind of region, without the first picture's.
-fn played(machine: Machine, features: &str, clip: &Path, words: &[String]) -> Result<Vec<Stats>> {
-    let firmware = Firmware::featuring(features, machine.name, machine.name, machine.target, &[clip])?;
-    let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
-    let counts = folder.path().join("counts");
-    let mut launch = Launch::new(machine, firmware.elf()).counting(&icount::plugin(machine.emulator)?, &counts);
-    for word in words {
-        launch = launch.argument(word.clone());
-    }
-    let mut session = Session::start(launch)?;
-    for _ in 0..PICTURES {
-        session.next(&[])?;
-    }
-    let outcome = session.end()?;
-    ensure!(outcome.code == 0, "{} ended with code {}: {}", machine.name, outcome.code, outcome.stderr.trim());
-    let counts = icount::read(&counts)?;
-    // The first picture is sent whole, and its clip has just been opened.
-    icount::by_kind(counts.get(FRAME_REGIONS.len()..).unwrap_or(&[]), FRAME_REGIONS.len())
+/// A clip by itself.
+fn alone(machine: Machine, features: &str, clip: &Path, words: &[String]) -> Result<Vec<Stats>> {
+    Ok(played(machine, features, &[clip], words)?.remove(0))
 }
 
 fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> {
     let Column { name, machine, features, most } = column;
     say(&format!("   instructions a frame, {name} ({}), mean of {} pictures", machine.name, PICTURES - 1));
-    let [whole, body] = [&clips[0], &clips[1]].map(|(_, clip)| played(*machine, features, clip, &[]));
+    let [whole, body] = [&clips[0], &clips[1]].map(|(_, clip)| alone(*machine, features, clip, &[]));
     let (whole, body) = (whole?, body?);
     let rows: Vec<_> = [(&clips[0].0, &whole), (&clips[1].0, &body)]
         .into_iter()
@@ -117,42 +100,17 @@ fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> 
 fn reference_image(clip: &Path) -> Result<Vec<Goal>> {
     let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, &[])?;
     let size = image::loaded(firmware.elf())?;
-    let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, &[clip])?;
-    let mut session = Session::start(Launch::new(LM3S6965EVB, firmware.elf()))?;
-    for _ in 0..PICTURES {
-        session.next(&[])?;
-    }
-    let used = memory_used(&mut session)? - FRAME_BYTES;
-    session.end()?;
+    let used = board::memory("", clip)?;
     Ok(vec![
         Goal::at_most("flash of the reference board's whole image, two clips in it", size as f64, 48.0 * 1024.0, 0, "bytes"),
         Goal::at_most("its RAM beside the framebuffer, playing 31 joints", used as f64, 8.0 * 1024.0, 0, "bytes"),
     ])
 }
 
-/// The reference machine's RAM, and what its framebuffer takes of it.
-const RAM: (u32, usize) = (0x2000_0000, 64 * 1024);
-const FRAME_BYTES: usize = 128 * 64 / 2;
-/// Below it lies what the linker has placed; the stack comes from the RAM's end.
-const STATIC_BYTES: usize = 4096;
-
-/// Bytes of RAM that hold something else than the zero of the emulator's start: statics, and the stack down to its deepest.
-fn memory_used(session: &mut Session) -> Result<usize> {
-    let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
-    let path = folder.path().join("ram");
-    session.memory(RAM.0, RAM.1, &path)?;
-    let bytes = std::fs::read(&path)?;
-    let set = |bytes: &[u8]| bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
-    let statics = set(&bytes[..STATIC_BYTES]);
-    let stack = bytes[STATIC_BYTES..].iter().position(|&byte| byte != 0).map_or(0, |first| bytes.len() - STATIC_BYTES - first);
-    ensure!(stack < bytes.len() - STATIC_BYTES, "the stack has reached the data");
-    Ok(statics + stack)
-}
-
 /// Figures at 30 frames a second by instructions alone, from what two, three and four cost.
 fn figures(clip: &Path) -> Result<Vec<Goal>> {
     let cost = |count: usize| -> Result<f64> {
-        let stats = played(LM3S6965EVB, "several", clip, &[format!("figures={count}")])?;
+        let stats = alone(LM3S6965EVB, "several", clip, &[format!("figures={count}")])?;
         Ok(stats[..3].iter().map(Stats::mean).sum::<f64>() + stats[3].least as f64)
     };
     let (two, four) = (cost(2)?, cost(4)?);
@@ -160,8 +118,8 @@ fn figures(clip: &Path) -> Result<Vec<Goal>> {
     let fit = |clock: f64, each: f64, rest: f64| ((clock / 30.0 - rest) / each).floor();
     let m3 = fit(50e6, each, two - 2.0 * each);
     // A single figure on the smaller core: all of it counts as the figure's.
-    let alone = played(MICROBIT, "", clip, &[])?;
-    let alone = alone[..3].iter().map(Stats::mean).sum::<f64>();
+    let stats = alone(MICROBIT, "", clip, &[])?;
+    let alone = stats[..3].iter().map(Stats::mean).sum::<f64>();
     let m0 = fit(48e6, alone, 0.0);
     Ok(vec![
         Goal::told("figures (display body) at 30 frames a second, 50 MHz Cortex-M3, one instruction a cycle", format!("{m3:.0}")),

@@ -1,6 +1,7 @@
 //! What `cargo xtask bench` measures: one part a file, and what the parts share.
 
 mod argument;
+mod board;
 mod decimation;
 mod decode;
 mod error;
@@ -47,7 +48,7 @@ pub enum Part {
     Frame,
     /// Additions against polynomials, and a clip against a per-frame file over a link
     Argument,
-    /// Recorded faces: bits a second, and how smooth they are
+    /// Faces: bits a second and how smooth, bytes of our own clips, guest instructions of a frame, memory, the model's size
     Face,
 }
 
