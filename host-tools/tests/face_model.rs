@@ -1,7 +1,7 @@
 //! The model that devices play: the committed bytes, the device's arithmetic against full precision, hostile bytes, names.
 
 use pantin_face::model::{Error, hash};
-use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, Look, Model, Morph, Target, VERTICES, View, Weights};
 use pantin_figure::Canvas;
 use pantin_tools::face::cast::{Cast, is_face};
 use pantin_tools::face::{Face, error, export, fit, outside, pose};
@@ -51,7 +51,7 @@ fn play(model: &Model) {
         let mut look = Look::<512>::new(model, pantin_figure::Canvas { width: 240, height: 240 }, view);
         for weight in [0, 20_000, 1 << 15, -(1 << 15)] {
             let mut weights = Weights::new();
-            (0..model.shape_count()).for_each(|shape| weights.add(shape, [true, shape % 2 == 0], weight));
+            (0..model.shape_count()).for_each(|shape| weights.add(Target::of(shape as u8, [true, shape % 2 == 0]), weight));
             morph.place(model, &weights);
             look.project(model, &morph);
             let mut lines = 0;

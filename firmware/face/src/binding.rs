@@ -1,6 +1,6 @@
 //! Which of a clip's scalars drive which shapes: found by name once, then a multiplication and a shift each.
 
-use crate::model::{Model, Name, hash};
+use crate::model::{Model, Name, Target, hash};
 use crate::morph::Weights;
 use crate::{BINDINGS, FULL};
 use heapless::Vec;
@@ -10,14 +10,14 @@ use pantin::Rig;
 #[derive(Clone, Copy, Debug)]
 struct Drive {
     channel: u16,
-    shape: u8,
-    sides: [bool; 2],
+    /// The shape, and which of its weights, as the model's names have them.
+    target: Target,
     mantissa: i8,
     shift: i8,
 }
 
 /// How a clip drives a face.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Binding {
     drives: Vec<Drive, BINDINGS>,
     names: u16,
@@ -28,9 +28,20 @@ pub struct Binding {
 const FEW: u16 = 3;
 
 impl Binding {
+    /// Nothing.
+    pub const EMPTY: Binding = Binding { drives: Vec::new(), names: 0, scalars: 0 };
+
     /// Looks up the names of `rig`'s scalars among those that `model` knows. What finds no room is left out.
+    #[inline(always)]
     pub fn of(rig: &Rig, model: &Model) -> Binding {
-        let mut binding = Binding::default();
+        let mut binding = Binding::EMPTY;
+        binding.set_up(rig, model);
+        binding
+    }
+
+    /// The same, where nothing was bound: as [`crate::Morph::set_up`].
+    #[inline(never)]
+    pub fn set_up(&mut self, rig: &Rig, model: &Model) {
         for (index, scalar) in rig.scalars().enumerate() {
             let wanted = hash(scalar.name().as_bytes());
             let mut known = false;
@@ -38,13 +49,12 @@ impl Binding {
                 known = true;
                 let channel = (rig.joint_channels() + index) as u16;
                 let shift = scalar.exponent.saturating_add(name.exponent);
-                let Name { shape, sides, mantissa, .. } = name;
-                let _ = binding.drives.push(Drive { channel, shape, sides, mantissa, shift });
+                let Name { target, mantissa, .. } = name;
+                let _ = self.drives.push(Drive { channel, target, mantissa, shift });
             }
-            binding.names += u16::from(known);
-            binding.scalars += 1;
+            self.names += u16::from(known);
+            self.scalars += 1;
         }
-        binding
     }
 
     /// Number of the clip's scalars that drive something.
@@ -67,7 +77,7 @@ impl Binding {
             }
             // 2^15 times 2^7. What is below nothing in the end is nothing: two opposites may share a channel.
             let value = shifted(raw * i32::from(drive.mantissa), drive.shift);
-            weights.add(usize::from(drive.shape), drive.sides, value);
+            weights.add(drive.target, value);
         }
     }
 }

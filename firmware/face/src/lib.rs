@@ -28,7 +28,7 @@ mod turn;
 
 pub use binding::Binding;
 pub use look::{Look, View};
-pub use model::{Error, Model};
+pub use model::{Error, Model, Target};
 pub use morph::{Morph, Weights};
 
 /// Most vertices of Pantin's own face; other models take more room.

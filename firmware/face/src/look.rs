@@ -46,12 +46,17 @@ pub struct Look<const N: usize> {
     vertices: usize,
     /// Sixteenths of a pixel.
     points: [[i16; 2]; N],
-    /// Cosine of the angle between a vertex's normal and the way to the camera, 127 is 1.
+    /// Cosine of the angle between a vertex's normal and the way to the camera, 127 is 1; `UNSEEN` where nothing is drawn.
     facing: [i8; N],
     outline: Outline,
-    /// How the head was turned when all of this was found.
+    /// How the head was turned when the points were found, and, rounded, when the rest was.
     before: Option<Turned>,
+    rounded: Option<[i8; 3]>,
 }
+
+/// Where surfaces look is found anew for every 2^26 of 2^-32 turns, 5.6 degrees: an outline that is half of that late is right to an
+/// 800th of the head.
+const ROUNDED_BITS: u32 = 26;
 
 /// The head's angles, and what it turns about.
 type Turned = ([i32; 3], Place);
@@ -66,14 +71,32 @@ const DETAILS: [i32; 3] = [96, 150, 190];
 const DISTANCE_BITS: u32 = 2;
 
 impl<const N: usize> Look<N> {
+    /// No camera yet.
+    pub const EMPTY: Self = Look {
+        camera: Camera { centre: [0; 2], rows: [[0; 3]; 3], scale: 1, shift: 16, nearer: 0, middle: [0; 3] },
+        detail: 0,
+        vertices: 0,
+        points: [[0; 2]; N],
+        facing: [0; N],
+        outline: Outline::EMPTY,
+        before: None,
+        rounded: None,
+    };
+
     /// A camera for a display.
+    #[inline(always)]
     pub fn new(model: &Model, canvas: Canvas, view: View) -> Self {
-        let (camera, detail) = frame(model, canvas);
-        let vertices = model.vertices().min(N);
-        let mut look =
-            Look { camera, detail, vertices, points: [[0; 2]; N], facing: [0; N], outline: Outline::default(), before: None };
-        look.aim(view);
+        let mut look = Look::EMPTY;
+        look.set_up(model, canvas, view);
         look
+    }
+
+    /// A camera for a display, where there was none: as [`Morph::set_up`].
+    #[inline(never)]
+    pub fn set_up(&mut self, model: &Model, canvas: Canvas, view: View) {
+        (self.camera, self.detail) = frame(model, canvas);
+        self.vertices = model.vertices().min(N);
+        self.aim(view);
     }
 
     /// Looks from elsewhere.
@@ -82,7 +105,7 @@ impl<const N: usize> Look<N> {
         turned.turn(0, of_degrees(view.tilt));
         turned.turn(1, of_degrees(-view.orbit));
         let [x, y, z] = turned.0;
-        self.before = None;
+        (self.before, self.rounded) = (None, None);
         self.camera.rows = core::array::from_fn(|row| [x[row], y[row], z[row]]);
     }
 
@@ -93,17 +116,21 @@ impl<const N: usize> Look<N> {
         self.camera.centre[1] += i32::from(y) << PIXEL_BITS;
     }
 
-    /// Puts the vertices on the display.
+    /// Puts the vertices that are drawn on the display.
     pub fn project(&mut self, model: &Model, morph: &Morph<N>) {
         let head = morph.turn();
-        let all = self.before != Some(head);
-        let towards = project(model, &self.camera, morph.places(), head, all, &mut self.points);
-        // Where surfaces look, and what makes the outline, depends on the head's turn alone.
-        if all {
+        // Where surfaces look, and what makes the outline, depends on the head's turn alone, and hardly on a degree of it.
+        let rounded = head.0.map(|angle| (((angle >> (ROUNDED_BITS - 1)) + 1) >> 1) as i8);
+        if self.rounded != Some(rounded) {
+            let towards = seen::towards(&self.camera, rounded.map(|angle| i32::from(angle) << ROUNDED_BITS));
             seen::facing(model, towards, &mut self.facing);
             self.outline.of(model, &self.facing);
-            self.before = Some(head);
+            strokes::leave_out(model, self.detail, &self.outline, &mut self.facing);
+            (self.rounded, self.before) = (Some(rounded), None);
         }
+        let all = self.before != Some(head);
+        project(model, &self.camera, morph.places(), head, all, &self.facing, &mut self.points);
+        self.before = Some(head);
     }
 
     /// The places of the vertices on the display, in sixteenths of a pixel.
@@ -157,25 +184,24 @@ fn frame(model: &Model, canvas: Canvas) -> (Camera, u8) {
     (camera, DETAILS.iter().filter(|&&least| covered >= least).count() as u8)
 }
 
-/// Puts the vertices on the display: all, or those that may move. Returns what `facing` is then to be asked about.
-fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: bool, points: &mut [[i16; 2]]) -> Vector {
-    let ([x, y, z], pivot) = head;
-    let mut head = Rotation::IDENTITY;
-    for (axis, angle) in [(1, y), (0, x), (2, z)] {
-        head.turn(axis, angle);
-    }
+/// Puts the vertices on the display that are drawn there: all, or those that may move.
+fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: bool, facing: &[i8], points: &mut [[i16; 2]]) {
+    let (angles, pivot) = head;
+    let head = seen::turned(angles);
     let pivot = pivot.map(i32::from);
     let carried = head.apply_any(pivot);
     let whole = Seen::new(camera, &head, core::array::from_fn(|axis| pivot[axis] - carried[axis] - camera.middle[axis]));
     if !all {
         for [from, to] in model.moving() {
-            if let (Some(places), Some(points)) = (places.get(from..to), points.get_mut(from..to)) {
-                whole.points(places, points);
+            if let (Some(places), Some(facing), Some(points)) =
+                (places.get(from..to), facing.get(from..to), points.get_mut(from..to))
+            {
+                whole.points(places, facing, points);
             }
         }
-        return whole.towards;
+        return;
     }
-    whole.points(places, points);
+    whole.points(places, facing, points);
     let still = Seen::new(camera, &Rotation::IDENTITY, camera.middle.map(|x| -x));
     let mut fixed = Bytes(model.fixed);
     while let Ok(index) = fixed.index(model.wide) {
@@ -183,7 +209,6 @@ fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: 
             *point = still.point(place);
         }
     }
-    whole.towards
 }
 
 /// Degrees in 2^-32 turns.

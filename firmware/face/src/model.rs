@@ -252,10 +252,8 @@ fn consumed<'a>(bytes: &mut Bytes<'a>, check: impl FnOnce(&mut Bytes<'a>) -> Res
 pub struct Name {
     /// FNV-1a of the name, 32 bits.
     pub hash: u32,
-    /// Index of the shape.
-    pub shape: u8,
-    /// Whether it drives the shape as it is stored (the left side), and its mirror image.
-    pub sides: [bool; 2],
+    /// What it drives.
+    pub target: Target,
     /// A value of 1 is a weight of mantissa * 2^exponent.
     pub mantissa: i8,
     /// See [`Name::mantissa`].
@@ -265,9 +263,31 @@ pub struct Name {
 impl Name {
     fn parse(entry: &[u8]) -> Option<Name> {
         let &[a, b, c, d, target, mantissa, exponent] = entry else { return None };
-        let sides = [target & 0x40 != 0, target & 0x80 != 0];
         let hash = u32::from_le_bytes([a, b, c, d]);
-        Some(Name { hash, shape: target & 0x3f, sides, mantissa: mantissa as i8, exponent: exponent as i8 })
+        Some(Name { hash, target: Target(target), mantissa: mantissa as i8, exponent: exponent as i8 })
+    }
+}
+
+/// A shape's weights: of one of its sides, or both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target(u8);
+
+impl Target {
+    /// Of a shape below 64.
+    pub fn of(shape: u8, sides: [bool; 2]) -> Target {
+        Target(shape & 0x3f | u8::from(sides[0]) << 6 | u8::from(sides[1]) << 7)
+    }
+
+    /// Index of the shape.
+    #[inline(always)]
+    pub fn shape(self) -> usize {
+        usize::from(self.0 & 0x3f)
+    }
+
+    /// Whether it is the shape as it is stored (the left side), and its mirror image.
+    #[inline(always)]
+    pub fn sides(self) -> [bool; 2] {
+        [self.0 & 0x40 != 0, self.0 & 0x80 != 0]
     }
 }
 

@@ -1,6 +1,6 @@
 //! Weights become vertices: neutral places, plus deltas, then turned.
 
-use crate::model::{Error, Model};
+use crate::model::{Error, Model, Target};
 use crate::shape::{Interpolation, Kind, Run, Shape};
 use crate::turn::{self, Sides};
 use crate::{FULL, SHAPES, aperture};
@@ -32,8 +32,9 @@ impl Weights {
 
     /// Adds to a shape's weights.
     #[inline(always)]
-    pub fn add(&mut self, shape: usize, sides: [bool; 2], weight: i32) {
-        let Some(pair) = self.0.get_mut(shape) else { return };
+    pub fn add(&mut self, target: Target, weight: i32) {
+        let Some(pair) = self.0.get_mut(target.shape()) else { return };
+        let sides = target.sides();
         if sides[0] {
             pair[0] = pair[0].saturating_add(weight);
         }
@@ -67,16 +68,28 @@ pub struct Morph<const N: usize> {
 }
 
 impl<const N: usize> Morph<N> {
+    /// No face yet.
+    pub const EMPTY: Self = Morph { places: [[0; 3]; N], vertices: 0, head: [0; 3], pivot: [0; 3] };
+
     /// The neutral face.
+    #[inline(always)]
     pub fn new(model: &Model) -> Result<Self, Error> {
+        let mut morph = Morph::EMPTY;
+        morph.set_up(model)?;
+        Ok(morph)
+    }
+
+    /// The neutral face, where there was none: what is handed on is copied, and for that a small machine may have no room.
+    #[inline(never)]
+    pub fn set_up(&mut self, model: &Model) -> Result<(), Error> {
         if model.vertices() > N {
             return Err(Error::TooManyVertices { most: N });
         }
-        let mut morph = Morph { places: [[0; 3]; N], vertices: model.vertices(), head: [0; 3], pivot: [0; 3] };
+        self.vertices = model.vertices();
         let right = model.middles() + model.pairs();
-        rest(model, [0, right], &mut morph.places);
-        rest(model, [right, model.vertices()], &mut morph.places);
-        Ok(morph)
+        rest(model, [0, right], &mut self.places);
+        rest(model, [right, model.vertices()], &mut self.places);
+        Ok(())
     }
 
     /// The vertices, in the order of the model.

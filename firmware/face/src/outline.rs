@@ -8,10 +8,10 @@ use heapless::Vec;
 /// Brightness.
 const SHADE: u8 = 200;
 /// Most triangles that are kept from frame to frame: what is beyond is looked for in each frame.
-const KEPT: usize = 96;
+const KEPT: usize = 48;
 
 /// The triangles that make the outline, as long as the head keeps its turn.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Outline {
     triangles: Vec<Crossed, KEPT>,
     overflown: bool,
@@ -46,6 +46,9 @@ impl Crossed {
 }
 
 impl Outline {
+    /// None.
+    pub const EMPTY: Outline = Outline { triangles: Vec::new(), overflown: false };
+
     /// Finds them.
     #[inline(never)]
     pub fn of(&mut self, model: &Model, facing: &[i8]) {
@@ -59,16 +62,32 @@ impl Outline {
         self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err();
     }
 
+    /// Whether there are more than are kept.
+    pub fn overflown(&self) -> bool {
+        self.overflown
+    }
+
+    /// The corners of those that are kept.
+    pub fn corners(&self, mut visit: impl FnMut(u16)) {
+        self.triangles.iter().flat_map(|crossed| crossed.corners).for_each(&mut visit);
+    }
+
     /// Draws them.
     #[inline]
     pub fn lines(&self, model: &Model, screen: Screen, out: &mut impl Paint) {
         out.begin(SHADE);
         if self.overflown {
-            each_crossed(model, screen.facing, |corners| Crossed::new(corners, screen.facing).draw(screen.points, out));
+            all(model, screen, out);
         } else {
             self.triangles.iter().for_each(|crossed| crossed.draw(screen.points, out));
         }
     }
+}
+
+/// More than are kept. In a function of its own: what it needs of memory is seldom needed.
+#[inline(never)]
+fn all(model: &Model, screen: Screen, out: &mut impl Paint) {
+    each_crossed(model, screen.facing, |corners| Crossed::new(corners, screen.facing).draw(screen.points, out));
 }
 
 #[inline(always)]

@@ -15,7 +15,7 @@ pub(crate) struct Seen {
     shift: u32,
     centre: [i32; 2],
     /// Towards the camera, Q15.
-    pub towards: Vector,
+    towards: Vector,
     nearer: i32,
 }
 
@@ -40,21 +40,26 @@ impl Seen {
         }
     }
 
-    /// All places.
+    /// All places that are drawn.
     #[inline(never)]
-    pub fn points(&self, places: &[Place], points: &mut [[i16; 2]]) {
+    pub fn points(&self, places: &[Place], facing: &[i8], points: &mut [[i16; 2]]) {
         if let ([[right, 0, 0], [0, down, 0]], [0, 0, towards]) = (self.across, self.towards) {
-            return self.straight([right, down, towards], places, points);
+            return self.straight([right, down, towards], places, facing, points);
         }
-        for (point, &place) in points.iter_mut().zip(places) {
-            *point = self.point(place);
+        for ((point, &place), &facing) in points.iter_mut().zip(places).zip(facing) {
+            if facing != UNSEEN {
+                *point = self.point(place);
+            }
         }
     }
 
     /// A head that looks the camera in the eyes: the same sums without the products with 0.
     #[inline(always)]
-    fn straight(&self, [right, down, towards]: Vector, places: &[Place], points: &mut [[i16; 2]]) {
-        for (point, &[x, y, z]) in points.iter_mut().zip(places) {
+    fn straight(&self, [right, down, towards]: Vector, places: &[Place], facing: &[i8], points: &mut [[i16; 2]]) {
+        for ((point, &[x, y, z]), &facing) in points.iter_mut().zip(places).zip(facing) {
+            if facing == UNSEEN {
+                continue;
+            }
             let magnification = self.magnification(towards.wrapping_mul(i32::from(z)));
             let (across, along) = (right.wrapping_mul(i32::from(x)), down.wrapping_mul(i32::from(y)));
             *point = [self.onto(across, magnification, 0), self.onto(along, magnification, 1)];
@@ -84,6 +89,23 @@ impl Seen {
         let flat = along.wrapping_add(self.offset[axis]) >> self.shift;
         (flat.wrapping_mul(magnification) >> 12).wrapping_add(self.centre[axis]) as i16
     }
+}
+
+/// Stands for a vertex that no line needs.
+pub(crate) const UNSEEN: i8 = i8::MIN;
+
+/// The head's turn: about y, then x, then z.
+pub(crate) fn turned([x, y, z]: [i32; 3]) -> Rotation {
+    let mut head = Rotation::IDENTITY;
+    for (axis, angle) in [(1, y), (0, x), (2, z)] {
+        head.turn(axis, angle);
+    }
+    head
+}
+
+/// The way to the camera, Q15, as a head so turned has it.
+pub(crate) fn towards(camera: &Camera, angles: [i32; 3]) -> Vector {
+    row_times(camera.rows[2], &turned(angles))
 }
 
 /// How far each vertex's surface looks along a way to the camera (Q15), 127 is straight: mirror images share two of three products.

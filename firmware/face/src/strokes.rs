@@ -4,6 +4,7 @@ use crate::curve::Curve;
 use crate::model::Model;
 use crate::outline::{Outline, each_triangle};
 use crate::pen::Paint;
+use crate::seen::UNSEEN;
 
 /// Brightness of the mesh.
 const MESH: u8 = 44;
@@ -40,6 +41,31 @@ pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl Pai
                 screen.smooth(model, &curve, mirrored, fine, out);
             }
             out.end();
+        }
+    }
+}
+
+/// Marks the vertices that no line needs, before the head turns on. Of large displays and wide models all are needed.
+#[inline(never)]
+pub(crate) fn leave_out(model: &Model, detail: u8, outline: &Outline, facing: &mut [i8]) {
+    if detail >= MESH_DETAIL || model.wide || outline.overflown() {
+        return;
+    }
+    // A bit a vertex: narrow models have at most 256.
+    let mut needed = [0u32; 8];
+    let mut need = |index: u16| needed[usize::from(index as u8 >> 5)] |= 1 << (index & 31);
+    outline.corners(&mut need);
+    for curve in model.curves().filter(|curve| curve.detail <= detail) {
+        for index in curve.vertices() {
+            need(index);
+            if curve.mirrored {
+                need(model.mirror(index));
+            }
+        }
+    }
+    for (index, facing) in facing.iter_mut().enumerate() {
+        if needed[(index >> 5) & 7] & 1 << (index & 31) == 0 {
+            *facing = UNSEEN;
         }
     }
 }

@@ -34,12 +34,14 @@ pub(super) struct Face<'a> {
 #[inline(always)]
 pub(super) fn with<T>(clip: &Clip, canvas: Canvas, column: i16, scene: &Scene, then: impl FnOnce(Face) -> T) -> Option<T> {
     let model = Model::new_checked(MODEL).ok()?;
-    let binding = Binding::of(&clip.rig(), &model);
-    let mut morph = Morph::new(&model);
-    let mut look = pantin_face::Look::new(&model, canvas, from(scene.view, scene.ahead));
+    let mut binding = Binding::EMPTY;
+    binding.set_up(&clip.rig(), &model);
+    let mut morph = Morph::EMPTY;
+    morph.set_up(&model).ok()?;
+    let mut look = pantin_face::Look::EMPTY;
+    look.set_up(&model, canvas, from(scene.view, scene.ahead));
     look.shift(column, 0);
-    let morph = morph.as_mut().ok()?;
-    Some(then(Face { model: &model, binding: &binding, morph, look: &mut look, ahead: scene.ahead }))
+    Some(then(Face { model: &model, binding: &binding, morph: &mut morph, look: &mut look, ahead: scene.ahead }))
 }
 
 impl Face<'_> {
