@@ -32,7 +32,7 @@ impl<S: Slot> Store<S> {
         let [first, second] = &mut self.slots;
         let newest_is_second = match (read(first.bytes()), read(second.bytes())) {
             (Some((first, _)), Some((second, _))) => second.is_newer_than(&first),
-            (first, second) => first.is_none() && second.is_some(),
+            (first, _) => first.is_none(),
         };
         let (newest, spare) = if newest_is_second { (second, first) } else { (first, second) };
         match read(newest.bytes()) {
