@@ -46,7 +46,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     write_whole(&arguments.output, &bytes)?;
     if !arguments.quiet {
         let Region { board, address, slot, sector, word } = region;
-        eprintln!("{board}: {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}", clip.len());
+        eprintln!(
+            "{board}: {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}",
+            clip.len()
+        );
     }
     Ok(())
 }

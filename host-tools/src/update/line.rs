@@ -75,7 +75,10 @@ impl Line {
                 let ports = || {
                     let ports = SerialPort::available_ports().unwrap_or_default();
                     let ports: Vec<String> = ports.iter().map(|port| port.display().to_string()).collect();
-                    format!("{port}: cannot be opened; serial ports here: {}", if ports.is_empty() { "none".into() } else { ports.join(", ") })
+                    format!(
+                        "{port}: cannot be opened; serial ports here: {}",
+                        if ports.is_empty() { "none".into() } else { ports.join(", ") }
+                    )
                 };
                 let mut line = SerialPort::open(port, *baud).with_context(ports)?;
                 line.set_read_timeout(LOOK)?;
@@ -128,6 +131,10 @@ mod tests {
         assert_eq!("serial:/dev/ttyACM0".parse(), serial("/dev/ttyACM0", 115_200));
         assert_eq!("serial:COM3@9600".parse(), serial("COM3", 9600));
         assert_eq!("tcp:localhost:4000".parse(), Ok(Place::Tcp("localhost:4000".into())));
-        assert!(["", "serial:", "serial:@9600", "serial:a@b", "serial:a@0", "tcp:localhost", "/dev/ttyACM0"].iter().all(|text| text.parse::<Place>().is_err()));
+        assert!(
+            ["", "serial:", "serial:@9600", "serial:a@b", "serial:a@0", "tcp:localhost", "/dev/ttyACM0"]
+                .iter()
+                .all(|text| text.parse::<Place>().is_err())
+        );
     }
 }

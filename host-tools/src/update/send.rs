@@ -50,7 +50,10 @@ impl fmt::Display for Failure {
             Failure::Refused(refusal) => write!(f, "refused, the old clip goes on playing: {refusal}"),
             Failure::Silent(0) => f.write_str("no answer: is the firmware built with feature `update`, and is the speed right?"),
             Failure::Silent(bytes) => {
-                write!(f, "no more answers after {bytes} bytes; the old clip goes on playing, and the same command takes it up again")
+                write!(
+                    f,
+                    "no more answers after {bytes} bytes; the old clip goes on playing, and the same command takes it up again"
+                )
             }
             Failure::Line(error) => write!(f, "the line failed: {error}"),
         }
@@ -148,7 +151,8 @@ impl<L: Read + Write> Sender<'_, L> {
         let id = match *answer {
             Answer::Want { offset, .. } if self.at == Some(offset) => return false,
             Answer::Want { id, offset } => {
-                return id == self.claim.crc && (offset == self.claim.length || offset < self.claim.length && offset % BLOCK as u32 == 0);
+                return id == self.claim.crc
+                    && (offset == self.claim.length || offset < self.claim.length && offset % BLOCK as u32 == 0);
             }
             Answer::Done { id } | Answer::Refused { id, .. } => id,
         };

@@ -105,7 +105,7 @@ impl<const WORD: usize, const SECTOR: usize> NorFlash for Mock<WORD, SECTOR> {
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
         let (from, to) = (from as usize, to as usize);
-        assert!(from < to && from % SECTOR == 0 && to % SECTOR == 0, "no whole sectors: {from} to {to}");
+        assert!(from < to && from.is_multiple_of(SECTOR) && to.is_multiple_of(SECTOR), "no whole sectors: {from} to {to}");
         if to > self.flash.len() {
             return Err(NorFlashErrorKind::OutOfBounds);
         }
@@ -122,7 +122,7 @@ impl<const WORD: usize, const SECTOR: usize> NorFlash for Mock<WORD, SECTOR> {
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
         let offset = offset as usize;
-        assert!(offset % WORD == 0 && bytes.len() % WORD == 0, "no whole words: {} at {offset}", bytes.len());
+        assert!(offset.is_multiple_of(WORD) && bytes.len().is_multiple_of(WORD), "no whole words: {} at {offset}", bytes.len());
         if offset + bytes.len() > self.flash.len() {
             return Err(NorFlashErrorKind::OutOfBounds);
         }
