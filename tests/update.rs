@@ -1,6 +1,7 @@
 //! A clip replaced over the serial line of an emulated board, whose flash controller writes it: what plays is the old clip or the new one,
 //! picture by picture as the host draws them, whatever happens to the transfer.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpListener;
@@ -140,6 +141,29 @@ fn the_memory_map_and_the_table_of_regions_agree() {
     assert_eq!(address("_clips_start"), u64::from(start));
     assert_eq!(address("_clips_end"), u64::from(start + 2 * slot));
     assert_eq!(slot % sector, 0);
+}
+
+/// Bytes of flash that the feature costs: growth is to be meant.
+const COST: u64 = 5300;
+
+#[test]
+fn the_store_brings_no_way_to_panic_and_little_code() {
+    setup::rust_target(MICROBIT.target).unwrap();
+    let plain = Firmware::build(MICROBIT.name, MICROBIT.name, MICROBIT.target, &[&BENCH.built_in.path]).unwrap();
+    let [with, without] = [BENCH.firmware.elf(), plain.elf()];
+    let cost = harness::image::loaded(with).unwrap() - harness::image::loaded(without).unwrap();
+    println!("feature update: {cost} bytes of flash");
+    assert!(cost <= COST, "{cost} bytes");
+    let panics = |elf| {
+        use object::{Object, ObjectSymbol};
+        let bytes = fs::read(elf).unwrap();
+        let file = object::File::parse(&*bytes).unwrap();
+        let names = file.symbols().map(|symbol| format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())));
+        names
+            .filter(|name| ["panicking::", "_failed", "core::fmt"].iter().any(|part| name.contains(part)))
+            .collect::<BTreeSet<_>>()
+    };
+    assert_eq!(panics(with), panics(without));
 }
 
 #[test]
