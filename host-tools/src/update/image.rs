@@ -33,7 +33,7 @@ pub fn hex(region: &Region, clip: &[u8], claim: &Claim) -> Result<String> {
     data(region.address, &slot, &mut records);
     data(region.address + region.slot, &[0xff; BLOCK], &mut records);
     records.push(Record::EndOfFile);
-    Ok(ihex::create_object_file_representation(&records)? + "\n")
+    Ok(ihex::create_object_file_representation(&records)?)
 }
 
 /// Records of bytes from an address on, which is a multiple of a line's bytes.
