@@ -48,7 +48,7 @@ impl Film {
     fn of(path: PathBuf) -> Film {
         let (bytes, claim) = update::read(&path, None).unwrap();
         let keys = [&b""[..]; PICTURES - 1];
-        let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), &[path.clone()], &[], &keys).unwrap();
+        let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&path), &[], &keys).unwrap();
         Film { bytes, claim, path, pictures }
     }
 
@@ -174,7 +174,7 @@ fn a_clip_comes_over_the_line_while_another_plays_and_stays() {
     shows(&mut session, &bench.old, "after a reset");
     // Between two messages the old clip goes on.
     let long = [&b""[..]; 100];
-    let old = simulator::play::<Rotation>(MICROBIT.display.unwrap(), &[bench.old.path.clone()], &[], &long).unwrap();
+    let old = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&bench.old.path), &[], &long).unwrap();
     let mut last = None;
     for (message, (number, picture)) in asks(&bench.new.bytes, &bench.new.claim).iter().zip(&old[PICTURES..]) {
         assert_eq!(session.next(&[]).unwrap(), (*number, picture.clone()));
