@@ -16,4 +16,5 @@ pub mod motion;
 pub mod play;
 pub mod render;
 pub mod train;
+pub mod update;
 pub mod verify;

@@ -15,5 +15,6 @@ pub mod screen;
 pub mod setup;
 pub mod simulator;
 pub mod sync;
+pub mod update;
 pub mod vectors;
 pub mod wire;

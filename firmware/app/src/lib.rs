@@ -13,6 +13,9 @@ mod options;
 mod run;
 mod scene;
 mod show;
+#[cfg(feature = "update")]
+mod stored;
+mod update;
 pub mod wire;
 
 pub use board::{Board, Exit};
@@ -21,3 +24,5 @@ pub use keys::Key;
 pub use options::{Mode, Options};
 pub use run::{NEXT, QUIT, RIG, SHOWN, run};
 pub use scene::Entry;
+#[cfg(feature = "update")]
+pub use stored::run_stored;

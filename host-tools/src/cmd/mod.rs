@@ -7,11 +7,13 @@ mod edits;
 mod errors;
 pub mod expand;
 pub mod face;
+pub mod flash_image;
 pub mod info;
 mod max_error;
 pub mod play;
 pub mod render;
 pub mod train;
+pub mod update;
 
 use anyhow::{Context, Result};
 use std::fs;

@@ -12,4 +12,6 @@ pub use end::{Code, exit};
 pub use markers;
 pub use pace::Pace;
 pub use play::play;
+#[cfg(feature = "update")]
+pub use play::play_stored;
 pub use register::Register;
