@@ -1,0 +1,189 @@
+//! A display of 240x240 pixels in colour over SPI: ST7789, by the crate `mipidsi`, which sends windows of any pixels.
+//!
+//! The picture may be in any layout whose pixels can be turned into 16 bits of colour: `Rgb565Rows<240, 240, 28800>` takes 115,200 bytes and
+//! tells left from right by hue, `Gray4Rows<240, 240, 7200>` a quarter of that, `MonoPages<240, 240, 7200>` a sixteenth.
+
+use core::fmt::Debug;
+use embedded_graphics::pixelcolor::Rgb565;
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::spi::SpiDevice;
+use mipidsi::interface::{SpiError, SpiInterface};
+use mipidsi::models::ST7789;
+use mipidsi::options::ColorInversion;
+use mipidsi::{Builder, Display, NoResetPin};
+use pantin_figure::surface::{Cursor, Frame, Layout, Window};
+
+/// Columns, and rows.
+pub const SIDE: usize = 240;
+
+/// What can go wrong: the bus, or the pin.
+pub type Error<S, D> = SpiError<<S as embedded_hal::spi::ErrorType>::Error, <D as embedded_hal::digital::ErrorType>::Error>;
+
+/// The display.
+pub struct St7789<'a, S: SpiDevice, D: OutputPin> {
+    display: Display<SpiInterface<'a, S, D>, ST7789, NoResetPin>,
+}
+
+impl<'a, S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<'a, S, D> {
+    /// Sets it up, which takes a third of a second: on a bus of mode 0 or 3 with at most 62.5 MHz, and a pin that is high for data.
+    /// `room` holds pixels on their way, two bytes each: a row of them is enough. None where bus or pin fails.
+    pub fn new(bus: S, data: D, room: &'a mut [u8], delay: &mut impl DelayNs) -> Option<Self> {
+        let interface = SpiInterface::new(bus, data, room);
+        // The panel's liquid turns the other way.
+        let builder = Builder::new(ST7789, interface).invert_colors(ColorInversion::Inverted);
+        let display = builder.display_size(SIDE as u16, SIDE as u16).init(delay).ok()?;
+        Some(St7789 { display })
+    }
+
+    /// Sends what changed of a picture.
+    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Frame<L>) -> Result<(), Error<S, D>> {
+        const { assert!(L::WIDTH == SIDE && L::HEIGHT == SIDE) };
+        for Window { columns: [left, right], rows: [top, bottom] } in frame.send() {
+            let cells = frame.cells();
+            let row = |y| {
+                let mut cursor = L::cursor(left, y);
+                (left..=right).map(move |_| {
+                    let ink = L::get(cells, cursor);
+                    cursor.across(true);
+                    ink.into()
+                })
+            };
+            let pixels = (top..=bottom).flat_map(row);
+            let [left, right, top, bottom] = [left, right, top, bottom].map(|end| end as u16);
+            self.display.set_pixels(left, top, right, bottom, pixels)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
+    use embedded_graphics::pixelcolor::{BinaryColor, Gray4, RgbColor};
+    use embedded_hal::spi::Operation;
+    use pantin_figure::surface::{Gray4Rows, MonoPages, Rgb565Rows, Surface};
+    use std::cell::RefCell;
+    use std::convert::Infallible;
+
+    /// A panel that keeps what it was sent.
+    struct Panel {
+        memory: Vec<u16>,
+        data: bool,
+        command: u8,
+        arguments: Vec<u8>,
+        commands: Vec<u8>,
+        /// First and last column, and row, of the window.
+        ends: [[usize; 2]; 2],
+        pixels: usize,
+    }
+
+    impl Panel {
+        fn new() -> Self {
+            let memory = vec![0x5a5a; SIDE * SIDE];
+            Panel { memory, data: false, command: 0, arguments: vec![], commands: vec![], ends: [[0; 2]; 2], pixels: 0 }
+        }
+
+        fn take(&mut self, byte: u8) {
+            if !self.data {
+                (self.command, self.arguments) = (byte, vec![]);
+                self.commands.push(byte);
+                self.pixels = if byte == 0x2c { 0 } else { self.pixels };
+                return;
+            }
+            self.arguments.push(byte);
+            match (self.command, &*self.arguments) {
+                (0x2a, &[a, b, c, d]) => self.window(0, [a, b, c, d]),
+                (0x2b, &[a, b, c, d]) => self.window(1, [a, b, c, d]),
+                (0x2c, &[high, low]) => {
+                    let [[left, right], [top, bottom]] = self.ends;
+                    let wide = right - left + 1;
+                    let (x, y) = (left + self.pixels % wide, top + self.pixels / wide);
+                    assert!(y <= bottom, "more pixels than the window has");
+                    self.memory[y * SIDE + x] = u16::from_be_bytes([high, low]);
+                    self.pixels += 1;
+                    self.arguments = vec![];
+                }
+                _ => {}
+            }
+        }
+
+        fn window(&mut self, axis: usize, [a, b, c, d]: [u8; 4]) {
+            self.ends[axis] = [[a, b], [c, d]].map(|end| u16::from_be_bytes(end).into());
+        }
+    }
+
+    /// The bus, and the pin: both ends of one panel.
+    struct Bus<'a>(&'a RefCell<Panel>);
+    struct Pin<'a>(&'a RefCell<Panel>);
+
+    impl embedded_hal::spi::ErrorType for Bus<'_> {
+        type Error = Infallible;
+    }
+
+    impl SpiDevice for Bus<'_> {
+        fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+            for operation in operations {
+                let Operation::Write(bytes) = operation else { panic!("nothing is read") };
+                bytes.iter().for_each(|byte| self.0.borrow_mut().take(*byte));
+            }
+            Ok(())
+        }
+    }
+
+    impl embedded_hal::digital::ErrorType for Pin<'_> {
+        type Error = Infallible;
+    }
+
+    impl OutputPin for Pin<'_> {
+        fn set_low(&mut self) -> Result<(), Infallible> {
+            self.0.borrow_mut().data = false;
+            Ok(())
+        }
+
+        fn set_high(&mut self) -> Result<(), Infallible> {
+            self.0.borrow_mut().data = true;
+            Ok(())
+        }
+    }
+
+    struct NoTime;
+
+    impl DelayNs for NoTime {
+        fn delay_ns(&mut self, _: u32) {}
+    }
+
+    /// Shows three pictures of moving squares, and compares the panel's memory with each.
+    fn shows<L: Layout<Ink: Into<Rgb565>>>(ink: L::Ink) {
+        let panel = RefCell::new(Panel::new());
+        let mut room = [0; 10];
+        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut room, &mut NoTime).unwrap();
+        assert!(panel.borrow().commands.ends_with(&[0x29]), "it is on");
+        let mut frame = Box::new(Frame::<L>::new());
+        for at in [0, 100, 220] {
+            frame.clear();
+            frame.mark([at, at], [at + 19, at + 19]);
+            for (x, y) in (0..20).flat_map(|y| (0..20).map(move |x| (at + x, at + y))) {
+                frame.put(L::cursor(x as usize, y as usize), ink);
+            }
+            panel.borrow_mut().commands.clear();
+            display.show(&mut frame).unwrap();
+            for (index, &shown) in panel.borrow().memory.iter().enumerate() {
+                let pixel: Rgb565 = frame.pixel(index % SIDE, index / SIDE).into();
+                assert_eq!(shown, RawU16::from(pixel).into_inner(), "pixel {index} at {at}");
+            }
+        }
+        let windows = panel.borrow().commands.iter().filter(|&&command| command == 0x2c).count();
+        assert_eq!(windows, 3 + 3, "20 rows from 100 and 20 from 220 touch three bands each");
+    }
+
+    #[test]
+    fn colours_greys_and_light_are_shown_as_they_are() {
+        shows::<Rgb565Rows<240, 240, 28800>>(Rgb565::new(31, 5, 30));
+        shows::<Gray4Rows<240, 240, 7200>>(Gray4::new(9));
+        shows::<MonoPages<240, 240, 7200>>(BinaryColor::On);
+        assert_eq!(Rgb565::from(Gray4::new(15)), Rgb565::WHITE);
+        assert_eq!(Rgb565::from(BinaryColor::On), Rgb565::WHITE);
+    }
+}
