@@ -3,13 +3,19 @@
 
 #[cfg(feature = "cortex-m")]
 pub mod cortex_m;
+#[cfg(feature = "emulated")]
 mod end;
 mod pace;
+mod perform;
+#[cfg(feature = "emulated")]
 mod play;
 mod register;
 
+#[cfg(feature = "emulated")]
 pub use end::{Code, exit};
 pub use markers;
 pub use pace::Pace;
+pub use perform::{IN_STEP, perform};
+#[cfg(feature = "emulated")]
 pub use play::play;
 pub use register::Register;

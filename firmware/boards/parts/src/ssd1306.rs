@@ -18,7 +18,7 @@ const COMMANDS: u8 = 0x00;
 const DATA: u8 = 0x40;
 
 /// Off, then as the data sheet sets up a panel of 64 rows that feeds itself by its charge pump, with the connector above the picture.
-const START: [u8; 27] = [
+const START: [u8; 26] = [
     COMMANDS, 0xae, // off
     0xd5, 0x80, 0xa8, 63, 0xd3, 0, 0x40, // clock, rows, the first of them
     0x8d, 0x14, // charge pump
@@ -26,7 +26,6 @@ const START: [u8; 27] = [
     0xa1, 0xc8, 0xda, 0x12, // both directions turned, pins of the rows
     0x81, 0xcf, 0xd9, 0xf1, 0xdb, 0x40, // contrast, charging, level
     0x2e, 0xa4, 0xa6, // still, from memory, lit is 1
-    0xe3, // nothing
 ];
 const LIGHT: [u8; 2] = [COMMANDS, 0xaf];
 
@@ -127,7 +126,7 @@ mod tests {
         put(&mut frame, 0, 0);
         display.show(&mut frame).unwrap();
         assert!(display.bus.lit && display.bus.memory == frame.cells());
-        assert_eq!(display.bus.bytes, 28 + 8 * (8 + 128) + 3);
+        assert_eq!(display.bus.bytes, 27 + 8 * (8 + 128) + 3);
         frame.clear();
         put(&mut frame, 20, 17);
         put(&mut frame, 29, 23);
