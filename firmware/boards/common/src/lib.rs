@@ -1,6 +1,7 @@
 //! What boards have in common.
 #![no_std]
 
+mod buttons;
 #[cfg(feature = "cortex-m")]
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
@@ -11,6 +12,7 @@ mod perform;
 mod play;
 mod register;
 
+pub use buttons::Buttons;
 #[cfg(feature = "emulated")]
 pub use end::{Code, exit};
 pub use markers;

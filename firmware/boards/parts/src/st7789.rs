@@ -8,7 +8,7 @@ use embedded_graphics::pixelcolor::Rgb565;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
-use mipidsi::interface::{SpiError, SpiInterface};
+use mipidsi::interface::{Interface, InterfaceKind};
 use mipidsi::models::ST7789;
 use mipidsi::options::ColorInversion;
 use mipidsi::{Builder, Display, NoResetPin};
@@ -17,27 +17,75 @@ use pantin_figure::surface::{Cursor, Frame, Layout, Window};
 /// Columns, and rows.
 pub const SIDE: usize = 240;
 
-/// What can go wrong: the bus, or the pin.
-pub type Error<S, D> = SpiError<<S as embedded_hal::spi::ErrorType>::Error, <D as embedded_hal::digital::ErrorType>::Error>;
+/// Bytes of pixels on their way: a row.
+const ROOM: usize = 2 * SIDE;
 
-/// The display.
-pub struct St7789<'a, S: SpiDevice, D: OutputPin> {
-    display: Display<SpiInterface<'a, S, D>, ST7789, NoResetPin>,
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error<S, D> {
+    /// The bus.
+    Bus(S),
+    /// The pin.
+    Pin(D),
 }
 
-impl<'a, S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<'a, S, D> {
-    /// Sets it up, which takes a third of a second: on a bus of mode 0 or 3 with at most 62.5 MHz, and a pin that is high for data.
-    /// `room` holds pixels on their way, two bytes each: a row of them is enough. None where bus or pin fails.
-    pub fn new(bus: S, data: D, room: &'a mut [u8], delay: &mut impl DelayNs) -> Option<Self> {
-        let interface = SpiInterface::new(bus, data, room);
+/// The bus, and a pin that is high for data. `mipidsi` has the like, but borrows its room, and so would the display for good.
+#[derive(Debug)]
+struct Wires<S, D> {
+    bus: S,
+    data: D,
+    room: [u8; ROOM],
+}
+
+impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> Interface for Wires<S, D> {
+    type Word = u8;
+    type Error = Error<S::Error, D::Error>;
+    const KIND: InterfaceKind = InterfaceKind::Serial4Line;
+
+    fn send_command(&mut self, command: u8, arguments: &[u8]) -> Result<(), Self::Error> {
+        self.data.set_low().map_err(Error::Pin)?;
+        self.bus.write(&[command]).map_err(Error::Bus)?;
+        self.data.set_high().map_err(Error::Pin)?;
+        self.bus.write(arguments).map_err(Error::Bus)
+    }
+
+    fn send_pixels<const N: usize>(&mut self, pixels: impl IntoIterator<Item = [u8; N]>) -> Result<(), Self::Error> {
+        let mut pixels = pixels.into_iter();
+        loop {
+            let mut held = 0;
+            for (place, pixel) in self.room.chunks_exact_mut(N).zip(&mut pixels) {
+                place.copy_from_slice(&pixel);
+                held += N;
+            }
+            if held == 0 {
+                return Ok(());
+            }
+            self.bus.write(self.room.get(..held).unwrap_or_default()).map_err(Error::Bus)?;
+        }
+    }
+
+    fn send_repeated_pixel<const N: usize>(&mut self, pixel: [u8; N], count: u32) -> Result<(), Self::Error> {
+        self.send_pixels((0..count).map(|_| pixel))
+    }
+}
+
+/// The display.
+pub struct St7789<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> {
+    display: Display<Wires<S, D>, ST7789, NoResetPin>,
+}
+
+impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<S, D> {
+    /// Sets it up, which takes a third of a second: on a bus of mode 0, or 3 where the panel has no chip select, with at most
+    /// 62.5 MHz, and a pin that is high for data. None where bus or pin fails.
+    pub fn new(bus: S, data: D, delay: &mut impl DelayNs) -> Option<Self> {
         // The panel's liquid turns the other way.
-        let builder = Builder::new(ST7789, interface).invert_colors(ColorInversion::Inverted);
+        let builder = Builder::new(ST7789, Wires { bus, data, room: [0; ROOM] }).invert_colors(ColorInversion::Inverted);
         let display = builder.display_size(SIDE as u16, SIDE as u16).init(delay).ok()?;
         Some(St7789 { display })
     }
 
     /// Sends what changed of a picture.
-    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Frame<L>) -> Result<(), Error<S, D>> {
+    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Frame<L>) -> Result<(), Error<S::Error, D::Error>> {
         const { assert!(L::WIDTH == SIDE && L::HEIGHT == SIDE) };
         for Window { columns: [left, right], rows: [top, bottom] } in frame.send() {
             let cells = frame.cells();
@@ -157,8 +205,7 @@ mod tests {
     /// Shows three pictures of moving squares, and compares the panel's memory with each.
     fn shows<L: Layout<Ink: Into<Rgb565>>>(ink: L::Ink) {
         let panel = RefCell::new(Panel::new());
-        let mut room = [0; 10];
-        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut room, &mut NoTime).unwrap();
+        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut NoTime).unwrap();
         assert!(panel.borrow().commands.ends_with(&[0x29]), "it is on");
         let mut frame = Box::new(Frame::<L>::new());
         for at in [0, 100, 220] {
