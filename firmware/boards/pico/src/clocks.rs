@@ -1,6 +1,5 @@
 //! The chip's clocks: 125 MHz, from the crystal.
 
-use embedded_hal::delay::DelayNs;
 use rp2040_hal::clocks::init_clocks_and_plls;
 use rp2040_hal::pac::{CLOCKS, PLL_SYS, PLL_USB, RESETS, XOSC};
 use rp2040_hal::watchdog::Watchdog;
@@ -16,14 +15,5 @@ pub const CLOCK: u32 = 8;
 pub fn start(crystal: XOSC, clocks: CLOCKS, plls: (PLL_SYS, PLL_USB), resets: &mut RESETS, watchdog: &mut Watchdog) {
     if init_clocks_and_plls(CRYSTAL, crystal, clocks, plls.0, plls.1, resets, watchdog).is_err() {
         panic!("the clocks do not start");
-    }
-}
-
-/// Waits by counting.
-pub struct Wait;
-
-impl DelayNs for Wait {
-    fn delay_ns(&mut self, nanoseconds: u32) {
-        cortex_m::asm::delay(nanoseconds / CLOCK);
     }
 }

@@ -1,9 +1,10 @@
 //! The ST7789: clock on GP18, data on GP19, chip select on GP17, data or command on GP20.
 
 use super::Free;
-use crate::clocks::Wait;
+use crate::clocks::CLOCK;
 use board_parts::St7789;
 use embedded_graphics::pixelcolor::Rgb565;
+use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::MODE_0;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 use pantin_figure::surface::{Frame, Layout, MonoPages, Rgb565Rows};
@@ -27,6 +28,15 @@ pub type Pins = (Free<Gpio17>, Free<Gpio18>, Free<Gpio19>, Free<Gpio20>);
 type Out<I> = Pin<I, FunctionSio<SioOutput>, PullDown>;
 type Lines = (Pin<Gpio19, FunctionSpi, PullDown>, Pin<Gpio18, FunctionSpi, PullDown>);
 type Bus = ExclusiveDevice<Spi<Enabled, SPI0, Lines, 8>, Out<Gpio17>, NoDelay>;
+
+/// Waits by counting.
+struct Wait;
+
+impl DelayNs for Wait {
+    fn delay_ns(&mut self, nanoseconds: u32) {
+        cortex_m::asm::delay(nanoseconds / CLOCK);
+    }
+}
 
 /// The display.
 pub struct Display(St7789<Bus, Out<Gpio20>>);
