@@ -131,19 +131,24 @@ fn debian(name: &str) -> &str {
     }
 }
 
-fn advice(name: &str) -> String {
+/// How to get it.
+pub fn advice(name: &str) -> String {
     let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {}", debian(name)));
-    let package = if name == "node" { "nodejs".to_owned() } else { name.to_owned() };
+    let (package, brewed) = match name {
+        "node" => ("nodejs".to_owned(), "node"),
+        "npm" => ("npm".to_owned(), "node"),
+        emulator => (format!("{emulator}-core"), "qemu"),
+    };
     let others = [
-        ("dnf", format!("sudo dnf install -y {package}{}", if name == "node" { "" } else { "-core" })),
-        ("pacman", format!("sudo pacman -S --needed {package}")),
-        ("apk", format!("sudo apk add {package}")),
-        ("brew", format!("brew install {}", if name == "node" { "node" } else { "qemu" })),
+        ("dnf", format!("sudo dnf install -y {package}")),
+        ("pacman", format!("sudo pacman -S --needed {}", package.trim_end_matches("-core"))),
+        ("apk", format!("sudo apk add {}", package.trim_end_matches("-core"))),
+        ("brew", format!("brew install {brewed}")),
     ];
     let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
     match apt.or_else(other) {
         Some(command) => format!("install it with: {command}"),
-        None if name == "node" => "install Node.js (https://nodejs.org)".into(),
+        None if brewed == "node" => "install Node.js (https://nodejs.org)".into(),
         None => "install QEMU (https://www.qemu.org/download)".into(),
     }
 }
