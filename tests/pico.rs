@@ -26,9 +26,8 @@ fn image(features: &str) -> (TempDir, PathBuf) {
     rp2040::image(firmware.elf()).unwrap()
 }
 
-fn in_step(image: &Path, display: Display, keys: &[&[u8]], timed: bool) -> Outcome {
-    let keys = Some(keys.iter().map(|letters| letters.to_vec()).collect());
-    let outcome = Request { keys, timed, ..Request::new(image, Some(display)) }.run().unwrap();
+fn in_step(request: Request, keys: &[&[u8]]) -> Outcome {
+    let outcome = request.in_step(keys).run().unwrap();
     assert_eq!(outcome.ended, "done");
     outcome
 }
@@ -77,7 +76,7 @@ fn shows_on_the_ssd1306_what_the_host_shows() {
     let (_folder, image) = image("face");
     let mut keys = through_all_clips(24);
     keys.extend([&b"i"[..], b"v", b"a", b"w", b"f", b"r", b".", b",", b"g", b"l"]);
-    equal(&in_step(&image, OLED, &keys, false), &expected(OLED, &keys));
+    equal(&in_step(Request::new(&image, OLED), &keys), &expected(OLED, &keys));
 }
 
 #[test]
@@ -87,8 +86,7 @@ fn shows_on_the_st7789_what_the_host_shows() {
     }
     let (_folder, image) = image("face,st7789");
     let keys = through_all_clips(12);
-    let outcome = in_step(&image, LCD, &keys, false);
-    equal(&outcome, &expected(LCD, &keys));
+    equal(&in_step(Request::new(&image, LCD), &keys), &expected(LCD, &keys));
 }
 
 #[test]
@@ -100,7 +98,7 @@ fn thirty_frames_a_second_hold_with_the_buses_own_times() {
         let (_folder, image) = image(features);
         for (clip, name) in ["walk", "hello", "greet"].into_iter().enumerate() {
             let keys: Vec<&[u8]> = std::iter::repeat_n(&b"n"[..], clip).chain([&b""[..]; 10]).collect();
-            let mut outcome = in_step(&image, display, &keys, true);
+            let mut outcome = in_step(Request::new(&image, display).timed(), &keys);
             equal(&outcome, &expected(display, &keys));
             outcome.frames.drain(..clip + 1);
             let worst = measures(&format!("{name} on {:?}", display.way), &outcome);

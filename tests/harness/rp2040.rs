@@ -29,16 +29,11 @@ pub struct Request {
     image: PathBuf,
     vectors: u32,
     display: Option<&'static str>,
-    /// Whether the buses take their time.
-    pub timed: bool,
-    /// To play in step: letters before each picture but the first.
-    pub keys: Option<Vec<Vec<u8>>>,
-    /// To play at its own pace: pictures.
-    pub pictures: usize,
-    /// Writes of pulse widths to wait for.
-    pub servos: usize,
-    /// Of the chip's time at most.
-    pub seconds: u32,
+    timed: bool,
+    keys: Option<Vec<Vec<u8>>>,
+    pictures: usize,
+    servos: usize,
+    seconds: u32,
     out: Option<PathBuf>,
     #[serde(skip)]
     shown: Option<Display>,
@@ -97,7 +92,8 @@ pub struct Outcome {
 
 impl Request {
     /// An image of the Pico as a UF2 file.
-    pub fn new(image: &Path, display: Option<Display>) -> Request {
+    pub fn new(image: &Path, display: impl Into<Option<Display>>) -> Request {
+        let display = display.into();
         let name = display.and_then(|display| if let Way::Bus(name) = display.way { Some(name) } else { None });
         let image = image.to_owned();
         Request {
@@ -117,6 +113,30 @@ impl Request {
     /// One without a second stage of the boot: its vectors are where the flash begins.
     pub fn bare(mut self) -> Request {
         self.vectors = 0x1000_0000;
+        self
+    }
+
+    /// Plays in step: a picture, and one more after each of the keys' letters.
+    pub fn in_step(mut self, keys: &[&[u8]]) -> Request {
+        self.keys = Some(keys.iter().map(|letters| letters.to_vec()).collect());
+        self
+    }
+
+    /// Plays so many pictures at its own pace.
+    pub fn pictures(mut self, count: usize) -> Request {
+        self.pictures = count;
+        self
+    }
+
+    /// Waits for so many pulse widths.
+    pub fn servos(mut self, count: usize) -> Request {
+        self.servos = count;
+        self
+    }
+
+    /// Lets the buses take the time that they are set to; else they take none.
+    pub fn timed(mut self) -> Request {
+        self.timed = true;
         self
     }
 
