@@ -168,10 +168,22 @@ fn pictures(display: Display, pixels: &[u8]) -> Vec<Picture> {
 
 /// A UF2 file of a linked image, in a folder that goes with it.
 pub fn image(elf: &Path) -> Result<(TempDir, PathBuf)> {
+    written(uf2::of_elf(&read(elf)?)?)
+}
+
+/// That of one for [`Request::bare`].
+pub fn bare_image(elf: &Path) -> Result<(TempDir, PathBuf)> {
+    written(uf2::of_bare_elf(&read(elf)?)?)
+}
+
+fn read(elf: &Path) -> Result<Vec<u8>> {
+    std::fs::read(elf).with_context(|| format!("cannot read {}", elf.display()))
+}
+
+fn written(image: Vec<u8>) -> Result<(TempDir, PathBuf)> {
     let folder = tempfile::Builder::new().prefix("pantin-uf2-").tempdir().context("cannot make a temporary folder")?;
     let path = folder.path().join("image.uf2");
-    let elf = std::fs::read(elf).with_context(|| format!("cannot read {}", elf.display()))?;
-    std::fs::write(&path, uf2::of_elf(&elf)?).context("cannot write the image")?;
+    std::fs::write(&path, image).context("cannot write the image")?;
     Ok((folder, path))
 }
 

@@ -31,6 +31,11 @@ pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
     Ok(blocks(&pages))
 }
 
+/// The same without a second stage: for an emulator, which needs none.
+pub fn of_bare_elf(elf: &[u8]) -> Result<Vec<u8>> {
+    Ok(blocks(&pages(elf)?))
+}
+
 /// The pages that a file's segments touch, by address.
 fn pages(elf: &[u8]) -> Result<BTreeMap<u32, [u8; PAGE]>> {
     let header = FileHeader32::<Endianness>::parse(elf).context("the image is no ELF file of 32 bits")?;
