@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
+use board_parts::servo::{self, Law, Servo};
 use harness::build::Firmware;
 use harness::display::{Display, Picture};
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request};
 use harness::{clips, paths, screen, setup, simulator};
+use pantin::{ChannelState, Clip, Kind, Player};
 use pantin_figure::rotation::Rotation;
 use tempfile::TempDir;
 
@@ -21,8 +23,12 @@ static CLIPS: LazyLock<(TempDir, Vec<PathBuf>)> = LazyLock::new(|| {
 const STRETCHES: [&str; 4] = ["decode", "place", "draw", "show"];
 
 fn image(features: &str) -> (TempDir, PathBuf) {
-    let clips: Vec<&Path> = CLIPS.1.iter().map(PathBuf::as_path).collect();
-    let firmware = Firmware::featuring(features, "pico", "pico", rp2040::TARGET, &clips).unwrap();
+    program("pico", features, &CLIPS.1)
+}
+
+fn program(name: &str, features: &str, clips: &[PathBuf]) -> (TempDir, PathBuf) {
+    let clips: Vec<&Path> = clips.iter().map(PathBuf::as_path).collect();
+    let firmware = Firmware::featuring(features, "pico", name, rp2040::TARGET, &clips).unwrap();
     rp2040::image(firmware.elf()).unwrap()
 }
 
@@ -105,4 +111,65 @@ fn thirty_frames_a_second_hold_with_the_buses_own_times() {
             assert!(worst < 1e3 / 30.0, "{worst} ms");
         }
     }
+}
+
+#[test]
+fn plays_at_its_own_pace() {
+    if setup::host_only("the Pico's own pace") {
+        return;
+    }
+    let (_folder, image) = image("");
+    const PICTURES: usize = 40;
+    let outcome = Request::new(&image, OLED).pictures(PICTURES).timed().run().unwrap();
+    assert_eq!((&*outcome.ended, outcome.pictures.len()), ("done", PICTURES));
+    let expected = expected(OLED, &[&b""[..]; 60]);
+    let mut from = 0;
+    for (index, picture) in outcome.pictures.iter().enumerate() {
+        // The first picture, which is sent whole, takes longer than a frame; no other one makes it late.
+        let within = if index <= 1 { 5 } else { 1 };
+        let at = expected[from..].iter().take(within).position(|(_, expected)| expected == picture);
+        from += at.unwrap_or_else(|| panic!("picture {index} is none of the next {within} from frame {from} on")) + 1;
+    }
+    let (first, last) = (&outcome.frames[2], &outcome.frames[PICTURES - 1]);
+    let period = (last.nanos - first.nanos) / (PICTURES - 3) as f64;
+    // Our walk has 120 frames a second. Pictures are shown as soon as they are sent, sooner or later by what changed.
+    assert!((period * 120.0 / 1e9 - 1.0).abs() < 0.02, "{period} ns");
+}
+
+#[test]
+fn servos_get_the_pulses_that_the_host_computes() {
+    if setup::host_only("servos on the Pico") {
+        return;
+    }
+    let walk = std::fs::read(&CLIPS.1[0]).unwrap();
+    let clip = Clip::new_checked(&walk).unwrap();
+    let (mut states, mut pose) = (vec![ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]);
+    let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
+    let joints = ["left-thigh", "right-thigh", "left-upper-arm", "right-upper-arm"];
+    let channels = joints.map(|joint| servo::channel(&clip, joint, Kind::Xrotation).unwrap());
+    let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: servo::slew(5500, clip.frame_time_ns()) };
+    let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
+
+    const FRAMES: usize = 160;
+    let (_folder, image) = program("servo", "", &CLIPS.1[..1]);
+    // Four outputs a frame, and what sets them up before.
+    let outcome = Request::new(&image, None).servos(4 * (FRAMES + 1) + 16).run().unwrap();
+    assert_eq!(outcome.ended, "done");
+    for pair in [3, 4] {
+        // A count is a microsecond, a period 20 milliseconds.
+        assert_eq!((outcome.slices[pair].div, outcome.slices[pair].top), (125 << 4, 20_000 - 1));
+    }
+    let frames = rp2040::pulses(&outcome.pulses, [3, 4]);
+    assert!(frames.len() >= FRAMES, "{} frames", frames.len());
+    let mut swing = [u16::MAX, 0];
+    for (index, (nanos, pulses)) in frames.iter().take(FRAMES).enumerate() {
+        let expected: Vec<u16> =
+            servos.iter_mut().zip(channels).map(|(servo, channel)| servo.follow(player.pose()[channel])).collect();
+        assert_eq!(pulses[..], expected, "frame {index}");
+        swing = [swing[0].min(pulses[0]), swing[1].max(pulses[0])];
+        let due = frames[0].0 + index as f64 * f64::from(clip.frame_time_ns());
+        assert!((nanos - due).abs() < 1e6, "frame {index} {} ns late", nanos - due);
+        player.step();
+    }
+    assert!(swing[1] - swing[0] > 300, "the thigh moves: {swing:?}");
 }

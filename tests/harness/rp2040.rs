@@ -187,6 +187,21 @@ fn written(image: Vec<u8>) -> Result<(TempDir, PathBuf)> {
     Ok((folder, path))
 }
 
+/// The four outputs of two pairs after each frame, with its time: writes that come within a millisecond are of one.
+pub fn pulses(writes: &[Pulse], pairs: [u32; 2]) -> Vec<(f64, [u16; 4])> {
+    let mut frames: Vec<(f64, [u16; 4])> = vec![];
+    let mut now = [0; 4];
+    for write in writes {
+        let Some(pair) = pairs.iter().position(|pair| *pair == write.channel) else { continue };
+        [now[2 * pair], now[2 * pair + 1]] = [write.value as u16, (write.value >> 16) as u16];
+        match frames.last_mut() {
+            Some(last) if write.nanos - last.0 < 1e6 => last.1 = now,
+            _ => frames.push((write.nanos, now)),
+        }
+    }
+    frames
+}
+
 /// The emulator's folder: `tests/pico` under `target`, with what its lock file names, which npm fetches the first time.
 pub fn emulator() -> Result<PathBuf> {
     static TURN: Mutex<()> = Mutex::new(());

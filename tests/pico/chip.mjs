@@ -43,6 +43,9 @@ export class Chip {
     for (let count = 0; this.ended === null; count += 1) {
       if (core.waiting) {
         clock.tick(Math.max(clock.nanosToNextAlarm, nanos));
+        // An interrupt ends the sleep, also one that is held back; the emulator forgets that of the processor's own timer.
+        if (core.pendingSystick || core.pendingInterrupts & core.enabledInterrupts) core.waiting = false;
+        if (this.time > seconds * 1e9) this.end('limit');
         continue;
       }
       const at = core.PC - FLASH;

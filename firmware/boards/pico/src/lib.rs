@@ -8,7 +8,7 @@ mod display;
 mod panic;
 
 pub use board::Pico;
-pub use clocks::{CLOCK, start};
+pub use clocks::{CLOCK, RATE, start};
 pub use display::Lit;
 
 #[cfg(feature = "defmt")]
