@@ -187,19 +187,19 @@ fn written(image: Vec<u8>) -> Result<(TempDir, PathBuf)> {
     Ok((folder, path))
 }
 
-/// The four outputs of two pairs after each frame, with its time: writes that come within a millisecond are of one.
+/// The four outputs of two pairs after each frame, which sets one after the other, with the time of the last. Before the first frame there
+/// are no pulses.
 pub fn pulses(writes: &[Pulse], pairs: [u32; 2]) -> Vec<(f64, [u16; 4])> {
-    let mut frames: Vec<(f64, [u16; 4])> = vec![];
     let mut now = [0; 4];
-    for write in writes {
-        let Some(pair) = pairs.iter().position(|pair| *pair == write.channel) else { continue };
-        [now[2 * pair], now[2 * pair + 1]] = [write.value as u16, (write.value >> 16) as u16];
-        match frames.last_mut() {
-            Some(last) if write.nanos - last.0 < 1e6 => last.1 = now,
-            _ => frames.push((write.nanos, now)),
+    let set: Vec<&Pulse> = writes.iter().skip_while(|write| write.value == 0).collect();
+    let frames = set.chunks_exact(now.len()).map(|frame| {
+        for write in frame {
+            let pair = 2 * usize::from(write.channel == pairs[1]);
+            now[pair..pair + 2].copy_from_slice(&[write.value as u16, (write.value >> 16) as u16]);
         }
-    }
-    frames
+        (frame[frame.len() - 1].nanos, now)
+    });
+    frames.collect()
 }
 
 /// The emulator's folder: `tests/pico` under `target`, with what its lock file names, which npm fetches the first time.
