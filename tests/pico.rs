@@ -1,5 +1,6 @@
 //! The Raspberry Pi Pico's own flash image in rp2040js: what its displays show over their buses is what the same program shows on the host.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -9,7 +10,9 @@ use harness::display::{Display, Picture};
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request};
 use harness::{clips, paths, screen, setup, simulator};
 use pantin::{ChannelState, Clip, Kind, Player};
+use pantin_app::Page;
 use pantin_figure::rotation::Rotation;
+use pantin_figure::surface::{Frame, MonoPages};
 use tempfile::TempDir;
 
 /// Our walk, as converted now, and a greeting with body and face.
@@ -173,4 +176,64 @@ fn servos_get_the_pulses_that_the_host_computes() {
         player.step();
     }
     assert!(swing[1] - swing[0] > 300, "the thigh moves: {swing:?}");
+}
+
+/// What a display shows that shows nothing but these words.
+fn words(text: &str) -> Picture {
+    let mut frame = Frame::<MonoPages<128, 64, 1024>>::new();
+    Page::new(&mut frame).write_str(text).unwrap();
+    let pixels = (0..OLED.width * OLED.height).map(|index| frame.pixel(index % OLED.width, index / OLED.width).is_on().into());
+    Picture { display: OLED, pixels: pixels.collect() }
+}
+
+fn says(outcome: &Outcome, text: &str) {
+    if let Some(difference) = screen::difference(outcome.last.as_ref().unwrap(), &words(text)) {
+        panic!("{text}: {difference}");
+    }
+}
+
+#[test]
+fn a_fault_is_told_on_the_display() {
+    if setup::host_only("a fault of the Pico") {
+        return;
+    }
+    let (_folder, image) = image("");
+    let outcome = Request::new(&image, OLED).pictures(usize::MAX).seconds(0.2).harm("fault").run().unwrap();
+    // Fed, the watchdog does not end what is told.
+    assert_eq!(outcome.ended, "limit");
+    let file = "boards/common/src/cortex_m/faults.rs";
+    let source = std::fs::read_to_string(paths::firmware().join(file)).unwrap();
+    let fault = "a fault of the processor: a bad access, or the stack ran out";
+    let (line, column) =
+        (1..).zip(source.lines()).find_map(|(number, line)| Some((number, line.find(&format!("panic!(\"{fault}"))?))).unwrap();
+    says(&outcome, &format!("panicked at {file}:{line}:{}:\n{fault}", column + 1));
+}
+
+#[test]
+fn a_program_that_hangs_is_started_anew() {
+    if setup::host_only("the Pico's watchdog") {
+        return;
+    }
+    let (_folder, image) = image("");
+    // The watchdog has two seconds' patience, from when it was last fed.
+    for (seconds, ended) in [(1.9, "limit"), (2.4, "watchdog")] {
+        let outcome = Request::new(&image, OLED).pictures(usize::MAX).seconds(seconds).harm("hang").run().unwrap();
+        assert_eq!(outcome.ended, ended);
+    }
+}
+
+#[test]
+fn a_damaged_clip_is_told_on_the_display() {
+    if setup::host_only("a damaged clip on the Pico") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let clip = folder.path().join("broken.ptn");
+    let mut bytes = std::fs::read(&CLIPS.1[1]).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&clip, bytes).unwrap();
+    let (_folder, image) = program("pico", "", &[clip]);
+    let outcome = Request::new(&image, OLED).seconds(0.05).run().unwrap();
+    says(&outcome, "broken\ncannot be played:\na CRC does not match: the clip is damaged");
 }

@@ -33,7 +33,8 @@ pub struct Request {
     keys: Option<Vec<Vec<u8>>>,
     pictures: usize,
     servos: usize,
-    seconds: u32,
+    harm: Option<&'static str>,
+    seconds: f64,
     out: Option<PathBuf>,
     #[serde(skip)]
     shown: Option<Display>,
@@ -75,7 +76,7 @@ pub struct Slice {
 /// What came of it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Outcome {
-    /// Why it ended: `done`, `limit`, or with a code of the program.
+    /// Why it ended: `done`, `limit`, `watchdog`, or with a code of the program.
     pub ended: String,
     /// The frames shown.
     pub frames: Vec<Frame>,
@@ -88,6 +89,9 @@ pub struct Outcome {
     /// What the display showed after each frame.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
+    /// What it showed at the end.
+    #[serde(skip)]
+    pub last: Option<Picture>,
 }
 
 impl Request {
@@ -104,7 +108,8 @@ impl Request {
             keys: None,
             pictures: 0,
             servos: 0,
-            seconds: 60,
+            harm: None,
+            seconds: 60.0,
             out: None,
             shown: display,
         }
@@ -134,6 +139,18 @@ impl Request {
         self
     }
 
+    /// Ends it after so many seconds of the chip's time.
+    pub fn seconds(mut self, seconds: f64) -> Request {
+        self.seconds = seconds;
+        self
+    }
+
+    /// Strikes it after a tenth of a second with a `fault` of the processor, or has it `hang`.
+    pub fn harm(mut self, harm: &'static str) -> Request {
+        self.harm = Some(harm);
+        self
+    }
+
     /// Lets the buses take the time that they are set to; else they take none.
     pub fn timed(mut self) -> Request {
         self.timed = true;
@@ -155,6 +172,7 @@ impl Request {
         let mut outcome: Outcome = serde_json::from_slice(&output.stdout).context("run.mjs printed no JSON")?;
         if let Some(display) = self.shown {
             outcome.pictures = pictures(display, &std::fs::read(&pixels).context("there are no pictures")?);
+            outcome.last = outcome.pictures.pop();
         }
         Ok(outcome)
     }

@@ -1,4 +1,4 @@
-//! What a fresh machine may lack: Rust targets and QEMU. Each is installed where that is possible, and said.
+//! What a fresh machine may lack: Rust targets, QEMU, Node.js and npm. Each is installed where that is possible, and said.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -7,15 +7,15 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::paths;
 
-/// Set to run without QEMU: tests that need it skip, and say so.
+/// Set to run without QEMU, Node.js and npm: tests that need them skip, and say so.
 pub const HOST_ONLY: &str = "PANTIN_HOST_ONLY";
 
-/// Whether QEMU tests are to be skipped; says it where no test runner swallows it.
+/// Whether tests in emulators are to be skipped; says it where no test runner swallows it.
 pub fn host_only(test: &str) -> bool {
     let skip = std::env::var_os(HOST_ONLY).is_some_and(|value| !value.is_empty());
     if skip {
         use std::io::Write;
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {test} needs QEMU ({HOST_ONLY} is set)");
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {test} needs an emulator ({HOST_ONLY} is set)");
     }
     skip
 }

@@ -27,6 +27,8 @@ export class Chip {
     // Called with the cycles of each marked stretch.
     this.onStretch = () => {};
     chip.onBreak = (code) => this.break(code);
+    chip.peripherals[0x40058].onWatchdogTrigger = () => this.end('watchdog');
+    this.hangs = false;
   }
 
   // In nanoseconds since the start.
@@ -41,7 +43,7 @@ export class Chip {
     const nanos = 1e9 / 125e6;
     let begun = 0;
     for (let count = 0; this.ended === null; count += 1) {
-      if (core.waiting) {
+      if (core.waiting || this.hangs) {
         clock.tick(Math.max(clock.nanosToNextAlarm, nanos));
         // An interrupt ends the sleep, also one that is held back; the emulator forgets that of the processor's own timer.
         if (core.pendingSystick || core.pendingInterrupts & core.enabledInterrupts) core.waiting = false;
@@ -59,6 +61,16 @@ export class Chip {
       }
     }
     return this.ended;
+  }
+
+  // Harm that comes after so many seconds: a fault of the processor, or it hangs.
+  harm(kind, seconds) {
+    const { chip } = this;
+    const strike = () => {
+      if (kind === 'hang') this.hangs = true;
+      else chip.core.PC = chip.readUint32(chip.core.VTOR + 12) & ~1;
+    };
+    chip.clock.createAlarm(strike).schedule(seconds * 1e9);
   }
 
   end(why) {

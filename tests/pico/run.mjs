@@ -6,8 +6,9 @@
 //   keys      where the program is to play in step: letters before each picture but the first, as arrays of bytes; else null
 //   pictures  where it plays at its own pace: as many are waited for
 //   servos    how many writes of pulse widths are waited for
+//   harm      "fault", "hang" or null: what strikes after a tenth of a second
 //   seconds   of the chip's time at most
-//   out       a file for the pictures: their pixels, 16 bits each with the low byte first
+//   out       a file for the pictures: their pixels, 16 bits each with the low byte first; the last one is what is shown at the end
 
 import { closeSync, openSync, readFileSync, writeSync } from 'node:fs';
 import { Chip } from './chip.mjs';
@@ -74,7 +75,11 @@ chip.pwm.channels.forEach((channel, index) => {
   };
 });
 
+if (request.harm) machine.harm(request.harm, 0.1);
 const ended = machine.run(request.seconds);
-if (out) closeSync(out);
+if (out) {
+  writeSync(out, Buffer.from(display.picture().buffer));
+  closeSync(out);
+}
 const slices = chip.pwm.channels.map(({ top, div }) => ({ top, div }));
 console.log(JSON.stringify({ ended, frames, pulses, slices, printed: Buffer.from(machine.printed).toString() }));
