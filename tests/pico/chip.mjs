@@ -7,6 +7,8 @@ import { load } from './uf2.mjs';
 // `mov r9, r9` and `mov r10, r10`: the firmware's markers, around each stretch that is measured.
 const [START, STOP] = [0x46c9, 0x46d2];
 const FLASH = 0x10000000;
+// Nanoseconds of a step while the program hangs.
+const HANGS = 1e6;
 // Instructions between looks at the time.
 const STRIDE = 4096;
 
@@ -27,7 +29,12 @@ export class Chip {
     // Called with the cycles of each marked stretch.
     this.onStretch = () => {};
     chip.onBreak = (code) => this.break(code);
-    chip.peripherals[0x40058].onWatchdogTrigger = () => this.end('watchdog');
+    const watchdog = chip.peripherals[0x40058];
+    watchdog.onWatchdogTrigger = () => {
+      // It would bite for ever.
+      watchdog.alarm.enable = false;
+      this.end('watchdog');
+    };
     this.hangs = false;
   }
 
@@ -44,7 +51,7 @@ export class Chip {
     let begun = 0;
     for (let count = 0; this.ended === null; count += 1) {
       if (core.waiting || this.hangs) {
-        clock.tick(Math.max(clock.nanosToNextAlarm, nanos));
+        clock.tick(this.hangs ? HANGS : Math.max(clock.nanosToNextAlarm, nanos));
         // An interrupt ends the sleep, also one that is held back; the emulator forgets that of the processor's own timer.
         if (core.pendingSystick || core.pendingInterrupts & core.enabledInterrupts) core.waiting = false;
         if (this.time > seconds * 1e9) this.end('limit');
