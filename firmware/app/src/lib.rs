@@ -10,6 +10,7 @@ mod hud;
 pub mod keys;
 mod log;
 mod options;
+mod page;
 mod run;
 mod scene;
 mod show;
@@ -22,6 +23,7 @@ pub use board::{Board, Exit};
 pub use crowd::{FIGURES, Seat, crowd};
 pub use keys::Key;
 pub use options::{Mode, Options};
+pub use page::Page;
 pub use run::{NEXT, QUIT, RIG, SHOWN, run};
 pub use scene::Entry;
 #[cfg(feature = "update")]

@@ -1,10 +1,9 @@
 //! The board's display, timer and line for the program.
 
-use crate::buttons::Buttons;
-use crate::display;
 use crate::registers::uart0;
+use crate::{buttons, display};
 use board_common::cortex_m::SysTick;
-use board_common::markers;
+use board_common::{Buttons, markers};
 use pantin_app::{Board, Key};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Frame, Gray4Rows};
@@ -27,7 +26,7 @@ pub struct Lm3s {
 impl Lm3s {
     pub fn new() -> Self {
         display::start();
-        Lm3s { timer: SysTick::new(CLOCK_NS), buttons: Buttons::new() }
+        Lm3s { timer: SysTick::new(CLOCK_NS), buttons: buttons::start() }
     }
 }
 
@@ -44,7 +43,7 @@ impl Board for Lm3s {
     }
 
     fn wait_ticks(&mut self) -> u32 {
-        self.timer.wait()
+        self.timer.wait(|| {})
     }
 
     fn send(&mut self, bytes: &[u8]) {
@@ -59,7 +58,7 @@ impl Board for Lm3s {
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.buttons.pressed()
+        self.buttons.pressed(buttons::read())
     }
 
     #[inline(always)]
