@@ -16,4 +16,5 @@ pub mod setup;
 pub mod simulator;
 pub mod sync;
 pub mod vectors;
+pub mod web;
 pub mod wire;

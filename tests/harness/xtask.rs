@@ -19,6 +19,7 @@ enum Command {
     Strips(cmd::strips::Strips),
     Test(cmd::test::Test),
     Vectors(cmd::vectors::Vectors),
+    Web(cmd::web::Web),
 }
 
 fn main() -> ExitCode {
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Strips(strips) => strips.run(),
         Command::Test(test) => test.run(),
         Command::Vectors(vectors) => vectors.run(),
+        Command::Web(web) => web.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,7 +4,6 @@ mod batch;
 mod channel_bound;
 pub mod convert;
 mod edits;
-mod errors;
 pub mod expand;
 pub mod face;
 pub mod info;

@@ -11,3 +11,4 @@ pub mod steps;
 pub mod strips;
 pub mod test;
 pub mod vectors;
+pub mod web;

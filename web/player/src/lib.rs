@@ -21,12 +21,15 @@ mod picture;
 mod source;
 mod world;
 
+use core::mem::MaybeUninit;
 use facts::{Facts, Trouble};
 use memory::Only;
 use picture::Stroke;
 use world::World;
 
-static WORLD: Only<World> = Only::new(World::new());
+/// Made at the first call.
+static WORLD: Only<MaybeUninit<World>> = Only::new(MaybeUninit::zeroed());
+static MADE: Only<bool> = Only::new(false);
 
 #[panic_handler]
 fn panic(_info: &core::panic::PanicInfo) -> ! {
@@ -35,7 +38,12 @@ fn panic(_info: &core::panic::PanicInfo) -> ! {
 
 fn with<T>(act: impl FnOnce(&mut World) -> T) -> T {
     // SAFETY: exports are the only callers, none of them calls another or the page, and the memory has no threads.
-    act(unsafe { WORLD.get() })
+    let (world, made) = unsafe { (WORLD.get(), MADE.get()) };
+    if !core::mem::replace(made, true) {
+        world.write(World::new());
+    }
+    // SAFETY: it was written before it is read.
+    act(unsafe { world.assume_init_mut() })
 }
 
 fn code(outcome: Result<(), Trouble>) -> u32 {

@@ -1,0 +1,95 @@
+//! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
+
+mod pack;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde_json::json;
+
+use crate::build::{self, Build};
+use crate::{paths, setup};
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// A file of the player, or of the converter, and its bytes.
+pub struct Size {
+    /// Its name in the site.
+    pub name: &'static str,
+    /// As it is served without compression.
+    pub bytes: usize,
+}
+
+/// What a page that plays clips loads.
+pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
+/// What is loaded beside it once a motion is dropped.
+pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
+
+/// Builds the site into a folder, in place of what of it was there.
+pub fn build(out: &Path) -> Result<()> {
+    let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
+    make(&out.join("clips"))?;
+    setup::rust_target(TARGET)?;
+    write(&out.join(PLAYER[1]), &module("pantin-web-player", "release")?)?;
+    write(&out.join(CONVERTER[1]), &module("pantin-web-converter", "converter")?)?;
+    for entry in listed(&paths::root().join("web/page"))? {
+        let name = entry.file_name().unwrap_or_default();
+        let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
+        let scripted = entry.extension().is_some_and(|extension| extension == "js");
+        write(&out.join(name), &if scripted { bare(&bytes) } else { bytes })?;
+    }
+    clips(out)
+}
+
+/// Bytes of the site's files, of those that are there.
+pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
+    let bytes = |name| std::fs::metadata(out.join(name)).ok().map(|file| file.len() as usize);
+    names.iter().filter_map(|name| Some(Size { name, bytes: bytes(name)? })).collect()
+}
+
+/// A package of the web workspace as a module.
+fn module(package: &str, profile: &str) -> Result<Vec<u8>> {
+    let arguments = ["--profile", profile, "--package", package, "--target", TARGET];
+    let product = build::cargo(&Build {
+        workspace: paths::root().join("web"),
+        arguments: arguments.map(OsString::from).into(),
+        environment: vec![],
+        product: package.replace('-', "_"),
+    })?;
+    let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
+    pack::pack(&bytes).with_context(|| product.display().to_string())
+}
+
+/// A script without indents and without lines of comment alone: our scripts have no text of several lines in which they would count.
+fn bare(script: &[u8]) -> Vec<u8> {
+    let lines = script.split(|&byte| byte == b'\n').map(|line| line.trim_ascii()).filter(|line| !line.is_empty());
+    lines.filter(|line| !line.starts_with(b"//")).flat_map(|line| [line, b"\n"].concat()).collect()
+}
+
+/// Our own clips, and the list of them that the page reads.
+fn clips(out: &Path) -> Result<()> {
+    let mut list = vec![];
+    for folder in ["motions", "motions/face"] {
+        for clip in listed(&paths::root().join(folder))? {
+            if clip.extension().is_some_and(|extension| extension == "ptn") {
+                let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
+                let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                write(&out.join("clips").join(&name).with_extension("ptn"), &bytes)?;
+                list.push(json!({ "name": name, "file": format!("clips/{name}.ptn"), "bytes": bytes.len() }));
+            }
+        }
+    }
+    write(&out.join("clips.json"), json!(list).to_string().as_bytes())
+}
+
+fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file()).collect();
+    files.sort();
+    Ok(files)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    pantin_tools::cmd::write_whole(path, bytes)
+}
