@@ -21,5 +21,7 @@ pub mod play;
 #[cfg(feature = "cli")]
 pub mod render;
 #[cfg(feature = "cli")]
+pub mod serve;
+#[cfg(feature = "cli")]
 pub mod train;
 pub mod verify;

@@ -76,7 +76,7 @@ pub fn component(name: &str) -> Result<()> {
     Ok(())
 }
 
-/// An emulator or Node.js, from `PATH`; if it is missing, the error says how to get it.
+/// An emulator, Node.js or Chromium, from `PATH`; if it is missing, the error says how to get it.
 pub fn emulator(name: &str) -> Result<PathBuf> {
     paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))
 }
@@ -134,17 +134,19 @@ fn debian(name: &str) -> &str {
 fn advice(name: &str) -> String {
     let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {}", debian(name)));
     let package = if name == "node" { "nodejs".to_owned() } else { name.to_owned() };
+    let emulator = name.starts_with("qemu");
     let others = [
-        ("dnf", format!("sudo dnf install -y {package}{}", if name == "node" { "" } else { "-core" })),
+        ("dnf", format!("sudo dnf install -y {package}{}", if emulator { "-core" } else { "" })),
         ("pacman", format!("sudo pacman -S --needed {package}")),
         ("apk", format!("sudo apk add {package}")),
-        ("brew", format!("brew install {}", if name == "node" { "node" } else { "qemu" })),
+        ("brew", format!("brew install {}", if emulator { "qemu" } else { name })),
     ];
     let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
     match apt.or_else(other) {
         Some(command) => format!("install it with: {command}"),
-        None if name == "node" => "install Node.js (https://nodejs.org)".into(),
-        None => "install QEMU (https://www.qemu.org/download)".into(),
+        None if emulator => "install QEMU (https://www.qemu.org/download)".into(),
+        None if name == "chromium" => "install Chromium (https://www.chromium.org)".into(),
+        None => "install Node.js (https://nodejs.org)".into(),
     }
 }
 

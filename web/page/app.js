@@ -94,6 +94,7 @@ async function gallery() {
     small.setAttribute("bare", "");
     small.inert = true;
     small.loop = true;
+    small.addEventListener("ready", () => small.seek(small.frames >> 1), { once: true });
     small.setAttribute("src", clip.file);
     clip.button.onpointerenter = () => small.play();
     clip.button.onpointerleave = () => small.pause();

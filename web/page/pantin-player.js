@@ -14,8 +14,8 @@ const TROUBLES = [
 ];
 const HOME = { orbit: -50, tilt: 12 };
 const LOOKS = {
-  light: { paper: [250, 250, 247], tones: [[150, 160, 165], [38, 44, 52], [198, 92, 8], [0, 104, 168], [38, 44, 52], [150, 160, 165]] },
-  dark: { paper: [19, 22, 27], tones: [[110, 130, 130], [255, 240, 215], [255, 166, 77], [96, 196, 255], [255, 240, 215], [110, 130, 130]] },
+  light: { paper: [250, 250, 247], tones: [[105, 118, 126], [38, 44, 52], [198, 92, 8], [0, 104, 168], [38, 44, 52], [105, 118, 126]] },
+  dark: { paper: [19, 22, 27], tones: [[170, 190, 195], [255, 240, 215], [255, 166, 77], [96, 196, 255], [255, 240, 215], [170, 190, 195]] },
 };
 
 let compiled;
@@ -41,7 +41,7 @@ p { margin: .3em 0 0; min-height: 1.4em; }
 :host([bare]) .bar, :host([bare]) p { display: none; }
 </style>
 <div class="stage" part="stage" tabindex="0" role="img" aria-label="animated figure"><canvas></canvas></div>
-<div class="bar" part="bar"><button type="button" aria-label="Play"></button><input type="range" min="0" max="0" step="1" value="0" aria-label="Frame"><output></output></div>
+<div class="bar" part="bar"><button type="button" aria-label="Play"><svg viewBox="0 0 10 10" width="14" height="14" fill="currentColor" aria-hidden="true"><path/></svg></button><input type="range" min="0" max="0" step="1" value="0" aria-label="Frame"><output></output></div>
 <p role="status"></p>`;
 
 const mix = (paper, ink, part) => `rgb(${paper.map((value, index) => Math.round(value + (ink[index] - value) * part))})`;
@@ -324,7 +324,7 @@ export class PantinPlayer extends HTMLElement {
         if (before) context.stroke();
         context.beginPath();
         context.strokeStyle = ink;
-        context.lineWidth = what === 0 ? thin / 2 : Math.max(thin, width);
+        context.lineWidth = what === 0 ? thin / 1.5 : Math.max(thin, width);
       }
       before = style;
       if (what === 4) context.arc(x, y, u, 0, 7), context.fill();
@@ -335,7 +335,7 @@ export class PantinPlayer extends HTMLElement {
 
   #told() {
     const { frame, frames, playable } = this.facts;
-    this.button.textContent = this.paused ? "\u25b6\ufe0e" : "\u23f8\ufe0e";
+    this.button.querySelector("path").setAttribute("d", this.paused ? "M2 1v8l7-4z" : "M2 1h2v8H2zM6 1h2v8H6z");
     this.button.setAttribute("aria-label", this.paused ? "Play" : "Pause");
     this.range.max = Math.max(0, playable - 1);
     this.range.value = frame;

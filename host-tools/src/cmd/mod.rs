@@ -10,6 +10,7 @@ pub mod info;
 mod max_error;
 pub mod play;
 pub mod render;
+pub mod serve;
 pub mod train;
 
 use anyhow::{Context, Result};

@@ -1,6 +1,8 @@
 //! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
 
+pub mod browser;
 mod pack;
+pub mod slow;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
