@@ -178,7 +178,9 @@ const cases = {
       [original, converted].forEach((one) => (one.look = "oled"));
       return [original, converted].map(window.greys);
     });
-    return { saved, sides, greys, report: await page.locator("#report").innerText(), parts: await page.evaluate(() => window.parts) };
+    const report = await page.locator("#report").innerText();
+    const seconds = +/converted in\s*([\d.]+)/.exec(report)[1];
+    return { saved, sides, greys, seconds, report, parts: await page.evaluate(() => window.parts) };
   },
 
   // Files that cannot be converted, chosen by the button: what is said, and how soon.

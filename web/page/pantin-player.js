@@ -245,7 +245,8 @@ export class PantinPlayer extends HTMLElement {
     if (playable && (at < 0 || at >= playable)) {
       if (this.loop) at = ((at % playable) + playable) % playable;
       else {
-        this.seek(at < 0 ? 0 : playable - 1);
+        const end = at < 0 ? 0 : playable - 1;
+        if (this.frame !== end) this.seek(end);
         return this.pause();
       }
     }

@@ -5,9 +5,12 @@ mod pack;
 pub mod slow;
 
 use std::ffi::OsString;
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use anyhow::{Context, Result};
+use pantin_tools::serve::{Site, serve};
 use serde_json::json;
 
 use crate::build::{self, Build};
@@ -42,6 +45,21 @@ pub fn build(out: &Path) -> Result<()> {
         write(&out.join(name), &if scripted { bare(&bytes) } else { bytes })?;
     }
     clips(out)
+}
+
+/// Builds the site into `target/web` and serves it, with some more files by their paths, as long as this program runs; returns the page's
+/// address.
+pub fn served(extras: Vec<(String, Vec<u8>)>) -> Result<String> {
+    let folder = paths::root().join("target/web");
+    build(&folder)?;
+    let mut site = Site::read(&folder)?;
+    for (path, bytes) in extras {
+        site.add(path, bytes)?;
+    }
+    let listener = TcpListener::bind("127.0.0.1:0").context("cannot listen on this machine")?;
+    let address = format!("http://{}/", listener.local_addr()?);
+    thread::spawn(move || serve(&listener, site));
+    Ok(address)
 }
 
 /// Bytes of the site's files, of those that are there.
