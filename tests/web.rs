@@ -194,12 +194,16 @@ impl Dropped {
         let lit = original.pixels.iter().filter(|pixel| **pixel > 0).count();
         assert!(lit > 20 && different < lit, "{different} of {lit} pixels differ");
         let words = self.outcome["report"].as_str().unwrap();
-        assert!(words.contains("error, greatest") && words.contains(&format!("{} bytes", bytes.len())) || fps.is_some(), "{words}");
+        assert!(
+            words.contains("error, greatest") && words.contains(&format!("{} bytes", bytes.len())) || fps.is_some(),
+            "{words}"
+        );
     }
 }
 
 fn decoded(base64: &str) -> Vec<u8> {
-    let value = |letter: u8| b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/".iter().position(|&one| one == letter);
+    let value =
+        |letter: u8| b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/".iter().position(|&one| one == letter);
     let bits: Vec<usize> = base64.bytes().filter_map(value).collect();
     let group = |group: &[usize]| {
         let all = group.iter().chain(&[0; 3]).take(4).fold(0, |all, bits| all << 6 | bits) as u32;
@@ -267,7 +271,7 @@ fn what_cannot_be_converted_is_refused_in_words() {
         "nonsense.bvh:4",
         "picture.png: unknown kind of file",
         "short.glb: the file is shorter than its head says",
-        "--fps gives the frames a second",
+        "“Frames a second” gives the frames a second",
     ];
     for (outcome, words) in outcomes.as_array().unwrap().iter().zip(words) {
         assert!(outcome["said"].as_str().unwrap().contains(words), "{outcome} should say {words}");

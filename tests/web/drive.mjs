@@ -110,10 +110,10 @@ const cases = {
     const still = await opened(browser, { reducedMotion: "reduce", colorScheme: "dark" });
     await still.waitForTimeout(300);
     assert.equal((await state(still)).paused, true);
-    const seen = () => still.evaluate(() => window.seen(player));
-    const dark = await seen();
+    const dark = await still.evaluate(() => window.seen(player));
+    assert.ok(dark.colours > 10);
     await still.emulateMedia({ colorScheme: "light" });
-    assert.ok(dark.colours > 10 && (await seen()).hash !== dark.hash, "colours follow the scheme");
+    await still.waitForFunction((hash) => window.seen(player).hash !== hash, dark.hash);
     assert.deepEqual(still.troubles, []);
   },
 

@@ -114,8 +114,11 @@ gallery().catch((error) => table($("facts"), [["gallery", error.message]]));
 
 let worker = null;
 
+// The encoder speaks of the host tool's options: here they are fields.
+const here = (text) => text.replaceAll("--fps", "\u201cFrames a second\u201d").replaceAll("--cm-per-unit", "\u201ccm a unit\u201d");
+
 function trouble(text) {
-  $("trouble").textContent = text;
+  $("trouble").textContent = here(text);
 }
 
 function done() {
@@ -144,7 +147,7 @@ async function take(files) {
   $("step").textContent = `reading ${first.name}`;
   const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() }))).catch(() => null);
   if (!given) return done(), trouble(`${first.name}: cannot be read.`);
-  const options = { max_error_cm: +$("cm").value, effort: $("effort").value, fps: +$("fps").value || null };
+  const options = { max_error_cm: +$("cm").value, effort: $("effort").value, fps: +$("fps").value || null, cm_per_unit: +$("unit").value || null };
   worker = new Worker("converter.js", { type: "module" });
   worker.onerror = (event) => (done(), trouble(`The converter stopped: ${event.message ?? "it could not be loaded"}`));
   worker.onmessage = ({ data }) => {
@@ -185,7 +188,7 @@ async function shown({ report, clip, header, rig, poses, seconds }, file) {
   ]);
   $("said").replaceChildren(...report.said.map((sentence) => {
     const item = document.createElement("li");
-    item.textContent = sentence;
+    item.textContent = here(sentence);
     return item;
   }));
   const table_ = { rig, poses, frames, frameTime: frame_time_ns, lengthExponent: length_exponent };

@@ -97,7 +97,10 @@ export class PantinPlayer extends HTMLElement {
   attributeChangedCallback(name, old, value) {
     if (name === "src" && value !== null) this.load(value).catch(() => {});
     if (name === "speed") this.speed = +value || 1;
-    if (name === "look") this.#aim();
+    if (name === "look") {
+      this.#aim();
+      this.#tell("change");
+    }
   }
 
   get frames() { return this.facts.frames; }

@@ -37,8 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let place = (arguments.bind, arguments.port);
     let listener = TcpListener::bind(place);
-    let listener =
-        listener.with_context(|| format!("cannot listen on {}, port {}: --port takes another", place.0, place.1))?;
+    let listener = listener.with_context(|| format!("cannot listen on {}, port {}: --port takes another", place.0, place.1))?;
     let mut out = std::io::stdout();
     writeln!(out, "http://{}/ (Ctrl-C ends it)", listener.local_addr()?)?;
     out.flush()?;

@@ -70,7 +70,10 @@ fn times(browser: &Browser, site: &str) -> Result<Vec<Goal>> {
     let first = measured["first"].as_f64().context("time to the first frame")?;
     let mut goals = vec![Goal::told("time to the first frame of our walk, no cache, median of 5", format!("{first:.0} ms"))];
     goals.extend(frames.iter().map(|(what, one)| {
-        Goal::told(format!("a frame in Chromium, decoded and drawn, {what}"), format!("{:.2} ms", one["ms"].as_f64().unwrap_or_default()))
+        Goal::told(
+            format!("a frame in Chromium, decoded and drawn, {what}"),
+            format!("{:.2} ms", one["ms"].as_f64().unwrap_or_default()),
+        )
     }));
     Ok(goals)
 }
@@ -86,7 +89,10 @@ fn conversion(browser: &Browser, site: &str) -> Result<Vec<Goal>> {
     for effort in ["fast", "default"] {
         let done = browser.drive("drop", &json!({ "site": site, "files": [motion], "effort": effort }))?;
         let seconds = done["seconds"].as_f64().context("time of the conversion")?;
-        goals.push(Goal::told(format!("6.5 s of captured motion converted in the page, effort {effort}"), format!("{seconds:.1} s")));
+        goals.push(Goal::told(
+            format!("6.5 s of captured motion converted in the page, effort {effort}"),
+            format!("{seconds:.1} s"),
+        ));
     }
     Ok(goals)
 }

@@ -40,10 +40,10 @@ pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dy
         Some("best") => Level::Best,
         _ => Level::Default,
     };
-    let fps = options["fps"].as_f64();
+    let (fps, cm_per_unit) = (options["fps"].as_f64(), options["cm_per_unit"].as_f64());
     let (path, _) = files.iter().find(|(path, _)| import::is_motion(path)).or(files.first()).context("no file")?;
     let path = path.clone();
-    let imported = import::load(&path, &Options { fps, files: Files::Given(files.into()), ..Options::default() })?;
+    let imported = import::load(&path, &Options { fps, cm_per_unit, files: Files::Given(files.into()), ..Options::default() })?;
     let mut said = imported.warnings;
     said.push(imported.units);
     let mut motion = imported.motion;

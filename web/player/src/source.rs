@@ -135,11 +135,8 @@ impl Source {
 
     /// All but the kind.
     pub fn facts(&self) -> Facts {
-        let facts = Facts {
-            playable: self.playable(),
-            channels: self.rig().map_or(0, |rig| rig.channels() as u32),
-            ..Facts::NONE
-        };
+        let facts =
+            Facts { playable: self.playable(), channels: self.rig().map_or(0, |rig| rig.channels() as u32), ..Facts::NONE };
         match self {
             Source::Nothing => facts,
             Source::Arriving(arriving) => {

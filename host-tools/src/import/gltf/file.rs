@@ -52,7 +52,13 @@ impl File {
         });
         match wrong.or_else(|| missing_node(&root)) {
             Some(message) => Err(place(message)),
-            None => Ok(File { buffers: vec![OnceCell::new(); root.buffers.len()], root, path: path.into(), files: files.clone(), bin }),
+            None => Ok(File {
+                buffers: vec![OnceCell::new(); root.buffers.len()],
+                root,
+                path: path.into(),
+                files: files.clone(),
+                bin,
+            }),
         }
     }
 

@@ -2,8 +2,8 @@
 
 pub mod rig;
 
-use super::text::{number_in, shown};
 use super::Options;
+use super::text::{number_in, shown};
 use crate::motion::Rig;
 use anyhow::{Result, anyhow};
 use std::path::Path;
