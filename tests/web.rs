@@ -9,7 +9,7 @@ use std::time::Duration;
 use harness::display::{GREYS, Picture};
 use harness::web::browser::{Browser, skipped};
 use harness::web::{self, slow};
-use harness::{build, clips, paths, screen, simulator};
+use harness::{build, clips, paths, screen, setup, simulator};
 use pantin::Clip;
 use pantin_figure::rotation::Rotation;
 use pantin_tools::expand::expand;
@@ -67,7 +67,8 @@ fn own(name: &str) -> PathBuf {
 }
 
 fn picture(greys: &Value) -> Picture {
-    let pixels = greys.as_array().unwrap().iter().map(|grey| grey.as_u64().unwrap() as u16).collect();
+    let pixels = greys.as_str().unwrap().chars().map(|grey| grey.to_digit(16).unwrap() as u16).collect::<Vec<_>>();
+    assert_eq!(pixels.len(), GREYS.width * GREYS.height);
     Picture { display: GREYS, pixels }
 }
 
@@ -106,6 +107,20 @@ fn the_canvas_shows_what_the_host_shows() {
     }
     assert!(count > 500);
     println!("{count} pictures are equal");
+}
+
+#[test]
+fn the_module_stands_whatever_bytes_it_gets() {
+    if skipped("the player's module") {
+        return;
+    }
+    let module = paths::root().join("target/web").join(web::PLAYER[1]);
+    assert!(!STAGE.1.is_empty(), "it was built");
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/module.mjs")).arg(module).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
+    let output = node.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! The server against hostile clients: it answers, or drops them, and goes on serving others.
 
 use pantin_tools::serve::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, Site, serve};
+use std::fs;
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -84,6 +86,34 @@ fn what_was_not_given_is_not_there() {
         assert!(["404", "400"].contains(&status(&answer).as_str()), "{path}: {}", status(&answer));
     }
     serves(place);
+}
+
+/// A folder with a page, and with what `name` says in `content`.
+fn folder(files: &[(&str, &[u8])]) -> std::path::PathBuf {
+    let folder = std::env::temp_dir().join(format!("pantin-serve-{}-{}", std::process::id(), files.len()));
+    fs::create_dir_all(folder.join("clips")).unwrap();
+    for (name, content) in files {
+        fs::write(folder.join(name), content).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn a_site_is_a_folder_with_a_page_and_clips_are_clips() {
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.ptn");
+    let with = folder(&[("index.html", PAGE), ("clips.json", b"[]"), ("clips/own.ptn", b"own"), ("text.ptn", b"no clip")]);
+    let mut site = Site::read(&with).unwrap();
+    assert_eq!(site.file("/clips/own.ptn").unwrap().bytes, b"own");
+    site.show(std::slice::from_ref(&walk)).unwrap();
+    assert!(site.file("/clips/own.ptn").is_none());
+    assert_eq!(site.file("/clips/0.ptn").unwrap().bytes, fs::read(&walk).unwrap());
+    assert_eq!(site.file("/clips.json").unwrap().bytes, br#"[{"bytes":658,"file":"clips/0.ptn","name":"walk"}]"#);
+    let message = |outcome: anyhow::Result<()>| format!("{:#}", outcome.unwrap_err());
+    assert!(message(site.show(&[with.join("text.ptn")])).contains("text.ptn: not a pantin clip; `pantin convert` makes clips"));
+    assert!(message(site.show(&[with.join("absent.ptn")])).contains("absent.ptn: cannot be read"));
+    let without = folder(&[("clips.json", b"[]")]);
+    assert!(message(Site::read(&without).map(drop)).contains("`cargo xtask web` builds one"));
+    [with, without].iter().for_each(|folder| fs::remove_dir_all(folder).unwrap());
 }
 
 #[test]

@@ -7,9 +7,9 @@ const { chromium } = createRequire(`${process.env.PLAYWRIGHT}/`)("playwright-cor
 const [, , name, words] = process.argv;
 const args = JSON.parse(words);
 
-// In the page: the canvas of a player as the greys of the display, and a hash of any canvas.
+// In the page: the canvas of a player as the greys of the display, a hexadecimal digit each, and a hash of any canvas.
 const HELPERS = () => {
-  window.greys = (player) => Array.from(player.context.getImageData(0, 0, 128, 64).data.filter((_, index) => index % 4 === 0), (grey) => grey / 17);
+  window.greys = (player) => Array.from(player.context.getImageData(0, 0, 128, 64).data.filter((_, index) => index % 4 === 0), (grey) => (grey / 17).toString(16)).join("");
   window.seen = (player) => {
     const { width, height } = player.canvas;
     const pixels = new Uint32Array(player.context.getImageData(0, 0, width, height).data.buffer);

@@ -16,7 +16,8 @@ use serde_json::json;
 use crate::build::{self, Build};
 use crate::{paths, setup};
 
-const TARGET: &str = "wasm32-unknown-unknown";
+/// What the modules are compiled for.
+pub const TARGET: &str = "wasm32-unknown-unknown";
 
 /// A file of the player, or of the converter, and its bytes.
 pub struct Size {

@@ -28,7 +28,7 @@ impl Table {
         let rig = Rig::new_checked(bytes.get(..rig).ok_or(Trouble::Truncated)?)?;
         // SAFETY: any bits are integers.
         let (_, values, _) = unsafe { rest.align_to::<i32>() };
-        let values = values.get(..frames * rig.channels()).ok_or(Trouble::Truncated)?;
+        let values = frames.checked_mul(rig.channels()).and_then(|count| values.get(..count)).ok_or(Trouble::Truncated)?;
         if frames == 0 {
             return Err(Trouble::Malformed);
         }
