@@ -2,9 +2,10 @@
 
 use pantin_tools::serve::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, Site, serve};
 use std::fs;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::Path;
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -217,4 +218,28 @@ fn more_clients_than_there_may_be_are_told_so_and_those_that_read_nothing_go() {
     thread::sleep(2 * PATIENCE);
     serves(place);
     drop(greedy);
+}
+
+#[test]
+fn the_command_prints_its_address_and_serves_there() {
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.ptn");
+    let site = folder(&[("index.html", PAGE), ("a", b""), ("b", b"")]);
+    let pantin = || {
+        let mut pantin = Command::new(env!("CARGO_BIN_EXE_pantin"));
+        pantin.arg("serve").args(["--port", "0"]).arg("--site").arg(&site).stdout(Stdio::piped()).stderr(Stdio::piped());
+        pantin
+    };
+    let mut running = pantin().arg(&walk).spawn().unwrap();
+    let mut line = String::new();
+    BufReader::new(running.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let address = line.strip_prefix("http://").and_then(|rest| rest.split('/').next()).unwrap();
+    assert!(address.starts_with("127.0.0.1:"), "{line}");
+    serves(address.parse().unwrap());
+    assert_eq!(body(&talk(address.parse().unwrap(), b"GET /clips/0.ptn HTTP/1.1\r\n\r\n")), fs::read(&walk).unwrap());
+    running.kill().unwrap();
+    running.wait().unwrap();
+    let refused = pantin().arg(site.join("a")).output().unwrap();
+    assert!(!refused.status.success() && refused.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("the clip is truncated"), "{refused:?}");
+    fs::remove_dir_all(site).unwrap();
 }
