@@ -126,7 +126,7 @@ fn the_module_stands_whatever_bytes_it_gets() {
 #[test]
 fn everything_on_the_page_can_be_used() {
     if !skipped("the page's controls") {
-        drive("controls", json!({}));
+        drive("controls", json!({ "clip": own("run.ptn"), "frames": 26 }));
         drive("quiet", json!({}));
     }
 }

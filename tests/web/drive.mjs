@@ -103,6 +103,15 @@ const cases = {
     assert.equal((await state(page)).orbit, -50);
     await page.locator("#oled").click();
     assert.equal(await page.evaluate(() => player.look + player.canvas.width), "oled128");
+    assert.equal(await page.locator("#oled").getAttribute("aria-pressed"), "true");
+    // A clip of the gallery over a slow line, then one from this machine at once.
+    await page.locator("#link").selectOption("1200");
+    await page.locator("#clips button", { hasText: "wink" }).click();
+    await page.waitForFunction(() => player.received > 0 && player.received < player.total);
+    await page.locator("#link").selectOption("0");
+    await page.locator("#files").setInputFiles(args.clip);
+    await page.waitForFunction((frames) => player.frames === frames && player.playable === frames, args.frames);
+    assert.equal(await page.locator("#trouble").textContent(), "");
   },
 
   // Who wants less motion gets none before asking.

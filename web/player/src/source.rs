@@ -58,7 +58,7 @@ impl Source {
         // SAFETY: this is called once.
         let (seat, past) = unsafe { (seat(Who::Whole), past()) };
         let player = Player::new(clip, &mut seat.states, &mut seat.pose)?;
-        let memory = Memory::new(&player, &mut past.undo, &mut past.marks, &mut past.states, &mut past.values);
+        let memory = Memory::new(&player, &mut [], &mut past.marks, &mut past.states, &mut past.values);
         let sizes = [clip.moving(), clip.rig_len(), clip.motion_len()].map(|size| size as u32);
         Ok(Source::Whole(player, memory, sizes))
     }
@@ -89,14 +89,8 @@ impl Source {
             Source::Nothing => &[],
             Source::Arriving(arriving) => arriving.go(frame),
             Source::Whole(player, memory, _) => {
-                let now = player.frame();
-                if frame == now + 1 {
-                    player.step_with(memory);
-                } else if frame + 1 == now {
-                    player.step_back(memory);
-                } else {
-                    player.seek_with(frame, memory);
-                }
+                // Steps are seeks of one frame, and those back start from a snapshot near by: without records of each step.
+                player.seek_with(frame, memory);
                 player.pose()
             }
             Source::Table(table) => {
