@@ -263,7 +263,10 @@ export class PantinPlayer extends HTMLElement {
   }
 
   #key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || (event.target !== this && event.composedPath()[0] !== this.stage)) return;
+    const [on] = event.composedPath();
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // What the button and the scrubber do with their own keys they do themselves.
+    if ((on === this.button && event.key === " ") || (on === this.range && event.key.startsWith("Arrow"))) return;
     const [turn, step] = [event.shiftKey, event.shiftKey ? 15 : 1];
     const act = {
       " ": () => (this.paused ? this.play() : this.pause()),
