@@ -5,6 +5,7 @@ use crate::picture::Stroke;
 use crate::source::Source;
 use pantin::Rig;
 use pantin_face::{Binding, Model, Morph, VERTICES, Weights};
+use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::ink::Tone;
 use pantin_figure::lines::Line;
 use pantin_figure::skeleton::Detail;
@@ -17,6 +18,8 @@ static MODEL: &[u8] = include_bytes!("../../../motions/face.model");
 const JOINTS: usize = RIG_JOINTS + 1;
 /// Poses in which a clip is looked at before it plays, as [`Stage::aim`] does.
 const SAMPLES: u32 = 48;
+/// Pixels that a bar is across at most.
+const THICKEST: i32 = 24;
 
 pub struct Face {
     model: Model<'static>,
@@ -140,12 +143,17 @@ impl Actor {
 impl Bars {
     fn each(&self, pose: &[i32], show: &mut dyn FnMut(Stroke)) {
         let bars = pose.get(self.first..).unwrap_or(&[]);
-        let [width, height] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << 4);
+        let [width, height] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
+        let (middle, count) = (width / 2, (bars.len() as i32).max(1));
+        let breadth = (i32::from(self.canvas.height) / (2 * count)).clamp(1, THICKEST) as u8;
+        let mut line = |from: [i32; 2], to: [i32; 2], tone, shade, width| {
+            let [from, to] = [from, to].map(|end| end.map(|place| place as i16));
+            show(Line { from, to, depth: 0, shade, tone, width }.into());
+        };
+        line([middle, 0], [middle, height], Tone::Ground, 80, 1);
         for (index, raw) in (0..).zip(bars) {
-            let y = ((2 * index + 1) * height / (2 * bars.len() as i32).max(1)) as i16;
-            let end = width / 2 + (((raw >> 16) * (width / 2)) >> 15);
-            let [from, to] = [[(width / 2) as i16, y], [end as i16, y]];
-            show(Line { from, to, depth: 0, shade: 208, tone: Tone::Middle, width: 1 }.into());
+            let y = (2 * index + 1) * height / (2 * count);
+            line([middle, y], [middle + (((raw >> 16) * middle) >> 15), y], Tone::Left, 208, breadth);
         }
     }
 }
