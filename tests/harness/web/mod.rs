@@ -19,6 +19,9 @@ use crate::{paths, setup};
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
+/// The modules' packages.
+pub const PACKAGES: [&str; 2] = ["pantin-web-player", "pantin-web-converter"];
+
 /// A file of the player, or of the converter, and its bytes.
 pub struct Size {
     /// Its name in the site.
@@ -37,8 +40,8 @@ pub fn build(out: &Path) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
-    write(&out.join(PLAYER[1]), &module("pantin-web-player", "release")?)?;
-    write(&out.join(CONVERTER[1]), &module("pantin-web-converter", "converter")?)?;
+    write(&out.join(PLAYER[1]), &module(PACKAGES[0], "release")?)?;
+    write(&out.join(CONVERTER[1]), &module(PACKAGES[1], "converter")?)?;
     for entry in listed(&paths::root().join("web/page"))? {
         let name = entry.file_name().unwrap_or_default();
         let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
