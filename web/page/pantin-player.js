@@ -118,13 +118,17 @@ export class PantinPlayer extends HTMLElement {
     this.pause();
     Object.assign(this, { received: 0, total: 0, trouble: "" });
     this.#at = 0;
+    // Clip and module come at the same time.
+    const { signal } = abort;
+    const coming = typeof what === "string" ? fetch(new URL(what, document.baseURI), { signal }) : Promise.resolve(what);
+    coming.catch(() => {});
     try {
       const module = await compile();
       const wasm = (await WebAssembly.instantiate(module)).exports;
       if (abort.signal.aborted) return;
       this.#wasm = wasm;
       this.#aim();
-      await (what.poses ? this.#table(what) : this.#receive(what, abort.signal));
+      await (what.poses ? this.#table(what) : this.#receive(await coming, signal));
       if (!abort.signal.aborted) this.#tell("ready");
     } catch (error) {
       if (abort.signal.aborted) return;
@@ -146,7 +150,6 @@ export class PantinPlayer extends HTMLElement {
   }
 
   async #receive(what, signal) {
-    if (typeof what === "string") what = await fetch(new URL(what, document.baseURI), { signal });
     if (what instanceof Response) {
       if (!what.ok) throw new Error(`the clip cannot be fetched: ${what.status} ${what.statusText}`);
       // With an encoding, it is the length of something else.
