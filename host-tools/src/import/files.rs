@@ -20,7 +20,7 @@ impl Files {
     /// The whole content of `path`.
     pub(super) fn read(&self, path: &Path) -> Result<Vec<u8>> {
         match self {
-            Files::OnDisk => fs::read(path).with_context(|| path.display().to_string()),
+            Files::OnDisk => fs::read(path).map_err(|error| anyhow!("{}: {error}", path.display())),
             Files::Given(_) => Ok(self.given(path)?.to_vec()),
         }
     }
