@@ -24,7 +24,8 @@ impl Web {
             let sizes = web::sizes(&self.out, names);
             sizes.iter().for_each(|Size { name, bytes }| say(&format!("{name:<24} {bytes:>9} bytes")));
         }
-        say(&format!("wrote {}; `cargo pantin serve` shows it", self.out.display()));
+        let out = self.out.display();
+        say(&format!("wrote {out}; `cargo pantin serve --site {out}` shows it"));
         Ok(())
     }
 }

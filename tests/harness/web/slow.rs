@@ -7,8 +7,9 @@ use std::time::Duration;
 
 use anyhow::Result;
 
-/// Serves `bytes` at any path, in pieces of `piece` each `pause`, and returns its address. Pages from elsewhere may read it.
-pub fn serve(bytes: Vec<u8>, piece: usize, pause: Duration) -> Result<String> {
+/// Serves `bytes` at any path, in pieces of `piece` each `pause`, and hangs up after `sent` of them; returns its address. Pages from elsewhere may
+/// read it.
+pub fn serve(bytes: Vec<u8>, sent: usize, piece: usize, pause: Duration) -> Result<String> {
     let listener = TcpListener::bind("127.0.0.1:0")?;
     let place = listener.local_addr()?;
     thread::spawn(move || {
@@ -21,9 +22,9 @@ pub fn serve(bytes: Vec<u8>, piece: usize, pause: Duration) -> Result<String> {
                 );
                 let asked = BufReader::new(&stream).lines().map_while(Result::ok).any(|line| line.is_empty());
                 // A browser that goes away has seen enough.
-                let mut sent = stream.write_all(head.as_bytes()).is_ok() && asked;
-                for piece in bytes.chunks(piece) {
-                    sent = sent && stream.write_all(piece).is_ok();
+                let mut listens = stream.write_all(head.as_bytes()).is_ok() && asked;
+                for piece in bytes[..sent].chunks(piece) {
+                    listens = listens && stream.write_all(piece).is_ok();
                     thread::sleep(pause);
                 }
             });
