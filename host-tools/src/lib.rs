@@ -1,20 +1,29 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
 pub mod channel_error;
+#[cfg(feature = "cli")]
 pub mod cmd;
 pub mod edit;
 pub mod encode;
+pub mod errors;
 mod euler;
 pub mod expand;
 pub mod export;
+#[cfg(feature = "cli")]
 pub mod face;
 pub mod fit;
 pub mod fk;
 pub mod import;
 pub mod keys;
 pub mod motion;
+#[cfg(feature = "cli")]
 pub mod play;
+#[cfg(feature = "cli")]
 pub mod render;
+#[cfg(feature = "cli")]
+pub mod serve;
+#[cfg(feature = "cli")]
 pub mod train;
+#[cfg(feature = "cli")]
 pub mod update;
 pub mod verify;

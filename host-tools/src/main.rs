@@ -21,6 +21,7 @@ enum Command {
     Info(cmd::info::Arguments),
     Play(cmd::play::Arguments),
     Render(Box<cmd::render::Arguments>),
+    Serve(cmd::serve::Arguments),
     Train(cmd::train::Arguments),
     Update(cmd::update::Arguments),
 }
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Info(arguments) => cmd::info::run(&arguments),
         Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),
+        Command::Serve(arguments) => cmd::serve::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
         Command::Update(arguments) => cmd::update::run(&arguments),
     };

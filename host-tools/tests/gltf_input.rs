@@ -3,7 +3,7 @@
 use base64::Engine as _;
 use pantin_tools::fit::bounds::Bounds;
 use pantin_tools::fit::channelwise;
-use pantin_tools::import::{self, Imported, Options};
+use pantin_tools::import::{self, Files, Imported, Options};
 use pantin_tools::motion::{Keys, Kind, Motion};
 use pantin_tools::{channel_error, encode, expand, export, fk};
 use serde_json::{Value, json};
@@ -328,6 +328,22 @@ fn a_buffer_beside_the_file_is_read_and_no_other() {
     assert!(load("data:;base64,AAAA").unwrap_err().contains("3 bytes; expected byteLength"));
     assert!(load("data:;base64,?").unwrap_err().contains("no base64"));
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn files_that_are_handed_over_are_all_that_there_is() {
+    let mut root: Value = serde_json::from_str(&spline().text()).unwrap();
+    root["buffers"][0]["uri"] = json!("data.bin");
+    let load = |given: &[(&str, &[u8])]| {
+        let files = Files::Given(given.iter().map(|(name, bytes)| (name.into(), bytes.to_vec())).collect());
+        let options = Options { files, ..Options::default() };
+        import::load("a.gltf".as_ref(), &options).map(|imported| imported.motion.frames).map_err(|error| format!("{error:#}"))
+    };
+    let (text, data) = (root.to_string(), spline().bytes);
+    assert_eq!(load(&[("a.gltf", text.as_bytes()), ("data.bin", &data)]), Ok(61));
+    let alone = load(&[("a.gltf", text.as_bytes())]).unwrap_err();
+    assert!(alone.ends_with("data.bin: not among the files given"), "{alone}");
+    assert_eq!(load(&[]), Err("a.gltf: not among the files given".into()));
 }
 
 #[test]

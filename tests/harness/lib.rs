@@ -19,4 +19,5 @@ pub mod sync;
 pub mod uf2;
 pub mod update;
 pub mod vectors;
+pub mod web;
 pub mod wire;

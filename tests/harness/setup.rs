@@ -76,7 +76,7 @@ pub fn component(name: &str) -> Result<()> {
     Ok(())
 }
 
-/// An emulator or Node.js, from `PATH`; if it is missing, the error says how to get it.
+/// An emulator, Node.js or Chromium, from `PATH`; if it is missing, the error says how to get it.
 pub fn emulator(name: &str) -> Result<PathBuf> {
     paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))
 }
@@ -134,22 +134,20 @@ fn debian(name: &str) -> &str {
 /// How to get it.
 pub fn advice(name: &str) -> String {
     let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {}", debian(name)));
-    let (package, brewed) = match name {
-        "node" => ("nodejs".to_owned(), "node"),
-        "npm" => ("npm".to_owned(), "node"),
-        emulator => (format!("{emulator}-core"), "qemu"),
-    };
+    let emulator = name.starts_with("qemu");
+    let package = if name == "node" { "nodejs" } else { name };
     let others = [
-        ("dnf", format!("sudo dnf install -y {package}")),
-        ("pacman", format!("sudo pacman -S --needed {}", package.trim_end_matches("-core"))),
-        ("apk", format!("sudo apk add {}", package.trim_end_matches("-core"))),
-        ("brew", format!("brew install {brewed}")),
+        ("dnf", format!("sudo dnf install -y {package}{}", if emulator { "-core" } else { "" })),
+        ("pacman", format!("sudo pacman -S --needed {package}")),
+        ("apk", format!("sudo apk add {package}")),
+        ("brew", format!("brew install {}", if emulator { "qemu" } else { name })),
     ];
     let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
     match apt.or_else(other) {
         Some(command) => format!("install it with: {command}"),
-        None if brewed == "node" => "install Node.js (https://nodejs.org)".into(),
-        None => "install QEMU (https://www.qemu.org/download)".into(),
+        None if emulator => "install QEMU (https://www.qemu.org/download)".into(),
+        None if name == "chromium" => "install Chromium (https://www.chromium.org)".into(),
+        None => "install Node.js (https://nodejs.org)".into(),
     }
 }
 

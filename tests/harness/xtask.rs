@@ -20,6 +20,7 @@ enum Command {
     Test(cmd::test::Test),
     Uf2(cmd::uf2::Uf2),
     Vectors(cmd::vectors::Vectors),
+    Web(cmd::web::Web),
 }
 
 fn main() -> ExitCode {
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Test(test) => test.run(),
         Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
+        Command::Web(web) => web.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

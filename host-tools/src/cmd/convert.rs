@@ -3,10 +3,11 @@
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::max_error::{self, MaxError};
-use super::{batch, errors, write_whole};
+use super::{batch, write_whole};
 use crate::channel_error;
 use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
+use crate::errors;
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Held;
 use crate::fit::descent::{Level, Plan};
@@ -159,6 +160,7 @@ pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
         fps: arguments.fps,
         skeleton: arguments.skeleton.clone(),
         animation: arguments.animation.clone(),
+        files: import::Files::OnDisk,
     };
     let imported = import::load(&arguments.input, &options)?;
     let say = |sentence: &str| {

@@ -4,7 +4,6 @@ mod batch;
 mod channel_bound;
 pub mod convert;
 mod edits;
-mod errors;
 pub mod expand;
 pub mod face;
 pub mod flash_image;
@@ -12,6 +11,7 @@ pub mod info;
 mod max_error;
 pub mod play;
 pub mod render;
+pub mod serve;
 pub mod train;
 pub mod update;
 

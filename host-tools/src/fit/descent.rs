@@ -27,7 +27,8 @@ pub struct Plan {
 }
 
 /// How hard to look for few bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Level {
     /// For previews: many times faster than the motion plays
     Fast,

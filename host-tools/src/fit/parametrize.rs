@@ -5,7 +5,8 @@ use crate::fk::local;
 use crate::motion::{Joint, Kind, Motion};
 
 /// How joints with three Euler angles about three axes are coded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Rotations {
     /// Each joint as seems cheaper
     ByCost,

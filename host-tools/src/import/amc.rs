@@ -6,7 +6,7 @@
 
 use super::acclaim::{self, Dof, Skeleton};
 use super::text::{Words, shown};
-use super::{Options, Source, asf, read_bytes};
+use super::{Files, Options, Source, asf};
 use anyhow::{Result, anyhow};
 use std::path::{Path, PathBuf};
 
@@ -20,12 +20,12 @@ pub fn begins(head: &[u8]) -> bool {
 
 /// Reads the AMC file `path` and its ASF file, which states the unit of length.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = read_bytes(path)?;
+    let bytes = options.files.read(path)?;
     let skeleton_path = match &options.skeleton {
         Some(given) => given.clone(),
-        None => find_skeleton(path, &bytes)?,
+        None => find_skeleton(path, &bytes, &options.files)?,
     };
-    let skeleton = asf::read(&skeleton_path, &read_bytes(&skeleton_path)?)?;
+    let skeleton = asf::read(&skeleton_path, &options.files.read(&skeleton_path)?)?;
     let mut warnings = skeleton.warnings.clone();
     if skeleton_path.file_stem() != path.file_stem() {
         warnings.push(format!("the skeleton is {}; --skeleton overrides", skeleton_path.display()));
@@ -47,12 +47,12 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     Ok(Source { motion, unit_known: skeleton.cm_per_unit.is_some(), warnings })
 }
 
-fn find_skeleton(path: &Path, bytes: &[u8]) -> Result<PathBuf> {
+fn find_skeleton(path: &Path, bytes: &[u8], files: &Files) -> Result<PathBuf> {
     let lower = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_asf = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("asf"));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let beside = std::fs::read_dir(folder).map_err(|error| anyhow!("{}: {error}", folder.display()))?;
-    let mut beside: Vec<PathBuf> = beside.flatten().map(|entry| entry.path()).filter(|path| is_asf(path)).collect();
+    let mut beside = files.beside(folder)?;
+    beside.retain(|path| is_asf(path));
     beside.sort();
     let stem = lower(path);
     // The same name is the longest that the motion's begins with.

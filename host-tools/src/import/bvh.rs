@@ -3,7 +3,7 @@
 //! White space is free, as other readers have it: a row may span lines and a line may hold rows.
 
 use super::text::{Words, shown};
-use super::{Options, Source, read_bytes};
+use super::{Options, Source};
 use crate::motion::{Joint, Kind, Motion, Rig};
 use anyhow::Result;
 use std::collections::HashSet;
@@ -17,7 +17,7 @@ pub fn begins(head: &[u8]) -> bool {
 
 /// Reads the BVH file `path`. The format states no unit of length.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = read_bytes(path)?;
+    let bytes = options.files.read(path)?;
     let mut words = Words::new(path, &bytes);
     let mut warnings = Vec::new();
     words.expect("HIERARCHY", "at the start of a BVH file")?;

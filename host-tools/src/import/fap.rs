@@ -6,7 +6,7 @@
 use super::fap_names::{EXPRESSION, PARAMETERS, SHORT, Unit, VISEME, values};
 use super::scalars::{self, peak};
 use super::text::{number_in, shown};
-use super::{Options, Source, read_bytes};
+use super::{Options, Source};
 use anyhow::{Error, Result, anyhow};
 use std::path::Path;
 
@@ -17,8 +17,8 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, _: &Options) -> Result<Source> {
-    let bytes = read_bytes(path)?;
+pub fn read(path: &Path, options: &Options) -> Result<Source> {
+    let bytes = options.files.read(path)?;
     let mut reader = Reader {
         file: path.display().to_string(),
         lines: lines(&bytes).peekable(),

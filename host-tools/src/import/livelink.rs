@@ -7,7 +7,7 @@ use super::scalars::{self, Grid};
 use super::sheet::{Sheet, delimiter};
 use super::text::shown;
 use super::timecode::{Clock, NTSC, Timecode};
-use super::{Options, Source, read_bytes};
+use super::{Options, Source};
 use anyhow::{Context, Result};
 use std::path::Path;
 
@@ -26,8 +26,8 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, _: &Options) -> Result<Source> {
-    let bytes = read_bytes(path)?;
+pub fn read(path: &Path, options: &Options) -> Result<Source> {
+    let bytes = options.files.read(path)?;
     let mut sheet = Sheet::open(path, &bytes)?;
     let named = |column: usize, name: &str| sheet.header.get(column).is_some_and(|header| header.eq_ignore_ascii_case(name));
     if !named(0, "Timecode") || !named(1, "BlendshapeCount") {

@@ -13,6 +13,7 @@ pub mod fbx;
 #[cfg(not(feature = "fbx"))]
 #[path = "fbx_absent.rs"]
 pub mod fbx;
+mod files;
 pub mod gltf;
 mod grid;
 pub mod keyframes;
@@ -31,8 +32,7 @@ mod written;
 
 use crate::motion::Motion;
 use anyhow::{Context, Result, bail, ensure};
-use std::fs::{self, File};
-use std::io::Read;
+pub use files::Files;
 use std::path::{Path, PathBuf};
 
 /// What the user says about a source.
@@ -47,6 +47,8 @@ pub struct Options {
     pub skeleton: Option<PathBuf>,
     /// Which animation of a file that holds several: its name, or its number from 0, instead of the first.
     pub animation: Option<String>,
+    /// Where the source and what belongs to it is read from.
+    pub files: Files,
 }
 
 /// What an importer read.
@@ -102,7 +104,7 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
     if let Some(fps) = options.fps {
         ensure!(fps.is_finite() && fps > 0.0, "--fps {fps}: expected a number above 0");
     }
-    let source = (format_of(path)?.read)(path, options)?;
+    let source = (format_of(path, &options.files)?.read)(path, options)?;
     let Source { mut motion, unit_known, warnings } = source;
     let known = unit_known.then_some(motion.rig.cm_per_unit);
     let unit = units::settle(&motion, options.cm_per_unit, known).with_context(|| path.display().to_string())?;
@@ -117,12 +119,10 @@ pub fn is_motion(path: &Path) -> bool {
     FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()))
 }
 
-fn format_of(path: &Path) -> Result<&'static Format> {
+fn format_of(path: &Path, files: &Files) -> Result<&'static Format> {
     let place = || path.display().to_string();
-    let metadata = fs::metadata(path).with_context(place)?;
-    ensure!(!metadata.is_dir(), "{}: a directory; expected a motion file", place());
-    let mut head = Vec::new();
-    File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)).with_context(place)?;
+    ensure!(!path.is_dir(), "{}: a directory; expected a motion file", place());
+    let head = files.head(path, HEAD)?;
     ensure!(!head.is_empty(), "{}: the file is empty; expected a motion file", place());
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let of_extension = || FORMATS.iter().filter(|format| format.extensions.contains(&extension.as_str()));
@@ -140,9 +140,9 @@ pub(crate) fn one_line(text: &str) -> String {
     text.chars().take(200).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-/// The whole content of `path`.
+/// The whole content of the machine's file `path`.
 fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).with_context(|| path.display().to_string())
+    Files::OnDisk.read(path)
 }
 
 /// Adds whole turns so that no Euler angle moves by more than half a turn from one frame to the next (docs/METHOD.md 5).

@@ -6,7 +6,7 @@
 
 use super::scalars::{self, Grid};
 use super::sheet::{Row, Sheet, delimiter};
-use super::{Options, Source, read_bytes};
+use super::{Options, Source};
 use anyhow::Result;
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub fn begins(head: &[u8]) -> bool {
 
 /// Reads the file `path`.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = read_bytes(path)?;
+    let bytes = options.files.read(path)?;
     let mut sheet = Sheet::open(path, &bytes)?;
     let clock = Clock::of(&sheet.header);
     if let Some(column) = (clock.columns..sheet.header.len()).find(|&column| sheet.header[column].is_empty()) {

@@ -19,6 +19,7 @@ mod reference;
 mod size;
 mod table;
 mod tool;
+mod web;
 
 pub use goals::{Goal, print};
 pub use readme::{store, write};
@@ -50,6 +51,8 @@ pub enum Part {
     Argument,
     /// Faces: bits a second and how smooth, bytes of our own clips, guest instructions of a frame, memory, the model's size
     Face,
+    /// The web page: bytes, time to the first frame, time a frame, time to convert
+    Web,
 }
 
 /// What every part works with.
@@ -86,6 +89,7 @@ impl Part {
             Self::Frame => frame::run(setting),
             Self::Argument => argument::run(setting),
             Self::Face => face::run(setting),
+            Self::Web => web::run(),
         }
     }
 

@@ -12,3 +12,4 @@ pub mod strips;
 pub mod test;
 pub mod uf2;
 pub mod vectors;
+pub mod web;

@@ -17,7 +17,8 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use harness::build::Core;
-use harness::{clips, paths, setup};
+use harness::web::browser::Browser;
+use harness::{clips, paths, setup, web};
 
 use super::packages::{self, Package};
 use super::steps::Steps;
@@ -25,7 +26,7 @@ use super::steps::Steps;
 /// Runs every check and test: format, lints, host tests, firmware builds, QEMU tests.
 #[derive(Args)]
 pub struct Test {
-    /// Leaves out the tests that need QEMU
+    /// Leaves out the tests that need QEMU or Chromium
     #[arg(long)]
     host_only: bool,
 }
@@ -40,6 +41,7 @@ impl Test {
         steps.run("host tool, and a clip for the firmware", walk);
         steps.run("format", || cargo(Workspace::Host, "fmt --all --check", false));
         steps.run("format of the firmware", || cargo(Workspace::Firmware, "fmt --all --check", false));
+        steps.run("format of the web modules", || cargo(Workspace::Web, "fmt --all --check", false));
         steps.run("lints", || cargo(Workspace::Host, "clippy --workspace --all-targets -- -D warnings", false));
         steps.run("host tests", || cargo(Workspace::Host, "test --workspace --exclude harness --no-fail-fast", false));
         let named: String = libraries.iter().map(|library| format!(" -p {}", library.name)).collect();
@@ -59,7 +61,12 @@ impl Test {
                 });
             }
         }
-        let name = if self.host_only { "harness tests (QEMU left out)" } else { "QEMU tests" };
+        // One by one: together, the player's libraries would get the converter's standard library.
+        for package in web::PACKAGES {
+            let lints = format!("clippy -p {package} --target {} -- -D warnings", web::TARGET);
+            steps.run(&format!("lints of {package}"), || cargo(Workspace::Web, &lints, false));
+        }
+        let name = if self.host_only { "harness tests (QEMU and Chromium left out)" } else { "tests in QEMU and Chromium" };
         steps.run(name, || cargo(Workspace::Host, "test -p harness --no-fail-fast", self.host_only));
         steps.finish()
     }
@@ -69,6 +76,7 @@ impl Test {
 enum Workspace {
     Host,
     Firmware,
+    Web,
 }
 
 fn tools(boards: &[Package], host_only: bool) -> Result<()> {
@@ -78,10 +86,12 @@ fn tools(boards: &[Package], host_only: bool) -> Result<()> {
     for target in boards.iter().flat_map(|board| &board.targets) {
         setup::rust_target(target)?;
     }
+    setup::rust_target(web::TARGET)?;
     if !host_only {
         for program in ["qemu-system-arm", "qemu-system-riscv32", "node", "npm"] {
             setup::install_emulator(program).context("(or leave QEMU's tests out with --host-only)")?;
         }
+        Browser::ready().context("(or leave Chromium's tests out with --host-only)")?;
     }
     Ok(())
 }
@@ -118,6 +128,7 @@ fn command(workspace: Workspace) -> Command {
     let folder = match workspace {
         Workspace::Host => paths::root(),
         Workspace::Firmware => paths::firmware(),
+        Workspace::Web => paths::root().join("web"),
     };
     command.current_dir(folder).env("PANTIN_CLIP", clip());
     command

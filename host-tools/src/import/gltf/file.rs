@@ -1,5 +1,6 @@
 //! The container: JSON, and the buffers it names, from a .glb, from data URIs, or from files beside it.
 
+use crate::import::Files;
 pub(crate) use crate::import::one_line;
 use anyhow::{Result, anyhow, bail};
 use base64::Engine as _;
@@ -8,7 +9,6 @@ use gltf::json::animation::{Animation, Channel};
 use gltf::json::validation::Validate;
 use gltf::json::{Path as JsonPath, Root};
 use std::cell::OnceCell;
-use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// Parts of the JSON that motion depends on: what is wrong elsewhere (materials, say) does not matter.
@@ -22,13 +22,14 @@ pub struct File {
     /// The JSON, its indices checked.
     pub root: Root,
     path: PathBuf,
+    files: Files,
     bin: Option<Vec<u8>>,
     buffers: Vec<OnceCell<Vec<u8>>>,
 }
 
 impl File {
-    /// Opens `bytes`, the content of `path`.
-    pub fn open(path: &Path, bytes: &[u8]) -> Result<File> {
+    /// Opens `bytes`, the content of `path` among `files`.
+    pub fn open(path: &Path, bytes: &[u8], files: &Files) -> Result<File> {
         let place = |message: String| anyhow!("{}: {}", path.display(), one_line(&message));
         let (json, bin) = if bytes.starts_with(b"glTF") {
             let length = bytes.get(8..GLB_HEAD).map(|field| u32::from_le_bytes([field[0], field[1], field[2], field[3]]));
@@ -51,7 +52,13 @@ impl File {
         });
         match wrong.or_else(|| missing_node(&root)) {
             Some(message) => Err(place(message)),
-            None => Ok(File { buffers: vec![OnceCell::new(); root.buffers.len()], root, path: path.into(), bin }),
+            None => Ok(File {
+                buffers: vec![OnceCell::new(); root.buffers.len()],
+                root,
+                path: path.into(),
+                files: files.clone(),
+                bin,
+            }),
         }
     }
 
@@ -91,7 +98,7 @@ impl File {
             bail!("uri `{}`: expected a data URI or the name of a file beside this one", one_line(uri));
         }
         let beside = self.path.with_file_name("").join(relative);
-        fs::read(&beside).map_err(|error| anyhow!("{}: {error}", beside.display()))
+        self.files.read(&beside)
     }
 }
 

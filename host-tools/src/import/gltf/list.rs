@@ -3,7 +3,7 @@
 use super::file::File;
 use super::tracks;
 use crate::import::grid;
-use crate::import::read_bytes;
+use crate::import::{Files, read_bytes};
 use anyhow::Result;
 use std::path::Path;
 
@@ -29,7 +29,7 @@ impl Entry {
 
 /// All animations of the glTF file `path`, those included that nothing can be read from: they have no frames.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    let file = File::open(path, &read_bytes(path)?)?;
+    let file = File::open(path, &read_bytes(path)?, &Files::OnDisk)?;
     let entry = |number: usize| {
         let name = file.root.animations[number].name.as_deref().map(super::one_line);
         let tracks = tracks(&file, number, &mut Vec::new())?;

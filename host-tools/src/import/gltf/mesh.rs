@@ -3,6 +3,7 @@
 use super::accessor::{indices, numbers};
 use super::file::File;
 use super::scalars::target_names;
+use crate::import::Files;
 use anyhow::{Context, Result, ensure};
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
@@ -24,7 +25,7 @@ pub struct Mesh {
 /// Reads it. Parts of the mesh follow each other.
 pub fn read(path: &Path) -> Result<Mesh> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-    let file = File::open(path, &bytes)?;
+    let file = File::open(path, &bytes, &Files::OnDisk)?;
     let with_targets = |mesh: &&gltf::json::Mesh| {
         mesh.primitives.iter().any(|part| part.targets.as_ref().is_some_and(|targets| !targets.is_empty()))
     };

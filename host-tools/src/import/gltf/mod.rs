@@ -16,7 +16,7 @@ mod tree;
 pub(crate) use place::quaternion;
 
 use super::grid::{self, Grid};
-use super::{Options, Source, read_bytes, units};
+use super::{Options, Source, units};
 use crate::motion::{Keys, Kind, Motion, Rig};
 use anyhow::{Result, anyhow, bail, ensure};
 use file::{File, one_line};
@@ -45,7 +45,7 @@ pub fn begins(head: &[u8]) -> bool {
 
 /// Reads an animation of the glTF file `path`.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let file = File::open(path, &read_bytes(path)?)?;
+    let file = File::open(path, &options.files.read(path)?, &options.files)?;
     let number = chosen(&file, path, options)?;
     let mut warnings = Vec::new();
     let tracks = tracks(&file, number, &mut warnings)?;

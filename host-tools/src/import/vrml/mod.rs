@@ -33,7 +33,7 @@ pub fn begins(head: &[u8]) -> bool {
 /// Reads what the longest time sensors of the world `path` move, or the one that is asked for.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let place = || path.display().to_string();
-    let bytes = read_bytes(path)?;
+    let bytes = options.files.read(path)?;
     let (words, world) = open(path, &bytes)?;
     let clocks = clock::clocks(&world).with_context(place)?;
     let chosen = chosen(&world, &clocks, options.animation.as_deref()).with_context(place)?;

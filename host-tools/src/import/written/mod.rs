@@ -2,8 +2,8 @@
 
 pub mod rig;
 
+use super::Options;
 use super::text::{number_in, shown};
-use super::{Options, read_bytes};
 use crate::motion::Rig;
 use anyhow::{Result, anyhow};
 use std::path::Path;
@@ -58,7 +58,7 @@ pub trait Reader: Sized {
 
     /// Reads `path`. Errors name the file and the line.
     fn read(mut self, path: &Path, options: &Options) -> Result<super::Source> {
-        let bytes = read_bytes(path)?;
+        let bytes = options.files.read(path)?;
         let text = String::from_utf8_lossy(&bytes);
         let mut begun = false;
         let mut line = 0;

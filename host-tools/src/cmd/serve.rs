@@ -1,0 +1,46 @@
+//! `pantin serve`.
+
+use crate::serve::{Site, serve};
+use anyhow::{Context, Result};
+use std::io::Write;
+use std::net::{IpAddr, TcpListener};
+use std::path::PathBuf;
+
+/// Show clips in a browser: serves the page that `cargo xtask web` builds, and nothing else.
+///
+/// It listens on this machine alone unless --bind says otherwise, opens no browser, and serves only the page and the clips named here, as they are
+/// when it starts.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Examples:
+  pantin serve
+  pantin serve walk.ptn run.ptn
+  pantin serve clips/*.ptn --port 8080 --bind 0.0.0.0")]
+pub struct Arguments {
+    /// Clips to show, instead of our own
+    files: Vec<PathBuf>,
+    /// The port; 0 takes a free one
+    #[arg(long, default_value_t = 8000)]
+    port: u16,
+    /// The address to listen on
+    #[arg(long, default_value = "127.0.0.1")]
+    bind: IpAddr,
+    /// The folder of the page
+    #[arg(long)]
+    site: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let mut site = Site::read(&Site::find(arguments.site.as_deref())?)?;
+    if !arguments.files.is_empty() {
+        site.show(&arguments.files)?;
+    }
+    let place = (arguments.bind, arguments.port);
+    let listener = TcpListener::bind(place);
+    let listener = listener.with_context(|| format!("cannot listen on {}, port {}: --port takes another", place.0, place.1))?;
+    let mut out = std::io::stdout();
+    writeln!(out, "http://{}/ (Ctrl-C ends it)", listener.local_addr()?)?;
+    out.flush()?;
+    serve(&listener, site);
+    Ok(())
+}

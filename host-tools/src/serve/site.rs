@@ -1,0 +1,113 @@
+//! All that is served, by its path.
+
+use anyhow::{Context, Result, bail, ensure};
+use pantin::Clip;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Bytes that all files may have together: they are kept in memory.
+const MOST_BYTES: usize = 256 << 20;
+/// Where the page's own clips are, below the site.
+const CLIPS: &str = "clips";
+
+/// A file and what a browser takes it for.
+pub struct File {
+    /// Its content.
+    pub bytes: Vec<u8>,
+    /// Its media type.
+    pub kind: &'static str,
+}
+
+/// Files by their paths: `/app.js`.
+#[derive(Default)]
+pub struct Site {
+    files: BTreeMap<String, File>,
+    bytes: usize,
+}
+
+impl Site {
+    /// Reads a site that `cargo xtask web` has built.
+    pub fn read(folder: &Path) -> Result<Site> {
+        let mut site = Site::default();
+        site.add_folder(folder, "/")?;
+        let clips = folder.join(CLIPS);
+        if clips.is_dir() {
+            site.add_folder(&clips, &format!("/{CLIPS}/"))?;
+        }
+        ensure!(
+            site.files.contains_key("/index.html"),
+            "{}: no page in it; `cargo xtask web` builds one into target/web",
+            folder.display()
+        );
+        Ok(site)
+    }
+
+    /// Where the site is: as given, or beside the program, or where `cargo xtask web` puts it.
+    pub fn find(given: Option<&Path>) -> Result<PathBuf> {
+        if let Some(folder) = given {
+            return Ok(folder.into());
+        }
+        let program = std::env::current_exe().ok();
+        let near = program.iter().flat_map(|program| program.ancestors().skip(1).take(2)).map(|folder| folder.join("web"));
+        let mut places = near.chain([PathBuf::from("target/web")]);
+        let found = places.find(|folder| folder.join("index.html").is_file());
+        found.context("the page is not built: run `cargo xtask web`, or give its folder by --site")
+    }
+
+    /// Shows these clips in place of the site's own.
+    pub fn show(&mut self, clips: &[PathBuf]) -> Result<()> {
+        self.files.retain(|path, _| !path.starts_with(&format!("/{CLIPS}/")));
+        let mut list = vec![];
+        for (number, path) in clips.iter().enumerate() {
+            let bytes = fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+            if let Err(error) = Clip::new_checked(&bytes) {
+                bail!("{}: {error}; `pantin convert` makes clips of motions", path.display());
+            }
+            // A name of the server's own needs no escapes.
+            let file = format!("{CLIPS}/{number}.ptn");
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            list.push(json!({ "name": name, "file": file, "bytes": bytes.len() }));
+            self.add(format!("/{file}"), bytes)?;
+        }
+        self.add("/clips.json".into(), json!(list).to_string().into_bytes())
+    }
+
+    /// The file of a request's path.
+    pub fn file(&self, path: &str) -> Option<&File> {
+        self.files.get(if path == "/" { "/index.html" } else { path })
+    }
+
+    /// Adds a file.
+    pub fn add(&mut self, path: String, bytes: Vec<u8>) -> Result<()> {
+        self.bytes += bytes.len();
+        ensure!(self.bytes <= MOST_BYTES, "{path}: all files together have more than {MOST_BYTES} bytes");
+        let kind = kind(&path);
+        self.files.insert(path, File { bytes, kind });
+        Ok(())
+    }
+
+    fn add_folder(&mut self, folder: &Path, prefix: &str) -> Result<()> {
+        let entries = fs::read_dir(folder).with_context(|| format!("{}: cannot be read", folder.display()))?;
+        for entry in entries {
+            let path = entry.with_context(|| folder.display().to_string())?.path();
+            if let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|_| path.is_file()) {
+                let bytes = fs::read(&path).with_context(|| format!("{}: cannot be read", path.display()))?;
+                self.add(format!("{prefix}{name}"), bytes)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn kind(path: &str) -> &'static str {
+    match path.rsplit_once('.').map(|(_, extension)| extension) {
+        Some("html") => "text/html; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("json") => "application/json",
+        Some("wasm") => "application/wasm",
+        _ => "application/octet-stream",
+    }
+}

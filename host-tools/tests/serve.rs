@@ -1,0 +1,245 @@
+//! The server against hostile clients: it answers, or drops them, and goes on serving others.
+
+use pantin_tools::serve::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, Site, serve};
+use std::fs;
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const PAGE: &[u8] = b"<!doctype html>page";
+
+/// A server of a page and of a file of some megabytes, for as long as the tests run.
+fn server() -> SocketAddr {
+    let mut site = Site::default();
+    site.add("/index.html".into(), PAGE.to_vec()).unwrap();
+    site.add("/clips/0.ptn".into(), vec![7; 4 << 20]).unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let place = listener.local_addr().unwrap();
+    thread::spawn(move || serve(&listener, site));
+    place
+}
+
+fn connect(place: SocketAddr) -> TcpStream {
+    let stream = TcpStream::connect(place).unwrap();
+    stream.set_read_timeout(Some(2 * PATIENCE)).unwrap();
+    stream.set_write_timeout(Some(2 * PATIENCE)).unwrap();
+    stream
+}
+
+/// Sends bytes, and returns all that comes back.
+fn talk(place: SocketAddr, request: &[u8]) -> Vec<u8> {
+    let mut stream = connect(place);
+    // The server may hang up before all was sent.
+    let _ = stream.write_all(request);
+    let mut answer = vec![];
+    match stream.read_to_end(&mut answer) {
+        Err(error) if error.kind() != ErrorKind::ConnectionReset => panic!("{error}"),
+        _ => answer,
+    }
+}
+
+fn status(answer: &[u8]) -> String {
+    String::from_utf8_lossy(answer).split_whitespace().nth(1).unwrap_or("nothing").to_owned()
+}
+
+fn body(answer: &[u8]) -> &[u8] {
+    let end = answer.windows(4).position(|four| four == b"\r\n\r\n").unwrap();
+    &answer[end + 4..]
+}
+
+fn serves(place: SocketAddr) {
+    let answer = talk(place, b"GET / HTTP/1.1\r\nHost: here\r\n\r\n");
+    assert_eq!((status(&answer).as_str(), body(&answer)), ("200", PAGE));
+}
+
+#[test]
+fn pages_are_served_and_heads_without_bodies() {
+    let place = server();
+    serves(place);
+    let query = talk(place, b"GET /index.html?clip=walk HTTP/1.0\r\n\r\n");
+    assert_eq!(body(&query), PAGE);
+    let head = talk(place, b"HEAD /clips/0.ptn HTTP/1.1\r\n\r\n");
+    assert_eq!((status(&head).as_str(), body(&head).len()), ("200", 0));
+    assert!(String::from_utf8_lossy(&head).contains("Content-Length: 4194304\r\n"));
+    assert_eq!(body(&talk(place, b"GET /clips/0.ptn HTTP/1.1\r\n\r\n")).len(), 4 << 20);
+}
+
+#[test]
+fn what_was_not_given_is_not_there() {
+    let place = server();
+    let paths = [
+        "/../Cargo.toml",
+        "/..%2fCargo.toml",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "//etc/passwd",
+        "/clips/",
+        "/clips/../index.html",
+        "/etc/passwd\0.html",
+        "/clips\\0.ptn",
+        "http://elsewhere/",
+        "*",
+    ];
+    for path in paths {
+        let answer = talk(place, format!("GET {path} HTTP/1.1\r\n\r\n").as_bytes());
+        assert!(["404", "400"].contains(&status(&answer).as_str()), "{path}: {}", status(&answer));
+    }
+    serves(place);
+}
+
+/// A folder with a page, and with what `name` says in `content`.
+fn folder(files: &[(&str, &[u8])]) -> std::path::PathBuf {
+    let folder = std::env::temp_dir().join(format!("pantin-serve-{}-{}", std::process::id(), files.len()));
+    fs::create_dir_all(folder.join("clips")).unwrap();
+    for (name, content) in files {
+        fs::write(folder.join(name), content).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn a_site_is_a_folder_with_a_page_and_clips_are_clips() {
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.ptn");
+    let with = folder(&[("index.html", PAGE), ("clips.json", b"[]"), ("clips/own.ptn", b"own"), ("text.ptn", b"no clip")]);
+    let mut site = Site::read(&with).unwrap();
+    assert_eq!(site.file("/clips/own.ptn").unwrap().bytes, b"own");
+    site.show(std::slice::from_ref(&walk)).unwrap();
+    assert!(site.file("/clips/own.ptn").is_none());
+    assert_eq!(site.file("/clips/0.ptn").unwrap().bytes, fs::read(&walk).unwrap());
+    assert_eq!(site.file("/clips.json").unwrap().bytes, br#"[{"bytes":658,"file":"clips/0.ptn","name":"walk"}]"#);
+    let message = |outcome: anyhow::Result<()>| format!("{:#}", outcome.unwrap_err());
+    assert!(message(site.show(&[with.join("text.ptn")])).contains("text.ptn: not a pantin clip; `pantin convert` makes clips"));
+    assert!(message(site.show(&[with.join("absent.ptn")])).contains("absent.ptn: cannot be read"));
+    let without = folder(&[("clips.json", b"[]")]);
+    assert!(message(Site::read(&without).map(drop)).contains("`cargo xtask web` builds one"));
+    [with, without].iter().for_each(|folder| fs::remove_dir_all(folder).unwrap());
+}
+
+#[test]
+fn other_methods_are_refused() {
+    let place = server();
+    for method in ["POST", "PUT", "DELETE", "OPTIONS", "CONNECT", "TRACE", "get", "PRI"] {
+        let answer = talk(place, format!("{method} / HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc").as_bytes());
+        assert_eq!(status(&answer), "405", "{method}");
+        assert!(String::from_utf8_lossy(&answer).contains("\r\nAllow: GET, HEAD\r\n"));
+    }
+    serves(place);
+}
+
+#[test]
+fn malformed_requests_get_an_answer_and_harm_nobody() {
+    let place = server();
+    let mut state = 1u64;
+    let noise: Vec<u8> = std::iter::repeat_with(|| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 56) as u8
+    })
+    .take(3000)
+    .collect();
+    let requests: [&[u8]; 9] = [
+        b"nonsense\r\n\r\n",
+        b"GET\r\n\r\n",
+        b"GET / HTTP/9.9\r\n\r\n",
+        b"GET / HTTP/1.1\r\n: no name\r\n\r\n",
+        b"GET / HTTP/1.1\r\nA\0B: c\r\n\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+        b"\xff\xfe\xfd\r\n\r\n",
+        b"GET /\xff\xfe HTTP/1.1\r\n\r\n\r\n",
+        &noise,
+    ];
+    for request in requests {
+        let answer = talk(place, request);
+        assert!(["400", "404", "408"].contains(&status(&answer).as_str()), "{:?}: {}", request.escape_ascii(), status(&answer));
+    }
+    serves(place);
+}
+
+#[test]
+fn heads_without_end_are_cut_off() {
+    let place = server();
+    let long = [&b"GET / HTTP/1.1\r\nA: "[..], &vec![b'a'; 10 * MOST_HEAD]].concat();
+    assert!(["431", "nothing"].contains(&status(&talk(place, &long)).as_str()));
+    let many = [&b"GET / HTTP/1.1\r\n"[..], &b"A: b\r\n".repeat(500), b"\r\n"].concat();
+    assert_eq!(status(&talk(place, &many)), "431");
+    let path = format!("GET /{} HTTP/1.1\r\n\r\n", "a".repeat(2 * MOST_HEAD));
+    assert!(["431", "nothing"].contains(&status(&talk(place, path.as_bytes())).as_str()));
+    serves(place);
+}
+
+#[test]
+fn slow_and_silent_clients_are_left_and_keep_nobody_waiting() {
+    let place = server();
+    let mut silent: Vec<TcpStream> = (0..MOST_CONNECTIONS - 2).map(|_| connect(place)).collect();
+    serves(place);
+    // A byte now and then does not make a head endless.
+    let begun = Instant::now();
+    let mut slow = connect(place);
+    let mut answer: Vec<u8> = vec![];
+    while begun.elapsed() < 3 * PATIENCE {
+        let _ = slow.write_all(b"G");
+        thread::sleep(Duration::from_millis(200));
+        slow.set_read_timeout(Some(Duration::from_millis(1))).unwrap();
+        let mut piece = [0; 512];
+        match slow.read(&mut piece) {
+            Ok(0) => break,
+            Ok(count) => answer.extend_from_slice(&piece[..count]),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            Err(_) => break,
+        }
+    }
+    assert!(begun.elapsed() < 2 * PATIENCE, "{:?}", begun.elapsed());
+    assert!(["400", "408", "nothing"].contains(&status(&answer).as_str()), "{}", status(&answer));
+    for stream in &mut silent {
+        let mut answer = vec![];
+        stream.read_to_end(&mut answer).unwrap();
+        assert_eq!(status(&answer), "408");
+    }
+    serves(place);
+}
+
+#[test]
+fn more_clients_than_there_may_be_are_told_so_and_those_that_read_nothing_go() {
+    let place = server();
+    // More is asked for than the buffers between us hold, and none of it read.
+    let greedy: Vec<TcpStream> = (0..MOST_CONNECTIONS)
+        .map(|_| {
+            let mut stream = connect(place);
+            stream.write_all(b"GET /clips/0.ptn HTTP/1.1\r\n\r\n").unwrap();
+            stream
+        })
+        .collect();
+    thread::sleep(Duration::from_millis(300));
+    let mut refused = connect(place);
+    let mut answer = vec![];
+    let _ = refused.read_to_end(&mut answer);
+    assert_eq!(status(&answer), "503");
+    thread::sleep(2 * PATIENCE);
+    serves(place);
+    drop(greedy);
+}
+
+#[test]
+fn the_command_prints_its_address_and_serves_there() {
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.ptn");
+    let site = folder(&[("index.html", PAGE), ("a", b""), ("b", b"")]);
+    let pantin = || {
+        let mut pantin = Command::new(env!("CARGO_BIN_EXE_pantin"));
+        pantin.arg("serve").args(["--port", "0"]).arg("--site").arg(&site).stdout(Stdio::piped()).stderr(Stdio::piped());
+        pantin
+    };
+    let mut running = pantin().arg(&walk).spawn().unwrap();
+    let mut line = String::new();
+    BufReader::new(running.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let address = line.strip_prefix("http://").and_then(|rest| rest.split('/').next()).unwrap();
+    assert!(address.starts_with("127.0.0.1:"), "{line}");
+    serves(address.parse().unwrap());
+    assert_eq!(body(&talk(address.parse().unwrap(), b"GET /clips/0.ptn HTTP/1.1\r\n\r\n")), fs::read(&walk).unwrap());
+    running.kill().unwrap();
+    running.wait().unwrap();
+    let refused = pantin().arg(site.join("a")).output().unwrap();
+    assert!(!refused.status.success() && refused.stdout.is_empty());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("the clip is truncated"), "{refused:?}");
+    fs::remove_dir_all(site).unwrap();
+}

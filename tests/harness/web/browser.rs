@@ -1,0 +1,76 @@
+//! Chromium, driven by `tests/web/drive.mjs`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+
+use anyhow::{Context, Result, ensure};
+use serde_json::Value;
+
+use crate::paths;
+use crate::setup::{self, HOST_ONLY, install_emulator};
+
+/// Chromium and what drives it, installed.
+pub struct Browser {
+    chromium: PathBuf,
+    playwright: PathBuf,
+}
+
+/// Whether Chromium's tests are to be skipped, as those in QEMU are; says it where no test runner swallows it.
+pub fn skipped(test: &str) -> bool {
+    let skip = std::env::var_os(HOST_ONLY).is_some_and(|value| !value.is_empty());
+    if skip {
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {test} needs Chromium ({HOST_ONLY} is set)");
+    }
+    skip
+}
+
+impl Browser {
+    /// Installs what is missing.
+    pub fn ready() -> Result<Browser> {
+        let known = ["chromium", "chromium-browser", "google-chrome"].into_iter().find_map(paths::program);
+        let chromium = known.map_or_else(|| install_emulator("chromium"), Ok)?;
+        setup::install_emulator("node")?;
+        Ok(Browser { chromium, playwright: playwright()? })
+    }
+
+    /// Runs a case of the driver; an error if anything that it asserts is not so.
+    pub fn drive(&self, case: &str, arguments: &Value) -> Result<Value> {
+        let driver = paths::root().join("tests/web/drive.mjs");
+        let mut node = Command::new(setup::emulator("node")?);
+        node.arg(driver).arg(case).arg(arguments.to_string());
+        node.env("PLAYWRIGHT", &self.playwright).env("CHROMIUM", &self.chromium);
+        let output = node.stdin(Stdio::null()).output().context("cannot start node")?;
+        ensure!(output.status.success(), "{case}: {}", String::from_utf8_lossy(&output.stderr).trim());
+        serde_json::from_slice(&output.stdout).with_context(|| format!("{case}: the driver said no JSON"))
+    }
+}
+
+/// The folder in which the locked packages are; npm installs them once.
+fn playwright() -> Result<PathBuf> {
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let (wanted, folder) = (paths::root().join("tests/web"), paths::root().join("target/playwright"));
+    let lock = fs::read(wanted.join("package-lock.json")).context("tests/web/package-lock.json")?;
+    let done = folder.join("installed-lock.json");
+    if fs::read(&done).is_ok_and(|installed| installed == lock) {
+        return Ok(folder);
+    }
+    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    for name in ["package.json", "package-lock.json"] {
+        fs::copy(wanted.join(name), folder.join(name)).with_context(|| name.to_owned())?;
+    }
+    npm(&folder)?;
+    fs::write(&done, lock).with_context(|| done.display().to_string())?;
+    Ok(folder)
+}
+
+fn npm(folder: &Path) -> Result<()> {
+    eprintln!("installing what drives Chromium: npm ci");
+    let npm = install_emulator("npm")?;
+    let status = Command::new(npm).args(["ci", "--no-audit", "--no-fund"]).current_dir(folder).stdout(Stdio::null()).status();
+    ensure!(status.context("cannot start npm")?.success(), "`npm ci` failed in {}", folder.display());
+    Ok(())
+}

@@ -1,0 +1,119 @@
+//! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
+
+pub mod browser;
+mod pack;
+pub mod slow;
+
+use std::ffi::OsString;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+use anyhow::{Context, Result};
+use pantin_tools::serve::{Site, serve};
+use serde_json::json;
+
+use crate::build::{self, Build};
+use crate::{paths, setup};
+
+/// What the modules are compiled for.
+pub const TARGET: &str = "wasm32-unknown-unknown";
+
+/// The modules' packages.
+pub const PACKAGES: [&str; 2] = ["pantin-web-player", "pantin-web-converter"];
+
+/// A file of the player, or of the converter, and its bytes.
+pub struct Size {
+    /// Its name in the site.
+    pub name: &'static str,
+    /// As it is served without compression.
+    pub bytes: usize,
+}
+
+/// What a page that plays clips loads.
+pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
+/// What is loaded beside it once a motion is dropped.
+pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
+
+/// Builds the site into a folder, in place of what of it was there.
+pub fn build(out: &Path) -> Result<()> {
+    let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
+    make(&out.join("clips"))?;
+    setup::rust_target(TARGET)?;
+    write(&out.join(PLAYER[1]), &module(PACKAGES[0], "release")?)?;
+    write(&out.join(CONVERTER[1]), &module(PACKAGES[1], "converter")?)?;
+    for entry in listed(&paths::root().join("web/page"))? {
+        let name = entry.file_name().unwrap_or_default();
+        let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
+        let scripted = entry.extension().is_some_and(|extension| extension == "js");
+        write(&out.join(name), &if scripted { bare(&bytes) } else { bytes })?;
+    }
+    clips(out)
+}
+
+/// Builds the site into `target/web` and serves it, with some more files by their paths, as long as this program runs; returns the page's
+/// address.
+pub fn served(extras: Vec<(String, Vec<u8>)>) -> Result<String> {
+    let folder = paths::root().join("target/web");
+    build(&folder)?;
+    let mut site = Site::read(&folder)?;
+    for (path, bytes) in extras {
+        site.add(path, bytes)?;
+    }
+    let listener = TcpListener::bind("127.0.0.1:0").context("cannot listen on this machine")?;
+    let address = format!("http://{}/", listener.local_addr()?);
+    thread::spawn(move || serve(&listener, site));
+    Ok(address)
+}
+
+/// Bytes of the site's files, of those that are there.
+pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
+    let bytes = |name| std::fs::metadata(out.join(name)).ok().map(|file| file.len() as usize);
+    names.iter().filter_map(|name| Some(Size { name, bytes: bytes(name)? })).collect()
+}
+
+/// A package of the web workspace as a module.
+fn module(package: &str, profile: &str) -> Result<Vec<u8>> {
+    let arguments = ["--profile", profile, "--package", package, "--target", TARGET];
+    let product = build::cargo(&Build {
+        workspace: paths::root().join("web"),
+        arguments: arguments.map(OsString::from).into(),
+        environment: vec![],
+        product: package.replace('-', "_"),
+    })?;
+    let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
+    pack::pack(&bytes).with_context(|| product.display().to_string())
+}
+
+/// A script without indents and without lines of comment alone: our scripts have no text of several lines in which they would count.
+fn bare(script: &[u8]) -> Vec<u8> {
+    let lines = script.split(|&byte| byte == b'\n').map(|line| line.trim_ascii()).filter(|line| !line.is_empty());
+    lines.filter(|line| !line.starts_with(b"//")).flat_map(|line| [line, b"\n"].concat()).collect()
+}
+
+/// Our own clips, and the list of them that the page reads.
+fn clips(out: &Path) -> Result<()> {
+    let mut list = vec![];
+    for folder in ["motions", "motions/face"] {
+        for clip in listed(&paths::root().join(folder))? {
+            if clip.extension().is_some_and(|extension| extension == "ptn") {
+                let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
+                let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                write(&out.join("clips").join(&name).with_extension("ptn"), &bytes)?;
+                list.push(json!({ "name": name, "file": format!("clips/{name}.ptn"), "bytes": bytes.len() }));
+            }
+        }
+    }
+    write(&out.join("clips.json"), json!(list).to_string().as_bytes())
+}
+
+fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file()).collect();
+    files.sort();
+    Ok(files)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    pantin_tools::cmd::write_whole(path, bytes)
+}

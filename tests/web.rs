@@ -1,0 +1,312 @@
+//! The web page in a real Chromium: its pictures are the host's, pixel by pixel, and everything on it is driven as a user would.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use harness::display::{GREYS, Picture};
+use harness::web::browser::{Browser, skipped};
+use harness::web::{self, slow};
+use harness::{build, clips, paths, screen, setup, simulator};
+use pantin::Clip;
+use pantin_figure::rotation::Rotation;
+use pantin_tools::expand::expand;
+use pantin_tools::import::{self, Options};
+use pantin_tools::verify;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// Chromium, and the address of the page, built and served once for all tests, with some more files.
+static STAGE: LazyLock<(Browser, String)> = LazyLock::new(|| {
+    let extras = extras().into_iter().map(|(name, bytes)| (format!("/extra/{name}.ptn"), bytes)).collect();
+    (Browser::ready().unwrap(), web::served(extras).unwrap())
+});
+
+/// Files that are no good, and a long one.
+fn extras() -> Vec<(&'static str, Vec<u8>)> {
+    let long = std::fs::read(long()).unwrap();
+    let mut damaged = long.clone();
+    let late = long.len() * 3 / 4;
+    damaged[late] ^= 0x10;
+    let mut version = long.clone();
+    version[2] = 1;
+    vec![
+        ("truncated", long[..late].to_vec()),
+        ("damaged", damaged),
+        ("version", version),
+        ("head", long[..20].to_vec()),
+        ("empty", vec![]),
+        ("nonsense", b"<html>this is no clip</html>".repeat(100)),
+        ("long", long),
+    ]
+}
+
+/// A clip of several blocks: our walk, exact, eight times as many frames.
+fn long() -> &'static Path {
+    static LONG: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let clip = folder.path().join("long.ptn");
+        let mut tool = Command::new(build::host_tool().unwrap());
+        tool.arg("convert").arg(paths::root().join("motions/wave.proc")).arg("-o").arg(&clip);
+        assert!(tool.args(["--max-error", "0.005cm", "--effort", "fast", "--quiet"]).status().unwrap().success());
+        (folder, clip)
+    });
+    &LONG.1
+}
+
+fn drive(case: &str, mut arguments: Value) -> Value {
+    let (browser, address) = &*STAGE;
+    arguments["site"] = json!(address);
+    browser.drive(case, &arguments).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+fn own(name: &str) -> PathBuf {
+    paths::root().join("motions").join(name)
+}
+
+fn picture(greys: &Value) -> Picture {
+    let pixels = greys.as_str().unwrap().chars().map(|grey| grey.to_digit(16).unwrap() as u16).collect::<Vec<_>>();
+    assert_eq!(pixels.len(), GREYS.width * GREYS.height);
+    Picture { display: GREYS, pixels }
+}
+
+/// Our own walk, a face, both, and a captured walk: a file for the page, one for the host, and frames in an order that goes back and forth.
+#[test]
+fn the_canvas_shows_what_the_host_shows() {
+    if skipped("the page's pictures") {
+        return;
+    }
+    let views: [(&[u8], i32, i32); 4] = [(b"", -50, 12), (b"aa", -80, 12), (b"ddddw", 10, 17), (b"vvss", 90, 2)];
+    let (mut parts, mut expected) = (vec![], vec![]);
+    for clip in ["walk.ptn", "face/hello.ptn", "greet.ptn", "face/wink.ptn"] {
+        let path = own(clip);
+        let frames = Clip::new_checked(&std::fs::read(&path).unwrap()).unwrap().frames() as usize;
+        let mut order: Vec<usize> = (0..frames.min(40)).chain([frames - 1, 7, 6, 5, frames / 2, frames / 2 - 1, 0]).collect();
+        order.extend((0..frames).rev().step_by(3));
+        for (letters, orbit, tilt) in views {
+            let keys: Vec<&[u8]> = std::iter::once(letters).chain(vec![&b""[..]; frames]).collect();
+            let shown = simulator::play::<Rotation>(GREYS, std::slice::from_ref(&path), &[], &keys).unwrap();
+            let file = format!("clips/{}", path.file_name().unwrap().to_string_lossy());
+            parts.push(json!({ "clip": file, "frames": order, "orbit": orbit, "tilt": tilt }));
+            let of = |&frame: &usize| shown[1..].iter().find(|(number, _)| *number as usize == frame).unwrap().1.clone();
+            expected.push((clip, orbit, order.clone(), order.iter().map(of).collect::<Vec<_>>()));
+        }
+    }
+    let shown = drive("pixels", json!({ "parts": parts }));
+    let mut count = 0;
+    for ((clip, orbit, frames, pictures), shown) in expected.iter().zip(shown.as_array().unwrap()) {
+        for ((frame, expected), shown) in frames.iter().zip(pictures).zip(shown.as_array().unwrap()) {
+            assert!(!expected.is_dark());
+            if let Some(difference) = screen::difference(&picture(shown), expected) {
+                panic!("{clip}, frame {frame} from {orbit} degrees: {difference}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 500);
+    println!("{count} pictures are equal");
+}
+
+#[test]
+fn the_module_stands_whatever_bytes_it_gets() {
+    if skipped("the player's module") {
+        return;
+    }
+    let module = paths::root().join("target/web").join(web::PLAYER[1]);
+    assert!(!STAGE.1.is_empty(), "it was built");
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/module.mjs")).arg(module).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
+    let output = node.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn everything_on_the_page_can_be_used() {
+    if !skipped("the page's controls") {
+        drive("controls", json!({ "clip": own("run.ptn"), "frames": 26 }));
+        drive("quiet", json!({}));
+    }
+}
+
+#[test]
+fn frames_are_played_while_bytes_arrive() {
+    if skipped("a slow network") {
+        return;
+    }
+    let bytes = std::fs::read(long()).unwrap();
+    let total = bytes.len() as u64;
+    assert!(total > 1500, "{total} bytes are too few to be slow");
+    let clip = slow::serve(bytes, total as usize, 100, Duration::from_millis(100)).unwrap();
+    let log = drive("slow", json!({ "clip": clip }));
+    let log: Vec<[u64; 5]> = serde_json::from_value(log).unwrap();
+    let during: Vec<_> = log.iter().filter(|[received, ..]| *received < total).collect();
+    let steps: BTreeSet<u64> = during.iter().map(|[_, _, playable, ..]| *playable).collect();
+    assert!(steps.len() > 4, "playable while bytes came: {steps:?}");
+    assert!(during.iter().any(|[.., frame, _]| *frame > 10), "frames were shown while bytes came");
+    assert!(log.iter().all(|[_, said, ..]| *said == total));
+    assert!(log.iter().all(|[_, _, playable, frame, _]| *frame < (*playable).max(1)));
+    let Some([received, _, playable, _, frames]) = log.last() else { panic!("nothing happened") };
+    assert_eq!((received, playable), (&total, frames));
+}
+
+#[test]
+fn clips_that_are_no_good_are_told_and_played_as_far_as_they_go() {
+    if skipped("damaged clips") {
+        return;
+    }
+    let names = ["truncated", "damaged", "version", "head", "empty", "nonsense"];
+    // And a server that hangs up before the end.
+    let long = std::fs::read(long()).unwrap();
+    let sent = long.len() * 3 / 4;
+    let broken = slow::serve(long, sent, 200, Duration::from_millis(20)).unwrap();
+    let clips: Vec<String> =
+        names.iter().map(|name| format!("extra/{name}.ptn")).chain(["extra/absent.ptn".into(), broken]).collect();
+    let outcomes = drive("bad", json!({ "clips": clips, "good": "extra/long.ptn" }));
+    let words = ["ends early", "checksum", "another version", "ends early", "ends early", "no Pantin clip", "404", "ends early"];
+    for ((outcome, words), clip) in outcomes.as_array().unwrap().iter().zip(words).zip(&clips) {
+        let [error, said] = ["error", "said"].map(|field| outcome[field].as_str().unwrap());
+        assert!(error.contains(words) && said == error, "{clip}: {error:?}, on the page {said:?}");
+    }
+    for partly in [0, 1, 7].map(|clip| &outcomes[clip]) {
+        let [playable, frames] = ["playable", "frames"].map(|field| partly[field].as_u64().unwrap());
+        assert!(playable > frames / 4 && playable < frames, "{partly}");
+        assert!(partly["said"].as_str().unwrap().contains(&format!("{playable} of {frames} frames")), "{partly}");
+    }
+}
+
+/// What a drop left, and the motion that was dropped.
+struct Dropped {
+    saved: Value,
+    outcome: Value,
+}
+
+fn dropped(files: &[&Path], arguments: Value) -> Dropped {
+    let mut arguments = arguments;
+    arguments["files"] = json!(files);
+    let mut outcome = drive("drop", arguments);
+    Dropped { saved: outcome["saved"].take(), outcome }
+}
+
+impl Dropped {
+    fn file(&self, name: &str) -> Vec<u8> {
+        decoded(self.saved[name].as_str().unwrap_or_else(|| panic!("{name} was not saved")))
+    }
+
+    /// The clip keeps the bound, its header holds it, and both players show the same frame of it.
+    fn is_good(&self, motion: &Path, fps: Option<f64>) {
+        let stem = motion.file_stem().unwrap().to_str().unwrap();
+        let bytes = self.file(&format!("{stem}.ptn"));
+        let motion = import::load(motion, &Options { fps, ..Options::default() }).unwrap().motion;
+        let clip = Clip::new_checked(&bytes).unwrap();
+        let report = verify::compare(&motion, &expand(&clip).unwrap()).unwrap();
+        assert!(report.max_cm <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
+        let header = String::from_utf8(self.file(&format!("{stem}.h"))).unwrap();
+        assert!(header.contains(&format!("_LEN {}\n", bytes.len())), "{header:.300}");
+        let sides = self.outcome["sides"].as_array().unwrap();
+        assert!(sides.iter().all(|side| side["frame"] == clip.frames() / 2 && side["frames"] == clip.frames()), "{sides:?}");
+        assert!(sides.iter().all(|side| side["colours"].as_u64().unwrap() > 3), "{sides:?}");
+        // Within half a centimetre, the original and the clip are nearly the same picture.
+        let [original, shown] = [0, 1].map(|side| picture(&self.outcome["greys"][side]));
+        let different = screen::difference(&shown, &original).map_or(0, |difference| difference.count);
+        let lit = original.pixels.iter().filter(|pixel| **pixel > 0).count();
+        assert!(lit > 20 && different < lit, "{different} of {lit} pixels differ");
+        let words = self.outcome["report"].as_str().unwrap();
+        assert!(
+            words.contains("error, greatest") && words.contains(&format!("{} bytes", bytes.len())) || fps.is_some(),
+            "{words}"
+        );
+    }
+}
+
+fn decoded(base64: &str) -> Vec<u8> {
+    let value =
+        |letter: u8| b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/".iter().position(|&one| one == letter);
+    let bits: Vec<usize> = base64.bytes().filter_map(value).collect();
+    let group = |group: &[usize]| {
+        let all = group.iter().chain(&[0; 3]).take(4).fold(0, |all, bits| all << 6 | bits) as u32;
+        all.to_be_bytes()[1..][..group.len() - 1].to_vec()
+    };
+    bits.chunks(4).flat_map(group).collect()
+}
+
+fn shots() -> PathBuf {
+    let folder = paths::root().join("target/web-shots");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+#[test]
+fn a_dropped_motion_is_converted_shown_and_saved() {
+    if skipped("conversion in the page") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let bvh = folder.path().join("our-walk.bvh");
+    let tool = build::host_tool().unwrap();
+    let clip = clips::convert(&own("walk.keys"), folder.path()).unwrap();
+    for made in ["our-walk.bvh", "our-walk.glb"] {
+        assert!(Command::new(&tool).arg("expand").arg(&clip).arg("-o").arg(folder.path().join(made)).status().unwrap().success());
+    }
+    let shot = json!({ "effort": "default", "shot": shots().join("converted.png") });
+    let walk = dropped(&[&bvh], shot);
+    walk.is_good(&bvh, None);
+    let parts: Vec<f64> = serde_json::from_value(walk.outcome["parts"].clone()).unwrap();
+    assert!(parts.len() > 3 && parts.is_sorted(), "progress {parts:?}");
+    let glb = folder.path().join("our-walk.glb");
+    dropped(&[&glb], json!({ "effort": "fast" })).is_good(&glb, None);
+    let table = folder.path().join("servos.csv");
+    let row = |frame: usize| format!("{:.4},{:.4}\n", (frame as f64 / 9.0).sin(), (frame as f64 / 23.0).cos());
+    std::fs::write(&table, format!("pan,tilt\n{}", (0..120).map(row).collect::<String>())).unwrap();
+    dropped(&[&table], json!({ "effort": "fast", "fps": 50 })).is_good(&table, Some(50.0));
+}
+
+#[test]
+fn what_cannot_be_converted_is_refused_in_words() {
+    if skipped("bad drops") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let huge = file("huge.bvh", b"");
+    std::fs::File::options().write(true).open(&huge).unwrap().set_len(1 << 30).unwrap();
+    let files = [
+        file("empty.bvh", b""),
+        huge,
+        file("nonsense.bvh", b"HIERARCHY\nROOT hip\n{\nnonsense"),
+        file("picture.png", b"\x89PNG\r\n\x1a\n0000"),
+        file("short.glb", b"glTF\x02\0\0\0\xff\xff\0\0"),
+        file("no-rate.csv", b"a,b\n1,2\n3,4\n"),
+    ];
+    let outcomes = drive("refused", json!({ "files": files }));
+    let words = [
+        "empty.bvh: the file is empty; expected a motion",
+        "1,073,741,824 bytes; the page reads motions of at most 104,857,600 bytes",
+        "nonsense.bvh:4",
+        "picture.png: unknown kind of file",
+        "short.glb: the file is shorter than its head says",
+        "“Frames a second” gives the frames a second",
+    ];
+    for (outcome, words) in outcomes.as_array().unwrap().iter().zip(words) {
+        assert!(outcome["said"].as_str().unwrap().contains(words), "{outcome} should say {words}");
+        assert_eq!(outcome["shown"], false);
+    }
+    assert!(outcomes[1]["ms"].as_u64().unwrap() < 3000, "it was read: {}", outcomes[1]);
+    if let Some(data) = paths::data() {
+        drive("cancel", json!({ "file": data.join("bvh_cmu01_hops-and-turn.bvh") }));
+    }
+}
+
+#[test]
+fn the_page_is_there_to_be_looked_at() {
+    if !skipped("pictures of the page") {
+        drive("shots", json!({ "folder": shots() }));
+        println!("{}", shots().display());
+    }
+}

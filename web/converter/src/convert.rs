@@ -1,0 +1,81 @@
+//! From files to a clip and what there is to say about it.
+
+use anyhow::{Context, Result, ensure};
+use pantin::Clip;
+use pantin_tools::edit::resample::resample;
+use pantin_tools::encode::{clip, rig};
+use pantin_tools::export::source::c_header;
+use pantin_tools::fit::descent::Level;
+use pantin_tools::fit::{fit, raw};
+use pantin_tools::import::{self, Files, Options};
+use pantin_tools::motion::Motion;
+use pantin_tools::{errors, verify};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Greatest error of channels that move no joint, as a part of their full scale: the host tool's own.
+const SCALAR_PART: f64 = 0.02;
+
+/// What a conversion leaves: the report, the clip, its C header, its rig, and the motion's own poses.
+#[derive(Default)]
+pub struct Converted {
+    pub parts: [Vec<u8>; 5],
+}
+
+impl Converted {
+    /// Of one that failed: a report of why.
+    pub fn failed(error: &anyhow::Error) -> Converted {
+        let mut converted = Converted::default();
+        converted.parts[0] = json!({ "error": format!("{error:#}") }).to_string().into_bytes();
+        converted
+    }
+}
+
+/// Converts the first of `files`, with the others beside it. The bound is checked by the device's decoder.
+pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dyn FnMut(f64)) -> Result<Converted> {
+    let options: Value = serde_json::from_slice(options).context("options")?;
+    let cm = options["max_error_cm"].as_f64().filter(|cm| *cm > 0.0).context("greatest error: expected a length above 0")?;
+    let level = match options["effort"].as_str() {
+        Some("fast") => Level::Fast,
+        Some("best") => Level::Best,
+        _ => Level::Default,
+    };
+    let (fps, cm_per_unit) = (options["fps"].as_f64(), options["cm_per_unit"].as_f64());
+    let (path, _) = files.iter().find(|(path, _)| import::is_motion(path)).or(files.first()).context("no file")?;
+    let path = path.clone();
+    let imported = import::load(&path, &Options { fps, cm_per_unit, files: Files::Given(files.into()), ..Options::default() })?;
+    let mut said = imported.warnings;
+    said.push(imported.units);
+    let mut motion = imported.motion;
+    if let Some(fps) = fps {
+        motion = resample(&motion, fps)?;
+    }
+    let rig = rig::encode(&motion.rig)?;
+    let coded = fit(&motion, level.plan(cm), SCALAR_PART, progress)?;
+    let bytes = clip::encode(&coded, &rig, false)?;
+    let report = verify::verify(&bytes, &rig, &motion, cm, SCALAR_PART)?;
+    let mut fields = errors::to_json(&report, &motion);
+    let facts = json!({
+        "said": said,
+        "frames": motion.frames,
+        "channels": motion.rig.channels(),
+        "frame_time_ns": coded.frame_time_ns,
+        "length_exponent": coded.length_exponent,
+    });
+    fields.extend(facts.as_object().cloned().unwrap_or_default());
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let header = c_header(&Clip::new_checked(&bytes)?, &bytes, &stem);
+    let poses = poses(&motion, coded.length_exponent)?;
+    Ok(Converted { parts: [Value::from(fields).to_string().into_bytes(), bytes, header.into_bytes(), rig, poses] })
+}
+
+/// The motion as raw values, frame by frame, the least byte first: what an exact clip would play.
+fn poses(motion: &Motion, length_exponent: i8) -> Result<Vec<u8>> {
+    let channels = motion.rig.channel_kinds().into_iter().zip(raw::scales(&motion.rig, length_exponent));
+    let targets: Vec<Vec<f64>> =
+        motion.values.iter().zip(channels).map(|(values, ((_, kind), scale))| raw::target(values, kind, scale)).collect();
+    ensure!(targets.iter().all(|target| target.len() == motion.frames), "a channel has lost frames");
+    // Angles wrap, as on the device.
+    let pose = |frame: usize| targets.iter().flat_map(move |target| (target[frame].round() as i64 as i32).to_le_bytes());
+    Ok((0..motion.frames).flat_map(pose).collect())
+}

@@ -1,0 +1,212 @@
+// The page about the player: its buttons, the gallery, and motions that are dropped.
+import "./pantin-player.js";
+
+// Bytes of a motion that the page reads: what the encoder makes of them has to fit into its memory many times over.
+const MOST = 100 << 20;
+
+const $ = (id) => document.getElementById(id);
+const [player, original, converted] = ["player", "original", "converted"].map($);
+const bytes = (count) => `${count.toLocaleString("en")} ${count === 1 ? "byte" : "bytes"}`;
+
+function table(list, rows) {
+  list.replaceChildren(...rows.filter(Boolean).map(([name, value]) => {
+    const [row, term, text] = ["div", "dt", "dd"].map((tag) => document.createElement(tag));
+    term.textContent = name;
+    text.textContent = value;
+    row.append(term, text);
+    return row;
+  }));
+}
+
+// ---- the player
+
+function told() {
+  const { frames, playable, frameTime, channels, moving, rigBytes, motionBytes } = player.facts;
+  const seconds = (frames * frameTime) / 1e9;
+  table($("facts"), [
+    ["received", player.total > player.received ? `${player.received.toLocaleString("en")} of ${bytes(player.total)}` : bytes(player.received)],
+    ["frames playable", `${playable.toLocaleString("en")} of ${frames.toLocaleString("en")}`],
+    frames && ["length", `${seconds.toFixed(2)} s at ${(1e9 / frameTime).toFixed(1).replace(".0", "")} a second`],
+    moving && ["channels moving", `${moving} of ${channels}`],
+    moving && ["motion, rig", `${motionBytes} + ${rigBytes} bytes`],
+    moving && ["motion a second", `${(motionBytes / seconds).toFixed(0)} bytes`],
+  ]);
+}
+
+function changed() {
+  $("backwards").setAttribute("aria-pressed", player.backwards);
+  $("loop").setAttribute("aria-pressed", player.loop);
+  $("oled").setAttribute("aria-pressed", player.look === "oled");
+  $("speed").value = player.speed;
+}
+
+["progress", "ready", "error"].forEach((name) => player.addEventListener(name, told));
+player.addEventListener("change", changed);
+const button = (id, act) => ($(id).onclick = () => (act(), changed()));
+button("backwards", () => (player.backwards = !player.backwards));
+button("loop", () => (player.loop = !player.loop));
+button("oled", () => (player.look = player.look === "oled" ? "lines" : "oled"));
+button("home", () => player.turn(-50 - player.orbit, 12 - player.tilt));
+$("speed").onchange = () => (player.speed = +$("speed").value);
+$("link").onchange = () => show(current);
+
+// ---- the gallery
+
+let current = null;
+
+// The response, its bytes no faster than ten bits a byte over a serial line.
+function slowed(response, baud) {
+  const every = 50;
+  const piece = Math.max(1, Math.round((baud / 10 / 1000) * every));
+  const slow = new TransformStream({
+    async transform(chunk, out) {
+      for (let at = 0; at < chunk.length; at += piece) {
+        await new Promise((go) => setTimeout(go, every));
+        out.enqueue(chunk.subarray(at, at + piece));
+      }
+    },
+  });
+  return new Response(response.body.pipeThrough(slow), { headers: response.headers, status: response.status });
+}
+
+async function show(clip) {
+  if (!clip) return;
+  current = clip;
+  document.querySelectorAll("#clips [aria-current]").forEach((other) => other.removeAttribute("aria-current"));
+  clip.button?.setAttribute("aria-current", "true");
+  const baud = +$("link").value;
+  try {
+    const what = clip.data ?? clip.file;
+    await player.load(baud ? slowed(clip.data ? new Response(clip.data) : await fetch(clip.file), baud) : what);
+  } catch {
+    // The player says what is wrong.
+  }
+}
+
+async function gallery() {
+  const list = await (await fetch("clips.json")).json();
+  for (const clip of list) {
+    const item = document.createElement("li");
+    clip.button = document.createElement("button");
+    clip.button.type = "button";
+    clip.button.onclick = () => show(clip);
+    const [small, name, size] = ["pantin-player", "strong", "small"].map((tag) => document.createElement(tag));
+    small.setAttribute("bare", "");
+    small.inert = true;
+    small.loop = true;
+    small.addEventListener("ready", () => small.seek(small.frames >> 1), { once: true });
+    small.setAttribute("src", clip.file);
+    clip.button.onpointerenter = () => small.play();
+    clip.button.onpointerleave = () => small.pause();
+    name.textContent = clip.name;
+    size.textContent = bytes(clip.bytes);
+    clip.button.append(small, name, size);
+    item.append(clip.button);
+    $("clips").append(item);
+  }
+  const wanted = new URLSearchParams(location.search).get("clip");
+  show(list.find((clip) => clip.name === wanted) ?? list.find((clip) => clip.name === "greet") ?? list[0]);
+}
+
+gallery().catch((error) => table($("facts"), [["gallery", error.message]]));
+
+// ---- motions that are dropped
+
+let worker = null;
+
+// The encoder speaks of the host tool's options: here they are fields.
+const here = (text) => text.replaceAll("--fps", "\u201cFrames a second\u201d").replaceAll("--cm-per-unit", "\u201ccm a unit\u201d");
+
+function trouble(text) {
+  $("trouble").textContent = here(text);
+}
+
+function done() {
+  worker?.terminate();
+  worker = null;
+  $("working").hidden = true;
+}
+
+async function take(files) {
+  done();
+  trouble("");
+  $("result").hidden = true;
+  files = [...files];
+  if (!files.length) return trouble("That was no file.");
+  const size = files.reduce((sum, file) => sum + file.size, 0);
+  const [first] = files;
+  if (size > MOST) return trouble(`${first.name}: ${bytes(size)}; the page reads motions of at most ${bytes(MOST)}. \`pantin convert\` takes any.`);
+  const empty = files.find((file) => !file.size);
+  if (empty) return trouble(`${empty.name}: the file is empty; expected a motion.`);
+  if (/\.ptn$/i.test(first.name)) {
+    scrollTo({ top: 0, behavior: "smooth" });
+    return show({ name: first.name, data: await first.arrayBuffer() });
+  }
+  $("working").hidden = false;
+  $("progress").removeAttribute("value");
+  $("step").textContent = `reading ${first.name}`;
+  const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() }))).catch(() => null);
+  if (!given) return done(), trouble(`${first.name}: cannot be read.`);
+  const options = { max_error_cm: +$("cm").value, effort: $("effort").value, fps: +$("fps").value || null, cm_per_unit: +$("unit").value || null };
+  worker = new Worker("converter.js", { type: "module" });
+  worker.onerror = (event) => (done(), trouble(`The converter stopped: ${event.message ?? "it could not be loaded"}`));
+  worker.onmessage = ({ data }) => {
+    if (data.progress !== undefined) {
+      $("progress").value = data.progress;
+      $("step").textContent = `fitting, ${Math.floor(100 * data.progress)} %`;
+    } else {
+      done();
+      if (data.error) trouble(data.error);
+      else shown(data, first).catch((error) => trouble(error.message));
+    }
+  };
+  worker.postMessage({ files: given, options });
+}
+
+function save(link, name, content, type) {
+  if (link.href) URL.revokeObjectURL(link.href);
+  link.href = URL.createObjectURL(new Blob([content], { type }));
+  link.download = name;
+}
+
+async function shown({ report, clip, header, rig, poses, seconds }, file) {
+  $("result").hidden = false;
+  const stem = file.name.replace(/\.[^.]*$/, "");
+  save($("save"), `${stem}.ptn`, clip, "application/octet-stream");
+  save($("save-c"), `${stem}.h`, header, "text/x-c");
+  const { frames, channels, frame_time_ns, length_exponent } = report;
+  const raw = frames * channels * 2;
+  table($("report"), [
+    ["clip", bytes(clip.length)],
+    ["of the file", `${((100 * clip.length) / file.size).toFixed(clip.length < file.size / 100 ? 2 : 1)} % of ${bytes(file.size)}`],
+    ["of 16 bits a value", `${((100 * clip.length) / raw).toFixed(1)} %`],
+    report.max_error_cm !== undefined && ["error, greatest", `${report.max_error_cm.toFixed(3)} cm (${report.worst_joint}, frame ${report.worst_frame})`],
+    report.max_error_cm !== undefined && ["error, mean", `${report.mean_error_cm.toFixed(3)} cm`],
+    report.max_scalar_error_percent !== undefined && ["values' error, greatest", `${report.max_scalar_error_percent.toFixed(2)} % of full scale`],
+    ["frames, channels", `${frames}, ${channels}`],
+    ["converted in", `${seconds.toFixed(1)} s`],
+  ]);
+  $("said").replaceChildren(...report.said.map((sentence) => {
+    const item = document.createElement("li");
+    item.textContent = here(sentence);
+    return item;
+  }));
+  const table_ = { rig, poses, frames, frameTime: frame_time_ns, lengthExponent: length_exponent };
+  await Promise.all([original.load(table_), converted.load(clip)]);
+  follow();
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) converted.play();
+}
+
+// The original shows what the clip shows, from the same side.
+function follow() {
+  original.seek(converted.frame);
+}
+converted.addEventListener("frame", follow);
+converted.addEventListener("change", () => original.turn(converted.orbit - original.orbit, converted.tilt - original.tilt));
+
+$("cancel").onclick = () => (done(), trouble("Cancelled."));
+$("files").onchange = (event) => (take(event.target.files), (event.target.value = ""));
+const over = (on) => (event) => (event.preventDefault(), $("drop").classList.toggle("over", on));
+addEventListener("dragover", over(true));
+addEventListener("dragleave", over(false));
+addEventListener("drop", (event) => (over(false)(event), take(event.dataTransfer.files)));

@@ -1,0 +1,115 @@
+//! The clip, what it is drawn as, and its picture.
+
+use crate::actor::Actor;
+use crate::arriving::{self, Arriving};
+use crate::facts::{Facts, Trouble};
+use crate::memory;
+use crate::picture::{DISPLAY, Picture, Stroke};
+use crate::source::{Source, Table};
+use pantin_figure::{Canvas, View};
+
+/// Everything that an instance holds.
+pub struct World {
+    source: Source,
+    actor: Actor,
+    file: &'static [u8],
+    canvas: Canvas,
+    view: Option<View>,
+    /// Frames that were playable when the camera was set up.
+    surveyed: u32,
+    facts: Facts,
+    finished: bool,
+}
+
+impl World {
+    /// Not constant: as a constant it would lie in the file, zeros and all.
+    #[inline(never)]
+    pub fn new() -> World {
+        World {
+            source: Source::Nothing,
+            actor: Actor::NONE,
+            file: &[],
+            canvas: DISPLAY,
+            view: None,
+            surveyed: 0,
+            facts: Facts::NONE,
+            finished: false,
+        }
+    }
+
+    /// The file's front is there. Camera and scale are those of the frames that are playable: they are set up anew whenever these have doubled.
+    pub fn arrived(&mut self, file: &'static [u8]) -> Result<(), Trouble> {
+        if self.finished {
+            return Ok(());
+        }
+        self.file = file;
+        if matches!(self.source, Source::Nothing) {
+            let Some(rig) = arriving::rig(file)? else { return Ok(()) };
+            self.source = Source::Arriving(Arriving::new(rig)?);
+        }
+        let Source::Arriving(arriving) = &mut self.source else { return Ok(()) };
+        let outcome = arriving.extend(file);
+        if self.source.playable() > 2 * self.surveyed {
+            self.look()?;
+        }
+        outcome
+    }
+
+    /// Checks the whole file. What was playable stays so if it is no good.
+    pub fn finish(&mut self) -> Result<(), Trouble> {
+        if self.finished {
+            return Ok(());
+        }
+        self.finished = true;
+        let now = self.source.facts().frame;
+        let whole = Source::whole(self.file)?;
+        self.source = whole;
+        self.source.go(now);
+        self.look()
+    }
+
+    /// Takes a table in place of a clip.
+    pub fn poses(&mut self, rig: usize, frames: usize, frame_time_ns: u32, length_exponent: i8) -> Result<(), Trouble> {
+        self.finished = true;
+        self.source = Source::Table(Table::new(memory::file(usize::MAX), rig, frames, frame_time_ns, length_exponent)?);
+        self.look()
+    }
+
+    pub fn aim(&mut self, width: u16, height: u16, orbit: i16, tilt: i16) -> Result<(), Trouble> {
+        self.canvas = Canvas { width: width.clamp(1, 2047), height: height.clamp(1, 2047) };
+        self.view = Some(View { orbit, tilt, ..View::default() });
+        self.look()
+    }
+
+    fn look(&mut self) -> Result<(), Trouble> {
+        let Some(view) = self.view else { return Ok(()) };
+        match self.actor.aim(&mut self.source, self.canvas, view) {
+            Err(Trouble::Nothing) => Ok(()),
+            Err(trouble) => Err(trouble),
+            Ok(()) => {
+                self.surveyed = self.source.playable();
+                Ok(())
+            }
+        }
+    }
+
+    pub fn go(&mut self, frame: u32) {
+        let pose = self.source.go(frame);
+        self.actor.place(pose);
+    }
+
+    pub fn facts(&mut self) -> &Facts {
+        self.facts = Facts { kind: self.actor.kind(), ..self.source.facts() };
+        &self.facts
+    }
+
+    pub fn strokes(&mut self, picture: &'static mut Picture) -> &'static [Stroke] {
+        let pose = self.source.pose();
+        picture.gather(&mut self.actor, pose)
+    }
+
+    pub fn grey(&mut self, picture: &'static mut Picture) -> &'static [u8] {
+        let pose = self.source.pose();
+        picture.draw(&mut self.actor, pose)
+    }
+}
