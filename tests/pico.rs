@@ -106,7 +106,7 @@ fn thirty_frames_a_second_hold_with_the_buses_own_times() {
     for (display, features) in [(OLED, "face"), (LCD, "face,st7789")] {
         let (_folder, image) = image(features);
         for (clip, name) in ["walk", "hello", "greet"].into_iter().enumerate() {
-            let keys: Vec<&[u8]> = std::iter::repeat_n(&b"n"[..], clip).chain([&b""[..]; 10]).collect();
+            let keys: Vec<&[u8]> = std::iter::repeat_n(&b"n"[..], clip).chain([&b""[..]; 40]).collect();
             let mut outcome = in_step(Request::new(&image, display).timed(), &keys);
             equal(&outcome, &expected(display, &keys));
             outcome.frames.drain(..clip + 1);
