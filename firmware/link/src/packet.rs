@@ -1,0 +1,236 @@
+//! Packets on a line: kind, sequence, payload and CRC, stuffed, between zeros.
+//!
+//! ```text
+//! 00  COBS( kind u8, sequence u8, payload, CRC-16/IBM-3740 u16 of all before it, least first )  00
+//! ```
+//!
+//! A zero is nothing but an end, so a receiver is in step again at the first zero after any damage; one zero between two packets
+//! is enough. A byte alone between zeros is no packet but a **letter**: a terminal's keys share the line.
+
+use crate::cobs;
+use pantin::crc;
+
+/// What a packet is for: its first byte.
+pub mod kind {
+    use core::ops::RangeInclusive;
+
+    /// What is played: LINK.md, "Head".
+    pub const HEAD: u8 = 0x01;
+    /// Segments and refreshes: LINK.md, "Motion".
+    pub const MOTION: u8 = 0x02;
+    /// For clips that are updated over the line.
+    pub const UPDATES: RangeInclusive<u8> = 0x10..=0x1f;
+}
+
+/// Bytes of a packet beside its payload, before stuffing.
+pub const OVERHEAD: usize = 4;
+
+/// Bytes that a packet takes on the line at most, both zeros included.
+pub const fn line_len(payload: usize) -> usize {
+    let len = payload + OVERHEAD;
+    len + len.div_ceil(254) + 2
+}
+
+/// A packet that came whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Packet<'a> {
+    /// What it is for, as [`kind`] lists.
+    pub kind: u8,
+    /// One more than the sender's last packet's, modulo 256.
+    pub sequence: u8,
+    /// What it says.
+    pub payload: &'a [u8],
+}
+
+/// Writes a packet as it goes over the line, with a zero before and behind: how many bytes. Straight after another packet the
+/// first zero may be left out. None if `out` has not the room ([`line_len`] says how much that is at most).
+pub fn encode(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
+    let head = [kind, sequence];
+    let crc = crc::update(crc::of(&head), payload).to_le_bytes();
+    let (first, rest) = out.split_first_mut()?;
+    let len = cobs::encode(&[&head, payload, &crc], rest)?;
+    *rest.get_mut(len)? = 0;
+    *first = 0;
+    Some(len + 2)
+}
+
+/// Finds packets of up to `N` bytes (payload and [`OVERHEAD`]) in what comes over a line. What is damaged is counted, and never handed on;
+/// of packets that chance made, one in 65,536 passes the CRC.
+#[derive(Clone, Debug)]
+pub struct Receiver<const N: usize> {
+    bytes: [u8; N],
+    len: usize,
+    stuffing: cobs::Decoder,
+    /// Bytes since the last zero.
+    since: usize,
+    first: u8,
+    letter: Option<u8>,
+    damaged: u32,
+}
+
+impl<const N: usize> Default for Receiver<N> {
+    fn default() -> Self {
+        Receiver::new()
+    }
+}
+
+impl<const N: usize> Receiver<N> {
+    /// Waits for the first byte.
+    pub const fn new() -> Self {
+        let stuffing = cobs::Decoder::new();
+        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: None, damaged: 0 }
+    }
+
+    /// Takes a byte from the line, and hands on the packet that it ends.
+    pub fn push(&mut self, byte: u8) -> Option<Packet<'_>> {
+        if byte == 0 {
+            return self.end();
+        }
+        if self.since == 0 {
+            (self.len, self.stuffing, self.first) = (0, cobs::Decoder::new(), byte);
+        }
+        self.since = self.since.saturating_add(1);
+        if let Some(byte) = self.stuffing.feed(byte) {
+            if let Some(place) = self.bytes.get_mut(self.len) {
+                *place = byte;
+            }
+            self.len = self.len.saturating_add(1);
+        }
+        None
+    }
+
+    fn end(&mut self) -> Option<Packet<'_>> {
+        let since = core::mem::take(&mut self.since);
+        if since < 2 {
+            self.letter = if since == 1 { Some(self.first) } else { self.letter };
+            return None;
+        }
+        let whole = self.stuffing.whole();
+        // None for one that was too long.
+        let packet = self.bytes.get(..self.len).filter(|_| whole).and_then(open);
+        if packet.is_none() {
+            self.damaged = self.damaged.wrapping_add(1);
+        }
+        packet
+    }
+
+    /// A byte that came alone between two zeros since the last call.
+    pub fn letter(&mut self) -> Option<u8> {
+        self.letter.take()
+    }
+
+    /// The same for a byte alone behind the last zero, for when the line has been silent for a while: a packet's first byte that is
+    /// taken for a letter costs that packet.
+    pub fn letter_of_silence(&mut self) -> Option<u8> {
+        if self.since == 1 {
+            self.since = 0;
+            return Some(self.first);
+        }
+        self.letter()
+    }
+
+    /// How many packets came damaged, modulo 2^32. Pieces count: a zero that a flipped bit made gives two.
+    pub fn damaged(&self) -> u32 {
+        self.damaged
+    }
+}
+
+/// A packet's bytes without stuffing, if their CRC is right.
+fn open(bytes: &[u8]) -> Option<Packet<'_>> {
+    let (bytes, sum) = bytes.split_last_chunk()?;
+    let &[kind, sequence, ref payload @ ..] = bytes else { return None };
+    (crc::of(bytes) == u16::from_le_bytes(*sum)).then_some(Packet { kind, sequence, payload })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn line(kind: u8, sequence: u8, payload: &[u8]) -> Vec<u8> {
+        let mut out = vec![0xaa; line_len(payload.len())];
+        let len = encode(kind, sequence, payload, &mut out).expect("line_len is enough");
+        out.truncate(len);
+        out
+    }
+
+    fn received<const N: usize>(receiver: &mut Receiver<N>, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
+        bytes.iter().filter_map(|&byte| receiver.push(byte).map(|p| (p.kind, p.sequence, p.payload.to_vec()))).collect()
+    }
+
+    #[test]
+    fn a_packet_on_the_line() {
+        let bytes = line(kind::MOTION, 7, &[0, 0x55]);
+        let crc = pantin::crc::of(&[kind::MOTION, 7, 0, 0x55]).to_le_bytes();
+        assert_eq!(bytes, [0, 3, kind::MOTION, 7, 4, 0x55, crc[0], crc[1], 0]);
+    }
+
+    #[test]
+    fn room_that_is_too_small_is_told() {
+        let whole = line(1, 2, &[3; 300]);
+        for len in 0..whole.len() {
+            assert_eq!(encode(1, 2, &[3; 300], &mut vec![0; len]), None);
+        }
+    }
+
+    #[test]
+    fn letters_share_the_line() {
+        let mut receiver = Receiver::<16>::new();
+        let mut bytes = line(1, 1, b"abc");
+        bytes.extend([b'q']);
+        bytes.extend(line(1, 2, b"def"));
+        assert_eq!(received(&mut receiver, &bytes).len(), 2);
+        assert_eq!((receiver.letter(), receiver.letter(), receiver.damaged()), (Some(b'q'), None, 0));
+        receiver.push(b'h');
+        assert_eq!(receiver.letter(), None);
+        assert_eq!((receiver.letter_of_silence(), receiver.letter_of_silence()), (Some(b'h'), None));
+        assert_eq!(received(&mut receiver, &line(1, 3, b"ghi")).len(), 1);
+    }
+
+    #[test]
+    fn one_that_is_too_long_is_damaged_and_the_next_is_not() {
+        let mut receiver = Receiver::<8>::new();
+        let bytes = [line(1, 1, &[9; 5]), line(1, 2, &[9; 4]), line(1, 3, &[9; 400]), line(1, 4, &[])].concat();
+        let got: Vec<_> = received(&mut receiver, &bytes).iter().map(|packet| packet.1).collect();
+        assert_eq!((got, receiver.damaged()), (vec![2, 4], 2));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_sent_arrives(kind: u8, sequence: u8, payload in prop::collection::vec(any::<u8>(), 0..700), shared: bool) {
+            let mut receiver = Receiver::<800>::new();
+            let bytes = line(kind, sequence, &payload);
+            let twice = [&bytes[..], &bytes[usize::from(shared)..]].concat();
+            prop_assert!(bytes[1..bytes.len() - 1].iter().all(|&byte| byte != 0));
+            let expected = (kind, sequence, payload);
+            prop_assert_eq!(received(&mut receiver, &twice), vec![expected.clone(), expected]);
+            prop_assert_eq!(receiver.damaged(), 0);
+        }
+
+        #[test]
+        fn any_bytes_at_all_and_then_two_packets(noise in prop::collection::vec(any::<u8>(), 0..600)) {
+            let mut receiver = Receiver::<64>::new();
+            received(&mut receiver, &noise);
+            // What the noise began ends at the first zero.
+            let got = received(&mut receiver, &[line(1, 5, b"first"), line(1, 6, b"second")].concat());
+            prop_assert_eq!(got, vec![(1, 5, b"first".to_vec()), (1, 6, b"second".to_vec())]);
+        }
+
+        #[test]
+        fn a_byte_lost_inserted_or_flipped_costs_that_packet_alone(at in 1usize..12, what in 0u8..3, byte: u8) {
+            let mut bytes = line(1, 1, b"damaged");
+            match what {
+                0 => { bytes.remove(at); }
+                1 => bytes.insert(at, byte),
+                _ => bytes[at] ^= byte.max(1),
+            }
+            let whole = line(1, 1, b"damaged");
+            bytes.extend(line(1, 2, b"whole"));
+            let mut receiver = Receiver::<64>::new();
+            let got = received(&mut receiver, &bytes);
+            prop_assert_eq!(got.last(), Some(&(1, 2, b"whole".to_vec())));
+            // Only a zero put in beside a zero leaves it as it was, and is not damage.
+            prop_assert!(got.len() == 1 || bytes.iter().filter(|&&b| b != 0).eq(whole.iter().chain(&line(1, 2, b"whole")).filter(|&&b| b != 0)));
+        }
+    }
+}
