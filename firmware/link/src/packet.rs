@@ -18,6 +18,8 @@ pub mod kind {
     pub const HEAD: u8 = 0x01;
     /// Segments and refreshes: LINK.md, "Motion".
     pub const MOTION: u8 = 0x02;
+    /// What the channels are: LINK.md, "Starts".
+    pub const STARTS: u8 = 0x03;
     /// For clips that are updated over the line.
     pub const UPDATES: RangeInclusive<u8> = 0x10..=0x1f;
 }
