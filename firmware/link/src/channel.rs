@@ -33,6 +33,8 @@ pub struct Channel {
     step: u8,
     pace: u8,
     known: Known,
+    /// Whether the drawn value has once been the state.
+    met: bool,
 }
 
 impl Channel {
@@ -77,6 +79,12 @@ impl Channel {
         (self.state, self.pace, self.known) = (leader.state, leader.pace, leader.known);
     }
 
+    /// Whether what is drawn keeps to the pace: it has once been the state.
+    #[cfg(test)]
+    pub(crate) fn keeps_pace(&self) -> bool {
+        self.met
+    }
+
     /// p, v, w and k, where they are known.
     pub fn state(&self) -> Option<[i32; 4]> {
         self.is_exact().then_some(self.state)
@@ -119,19 +127,22 @@ impl Channel {
         self.state = [p.wrapping_add(v), v.wrapping_add(w), w.wrapping_add(k), k];
     }
 
-    /// The value to draw after `drawn`; `went` is whether time went on. It never moves by more than the pace, but for a channel that
-    /// is still: that goes half the way.
+    /// The value to draw after `drawn`; `went` is whether time went on. It never moves by more than the pace, but where the figure first
+    /// appears: a channel that has not met its state yet goes three quarters of the way.
     pub(crate) fn draw(&mut self, drawn: i32, went: bool) -> i32 {
         let exact = self.is_exact() && (went || self.known == Known::Still);
         let p = if exact { Some(self.state[0]) } else { None };
         let before = core::mem::replace(&mut self.before, p);
         self.glide = match (p, before) {
-            // It comes to rest.
+            // It comes to rest; what came by three quarters may have been faster.
+            (None, _) if self.met => (self.glide / 2).clamp(-pace(self.pace), pace(self.pace)),
             (None, _) => self.glide / 2,
             (Some(p), before) => {
                 let moved = before.map_or(0, |before| p.wrapping_sub(before));
                 let off = p.wrapping_sub(moved).wrapping_sub(drawn);
-                if self.known == Known::Still { halved(off) } else { self.joining(moved, off) }
+                let glide = if self.met { self.joining(moved, off) } else { moved.wrapping_add(off - off / 4) };
+                self.met |= drawn.wrapping_add(glide) == p;
+                glide
             }
         };
         drawn.wrapping_add(self.glide)
@@ -146,9 +157,4 @@ impl Channel {
         let part = if off < 0 { -part } else { part };
         moved.saturating_add(part).clamp(-pace, pace)
     }
-}
-
-/// Half of it, the whole of 1.
-fn halved(off: i32) -> i32 {
-    if off.unsigned_abs() < 2 { off } else { off / 2 }
 }

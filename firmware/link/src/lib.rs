@@ -14,8 +14,8 @@ mod symbols;
 mod tables;
 
 pub use channel::Channel;
-pub use head::{EXPONENTIAL_BYTES, Head, MAX_PACE, Start, pace, read_starts};
 #[cfg(any(test, feature = "std"))]
 pub use head::write_starts;
+pub use head::{EXPONENTIAL_BYTES, Head, MAX_PACE, Start, pace, read_starts};
 pub use link::{Counts, Link, PACKET, PAYLOAD, Refusal};
 pub use message::{Message, Messages, Refresh, units};

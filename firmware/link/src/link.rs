@@ -41,6 +41,8 @@ pub struct Link<'m, const Q: usize> {
     pose: &'m mut [i32],
     rig: u32,
     head: Option<Head>,
+    /// A clip that was told of, with where the sender was: it begins with the first other packet of it.
+    next: Option<(Head, u32)>,
     queue: Vec<Waiting, Q>,
     clock: Option<Clock>,
     /// Where the sender was when it told of the clip.
@@ -83,7 +85,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
     pub fn new(rig: u32, channels: &'m mut [Channel], pose: &'m mut [i32]) -> Self {
         channels.iter_mut().for_each(|channel| *channel = Channel::default());
         let (queue, counts) = (Vec::new(), Counts::default());
-        Link { channels, pose, rig, head: None, queue, clock: None, heard: 0, sequence: None, counts }
+        Link { channels, pose, rig, head: None, next: None, queue, clock: None, heard: 0, sequence: None, counts }
     }
 
     /// Takes a packet. Those of other kinds are passed over.
@@ -99,8 +101,18 @@ impl<'m, const Q: usize> Link<'m, Q> {
             self.counts.missing = self.counts.missing.wrapping_add(u32::from(gap));
             self.sequence = Some(packet.sequence);
         }
+        if packet.kind == kind::HEAD {
+            return self.take_head(packet.payload);
+        }
+        // A head alone changes nothing: it may be another sender's that came by chance.
+        let of_next = |head: Head| match packet.kind {
+            kind::STARTS => read_starts(packet.payload, head.identity(), |_, _| {}),
+            _ => motion_of(packet.payload, &head, head.begin).is_some(),
+        };
+        if self.next.is_some_and(|(head, _)| of_next(head)) {
+            self.change();
+        }
         let taken = match packet.kind {
-            kind::HEAD => return self.take_head(packet.payload),
             kind::STARTS => self.take_starts(packet.payload),
             _ => self.take_motion(packet.payload),
         };
@@ -115,8 +127,8 @@ impl<'m, const Q: usize> Link<'m, Q> {
             self.counts.foreign = self.counts.foreign.wrapping_add(1);
             return Ok(());
         };
-        self.heard = now;
         if self.head == Some(head) {
+            self.heard = now;
             return Ok(());
         }
         if head.rig != self.rig {
@@ -125,10 +137,19 @@ impl<'m, const Q: usize> Link<'m, Q> {
         if usize::from(head.channels) > self.channels.len().min(self.pose.len()) {
             return Err(Refusal::Channels);
         }
+        self.next = Some((head, now));
+        if self.head.is_none() {
+            self.change();
+        }
+        Ok(())
+    }
+
+    /// Goes over to the clip that was told of last.
+    fn change(&mut self) {
+        let Some((head, now)) = self.next.take() else { return };
         self.channels.iter_mut().for_each(Channel::forget);
         self.queue.clear();
-        (self.head, self.clock) = (Some(head), None);
-        Ok(())
+        (self.head, self.heard, self.clock) = (Some(head), now, None);
     }
 
     fn take_starts(&mut self, payload: &[u8]) -> Option<()> {
@@ -144,14 +165,9 @@ impl<'m, const Q: usize> Link<'m, Q> {
 
     fn take_motion(&mut self, payload: &[u8]) -> Option<()> {
         let head = self.head?;
-        let mut messages = Messages::new(payload);
-        let base = near(messages.base(), self.clock.map_or(self.heard, |clock| clock.now));
-        messages.by_ref().for_each(drop);
-        if !messages.whole(head.check(base)) {
-            return None;
-        }
-        let last = base.wrapping_add(u32::from(messages.frame().wrapping_sub(messages.base())));
-        self.set_clock(base, messages.ahead(), last);
+        let about = self.clock.map_or(self.heard, |clock| clock.now);
+        let (base, last, ahead) = motion_of(payload, &head, about)?;
+        self.set_clock(base, ahead, last);
         let now = self.clock?.now;
         if before(last, now) {
             return None;
@@ -279,6 +295,15 @@ impl<'m, const Q: usize> Link<'m, Q> {
     pub fn counts(&self) -> Counts {
         self.counts
     }
+}
+
+/// First and last frame of a packet of motion, and how far ahead it was, if it is of this clip and whole.
+fn motion_of(payload: &[u8], head: &Head, about: u32) -> Option<(u32, u32, u8)> {
+    let mut messages = Messages::new(payload);
+    let base = near(messages.base(), about);
+    messages.by_ref().for_each(drop);
+    let last = base.wrapping_add(u32::from(messages.frame().wrapping_sub(messages.base())));
+    messages.whole(head.check(base)).then_some((base, last, messages.ahead()))
 }
 
 /// The frame nearest to `about` with these low bits.

@@ -39,7 +39,7 @@ fn tell(track: &Track, frames: u32, cycle: u32, first: u32, told: &mut Vec<Told>
         while at < end {
             let mut refresh = at == 0 || at != segment.frame;
             let mut next = end.min(at + LONGEST);
-            if next > by.max(at + 1) || (refresh && at > 0) {
+            if next > by || (refresh && at > 0) {
                 // Waiting for the next message would be too long.
                 (refresh, by) = (refresh || at > 0, if at > 0 { at + cycle } else { by });
                 next = next.min(by);

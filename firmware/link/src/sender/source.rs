@@ -129,7 +129,8 @@ fn head_of(clip: &Clip<'_>) -> Result<Head, Unfit> {
 fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, Track)]) {
     let frames = player.clip().frames();
     for frame in 0..frames {
-        let before: Vec<(i32, ChannelState)> = player.states().iter().map(|state| (player.pose()[state.slot()], *state)).collect();
+        let before: Vec<(i32, ChannelState)> =
+            player.states().iter().map(|state| (player.pose()[state.slot()], *state)).collect();
         let last = frame + 1 == frames;
         if !last {
             player.step();

@@ -2,6 +2,7 @@ use super::*;
 use crate::packet::Receiver;
 use crate::{Channel, Link, PACKET};
 use pantin::Clip;
+use proptest::prelude::*;
 
 const CLIPS: [&[u8]; 5] = [
     include_bytes!("../../../../tests/vectors/walk.ptn"),
@@ -32,19 +33,14 @@ impl Played<'_> {
 }
 
 /// Plays what `line` makes of the departures, a call of `each` a frame.
-fn play(
-    departures: impl Iterator<Item = Departure>,
-    (source, line): (&Source, Line),
-    mut damage: impl FnMut(&mut Vec<u8>),
-    mut each: impl FnMut(f64, &Link<64>),
-) {
+fn play(departures: impl Iterator<Item = Departure>, (source, line): (&Source, Line), mut each: impl FnMut(f64, &Link<64>)) {
     let channels = usize::from(source.head.channels);
     let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
     let mut link = Link::<64>::new(source.head.rig, &mut states, &mut pose);
     let mut receiver = Receiver::<PACKET>::new();
     let frame = f64::from(source.head.frame_time_ns) / 1e9;
     let mut clock = None;
-    for mut departure in departures {
+    for departure in departures {
         let there = departure.at + departure.bytes.len() as f64 / line.rate;
         let clock = clock.get_or_insert(departure.at);
         while *clock + frame <= there {
@@ -52,7 +48,6 @@ fn play(
             link.step();
             each(*clock, &link);
         }
-        damage(&mut departure.bytes);
         for byte in departure.bytes {
             if let Some(packet) = receiver.push(byte) {
                 link.take(&packet).expect("the rig is its own");
@@ -79,14 +74,144 @@ fn without_loss_every_frame_is_what_was_sent() {
         let played = Played { source: &source, states };
         let mut sender = Sender::new(7);
         let mut frames = vec![0; source.frames() as usize];
-        play(sender.clip(&source, line, Some(2)), (&source, line), |_| {}, |_, link| {
+        play(sender.clip(&source, line, Some(2)), (&source, line), |_, link| {
             assert!(played.agrees(link));
             if let Some(frame) = link.frame() {
                 assert!(link.synced(), "frame {frame}: {} of {}", link.exact(), link.channels().len());
                 frames[frame as usize] += 1;
             }
         });
-        assert!(frames[1..].iter().all(|&times| times >= 1), "{frames:?}");
+        assert!(frames.iter().all(|&times| times >= 1), "{frames:?}");
         assert!(source.deviation(line.cycle).0 < 0.25, "{:?}", source.deviation(line.cycle));
+    }
+}
+
+/// What may happen to a packet on its way.
+#[derive(Clone, Debug)]
+enum Fate {
+    Lost,
+    Flipped(usize, u8),
+    Cut(usize),
+    Twice,
+    /// It comes after so many others.
+    Later(usize),
+    /// What was sent so many packets ago comes instead.
+    Replayed(usize),
+    Foreign,
+    Noise(Vec<u8>),
+}
+
+fn fate() -> impl Strategy<Value = Fate> {
+    prop_oneof![
+        4 => Just(Fate::Lost),
+        2 => (0..100usize, 1..=255u8).prop_map(|(at, mask)| Fate::Flipped(at, mask)),
+        1 => (0..100usize).prop_map(Fate::Cut),
+        1 => Just(Fate::Twice),
+        1 => (1..5usize).prop_map(Fate::Later),
+        1 => (1..200usize).prop_map(Fate::Replayed),
+        1 => Just(Fate::Foreign),
+        1 => prop::collection::vec(any::<u8>(), 0..200).prop_map(Fate::Noise),
+    ]
+}
+
+/// The packets of two rounds, as these fates leave them, and the frame of the last one that was touched.
+fn fated(source: &Source, line: Line, fates: &[(usize, Fate)]) -> (Vec<Departure>, f64) {
+    let sent: Vec<Departure> = Sender::new(7).clip(source, line, Some(2)).collect();
+    let foreign: Vec<Departure> = Sender::new(8).clip(source, line, Some(2)).collect();
+    let mut came: Vec<(f64, Departure)> = sent.iter().enumerate().map(|(i, departure)| (i as f64, departure.clone())).collect();
+    let mut last = 0.0f64;
+    for (at, fate) in fates {
+        let at = at % sent.len();
+        let bytes = &mut came[at].1.bytes;
+        last = last.max(sent[at].at);
+        match fate {
+            Fate::Lost => bytes.clear(),
+            Fate::Flipped(byte, mask) => {
+                let len = bytes.len();
+                if len > 0 {
+                    bytes[byte % len] ^= mask;
+                }
+            }
+            Fate::Cut(len) => bytes.truncate(*len),
+            Fate::Twice => *bytes = [sent[at].bytes.clone(), vec![0], sent[at].bytes.clone()].concat(),
+            Fate::Later(places) => came[at].0 = (at + places) as f64 + 0.5,
+            Fate::Replayed(ago) => *bytes = sent[at.saturating_sub(*ago)].bytes.clone(),
+            Fate::Foreign => *bytes = foreign[at].bytes.clone(),
+            Fate::Noise(noise) => bytes.extend(noise),
+        }
+    }
+    came.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let times: Vec<f64> = sent.iter().map(|departure| departure.at).collect();
+    let came = came.into_iter().zip(times).map(|((_, departure), at)| Departure { at, ..departure });
+    (came.collect(), last)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn whatever_happens_to_packets_what_is_said_to_be_exact_is(
+        clip in 0..CLIPS.len(),
+        fates in prop::collection::vec((0..1000usize, fate()), 0..60),
+    ) {
+        let source = source(CLIPS[clip]);
+        let line = line(&source, 20_000.0);
+        let played = Played { source: &source, states: source.played(line.cycle) };
+        let (came, _) = fated(&source, line, &fates);
+        let mut drawn: Option<Vec<i32>> = None;
+        let (mut met, mut session) = (vec![false; source.starts.len()], 7);
+        play(came.into_iter(), (&source, line), |_, link| {
+            let own = link.head().map_or(session, |head| head.session);
+            if own != session {
+                (session, drawn) = (own, None);
+                met.fill(false);
+            }
+            assert!(played.agrees(link));
+            // No joint is drawn faster than its pace.
+            if let Some(before) = drawn.replace(link.pose().to_vec()) {
+                for (track, start) in source.starts.iter().enumerate() {
+                    if let crate::Start::Moves { pace, .. } = start {
+                        let moved = link.pose()[track].wrapping_sub(before[track]).unsigned_abs();
+                        assert!(!met[track] || moved <= crate::pace(*pace).unsigned_abs(), "channel {track}: {moved}");
+                        met[track] = link.channels()[track].keeps_pace();
+                    }
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn all_is_exact_a_cycle_after_the_last_loss_and_drawn_half_a_second_later(
+        clip in 0..CLIPS.len(),
+        first in 0.1..0.6f64,
+        lost in prop::collection::vec(0..100u8, 1..60),
+    ) {
+        let source = source(CLIPS[clip]);
+        let line = line(&source, 20_000.0);
+        let mut sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(3)).collect();
+        let begin = (sent.len() as f64 * first) as usize;
+        let mut last = 0u32;
+        for (departure, lost) in sent[begin..].iter_mut().zip(lost) {
+            if lost < 50 {
+                let mut receiver = Receiver::<PACKET>::new();
+                let packet = departure.bytes.iter().find_map(|&byte| receiver.push(byte).map(|packet| (packet.kind, packet.payload.to_vec())));
+                if let Some((crate::packet::kind::MOTION, payload)) = packet {
+                    let mut messages = crate::Messages::new(&payload);
+                    messages.by_ref().for_each(drop);
+                    last = last.max(u32::from(messages.frame()));
+                    departure.bytes.clear();
+                }
+            }
+        }
+        let half = 500_000_000 / source.head.frame_time_ns;
+        let end = BEGIN + 3 * source.frames();
+        play(sent.into_iter(), (&source, line), |_, link| {
+            let Some(now) = link.now().filter(|&now| last > 0 && now > last + line.cycle && now + 1 < end) else { return };
+            assert!(link.synced(), "{now}: {} of {}, last {last}, cycle {}", link.exact(), link.channels().len(), line.cycle);
+            if now > last + line.cycle + half {
+                let apart = link.channels().iter().zip(link.pose()).position(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] != drawn));
+                assert!(apart.is_none() || (now - BEGIN) % source.frames() < half, "{now} {apart:?}");
+            }
+        });
     }
 }
