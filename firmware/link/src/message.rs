@@ -56,7 +56,7 @@ impl Message {
     /// Reads or writes one.
     pub(crate) fn code<C: Coder>(&self, coder: &mut C) -> Message {
         let cut = self.run != length(self.mode);
-        let flags = u32::from(self.refresh.is_some()) * REFRESH | u32::from(cut) * CUT;
+        let flags = (u32::from(self.refresh.is_some()) * REFRESH) | (u32::from(cut) * CUT);
         let flags = coder.symbol(&tables::FLAGS, flags);
         let mode = coder.symbol(&tables::MODE, u32::from(self.mode)) as u8;
         let mut message = Message { mode: mode.min(START_MODE - 1), ..Message::default() };
