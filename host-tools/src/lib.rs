@@ -15,5 +15,6 @@ pub mod keys;
 pub mod motion;
 pub mod play;
 pub mod render;
+pub mod stream;
 pub mod train;
 pub mod verify;

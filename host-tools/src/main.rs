@@ -20,6 +20,7 @@ enum Command {
     Info(cmd::info::Arguments),
     Play(cmd::play::Arguments),
     Render(Box<cmd::render::Arguments>),
+    Stream(cmd::stream::Arguments),
     Train(cmd::train::Arguments),
 }
 
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Info(arguments) => cmd::info::run(&arguments),
         Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),
+        Command::Stream(arguments) => cmd::stream::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
     };
     match result {

@@ -93,6 +93,10 @@ pub(crate) fn set_up<R: Turning, const JOINTS: usize>(
 /// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
 #[inline(never)]
 pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, stage: &mut S, scenery: Scenery<B>) -> After {
+    #[cfg(feature = "link")]
+    if scenery.scene.link {
+        return crate::link::play(player, stage, scenery);
+    }
     let Scenery { entry, mode, scene, frame, board } = scenery;
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
     let mut wishes = Wishes::new();

@@ -1,13 +1,41 @@
 //! What is played, and what its channels are: packets of kind HEAD and STARTS.
 
 use crate::symbols::{Coder, Reader};
-use pantin::crc;
 use pantin::layout::MAX_STEP;
+use pantin::{Clip, crc, has_choice};
 
 /// Version of all payloads; it is the first thing that an identity counts.
 const VERSION: u8 = 1;
 /// Bytes for the exponential bits of FORMAT.md 4: of so many times 8 joints with a choice.
 pub const EXPONENTIAL_BYTES: usize = 16;
+
+/// What the values of a pose mean: a receiver that has a clip of the same form can draw another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Form {
+    /// The rig's id: FORMAT.md 2.
+    pub rig: u32,
+    /// Positions are in 2^exponent units of the source.
+    pub length_exponent: i8,
+    /// Which joints are exponential maps: FORMAT.md 4.
+    pub exponentials: [u8; EXPONENTIAL_BYTES],
+}
+
+impl Form {
+    /// The form of a clip; none where more joints have a choice than there are bits for.
+    pub fn of(clip: &Clip<'_>) -> Option<Form> {
+        let mut exponentials = [0; EXPONENTIAL_BYTES];
+        let mut choice = 0;
+        for (joint, own) in clip.rig().joints().enumerate() {
+            if has_choice(&own) {
+                if clip.is_exponential(joint) {
+                    *exponentials.get_mut(choice / 8)? |= 1 << (choice % 8);
+                }
+                choice += 1;
+            }
+        }
+        Some(Form { rig: clip.rig().id(), length_exponent: clip.length_exponent(), exponentials })
+    }
+}
 
 /// A clip on its way over the line. `Default` is no clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,20 +44,16 @@ pub struct Head {
     pub session: u16,
     /// Counts the clips of a session.
     pub clip: u8,
-    /// FORMAT.md 2.
-    pub rig: u32,
+    /// What its values mean.
+    pub form: Form,
     /// Number of frames.
     pub frames: u32,
     /// Whether frame 0 follows the last frame.
     pub looped: bool,
     /// Time from one frame to the next.
     pub frame_time_ns: u32,
-    /// Positions are in 2^exponent units of the source.
-    pub length_exponent: i8,
     /// Channels of a pose.
     pub channels: u16,
-    /// Which joints are exponential maps: FORMAT.md 4.
-    pub exponentials: [u8; EXPONENTIAL_BYTES],
     /// The line's frame at which the clip's frame 0 is shown; the line's frames go on over its rounds.
     pub begin: u32,
 }
@@ -37,21 +61,24 @@ pub struct Head {
 impl Head {
     /// Reads or writes one, and the line's frame that the sender is at.
     fn code<C: Coder>(&self, coder: &mut C, now: u32) -> (Head, u32) {
+        let form = self.form;
         let mut head = Head {
             session: coder.bits(16, u32::from(self.session)) as u16,
             clip: coder.bits(8, u32::from(self.clip)) as u8,
-            rig: coder.bits(32, self.rig),
+            form: Form {
+                rig: coder.bits(32, form.rig),
+                length_exponent: coder.bits(8, u32::from(form.length_exponent as u8)) as u8 as i8,
+                exponentials: [0; EXPONENTIAL_BYTES],
+            },
             frames: coder.bits(25, self.frames),
             looped: coder.bits(1, u32::from(self.looped)) != 0,
             frame_time_ns: coder.bits(32, self.frame_time_ns),
-            length_exponent: coder.bits(8, self.length_exponent as u8 as u32) as u8 as i8,
             channels: coder.bits(10, u32::from(self.channels)) as u16,
             begin: coder.bits(32, self.begin),
-            exponentials: [0; EXPONENTIAL_BYTES],
         };
-        let used = self.exponentials.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+        let used = form.exponentials.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
         let used = coder.bits(5, used as u32) as usize;
-        for (byte, own) in head.exponentials.iter_mut().zip(self.exponentials).take(used) {
+        for (byte, own) in head.form.exponentials.iter_mut().zip(form.exponentials).take(used) {
             *byte = coder.bits(8, u32::from(own)) as u8;
         }
         (head, coder.bits(32, now))
@@ -75,11 +102,13 @@ impl Head {
 
     /// What all other packets of the clip are checked by.
     pub fn identity(&self) -> u16 {
-        let mut sum = crc::of(&[VERSION, self.clip, u8::from(self.looped), self.length_exponent as u8]);
-        for part in [self.rig, self.frames, self.frame_time_ns, self.begin, u32::from(self.session), u32::from(self.channels)] {
+        let mut sum = crc::of(&[VERSION, self.clip, u8::from(self.looped), self.form.length_exponent as u8]);
+        for part in
+            [self.form.rig, self.frames, self.frame_time_ns, self.begin, u32::from(self.session), u32::from(self.channels)]
+        {
             sum = crc::update(sum, &part.to_le_bytes());
         }
-        crc::update(sum, &self.exponentials)
+        crc::update(sum, &self.form.exponentials)
     }
 
     /// What a motion's packet is checked by, whose first frame is this.

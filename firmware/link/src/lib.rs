@@ -8,6 +8,7 @@ mod head;
 mod link;
 mod message;
 pub mod packet;
+mod parity;
 #[cfg(any(test, feature = "std"))]
 pub mod sender;
 mod symbols;
@@ -16,6 +17,6 @@ mod tables;
 pub use channel::Channel;
 #[cfg(any(test, feature = "std"))]
 pub use head::write_starts;
-pub use head::{EXPONENTIAL_BYTES, Head, MAX_PACE, Start, pace, read_starts};
+pub use head::{EXPONENTIAL_BYTES, Form, Head, MAX_PACE, Start, pace, read_starts};
 pub use link::{Counts, Link, PACKET, PAYLOAD, Refusal};
 pub use message::{Message, Messages, Refresh, units};

@@ -1,15 +1,15 @@
 //! The receiver: packets in, a pose a frame out. Nothing that comes can make it fail; what it says of itself is true.
 
 use crate::channel::Channel;
-use crate::head::{Head, Start, read_starts};
+use crate::head::{Form, Head, Start, read_starts};
 use crate::message::Messages;
 use crate::packet::{Packet, kind};
 use heapless::Vec;
 
 /// Bytes of a motion's payload that a sender makes at most.
 pub const PAYLOAD: usize = 96;
-/// Bytes of any packet of this crate, for [`crate::packet::Receiver`].
-pub const PACKET: usize = PAYLOAD + crate::packet::OVERHEAD;
+/// Bytes of any packet of this crate, for [`crate::packet::Receiver`]: with parity.
+pub const PACKET: usize = PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
 
 /// A packet of motion that waits for its frames: 72 bytes.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub struct Counts {
 pub struct Link<'m, const Q: usize> {
     channels: &'m mut [Channel],
     pose: &'m mut [i32],
-    rig: u32,
+    form: Form,
     head: Option<Head>,
     /// A clip that was told of, with where the sender was: it begins with the first other packet of it.
     next: Option<(Head, u32)>,
@@ -71,21 +71,24 @@ const JUMP: i32 = 12;
 const FAR: u32 = 256;
 
 /// A clip that this receiver cannot play.
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// It is of another rig.
     Rig,
+    /// Its positions or its rotations are coded in another way; `pantin convert --rotations euler` leaves no choice.
+    Form,
     /// There are more channels than memory for them.
     Channels,
 }
 
 impl<'m, const Q: usize> Link<'m, Q> {
-    /// Waits for clips of the rig with this id, in memory for the channels of its pose. The pose as it is is where the figure stands until
+    /// Waits for clips of this form, in memory for the channels of its pose. The pose as it is is where the figure stands until
     /// more is known.
-    pub fn new(rig: u32, channels: &'m mut [Channel], pose: &'m mut [i32]) -> Self {
+    pub fn new(form: Form, channels: &'m mut [Channel], pose: &'m mut [i32]) -> Self {
         channels.iter_mut().for_each(|channel| *channel = Channel::default());
         let (queue, counts) = (Vec::new(), Counts::default());
-        Link { channels, pose, rig, head: None, next: None, queue, clock: None, heard: 0, sequence: None, counts }
+        Link { channels, pose, form, head: None, next: None, queue, clock: None, heard: 0, sequence: None, counts }
     }
 
     /// Takes a packet. Those of other kinds are passed over.
@@ -131,8 +134,11 @@ impl<'m, const Q: usize> Link<'m, Q> {
             self.heard = now;
             return Ok(());
         }
-        if head.rig != self.rig {
+        if head.form.rig != self.form.rig {
             return Err(Refusal::Rig);
+        }
+        if head.form != self.form {
+            return Err(Refusal::Form);
         }
         if usize::from(head.channels) > self.channels.len().min(self.pose.len()) {
             return Err(Refusal::Channels);

@@ -11,6 +11,7 @@ pub mod info;
 mod max_error;
 pub mod play;
 pub mod render;
+pub mod stream;
 pub mod train;
 
 use anyhow::{Context, Result};

@@ -11,6 +11,7 @@ mod frame;
 mod goals;
 mod guest;
 mod host;
+mod link;
 mod paper;
 mod peers;
 mod plot;
@@ -50,6 +51,8 @@ pub enum Part {
     Argument,
     /// Faces: bits a second and how smooth, bytes of our own clips, guest instructions of a frame, memory, the model's size
     Face,
+    /// Motion over a line that loses packets: how soon it is exact again, and what that takes
+    Link,
 }
 
 /// What every part works with.
@@ -86,6 +89,7 @@ impl Part {
             Self::Frame => frame::run(setting),
             Self::Argument => argument::run(setting),
             Self::Face => face::run(setting),
+            Self::Link => link::run(setting),
         }
     }
 

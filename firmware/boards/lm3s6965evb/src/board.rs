@@ -14,6 +14,11 @@ const CLOCK_NS: u32 = 80;
 
 const TRANSMIT_FULL: u32 = 1 << 5;
 const RECEIVE_EMPTY: u32 = 1 << 4;
+/// Bytes of 8 bits, and 16 of them held for a program that is drawing.
+#[cfg(feature = "link")]
+const EIGHT_BITS: u32 = 3 << 5;
+#[cfg(feature = "link")]
+const FIFO: u32 = 1 << 4;
 
 /// The display: 128x64 pixels of 16 greys.
 pub type Oled = Gray4Rows<128, 64, 1024>;
@@ -27,6 +32,8 @@ pub struct Lm3s {
 impl Lm3s {
     pub fn new() -> Self {
         display::start();
+        #[cfg(feature = "link")]
+        uart0::LCRH.write(EIGHT_BITS | FIFO);
         Lm3s { timer: SysTick::new(CLOCK_NS), buttons: Buttons::new() }
     }
 }
@@ -45,6 +52,11 @@ impl Board for Lm3s {
 
     fn wait_ticks(&mut self) -> u32 {
         self.timer.wait()
+    }
+
+    #[cfg(feature = "link")]
+    fn ticks(&mut self) -> u32 {
+        self.timer.ticks()
     }
 
     fn send(&mut self, bytes: &[u8]) {

@@ -47,6 +47,8 @@ pub mod uart0 {
     use super::{Register, at};
     pub const DR: Register = at(0x4000_c000);
     pub const FR: Register = at(0x4000_c018);
+    #[cfg(feature = "link")]
+    pub const LCRH: Register = at(0x4000_c02c);
 }
 
 /// System control.

@@ -47,7 +47,7 @@ impl Sender {
 }
 
 impl Line {
-    /// The line with the shortest cycle, from `self.cycle` up, that carries the clip in time and within the share. None if none does.
+    /// The line with the shortest cycle that carries the clip, from `self.cycle` up: in time and within the share. None if none does.
     pub fn fitted(self, source: &Source) -> Option<Line> {
         let with = |cycle: u32| Line { cycle, ..self };
         let (mut low, mut high) = (self.cycle, LONGEST_CYCLE);

@@ -17,8 +17,10 @@ pub struct Line {
     pub ahead: u32,
     /// Part of the line that refreshes may take.
     pub share: f64,
-    /// Frames after which a channel is refreshed again at the earliest.
+    /// Frames after which a channel is refreshed again at the latest.
     pub cycle: u32,
+    /// Packets have parity.
+    pub parity: bool,
 }
 
 /// Part of the line for heads and starts, once they have been told at first.
@@ -35,6 +37,8 @@ pub struct Bytes {
     pub line: f64,
     /// Zeros, stuffing, kind, sequence, CRC.
     pub framing: f64,
+    /// Parity.
+    pub parity: f64,
     /// Heads and starts.
     pub announced: f64,
     /// What refreshes took beside the segments that they came with.
@@ -45,6 +49,23 @@ pub struct Bytes {
     pub packets: u32,
     /// Messages, and refreshes among them.
     pub messages: [u32; 2],
+}
+
+impl core::ops::Add for Bytes {
+    type Output = Bytes;
+
+    fn add(self, other: Bytes) -> Bytes {
+        Bytes {
+            line: self.line + other.line,
+            framing: self.framing + other.framing,
+            parity: self.parity + other.parity,
+            announced: self.announced + other.announced,
+            refresh: self.refresh + other.refresh,
+            motion: self.motion + other.motion,
+            packets: self.packets + other.packets,
+            messages: [0, 1].map(|i| self.messages[i] + other.messages[i]),
+        }
+    }
 }
 
 /// A packet on its way.
@@ -138,7 +159,9 @@ impl<'s> Schedule<'s> {
 
     fn leave(&mut self, at: f64, kind: u8, payload: &[u8]) -> Departure {
         let mut bytes = vec![0; packet::line_len(payload.len())];
-        let len = packet::encode(kind, self.sequence, payload, &mut bytes).unwrap_or(0);
+        let encode = if self.line.parity { packet::encode_with_parity } else { packet::encode };
+        let len = encode(kind, self.sequence, payload, &mut bytes).unwrap_or(0);
+        let parity = if self.line.parity { packet::PARITY as f64 } else { 0.0 };
         bytes.truncate(len);
         if at == self.free && self.bytes.packets > 0 {
             // The zero before it has just been sent.
@@ -147,7 +170,8 @@ impl<'s> Schedule<'s> {
         self.sequence = self.sequence.wrapping_add(1);
         self.free = at + bytes.len() as f64 / self.line.rate;
         self.bytes.line += bytes.len() as f64;
-        self.bytes.framing += (bytes.len() - payload.len()) as f64;
+        self.bytes.framing += (bytes.len() - payload.len()) as f64 - parity;
+        self.bytes.parity += parity;
         self.bytes.packets += 1;
         Departure { at, bytes }
     }
@@ -186,7 +210,7 @@ impl Iterator for Schedule<'_> {
             return Some(self.announce(self.free));
         }
         let batch = self.batches.pop_front()?;
-        let arrived = at + (PAYLOAD + 8) as f64 / self.line.rate;
+        let arrived = at + packet::line_len(PAYLOAD) as f64 / self.line.rate;
         let ahead = (f64::from(base) - self.frame_at(arrived)).floor();
         let payload = batch.payload(&self.head, ahead.clamp(0.0, 255.0) as u8);
         let before = self.free;

@@ -1,8 +1,8 @@
 //! A clip taken apart: what its channels are, their segments, and the states that these give frame by frame.
 
-use crate::head::{EXPONENTIAL_BYTES, Head, MAX_PACE, Start, pace};
+use crate::head::{EXPONENTIAL_BYTES, Form, Head, MAX_PACE, Start, pace};
 use pantin::layout::{START_MODE, segment_type};
-use pantin::{ChannelState, Clip, Player, TooSmall, has_choice, segment};
+use pantin::{ChannelState, Clip, Player, TooSmall, segment};
 
 /// A segment of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +86,26 @@ impl Source {
         self.head.frames
     }
 
+    /// Channels of a pose.
+    pub fn channels(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// What its values mean.
+    pub fn form(&self) -> Form {
+        self.head.form
+    }
+
+    /// Seconds of a frame.
+    pub fn frame_seconds(&self) -> f64 {
+        f64::from(self.head.frame_time_ns) / 1e9
+    }
+
+    /// Seconds that the clip plays.
+    pub fn seconds(&self) -> f64 {
+        f64::from(self.head.frames) * self.frame_seconds()
+    }
+
     /// What every receiver in step has of the channels that are told of, for a line of this cycle: place in the pose, and p, v, w, k by frame.
     pub fn played(&self, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
         super::plan::played(self, cycle)
@@ -107,20 +127,12 @@ impl Source {
 }
 
 fn head_of(clip: &Clip<'_>) -> Result<Head, Unfit> {
-    let mut exponentials = [0; EXPONENTIAL_BYTES];
-    let choices = clip.rig().joints().enumerate().filter(|(_, joint)| has_choice(joint)).map(|(index, _)| index);
-    for (bit, joint) in choices.enumerate().filter(|&(_, joint)| clip.is_exponential(joint)) {
-        let _ = joint;
-        *exponentials.get_mut(bit / 8).ok_or(Unfit::Exponentials)? |= 1 << (bit % 8);
-    }
     Ok(Head {
-        rig: clip.rig().id(),
+        form: Form::of(clip).ok_or(Unfit::Exponentials)?,
         frames: clip.frames(),
         looped: clip.looped(),
         frame_time_ns: clip.frame_time_ns(),
-        length_exponent: clip.length_exponent(),
         channels: clip.rig().channels() as u16,
-        exponentials,
         ..Head::default()
     })
 }

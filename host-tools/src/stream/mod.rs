@@ -1,0 +1,4 @@
+//! Motion sent over a line while it plays.
+
+pub mod line;
+pub mod pace;
