@@ -2,10 +2,7 @@
 
 use pantin_link::packet::{Receiver, kind};
 use pantin_link::sender::{Departure, Line, Source};
-use pantin_link::{Channel, Link, Messages, PACKET};
-
-/// Packets that may wait at the receiver.
-pub const QUEUE: usize = 32;
+use pantin_link::{Channel, Link, Messages, PACKET, QUEUE};
 
 /// What a line does to packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

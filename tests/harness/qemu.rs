@@ -91,7 +91,17 @@ impl Launch {
     /// A run of `elf`, for 60 s at most, with semihosting and nothing else.
     pub fn new(machine: Machine, elf: &Path) -> Self {
         let limit = Duration::from_secs(60);
-        Self { machine, elf: elf.into(), arguments: vec![], serial: false, line: None, display: false, plugin: None, loaded: None, limit }
+        Self {
+            machine,
+            elf: elf.into(),
+            arguments: vec![],
+            serial: false,
+            line: None,
+            display: false,
+            plugin: None,
+            loaded: None,
+            limit,
+        }
     }
 
     /// Appends a word to the command line that the program reads by semihosting.

@@ -12,13 +12,10 @@ use crate::scene::{Scene, Wish};
 use crate::show::Show;
 use pantin::Player;
 use pantin_link::packet::Receiver;
-use pantin_link::{Channel, Counts, Form, Link, PACKET, Refusal};
+use pantin_link::{Channel, Counts, Form, Link, PACKET, QUEUE, Refusal};
 
 /// Most channels of the rig.
 const CHANNELS: usize = 144;
-/// Packets that wait for their frames: a second of 9,600 baud takes 10, two fifths of one of 38,400 baud take 16.
-const QUEUE: usize = 24;
-
 /// What is shown of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Told {

@@ -18,5 +18,5 @@ pub use channel::Channel;
 #[cfg(any(test, feature = "std"))]
 pub use head::write_starts;
 pub use head::{EXPONENTIAL_BYTES, Form, Head, MAX_PACE, Start, pace, read_starts};
-pub use link::{Counts, Link, PACKET, PAYLOAD, Refusal};
+pub use link::{Counts, Link, PACKET, PAYLOAD, QUEUE, Refusal};
 pub use message::{Message, Messages, Refresh, units};

@@ -8,6 +8,8 @@ use heapless::Vec;
 
 /// Bytes of a motion's payload that a sender makes at most.
 pub const PAYLOAD: usize = 96;
+/// Packets of motion that wait for their frames at a receiver at most: a sender counts on as many places.
+pub const QUEUE: usize = 24;
 /// Bytes of any packet of this crate, for [`crate::packet::Receiver`]: with parity.
 pub const PACKET: usize = PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
 
@@ -34,7 +36,8 @@ pub struct Counts {
     pub losses: u32,
 }
 
-/// Plays what comes over a line in memory of the caller's. `Q` packets wait for their frames: as many as the sender's look-ahead holds.
+/// Plays what comes over a line in memory of the caller's. `Q` packets wait for their frames: [`QUEUE`] is
+/// what senders count on.
 #[derive(Debug)]
 pub struct Link<'m, const Q: usize> {
     channels: &'m mut [Channel],

@@ -34,8 +34,8 @@ pub struct Arguments {
     /// Shortest time in which every channel is refreshed, in seconds: longer where the line does not carry it
     #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
     cycle: f64,
-    /// Send this much ahead at most, in seconds: the figure starts as much later, and as much has to fit the other end's memory
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0)]
+    /// Send this much ahead at most, in seconds: the figure starts as much later, and what waits at the other end are 24 packets at most
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.5)]
     ahead: f64,
     /// Add 8 bytes to each packet that mend 4 wrong ones, for lines that flip bits; the other end has to know (the board's word `fec`)
     #[arg(long)]
@@ -51,7 +51,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         bail!("--refresh {}: expected 0 to 100 percent", arguments.refresh);
     }
     let sources = arguments.clips.iter().map(|path| source(arguments, path)).collect::<Result<Vec<_>>>()?;
-    let lines = sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
+    let lines =
+        sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
     let mut line = arguments.to.open()?;
     let stop = stopped_by_signal()?;
     // No clock or process number is as unlikely to come again.
@@ -92,7 +93,8 @@ fn say(arguments: &Arguments, sentence: &str) {
 fn source(arguments: &Arguments, path: &PathBuf) -> Result<Source> {
     let files = Files::read(path, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| format!("{}: not a clip that plays; `pantin convert` makes one", path.display()))?;
-    Source::new(&clip).with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
+    Source::new(&clip)
+        .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
 }
 
 fn fitted(arguments: &Arguments, source: &Source, path: &PathBuf) -> Result<Line> {

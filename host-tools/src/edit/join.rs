@@ -39,7 +39,9 @@ mod tests {
     fn the_shorter_ends_it_at_the_first_ones_rate() {
         let joined = join(&scalars(&["a"], 30, 30.0), &scalars(&["b", "c"], 31, 60.0)).expect("they join");
         assert_eq!((joined.frames, joined.values.len(), joined.keys.len()), (16, 3, 3));
-        assert!(joined.values.iter().flatten().zip((0..16).cycle()).all(|(value, frame)| (value - frame as f64 / 30.0).abs() < 1e-9));
+        assert!(
+            joined.values.iter().flatten().zip((0..16).cycle()).all(|(value, frame)| (value - frame as f64 / 30.0).abs() < 1e-9)
+        );
         assert!(join(&joined, &scalars(&["b"], 5, 30.0)).is_err());
     }
 }

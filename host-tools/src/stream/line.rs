@@ -41,7 +41,10 @@ impl FromStr for Address {
             _ => bail!("{way}: {expected}"),
         };
         let (to, baud) = match rest.rsplit_once('@') {
-            Some((to, baud)) => (to, baud.parse().ok().filter(|&baud| baud >= 300).with_context(|| format!("@{baud}: expected 300 baud or more"))?),
+            Some((to, baud)) => (
+                to,
+                baud.parse().ok().filter(|&baud| baud >= 300).with_context(|| format!("@{baud}: expected 300 baud or more"))?,
+            ),
             None => (rest, BAUD),
         };
         if to.is_empty() || (way != Way::Serial && !to.contains(':')) {
@@ -71,7 +74,8 @@ impl Address {
     pub fn open(&self) -> Result<Line> {
         let line = match self.way {
             Way::Serial => {
-                let mut port = serial2::SerialPort::open(&self.to, self.baud).with_context(|| format!("{}: cannot be opened", self.to))?;
+                let mut port =
+                    serial2::SerialPort::open(&self.to, self.baud).with_context(|| format!("{}: cannot be opened", self.to))?;
                 port.set_write_timeout(PATIENCE)?;
                 Line::Serial(port)
             }
@@ -103,7 +107,9 @@ impl Line {
             }),
         };
         sent.map_err(|error| match error.kind() {
-            ErrorKind::WouldBlock | ErrorKind::TimedOut => anyhow::anyhow!("the other end has taken no bytes for {} s", PATIENCE.as_secs()),
+            ErrorKind::WouldBlock | ErrorKind::TimedOut => {
+                anyhow::anyhow!("the other end has taken no bytes for {} s", PATIENCE.as_secs())
+            }
             _ => anyhow::Error::new(error).context("the line is gone"),
         })
     }

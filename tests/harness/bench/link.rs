@@ -4,11 +4,11 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use harness::lossy::{Damage, Lossy, QUEUE, last_frame, play};
+use harness::lossy::{Damage, Lossy, last_frame, play};
 use harness::paths;
 use pantin::Clip;
-use pantin_link::Link;
 use pantin_link::sender::{Bytes, Line, Sender, Source};
+use pantin_link::{Link, QUEUE};
 
 use super::{Goal, Setting, table};
 use crate::cmd::steps::say;
@@ -19,7 +19,7 @@ const FACE: &str = "face_neurosync_angry_arkit.csv";
 const OPTIONS: [&str; 8] = ["--fps", "30", "--retarget", "display", "--max-error", "2cm", "--max-scalar-error", "2"];
 
 /// Baud, look-ahead in frames, and within how many milliseconds of the last error all is exact.
-const LINES: [(u32, u32, f64); 2] = [(9_600, 30, 1000.0), (38_400, 12, 250.0)];
+const LINES: [(u32, u32, f64); 2] = [(9_600, 45, 1000.0), (38_400, 12, 250.0)];
 /// Milliseconds in which what is drawn has joined the state.
 const JOINED: f64 = 500.0;
 /// Percent of the line for zeros, stuffing, kind, sequence and CRC.
@@ -205,8 +205,19 @@ fn row(baud: u32, run: &Run) -> Vec<String> {
 }
 
 fn print(rows: &[Vec<String>]) {
-    let header =
-        ["baud", "damage", "times", "exact, ms", "worst", "joined after, ms", "worst", "channels exact", "moves", "wrong", "resets"];
+    let header = [
+        "baud",
+        "damage",
+        "times",
+        "exact, ms",
+        "worst",
+        "joined after, ms",
+        "worst",
+        "channels exact",
+        "moves",
+        "wrong",
+        "resets",
+    ];
     table::print(&header, rows);
 }
 
@@ -232,7 +243,10 @@ fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], ru
         Goal::told(of("motion"), rate(motion)),
         Goal::told(of("refresh"), format!("{}, each channel within {cycle:.0} ms", rate(refresh))),
         Goal::told(of("heads and starts"), rate(announced)),
-        Goal::told(of("parity against a bit error rate of 1e-3, of the line"), format!("{:.1} %", 100.0 * with.parity / with.line)),
+        Goal::told(
+            of("parity against a bit error rate of 1e-3, of the line"),
+            format!("{:.1} %", 100.0 * with.parity / with.line),
+        ),
         Goal::told(of("played beside the clip, greatest, of a channel's step"), format!("{:.3}", source.deviation(line.cycle).0)),
         Goal::at_most(of("frames that said exact and were not"), count(|run| run.wrong), 0.0, 0, ""),
         Goal::at_most(of("times begun anew"), count(|run| run.resets), 0.0, 0, ""),

@@ -4,7 +4,7 @@ use super::pack::{Batch, pack};
 use super::plan::round;
 use super::source::Source;
 use crate::head::{Head, write_starts};
-use crate::link::PAYLOAD;
+use crate::link::{PAYLOAD, QUEUE};
 use crate::packet::{self, kind};
 use std::collections::VecDeque;
 
@@ -27,6 +27,8 @@ pub struct Line {
 const ANNOUNCED: f64 = 0.05;
 /// Frames that a packet has to be there before its first message is played.
 const MARGIN: f64 = 2.0;
+/// Packets that wait at the receiver at most: jitter of its clock may take the other places.
+const SENT: usize = QUEUE - 4;
 /// How often heads and starts are told at first.
 const AT_FIRST: usize = 2;
 
@@ -86,6 +88,8 @@ pub struct Schedule<'s> {
     /// Seconds of a frame.
     frame: f64,
     batches: VecDeque<Batch>,
+    /// The last frames of packets that may still wait at the receiver.
+    waiting: VecDeque<u32>,
     rounds: u32,
     /// Rounds of the clip that are left, none for ever.
     left: Option<u32>,
@@ -109,6 +113,7 @@ impl<'s> Schedule<'s> {
             line,
             frame: f64::from(head.frame_time_ns) / 1e9,
             batches: VecDeque::new(),
+            waiting: VecDeque::new(),
             rounds: 0,
             left: rounds,
             free,
@@ -145,6 +150,11 @@ impl<'s> Schedule<'s> {
     /// The line's frame at a time.
     fn frame_at(&self, time: f64) -> f64 {
         f64::from(self.head.begin) + time / self.frame
+    }
+
+    /// When one of the line's frames is shown.
+    fn time_of(&self, frame: u32) -> f64 {
+        (f64::from(frame) - f64::from(self.head.begin)) * self.frame
     }
 
     /// What the line has carried so far.
@@ -204,12 +214,19 @@ impl Iterator for Schedule<'_> {
             self.refill();
         }
         let base = self.batches.front()?.base;
-        let due = (f64::from(base) - f64::from(self.head.begin) - f64::from(self.line.ahead)) * self.frame;
-        let at = self.free.max(due);
+        let due = self.time_of(base) - f64::from(self.line.ahead) * self.frame;
+        let mut at = self.free.max(due);
+        if let Some(&last) = self.waiting.len().checked_sub(SENT).and_then(|first| self.waiting.get(first)) {
+            at = at.max(self.time_of(last + 1));
+        }
         if self.credit > 0.0 {
             return Some(self.announce(self.free));
         }
         let batch = self.batches.pop_front()?;
+        self.waiting.push_back(batch.last);
+        if self.waiting.len() > SENT {
+            self.waiting.pop_front();
+        }
         let arrived = at + packet::line_len(PAYLOAD) as f64 / self.line.rate;
         let ahead = (f64::from(base) - self.frame_at(arrived)).floor();
         let payload = batch.payload(&self.head, ahead.clamp(0.0, 255.0) as u8);
