@@ -2,6 +2,8 @@
 
 use crate::buttons::Buttons;
 use crate::display;
+#[cfg(feature = "ethernet")]
+use crate::ethernet::Ethernet;
 use crate::registers::uart0;
 use board_common::cortex_m::SysTick;
 use board_common::markers;
@@ -27,6 +29,8 @@ pub type Oled = Gray4Rows<128, 64, 1024>;
 pub struct Lm3s {
     timer: SysTick,
     buttons: Buttons,
+    #[cfg(feature = "ethernet")]
+    ethernet: Ethernet,
 }
 
 impl Lm3s {
@@ -34,7 +38,12 @@ impl Lm3s {
         display::start();
         #[cfg(feature = "link")]
         uart0::LCRH.write(EIGHT_BITS | FIFO);
-        Lm3s { timer: SysTick::new(CLOCK_NS), buttons: Buttons::new() }
+        Lm3s {
+            timer: SysTick::new(CLOCK_NS),
+            buttons: Buttons::new(),
+            #[cfg(feature = "ethernet")]
+            ethernet: Ethernet::new(),
+        }
     }
 }
 
@@ -67,7 +76,10 @@ impl Board for Lm3s {
     }
 
     fn poll(&mut self) -> Option<u8> {
-        (uart0::FR.read() & RECEIVE_EMPTY == 0).then(|| uart0::DR.read() as u8)
+        let serial = || (uart0::FR.read() & RECEIVE_EMPTY == 0).then(|| uart0::DR.read() as u8);
+        #[cfg(feature = "ethernet")]
+        let mut serial = || serial().or_else(|| self.ethernet.poll());
+        serial()
     }
 
     fn button(&mut self) -> Option<Key> {

@@ -51,6 +51,19 @@ pub mod uart0 {
     pub const LCRH: Register = at(0x4000_c02c);
 }
 
+/// Ethernet controller.
+#[cfg(feature = "ethernet")]
+pub mod mac {
+    use super::{Register, at};
+    pub const RCTL: Register = at(0x4004_8008);
+    pub const TCTL: Register = at(0x4004_800c);
+    pub const DATA: Register = at(0x4004_8010);
+    pub const IA0: Register = at(0x4004_8014);
+    pub const IA1: Register = at(0x4004_8018);
+    pub const NP: Register = at(0x4004_8034);
+    pub const TR: Register = at(0x4004_8038);
+}
+
 /// System control.
 pub mod system {
     use super::{Register, at};

@@ -189,15 +189,13 @@ impl<'s> Schedule<'s> {
     fn announce(&mut self, at: f64) -> Departure {
         let turn = self.turn % (self.starts.len() + 1);
         self.turn += 1;
-        let departure = match turn.checked_sub(1).and_then(|part| self.starts.get(part).cloned()) {
-            Some(part) => self.leave(at, kind::STARTS, &part),
-            None => {
-                let payload = self.head.write(self.frame_at(at).floor().max(0.0) as u32);
-                self.leave(at, kind::HEAD, &payload)
-            }
+        let (kind, payload) = match turn.checked_sub(1).and_then(|part| self.starts.get(part)) {
+            Some(part) => (kind::STARTS, part.clone()),
+            None => (kind::HEAD, self.head.write(self.frame_at(at).floor().max(0.0) as u32)),
         };
+        let departure = self.leave(at, kind, &payload);
         self.credit -= departure.bytes.len() as f64;
-        self.bytes.announced += departure.bytes.len() as f64;
+        self.bytes.announced += payload.len() as f64;
         departure
     }
 }
