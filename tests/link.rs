@@ -2,6 +2,7 @@
 //! moving, and it is exact again when it should be. And in its own time, from a TCP line as fast as a real one.
 
 use std::path::PathBuf;
+use std::process::Command;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
@@ -20,8 +21,8 @@ static CLIP: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
     (folder, clip)
 });
 
-fn firmware() -> Firmware {
-    Firmware::featuring("face,link", "lm3s6965evb", "lm3s6965evb", LM3S6965EVB.target, &[&CLIP.1]).unwrap()
+fn firmware(features: &str) -> Firmware {
+    Firmware::featuring(features, "lm3s6965evb", "lm3s6965evb", LM3S6965EVB.target, &[&CLIP.1]).unwrap()
 }
 
 fn source() -> Source {
@@ -49,7 +50,7 @@ fn the_board_shows_what_the_host_shows_of_a_line_that_damages() {
     if setup::host_only("a line that damages") {
         return;
     }
-    let (source, firmware) = (source(), firmware());
+    let (source, firmware) = (source(), firmware("face,link"));
     let line = line(&source, Damage { loss: 0.1, flips: 1e-4 }, 90, 150);
     let expected = simulator::link(&CLIP.1, &["info"], &line).unwrap();
     let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("info").argument("link").limit(Duration::from_secs(120));
@@ -65,33 +66,44 @@ fn the_board_shows_what_the_host_shows_of_a_line_that_damages() {
     assert!(changed > line.len() * 3 / 5, "{changed} of {} pictures differ from the one before", line.len());
 }
 
-/// Plays in the board's own time what `pantin stream` sends to QEMU's serial line over TCP.
-#[test]
-fn pantin_stream_plays_on_a_board() {
-    if setup::host_only("pantin stream") {
-        return;
-    }
-    let firmware = firmware();
-    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-    let mut qemu = Launch::new(LM3S6965EVB, firmware.elf())
-        .argument("link")
-        .argument("info")
-        .argument("frames=280")
-        .display()
-        .serial_at(&format!("tcp:127.0.0.1:{port},server=on,wait=off"))
-        .start()
-        .unwrap();
-    let tool = build::host_tool().unwrap();
-    let mut stream = std::process::Command::new(tool);
-    stream.args(["stream", "--to", &format!("tcp:127.0.0.1:{port}@38400")]).arg(&CLIP.1).stderr(std::process::Stdio::piped());
-    let output = stream.output().unwrap();
+/// Plays in the board's own time what `pantin stream` sends there; what the board then logs.
+fn streamed(features: &str, connect: impl FnOnce(Launch, u16) -> Launch, to: impl Fn(u16) -> String) -> String {
+    let firmware = firmware(features);
+    let port = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("link").argument("info").argument("frames=320");
+    let mut qemu = connect(launch, port).display().start().unwrap();
+    let mut stream = Command::new(build::host_tool().unwrap());
+    let output = stream.args(["stream", "--ahead", "1", "--to", &to(port)]).arg(&CLIP.1).output().unwrap();
     let words = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{words}");
-    assert!(words.contains("packets") && words.contains("refresh"), "{words}");
-    let shown = qemu.picture().unwrap();
-    assert!(shown.pixels.iter().any(|&pixel| pixel > 0));
-    let log = defmt_log::decode(firmware.elf(), &qemu.wait().unwrap().stdout).unwrap().join("\n");
-    assert!(log.contains(" 0 damaged, 0 foreign, 0 crowded; 0 states lost"), "{log}");
+    assert!(output.status.success() && words.contains("packets") && words.contains("refresh"), "{words}");
+    assert!(qemu.picture().unwrap().pixels.iter().any(|&pixel| pixel > 0));
+    defmt_log::decode(firmware.elf(), &qemu.wait().unwrap().stdout).unwrap().join("\n")
+}
+
+/// Nothing is lost on the way, and all channels were exact.
+fn is_whole(log: &str) {
+    let source = source();
+    assert!(log.contains(&format!("{0} of {0} channels exact", source.channels())), "{log}");
+    assert!(
+        log.lines().last().is_some_and(|last| last.contains(" 0 missing, 0 damaged, 0 foreign, 0 crowded; 0 states lost")),
+        "{log}"
+    );
+}
+
+#[test]
+fn pantin_stream_plays_on_a_board_by_its_serial_line() {
+    if !setup::host_only("pantin stream to a serial line") {
+        let connect = |launch: Launch, port| launch.serial_at(&format!("tcp:127.0.0.1:{port},server=on,wait=off"));
+        is_whole(&streamed("face,link", connect, |port| format!("tcp:127.0.0.1:{port}@38400")));
+    }
+}
+
+#[test]
+fn pantin_stream_plays_on_a_board_by_ethernet() {
+    if !setup::host_only("pantin stream by UDP") {
+        let connect = |launch: Launch, port| launch.network(&format!("user,hostfwd=udp:127.0.0.1:{port}-10.0.2.15:4000"));
+        is_whole(&streamed("face,ethernet", connect, |port| format!("udp:127.0.0.1:{port}@38400")));
+    }
 }
 
 #[test]
@@ -99,7 +111,7 @@ fn a_line_that_is_not_there_is_told() {
     let tool = build::host_tool().unwrap();
     let fails = |arguments: &[&str]| {
         let start = Instant::now();
-        let output = std::process::Command::new(&tool).arg("stream").args(arguments).arg(&CLIP.1).output().unwrap();
+        let output = Command::new(&tool).arg("stream").args(arguments).arg(&CLIP.1).output().unwrap();
         assert!(!output.status.success() && start.elapsed() < Duration::from_secs(20));
         String::from_utf8_lossy(&output.stderr).into_owned()
     };

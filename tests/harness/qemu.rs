@@ -76,6 +76,7 @@ pub struct Launch {
     arguments: Vec<String>,
     serial: bool,
     line: Option<String>,
+    network: Option<String>,
     display: bool,
     plugin: Option<(PathBuf, PathBuf)>,
     loaded: Option<(PathBuf, u32)>,
@@ -97,6 +98,7 @@ impl Launch {
             arguments: vec![],
             serial: false,
             line: None,
+            network: None,
             display: false,
             plugin: None,
             loaded: None,
@@ -119,6 +121,12 @@ impl Launch {
     /// Connects the machine's first serial port to what QEMU calls a character device.
     pub fn serial_at(mut self, device: &str) -> Self {
         self.line = Some(device.into());
+        self
+    }
+
+    /// Connects the machine's network to what QEMU calls a network backend.
+    pub fn network(mut self, backend: &str) -> Self {
+        self.network = Some(backend.into());
         self
     }
 
@@ -184,6 +192,9 @@ impl Launch {
         let serial = self.line.clone().unwrap_or_else(|| socket(self.serial, "serial"));
         line.extend(["-serial".into(), serial, "-semihosting-config".into(), semihosting]);
         line.extend(self.machine.options.iter().map(|option| (*option).to_owned()));
+        if let Some(backend) = &self.network {
+            line.extend(["-nic".into(), backend.clone()]);
+        }
         if self.display {
             line.extend(["-qmp".into(), socket(true, "qmp")]);
         }
