@@ -5,7 +5,7 @@ use crate::stream::{line::Address, pace};
 use anyhow::{Context, Result, bail};
 use pantin_link::sender::{Bytes, Line, Sender, Source};
 use std::hash::{BuildHasher, Hasher, RandomState};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -90,14 +90,14 @@ fn say(arguments: &Arguments, sentence: &str) {
     }
 }
 
-fn source(arguments: &Arguments, path: &PathBuf) -> Result<Source> {
+fn source(arguments: &Arguments, path: &Path) -> Result<Source> {
     let files = Files::read(path, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| format!("{}: not a clip that plays; `pantin convert` makes one", path.display()))?;
     Source::new(&clip)
         .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
 }
 
-fn fitted(arguments: &Arguments, source: &Source, path: &PathBuf) -> Result<Line> {
+fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
     let frames = |seconds: f64| (seconds / source.frame_seconds()).round();
     let wanted = Line {
         rate: arguments.to.rate(),
@@ -115,7 +115,7 @@ fn fitted(arguments: &Arguments, source: &Source, path: &PathBuf) -> Result<Line
     })
 }
 
-fn opening(source: &Source, fit: &Line, path: &PathBuf) -> String {
+fn opening(source: &Source, fit: &Line, path: &Path) -> String {
     let (off, _) = source.deviation(fit.cycle);
     let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
     format!(
