@@ -1,5 +1,6 @@
 //! What turns a clip into packets and says when each has to leave.
 
+mod live;
 mod pack;
 mod plan;
 mod schedule;
@@ -9,6 +10,7 @@ mod tests;
 #[cfg(test)]
 mod train;
 
+pub use live::{Live, Making};
 pub use schedule::{Bytes, Departure, Line, Schedule};
 pub use source::{Source, Unfit};
 
@@ -38,6 +40,12 @@ impl Sender {
         self.clip = self.clip.wrapping_add(1);
         let start = -f64::from(line.ahead) * f64::from(head.frame_time_ns) / 1e9;
         Schedule::new(source, head, line, rounds, self.sequence, start)
+    }
+
+    /// Motion that is made while it is sent: `making` is what `source` was made with. Nothing comes after it.
+    pub fn live<'s>(self, source: &'s Source, line: Line, making: &[Making]) -> Live<'s> {
+        let head = Head { session: self.session, clip: self.clip, begin: BEGIN, ..source.head };
+        Live::new(source, head, line, making, self.sequence)
     }
 
     /// Goes on after a clip.

@@ -157,6 +157,22 @@ impl<'s> Schedule<'s> {
         (f64::from(frame) - f64::from(self.head.begin)) * self.frame
     }
 
+    /// Seconds of a frame.
+    pub(crate) fn frame_seconds(&self) -> f64 {
+        self.frame
+    }
+
+    /// Nothing leaves before this time; by how much the line is behind it.
+    pub(crate) fn idle_until(&mut self, now: f64) -> f64 {
+        self.free = self.free.max(now);
+        self.free - now
+    }
+
+    /// Takes packets that were not planned.
+    pub(crate) fn add(&mut self, batches: Vec<Batch>) {
+        self.batches.extend(batches);
+    }
+
     /// What the line has carried so far.
     pub fn bytes(&self) -> Bytes {
         self.bytes

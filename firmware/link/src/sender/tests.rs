@@ -65,6 +65,43 @@ fn line(source: &Source, rate: f64) -> Line {
     Line { rate, ahead, share: 1.0, cycle: 4, parity: false }.fitted(source).expect("it fits")
 }
 
+/// A wave that is never still, and a step.
+fn made(frame: usize, channel: usize) -> i32 {
+    let wave = (f64::from(frame as u32) / (3.0 + channel as f64)).sin() * 5e8;
+    if channel == 0 { if frame / 40 % 2 == 0 { 0 } else { 1 << 30 } } else { wave as i32 }
+}
+
+#[test]
+fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
+    let making = [Making { bound: 1 << 25, way: 1 << 30 }; 8];
+    let source = Source::live(crate::Form::default(), 33_333_333, &making);
+    let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false };
+    let mut live = Sender::new(5).live(&source, line, &making);
+    let (mut states, mut pose) = ([Channel::default(); 8], [0; 8]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::<PACKET>::new();
+    let (mut late, mut worst) = (0, 0);
+    for frame in 0..600 {
+        let pose: Vec<i32> = (0..8).map(|channel| made(frame, channel)).collect();
+        for byte in live.push(&pose).into_iter().flat_map(|departure| departure.bytes) {
+            if let Some(packet) = receiver.push(byte) {
+                link.take(&packet).expect("its own form");
+            }
+        }
+        link.step();
+        if frame > 60 {
+            assert!(link.synced(), "frame {frame}: {} exact", link.exact());
+            let shown = link.frame().expect("it plays") as usize;
+            late = late.max(frame - shown);
+            let off = (1..8).map(|channel| i64::from(link.pose()[channel]) - i64::from(made(shown, channel)));
+            worst = worst.max(off.map(i64::abs).max().unwrap_or(0));
+        }
+    }
+    assert_eq!(live.left_out(), 0);
+    assert!(late <= Live::delay(&line) as usize + 2, "{late}");
+    assert!(worst <= (1 << 25) + (1 << 22), "{worst}");
+}
+
 #[test]
 fn without_loss_every_frame_is_what_was_sent() {
     for bytes in CLIPS {
