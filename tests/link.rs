@@ -1,8 +1,9 @@
 //! Motion over a line that loses packets and flips bits: the reference board shows what the host's receiver of the same bytes shows, it keeps
 //! moving, and it is exact again when it should be. And in its own time, from a TCP line as fast as a real one.
 
+use std::io::Read;
 use std::path::PathBuf;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
@@ -11,7 +12,9 @@ use harness::lossy::{Damage, Lossy};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
+use pantin_link::packet::Receiver;
 use pantin_link::sender::{Line, Sender, Source};
+use pantin_link::{Channel, Form, Link, PACKET, QUEUE};
 use tempfile::TempDir;
 
 /// Our greeting: a body and its face.
@@ -30,40 +33,53 @@ fn source() -> Source {
     Source::new(&Clip::new_checked(&bytes).unwrap()).unwrap()
 }
 
-/// What arrives in each frame's time over a line of 38,400 baud that is damaged between two frames of the clip.
-fn line(source: &Source, damage: Damage, from: usize, to: usize) -> Vec<Vec<u8>> {
+/// What arrives in each frame's time of two rounds over a line of 38,400 baud that is damaged between two of them.
+fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
     let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false };
     let fit = wanted.fitted(source).expect("the line carries it");
     let (mut lossy, mut frames) = (Lossy::new(5), vec![]);
-    for departure in Sender::new(3).clip(source, fit, Some(1)) {
+    for departure in Sender::new(3).clip(source, fit, Some(2)) {
         let there = departure.at + departure.bytes.len() as f64 / fit.rate;
-        let frame = (there / source.frame_seconds()) as usize + fit.ahead as usize;
+        let frame = (there / source.frame_seconds() + f64::from(fit.ahead)) as usize;
         frames.resize_with(frames.len().max(frame + 1), Vec::new);
         let harms = (from..to).contains(&frame);
         frames[frame].extend(if harms { lossy.pass(&departure.bytes, damage).0 } else { departure.bytes });
     }
-    frames
+    (frames, fit)
 }
 
+/// Half a second of our greeting, in which what is drawn joins the state.
+const JOIN: usize = 60;
+
 #[test]
-fn the_board_shows_what_the_host_shows_of_a_line_that_damages() {
+fn the_board_shows_what_the_host_shows_of_a_line_that_damages_and_recovers() {
     if setup::host_only("a line that damages") {
         return;
     }
     let (source, firmware) = (source(), firmware("face,link"));
-    let line = line(&source, Damage { loss: 0.1, flips: 1e-4 }, 90, 150);
-    let expected = simulator::link(&CLIP.1, &["info"], &line).unwrap();
-    let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("info").argument("link").limit(Duration::from_secs(120));
+    let (from, to) = (90, 150);
+    let damage = Damage { loss: 0.1, flips: 1e-4 };
+    let (line, fit) = line(&source, damage, from, to);
+    let expected = simulator::link(&CLIP.1, &[], &line).unwrap();
+    let whole = simulator::link(&CLIP.1, &[], &self::line(&source, damage, 0, 0).0).unwrap();
+    let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("link").limit(Duration::from_secs(120));
     let mut session = sync::Session::start(launch).unwrap();
-    let mut changed = 0;
-    for (frame, (bytes, pair)) in [&vec![]].into_iter().chain(&line).zip(expected.windows(2)).enumerate() {
+    let (mut moved, mut before, mut wrong) = (0, None, vec![]);
+    for (frame, bytes) in [&vec![]].into_iter().chain(&line).enumerate() {
         let (number, picture) = session.hear(bytes).unwrap();
-        assert_eq!((number, &picture), (pair[0].0, &pair[0].1), "picture {frame}");
-        changed += usize::from(pair[0].1 != pair[1].1);
+        assert_eq!((number, &picture), (expected[frame].0, &expected[frame].1), "picture {frame}");
+        if picture != whole[frame].1 {
+            wrong.push(frame);
+        }
+        moved += usize::from((from..to).contains(&frame) && before.as_ref() != Some(&picture));
+        before = Some(picture);
     }
     assert_eq!(session.end().unwrap().code, 0);
-    // It stands before the first frame, and moves from there on, also while the line damages.
-    assert!(changed > line.len() * 3 / 5, "{changed} of {} pictures differ from the one before", line.len());
+    assert!(moved > (to - from) / 2, "while the line damages, {moved} pictures of {} differ from the one before", to - from);
+    // What the last damaged packet told of was ahead of its time.
+    let last = to + (fit.ahead + fit.cycle) as usize + JOIN;
+    println!("pictures {:?} to {:?} are not those of a whole line; at most to {last}", wrong.first(), wrong.last());
+    assert!(!wrong.is_empty() && wrong.iter().all(|frame| (from..last).contains(frame)), "{wrong:?}");
 }
 
 /// Plays in the board's own time what `pantin stream` sends there; what the board then logs.
@@ -104,6 +120,66 @@ fn pantin_stream_plays_on_a_board_by_ethernet() {
         let connect = |launch: Launch, port| launch.network(&format!("user,hostfwd=udp:127.0.0.1:{port}-10.0.2.15:4000"));
         is_whole(&streamed("face,ethernet", connect, |port| format!("udp:127.0.0.1:{port}@38400")));
     }
+}
+
+/// Frames of a face that is recorded, and one of its values.
+const RECORDED: usize = 120;
+
+fn recorded(frame: usize, channel: usize) -> f64 {
+    0.5 + 0.4 * (frame as f64 / (5.0 + 3.0 * channel as f64)).sin()
+}
+
+#[test]
+fn pantin_stream_sends_a_face_while_it_is_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let values = |frame: usize| (0..3).map(|channel| format!(",{:.6}", recorded(frame, channel))).collect::<String>();
+    let line = |frame: usize| format!("00:00:{:02}:{:02}.000,3{}\n", frame / 30, frame % 30, values(frame));
+    let text: String = std::iter::once("Timecode,BlendShapeCount,EyeBlinkLeft,JawOpen,MouthSmileLeft\n".into())
+        .chain((0..RECORDED).map(line))
+        .collect();
+    let csv = folder.path().join("face.csv");
+    std::fs::write(&csv, &text).unwrap();
+    let clip = clips::convert(&csv, folder.path()).unwrap();
+    let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    socket.set_read_timeout(Some(Duration::from_secs(3))).unwrap();
+    let to = format!("udp:{}@38400", socket.local_addr().unwrap());
+    let mut stream = Command::new(build::host_tool().unwrap());
+    stream.args(["stream", "--live", "-", "--to", &to]).arg(&clip).stdin(std::fs::File::open(&csv).unwrap());
+    let mut stream = stream.stderr(Stdio::piped()).spawn().unwrap();
+    let bytes = std::fs::read(&clip).unwrap();
+    let clip = Clip::new_checked(&bytes).unwrap();
+    let (mut states, mut pose) = ([Channel::default(); 3], [0; 3]);
+    let mut link = Link::<QUEUE>::new(Form::of(&clip).unwrap(), &mut states, &mut pose);
+    let (mut receiver, mut room, mut exact) = (Receiver::<PACKET>::new(), [0; 2048], 0);
+    while let Ok(len) = socket.recv(&mut room) {
+        for &byte in &room[..len] {
+            if let Some(packet) = receiver.push(byte) {
+                link.take(&packet).unwrap();
+            }
+        }
+        for _ in 0..3 {
+            link.step();
+            let Some(frame) =
+                link.frame().map(|frame| frame as usize).filter(|frame| link.synced() && (1..RECORDED).contains(frame))
+            else {
+                continue;
+            };
+            exact += 1;
+            for (channel, state) in link.channels().iter().enumerate() {
+                let value = f64::from(state.state().unwrap()[0]) / 30f64.exp2();
+                assert!((value - recorded(frame, channel)).abs() < 0.021, "frame {frame}, channel {channel}: {value}");
+            }
+        }
+    }
+    let mut words = String::new();
+    stream.stderr.take().unwrap().read_to_string(&mut words).unwrap();
+    assert!(
+        stream.wait().unwrap().success()
+            && words.contains("3 channels; shown 567 ms after they came")
+            && !words.contains("no room"),
+        "{words}"
+    );
+    assert!(exact >= RECORDED - 20 && link.counts().missing == 0, "{exact} {:?}", link.counts());
 }
 
 #[test]

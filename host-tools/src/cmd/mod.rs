@@ -12,6 +12,7 @@ mod max_error;
 pub mod play;
 pub mod render;
 pub mod stream;
+mod stream_live;
 pub mod train;
 
 use anyhow::{Context, Result};

@@ -16,15 +16,21 @@ use std::time::{Duration, Instant};
 /// a cycle after any loss; `--cycle` and `--refresh` say how short that may be.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Clips, sent one after the other
+    /// Clips, sent one after the other; with --live one of the face that the other end has
     #[arg(required = true)]
-    clips: Vec<PathBuf>,
+    pub(super) clips: Vec<PathBuf>,
     /// The line: serial:DEVICE, tcp:HOST:PORT or udp:HOST:PORT, with @BAUD after it if it is not 38400 (10 bits a byte, on any of them)
     #[arg(long, value_name = "LINE")]
-    to: Address,
+    pub(super) to: Address,
+    /// Send a face while it is recorded: udp:PORT takes the datagrams of Live Link Face, - lines of its CSV on stdin, one a frame of the clip
+    #[arg(long, value_name = "FROM", conflicts_with = "looped")]
+    live: Option<String>,
+    /// Greatest error of --live, in percent of full scale
+    #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
+    pub(super) max_scalar_error: f64,
     /// The rig of clips without one (`pantin convert --rig-out`)
     #[arg(long)]
-    rig: Option<PathBuf>,
+    pub(super) rig: Option<PathBuf>,
     /// Send the clips again and again
     #[arg(long = "loop")]
     looped: bool,
@@ -39,7 +45,7 @@ pub struct Arguments {
     ahead: f64,
     /// Add 8 bytes to each packet that mend 4 wrong ones, for lines that flip bits; the other end has to know (the board's word `fec`)
     #[arg(long)]
-    fec: bool,
+    pub(super) fec: bool,
     /// Say nothing
     #[arg(short, long)]
     quiet: bool,
@@ -50,13 +56,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if !(0.0..=100.0).contains(&arguments.refresh) {
         bail!("--refresh {}: expected 0 to 100 percent", arguments.refresh);
     }
+    if let Some(from) = &arguments.live {
+        let stop = stopped_by_signal()?;
+        return super::stream_live::run(arguments, from, &stop);
+    }
     let sources = arguments.clips.iter().map(|path| source(arguments, path)).collect::<Result<Vec<_>>>()?;
     let lines =
         sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
     let mut line = arguments.to.open()?;
     let stop = stopped_by_signal()?;
-    // No clock or process number is as unlikely to come again.
-    let mut sender = Sender::new(RandomState::new().build_hasher().finish() as u16);
+    let mut sender = sender();
     let (mut bytes, mut seconds) = (Bytes::default(), 0.0);
     let one = sources.len() == 1;
     while !stop.load(Ordering::Relaxed) {
@@ -84,7 +93,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-fn say(arguments: &Arguments, sentence: &str) {
+/// A session of its own: no clock or process number is as unlikely to come again.
+pub(super) fn sender() -> Sender {
+    Sender::new(RandomState::new().build_hasher().finish() as u16)
+}
+
+pub(super) fn say(arguments: &Arguments, sentence: &str) {
     if !arguments.quiet {
         eprintln!("{sentence}");
     }
@@ -128,7 +142,7 @@ fn opening(source: &Source, fit: &Line, path: &Path) -> String {
     )
 }
 
-fn closing(bytes: Bytes, seconds: f64) -> String {
+pub(super) fn closing(bytes: Bytes, seconds: f64) -> String {
     let part = |part: f64| 100.0 * part / bytes.line.max(1.0);
     format!(
         "{} packets, {:.0} bytes in {seconds:.1} s: motion {:.1} %, refresh {:.1} %, heads and starts {:.1} %, framing and CRC {:.1} %, parity {:.1} %",

@@ -68,7 +68,7 @@ fn line(source: &Source, rate: f64) -> Line {
 /// A wave that is never still, and a step.
 fn made(frame: usize, channel: usize) -> i32 {
     let wave = (f64::from(frame as u32) / (3.0 + channel as f64)).sin() * 5e8;
-    if channel == 0 { if frame / 40 % 2 == 0 { 0 } else { 1 << 30 } } else { wave as i32 }
+    if channel == 0 { if (frame / 40).is_multiple_of(2) { 0 } else { 1 << 30 } } else { wave as i32 }
 }
 
 #[test]
