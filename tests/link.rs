@@ -57,7 +57,7 @@ fn the_board_shows_what_the_host_shows_of_a_line_that_damages_and_recovers() {
         return;
     }
     let (source, firmware) = (source(), firmware("face,link"));
-    let (from, to) = (90, 150);
+    let (from, to) = (70, 190);
     let damage = Damage { loss: 0.1, flips: 1e-4 };
     let (line, fit) = line(&source, damage, from, to);
     let expected = simulator::link(&CLIP.1, &[], &line).unwrap();

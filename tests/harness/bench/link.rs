@@ -244,6 +244,10 @@ fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], ru
         Goal::told(of("refresh"), format!("{}, each channel within {cycle:.0} ms", rate(refresh))),
         Goal::told(of("heads and starts"), rate(announced)),
         Goal::told(
+            of("sent ahead of its time, at most"),
+            format!("{:.0} ms", f64::from(line.ahead) * source.frame_seconds() * 1000.0),
+        ),
+        Goal::told(
             of("parity against a bit error rate of 1e-3, of the line"),
             format!("{:.1} %", 100.0 * with.parity / with.line),
         ),

@@ -115,12 +115,10 @@ impl Controller {
         let words = length.div_ceil(4).saturating_sub(1);
         let rest = (0..words).flat_map(|_| mac::DATA.read().to_le_bytes());
         // All words have to be read, those of a frame that is too long and the check sum too.
-        let mut at = 0;
-        for byte in [first, second].into_iter().chain(rest) {
+        for (at, byte) in [first, second].into_iter().chain(rest).enumerate() {
             if let Some(place) = self.frame.get_mut(at) {
                 *place = byte;
             }
-            at += 1;
         }
         Some(len.min(FRAME))
     }
