@@ -43,6 +43,9 @@ const WHOLE: f64 = 2.0;
 /// Times that the clip is sent for one kind of damage.
 const PASSES: u64 = 12;
 
+/// Times that a receiver joins a clip that is under way.
+const JOINS: u32 = 24;
+
 /// All that is measured of lines.
 pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let Some(data) = paths::data() else { return Ok(vec![]) };
@@ -221,6 +224,29 @@ fn print(rows: &[Vec<String>]) {
     table::print(&header, rows);
 }
 
+/// Milliseconds from the first byte that a receiver hears of a clip under way until all is exact, at worst.
+fn late_join(source: &Source, line: Line) -> f64 {
+    let join = |number: u32| {
+        let from = source.seconds() * f64::from(number) / f64::from(JOINS);
+        let departures = Sender::new(1).clip(source, line, Some(2)).filter(|departure| departure.at >= from);
+        let (mut frames, mut taken) = (0.0, None);
+        play(
+            departures,
+            source,
+            line,
+            |departure| departure.bytes.clone(),
+            |link| {
+                frames += 1.0;
+                if link.synced() && taken.is_none() {
+                    taken = Some(frames);
+                }
+            },
+        );
+        taken.unwrap_or(f64::INFINITY)
+    };
+    (0..JOINS).map(join).fold(0.0, f64::max) * source.frame_seconds() * 1000.0
+}
+
 /// What a round of the clip takes.
 fn carried(source: &Source, line: Line) -> Bytes {
     let mut schedule = Sender::new(1).clip(source, line, Some(1));
@@ -243,6 +269,7 @@ fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], ru
         Goal::told(of("motion"), rate(motion)),
         Goal::told(of("refresh"), format!("{}, each channel within {cycle:.0} ms", rate(refresh))),
         Goal::told(of("heads and starts"), rate(announced)),
+        Goal::told(of("all channels exact after a late join, worst"), format!("{:.0} ms", late_join(source, line))),
         Goal::told(
             of("sent ahead of its time, at most"),
             format!("{:.0} ms", f64::from(line.ahead) * source.frame_seconds() * 1000.0),

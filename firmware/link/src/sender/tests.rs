@@ -123,6 +123,73 @@ fn without_loss_every_frame_is_what_was_sent() {
     }
 }
 
+/// Pushes bytes into a receiver.
+fn hear<const Q: usize>(link: &mut Link<Q>, receiver: &mut Receiver<PACKET>, bytes: &[u8]) {
+    for &byte in bytes {
+        if let Some(packet) = receiver.push(byte) {
+            link.take(&packet).expect("its own form");
+        }
+    }
+}
+
+#[test]
+fn a_sender_that_stalls_makes_time_stand_still_and_loses_nothing() {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(1)).collect();
+    let (first, rest) = sent.split_at(sent.len() / 2);
+    for departure in first {
+        hear(&mut link, &mut receiver, &departure.bytes);
+        (0..4).for_each(|_| link.step());
+    }
+    (0..200).for_each(|_| link.step());
+    let (now, drawn) = (link.now(), link.pose().to_vec());
+    (0..200).for_each(|_| link.step());
+    assert_eq!((link.now(), link.pose()), (now, &drawn[..]), "it stands");
+    assert!(link.synced() && link.counts().losses == 0);
+    for departure in rest {
+        hear(&mut link, &mut receiver, &departure.bytes);
+        (0..4).for_each(|_| link.step());
+        assert!(link.synced());
+    }
+    (0..200).for_each(|_| link.step());
+    assert_eq!((link.frame(), link.counts().losses), (Some(source.frames() - 1), 0));
+}
+
+#[test]
+fn a_flood_is_counted_and_recovered_from() {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let played = Played { source: &source, states: source.played(line.cycle) };
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(4)).collect();
+    let (flood, rest) = sent.split_at(sent.len() / 3);
+    // A third of all at once, then the others in their time.
+    flood.iter().for_each(|departure| hear(&mut link, &mut receiver, &departure.bytes));
+    assert!(link.counts().crowded > 0);
+    let (mut clock, mut synced) = (rest[0].at, 0);
+    for departure in rest {
+        while clock < departure.at {
+            clock += source.frame_seconds();
+            link.step();
+            assert!(played.agrees(&link));
+            synced += u32::from(link.synced());
+        }
+        hear(&mut link, &mut receiver, &departure.bytes);
+    }
+    assert!(synced > source.frames(), "{synced} frames were exact");
+}
+
+#[test]
+fn memory_is_what_is_stated() {
+    assert_eq!(core::mem::size_of::<Channel>(), 36);
+}
+
 /// What may happen to a packet on its way.
 #[derive(Clone, Debug)]
 enum Fate {
