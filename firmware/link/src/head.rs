@@ -149,10 +149,13 @@ pub const fn pace(index: u8) -> i32 {
 const STILL: u32 = 0;
 const MOVES: u32 = 1;
 const FOLLOWS: u32 = 2;
+/// Still, at 0.
+const ZERO: u32 = 3;
 
 impl Start {
     fn code<C: Coder>(&self, coder: &mut C) -> Start {
         let (kind, still, moves, back) = match *self {
+            Start::Still(0) => (ZERO, 0, (0, 0), 0),
             Start::Still(p) => (STILL, p, (0, 0), 0),
             Start::Moves { step, pace } => (MOVES, 0, (step, pace), 0),
             Start::Follows(back) => (FOLLOWS, 0, (0, 0), back),
@@ -163,6 +166,7 @@ impl Start {
                 pace: coder.bits(6, u32::from(moves.1)) as u8,
             },
             FOLLOWS => Start::Follows(coder.bits(10, u32::from(back)) as u16),
+            ZERO => Start::Still(0),
             _ => {
                 let zeros = coder.bits(5, still.trailing_zeros() & 31);
                 let digits = still >> (still.trailing_zeros() & 31);
