@@ -67,7 +67,7 @@ struct Clock {
 
 /// Frames that the clock may be behind the sender's before it takes two at once, and ahead (negative) before it waits: the jitter of packets.
 const TWICE: i32 = 5;
-const WAIT: i32 = -3;
+const WAIT: i32 = -2;
 /// Frames behind from which it takes all at once,
 const JUMP: i32 = 12;
 /// and from which it no longer follows what has gone on since.
@@ -111,11 +111,11 @@ impl<'m, const Q: usize> Link<'m, Q> {
             return self.take_head(packet.payload);
         }
         // A head alone changes nothing: it may be another sender's that came by chance.
-        let of_next = |head: Head| match packet.kind {
+        let of_next = |(head, now): (Head, u32)| match packet.kind {
             kind::STARTS => read_starts(packet.payload, head.identity(), |_, _| {}),
-            _ => motion_of(packet.payload, &head, head.begin).is_some(),
+            _ => motion_of(packet.payload, &head, now).is_some(),
         };
-        if self.next.is_some_and(|(head, _)| of_next(head)) {
+        if self.next.is_some_and(of_next) {
             self.change();
         }
         let taken = match packet.kind {
@@ -192,9 +192,11 @@ impl<'m, const Q: usize> Link<'m, Q> {
     fn set_clock(&mut self, base: u32, ahead: u8, last: u32) {
         let sender = base.wrapping_sub(u32::from(ahead));
         let clock = self.clock.get_or_insert(Clock { now: sender, sender, told: base });
-        // One that comes later than its successors tells an old time.
+        // One that comes later than its successors tells an old time, and a sender that has stalled is behind: its time is come back to slowly.
         if before(clock.sender, sender) {
             clock.sender = sender;
+        } else if clock.sender != sender {
+            clock.sender = clock.sender.wrapping_sub(1);
         }
         if before(clock.told, last) {
             clock.told = last;
@@ -223,7 +225,10 @@ impl<'m, const Q: usize> Link<'m, Q> {
     /// How many frames time goes on by now.
     fn steps(&mut self) -> u32 {
         let Some(clock) = &mut self.clock else { return 0 };
-        clock.sender = clock.sender.wrapping_add(1);
+        // No sender is further than what it has told of.
+        if before(clock.sender, clock.told) {
+            clock.sender = clock.sender.wrapping_add(1);
+        }
         let off = clock.sender.wrapping_sub(clock.now) as i32;
         let wanted = match off {
             JUMP.. => off,

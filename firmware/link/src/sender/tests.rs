@@ -160,6 +160,33 @@ fn a_sender_that_stalls_makes_time_stand_still_and_loses_nothing() {
 }
 
 #[test]
+fn after_a_stall_packets_are_ahead_of_their_time_again() {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(6)).collect();
+    let (mut clock, mut halted) = (sent[0].at, 0);
+    for (index, departure) in sent.iter().enumerate() {
+        if index == sent.len() / 3 {
+            (0..500).for_each(|_| link.step());
+        }
+        while clock < departure.at {
+            clock += source.frame_seconds();
+            let before = link.now();
+            link.step();
+            halted += u32::from(index > sent.len() * 2 / 3 && link.now() == before);
+        }
+        hear(&mut link, &mut receiver, &departure.bytes);
+    }
+    assert_eq!(halted, 0, "frames on which time stood still");
+    let behind =
+        sent.last().map_or(0.0, |last| last.at / source.frame_seconds()) as i64 - i64::from(link.now().unwrap_or(0) - BEGIN);
+    assert!((-4..=8).contains(&behind), "{behind}");
+}
+
+#[test]
 fn a_flood_is_counted_and_recovered_from() {
     let source = source(CLIPS[0]);
     let line = line(&source, 20_000.0);
