@@ -26,6 +26,11 @@ fn cortex_m0_agrees() {
 }
 
 #[test]
+fn cortex_m0_plus_agrees() {
+    agrees("Cortex-M0+");
+}
+
+#[test]
 fn cortex_m3_agrees() {
     agrees("Cortex-M3");
 }

@@ -17,4 +17,5 @@ pub mod play;
 pub mod render;
 pub mod stream;
 pub mod train;
+pub mod update;
 pub mod verify;

@@ -17,11 +17,13 @@ enum Command {
     Convert(Box<cmd::convert::Arguments>),
     Expand(cmd::expand::Arguments),
     Face(cmd::face::Arguments),
+    FlashImage(cmd::flash_image::Arguments),
     Info(cmd::info::Arguments),
     Play(cmd::play::Arguments),
     Render(Box<cmd::render::Arguments>),
     Stream(cmd::stream::Arguments),
     Train(cmd::train::Arguments),
+    Update(cmd::update::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -29,11 +31,13 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => cmd::convert::run(&arguments),
         Command::Expand(arguments) => cmd::expand::run(&arguments),
         Command::Face(arguments) => cmd::face::run(&arguments),
+        Command::FlashImage(arguments) => cmd::flash_image::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
         Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),
         Command::Stream(arguments) => cmd::stream::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
+        Command::Update(arguments) => cmd::update::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,6 +9,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 
 use crate::build::Firmware;
 use crate::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, SX1, VIRT};
+use crate::rp2040::{self, Request};
 use crate::vectors::record::{self, Crcs};
 use crate::vectors::{self, Vector};
 use crate::{paths, setup};
@@ -20,14 +21,17 @@ pub enum Place {
     Host,
     /// A machine under QEMU.
     Emulated(Machine),
+    /// The Raspberry Pi Pico in rp2040js.
+    Pico,
     /// WebAssembly under Node.js.
     Node,
 }
 
 /// Name of a core, and where it is.
-pub const CORES: [(&str, Place); 7] = [
+pub const CORES: [(&str, Place); 8] = [
     ("this host", Place::Host),
     ("Cortex-M0", Place::Emulated(MICROBIT)),
+    ("Cortex-M0+", Place::Pico),
     ("Cortex-M3", Place::Emulated(LM3S6965EVB)),
     ("Cortex-M4F", Place::Emulated(MPS2_AN386)),
     ("ARMv4T", Place::Emulated(SX1)),
@@ -72,6 +76,7 @@ impl Expected {
         let (time, found) = match place {
             Place::Host => self.here()?,
             Place::Emulated(machine) => emulated(machine)?,
+            Place::Pico => pico()?,
             Place::Node => node()?,
         };
         ensure!(found.len() == self.crcs.len(), "{} vectors were played, of {}", found.len(), self.crcs.len());
@@ -104,6 +109,15 @@ fn emulated(machine: Machine) -> Result<(Duration, BTreeMap<String, Crcs>)> {
     let outcome = Launch::new(machine, image.elf()).limit(LIMIT).start()?.wait()?;
     ensure!(outcome.code == 0, "the image ended with code {}: {}", outcome.code, outcome.stderr.trim());
     Ok((started.elapsed(), parse(&outcome.stdout)?))
+}
+
+fn pico() -> Result<(Duration, BTreeMap<String, Crcs>)> {
+    let image = Firmware::featuring("rp2040", "conformance-image", "conformance", rp2040::TARGET, &[])?;
+    let (_folder, image) = rp2040::bare_image(image.elf())?;
+    let started = Instant::now();
+    let outcome = Request::new(&image, None).bare().run()?;
+    ensure!(outcome.ended == "code 0", "the image ended with {}", outcome.ended);
+    Ok((started.elapsed(), parse(outcome.printed.as_bytes())?))
 }
 
 fn node() -> Result<(Duration, BTreeMap<String, Crcs>)> {

@@ -20,6 +20,8 @@ pub enum Way {
     Window(usize),
     /// The firmware sends what changed over the serial port, as `pantin_app::wire` says.
     Wire,
+    /// A model of this display under an emulated bus.
+    Bus(&'static str),
 }
 
 /// A display.

@@ -1,4 +1,4 @@
-//! What a fresh machine may lack: Rust targets and QEMU. Each is installed where that is possible, and said.
+//! What a fresh machine may lack: Rust targets, QEMU, Node.js and npm. Each is installed where that is possible, and said.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -7,15 +7,15 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::paths;
 
-/// Set to run without QEMU: tests that need it skip, and say so.
+/// Set to run without QEMU, Node.js and npm: tests that need them skip, and say so.
 pub const HOST_ONLY: &str = "PANTIN_HOST_ONLY";
 
-/// Whether QEMU tests are to be skipped; says it where no test runner swallows it.
+/// Whether tests in emulators are to be skipped; says it where no test runner swallows it.
 pub fn host_only(test: &str) -> bool {
     let skip = std::env::var_os(HOST_ONLY).is_some_and(|value| !value.is_empty());
     if skip {
         use std::io::Write;
-        let _ = writeln!(std::io::stderr(), "SKIPPED: {test} needs QEMU ({HOST_ONLY} is set)");
+        let _ = writeln!(std::io::stderr(), "SKIPPED: {test} needs an emulator ({HOST_ONLY} is set)");
     }
     skip
 }
@@ -131,19 +131,24 @@ fn debian(name: &str) -> &str {
     }
 }
 
-fn advice(name: &str) -> String {
+/// How to get it.
+pub fn advice(name: &str) -> String {
     let apt = paths::program("apt-get").map(|_| format!("sudo apt-get install -y --no-install-recommends {}", debian(name)));
-    let package = if name == "node" { "nodejs".to_owned() } else { name.to_owned() };
+    let (package, brewed) = match name {
+        "node" => ("nodejs".to_owned(), "node"),
+        "npm" => ("npm".to_owned(), "node"),
+        emulator => (format!("{emulator}-core"), "qemu"),
+    };
     let others = [
-        ("dnf", format!("sudo dnf install -y {package}{}", if name == "node" { "" } else { "-core" })),
-        ("pacman", format!("sudo pacman -S --needed {package}")),
-        ("apk", format!("sudo apk add {package}")),
-        ("brew", format!("brew install {}", if name == "node" { "node" } else { "qemu" })),
+        ("dnf", format!("sudo dnf install -y {package}")),
+        ("pacman", format!("sudo pacman -S --needed {}", package.trim_end_matches("-core"))),
+        ("apk", format!("sudo apk add {}", package.trim_end_matches("-core"))),
+        ("brew", format!("brew install {brewed}")),
     ];
     let other = || others.into_iter().find(|(tool, _)| paths::program(tool).is_some()).map(|(_, command)| command);
     match apt.or_else(other) {
         Some(command) => format!("install it with: {command}"),
-        None if name == "node" => "install Node.js (https://nodejs.org)".into(),
+        None if brewed == "node" => "install Node.js (https://nodejs.org)".into(),
         None => "install QEMU (https://www.qemu.org/download)".into(),
     }
 }

@@ -45,6 +45,7 @@ pub fn play<R: Turning>(display: Display, clips: &[PathBuf], words: &[&str], key
         (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, wishes),
         (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, wishes),
         (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, &entries, options, wishes),
+        (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, &entries, options, wishes),
         _ => anyhow::bail!("no machine has a display like {display:?}"),
     }
 }

@@ -4,7 +4,7 @@
 //! windows that changed. Host to firmware: a line feed for the next frame, `q` to end with code 0; before either, letters of the
 //! app's keys. Time plays no part, so every picture is of a known frame.
 
-use std::io::{BufReader, Write};
+use std::io::{BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
 
@@ -50,7 +50,7 @@ impl Session {
     /// Goes on to the next picture without looking at it.
     pub fn step(&mut self, keys: &[u8]) -> Result<u32> {
         if self.begun {
-            self.answer(&[keys, &[pantin_app::NEXT]].concat())?;
+            self.send(&[keys, &[pantin_app::NEXT]].concat())?;
         }
         self.begun = true;
         // Sets the time that reading may take.
@@ -61,7 +61,7 @@ impl Session {
     /// The picture after these bytes of a line that brings motion, and a frame's time. The first one takes none.
     pub fn hear(&mut self, bytes: &[u8]) -> Result<(u32, Picture)> {
         if self.begun {
-            self.answer(&[bytes, &letter(pantin_app::NEXT)].concat())?;
+            self.send(&[bytes, &letter(pantin_app::NEXT)].concat())?;
         }
         self.begun = true;
         self.qemu.serial()?;
@@ -79,21 +79,57 @@ impl Session {
 
     /// Writes so many bytes of the machine's memory to a file.
     pub fn memory(&mut self, start: u32, length: usize, path: &Path) -> Result<()> {
+        self.save("pmemsave", start, length, path)
+    }
+
+    /// The same of what the processor alone has at an address: QEMU hangs the microbit's flash there.
+    pub fn memory_of_processor(&mut self, start: u32, length: usize, path: &Path) -> Result<()> {
+        self.save("memsave", start, length, path)
+    }
+
+    fn save(&mut self, command: &str, start: u32, length: usize, path: &Path) -> Result<()> {
         let path = path.to_str().context("QMP names files in UTF-8")?;
         let words = json!({ "val": start, "size": length, "filename": path });
-        self.qemu.control()?.execute("pmemsave", words).map(drop)
+        self.qemu.control()?.execute(command, words).map(drop)
     }
 
     /// Ends the firmware and waits for that.
     pub fn end(mut self) -> Result<Outcome> {
-        // Between zeros it is a letter also where packets share the line; alone, the zeros mean nothing.
-        self.answer(&letter(pantin_app::QUIT))?;
+        // Where packets share the line, a letter ends with a zero.
+        self.send(&[pantin_app::QUIT, 0])?;
         self.qemu.wait()
     }
 
-    fn answer(&mut self, bytes: &[u8]) -> Result<()> {
+    /// Sends bytes to the firmware.
+    pub fn send(&mut self, bytes: &[u8]) -> Result<()> {
         let written = self.qemu.serial()?.write_all(bytes);
         written.context("the firmware takes no answer").map_err(|error| self.qemu.explain(error))
+    }
+
+    /// A byte from it, where it answers something else than with a picture.
+    pub fn receive(&mut self) -> Result<u8> {
+        self.qemu.serial()?;
+        let mut byte = [0];
+        self.line.read_exact(&mut byte).context("the firmware says nothing").map_err(|error| self.qemu.explain(error))?;
+        Ok(byte[0])
+    }
+
+    /// The firmware begins a clip by itself: its first picture is not asked for.
+    pub fn begins(&mut self) {
+        self.begun = false;
+    }
+
+    /// Stops the machine where it is.
+    pub fn stop(&mut self) -> Result<()> {
+        self.qemu.control()?.execute("stop", json!({})).map(drop)
+    }
+
+    /// Starts the machine anew, as if it had been switched off and on: what its flash holds stays. The firmware must be waiting.
+    pub fn reset(&mut self) -> Result<()> {
+        self.qemu.control()?.execute("system_reset", json!({}))?;
+        self.memory = self.qemu.machine().display.filter(|display| display.way == Way::Wire).map(Memory::new);
+        self.begins();
+        Ok(())
     }
 }
 

@@ -18,6 +18,7 @@ enum Command {
     Gallery(cmd::gallery::Gallery),
     Strips(cmd::strips::Strips),
     Test(cmd::test::Test),
+    Uf2(cmd::uf2::Uf2),
     Vectors(cmd::vectors::Vectors),
 }
 
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Command::Gallery(gallery) => gallery.run(),
         Command::Strips(strips) => strips.run(),
         Command::Test(test) => test.run(),
+        Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
     };
     match result {

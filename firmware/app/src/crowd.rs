@@ -5,6 +5,7 @@ use crate::log::error;
 use crate::options::{Mode, Options};
 use crate::run::{Wishes, listen, set_up, show};
 use crate::scene::{Entry, Scene};
+use crate::update::Listener;
 use heapless::Vec;
 use pantin::{ChannelState, Clip, Player};
 use pantin_figure::rotation::Turning;
@@ -113,7 +114,7 @@ fn play<B: Board, const JOINTS: usize>(
         due = match options.mode {
             Mode::Sync => {
                 let number = actors.first().map_or(0, |first| first.player.frame());
-                if !listen(number, scene, &mut wishes, board) {
+                if !listen(number, scene, &mut wishes, &mut Listener::default(), board) {
                     return;
                 }
                 1

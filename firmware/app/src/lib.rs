@@ -12,14 +12,21 @@ pub mod keys;
 mod link;
 mod log;
 mod options;
+mod page;
 mod run;
 mod scene;
 mod show;
+#[cfg(feature = "update")]
+mod stored;
+mod update;
 pub mod wire;
 
 pub use board::{Board, Exit};
 pub use crowd::{FIGURES, Seat, crowd};
 pub use keys::Key;
 pub use options::{Mode, Options};
+pub use page::Page;
 pub use run::{NEXT, QUIT, RIG, SHOWN, run};
 pub use scene::Entry;
+#[cfg(feature = "update")]
+pub use stored::run_stored;

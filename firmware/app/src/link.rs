@@ -52,7 +52,7 @@ impl End<'_> {
 /// Plays what comes over the line until the mode's end, on a stage that is set up.
 #[inline(never)]
 pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, stage: &mut S, scenery: Scenery<B>) -> After {
-    let Scenery { entry, mode, scene, frame, board } = scenery;
+    let Scenery { entry, mode, scene, frame, board, .. } = scenery;
     let (mut channels, mut pose) = ([Channel::default(); CHANNELS], [0; CHANNELS]);
     let Some(form) = Form::of(player.clip()).filter(|_| player.pose().len() <= CHANNELS) else {
         error!("the rig is too big for the line");

@@ -7,6 +7,7 @@ use crate::log::{error, info};
 use crate::options::{Mode, Options};
 use crate::scene::{Entry, Scene, Wish};
 use crate::show::{self, Show};
+use crate::update::Listener;
 use heapless::Deque;
 use pantin::{ChannelState, Clip, Player};
 use pantin_figure::rotation::Turning;
@@ -27,6 +28,12 @@ pub(crate) type Wishes = Deque<Wish, 8>;
 pub(crate) enum After {
     Clip(i32),
     Exit(Exit),
+    /// A clip came over the line, at this frame.
+    #[cfg(feature = "update")]
+    Whole(u32),
+    /// It can be played.
+    #[cfg(feature = "update")]
+    Ready,
 }
 
 /// Plays clips until the mode's end. A clip may have up to `CHANNELS` channels, `MOVING` of them moving; its rig up to [`RIG`] joints, its figure
@@ -40,9 +47,23 @@ pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
     let mut scene = Scene::new(&options);
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
-        match perform::<B, CHANNELS, MOVING, JOINTS>(Scenery { entry, mode: options.mode, scene: &mut scene, frame, board }) {
+        let scenery = Scenery {
+            entry,
+            mode: options.mode,
+            scene: &mut scene,
+            frame,
+            board,
+            listener: Listener::default(),
+            #[cfg(feature = "update")]
+            start: 0,
+            #[cfg(feature = "update")]
+            trial: false,
+        };
+        match perform::<B, CHANNELS, MOVING, JOINTS>(scenery) {
             After::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             After::Exit(exit) => return exit,
+            #[cfg(feature = "update")]
+            After::Whole(_) | After::Ready => {}
         }
     }
     Exit::Done
@@ -55,9 +76,17 @@ pub(crate) struct Scenery<'a, B: Board> {
     pub scene: &'a mut Scene,
     pub frame: &'a mut Frame<B::Layout>,
     pub board: &'a mut B,
+    /// Who listens for a clip that is to replace this one.
+    pub listener: Listener<'a>,
+    /// The frame to begin with.
+    #[cfg(feature = "update")]
+    pub start: u32,
+    /// Only whether it can be played is asked.
+    #[cfg(feature = "update")]
+    pub trial: bool,
 }
 
-fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(scenery: Scenery<B>) -> After {
+pub(crate) fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(scenery: Scenery<B>) -> After {
     let clip = match Clip::new_checked(scenery.entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
@@ -93,11 +122,18 @@ pub(crate) fn set_up<R: Turning, const JOINTS: usize>(
 /// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
 #[inline(never)]
 pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, stage: &mut S, scenery: Scenery<B>) -> After {
+    #[cfg(feature = "update")]
+    {
+        if scenery.trial {
+            return After::Ready;
+        }
+        player.seek(scenery.start);
+    }
     #[cfg(feature = "link")]
     if scenery.scene.link {
         return crate::link::play(player, stage, scenery);
     }
-    let Scenery { entry, mode, scene, frame, board } = scenery;
+    let Scenery { entry, mode, scene, frame, board, mut listener, .. } = scenery;
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
     let mut wishes = Wishes::new();
     if mode != Mode::Sync {
@@ -112,8 +148,9 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
         }
         show(frame, board);
         shown = shown.wrapping_add(1);
+        listener.picture();
         due = match mode {
-            Mode::Sync => match listen(player.frame(), scene, &mut wishes, board) {
+            Mode::Sync => match listen(player.frame(), scene, &mut wishes, &mut listener, board) {
                 true => scene.frames(1),
                 false => break,
             },
@@ -122,13 +159,17 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
                 // The clip keeps its time on a board that is too slow for every frame.
                 let ticks = board.wait_ticks();
                 late = late.wrapping_add(ticks - 1);
-                while let Some(key) = board.button().or_else(|| Key::of_letter(board.poll()?)) {
+                while let Some(key) = board.button().or_else(|| Key::of_letter(listener.poll(board)?)) {
                     // More keys than fit between two pictures are a mistake of theirs.
                     let _ = wishes.push_back(scene.take(key));
                 }
                 scene.frames(if mode == Mode::Play { ticks } else { 1 })
             }
         };
+        #[cfg(feature = "update")]
+        if listener.is_whole() {
+            return After::Whole(player.frame());
+        }
         while let Some(wish) = wishes.pop_front() {
             match wish {
                 Wish::Nothing => {}
@@ -147,21 +188,30 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
     After::Exit(Exit::Done)
 }
 
-/// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture.
-pub(crate) fn listen<B: Board>(frame: u32, scene: &mut Scene, wishes: &mut Wishes, board: &mut B) -> bool {
+/// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture, or a clip came whole.
+pub(crate) fn listen<B: Board>(
+    frame: u32,
+    scene: &mut Scene,
+    wishes: &mut Wishes,
+    listener: &mut Listener,
+    board: &mut B,
+) -> bool {
     board.send(&[SHOWN]);
     board.send(&frame.to_le_bytes());
-    loop {
-        match board.receive() {
-            NEXT => return true,
-            QUIT => return false,
-            letter => {
+    while !listener.is_whole() {
+        let byte = board.receive();
+        match listener.letter(byte, board) {
+            Some(NEXT) => return true,
+            Some(QUIT) => return false,
+            Some(letter) => {
                 if let Some(key) = Key::of_letter(letter) {
                     let _ = wishes.push_back(scene.take(key));
                 }
             }
+            None => {}
         }
     }
+    true
 }
 
 /// The letters and what they do, a line each.

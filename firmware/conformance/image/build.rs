@@ -13,6 +13,9 @@ fn main() {
     println!("cargo::rustc-link-search={}", out.display());
     println!("cargo::rustc-check-cfg=cfg(start, values(\"bare\", \"cortex_m\", \"wasm\"))");
     let (start, map, arguments): (_, _, &[&str]) = match target.split('-').next() {
+        Some("thumbv6m") if env::var_os("CARGO_FEATURE_RP2040").is_some() => {
+            ("cortex_m", Some("rp2040.x"), &["--nmagic", "-Tlink.x"])
+        }
         Some(core) if core.starts_with("thumb") => ("cortex_m", Some("cortex-m.x"), &["--nmagic", "-Tlink.x"]),
         Some(core) if core.starts_with("riscv32") => ("bare", Some("virt.x"), &["--nmagic", "-Tmemory.x"]),
         Some("armv4t") => ("bare", Some("sx1.x"), &["--nmagic", "-Tmemory.x"]),

@@ -157,7 +157,7 @@ fn rest(model: &Model, [from, to]: [usize; 2], places: &mut [Place]) {
 }
 
 /// Factors below this move nothing by more than 32 steps, 1/4 mm or a thousandth of Pantin's face: left out.
-const LEAST: i32 = 64;
+const LEAST: i32 = 32;
 
 /// Adds a shape's deltas.
 fn add(model: &Model, shape: &Shape, pair: [i32; 2], places: &mut [Place]) {

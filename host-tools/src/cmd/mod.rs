@@ -7,6 +7,7 @@ mod edits;
 mod errors;
 pub mod expand;
 pub mod face;
+pub mod flash_image;
 pub mod info;
 mod max_error;
 pub mod play;
@@ -14,6 +15,7 @@ pub mod render;
 pub mod stream;
 mod stream_live;
 pub mod train;
+pub mod update;
 
 use anyhow::{Context, Result};
 use std::fs;

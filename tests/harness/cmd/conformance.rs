@@ -5,6 +5,7 @@
 //! core         machine                 vectors  poses   seconds
 //! this host    x86_64                       23   1737      0.00  agrees
 //! Cortex-M0    microbit                     23   1737      0.15  agrees
+//! Cortex-M0+   rp2040js                     23   1737      0.15  agrees
 //! ...
 //! ```
 
@@ -28,6 +29,7 @@ impl Conformance {
             let machine = match place {
                 Place::Host => std::env::consts::ARCH,
                 Place::Emulated(machine) => machine.name,
+                Place::Pico => "rp2040js",
                 Place::Node => "node",
             };
             match expected.check(place) {

@@ -10,4 +10,5 @@ mod pictures;
 pub mod steps;
 pub mod strips;
 pub mod test;
+pub mod uf2;
 pub mod vectors;

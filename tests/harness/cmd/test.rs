@@ -79,7 +79,7 @@ fn tools(boards: &[Package], host_only: bool) -> Result<()> {
         setup::rust_target(target)?;
     }
     if !host_only {
-        for program in ["qemu-system-arm", "qemu-system-riscv32", "node"] {
+        for program in ["qemu-system-arm", "qemu-system-riscv32", "node", "npm"] {
             setup::install_emulator(program).context("(or leave QEMU's tests out with --host-only)")?;
         }
     }

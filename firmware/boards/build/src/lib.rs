@@ -13,10 +13,18 @@ const FACES: [&str; 5] = ["greet", "face/hello", "face/joy", "face/surprise", "f
 
 /// Puts a memory map (its path from the board's folder) where the linker looks for `memory.x`.
 pub fn memory_map(path: &str) {
-    let to = out().join("memory.x");
+    script(path, "memory.x", "the board's memory map");
+}
+
+/// Puts the names of a board's interrupts where the linker looks for `device.x`.
+pub fn interrupts(path: &str) {
+    script(path, "device.x", "the board's interrupts");
+}
+
+fn script(path: &str, name: &str, what: &str) {
     println!("cargo::rerun-if-changed={path}");
-    if let Err(error) = fs::copy(path, &to) {
-        println!("cargo::error={path}: {error}: it is the board's memory map");
+    if let Err(error) = fs::copy(path, out().join(name)) {
+        println!("cargo::error={path}: {error}: it is {what}");
     }
     println!("cargo::rustc-link-search={}", out().display());
 }

@@ -1,15 +1,25 @@
 //! What boards have in common.
 #![no_std]
 
+mod buttons;
 #[cfg(feature = "cortex-m")]
 pub mod cortex_m;
+#[cfg(feature = "emulated")]
 mod end;
 mod pace;
+mod perform;
+#[cfg(feature = "emulated")]
 mod play;
 mod register;
 
+pub use buttons::Buttons;
+#[cfg(feature = "emulated")]
 pub use end::{Code, exit};
 pub use markers;
 pub use pace::Pace;
+pub use perform::{IN_STEP, perform};
+#[cfg(feature = "emulated")]
 pub use play::play;
+#[cfg(all(feature = "emulated", feature = "update"))]
+pub use play::play_stored;
 pub use register::Register;

@@ -27,6 +27,17 @@ pub fn play<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: 
     exit(run::<B, CHANNELS, MOVING, JOINTS>(clips, options, frame, board).into())
 }
 
+/// The same with a store, whose clip comes first.
+#[cfg(feature = "update")]
+pub fn play_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    store: &mut pantin_store::Store<S>,
+    clips: &[Entry],
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> ! {
+    exit(pantin_app::run_stored::<B, S, CHANNELS, MOVING, JOINTS>(store, clips, options(), frame, board).into())
+}
+
 /// In a function of its own: the seats take memory only where several figures are asked for.
 #[cfg(feature = "several")]
 #[inline(never)]

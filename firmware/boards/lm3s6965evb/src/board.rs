@@ -1,12 +1,11 @@
 //! The board's display, timer and line for the program.
 
-use crate::buttons::Buttons;
-use crate::display;
 #[cfg(feature = "ethernet")]
 use crate::ethernet::Ethernet;
 use crate::registers::uart0;
+use crate::{buttons, display};
 use board_common::cortex_m::SysTick;
-use board_common::markers;
+use board_common::{Buttons, markers};
 use pantin_app::{Board, Key};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Frame, Gray4Rows};
@@ -40,7 +39,7 @@ impl Lm3s {
         uart0::LCRH.write(EIGHT_BITS | FIFO);
         Lm3s {
             timer: SysTick::new(CLOCK_NS),
-            buttons: Buttons::new(),
+            buttons: buttons::start(),
             #[cfg(feature = "ethernet")]
             ethernet: Ethernet::new(),
         }
@@ -60,7 +59,7 @@ impl Board for Lm3s {
     }
 
     fn wait_ticks(&mut self) -> u32 {
-        self.timer.wait()
+        self.timer.wait(|| {})
     }
 
     #[cfg(feature = "link")]
@@ -83,7 +82,7 @@ impl Board for Lm3s {
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.buttons.pressed()
+        self.buttons.pressed(buttons::read())
     }
 
     #[inline(always)]

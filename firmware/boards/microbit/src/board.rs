@@ -21,6 +21,8 @@ impl Microbit {
     pub fn new() -> Self {
         uart::ENABLE.write(4);
         uart::START_TRANSMITTER.write(1);
+        #[cfg(feature = "update")]
+        crate::received::start();
         uart::START_RECEIVER.write(1);
         // 32 bits, every clock.
         timer0::BIT_MODE.write(3);
@@ -64,6 +66,12 @@ impl Board for Microbit {
         send(bytes);
     }
 
+    #[cfg(feature = "update")]
+    fn poll(&mut self) -> Option<u8> {
+        crate::received::take()
+    }
+
+    #[cfg(not(feature = "update"))]
     fn poll(&mut self) -> Option<u8> {
         if uart::RECEIVED.read() == 0 {
             return None;

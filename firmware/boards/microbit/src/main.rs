@@ -3,6 +3,10 @@
 #![no_main]
 
 mod board;
+#[cfg(feature = "update")]
+mod flash;
+#[cfg(feature = "update")]
+mod received;
 mod registers;
 
 use board::{Microbit, Pages};
@@ -21,5 +25,10 @@ const SEATS: usize = 1;
 #[entry]
 fn main() -> ! {
     let mut frame = Frame::<Pages>::new();
+    #[cfg(feature = "update")]
+    if let Some(slots) = flash::slots() {
+        let mut store = pantin_store::Store::new(slots);
+        board_common::play_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut Microbit::new())
+    }
     board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Microbit::new())
 }

@@ -16,6 +16,8 @@ pub mod uart {
     pub const START_TRANSMITTER: Register = at(0x4000_2008);
     pub const RECEIVED: Register = at(0x4000_2108);
     pub const TRANSMITTED: Register = at(0x4000_211c);
+    #[cfg(feature = "update")]
+    pub const INTERRUPTS: Register = at(0x4000_2304);
     pub const ENABLE: Register = at(0x4000_2500);
     pub const RXD: Register = at(0x4000_2518);
     pub const TXD: Register = at(0x4000_251c);
@@ -29,4 +31,20 @@ pub mod timer0 {
     pub const BIT_MODE: Register = at(0x4000_8508);
     pub const PRESCALER: Register = at(0x4000_8510);
     pub const CC_0: Register = at(0x4000_8540);
+}
+
+/// The flash's controller.
+#[cfg(feature = "update")]
+pub mod nvmc {
+    use super::{Register, at};
+    pub const READY: Register = at(0x4001_e400);
+    pub const CONFIG: Register = at(0x4001_e504);
+    pub const ERASE_PAGE: Register = at(0x4001_e508);
+}
+
+/// The processor's interrupts.
+#[cfg(feature = "update")]
+pub mod nvic {
+    use super::{Register, at};
+    pub const ENABLE: Register = at(0xe000_e100);
 }

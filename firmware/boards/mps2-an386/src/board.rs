@@ -54,7 +54,7 @@ impl Board for Mps2 {
     }
 
     fn wait_ticks(&mut self) -> u32 {
-        self.timer.wait()
+        self.timer.wait(|| {})
     }
 
     fn send(&mut self, bytes: &[u8]) {

@@ -1,24 +1,9 @@
-//! Whatever goes wrong ends the emulator with a code that says what.
+//! Faults, and interrupts that nothing asked for: they end the emulator with a code that says what, or else are panics.
 #![allow(unsafe_code)]
 
+#[cfg(feature = "emulated-cortex-m")]
 use crate::end::{Code, exit};
-use core::panic::PanicInfo;
-use core::sync::atomic::{AtomicBool, Ordering};
 use cortex_m_rt::exception;
-
-#[panic_handler]
-fn panic(info: &PanicInfo) -> ! {
-    static PANICKED: AtomicBool = AtomicBool::new(false);
-    // A panic of the log itself would come round for ever.
-    if !PANICKED.load(Ordering::Relaxed) {
-        PANICKED.store(true, Ordering::Relaxed);
-        // Where, without its words: those would bring in the library's formatting.
-        if let Some(place) = info.location() {
-            defmt::error!("panic in {}, line {}", place.file(), place.line());
-        }
-    }
-    exit(Code::Panic)
-}
 
 // Not Rust: the fault may be that of a stack that ran out, so that there is none until it starts anew.
 core::arch::global_asm!(
@@ -36,11 +21,17 @@ core::arch::global_asm!(
 // Safety: nothing else is named so.
 #[unsafe(no_mangle)]
 extern "C" fn board_fault() -> ! {
-    exit(Code::Fault)
+    #[cfg(feature = "emulated-cortex-m")]
+    exit(Code::Fault);
+    #[cfg(not(feature = "emulated-cortex-m"))]
+    panic!("a fault of the processor: a bad access, or the stack ran out")
 }
 
-// The attribute declares the handler unsafe: an interrupt can strike anywhere. It touches nothing but the exit call.
+// The attribute declares the handler unsafe: an interrupt can strike anywhere. It touches nothing but the call.
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {
-    exit(Code::Interrupt)
+    #[cfg(feature = "emulated-cortex-m")]
+    exit(Code::Interrupt);
+    #[cfg(not(feature = "emulated-cortex-m"))]
+    panic!("interrupt {_number}, which nothing asked for")
 }

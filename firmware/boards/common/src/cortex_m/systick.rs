@@ -57,9 +57,10 @@ impl SysTick {
         ticks
     }
 
-    /// Waits for a tick and tells how many there were since the last call.
-    pub fn wait(&mut self) -> u32 {
+    /// Waits for a tick and tells how many there were since the last call. Meanwhile `awake` is called a few times a second.
+    pub fn wait(&mut self, mut awake: impl FnMut()) -> u32 {
         loop {
+            awake();
             // An interrupt between the look and the sleep ends the sleep, and is taken after it.
             let ticks = cortex_m::interrupt::free(|_| {
                 let ticks = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.told).checked_div(self.periods).unwrap_or(1);

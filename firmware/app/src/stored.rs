@@ -1,0 +1,95 @@
+//! The program of a board with a store: the clip in it comes before those that the board was built with, and may be replaced over the line.
+
+use crate::board::{Board, Exit};
+use crate::log::{error, info};
+use crate::options::Options;
+use crate::run::{After, Scenery, perform};
+use crate::scene::{Entry, Scene};
+use crate::update::Listener;
+use pantin_figure::surface::Frame;
+use pantin_store::{Slot, Store, Stored, Update};
+
+/// What [`run`](crate::run) does, with a store. A clip that came is played from its first frame; one that this board cannot play is refused,
+/// and the one before goes on where it was.
+pub fn run_stored<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    store: &mut Store<S>,
+    entries: &[Entry],
+    options: Options,
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> Exit {
+    let mut scene = Scene::new(&options);
+    loop {
+        let (stored, mut update) = Update::open(store);
+        let stage = Stage { options, scene: &mut scene, frame, board };
+        if let Some(exit) = until_sealed::<B, S, CHANNELS, MOVING, JOINTS>(stored, &mut update, entries, stage) {
+            return exit;
+        }
+    }
+}
+
+/// What clips are played on.
+struct Stage<'a, B: Board> {
+    options: Options,
+    scene: &'a mut Scene,
+    frame: &'a mut Frame<B::Layout>,
+    board: &'a mut B,
+}
+
+impl<B: Board> Stage<'_, B> {
+    /// One clip on it.
+    fn scenery<'s>(&'s mut self, entry: &'s Entry<'s>, start: u32, listener: Listener<'s>) -> Scenery<'s, B> {
+        let Stage { options, scene, frame, board } = self;
+        Scenery { entry, mode: options.mode, scene, frame, board, start, listener, trial: false }
+    }
+}
+
+fn entry<'a>(stored: &'a Stored) -> Entry<'a> {
+    Entry { name: stored.claim.name.as_str(), bytes: stored.bytes }
+}
+
+/// Plays until the program ends, or a new clip is sealed: then none.
+fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    stored: Option<Stored>,
+    update: &mut Update<S>,
+    entries: &[Entry],
+    mut stage: Stage<B>,
+) -> Option<Exit> {
+    let mut own = stored.as_ref().map(entry);
+    let (mut at, mut start) = (0, 0);
+    while let Some(entry) = own.as_ref().into_iter().chain(entries).nth(at) {
+        let scenery = stage.scenery(entry, start, Listener { over: Some(update) });
+        match perform::<B, CHANNELS, MOVING, JOINTS>(scenery) {
+            After::Clip(steps) => {
+                let count = (entries.len() + usize::from(own.is_some())) as i32;
+                (at, start) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
+            }
+            After::Whole(frame) => {
+                let playable = try_out::<B, S, CHANNELS, MOVING, JOINTS>(update, &mut stage);
+                if update.finish(playable, |bytes| stage.board.send(bytes)) {
+                    info!("a new clip");
+                    return None;
+                }
+                error!("a clip came and is refused");
+                start = frame;
+            }
+            // Flashed with a clip that is too much for it, a board plays its own.
+            After::Exit(Exit::BadClip) if at == 0 && own.is_some() => own = None,
+            After::Exit(exit) => return Some(exit),
+            After::Ready => {}
+        }
+    }
+    Some(Exit::Done)
+}
+
+/// Whether the board can play the clip that came: it is set up as if it were to be played.
+#[inline(never)]
+fn try_out<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    update: &Update<S>,
+    stage: &mut Stage<B>,
+) -> bool {
+    let Some(candidate) = update.candidate() else { return false };
+    let entry = entry(&candidate);
+    let scenery = Scenery { trial: true, ..stage.scenery(&entry, 0, Listener::default()) };
+    matches!(perform::<B, CHANNELS, MOVING, JOINTS>(scenery), After::Ready)
+}

@@ -1,0 +1,58 @@
+//! Five buttons: up, down, left, right and select.
+//!
+//! Alone, up and down change the speed, left and right go round the figure, and select pauses. While select is held, left and
+//! right step back and forward, up goes to the next clip and down plays the other way round; select let go after that does not pause.
+
+use pantin_app::Key;
+
+/// Which are held, and what that has meant so far.
+#[derive(Debug)]
+pub struct Buttons {
+    held: u32,
+    /// Another one was pressed while select was held.
+    chord: bool,
+}
+
+impl Buttons {
+    /// Bits of the buttons.
+    pub const UP: u32 = 1 << 0;
+    #[allow(missing_docs)]
+    pub const DOWN: u32 = 1 << 1;
+    #[allow(missing_docs)]
+    pub const LEFT: u32 = 1 << 2;
+    #[allow(missing_docs)]
+    pub const RIGHT: u32 = 1 << 3;
+    #[allow(missing_docs)]
+    pub const SELECT: u32 = 1 << 4;
+
+    /// These are held; that does not count until they are let go.
+    pub const fn new(held: u32) -> Self {
+        Buttons { held, chord: true }
+    }
+
+    /// What a button asks for that was pressed, or select when it is let go, since the last call; `now` those that are held.
+    pub fn pressed(&mut self, now: u32) -> Option<Key> {
+        let (down, up) = (now & !self.held, self.held & !now);
+        self.held = now;
+        let select = now & Self::SELECT != 0;
+        if down & Self::SELECT != 0 {
+            self.chord = false;
+        }
+        if up & Self::SELECT != 0 && !self.chord {
+            return Some(Key::Pause);
+        }
+        let key = match (down & !Self::SELECT, select) {
+            (Self::UP, false) => Key::Faster,
+            (Self::DOWN, false) => Key::Slower,
+            (Self::LEFT, false) => Key::OrbitLeft,
+            (Self::RIGHT, false) => Key::OrbitRight,
+            (Self::UP, true) => Key::NextClip,
+            (Self::DOWN, true) => Key::Reverse,
+            (Self::LEFT, true) => Key::Back,
+            (Self::RIGHT, true) => Key::Step,
+            _ => return None,
+        };
+        self.chord = true;
+        Some(key)
+    }
+}

@@ -1,0 +1,124 @@
+//! The board's display, buttons, timer and line for the program.
+
+use crate::clocks::{self, CLOCK};
+use crate::display::{Display, Lit, Words};
+use board_common::cortex_m::SysTick;
+use board_common::{Buttons, markers};
+use embedded_hal::digital::InputPin;
+use pantin_app::{Board, Key};
+use pantin_figure::rotation::Rotation;
+use pantin_figure::surface::Frame;
+use rp2040_hal::fugit::{ExtU32, RateExtU32};
+use rp2040_hal::gpio::bank0::{Gpio0, Gpio1};
+use rp2040_hal::gpio::{DynPinId, FunctionSio, FunctionUart, Pin, PullDown, PullUp, SioInput};
+use rp2040_hal::pac::{Peripherals, UART0};
+use rp2040_hal::uart::{self, DataBits, StopBits, UartConfig, UartPeripheral};
+use rp2040_hal::{Sio, Watchdog};
+
+/// Bits a second of the line.
+const BAUD: u32 = 115_200;
+/// The watchdog starts the board anew when the program was stuck for so long, in milliseconds.
+const PATIENCE: u32 = 2000;
+
+type Button = Pin<DynPinId, FunctionSio<SioInput>, PullUp>;
+type Line = UartPeripheral<uart::Enabled, UART0, (Pin<Gpio0, FunctionUart, PullDown>, Pin<Gpio1, FunctionUart, PullDown>)>;
+
+/// The board.
+pub struct Pico {
+    display: Display,
+    line: Line,
+    /// Up, down, left, right and select: GP10 to GP14, to ground while they are pressed.
+    pins: [Button; 5],
+    buttons: Buttons,
+    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
+    wish: Option<Key>,
+    ticks: SysTick,
+    watchdog: Watchdog,
+}
+
+impl Pico {
+    /// Sets it up.
+    pub fn new(parts: Peripherals) -> Self {
+        let mut resets = parts.RESETS;
+        let mut watchdog = Watchdog::new(parts.WATCHDOG);
+        clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
+        let pins = rp2040_hal::gpio::Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
+        let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
+        let line = UartPeripheral::new(parts.UART0, (pins.gpio0.into_function(), pins.gpio1.into_function()), &mut resets);
+        let Ok(line) = line.enable(config, clocks::RATE.Hz()) else { unreachable!("the rate is one that the line can have") };
+        #[cfg(not(feature = "st7789"))]
+        let display = Display::new(parts.I2C0, pins.gpio4, pins.gpio5, &mut resets);
+        #[cfg(feature = "st7789")]
+        let display = Display::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20), &mut resets);
+        let pins = [
+            pins.gpio10.into_pull_up_input().into_dyn_pin(),
+            pins.gpio11.into_pull_up_input().into_dyn_pin(),
+            pins.gpio12.into_pull_up_input().into_dyn_pin(),
+            pins.gpio13.into_pull_up_input().into_dyn_pin(),
+            pins.gpio14.into_pull_up_input().into_dyn_pin(),
+        ];
+        watchdog.pause_on_debug(true);
+        watchdog.start(PATIENCE.millis());
+        Pico { display, line, pins, buttons: Buttons::new(0), wish: None, ticks: SysTick::new(CLOCK), watchdog }
+    }
+
+    /// Shows words.
+    pub fn tell(&mut self, page: &mut Frame<Words>) {
+        self.display.show(page);
+    }
+
+    /// Tells the watchdog that the program goes on.
+    pub fn feed(&self) {
+        self.watchdog.feed();
+    }
+
+    /// Those that are held, each in its bit.
+    fn held(&mut self) -> u32 {
+        self.pins.iter_mut().rev().fold(0, |held, pin| held << 1 | u32::from(pin.is_low() == Ok(true)))
+    }
+}
+
+impl Board for Pico {
+    type Layout = Lit;
+    type Turning = Rotation;
+
+    fn show(&mut self, frame: &mut Frame<Lit>) {
+        self.display.show(frame);
+        self.feed();
+    }
+
+    fn start_timer(&mut self, nanoseconds: u32) {
+        self.ticks.start(nanoseconds);
+    }
+
+    fn wait_ticks(&mut self) -> u32 {
+        let ticks = self.ticks.wait(|| self.watchdog.feed());
+        let held = self.held();
+        self.wish = self.buttons.pressed(held);
+        ticks
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.line.write_full_blocking(bytes);
+    }
+
+    fn poll(&mut self) -> Option<u8> {
+        self.feed();
+        let mut byte = [0];
+        self.line.read_raw(&mut byte).ok().map(|_| byte[0])
+    }
+
+    fn button(&mut self) -> Option<Key> {
+        self.wish.take()
+    }
+
+    #[inline(always)]
+    fn mark_start(&mut self) {
+        markers::start();
+    }
+
+    #[inline(always)]
+    fn mark_stop(&mut self) {
+        markers::stop();
+    }
+}

@@ -1,0 +1,16 @@
+//! The display: the small one over I2C, or with the feature `st7789` the one in colour over SPI.
+
+#[cfg(feature = "st7789")]
+mod lcd;
+#[cfg(not(feature = "st7789"))]
+mod oled;
+
+#[cfg(feature = "st7789")]
+pub use lcd::{Display, Lit, Words};
+#[cfg(not(feature = "st7789"))]
+pub use oled::{Display, Lit, Words};
+
+use rp2040_hal::gpio::{FunctionNull, Pin, PullDown};
+
+/// A pin as it is out of reset.
+type Free<I> = Pin<I, FunctionNull, PullDown>;

@@ -1,0 +1,180 @@
+//! What stands before a clip in its slot.
+//!
+//! | at | bytes | what |
+//! |--:|--:|---|
+//! | 0 | 4 | `PTN` and 1 |
+//! | 4 | 4 | length of the clip, bytes |
+//! | 8 | 4 | CRC-32 of the clip |
+//! | 12 | 4 | sequence: one more than that of the clip before, modulo 2^32 |
+//! | 16 | 28 | name, UTF-8, filled up with zeros |
+//! | 44 | 4 | CRC-32 of the 44 bytes before it |
+//!
+//! Numbers have their least byte first. The CRC-32 is CRC-32/ISO-HDLC, that of zip and PNG. The rest of the block is as it was erased.
+
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+
+/// Bytes of it.
+pub const HEADER: usize = 48;
+/// Bytes of a name.
+pub const NAME: usize = 28;
+
+const MAGIC: [u8; 4] = *b"PTN\x01";
+
+/// Without a table: a kilobyte of flash less, and time is no matter.
+const CRC_32: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// CRC-32/ISO-HDLC.
+pub fn crc_32(bytes: &[u8]) -> u32 {
+    CRC_32.checksum(bytes)
+}
+
+/// What a clip is called: up to [`NAME`] bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name([u8; NAME]);
+
+impl Name {
+    /// The beginning of `name`, as far as there is room.
+    pub fn new(name: &str) -> Name {
+        let end = (0..=NAME).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
+        Name::of_bytes(name.as_bytes().get(..end).unwrap_or_default())
+    }
+
+    /// Bytes that may be no UTF-8 and too long.
+    pub(crate) fn of_bytes(bytes: &[u8]) -> Name {
+        let mut name = [0; NAME];
+        name.iter_mut().zip(bytes).for_each(|(place, &byte)| *place = byte);
+        Name(name)
+    }
+
+    /// Its letters; "clip" where they are none.
+    pub fn as_str(&self) -> &str {
+        let letters = self.0.split(|&byte| byte == 0).next().unwrap_or_default();
+        match core::str::from_utf8(letters) {
+            Ok(letters) if !letters.is_empty() => letters,
+            _ => "clip",
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> &[u8; NAME] {
+        &self.0
+    }
+}
+
+/// What is claimed of a clip, by a header or by who sends it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// Bytes of it.
+    pub length: u32,
+    /// CRC-32 of them.
+    pub crc: u32,
+    /// What it is called.
+    pub name: Name,
+}
+
+impl Claim {
+    /// What is so of a clip. None for one of 4 GiB.
+    pub fn of(clip: &[u8], name: &str) -> Option<Claim> {
+        Some(Claim { length: u32::try_from(clip.len()).ok()?, crc: crc_32(clip), name: Name::new(name) })
+    }
+}
+
+/// A slot's header.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// Of the clip.
+    pub claim: Claim,
+    /// Which of two clips is newer.
+    pub sequence: u32,
+}
+
+impl Header {
+    /// Reads it. None where there is none, or only a part of one.
+    pub fn read(bytes: &[u8]) -> Option<Header> {
+        let (fields, crc) = bytes.get(..HEADER)?.split_last_chunk()?;
+        if crc_32(fields) != u32::from_le_bytes(*crc) {
+            return None;
+        }
+        let name = fields.strip_prefix(&MAGIC)?;
+        let (length, rest) = number(name)?;
+        let (crc, rest) = number(rest)?;
+        let (sequence, name) = number(rest)?;
+        Some(Header { claim: Claim { length, crc, name: Name::of_bytes(name) }, sequence })
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> [u8; HEADER] {
+        let Claim { length, crc, name } = &self.claim;
+        let mut bytes = [0; HEADER];
+        let numbers = [*length, *crc, self.sequence].map(u32::to_le_bytes);
+        let fields = MAGIC.iter().chain(numbers.as_flattened()).chain(name.bytes());
+        bytes.iter_mut().zip(fields).for_each(|(place, &byte)| *place = byte);
+        if let Some((fields, crc)) = bytes.split_last_chunk_mut() {
+            *crc = crc_32(fields).to_le_bytes();
+        }
+        bytes
+    }
+
+    /// Whether it was written after another one: as long as fewer than 2^31 were between.
+    pub fn is_newer_than(&self, other: &Header) -> bool {
+        self.sequence.wrapping_sub(other.sequence).cast_signed() > 0
+    }
+}
+
+/// Takes a number off the front.
+pub(crate) fn number(bytes: &[u8]) -> Option<(u32, &[u8])> {
+    let (number, rest) = bytes.split_first_chunk()?;
+    Some((u32::from_le_bytes(*number), rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn check_value_of_the_catalogue() {
+        assert_eq!(crc_32(b"123456789"), 0xcbf4_3926);
+    }
+
+    #[test]
+    fn the_bytes_of_a_header() {
+        let header = Header { claim: Claim::of(b"123456789", "walk").unwrap(), sequence: 0x0102 };
+        let bytes = header.bytes();
+        assert_eq!(bytes[..20], *b"PTN\x01\x09\0\0\0\x26\x39\xf4\xcb\x02\x01\0\0walk");
+        assert_eq!(bytes[20..44], [0; 24]);
+        assert_eq!(bytes[44..], crc_32(&bytes[..44]).to_le_bytes());
+    }
+
+    #[test]
+    fn names_end_at_whole_letters() {
+        assert_eq!(Name::new("walk").as_str(), "walk");
+        assert_eq!(Name::new(&"ä".repeat(20)).as_str(), "ä".repeat(14));
+        assert_eq!(Name::new(&format!("a{}", "ä".repeat(20))).as_str(), format!("a{}", "ä".repeat(13)));
+        assert_eq!(Name::of_bytes(&[0xff; 40]).as_str(), "clip");
+        assert_eq!(Name::new("").as_str(), "clip");
+    }
+
+    #[test]
+    fn the_newer_one_is_told_past_the_last_number() {
+        let header = |sequence| Header { claim: Claim::of(b"", "").unwrap(), sequence };
+        assert!(header(0).is_newer_than(&header(u32::MAX)));
+        assert!(!header(u32::MAX).is_newer_than(&header(0)));
+        assert!(!header(7).is_newer_than(&header(7)));
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read_and_no_bit_of_it_may_flip(length: u32, crc: u32, sequence: u32, name: String, bit in 0..HEADER * 8) {
+            let header = Header { claim: Claim { length, crc, name: Name::new(&name) }, sequence };
+            let mut bytes = header.bytes();
+            prop_assert_eq!(Header::read(&bytes), Some(header));
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            prop_assert_eq!(Header::read(&bytes), None);
+        }
+
+        #[test]
+        fn anything_else_is_none(bytes in prop::collection::vec(any::<u8>(), 0..100)) {
+            prop_assert_eq!(Header::read(&bytes), None);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Two slots: which of them plays.
+
+use crate::header::{Claim, Header, crc_32};
+use crate::slot::{self, Slot};
+use crate::spare::Spare;
+use pantin::Clip;
+
+/// Two slots of flash.
+#[derive(Debug)]
+pub struct Store<S> {
+    slots: [S; 2],
+}
+
+/// A clip from flash.
+#[derive(Clone, Copy, Debug)]
+pub struct Stored<'a> {
+    /// The clip's file: [`Clip::new_checked`] takes it.
+    pub bytes: &'a [u8],
+    /// What its header says of it.
+    pub claim: Claim,
+}
+
+impl<S: Slot> Store<S> {
+    /// Two slots, of the same size usually.
+    pub const fn new(slots: [S; 2]) -> Self {
+        const { slot::fits::<S>() };
+        Store { slots }
+    }
+
+    /// The clip to play, if there is one, and the slot for the next.
+    pub fn open(&mut self) -> (Option<Stored<'_>>, Spare<'_, S>) {
+        let [first, second] = &mut self.slots;
+        let newest_is_second = match (read(first.bytes()), read(second.bytes())) {
+            (Some((first, _)), Some((second, _))) => second.is_newer_than(&first),
+            (first, _) => first.is_none(),
+        };
+        let (newest, spare) = if newest_is_second { (second, first) } else { (first, second) };
+        match read(newest.bytes()) {
+            Some((header, stored)) => (Some(stored), Spare::new(spare, header.sequence.wrapping_add(1))),
+            None => (None, Spare::new(spare, 1)),
+        }
+    }
+
+    /// The flash.
+    pub fn into_slots(self) -> [S; 2] {
+        self.slots
+    }
+}
+
+/// A slot's header and clip, if both are right.
+fn read(slot: &[u8]) -> Option<(Header, Stored<'_>)> {
+    let header = Header::read(slot)?;
+    let bytes = slot::clip(slot, header.claim.length)?;
+    let right = crc_32(bytes) == header.claim.crc && Clip::new_checked(bytes).is_ok();
+    right.then_some((header, Stored { bytes, claim: header.claim }))
+}

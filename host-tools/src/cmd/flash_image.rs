@@ -1,0 +1,55 @@
+//! `pantin flash-image`.
+
+use super::write_whole;
+use crate::update::{self, image};
+use anyhow::{Context, Result, bail};
+use clap::builder::PossibleValuesParser;
+use pantin_store::region::{REGIONS, Region};
+use std::path::PathBuf;
+
+/// Write the image of a board's clip flash, to be flashed beside the firmware, which is not built anew.
+///
+/// The output's extension says what is written: .bin the whole region, to be put at the address that is told; .hex (Intel HEX, with its
+/// addresses) the clip alone, and what removes a newer one.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin flash-image walk.ptn --board microbit -o clips.hex
+  pantin flash-image walk.ptn --board microbit -o clips.bin --name \"my walk\"
+  probe-rs download --chip nRF51822_xxAA --binary-format hex clips.hex")]
+pub struct Arguments {
+    /// The clip; it must hold its rig
+    input: PathBuf,
+    /// The file to write: .bin or .hex
+    #[arg(short, long)]
+    output: PathBuf,
+    /// The board
+    #[arg(long, value_parser = PossibleValuesParser::new(REGIONS.map(|region| region.board)))]
+    board: String,
+    /// What the board calls it, up to 28 bytes; else the file's name
+    #[arg(long)]
+    name: Option<String>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let (clip, claim) = update::read(&arguments.input, arguments.name.as_deref())?;
+    let region = Region::of(&arguments.board).context("no board is called so")?;
+    let place = || arguments.input.display().to_string();
+    let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {
+        Some("bin") => image::binary(region, &clip, &claim).with_context(place)?,
+        Some("hex") => image::hex(region, &clip, &claim).with_context(place)?.into_bytes(),
+        _ => bail!("{}: expected a name that ends in .bin or .hex", arguments.output.display()),
+    };
+    write_whole(&arguments.output, &bytes)?;
+    if !arguments.quiet {
+        let Region { board, address, slot, sector, word } = region;
+        eprintln!(
+            "{board}: {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}",
+            clip.len()
+        );
+    }
+    Ok(())
+}

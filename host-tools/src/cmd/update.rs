@@ -1,0 +1,65 @@
+//! `pantin update`.
+
+use crate::update::line::{Line, Place};
+use crate::update::{self, Patience};
+use anyhow::{Context, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// Send a clip to a board, which plays it from then on, also after it was switched off.
+///
+/// The board's firmware must be built with feature `update`. The old clip goes on playing until the new one is there, checked and
+/// sealed; if anything interrupts that, it stays, and the same command takes the transfer up where it was.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin update walk.ptn --to serial:/dev/ttyACM0
+  pantin update walk.ptn --to serial:/dev/ttyUSB0@9600 --name \"my walk\"
+  pantin update walk.ptn --to serial:COM3
+  pantin update walk.ptn --to tcp:localhost:4000      an emulator's line, or a serial server's
+
+Exit codes: 0 the clip plays; 1 it does not, and the old one does; 2 the command line is wrong.")]
+pub struct Arguments {
+    /// The clip; it must hold its rig
+    input: PathBuf,
+    /// The board's line: serial:PORT[@BAUD] (115200 if not said), or tcp:HOST:PORT
+    #[arg(long)]
+    to: Place,
+    /// What the board calls it, up to 28 bytes; else the file's name
+    #[arg(long)]
+    name: Option<String>,
+    /// Seconds for an answer, before a message is said again
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
+    patience: f64,
+    /// Messages without an answer after which the board counts as lost
+    #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
+    tries: u32,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|seconds| (0.01..=3600.0).contains(seconds)).ok_or("expected seconds, 0.01 to 3600".into())
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let (clip, claim) = update::read(&arguments.input, arguments.name.as_deref())?;
+    let mut line = Line::open(&arguments.to)?;
+    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(claim.length.into()) };
+    bar.set_style(ProgressStyle::with_template("{wide_bar} {bytes} of {total_bytes} {eta}")?);
+    let patience = Patience { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };
+    let begun = Instant::now();
+    let outcome = update::send(&mut line, &clip, &claim, patience, &mut |bytes| bar.set_position(bytes.into()));
+    bar.finish_and_clear();
+    let outcome = outcome.with_context(|| format!("{} to {}", arguments.input.display(), arguments.to))?;
+    if !arguments.quiet {
+        let (name, seconds) = (claim.name.as_str(), begun.elapsed().as_secs_f64());
+        match outcome.sent {
+            0 => eprintln!("{name}: the board has it already"),
+            sent => eprintln!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages said again", outcome.again),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,88 @@
+//! A store's flash with one clip in it.
+
+use anyhow::{Result, ensure};
+use ihex::Record;
+use pantin_store::header::Header;
+use pantin_store::region::Region;
+use pantin_store::{BLOCK, Claim};
+
+/// Bytes of a line of Intel HEX.
+const LINE: usize = 32;
+
+/// What the first slot begins with: the header's block and the clip.
+fn slot(region: &Region, clip: &[u8], claim: &Claim) -> Result<Vec<u8>> {
+    let room = region.slot as usize - BLOCK;
+    ensure!(clip.len() <= room, "the clip has {} bytes; {} has room for {room}", clip.len(), region.board);
+    let mut bytes = Header { claim: *claim, sequence: 1 }.bytes().to_vec();
+    bytes.resize(BLOCK, 0xff);
+    bytes.extend(clip);
+    Ok(bytes)
+}
+
+/// The whole region: the clip in the first slot, all else as it is when erased.
+pub fn binary(region: &Region, clip: &[u8], claim: &Claim) -> Result<Vec<u8>> {
+    let mut bytes = slot(region, clip, claim)?;
+    bytes.resize(2 * region.slot as usize, 0xff);
+    Ok(bytes)
+}
+
+/// The same as Intel HEX, without what is erased: the clip, and the block of the second slot's header, so that no newer clip stays there.
+pub fn hex(region: &Region, clip: &[u8], claim: &Claim) -> Result<String> {
+    let slot = slot(region, clip, claim)?;
+    let mut records = vec![];
+    data(region.address, &slot, &mut records);
+    data(region.address + region.slot, &[0xff; BLOCK], &mut records);
+    records.push(Record::EndOfFile);
+    Ok(ihex::create_object_file_representation(&records)?)
+}
+
+/// Records of bytes from an address on, which is a multiple of a line's bytes.
+fn data(address: u32, bytes: &[u8], records: &mut Vec<Record>) {
+    for (address, line) in (address..).step_by(LINE).zip(bytes.chunks(LINE)) {
+        if address as u16 == 0 || records.is_empty() {
+            records.push(Record::ExtendedLinearAddress((address >> 16) as u16));
+        }
+        records.push(Record::Data { offset: address as u16, value: line.into() });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pantin_store::region::REGIONS;
+
+    #[test]
+    fn both_forms_say_the_same() {
+        let clip: Vec<u8> = (0..9000u32).map(|byte| (byte % 251) as u8).collect();
+        let claim = Claim::of(&clip, "walk").unwrap();
+        for region in &REGIONS {
+            let binary = binary(region, &clip, &claim).unwrap();
+            assert_eq!(binary.len() as u32, 2 * region.slot);
+            assert_eq!(Header::read(&binary), Some(Header { claim, sequence: 1 }));
+            assert_eq!(binary[BLOCK..][..clip.len()], clip);
+            let text = hex(region, &clip, &claim).unwrap();
+            let (mut high, mut memory, mut told) = (0, vec![0xff; binary.len()], 0);
+            for record in ihex::Reader::new(&text) {
+                match record.unwrap() {
+                    Record::ExtendedLinearAddress(address) => high = u32::from(address) << 16,
+                    Record::Data { offset, value } => {
+                        let at = (high + u32::from(offset) - region.address) as usize;
+                        memory[at..at + value.len()].copy_from_slice(&value);
+                        told += value.len();
+                    }
+                    _ => {}
+                }
+            }
+            assert_eq!(memory, binary);
+            assert_eq!(told, BLOCK + clip.len() + BLOCK);
+        }
+    }
+
+    #[test]
+    fn one_that_is_too_long_is_refused() {
+        let region = &REGIONS[0];
+        let clip = vec![0; region.slot as usize];
+        let error = binary(region, &clip, &Claim::of(&clip, "").unwrap()).unwrap_err().to_string();
+        assert!(error.contains(&format!("has room for {}", region.slot as usize - BLOCK)), "{error}");
+    }
+}

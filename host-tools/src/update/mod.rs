@@ -1,0 +1,24 @@
+//! A board's clip, replaced: as the image that is flashed beside the firmware, or sent over a line as `pantin_store::message` says.
+
+pub mod image;
+pub mod line;
+mod send;
+
+pub use send::{Failure, Outcome, Patience, send};
+
+use anyhow::{Context, Result};
+use pantin::Clip;
+use pantin_store::Claim;
+use std::fs;
+use std::path::Path;
+
+/// Reads a clip for a board: one that holds its rig. It is called `name`, or else as its file.
+pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, Claim)> {
+    let place = || path.display().to_string();
+    let clip = fs::read(path).with_context(|| format!("{}: cannot be read", place()))?;
+    let opened = Clip::new_checked(&clip);
+    opened.with_context(|| format!("{}: a board cannot open it (a clip made with --rig-out has no rig in it)", place()))?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let claim = Claim::of(&clip, name.unwrap_or(&stem)).with_context(|| format!("{}: too long", place()))?;
+    Ok((clip, claim))
+}

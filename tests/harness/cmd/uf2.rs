@@ -1,0 +1,65 @@
+//! `cargo xtask uf2 pico [--clip FILE]... [--display st7789] [-o OUT]`: a file to drag onto the board's drive.
+//!
+//! ```text
+//! $ cargo xtask uf2 pico --clip walk.ptn
+//! pico.uf2: 58,880 bytes of flash. Hold BOOTSEL while you plug the board in, and drag the file onto the drive RPI-RP2.
+//! ```
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use harness::build::Firmware;
+use harness::{clips, image, rp2040, uf2};
+
+/// Makes a file to drag onto a board's drive
+#[derive(Args)]
+pub struct Uf2 {
+    /// The board
+    board: Board,
+    /// A clip for it to play, in place of our own; may be given several times
+    #[arg(long, value_name = "FILE")]
+    clip: Vec<PathBuf>,
+    /// Its display
+    #[arg(long, default_value = "ssd1306")]
+    display: Display,
+    /// The file, in place of BOARD.uf2
+    #[arg(short, value_name = "OUT")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Board {
+    /// Raspberry Pi Pico
+    Pico,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Display {
+    /// 128x64 over I2C
+    Ssd1306,
+    /// 240x240 over SPI
+    St7789,
+}
+
+impl Uf2 {
+    /// Builds the program and writes the file.
+    pub fn run(self) -> Result<()> {
+        let Board::Pico = self.board;
+        let clips: Vec<&Path> = self.clip.iter().map(PathBuf::as_path).collect();
+        // Our own come with faces.
+        let face = if clips.is_empty() { "face" } else { clips::feature(&clips)? };
+        let display = if self.display == Display::St7789 { "st7789" } else { "" };
+        let firmware = Firmware::featuring(&[face, display].join(","), "pico", "pico", rp2040::TARGET, &clips)?;
+        let elf = std::fs::read(firmware.elf()).context("the program cannot be read")?;
+        let file = uf2::of_elf(&elf)?;
+        let out = self.out.unwrap_or("pico.uf2".into());
+        let part = out.with_extension("part");
+        let written = std::fs::write(&part, file).and_then(|()| std::fs::rename(&part, &out));
+        written.with_context(|| format!("cannot write {}", out.display()))?;
+        let flash = image::loaded(firmware.elf())?;
+        let advice = "Hold BOOTSEL while you plug the board in, and drag the file onto the drive RPI-RP2.";
+        println!("{}: {flash} bytes of flash. {advice}", out.display());
+        Ok(())
+    }
+}

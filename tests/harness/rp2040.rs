@@ -1,0 +1,263 @@
+//! The Raspberry Pi Pico's own flash image in `rp2040js`, with displays on its buses: `tests/pico`.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+
+use anyhow::{Context, Result, bail, ensure};
+use serde::{Deserialize, Serialize};
+use tempfile::TempDir;
+
+use crate::display::{Depth, Display, Picture, Way};
+use crate::{paths, setup, uf2};
+
+/// The Rust target of its programs.
+pub const TARGET: &str = "thumbv6m-none-eabi";
+/// Clocks of the processor a second.
+pub const CLOCK: f64 = 125e6;
+/// Where a program's vectors are: behind the second stage of the boot.
+const VECTORS: u32 = 0x1000_0100;
+
+/// The SSD1306's pictures, and the ST7789's.
+pub const OLED: Display = Display { width: 128, height: 64, depth: Depth::Mono, way: Way::Bus("ssd1306") };
+/// The ST7789's.
+pub const LCD: Display = Display { width: 240, height: 240, depth: Depth::Rgb565, way: Way::Bus("st7789") };
+
+/// What to run, as `run.mjs` says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Request {
+    image: PathBuf,
+    vectors: u32,
+    display: Option<&'static str>,
+    timed: bool,
+    keys: Option<Vec<Vec<u8>>>,
+    pictures: usize,
+    servos: usize,
+    harm: Option<&'static str>,
+    seconds: f64,
+    out: Option<PathBuf>,
+    #[serde(skip)]
+    shown: Option<Display>,
+}
+
+/// A frame's measures.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Frame {
+    /// Clocks of decode, place, draw and show.
+    pub cycles: [u64; 4],
+    /// Since the start.
+    pub nanos: f64,
+    /// Over the display's bus.
+    pub bytes: u64,
+    /// What the firmware says that it is, in step.
+    pub number: Option<u32>,
+}
+
+/// A pulse width was set.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Pulse {
+    /// Number of the pair of outputs.
+    pub channel: u32,
+    /// The register's value: the second output's in the upper half.
+    pub value: u32,
+    /// Since the start.
+    pub nanos: f64,
+}
+
+/// What sets a pair's period.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Slice {
+    /// Counts of a period, less one.
+    pub top: u32,
+    /// Clocks of a count, in sixteenths.
+    pub div: u32,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Outcome {
+    /// Why it ended: `done`, `limit`, `watchdog`, or with a code of the program.
+    pub ended: String,
+    /// The frames shown.
+    pub frames: Vec<Frame>,
+    /// The pulse widths set, in order.
+    pub pulses: Vec<Pulse>,
+    /// The pairs of outputs at the end.
+    pub slices: Vec<Slice>,
+    /// What the program printed.
+    pub printed: String,
+    /// What the display showed after each frame.
+    #[serde(skip)]
+    pub pictures: Vec<Picture>,
+    /// What it showed at the end.
+    #[serde(skip)]
+    pub last: Option<Picture>,
+}
+
+impl Request {
+    /// An image of the Pico as a UF2 file.
+    pub fn new(image: &Path, display: impl Into<Option<Display>>) -> Request {
+        let display = display.into();
+        let name = display.and_then(|display| if let Way::Bus(name) = display.way { Some(name) } else { None });
+        let image = image.to_owned();
+        Request {
+            image,
+            vectors: VECTORS,
+            display: name,
+            timed: false,
+            keys: None,
+            pictures: 0,
+            servos: 0,
+            harm: None,
+            seconds: 60.0,
+            out: None,
+            shown: display,
+        }
+    }
+
+    /// One without a second stage of the boot: its vectors are where the flash begins.
+    pub fn bare(mut self) -> Request {
+        self.vectors = 0x1000_0000;
+        self
+    }
+
+    /// Plays in step: a picture, and one more after each of the keys' letters.
+    pub fn in_step(mut self, keys: &[&[u8]]) -> Request {
+        self.keys = Some(keys.iter().map(|letters| letters.to_vec()).collect());
+        self
+    }
+
+    /// Plays so many pictures at its own pace.
+    pub fn pictures(mut self, count: usize) -> Request {
+        self.pictures = count;
+        self
+    }
+
+    /// Waits for so many pulse widths.
+    pub fn servos(mut self, count: usize) -> Request {
+        self.servos = count;
+        self
+    }
+
+    /// Ends it after so many seconds of the chip's time.
+    pub fn seconds(mut self, seconds: f64) -> Request {
+        self.seconds = seconds;
+        self
+    }
+
+    /// Strikes it after a tenth of a second with a `fault` of the processor, or has it `hang`.
+    pub fn harm(mut self, harm: &'static str) -> Request {
+        self.harm = Some(harm);
+        self
+    }
+
+    /// Lets the buses take the time that they are set to; else they take none.
+    pub fn timed(mut self) -> Request {
+        self.timed = true;
+        self
+    }
+
+    /// Runs it.
+    pub fn run(mut self) -> Result<Outcome> {
+        let folder = tempfile::Builder::new().prefix("pantin-pico-").tempdir().context("cannot make a temporary folder")?;
+        let pixels = folder.path().join("pictures");
+        self.out = self.shown.map(|_| pixels.clone());
+        let request = folder.path().join("request.json");
+        std::fs::write(&request, serde_json::to_vec(&self)?).context("cannot write the request")?;
+        let mut command = Command::new(setup::emulator("node")?);
+        command.arg(emulator()?.join("run.mjs")).arg(&request).stdin(Stdio::null());
+        let output = command.output().context("cannot start node")?;
+        let words = String::from_utf8_lossy(&output.stderr);
+        ensure!(output.status.success(), "rp2040js ended with {}: {}", output.status, words.trim());
+        let mut outcome: Outcome = serde_json::from_slice(&output.stdout).context("run.mjs printed no JSON")?;
+        if let Some(display) = self.shown {
+            outcome.pictures = pictures(display, &std::fs::read(&pixels).context("there are no pictures")?);
+            outcome.last = outcome.pictures.pop();
+        }
+        Ok(outcome)
+    }
+}
+
+fn pictures(display: Display, pixels: &[u8]) -> Vec<Picture> {
+    let pixels: Vec<u16> = pixels.chunks_exact(2).map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]])).collect();
+    let whole = pixels.chunks_exact(display.width * display.height);
+    whole.map(|pixels| Picture { display, pixels: pixels.to_vec() }).collect()
+}
+
+/// A UF2 file of a linked image, in a folder that goes with it.
+pub fn image(elf: &Path) -> Result<(TempDir, PathBuf)> {
+    written(uf2::of_elf(&read(elf)?)?)
+}
+
+/// That of one for [`Request::bare`].
+pub fn bare_image(elf: &Path) -> Result<(TempDir, PathBuf)> {
+    written(uf2::of_bare_elf(&read(elf)?)?)
+}
+
+fn read(elf: &Path) -> Result<Vec<u8>> {
+    std::fs::read(elf).with_context(|| format!("cannot read {}", elf.display()))
+}
+
+fn written(image: Vec<u8>) -> Result<(TempDir, PathBuf)> {
+    let folder = tempfile::Builder::new().prefix("pantin-uf2-").tempdir().context("cannot make a temporary folder")?;
+    let path = folder.path().join("image.uf2");
+    std::fs::write(&path, image).context("cannot write the image")?;
+    Ok((folder, path))
+}
+
+/// The four outputs of two pairs after each frame, which sets one after the other, with the time of the last. Before the first frame there
+/// are no pulses.
+pub fn pulses(writes: &[Pulse], pairs: [u32; 2]) -> Vec<(f64, [u16; 4])> {
+    let mut now = [0; 4];
+    let set: Vec<&Pulse> = writes.iter().skip_while(|write| write.value == 0).collect();
+    let frames = set.chunks_exact(now.len()).map(|frame| {
+        for write in frame {
+            let pair = 2 * usize::from(write.channel == pairs[1]);
+            now[pair..pair + 2].copy_from_slice(&[write.value as u16, (write.value >> 16) as u16]);
+        }
+        (frame[frame.len() - 1].nanos, now)
+    });
+    frames.collect()
+}
+
+/// The emulator's folder: `tests/pico` under `target`, with what its lock file names, which npm fetches the first time.
+pub fn emulator() -> Result<PathBuf> {
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let (from, to) = (paths::root().join("tests/pico"), paths::root().join("target/rp2040js"));
+    std::fs::create_dir_all(&to).with_context(|| format!("cannot make {}", to.display()))?;
+    let fetched = to.join("node_modules/fetched.json");
+    let lock = std::fs::read(from.join("package-lock.json")).context("tests/pico has no lock file")?;
+    for entry in std::fs::read_dir(&from).context("cannot list tests/pico")? {
+        let path = entry?.path();
+        copy_if_other(&path, &to.join(path.file_name().unwrap_or_default()))?;
+    }
+    if std::fs::read(&fetched).ok() != Some(lock.clone()) {
+        fetch(&to)?;
+        std::fs::write(&fetched, lock).context("cannot note what was fetched")?;
+    }
+    Ok(to)
+}
+
+/// Tests of several processes may do this at once: what is right already stays as it is.
+fn copy_if_other(from: &Path, to: &Path) -> Result<()> {
+    let bytes = std::fs::read(from).with_context(|| format!("cannot read {}", from.display()))?;
+    if std::fs::read(to).ok().as_ref() != Some(&bytes) {
+        let part = to.with_extension(format!("part{}", std::process::id()));
+        std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, to)).context("cannot copy tests/pico")?;
+    }
+    Ok(())
+}
+
+fn fetch(folder: &Path) -> Result<()> {
+    let Some(npm) = paths::program("npm") else {
+        bail!("npm is missing, which fetches rp2040js, the Pico's emulator; {}", setup::advice("npm"));
+    };
+    eprintln!("fetching rp2040js, the Pico's emulator: npm ci in {}", folder.display());
+    let mut command = Command::new(npm);
+    command.args(["ci", "--no-audit", "--no-fund", "--ignore-scripts"]).current_dir(folder).stdin(Stdio::null());
+    let output = command.output().context("cannot start npm")?;
+    let words = String::from_utf8_lossy(&output.stderr);
+    ensure!(output.status.success(), "`npm ci` in {} failed (is there a network?): {}", folder.display(), words.trim());
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! A linked image as a file that one drags onto the board's drive: UF2 (https://github.com/microsoft/uf2), for the RP2040.
+//!
+//! Written here, since the crates that do it (`elf2uf2-rs`) are programs, not libraries.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, ensure};
+use object::Endianness;
+use object::elf::{FileHeader32, PT_LOAD};
+use object::read::elf::{FileHeader, ProgramHeader};
+
+/// Bytes of a block, and those of the flash in it: a page.
+const BLOCK: usize = 512;
+const PAGE: usize = 256;
+/// What a block begins with, and ends with.
+const MAGIC: [u32; 2] = [0x0a32_4655, 0x9e5d_5157];
+const END: u32 = 0x0ab1_6f30;
+/// A family follows, and which.
+const FAMILY: u32 = 0x2000;
+const RP2040: u32 = 0xe48b_ff56;
+/// The flash of the largest boards.
+const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
+/// What the chip's first stage loads and checks: a second stage, and its CRC.
+const SECOND_STAGE: usize = 252;
+
+/// The blocks for the parts of an ELF file that lie in the flash.
+pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
+    let pages = pages(elf)?;
+    let first = pages.get(&FLASH.start).context("the image has no second stage of the boot at the start of the flash")?;
+    ensure!(is_second_stage(first), "the image's second stage of the boot has a wrong CRC: the chip would not start it");
+    Ok(blocks(&pages))
+}
+
+/// The same without a second stage: for an emulator, which needs none.
+pub fn of_bare_elf(elf: &[u8]) -> Result<Vec<u8>> {
+    Ok(blocks(&pages(elf)?))
+}
+
+/// The pages that a file's segments touch, by address.
+fn pages(elf: &[u8]) -> Result<BTreeMap<u32, [u8; PAGE]>> {
+    let header = FileHeader32::<Endianness>::parse(elf).context("the image is no ELF file of 32 bits")?;
+    let endian = header.endian().context("the image is no ELF file")?;
+    let mut pages = BTreeMap::new();
+    for segment in header.program_headers(endian, elf).context("the image has no segments")? {
+        let data = segment.data(endian, elf).ok().context("a segment lies outside the file")?;
+        if segment.p_type(endian) != PT_LOAD || data.is_empty() {
+            continue;
+        }
+        let start = segment.p_paddr(endian);
+        let end = u64::from(start) + data.len() as u64;
+        ensure!(
+            FLASH.contains(&start) && end <= u64::from(FLASH.end),
+            "a segment is loaded to {start:#010x}, {} bytes: not into the flash, so that it would be lost when power goes",
+            data.len()
+        );
+        for (address, &byte) in (start..).zip(data) {
+            let page = pages.entry(address - address % PAGE as u32).or_insert([0; PAGE]);
+            page[address as usize % PAGE] = byte;
+        }
+    }
+    Ok(pages)
+}
+
+/// Whether the chip's first stage would start it: CRC-32, the highest bit first, from all ones, not inverted (RP2040 data sheet, 2.8.1.3.1).
+fn is_second_stage(page: &[u8; PAGE]) -> bool {
+    let crc = page[..SECOND_STAGE].iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte) << 24, |crc, _| crc << 1 ^ if crc >> 31 == 1 { 0x04c1_1db7 } else { 0 })
+    });
+    page[SECOND_STAGE..] == crc.to_le_bytes()
+}
+
+fn blocks(pages: &BTreeMap<u32, [u8; PAGE]>) -> Vec<u8> {
+    let mut file = Vec::with_capacity(pages.len() * BLOCK);
+    for (number, (&address, page)) in (0..).zip(pages) {
+        let head = [MAGIC[0], MAGIC[1], FAMILY, address, PAGE as u32, number, pages.len() as u32, RP2040];
+        head.iter().for_each(|word| file.extend(word.to_le_bytes()));
+        file.extend(page);
+        file.resize((number as usize + 1) * BLOCK - 4, 0);
+        file.extend(END.to_le_bytes());
+    }
+    file
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use object::elf::{self, Ident, ProgramHeader32};
+    use object::{LittleEndian as LE, U16, U32, pod::bytes_of};
+
+    /// An ELF file of 32 bits with these segments, by address.
+    fn elf(segments: &[(u32, &[u8])]) -> Vec<u8> {
+        const HEADERS: usize = 52;
+        const ONE: usize = 32;
+        let mut at = (HEADERS + ONE * segments.len()) as u32;
+        let ident = Ident {
+            magic: elf::ELFMAG,
+            class: elf::ELFCLASS32,
+            data: elf::ELFDATA2LSB,
+            version: elf::EV_CURRENT,
+            os_abi: 0,
+            abi_version: 0,
+            padding: [0; 7],
+        };
+        let half = |value| U16::new(LE, value);
+        let header = FileHeader32::<LE> {
+            e_ident: ident,
+            e_type: half(elf::ET_EXEC),
+            e_machine: half(elf::EM_ARM),
+            e_version: U32::new(LE, 1),
+            e_entry: U32::new(LE, 0),
+            e_phoff: U32::new(LE, HEADERS as u32),
+            e_shoff: U32::new(LE, 0),
+            e_flags: U32::new(LE, 0),
+            e_ehsize: half(HEADERS as u16),
+            e_phentsize: half(ONE as u16),
+            e_phnum: half(segments.len() as u16),
+            e_shentsize: half(0),
+            e_shnum: half(0),
+            e_shstrndx: half(0),
+        };
+        let mut file = bytes_of(&header).to_vec();
+        for (address, data) in segments {
+            let word = |value: u32| U32::new(LE, value);
+            // Where it is loaded, not where it runs, counts.
+            file.extend(bytes_of(&ProgramHeader32::<LE> {
+                p_type: word(PT_LOAD),
+                p_offset: word(at),
+                p_vaddr: word(0x2000_0000),
+                p_paddr: word(*address),
+                p_filesz: word(data.len() as u32),
+                p_memsz: word(data.len() as u32),
+                p_flags: word(0),
+                p_align: word(1),
+            }));
+            at += data.len() as u32;
+        }
+        segments.iter().for_each(|(_, data)| file.extend(*data));
+        file
+    }
+
+    fn second_stage() -> [u8; PAGE] {
+        let mut page = [0; PAGE];
+        page[0] = 7;
+        // The CRC of that byte and 251 zeros, computed with Python's zlib over bytes and result with their bits reversed.
+        page[SECOND_STAGE..].copy_from_slice(&CRC.to_le_bytes());
+        page
+    }
+
+    const CRC: u32 = 0xf6a1_0aff;
+
+    #[test]
+    fn parts_of_pages_become_blocks_with_their_addresses() {
+        let boot = second_stage();
+        let file = of_elf(&elf(&[(FLASH.start, &boot), (0x1000_01fe, &[1, 2, 3]), (0x1000_1000, &[9])])).unwrap();
+        assert_eq!(file.len(), 4 * BLOCK);
+        let word = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap());
+        for (number, address) in [0x1000_0000, 0x1000_0100, 0x1000_0200, 0x1000_1000].into_iter().enumerate() {
+            let at = number * BLOCK;
+            let head: Vec<u32> = (0..8).map(|index| word(at + 4 * index)).collect();
+            assert_eq!(head, [MAGIC[0], MAGIC[1], FAMILY, address, 256, number as u32, 4, RP2040]);
+            assert_eq!(word(at + BLOCK - 4), END);
+        }
+        assert_eq!(file[32..32 + PAGE], boot);
+        assert_eq!(file[BLOCK + 32 + 254..BLOCK + 32 + PAGE], [1, 2]);
+        assert_eq!(file[2 * BLOCK + 32..2 * BLOCK + 34], [3, 0]);
+        assert_eq!(file[3 * BLOCK + 32], 9);
+    }
+
+    #[test]
+    fn what_would_not_start_or_not_stay_is_refused() {
+        let mut boot = second_stage();
+        let refused = |segments: &[(u32, &[u8])]| of_elf(&elf(segments)).unwrap_err().to_string();
+        assert!(refused(&[(0x1000_0100, &[1])]).contains("no second stage"));
+        assert!(refused(&[(FLASH.start, &boot), (0x2000_0000, &[1])]).contains("0x20000000, 1 bytes"));
+        boot[100] ^= 1;
+        assert!(refused(&[(FLASH.start, &boot)]).contains("wrong CRC"));
+        assert!(of_elf(b"#!/bin/sh").is_err());
+    }
+}

@@ -1,0 +1,239 @@
+//! The Raspberry Pi Pico's own flash image in rp2040js: what its displays show over their buses is what the same program shows on the host.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use board_parts::servo::{self, Law, Servo};
+use harness::build::Firmware;
+use harness::display::{Display, Picture};
+use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request};
+use harness::{clips, paths, screen, setup, simulator};
+use pantin::{ChannelState, Clip, Kind, Player};
+use pantin_app::Page;
+use pantin_figure::rotation::Rotation;
+use pantin_figure::surface::{Frame, MonoPages};
+use tempfile::TempDir;
+
+/// Our walk, as converted now, and a greeting with body and face.
+static CLIPS: LazyLock<(TempDir, Vec<PathBuf>)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let walk = clips::convert(&paths::root().join("motions/walk.keys"), folder.path()).unwrap();
+    (folder, vec![walk, paths::root().join("motions/face/hello.ptn"), paths::root().join("motions/greet.ptn")])
+});
+
+/// Stretches of a frame.
+const STRETCHES: [&str; 4] = ["decode", "place", "draw", "show"];
+
+fn image(features: &str) -> (TempDir, PathBuf) {
+    program("pico", features, &CLIPS.1)
+}
+
+fn program(name: &str, features: &str, clips: &[PathBuf]) -> (TempDir, PathBuf) {
+    let clips: Vec<&Path> = clips.iter().map(PathBuf::as_path).collect();
+    let firmware = Firmware::featuring(features, "pico", name, rp2040::TARGET, &clips).unwrap();
+    rp2040::image(firmware.elf()).unwrap()
+}
+
+fn in_step(request: Request, keys: &[&[u8]]) -> Outcome {
+    let outcome = request.in_step(keys).run().unwrap();
+    assert_eq!(outcome.ended, "done");
+    outcome
+}
+
+fn expected(display: Display, keys: &[&[u8]]) -> Vec<(u32, Picture)> {
+    simulator::play::<Rotation>(display, &CLIPS.1, &[], keys).unwrap()
+}
+
+fn equal(outcome: &Outcome, expected: &[(u32, Picture)]) {
+    assert_eq!(outcome.pictures.len(), expected.len());
+    assert_eq!(outcome.frames.len(), expected.len());
+    for (index, ((number, picture), (shown, frame))) in
+        expected.iter().zip(outcome.pictures.iter().zip(&outcome.frames)).enumerate()
+    {
+        assert_eq!(frame.number, Some(*number), "picture {index}");
+        assert!(!picture.is_dark(), "every picture shows something");
+        if let Some(difference) = screen::difference(shown, picture) {
+            panic!("picture {index} of frame {number}: {difference}");
+        }
+    }
+}
+
+/// Says what a frame takes, and returns the longest frame's time in milliseconds. The first, which sends a whole picture, does not count.
+fn measures(what: &str, outcome: &Outcome) -> f64 {
+    let frames = &outcome.frames[1..];
+    let mean = |stretch: usize| frames.iter().map(|frame| frame.cycles[stretch]).sum::<u64>() / frames.len() as u64;
+    let stretches: Vec<String> = STRETCHES.iter().enumerate().map(|(index, name)| format!("{name} {}", mean(index))).collect();
+    let bytes = frames.iter().map(|frame| frame.bytes).sum::<u64>() / frames.len() as u64;
+    let worst = frames.iter().map(|frame| frame.cycles.iter().sum::<u64>()).max().unwrap() as f64 / CLOCK * 1e3;
+    let all = (0..4).map(mean).sum::<u64>() as f64 / CLOCK * 1e3;
+    println!("{what}: clocks a frame: {}; {bytes} bytes; {all:.1} ms, at most {worst:.1} ms", stretches.join(", "));
+    worst
+}
+
+/// No letters after a picture, but those for the next clip after so many of each.
+fn through_all_clips(pictures: usize) -> Vec<&'static [u8]> {
+    let through = |_| std::iter::repeat_n(&b""[..], pictures - 1).chain([&b"n"[..]]);
+    (0..CLIPS.1.len()).flat_map(through).collect()
+}
+
+#[test]
+fn shows_on_the_ssd1306_what_the_host_shows() {
+    if setup::host_only("pictures over I2C on the Pico") {
+        return;
+    }
+    let (_folder, image) = image("face");
+    let mut keys = through_all_clips(24);
+    keys.extend([&b"i"[..], b"v", b"a", b"w", b"f", b"r", b".", b",", b"g", b"l"]);
+    equal(&in_step(Request::new(&image, OLED), &keys), &expected(OLED, &keys));
+}
+
+#[test]
+fn shows_on_the_st7789_what_the_host_shows() {
+    if setup::host_only("pictures over SPI on the Pico") {
+        return;
+    }
+    let (_folder, image) = image("face,st7789");
+    let keys = through_all_clips(12);
+    equal(&in_step(Request::new(&image, LCD), &keys), &expected(LCD, &keys));
+}
+
+#[test]
+fn thirty_frames_a_second_hold_with_the_buses_own_times() {
+    if setup::host_only("the Pico's times") {
+        return;
+    }
+    for (display, features) in [(OLED, "face"), (LCD, "face,st7789")] {
+        let (_folder, image) = image(features);
+        for (clip, name) in ["walk", "hello", "greet"].into_iter().enumerate() {
+            let keys: Vec<&[u8]> = std::iter::repeat_n(&b"n"[..], clip).chain([&b""[..]; 10]).collect();
+            let mut outcome = in_step(Request::new(&image, display).timed(), &keys);
+            equal(&outcome, &expected(display, &keys));
+            outcome.frames.drain(..clip + 1);
+            let worst = measures(&format!("{name} on {:?}", display.way), &outcome);
+            assert!(worst < 1e3 / 30.0, "{worst} ms");
+        }
+    }
+}
+
+#[test]
+fn plays_at_its_own_pace() {
+    if setup::host_only("the Pico's own pace") {
+        return;
+    }
+    let (_folder, image) = image("");
+    const PICTURES: usize = 40;
+    let outcome = Request::new(&image, OLED).pictures(PICTURES).timed().run().unwrap();
+    assert_eq!((&*outcome.ended, outcome.pictures.len()), ("done", PICTURES));
+    let expected = expected(OLED, &[&b""[..]; 60]);
+    let mut from = 0;
+    for (index, picture) in outcome.pictures.iter().enumerate() {
+        // The first picture, which is sent whole, takes longer than a frame; no other one makes it late.
+        let within = if index <= 1 { 5 } else { 1 };
+        let at = expected[from..].iter().take(within).position(|(_, expected)| expected == picture);
+        from += at.unwrap_or_else(|| panic!("picture {index} is none of the next {within} from frame {from} on")) + 1;
+    }
+    let (first, last) = (&outcome.frames[2], &outcome.frames[PICTURES - 1]);
+    let period = (last.nanos - first.nanos) / (PICTURES - 3) as f64;
+    // Our walk has 120 frames a second. Pictures are shown as soon as they are sent, sooner or later by what changed.
+    assert!((period * 120.0 / 1e9 - 1.0).abs() < 0.02, "{period} ns");
+}
+
+#[test]
+fn servos_get_the_pulses_that_the_host_computes() {
+    if setup::host_only("servos on the Pico") {
+        return;
+    }
+    let walk = std::fs::read(&CLIPS.1[0]).unwrap();
+    let clip = Clip::new_checked(&walk).unwrap();
+    let (mut states, mut pose) = (vec![ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]);
+    let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
+    let joints = ["left-thigh", "right-thigh", "left-upper-arm", "right-upper-arm"];
+    let channels = joints.map(|joint| servo::channel(&clip, joint, Kind::Xrotation).unwrap());
+    let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: servo::slew(5500, clip.frame_time_ns()) };
+    let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
+
+    const FRAMES: usize = 160;
+    let (_folder, image) = program("servo", "", &CLIPS.1[..1]);
+    // Four outputs a frame, and what sets them up before.
+    let outcome = Request::new(&image, None).servos(4 * (FRAMES + 1) + 16).run().unwrap();
+    assert_eq!(outcome.ended, "done");
+    for pair in [3, 4] {
+        // A count is a microsecond, a period 20 milliseconds.
+        assert_eq!((outcome.slices[pair].div, outcome.slices[pair].top), (125 << 4, 20_000 - 1));
+    }
+    let frames = rp2040::pulses(&outcome.pulses, [3, 4]);
+    assert!(frames.len() >= FRAMES, "{} frames", frames.len());
+    let mut swing = [u16::MAX, 0];
+    for (index, (nanos, pulses)) in frames.iter().take(FRAMES).enumerate() {
+        let expected: Vec<u16> =
+            servos.iter_mut().zip(channels).map(|(servo, channel)| servo.follow(player.pose()[channel])).collect();
+        assert_eq!(pulses[..], expected, "frame {index}");
+        swing = [swing[0].min(pulses[0]), swing[1].max(pulses[0])];
+        // From the first tick on: the emulator's timer begins with one.
+        let due = frames[1].0 + (index as f64 - 1.0) * f64::from(clip.frame_time_ns());
+        assert!(index == 0 || (nanos - due).abs() < 1e5, "frame {index} {} ns late", nanos - due);
+        player.step();
+    }
+    assert!(swing[1] - swing[0] > 300, "the thigh moves: {swing:?}");
+}
+
+/// What a display shows that shows nothing but these words.
+fn words(text: &str) -> Picture {
+    let mut frame = Frame::<MonoPages<128, 64, 1024>>::new();
+    Page::new(&mut frame).write_str(text).unwrap();
+    let pixels = (0..OLED.width * OLED.height).map(|index| frame.pixel(index % OLED.width, index / OLED.width).is_on().into());
+    Picture { display: OLED, pixels: pixels.collect() }
+}
+
+fn says(outcome: &Outcome, text: &str) {
+    if let Some(difference) = screen::difference(outcome.last.as_ref().unwrap(), &words(text)) {
+        panic!("{text}: {difference}");
+    }
+}
+
+#[test]
+fn a_fault_is_told_on_the_display() {
+    if setup::host_only("a fault of the Pico") {
+        return;
+    }
+    let (_folder, image) = image("");
+    let outcome = Request::new(&image, OLED).pictures(usize::MAX).seconds(0.2).harm("fault").run().unwrap();
+    // Fed, the watchdog does not end what is told.
+    assert_eq!(outcome.ended, "limit");
+    let file = "boards/common/src/cortex_m/faults.rs";
+    let source = std::fs::read_to_string(paths::firmware().join(file)).unwrap();
+    let fault = "a fault of the processor: a bad access, or the stack ran out";
+    let (line, column) =
+        (1..).zip(source.lines()).find_map(|(number, line)| Some((number, line.find(&format!("panic!(\"{fault}"))?))).unwrap();
+    says(&outcome, &format!("panicked at {file}:{line}:{}:\n{fault}", column + 1));
+}
+
+#[test]
+fn a_program_that_hangs_is_started_anew() {
+    if setup::host_only("the Pico's watchdog") {
+        return;
+    }
+    let (_folder, image) = image("");
+    // The watchdog has two seconds' patience, from when it was last fed.
+    for (seconds, ended) in [(1.9, "limit"), (2.4, "watchdog")] {
+        let outcome = Request::new(&image, OLED).pictures(usize::MAX).seconds(seconds).harm("hang").run().unwrap();
+        assert_eq!(outcome.ended, ended);
+    }
+}
+
+#[test]
+fn a_damaged_clip_is_told_on_the_display() {
+    if setup::host_only("a damaged clip on the Pico") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let clip = folder.path().join("broken.ptn");
+    let mut bytes = std::fs::read(&CLIPS.1[1]).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&clip, bytes).unwrap();
+    let (_folder, image) = program("pico", "", &[clip]);
+    let outcome = Request::new(&image, OLED).seconds(0.05).run().unwrap();
+    says(&outcome, "broken\ncannot be played:\na CRC does not match: the clip is damaged");
+}

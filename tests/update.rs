@@ -1,0 +1,408 @@
+//! A clip replaced over the serial line of an emulated board, whose flash controller writes it: what plays is the old clip or the new one,
+//! picture by picture as the host draws them, whatever happens to the transfer.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{Read, Write};
+use std::net::TcpListener;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::LazyLock;
+use std::thread;
+use std::time::Duration;
+
+use harness::build::{self, Firmware};
+use harness::display::Picture;
+use harness::qemu::{Launch, MICROBIT};
+use harness::sync::Session;
+use harness::update::{ask, asks, line, send};
+use harness::{clips, paths, screen, setup, simulator};
+use pantin_figure::rotation::Rotation;
+use pantin_store::region::Region;
+use pantin_store::{Answer, Ask, Claim, Refusal};
+use pantin_tools::update::{self, Patience, image};
+use tempfile::TempDir;
+
+/// Pictures by which clips are told apart.
+const PICTURES: usize = 4;
+
+/// The board with the run built in, and clips for it: the walk as the old one, and a captured walk as the new one, or a wave where there is none.
+struct Bench {
+    folder: TempDir,
+    firmware: Firmware,
+    region: Region,
+    built_in: Film,
+    old: Film,
+    new: Film,
+}
+
+/// A clip and how it begins.
+struct Film {
+    bytes: Vec<u8>,
+    claim: Claim,
+    path: PathBuf,
+    pictures: Vec<(u32, Picture)>,
+}
+
+impl Film {
+    fn of(path: PathBuf) -> Film {
+        let (bytes, claim) = update::read(&path, None).unwrap();
+        let keys = [&b""[..]; PICTURES - 1];
+        let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&path), &[], &keys).unwrap();
+        Film { bytes, claim, path, pictures }
+    }
+
+    fn done(&self) -> Answer {
+        Answer::Done { id: self.claim.crc }
+    }
+}
+
+static BENCH: LazyLock<Bench> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let own = |name: &str| paths::root().join("motions").join(name);
+    let new = paths::data().map_or_else(|| own("wave.proc"), |data| data.join("bvh_bandai1_walk.bvh"));
+    let new = Film::of(clips::convert(&new, folder.path()).unwrap());
+    let built_in = own("run.ptn");
+    let firmware = Firmware::featuring("update", MICROBIT.name, MICROBIT.name, MICROBIT.target, &[&built_in]).unwrap();
+    let region = *Region::of(MICROBIT.name).unwrap();
+    Bench { folder, firmware, region, built_in: Film::of(built_in), old: Film::of(own("walk.ptn")), new }
+});
+
+/// A clip of more channels than the board has room for.
+fn wide() -> (Vec<u8>, Claim) {
+    update::read(&paths::root().join("tests/vectors/channels-300.ptn"), None).unwrap()
+}
+
+/// The bench; none where there is no emulator.
+fn bench(what: &str) -> Option<&'static Bench> {
+    (!setup::host_only(what)).then(|| &*BENCH)
+}
+
+impl Bench {
+    fn launch(&self) -> Launch {
+        Launch::new(MICROBIT, self.firmware.elf()).display().limit(Duration::from_secs(90))
+    }
+
+    /// The board as it comes out of its box.
+    fn start(&self) -> Session {
+        let mut session = Session::start(self.launch()).unwrap();
+        shows(&mut session, &self.built_in, "a new board");
+        session
+    }
+
+    /// One that plays the old clip from its flash.
+    fn playing_old(&self) -> Session {
+        let mut session = self.start();
+        assert_eq!(send(&mut session, &self.old.bytes, &self.old.claim).unwrap(), self.old.done());
+        session.begins();
+        shows(&mut session, &self.old, "the first update");
+        session
+    }
+
+    /// All of the board's flash, as it is now.
+    fn flash(&self, session: &mut Session) -> Vec<u8> {
+        let path = self.file("saved");
+        session.memory_of_processor(0, (self.region.address + 2 * self.region.slot) as usize, &path).unwrap();
+        fs::read(path).unwrap()
+    }
+
+    /// Another board, with that flash: programs and clips.
+    fn with_flash(&self, flash: &[u8]) -> Session {
+        let path = self.file("flash");
+        fs::write(&path, flash).unwrap();
+        Session::start(Launch::new(MICROBIT, &path).display()).unwrap()
+    }
+
+    /// A file of this thread's own.
+    fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(format!("{name}-{:?}.bin", thread::current().id()))
+    }
+}
+
+/// The session's next pictures, of which the first is not asked for where a clip has just begun, are a clip's first ones.
+fn shows(session: &mut Session, film: &Film, what: &str) {
+    for (index, (number, picture)) in film.pictures.iter().enumerate() {
+        let shown = session.next(&[]).unwrap_or_else(|error| panic!("{what}: {error:#}"));
+        assert_eq!(shown.0, *number, "{what}: picture {index}");
+        if let Some(difference) = screen::difference(&shown.1, picture) {
+            panic!("{what}: picture {index} of {}: {difference}", film.path.display());
+        }
+    }
+}
+
+#[test]
+fn the_memory_map_and_the_table_of_regions_agree() {
+    use object::{Object, ObjectSymbol};
+    setup::rust_target(MICROBIT.target).unwrap();
+    let bytes = fs::read(BENCH.firmware.elf()).unwrap();
+    let file = object::File::parse(&*bytes).unwrap();
+    let address = |name| file.symbol_by_name(name).unwrap().address();
+    let Region { address: start, slot, sector, .. } = BENCH.region;
+    assert_eq!(address("_clips_start"), u64::from(start));
+    assert_eq!(address("_clips_end"), u64::from(start + 2 * slot));
+    assert_eq!(slot % sector, 0);
+}
+
+/// Bytes of flash that the feature costs: growth is to be meant.
+const COST: u64 = 5300;
+
+#[test]
+fn the_store_brings_no_way_to_panic_and_little_code() {
+    setup::rust_target(MICROBIT.target).unwrap();
+    let plain = Firmware::build(MICROBIT.name, MICROBIT.name, MICROBIT.target, &[&BENCH.built_in.path]).unwrap();
+    let [with, without] = [BENCH.firmware.elf(), plain.elf()];
+    let cost = harness::image::loaded(with).unwrap() - harness::image::loaded(without).unwrap();
+    println!("feature update: {cost} bytes of flash");
+    assert!(cost <= COST, "{cost} bytes");
+    let panics = |elf| {
+        use object::{Object, ObjectSymbol};
+        let bytes = fs::read(elf).unwrap();
+        let file = object::File::parse(&*bytes).unwrap();
+        let names = file.symbols().map(|symbol| format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())));
+        names
+            .filter(|name| ["panicking::", "_failed", "core::fmt"].iter().any(|part| name.contains(part)))
+            .collect::<BTreeSet<_>>()
+    };
+    assert_eq!(panics(with), panics(without));
+}
+
+#[test]
+fn a_clip_comes_over_the_line_while_another_plays_and_stays() {
+    let Some(bench) = bench("a clip over the line") else { return };
+    let mut session = bench.playing_old();
+    session.reset().unwrap();
+    shows(&mut session, &bench.old, "after a reset");
+    // Between two messages the old clip goes on.
+    let long = [&b""[..]; 100];
+    let old = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&bench.old.path), &[], &long).unwrap();
+    let mut last = None;
+    for (message, (number, picture)) in asks(&bench.new.bytes, &bench.new.claim).iter().zip(&old[PICTURES..]) {
+        assert_eq!(session.next(&[]).unwrap(), (*number, picture.clone()));
+        last = Some(ask(&mut session, message).unwrap());
+    }
+    assert_eq!(last, Some(bench.new.done()));
+    session.begins();
+    shows(&mut session, &bench.new, "the new clip");
+    assert_eq!(ask(&mut session, &Ask::Begin(bench.new.claim)).unwrap(), bench.new.done(), "it has it already");
+    session.reset().unwrap();
+    shows(&mut session, &bench.new, "the new clip after a reset");
+    // The next one goes where the first was.
+    assert_eq!(send(&mut session, &bench.old.bytes, &bench.old.claim).unwrap(), bench.old.done());
+    session.begins();
+    shows(&mut session, &bench.old, "the old clip again");
+    // The clips that it was built with come after it.
+    session.send(b"n").unwrap();
+    session.step(&[]).unwrap();
+    session.end().unwrap();
+}
+
+#[test]
+fn a_transfer_that_ends_at_any_sixteenth_leaves_the_old_clip_playing() {
+    let Some(bench) = bench("interrupted transfers") else { return };
+    let mut session = bench.playing_old();
+    let messages = asks(&bench.new.bytes, &bench.new.claim);
+    let all: usize = messages.iter().map(|message| line(message).unwrap().len()).sum();
+    for part in 0..16 {
+        let mut left = all * part / 16;
+        for message in &messages {
+            let bytes = line(message).unwrap();
+            if left < bytes.len() {
+                session.send(&bytes[..left]).unwrap();
+                break;
+            }
+            left -= bytes.len();
+            let answer = ask(&mut session, message).unwrap();
+            assert!(matches!(answer, Answer::Want { .. }), "{answer:?}");
+        }
+        // What is still on its way would reach the board that starts, out of a packet's midst.
+        thread::sleep(Duration::from_millis(100));
+        session.reset().unwrap();
+        session.send(&harness::update::nothing().unwrap()).unwrap();
+        shows(&mut session, &bench.old, &format!("cut off at {part} sixteenths, reset"));
+    }
+    assert_eq!(send(&mut session, &bench.new.bytes, &bench.new.claim).unwrap(), bench.new.done());
+    session.reset().unwrap();
+    shows(&mut session, &bench.new, "a whole transfer");
+}
+
+#[test]
+fn a_board_killed_at_any_moment_plays_the_old_clip_and_takes_the_new_one() {
+    let Some(bench) = bench("killed boards") else { return };
+    let messages = asks(&bench.new.bytes, &bench.new.claim);
+    let mut session = bench.playing_old();
+    let flash = bench.flash(&mut session);
+    drop(session);
+    for part in 0..16 {
+        let mut session = bench.with_flash(&flash);
+        shows(&mut session, &bench.old, &format!("before the transfer of {part} sixteenths"));
+        let cut = messages.len() * part / 16;
+        for message in &messages[..cut] {
+            ask(&mut session, message).unwrap();
+        }
+        // The machine stops while it takes this one: before, amid or after the flash is written.
+        session.send(&line(&messages[cut]).unwrap()).unwrap();
+        thread::sleep(Duration::from_micros(150 * part as u64));
+        session.stop().unwrap();
+        let left = bench.flash(&mut session);
+        drop(session);
+        let mut session = bench.with_flash(&left);
+        shows(&mut session, &bench.old, &format!("killed at {part} sixteenths"));
+        assert_eq!(send(&mut session, &bench.new.bytes, &bench.new.claim).unwrap(), bench.new.done());
+        session.begins();
+        shows(&mut session, &bench.new, &format!("killed at {part} sixteenths, the next transfer"));
+    }
+}
+
+#[test]
+fn flipped_bits_on_the_line_cost_a_message_and_in_the_flash_a_clip() {
+    let Some(bench) = bench("flipped bits") else { return };
+    let mut session = bench.playing_old();
+    for (index, message) in asks(&bench.new.bytes, &bench.new.claim).iter().enumerate() {
+        // The first zero stays: what is no packet would be letters of keys.
+        let mut damaged = line(message).unwrap();
+        let at = 1 + index * 37 % (damaged.len() - 1);
+        damaged[at] ^= 1 << (index % 8);
+        session.send(&damaged).unwrap();
+        // Ends what a flipped zero left open.
+        session.send(&[0]).unwrap();
+        ask(&mut session, message).unwrap();
+    }
+    session.begins();
+    shows(&mut session, &bench.new, "each message damaged once");
+    let flash = bench.flash(&mut session);
+    drop(session);
+    let first = bench.region.address as usize + 256;
+    let second = first + bench.region.slot as usize;
+    for (places, film) in
+        [(vec![first + 40], &bench.new), (vec![second + 40], &bench.old), (vec![first + 40, second + 40], &bench.built_in)]
+    {
+        let mut flash = flash.clone();
+        places.iter().for_each(|&at| flash[at] ^= 16);
+        shows(&mut bench.with_flash(&flash), film, &format!("bits flipped at {places:?}"));
+    }
+}
+
+#[test]
+fn a_clip_that_the_board_cannot_play_is_refused_and_the_old_one_goes_on() {
+    let Some(bench) = bench("refused clips") else { return };
+    let mut session = bench.playing_old();
+    let (wide, wide_claim) = wide();
+    let too_big = Answer::Refused { id: wide_claim.crc, refusal: Refusal::TooBig };
+    let mut at = bench.old.pictures.last().unwrap().clone();
+    let mut damaged = Claim::of(&bench.new.bytes, "").unwrap();
+    damaged.crc ^= 1;
+    let spoilt = Answer::Refused { id: damaged.crc, refusal: Refusal::BadCrc };
+    for (bytes, claim, expected) in [(&wide, &wide_claim, too_big), (&bench.new.bytes, &damaged, spoilt)] {
+        assert_eq!(send(&mut session, bytes, claim).unwrap(), expected);
+        // It shows the picture again at which it was.
+        session.begins();
+        assert_eq!(session.next(&[]).unwrap(), at, "{expected:?}");
+        at = session.next(&[]).unwrap();
+    }
+    let long = vec![0; bench.region.slot as usize];
+    let claim = Claim::of(&long, "").unwrap();
+    let refusal = Refusal::TooLong { room: bench.region.slot - 256 };
+    assert_eq!(send(&mut session, &long, &claim).unwrap(), Answer::Refused { id: claim.crc, refusal });
+    session.reset().unwrap();
+    shows(&mut session, &bench.old, "after refused clips");
+}
+
+#[test]
+fn a_flash_image_plays_and_one_that_the_board_has_no_memory_for_does_not() {
+    let Some(bench) = bench("flash images") else { return };
+    let mut session = bench.playing_old();
+    let firmware = bench.flash(&mut session);
+    drop(session);
+    let flashed = |bytes: &[u8], claim: &Claim| {
+        let mut flash = firmware.clone();
+        let image = image::binary(&bench.region, bytes, claim).unwrap();
+        flash[bench.region.address as usize..][..image.len()].copy_from_slice(&image);
+        bench.with_flash(&flash)
+    };
+    shows(&mut flashed(&bench.new.bytes, &bench.new.claim), &bench.new, "a flash image");
+    let (wide, claim) = wide();
+    shows(&mut flashed(&wide, &claim), &bench.built_in, "a clip of too many channels");
+}
+
+/// Connects a board that plays at its own pace to a port of this machine, for one connection.
+fn behind_a_port(bench: &Bench) -> (u16, thread::JoinHandle<()>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let launch = bench.launch().serial();
+    let thread = thread::spawn(move || {
+        let mut qemu = launch.start().unwrap();
+        let (mut host, _) = listener.accept().unwrap();
+        let mut board = qemu.serial().unwrap().try_clone().unwrap();
+        let (mut from_host, mut to_board) = (host.try_clone().unwrap(), board.try_clone().unwrap());
+        let writer = thread::spawn(move || std::io::copy(&mut from_host, &mut to_board));
+        let mut bytes = [0; 4096];
+        // Ends when the host has gone.
+        while let Ok(len @ 1..) = board.read(&mut bytes) {
+            if host.write_all(&bytes[..len]).is_err() {
+                break;
+            }
+        }
+        drop(qemu);
+        let _ = writer.join();
+    });
+    (port, thread)
+}
+
+#[test]
+fn the_host_tool_updates_a_board_that_plays() {
+    let Some(bench) = bench("the host tool") else { return };
+    let (port, thread) = behind_a_port(bench);
+    let tool = build::host_tool().unwrap();
+    let output = Command::new(tool).arg("update").arg(&bench.new.path).arg("--to").arg(format!("tcp:127.0.0.1:{port}")).output();
+    let output = output.unwrap();
+    let words = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{words}");
+    println!("{words}");
+    assert!(words.contains(&format!("plays; {} bytes", bench.new.bytes.len())), "{words}");
+    thread.join().unwrap();
+}
+
+#[test]
+fn one_connection_after_another_takes_a_transfer_up() {
+    let Some(bench) = bench("connections") else { return };
+    let mut qemu = bench.launch().serial().start().unwrap();
+    let board = qemu.serial().unwrap();
+    board.set_read_timeout(Some(Duration::from_millis(20))).unwrap();
+    let mut line = Breaking { line: board, left: 1000 };
+    let patience = Patience { answer: Duration::from_millis(300), tries: 2 };
+    let mut told = vec![];
+    let first = update::send(&mut line, &bench.new.bytes, &bench.new.claim, patience, &mut |bytes| told.push(bytes));
+    let first = first.unwrap_err().to_string();
+    let reached = *told.last().unwrap();
+    assert!(reached > 0 && first.contains(&format!("after {reached} bytes")), "{first}");
+    line.left = usize::MAX;
+    told.clear();
+    let patience = Patience { answer: Duration::from_secs(2), tries: 5 };
+    let outcome = update::send(&mut line, &bench.new.bytes, &bench.new.claim, patience, &mut |bytes| told.push(bytes)).unwrap();
+    assert!(told[0] >= reached, "it goes on at {} of {reached}", told[0]);
+    assert_eq!(outcome.sent, bench.new.bytes.len() as u32 - told[0]);
+}
+
+/// A line that loses what is written after so many bytes.
+struct Breaking<'a, L> {
+    line: &'a mut L,
+    left: usize,
+}
+
+impl<L: Read> Read for Breaking<'_, L> {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.line.read(bytes)
+    }
+}
+
+impl<L: Write> Write for Breaking<'_, L> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let len = bytes.len().min(self.left);
+        self.left -= len;
+        self.line.write_all(&bytes[..len]).map(|()| bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.line.flush()
+    }
+}
