@@ -50,20 +50,23 @@ pub struct Packet<'a> {
 /// Writes a packet as it goes over the line, with a zero before and behind: how many bytes. Straight after another packet the
 /// first zero may be left out. None if `out` has not the room ([`line_len`] says how much that is at most).
 pub fn encode(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
-    put(kind, sequence, payload, false, out)
+    put(&[kind, sequence], payload, sum(&[kind, sequence], payload), &[], out)
 }
 
 /// The same with parity behind the CRC, for a receiver [`Receiver::mending`]: payloads of up to 243 bytes.
 pub fn encode_with_parity(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
-    put(kind, sequence, payload, true, out)
+    let head = [kind, sequence];
+    let crc = sum(&head, payload);
+    put(&head, payload, crc, &parity::of(&[&head, payload, &crc]), out)
 }
 
-fn put(kind: u8, sequence: u8, payload: &[u8], mended: bool, out: &mut [u8]) -> Option<usize> {
-    let head = [kind, sequence];
-    let crc = crc::update(crc::of(&head), payload).to_le_bytes();
-    let parity = parity::of(&[&head, payload, &crc]);
+fn sum(head: &[u8], payload: &[u8]) -> [u8; 2] {
+    crc::update(crc::of(head), payload).to_le_bytes()
+}
+
+fn put(head: &[u8], payload: &[u8], crc: [u8; 2], parity: &[u8], out: &mut [u8]) -> Option<usize> {
     let (first, rest) = out.split_first_mut()?;
-    let len = cobs::encode(&[&head, payload, &crc, if mended { &parity } else { &[] }], rest)?;
+    let len = cobs::encode(&[head, payload, &crc, parity], rest)?;
     *rest.get_mut(len)? = 0;
     *first = 0;
     Some(len + 2)
@@ -81,8 +84,8 @@ pub struct Receiver<const N: usize> {
     first: u8,
     letter: Option<u8>,
     damaged: u32,
-    /// Packets have parity.
-    mends: bool,
+    /// What mends packets with parity: programs without it need not hold it.
+    mends: Option<fn(&mut [u8]) -> bool>,
 }
 
 impl<const N: usize> Default for Receiver<N> {
@@ -95,12 +98,12 @@ impl<const N: usize> Receiver<N> {
     /// Waits for the first byte.
     pub const fn new() -> Self {
         let stuffing = cobs::Decoder::new();
-        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: None, damaged: 0, mends: false }
+        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: None, damaged: 0, mends: None }
     }
 
     /// The same for packets with parity, which count among the `N` bytes.
     pub const fn mending() -> Self {
-        Receiver { mends: true, ..Self::new() }
+        Receiver { mends: Some(parity::mend), ..Self::new() }
     }
 
     /// Takes a byte from the line, and hands on the packet that it ends.
@@ -128,10 +131,15 @@ impl<const N: usize> Receiver<N> {
             return None;
         }
         // A damaged stuffing puts zeros in wrong places, but none too many: parity may mend that too.
-        let whole = self.stuffing.whole() || self.mends;
+        let whole = self.stuffing.whole() || self.mends.is_some();
         // None for one that was too long.
         let bytes = self.bytes.get_mut(..self.len).filter(|_| whole);
-        let packet = bytes.and_then(|bytes| if self.mends { mended(bytes) } else { Some(bytes) }).and_then(|bytes| open(bytes));
+        let mends = self.mends;
+        let unmended = |bytes| match mends {
+            Some(mend) => mended(bytes, mend),
+            None => Some(bytes),
+        };
+        let packet = bytes.and_then(unmended).and_then(|bytes| open(bytes));
         if packet.is_none() {
             self.damaged = self.damaged.wrapping_add(1);
         }
@@ -160,9 +168,9 @@ impl<const N: usize> Receiver<N> {
 }
 
 /// A packet's bytes without parity, mended if need be.
-fn mended(bytes: &mut [u8]) -> Option<&mut [u8]> {
+fn mended(bytes: &mut [u8], mend: fn(&mut [u8]) -> bool) -> Option<&mut [u8]> {
     let len = bytes.len().checked_sub(PARITY)?;
-    if parity::mend(bytes) { bytes.get_mut(..len) } else { None }
+    if mend(bytes) { bytes.get_mut(..len) } else { None }
 }
 
 /// A packet's bytes without stuffing, if their CRC is right.
