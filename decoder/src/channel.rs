@@ -1,6 +1,6 @@
 //! One channel: its state, and the three additions.
 
-use crate::layout::{LENGTHS, START_MODE};
+use crate::layout::{LENGTHS, MAX_STEP, START_MODE};
 
 /// A moving channel between two frames: 20 bytes. Its position p stands in the pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +32,36 @@ impl ChannelState {
     pub(crate) fn become_as(&mut self, other: &ChannelState) {
         (self.v, self.w, self.k) = (other.v, other.w, other.k);
         (self.slot, self.due, self.mode, self.step, self.turn) = (other.slot, other.due, other.mode, other.step, other.turn);
+    }
+
+    /// Index in the pose of the channel that this is the state of.
+    pub fn slot(&self) -> usize {
+        usize::from(self.slot)
+    }
+
+    /// Index of the channel's step: FORMAT.md 7. None for a channel that follows.
+    pub fn step_index(&self) -> Option<u8> {
+        (self.step <= MAX_STEP).then_some(self.step)
+    }
+
+    /// How many moving channels before this one its leader stands; none if it leads itself.
+    pub fn follows(&self) -> Option<usize> {
+        self.step.checked_sub(MAX_STEP).filter(|&back| back > 0).map(usize::from)
+    }
+
+    /// Velocity, acceleration and slope: v, w, k.
+    pub fn rates(&self) -> [i32; 3] {
+        [self.v, self.w, self.k]
+    }
+
+    /// Mode of the running segment.
+    pub fn mode(&self) -> u8 {
+        self.mode
+    }
+
+    /// The frame at which the running segment ends, modulo 256.
+    pub fn due(&self) -> u8 {
+        self.due
     }
 
     /// Frames of the running segment, 0 if there was none yet.

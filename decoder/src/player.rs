@@ -96,6 +96,11 @@ impl<'a, 'm> Player<'a, 'm> {
         self.pose
     }
 
+    /// The moving channels, in the order of the pose; before the segments that begin at this frame are read.
+    pub fn states(&self) -> &[ChannelState] {
+        self.states
+    }
+
     /// The ids of the event markers at this frame.
     pub fn events(&self) -> impl Iterator<Item = u32> + '_ {
         self.clip.events().filter(|event| event.frame == self.position.frame).map(|event| event.id)

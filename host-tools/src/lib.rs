@@ -23,6 +23,8 @@ pub mod render;
 #[cfg(feature = "cli")]
 pub mod serve;
 #[cfg(feature = "cli")]
+pub mod stream;
+#[cfg(feature = "cli")]
 pub mod train;
 #[cfg(feature = "cli")]
 pub mod update;

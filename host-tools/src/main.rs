@@ -22,6 +22,7 @@ enum Command {
     Play(cmd::play::Arguments),
     Render(Box<cmd::render::Arguments>),
     Serve(cmd::serve::Arguments),
+    Stream(cmd::stream::Arguments),
     Train(cmd::train::Arguments),
     Update(cmd::update::Arguments),
 }
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),
         Command::Serve(arguments) => cmd::serve::run(&arguments),
+        Command::Stream(arguments) => cmd::stream::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
         Command::Update(arguments) => cmd::update::run(&arguments),
     };

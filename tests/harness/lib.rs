@@ -8,6 +8,7 @@ pub mod display;
 pub mod equal;
 pub mod icount;
 pub mod image;
+pub mod lossy;
 pub mod paths;
 pub mod qemu;
 pub mod qmp;

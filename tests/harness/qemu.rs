@@ -75,6 +75,8 @@ pub struct Launch {
     elf: PathBuf,
     arguments: Vec<String>,
     serial: bool,
+    line: Option<String>,
+    network: Option<String>,
     display: bool,
     plugin: Option<(PathBuf, PathBuf)>,
     loaded: Option<(PathBuf, u32)>,
@@ -90,7 +92,18 @@ impl Launch {
     /// A run of `elf`, for 60 s at most, with semihosting and nothing else.
     pub fn new(machine: Machine, elf: &Path) -> Self {
         let limit = Duration::from_secs(60);
-        Self { machine, elf: elf.into(), arguments: vec![], serial: false, display: false, plugin: None, loaded: None, limit }
+        Self {
+            machine,
+            elf: elf.into(),
+            arguments: vec![],
+            serial: false,
+            line: None,
+            network: None,
+            display: false,
+            plugin: None,
+            loaded: None,
+            limit,
+        }
     }
 
     /// Appends a word to the command line that the program reads by semihosting.
@@ -102,6 +115,18 @@ impl Launch {
     /// Connects the machine's first serial port.
     pub fn serial(mut self) -> Self {
         self.serial = true;
+        self
+    }
+
+    /// Connects the machine's first serial port to what QEMU calls a character device.
+    pub fn serial_at(mut self, device: &str) -> Self {
+        self.line = Some(device.into());
+        self
+    }
+
+    /// Connects the machine's network to what QEMU calls a network backend.
+    pub fn network(mut self, backend: &str) -> Self {
+        self.network = Some(backend.into());
         self
     }
 
@@ -164,8 +189,12 @@ impl Launch {
         let elf = self.elf.display().to_string();
         let mut line: Vec<String> =
             ["-M", self.machine.name, "-display", "none", "-monitor", "none", "-kernel", &elf].map(String::from).into();
-        line.extend(["-serial".into(), socket(self.serial, "serial"), "-semihosting-config".into(), semihosting]);
+        let serial = self.line.clone().unwrap_or_else(|| socket(self.serial, "serial"));
+        line.extend(["-serial".into(), serial, "-semihosting-config".into(), semihosting]);
         line.extend(self.machine.options.iter().map(|option| (*option).to_owned()));
+        if let Some(backend) = &self.network {
+            line.extend(["-nic".into(), backend.clone()]);
+        }
         if self.display {
             line.extend(["-qmp".into(), socket(true, "qmp")]);
         }

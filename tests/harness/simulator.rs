@@ -8,10 +8,10 @@ use anyhow::{Context, Result, ensure};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
 use pantin_app::{Board, Entry, Exit, Options};
-use pantin_figure::rotation::Turning;
+use pantin_figure::rotation::{Rotation, Turning};
 use pantin_figure::surface::{Frame, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
-use crate::display::{Depth, Display, Picture};
+use crate::display::{self, Depth, Display, Picture};
 use crate::sync;
 
 /// More than any board has room for: the pictures do not depend on it.
@@ -39,23 +39,33 @@ pub fn play<R: Turning>(display: Display, clips: &[PathBuf], words: &[&str], key
     let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
     let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes }).collect();
     let options = Options::parse(words.iter().copied().chain([sync::ARGUMENT]));
+    let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
+    wishes.push_back(pantin_app::QUIT);
     match (display.width, display.height, display.depth) {
-        (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, keys),
-        (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, keys),
-        (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, &entries, options, keys),
-        (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, &entries, options, keys),
+        (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, wishes),
+        (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, wishes),
+        (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, &entries, options, wishes),
+        (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, &entries, options, wishes),
         _ => anyhow::bail!("no machine has a display like {display:?}"),
     }
+}
+
+/// The pictures of the OLED while `line` brings the motion of the clip's figure: the first, then one after each of the line's stretches.
+pub fn link(clip: &Path, words: &[&str], line: &[Vec<u8>]) -> Result<Vec<(u32, Picture)>> {
+    let file = File::read(clip)?;
+    let entries = [Entry { name: &file.name, bytes: &file.bytes }];
+    let options = Options::parse(words.iter().copied().chain(["link", sync::ARGUMENT]));
+    let ticks = line.iter().flat_map(|bytes| bytes.iter().copied().chain(sync::letter(pantin_app::NEXT)));
+    let wishes = ticks.chain(sync::letter(pantin_app::QUIT)).collect();
+    simulate::<Rotation, Gray4Rows<128, 64, 1024>>(display::OLED, &entries, options, wishes)
 }
 
 fn simulate<R: Turning, L: Layout<Ink: Value>>(
     display: Display,
     entries: &[Entry],
     options: Options,
-    keys: &[&[u8]],
+    wishes: VecDeque<u8>,
 ) -> Result<Vec<(u32, Picture)>> {
-    let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
-    wishes.push_back(pantin_app::QUIT);
     let mut simulator = Simulator::<R, L> { display, wishes, told: vec![], shown: vec![], kind: PhantomData };
     // The display's memory and the player's would be much of a test thread's stack.
     let mut frame = Box::new(Frame::<L>::new());

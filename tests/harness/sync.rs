@@ -18,6 +18,11 @@ use crate::wire::{self, Memory};
 /// The word that asks for this mode on the semihosting command line.
 pub const ARGUMENT: &str = "sync";
 
+/// A letter as it shares the line with packets.
+pub fn letter(letter: u8) -> [u8; 3] {
+    [0, letter, 0]
+}
+
 /// A firmware that plays in step.
 pub struct Session {
     qemu: Qemu,
@@ -53,6 +58,17 @@ impl Session {
         wire::shown(&mut self.line, self.memory.as_mut()).map_err(|error| self.qemu.explain(error))
     }
 
+    /// The picture after these bytes of a line that brings motion, and a frame's time. The first one takes none.
+    pub fn hear(&mut self, bytes: &[u8]) -> Result<(u32, Picture)> {
+        if self.begun {
+            self.send(&[bytes, &letter(pantin_app::NEXT)].concat())?;
+        }
+        self.begun = true;
+        self.qemu.serial()?;
+        let number = wire::shown(&mut self.line, self.memory.as_mut()).map_err(|error| self.qemu.explain(error))?;
+        Ok((number, self.picture()?))
+    }
+
     /// What is shown.
     pub fn picture(&mut self) -> Result<Picture> {
         match &self.memory {
@@ -79,7 +95,8 @@ impl Session {
 
     /// Ends the firmware and waits for that.
     pub fn end(mut self) -> Result<Outcome> {
-        self.send(&[pantin_app::QUIT])?;
+        // Where packets share the line, a letter ends with a zero.
+        self.send(&[pantin_app::QUIT, 0])?;
         self.qemu.wait()
     }
 

@@ -21,6 +21,12 @@ pub trait Board {
     /// Waits for the timer and tells how many times it ticked since the last call: at least once.
     fn wait_ticks(&mut self) -> u32;
 
+    /// How many times the timer ticked since the last call, without waiting; a board that cannot tell waits, and bytes wait with it.
+    #[cfg(feature = "link")]
+    fn ticks(&mut self) -> u32 {
+        self.wait_ticks()
+    }
+
     /// Sends bytes over the board's line.
     fn send(&mut self, bytes: &[u8]);
 

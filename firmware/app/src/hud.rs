@@ -46,6 +46,32 @@ pub(crate) fn draw<L: Layout>(scene: &Scene, entry: &Entry, frame: [u32; 2], tar
     }
 }
 
+/// Draws what came over a line: packets, those that did not arrive or not whole, and how many channels are exact.
+#[cfg(feature = "link")]
+#[inline(never)]
+pub(crate) fn draw_line<L: Layout>(entry: &Entry, told: &crate::link::Told, target: &mut Frame<L>) {
+    let font: &MonoFont = const { if L::HEIGHT >= LARGE { &FONT_6X10 } else { &FONT_4X6 } };
+    let style = MonoTextStyle::new(font, L::Ink::of(Tone::Middle, SHADE));
+    let (mut first, mut second): (String<32>, String<32>) = (String::new(), String::new());
+    let words = match told.refusal {
+        Some(pantin_link::Refusal::Rig) => "another rig",
+        Some(pantin_link::Refusal::Form) => "another coding",
+        Some(pantin_link::Refusal::Channels) => "too many channels",
+        None => entry.name.get(..24).unwrap_or(entry.name),
+    };
+    let _ = first.push_str(words);
+    let lost = told.counts.missing.wrapping_add(told.damaged);
+    for (number_of, words) in [(told.counts.packets, " packets "), (lost, " lost "), (told.exact[0].into(), "/")] {
+        number(&mut second, number_of);
+        let _ = second.push_str(words);
+    }
+    number(&mut second, told.exact[1].into());
+    let bottom = L::HEIGHT as i32 - font.character_size.height as i32;
+    for (line, y) in [(&first, 0), (&second, bottom)] {
+        let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);
+    }
+}
+
 /// The digits of a number: without the library's formatting, which is larger than all of this.
 fn number(line: &mut String<32>, value: u32) {
     if value >= 10 {

@@ -8,6 +8,8 @@ mod board;
 mod crowd;
 mod hud;
 pub mod keys;
+#[cfg(feature = "link")]
+mod link;
 mod log;
 mod options;
 mod page;

@@ -129,6 +129,10 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
         }
         player.seek(scenery.start);
     }
+    #[cfg(feature = "link")]
+    if scenery.scene.link {
+        return crate::link::play(player, stage, scenery);
+    }
     let Scenery { entry, mode, scene, frame, board, mut listener, .. } = scenery;
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
     let mut wishes = Wishes::new();

@@ -27,6 +27,12 @@ pub(crate) struct Scene {
     /// 2^pace times the clip's own speed.
     pub pace: i8,
     pub hud: bool,
+    /// What is played comes over the line.
+    #[cfg(feature = "link")]
+    pub link: bool,
+    /// Its packets have parity.
+    #[cfg(feature = "link")]
+    pub fec: bool,
 }
 
 /// What a key asks of the player.
@@ -64,6 +70,10 @@ impl Scene {
             backwards: false,
             pace: 0,
             hud: options.hud,
+            #[cfg(feature = "link")]
+            link: options.link,
+            #[cfg(feature = "link")]
+            fec: options.fec,
         }
     }
 

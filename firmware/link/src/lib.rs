@@ -1,6 +1,22 @@
 //! Motion over a line that loses bytes, or anything else in packets: no heap, no float, no panic.
-#![cfg_attr(not(test), no_std)]
+#![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![forbid(unsafe_code)]
 
+mod channel;
 mod cobs;
+mod head;
+mod link;
+mod message;
 pub mod packet;
+mod parity;
+#[cfg(any(test, feature = "std"))]
+pub mod sender;
+mod symbols;
+mod tables;
+
+pub use channel::Channel;
+#[cfg(any(test, feature = "std"))]
+pub use head::write_starts;
+pub use head::{EXPONENTIAL_BYTES, Form, Head, MAX_PACE, Start, pace, read_starts};
+pub use link::{Counts, Link, PACKET, PAYLOAD, QUEUE, Refusal};
+pub use message::{Message, Messages, Refresh, units};

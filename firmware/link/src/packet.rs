@@ -7,7 +7,7 @@
 //! A zero is nothing but an end, so a receiver is in step again at the first zero after any damage; one zero between two packets
 //! is enough. A byte alone between zeros is no packet but a **letter**: a terminal's keys share the line.
 
-use crate::cobs;
+use crate::{cobs, parity};
 use pantin::crc;
 
 /// What a packet is for: its first byte.
@@ -18,6 +18,8 @@ pub mod kind {
     pub const HEAD: u8 = 0x01;
     /// Segments and refreshes: LINK.md, "Motion".
     pub const MOTION: u8 = 0x02;
+    /// What the channels are: LINK.md, "Starts".
+    pub const STARTS: u8 = 0x03;
     /// For clips that are updated over the line.
     pub const UPDATES: RangeInclusive<u8> = 0x10..=0x1f;
 }
@@ -25,9 +27,12 @@ pub mod kind {
 /// Bytes of a packet beside its payload, before stuffing.
 pub const OVERHEAD: usize = 4;
 
-/// Bytes that a packet takes on the line at most, both zeros included.
+/// Bytes that are added behind the CRC, before stuffing, where both ends have agreed on it: they mend 4 wrong bytes.
+pub use crate::parity::PARITY;
+
+/// Bytes that a packet takes on the line at most, both zeros included, and parity.
 pub const fn line_len(payload: usize) -> usize {
-    let len = payload + OVERHEAD;
+    let len = payload + OVERHEAD + PARITY;
     len + len.div_ceil(254) + 2
 }
 
@@ -45,10 +50,23 @@ pub struct Packet<'a> {
 /// Writes a packet as it goes over the line, with a zero before and behind: how many bytes. Straight after another packet the
 /// first zero may be left out. None if `out` has not the room ([`line_len`] says how much that is at most).
 pub fn encode(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
+    put(&[kind, sequence], payload, sum(&[kind, sequence], payload), &[], out)
+}
+
+/// The same with parity behind the CRC, for a receiver [`Receiver::mending`]: payloads of up to 243 bytes.
+pub fn encode_with_parity(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
     let head = [kind, sequence];
-    let crc = crc::update(crc::of(&head), payload).to_le_bytes();
+    let crc = sum(&head, payload);
+    put(&head, payload, crc, &parity::of(&[&head, payload, &crc]), out)
+}
+
+fn sum(head: &[u8], payload: &[u8]) -> [u8; 2] {
+    crc::update(crc::of(head), payload).to_le_bytes()
+}
+
+fn put(head: &[u8], payload: &[u8], crc: [u8; 2], parity: &[u8], out: &mut [u8]) -> Option<usize> {
     let (first, rest) = out.split_first_mut()?;
-    let len = cobs::encode(&[&head, payload, &crc], rest)?;
+    let len = cobs::encode(&[head, payload, &crc, parity], rest)?;
     *rest.get_mut(len)? = 0;
     *first = 0;
     Some(len + 2)
@@ -66,6 +84,8 @@ pub struct Receiver<const N: usize> {
     first: u8,
     letter: Option<u8>,
     damaged: u32,
+    /// What mends packets with parity: programs without it need not hold it.
+    mends: Option<fn(&mut [u8]) -> bool>,
 }
 
 impl<const N: usize> Default for Receiver<N> {
@@ -78,7 +98,12 @@ impl<const N: usize> Receiver<N> {
     /// Waits for the first byte.
     pub const fn new() -> Self {
         let stuffing = cobs::Decoder::new();
-        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: None, damaged: 0 }
+        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: None, damaged: 0, mends: None }
+    }
+
+    /// The same for packets with parity, which count among the `N` bytes.
+    pub const fn mending() -> Self {
+        Receiver { mends: Some(parity::mend), ..Self::new() }
     }
 
     /// Takes a byte from the line, and hands on the packet that it ends.
@@ -105,9 +130,16 @@ impl<const N: usize> Receiver<N> {
             self.letter = if since == 1 { Some(self.first) } else { self.letter };
             return None;
         }
-        let whole = self.stuffing.whole();
+        // A damaged stuffing puts zeros in wrong places, but none too many: parity may mend that too.
+        let whole = self.stuffing.whole() || self.mends.is_some();
         // None for one that was too long.
-        let packet = self.bytes.get(..self.len).filter(|_| whole).and_then(open);
+        let bytes = self.bytes.get_mut(..self.len).filter(|_| whole);
+        let mends = self.mends;
+        let unmended = |bytes| match mends {
+            Some(mend) => mended(bytes, mend),
+            None => Some(bytes),
+        };
+        let packet = bytes.and_then(unmended).and_then(|bytes| open(bytes));
         if packet.is_none() {
             self.damaged = self.damaged.wrapping_add(1);
         }
@@ -133,6 +165,12 @@ impl<const N: usize> Receiver<N> {
     pub fn damaged(&self) -> u32 {
         self.damaged
     }
+}
+
+/// A packet's bytes without parity, mended if need be.
+fn mended(bytes: &mut [u8], mend: fn(&mut [u8]) -> bool) -> Option<&mut [u8]> {
+    let len = bytes.len().checked_sub(PARITY)?;
+    if mend(bytes) { bytes.get_mut(..len) } else { None }
 }
 
 /// A packet's bytes without stuffing, if their CRC is right.
@@ -193,6 +231,23 @@ mod tests {
         let bytes = [line(1, 1, &[9; 5]), line(1, 2, &[9; 4]), line(1, 3, &[9; 400]), line(1, 4, &[])].concat();
         let got: Vec<_> = received(&mut receiver, &bytes).iter().map(|packet| packet.1).collect();
         assert_eq!((got, receiver.damaged()), (vec![2, 4], 2));
+    }
+
+    #[test]
+    fn parity_mends_any_flips_in_four_bytes_of_a_packet() {
+        let payload: Vec<u8> = (0..90u32).map(|i| (i * 37 % 181) as u8).collect();
+        let mut whole = vec![0; line_len(payload.len())];
+        let len = encode_with_parity(kind::MOTION, 9, &payload, &mut whole).expect("line_len is enough");
+        whole.truncate(len);
+        let mut missed = 0;
+        for at in 1..len - 1 {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 0x10;
+            let mut receiver = Receiver::<128>::mending();
+            missed += usize::from(received(&mut receiver, &bytes) != [(kind::MOTION, 9, payload.clone())]);
+        }
+        // Stuffing is mended too, unless it is damaged so that wrong runs go on and on.
+        assert!(missed <= 2, "{missed} of {len}");
     }
 
     proptest! {

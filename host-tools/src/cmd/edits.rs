@@ -1,11 +1,12 @@
 //! The flags of `pantin convert` that change the motion before it is fitted.
 
-use crate::edit::{cut::cut, mirror::mirror, pick::pick, resample::resample, retarget};
+use crate::edit::{cut::cut, join::join, mirror::mirror, pick::pick, resample::resample, retarget};
+use crate::import;
 use crate::motion::Motion;
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 
-/// Changes of the motion. They apply in this order: --fps, --from and --to, --joints and --drop, --mirror, --retarget, --loop.
+/// Changes of the motion. They apply in this order: --fps, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Edits {
     /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (capital letters or not). A joint that is not kept goes, or is
@@ -30,6 +31,9 @@ pub struct Edits {
     /// Which joints --retarget is to take where their names are unusual: a file of lines `DISPLAY-JOINT JOINT`, as in `LeftShin knee.L`
     #[arg(long, value_name = "FILE", requires = "retarget")]
     map: Option<PathBuf>,
+    /// Add the scalars of another file, as of a face recorded with the body; the shorter one ends the clip
+    #[arg(long, value_name = "FILE")]
+    with: Option<PathBuf>,
     /// Make a loop: the last frame is to be the first again. Their difference, which must be within the bound, is spread over the clip
     #[arg(long = "loop", conflicts_with_all = ["exact", "max_accel_error"])]
     pub looped: bool,
@@ -85,6 +89,11 @@ impl Edits {
             said.push(format!("retarget: at most {cm:.2} cm from the source's joints ({joint} at frame {frame})"));
             retarget_max_cm = Some(cm);
             motion = done.motion;
+        }
+        if let Some(path) = &self.with {
+            let other = import::load(path, &import::Options::default())?.motion;
+            motion = join(&motion, &other).with_context(|| format!("--with {}", path.display()))?;
+            said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));
         }
         Ok(Edited { motion, retarget_max_cm, said })
     }

@@ -12,6 +12,8 @@ mod max_error;
 pub mod play;
 pub mod render;
 pub mod serve;
+pub mod stream;
+mod stream_live;
 pub mod train;
 pub mod update;
 

@@ -46,7 +46,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
 }
 
 /// `eyeBlinkLeft` and `eyeBlink_L` as `EyeBlinkLeft`.
-fn live_link_name(name: &str) -> String {
+pub(crate) fn live_link_name(name: &str) -> String {
     let (stem, side) = match (name.strip_suffix("_L"), name.strip_suffix("_R")) {
         (Some(stem), _) => (stem, "Left"),
         (_, Some(stem)) => (stem, "Right"),

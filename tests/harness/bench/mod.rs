@@ -11,6 +11,7 @@ mod frame;
 mod goals;
 mod guest;
 mod host;
+mod link;
 mod paper;
 mod peers;
 mod plot;
@@ -53,6 +54,8 @@ pub enum Part {
     Face,
     /// The web page: bytes, time to the first frame, time a frame, time to convert
     Web,
+    /// Motion over a line that loses packets: how soon it is exact again, and what that takes
+    Link,
 }
 
 /// What every part works with.
@@ -90,6 +93,7 @@ impl Part {
             Self::Argument => argument::run(setting),
             Self::Face => face::run(setting),
             Self::Web => web::run(),
+            Self::Link => link::run(setting),
         }
     }
 

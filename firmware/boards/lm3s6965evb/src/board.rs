@@ -1,5 +1,7 @@
 //! The board's display, timer and line for the program.
 
+#[cfg(feature = "ethernet")]
+use crate::ethernet::Ethernet;
 use crate::registers::uart0;
 use crate::{buttons, display};
 use board_common::cortex_m::SysTick;
@@ -13,6 +15,11 @@ const CLOCK_NS: u32 = 80;
 
 const TRANSMIT_FULL: u32 = 1 << 5;
 const RECEIVE_EMPTY: u32 = 1 << 4;
+/// Bytes of 8 bits, and 16 of them held for a program that is drawing.
+#[cfg(feature = "link")]
+const EIGHT_BITS: u32 = 3 << 5;
+#[cfg(feature = "link")]
+const FIFO: u32 = 1 << 4;
 
 /// The display: 128x64 pixels of 16 greys.
 pub type Oled = Gray4Rows<128, 64, 1024>;
@@ -21,12 +28,21 @@ pub type Oled = Gray4Rows<128, 64, 1024>;
 pub struct Lm3s {
     timer: SysTick,
     buttons: Buttons,
+    #[cfg(feature = "ethernet")]
+    ethernet: Ethernet,
 }
 
 impl Lm3s {
     pub fn new() -> Self {
         display::start();
-        Lm3s { timer: SysTick::new(CLOCK_NS), buttons: buttons::start() }
+        #[cfg(feature = "link")]
+        uart0::LCRH.write(EIGHT_BITS | FIFO);
+        Lm3s {
+            timer: SysTick::new(CLOCK_NS),
+            buttons: buttons::start(),
+            #[cfg(feature = "ethernet")]
+            ethernet: Ethernet::new(),
+        }
     }
 }
 
@@ -46,6 +62,11 @@ impl Board for Lm3s {
         self.timer.wait(|| {})
     }
 
+    #[cfg(feature = "link")]
+    fn ticks(&mut self) -> u32 {
+        self.timer.ticks()
+    }
+
     fn send(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             while uart0::FR.read() & TRANSMIT_FULL != 0 {}
@@ -54,7 +75,10 @@ impl Board for Lm3s {
     }
 
     fn poll(&mut self) -> Option<u8> {
-        (uart0::FR.read() & RECEIVE_EMPTY == 0).then(|| uart0::DR.read() as u8)
+        let serial = || (uart0::FR.read() & RECEIVE_EMPTY == 0).then(|| uart0::DR.read() as u8);
+        #[cfg(feature = "ethernet")]
+        let mut serial = || serial().or_else(|| self.ethernet.poll());
+        serial()
     }
 
     fn button(&mut self) -> Option<Key> {

@@ -5,6 +5,8 @@
 mod board;
 mod buttons;
 mod display;
+#[cfg(feature = "ethernet")]
+mod ethernet;
 mod registers;
 
 use board::{Lm3s, Oled};

@@ -47,6 +47,21 @@ pub mod uart0 {
     use super::{Register, at};
     pub const DR: Register = at(0x4000_c000);
     pub const FR: Register = at(0x4000_c018);
+    #[cfg(feature = "link")]
+    pub const LCRH: Register = at(0x4000_c02c);
+}
+
+/// Ethernet controller.
+#[cfg(feature = "ethernet")]
+pub mod mac {
+    use super::{Register, at};
+    pub const RCTL: Register = at(0x4004_8008);
+    pub const TCTL: Register = at(0x4004_800c);
+    pub const DATA: Register = at(0x4004_8010);
+    pub const IA0: Register = at(0x4004_8014);
+    pub const IA1: Register = at(0x4004_8018);
+    pub const NP: Register = at(0x4004_8034);
+    pub const TR: Register = at(0x4004_8038);
 }
 
 /// System control.

@@ -49,6 +49,14 @@ impl SysTick {
         }
     }
 
+    /// Ticks since the last call.
+    #[cfg(feature = "link")]
+    pub fn ticks(&mut self) -> u32 {
+        let ticks = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.told).checked_div(self.periods).unwrap_or(1);
+        self.told = self.told.wrapping_add(ticks * self.periods);
+        ticks
+    }
+
     /// Waits for a tick and tells how many there were since the last call. Meanwhile `awake` is called a few times a second.
     pub fn wait(&mut self, mut awake: impl FnMut()) -> u32 {
         loop {

@@ -1,0 +1,193 @@
+//! The board's Ethernet, as a line that brings bytes: what UDP datagrams to port [`PORT`] hold, one after the other (`smoltcp`).
+//!
+//! Its address is fixed, as QEMU's user network has it: 10.0.2.15. Nothing is sent but answers to those who ask whose that is.
+
+use crate::registers::{mac, system};
+use heapless::Vec;
+use smoltcp::iface::{Config, Interface, SocketHandle, SocketSet, SocketStorage};
+use smoltcp::phy::{self, Device, DeviceCapabilities, Medium};
+use smoltcp::socket::udp;
+use smoltcp::time::Instant;
+use smoltcp::wire::{EthernetAddress, IpAddress, IpCidr, Ipv4Address};
+use static_cell::StaticCell;
+
+/// The port that motion is sent to.
+pub const PORT: u16 = 4000;
+const ADDRESS: Ipv4Address = Ipv4Address::new(10, 0, 2, 15);
+const NETWORK_BITS: u8 = 24;
+const HARDWARE: EthernetAddress = EthernetAddress([0x02, 0, 0, 0x50, 0x61, 0x6e]);
+
+/// Longest frame on the wire without its check sum.
+const FRAME: usize = 1514;
+/// Bytes that the controller puts around a frame: its length in front, the check sum behind.
+const LENGTH_BYTES: usize = 2;
+const CHECK_BYTES: usize = 4;
+/// The header is not counted where a frame's length is told.
+const HEADER_BYTES: usize = 14;
+/// Datagrams that wait, and their bytes.
+const DATAGRAMS: usize = 8;
+const WAITING: usize = 1024;
+
+const CLOCK: u32 = 1 << 28 | 1 << 30;
+const RECEIVE_ON: u32 = 1;
+const SEND_ON: u32 = 1 | PAD | SUM;
+const PAD: u32 = 1 << 1;
+const SUM: u32 = 1 << 2;
+const SEND_NOW: u32 = 1;
+
+/// Room for what the network needs as long as the program runs.
+static SOCKETS: StaticCell<[SocketStorage<'static>; 1]> = StaticCell::new();
+static HEADERS: StaticCell<[udp::PacketMetadata; DATAGRAMS]> = StaticCell::new();
+static BYTES: StaticCell<[u8; WAITING]> = StaticCell::new();
+
+/// The line.
+pub struct Ethernet {
+    controller: Controller,
+    interface: Interface,
+    sockets: SocketSet<'static>,
+    socket: SocketHandle,
+    /// A datagram, and how much of it has been handed on.
+    datagram: Vec<u8, WAITING>,
+    next: usize,
+}
+
+impl Ethernet {
+    /// Starts it. There is one.
+    pub fn new() -> Self {
+        let mut controller = Controller::new();
+        // Time ages what is known of neighbours, to whom nothing is sent here: it may stand still.
+        let mut interface = Interface::new(Config::new(HARDWARE.into()), &mut controller, Instant::ZERO);
+        interface.update_ip_addrs(|addresses| {
+            // There is room for one.
+            let _ = addresses.push(IpCidr::new(IpAddress::Ipv4(ADDRESS), NETWORK_BITS));
+        });
+        let headers = HEADERS.init([udp::PacketMetadata::EMPTY; DATAGRAMS]);
+        let received = udp::PacketBuffer::new(&mut headers[..], &mut BYTES.init([0; WAITING])[..]);
+        let mut socket = udp::Socket::new(received, udp::PacketBuffer::new(&mut [][..], &mut [][..]));
+        // A port other than 0, at a socket that is not bound yet.
+        let _ = socket.bind(PORT);
+        let mut sockets = SocketSet::new(&mut SOCKETS.init([SocketStorage::EMPTY])[..]);
+        let socket = sockets.add(socket);
+        Ethernet { controller, interface, sockets, socket, datagram: Vec::new(), next: 0 }
+    }
+
+    /// A byte, if one has come.
+    pub fn poll(&mut self) -> Option<u8> {
+        if self.next >= self.datagram.len() {
+            self.interface.poll(Instant::ZERO, &mut self.controller, &mut self.sockets);
+            let socket = self.sockets.get_mut::<udp::Socket>(self.socket);
+            let (bytes, _) = socket.recv().ok()?;
+            self.datagram.clear();
+            // None is longer than the room that it waited in.
+            let _ = self.datagram.extend_from_slice(bytes);
+            self.next = 0;
+        }
+        let byte = self.datagram.get(self.next).copied();
+        self.next += 1;
+        byte
+    }
+}
+
+/// The controller (data sheet, chapter 17): whole frames through two queues of words.
+struct Controller {
+    frame: [u8; FRAME],
+}
+
+impl Controller {
+    fn new() -> Self {
+        system::RCGC2.write(system::RCGC2.read() | CLOCK);
+        let [a, b, c, d, e, f] = HARDWARE.0;
+        mac::IA0.write(u32::from_le_bytes([a, b, c, d]));
+        mac::IA1.write(u32::from_le_bytes([e, f, 0, 0]));
+        mac::TCTL.write(SEND_ON);
+        mac::RCTL.write(RECEIVE_ON);
+        Controller { frame: [0; FRAME] }
+    }
+
+    /// Takes the frame that has waited longest out of the queue; how long it is.
+    fn take(&mut self) -> Option<usize> {
+        if mac::NP.read() == 0 {
+            return None;
+        }
+        let [low, high, first, second] = mac::DATA.read().to_le_bytes();
+        let length = usize::from(u16::from_le_bytes([low, high]));
+        let len = length.saturating_sub(LENGTH_BYTES + CHECK_BYTES);
+        let words = length.div_ceil(4).saturating_sub(1);
+        let rest = (0..words).flat_map(|_| mac::DATA.read().to_le_bytes());
+        // All words have to be read, those of a frame that is too long and the check sum too.
+        for (at, byte) in [first, second].into_iter().chain(rest).enumerate() {
+            if let Some(place) = self.frame.get_mut(at) {
+                *place = byte;
+            }
+        }
+        Some(len.min(FRAME))
+    }
+
+    /// Puts a frame into the queue, and sends it.
+    fn put(frame: &[u8]) {
+        while mac::TR.read() & SEND_NOW != 0 {}
+        let [low, high] = (frame.len().saturating_sub(HEADER_BYTES) as u16).to_le_bytes();
+        let mut word = [low, high, 0, 0];
+        let mut filled = LENGTH_BYTES;
+        for &byte in frame {
+            word[filled & 3] = byte;
+            filled += 1;
+            if filled & 3 == 0 {
+                mac::DATA.write(u32::from_le_bytes(word));
+                word = [0; 4];
+            }
+        }
+        if filled & 3 != 0 {
+            mac::DATA.write(u32::from_le_bytes(word));
+        }
+        mac::TR.write(SEND_NOW);
+    }
+}
+
+impl Device for Controller {
+    type RxToken<'a> = Received<'a>;
+    type TxToken<'a> = Sending;
+
+    fn receive(&mut self, _: Instant) -> Option<(Received<'_>, Sending)> {
+        let len = self.take()?;
+        Some((Received(self.frame.get(..len)?), Sending))
+    }
+
+    fn transmit(&mut self, _: Instant) -> Option<Sending> {
+        Some(Sending)
+    }
+
+    fn capabilities(&self) -> DeviceCapabilities {
+        let mut capabilities = DeviceCapabilities::default();
+        capabilities.medium = Medium::Ethernet;
+        capabilities.max_transmission_unit = FRAME;
+        capabilities.max_burst_size = Some(1);
+        capabilities
+    }
+}
+
+/// A frame that has come.
+struct Received<'a>(&'a [u8]);
+
+impl phy::RxToken for Received<'_> {
+    fn consume<R, F: FnOnce(&[u8]) -> R>(self, see: F) -> R {
+        see(self.0)
+    }
+}
+
+/// Leave to send a frame.
+struct Sending;
+
+/// Longest frame that is sent: an answer to who has an address, or that a port is closed.
+const ANSWER: usize = 600;
+
+impl phy::TxToken for Sending {
+    fn consume<R, F: FnOnce(&mut [u8]) -> R>(self, len: usize, fill: F) -> R {
+        let mut frame = [0; ANSWER];
+        // The longest answer quotes 576 bytes of what it answers (RFC 1812).
+        let frame = frame.get_mut(..len.min(ANSWER)).unwrap_or_default();
+        let filled = fill(frame);
+        Controller::put(frame);
+        filled
+    }
+}

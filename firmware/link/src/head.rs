@@ -1,0 +1,216 @@
+//! What is played, and what its channels are: packets of kind HEAD and STARTS.
+
+use crate::symbols::{Coder, Reader};
+use pantin::layout::MAX_STEP;
+use pantin::{Clip, crc, has_choice};
+
+/// Version of all payloads; it is the first thing that an identity counts.
+const VERSION: u8 = 1;
+/// Bytes for the exponential bits of FORMAT.md 4: of so many times 8 joints with a choice.
+pub const EXPONENTIAL_BYTES: usize = 16;
+
+/// What the values of a pose mean: a receiver that has a clip of the same form can draw another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Form {
+    /// The rig's id: FORMAT.md 2.
+    pub rig: u32,
+    /// Positions are in 2^exponent units of the source.
+    pub length_exponent: i8,
+    /// Which joints are exponential maps: FORMAT.md 4.
+    pub exponentials: [u8; EXPONENTIAL_BYTES],
+}
+
+impl Form {
+    /// The form of a clip; none where more joints have a choice than there are bits for.
+    pub fn of(clip: &Clip<'_>) -> Option<Form> {
+        let mut exponentials = [0; EXPONENTIAL_BYTES];
+        let mut choice = 0;
+        for (joint, own) in clip.rig().joints().enumerate() {
+            if has_choice(&own) {
+                if clip.is_exponential(joint) {
+                    *exponentials.get_mut(choice / 8)? |= 1 << (choice % 8);
+                }
+                choice += 1;
+            }
+        }
+        Some(Form { rig: clip.rig().id(), length_exponent: clip.length_exponent(), exponentials })
+    }
+}
+
+/// A clip on its way over the line. `Default` is no clip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Head {
+    /// Drawn by chance when a sender starts: what another one sent is not taken for its own.
+    pub session: u16,
+    /// Counts the clips of a session.
+    pub clip: u8,
+    /// What its values mean.
+    pub form: Form,
+    /// Number of frames.
+    pub frames: u32,
+    /// Whether frame 0 follows the last frame.
+    pub looped: bool,
+    /// Time from one frame to the next.
+    pub frame_time_ns: u32,
+    /// Channels of a pose.
+    pub channels: u16,
+    /// The line's frame at which the clip's frame 0 is shown; the line's frames go on over its rounds.
+    pub begin: u32,
+}
+
+impl Head {
+    /// Reads or writes one, and the line's frame that the sender is at.
+    fn code<C: Coder>(&self, coder: &mut C, now: u32) -> (Head, u32) {
+        let form = self.form;
+        let mut head = Head {
+            session: coder.bits(16, u32::from(self.session)) as u16,
+            clip: coder.bits(8, u32::from(self.clip)) as u8,
+            form: Form {
+                rig: coder.bits(32, form.rig),
+                length_exponent: coder.bits(8, u32::from(form.length_exponent as u8)) as u8 as i8,
+                exponentials: [0; EXPONENTIAL_BYTES],
+            },
+            frames: coder.bits(25, self.frames),
+            looped: coder.bits(1, u32::from(self.looped)) != 0,
+            frame_time_ns: coder.bits(32, self.frame_time_ns),
+            channels: coder.bits(10, u32::from(self.channels)) as u16,
+            begin: coder.bits(32, self.begin),
+        };
+        let used = form.exponentials.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+        let used = coder.bits(5, used as u32) as usize;
+        for (byte, own) in head.form.exponentials.iter_mut().zip(form.exponentials).take(used) {
+            *byte = coder.bits(8, u32::from(own)) as u8;
+        }
+        (head, coder.bits(32, now))
+    }
+
+    /// Reads the payload of a packet of kind HEAD: the head, and the line's frame that the sender was at.
+    pub fn read(payload: &[u8]) -> Option<(Head, u32)> {
+        let mut reader = Reader::new(payload);
+        let read = Head::default().code(&mut reader, 0);
+        let sound = read.0.frames > 0 && read.0.frame_time_ns > 0;
+        (sound && reader.ends_with(u16::from(VERSION))).then_some(read)
+    }
+
+    /// The payload.
+    #[cfg(any(test, feature = "std"))]
+    pub fn write(&self, now: u32) -> Vec<u8> {
+        let mut writer = crate::symbols::write::Writer::default();
+        self.code(&mut writer, now);
+        writer.finish(u16::from(VERSION))
+    }
+
+    /// What all other packets of the clip are checked by.
+    pub fn identity(&self) -> u16 {
+        let mut sum = crc::of(&[VERSION, self.clip, u8::from(self.looped), self.form.length_exponent as u8]);
+        for part in
+            [self.form.rig, self.frames, self.frame_time_ns, self.begin, u32::from(self.session), u32::from(self.channels)]
+        {
+            sum = crc::update(sum, &part.to_le_bytes());
+        }
+        crc::update(sum, &self.form.exponentials)
+    }
+
+    /// What a motion's packet is checked by, whose first frame is this.
+    pub fn check(&self, frame: u32) -> u16 {
+        crc::update(self.identity(), &(frame >> 16).to_le_bytes())
+    }
+}
+
+/// What a channel is for the whole clip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// It has this value at all frames.
+    Still(i32),
+    /// It moves.
+    Moves {
+        /// Index of its step: FORMAT.md 7.
+        step: u8,
+        /// What it may move by in a frame while it joins: [`pace`] of this.
+        pace: u8,
+    },
+    /// It is the same as the channel so many before it.
+    Follows(u16),
+}
+
+/// Greatest index of a [`pace`].
+pub const MAX_PACE: u8 = 61;
+
+/// Raw units a frame by index: 0, 1, 2, 3, 4, 6, 8, 12, ..., 2^31 - 1.
+pub const fn pace(index: u8) -> i32 {
+    match index {
+        0 => 0,
+        1 => 1,
+        MAX_PACE.. => i32::MAX,
+        _ => (2 | (index & 1) as i32) << (index / 2 - 1),
+    }
+}
+
+const STILL: u32 = 0;
+const MOVES: u32 = 1;
+const FOLLOWS: u32 = 2;
+/// Still, at 0.
+const ZERO: u32 = 3;
+
+impl Start {
+    fn code<C: Coder>(&self, coder: &mut C) -> Start {
+        let (kind, still, moves, back) = match *self {
+            Start::Still(0) => (ZERO, 0, (0, 0), 0),
+            Start::Still(p) => (STILL, p, (0, 0), 0),
+            Start::Moves { step, pace } => (MOVES, 0, (step, pace), 0),
+            Start::Follows(back) => (FOLLOWS, 0, (0, 0), back),
+        };
+        match coder.bits(2, kind) {
+            MOVES => Start::Moves {
+                step: coder.bits(6, u32::from(moves.0)).min(u32::from(MAX_STEP)) as u8,
+                pace: coder.bits(6, u32::from(moves.1)) as u8,
+            },
+            FOLLOWS => Start::Follows(coder.bits(10, u32::from(back)) as u16),
+            ZERO => Start::Still(0),
+            _ => {
+                let zeros = coder.bits(5, still.trailing_zeros() & 31);
+                let digits = still >> (still.trailing_zeros() & 31);
+                let count = coder.bits(6, if digits == 0 { 0 } else { 33 - (digits ^ digits >> 31).leading_zeros() }).min(32);
+                let read = coder.bits(count, digits as u32 & (u32::MAX >> (32 - count.max(1))));
+                let sign = 32 - count.max(1);
+                Start::Still((((read << sign) as i32) >> sign) << zeros)
+            }
+        }
+    }
+}
+
+const FIRST_BITS: u32 = 10;
+const COUNT_BITS: u32 = 8;
+
+/// Reads the payload of a packet of kind STARTS, checked by the clip's [`Head::identity`], and shows each channel of the pose with what it is.
+/// Nothing is shown of one that is not whole.
+pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, Start)) -> bool {
+    let go = |show: &mut dyn FnMut(u16, Start)| {
+        let mut reader = Reader::new(payload);
+        let first = reader.bits(FIRST_BITS, 0) as u16;
+        for more in 0..reader.bits(COUNT_BITS, 0) as u16 {
+            show(first + more, Start::Still(0).code(&mut reader));
+        }
+        reader.ends_with(identity)
+    };
+    go(&mut |_, _| {}) && go(&mut show)
+}
+
+/// Writes a payload of the starts from channel `first` on, of up to `room` bytes: with how many.
+#[cfg(any(test, feature = "std"))]
+pub fn write_starts(first: u16, starts: &[Start], identity: u16, room: usize) -> (Vec<u8>, usize) {
+    let payload = |count: usize| {
+        let mut writer = crate::symbols::write::Writer::default();
+        writer.bits(FIRST_BITS, u32::from(first));
+        writer.bits(COUNT_BITS, count as u32);
+        for start in &starts[..count] {
+            start.code(&mut writer);
+        }
+        writer.finish(identity)
+    };
+    let mut count = 0;
+    while count < starts.len().min(255) && payload(count + 1).len() <= room {
+        count += 1;
+    }
+    (payload(count), count)
+}

@@ -1,0 +1,173 @@
+//! Motion coded while it is made: each segment as soon as the frames are known that it may cover. It goes on from the state that the receivers
+//! have, so that nothing adds up.
+
+use super::pack::pack;
+use super::plan::Told;
+use super::schedule::{Bytes, Departure, Line, Schedule};
+use super::source::Source;
+use crate::head::{Form, Head, MAX_PACE, Start, pace};
+use crate::message::{Message, Refresh, units};
+use pantin::layout::{LENGTHS, MAX_FRAMES, MAX_STEP};
+use pantin::{segment, step_size};
+use std::collections::VecDeque;
+
+/// Index of the longest segment's length: 8 frames.
+const LONGEST: usize = 6;
+/// A segment that begins at a frame is known this many frames later.
+const LOOK: u32 = LENGTHS[LONGEST] as u32 + 1;
+/// Frames that share packets.
+const TOGETHER: u32 = 2;
+
+/// A channel that is made while it is sent.
+#[derive(Clone, Copy, Debug)]
+pub struct Making {
+    /// What it may be off by, in raw units: at least 1.
+    pub bound: i32,
+    /// How far it may go, from one end to the other, in raw units.
+    pub way: u32,
+}
+
+#[derive(Clone, Debug)]
+struct Coding {
+    channel: u16,
+    step: u8,
+    bound: i64,
+    state: [i32; 4],
+    due: u32,
+    /// The frame by which a refresh must come.
+    by: u32,
+}
+
+/// Codes frames as they come.
+#[derive(Debug)]
+pub struct Live<'s> {
+    schedule: Schedule<'s>,
+    line: Line,
+    begin: u32,
+    channels: Vec<Coding>,
+    /// Frames from the one on that is coded next.
+    frames: VecDeque<Vec<i32>>,
+    next: u32,
+    told: Vec<Told>,
+    left_out: u32,
+}
+
+impl Source {
+    /// Motion that is yet to be made: all channels of the pose.
+    pub fn live(form: Form, frame_time_ns: u32, making: &[Making]) -> Source {
+        let frames = (500_000_000 / frame_time_ns.max(1)).max(1);
+        let start = |making: &Making| {
+            let step = (0..=MAX_STEP).rev().find(|&step| step_size(step) <= making.bound.max(1) as u32).unwrap_or(0);
+            let wanted = u64::from(making.way) * 4 / u64::from(frames);
+            let pace = (0..=MAX_PACE).find(|&index| pace(index) as u64 >= wanted).unwrap_or(MAX_PACE);
+            Start::Moves { step, pace }
+        };
+        let head = Head { form, frames: MAX_FRAMES, frame_time_ns, channels: making.len() as u16, ..Head::default() };
+        Source { head, starts: making.iter().map(start).collect(), tracks: vec![] }
+    }
+}
+
+impl<'s> Live<'s> {
+    /// Frames from when one is made until it is shown, but for the time that the line takes.
+    pub fn delay(line: &Line) -> u32 {
+        LOOK + TOGETHER + line.ahead
+    }
+
+    pub(super) fn new(source: &'s Source, head: Head, line: Line, making: &[Making], sequence: u8) -> Self {
+        let mut channels = vec![];
+        for (channel, (start, making)) in source.starts.iter().zip(making).enumerate() {
+            if let &Start::Moves { step, .. } = start {
+                let (channel, bound) = (channel as u16, i64::from(making.bound));
+                channels.push(Coding { channel, step, bound, state: [0; 4], due: 0, by: 0 });
+            }
+        }
+        let start = -f64::from(Self::delay(&line)) * source.frame_seconds();
+        let schedule = Schedule::new(source, head, line, Some(0), sequence, start);
+        let (frames, begin) = (VecDeque::new(), head.begin);
+        Live { schedule, line, begin, channels, frames, next: 0, told: vec![], left_out: 0 }
+    }
+
+    /// Takes the next frame, and hands on what is to leave now.
+    pub fn push(&mut self, pose: &[i32]) -> Vec<Departure> {
+        self.frames.push_back(pose.to_vec());
+        if self.frames.len() as u32 > LOOK {
+            self.code();
+            self.frames.pop_front();
+            self.next += 1;
+        }
+        let made = self.next + self.frames.len() as u32;
+        let now = (f64::from(made) - f64::from(Self::delay(&self.line))) * self.schedule.frame_seconds();
+        let behind = self.schedule.idle_until(now);
+        if self.next > 0 && self.next.is_multiple_of(TOGETHER) {
+            let told = std::mem::take(&mut self.told);
+            // Receivers notice, and wait for the next refresh.
+            if behind > f64::from(self.line.ahead) * self.schedule.frame_seconds() {
+                self.left_out += told.len() as u32;
+            } else {
+                self.schedule.add(pack(&told, self.begin));
+            }
+        }
+        self.schedule.by_ref().collect()
+    }
+
+    /// What the line has carried.
+    pub fn bytes(&self) -> Bytes {
+        self.schedule.bytes()
+    }
+
+    /// Messages that the line had no room for.
+    pub fn left_out(&self) -> u32 {
+        self.left_out
+    }
+
+    /// Codes the frame in front.
+    fn code(&mut self) {
+        for coding in &mut self.channels {
+            let goal = |ahead: usize| {
+                self.frames.get(ahead).and_then(|pose| pose.get(usize::from(coding.channel))).copied().unwrap_or(0)
+            };
+            let goals: Vec<i32> = (0..=LOOK as usize).map(goal).collect();
+            if coding.due == self.next {
+                let message = coding.choose(&goals, self.next, self.line.cycle);
+                coding.state = message.apply(coding.state, coding.step);
+                coding.due += u32::from(message.run);
+                self.told.push(Told { frame: self.next, channel: coding.channel, message });
+            }
+            let [p, v, w, k] = coding.state;
+            coding.state = [p.wrapping_add(v), v.wrapping_add(w), w.wrapping_add(k), k];
+        }
+    }
+}
+
+impl Coding {
+    /// The longest segment from here on that stays within the bound; `goals` are this frame's value and those after it.
+    fn choose(&mut self, goals: &[i32], frame: u32, cycle: u32) -> Message {
+        let refresh = (frame == 0 || frame + u32::from(LENGTHS[LONGEST]) > self.by).then(|| {
+            self.by = frame + cycle;
+            let [p, v] = if frame == 0 { [goals[0], goals[1].wrapping_sub(goals[0])] } else { [self.state[0], self.state[1]] };
+            let unit = units(self.step);
+            let rounded = |value: i32, unit: i32| (i64::from(value) + i64::from(unit / 2)).div_euclid(i64::from(unit)) as i32;
+            Refresh { p: rounded(p, unit[0]), v: rounded(v, unit[1]), w: 0 }
+        });
+        let from = Message { mode: 0, run: 1, w: 0, k: 0, refresh }.apply(self.state, self.step);
+        let fits = (1..=LONGEST)
+            .rev()
+            .find_map(|index| self.segment(index, from, goals).filter(|(_, off)| *off <= self.bound).map(|(w, _)| (index, w)));
+        let (index, w) = fits.unwrap_or_else(|| (0, self.segment(0, from, goals).map_or(0, |(w, _)| w)));
+        Message { mode: index as u8, run: LENGTHS[index], w, k: 0, refresh }
+    }
+
+    /// The acceleration in steps that comes nearest to the goals over a segment of this length, and how far it is off at most.
+    fn segment(&self, index: usize, [p, v, ..]: [i32; 4], goals: &[i32]) -> Option<(i32, i64)> {
+        let unit = i64::from(segment::step(index as u8, self.step));
+        let last = usize::from(LENGTHS[index]) + 1;
+        // What is left at frame j, and what a step of acceleration does there.
+        let rest = |j: usize| i64::from(goals[j]) - i64::from(p) - j as i64 * i64::from(v);
+        let by = |j: usize| (j * (j - 1) / 2) as i64 * unit;
+        let product: f64 = (2..=last).map(|j| rest(j) as f64 * by(j) as f64).sum();
+        let square: f64 = (2..=last).map(|j| by(j) as f64 * by(j) as f64).sum();
+        let w = (product / square).round() as i64;
+        let off = (2..=last).map(|j| (rest(j) - w * by(j)).abs()).max()?;
+        Some((i32::try_from(w).ok()?, off))
+    }
+}

@@ -1,0 +1,350 @@
+use super::*;
+use crate::packet::Receiver;
+use crate::{Channel, Link, PACKET};
+use pantin::Clip;
+use proptest::prelude::*;
+
+const CLIPS: [&[u8]; 5] = [
+    include_bytes!("../../../../tests/vectors/walk.ptn"),
+    include_bytes!("../../../../tests/vectors/followers.ptn"),
+    include_bytes!("../../../../tests/vectors/run-fine.ptn"),
+    include_bytes!("../../../../tests/vectors/quaternion.ptn"),
+    include_bytes!("../../../../motions/greet.ptn"),
+];
+
+fn source(bytes: &[u8]) -> Source {
+    Source::new(&Clip::new_checked(bytes).expect("a clip")).expect("fit to be sent")
+}
+
+/// A receiver that is played beside what it should have.
+struct Played<'s> {
+    source: &'s Source,
+    states: Vec<(u16, Vec<[i32; 4]>)>,
+}
+
+impl Played<'_> {
+    /// Whether every channel that says it is exact is.
+    fn agrees<const Q: usize>(&self, link: &Link<Q>) -> bool {
+        let Some(frame) = link.frame() else { return true };
+        self.states.iter().all(|(channel, states)| {
+            link.channels()[usize::from(*channel)].state().is_none_or(|state| state == states[frame as usize])
+        }) && link.exact() <= self.source.starts.len()
+    }
+}
+
+/// Plays what `line` makes of the departures, a call of `each` a frame.
+fn play(departures: impl Iterator<Item = Departure>, (source, line): (&Source, Line), mut each: impl FnMut(f64, &Link<64>)) {
+    let channels = usize::from(source.head.channels);
+    let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
+    let mut link = Link::<64>::new(source.head.form, &mut states, &mut pose);
+    let mut receiver = Receiver::<PACKET>::new();
+    let frame = f64::from(source.head.frame_time_ns) / 1e9;
+    let mut clock = None;
+    for departure in departures {
+        let there = departure.at + departure.bytes.len() as f64 / line.rate;
+        let clock = clock.get_or_insert(departure.at);
+        while *clock + frame <= there {
+            *clock += frame;
+            link.step();
+            each(*clock, &link);
+        }
+        for byte in departure.bytes {
+            if let Some(packet) = receiver.push(byte) {
+                link.take(&packet).expect("the rig is its own");
+            }
+        }
+    }
+    for _ in 0..300 {
+        link.step();
+        each(f64::MAX, &link);
+    }
+}
+
+fn line(source: &Source, rate: f64) -> Line {
+    let ahead = (1e9 / f64::from(source.head.frame_time_ns)) as u32;
+    Line { rate, ahead, share: 1.0, cycle: 4, parity: false }.fitted(source).expect("it fits")
+}
+
+/// A wave that is never still, and a step.
+fn made(frame: usize, channel: usize) -> i32 {
+    let wave = (f64::from(frame as u32) / (3.0 + channel as f64)).sin() * 5e8;
+    if channel == 0 { if (frame / 40).is_multiple_of(2) { 0 } else { 1 << 30 } } else { wave as i32 }
+}
+
+#[test]
+fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
+    let making = [Making { bound: 1 << 25, way: 1 << 30 }; 8];
+    let source = Source::live(crate::Form::default(), 33_333_333, &making);
+    let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false };
+    let mut live = Sender::new(5).live(&source, line, &making);
+    let (mut states, mut pose) = ([Channel::default(); 8], [0; 8]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::<PACKET>::new();
+    let (mut late, mut worst) = (0, 0);
+    for frame in 0..600 {
+        let pose: Vec<i32> = (0..8).map(|channel| made(frame, channel)).collect();
+        for byte in live.push(&pose).into_iter().flat_map(|departure| departure.bytes) {
+            if let Some(packet) = receiver.push(byte) {
+                link.take(&packet).expect("its own form");
+            }
+        }
+        link.step();
+        if frame > 60 {
+            assert!(link.synced(), "frame {frame}: {} exact", link.exact());
+            let shown = link.frame().expect("it plays") as usize;
+            late = late.max(frame - shown);
+            let off = (1..8).map(|channel| i64::from(link.pose()[channel]) - i64::from(made(shown, channel)));
+            worst = worst.max(off.map(i64::abs).max().unwrap_or(0));
+        }
+    }
+    assert_eq!(live.left_out(), 0);
+    assert!(late <= Live::delay(&line) as usize + 2, "{late}");
+    assert!(worst <= (1 << 25) + (1 << 22), "{worst}");
+}
+
+#[test]
+fn without_loss_every_frame_is_what_was_sent() {
+    for bytes in CLIPS {
+        let source = source(bytes);
+        let line = line(&source, 20_000.0);
+        let states = source.played(line.cycle);
+        let played = Played { source: &source, states };
+        let mut sender = Sender::new(7);
+        let mut frames = vec![0; source.frames() as usize];
+        play(sender.clip(&source, line, Some(2)), (&source, line), |_, link| {
+            assert!(played.agrees(link));
+            if let Some(frame) = link.frame() {
+                assert!(link.synced(), "frame {frame}: {} of {}", link.exact(), link.channels().len());
+                frames[frame as usize] += 1;
+            }
+        });
+        assert!(frames.iter().all(|&times| times >= 1), "{frames:?}");
+        assert!(source.deviation(line.cycle).0 < 0.25, "{:?}", source.deviation(line.cycle));
+    }
+}
+
+/// Pushes bytes into a receiver.
+fn hear<const Q: usize>(link: &mut Link<Q>, receiver: &mut Receiver<PACKET>, bytes: &[u8]) {
+    for &byte in bytes {
+        if let Some(packet) = receiver.push(byte) {
+            link.take(&packet).expect("its own form");
+        }
+    }
+}
+
+#[test]
+fn a_sender_that_stalls_makes_time_stand_still_and_loses_nothing() {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(1)).collect();
+    let (first, rest) = sent.split_at(sent.len() / 2);
+    for departure in first {
+        hear(&mut link, &mut receiver, &departure.bytes);
+        (0..4).for_each(|_| link.step());
+    }
+    (0..200).for_each(|_| link.step());
+    let (now, drawn) = (link.now(), link.pose().to_vec());
+    (0..200).for_each(|_| link.step());
+    assert_eq!((link.now(), link.pose()), (now, &drawn[..]), "it stands");
+    assert!(link.synced() && link.counts().losses == 0);
+    for departure in rest {
+        hear(&mut link, &mut receiver, &departure.bytes);
+        (0..4).for_each(|_| link.step());
+        assert!(link.synced());
+    }
+    (0..200).for_each(|_| link.step());
+    assert_eq!((link.frame(), link.counts().losses), (Some(source.frames() - 1), 0));
+}
+
+#[test]
+fn after_a_stall_packets_are_ahead_of_their_time_again() {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(6)).collect();
+    let (mut clock, mut halted) = (sent[0].at, 0);
+    for (index, departure) in sent.iter().enumerate() {
+        if index == sent.len() / 3 {
+            (0..500).for_each(|_| link.step());
+        }
+        while clock < departure.at {
+            clock += source.frame_seconds();
+            let before = link.now();
+            link.step();
+            halted += u32::from(index > sent.len() * 2 / 3 && link.now() == before);
+        }
+        hear(&mut link, &mut receiver, &departure.bytes);
+    }
+    assert_eq!(halted, 0, "frames on which time stood still");
+    let behind =
+        sent.last().map_or(0.0, |last| last.at / source.frame_seconds()) as i64 - i64::from(link.now().unwrap_or(0) - BEGIN);
+    assert!((-4..=8).contains(&behind), "{behind}");
+}
+
+#[test]
+fn a_flood_is_counted_and_recovered_from() {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let played = Played { source: &source, states: source.played(line.cycle) };
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(4)).collect();
+    let (flood, rest) = sent.split_at(sent.len() / 3);
+    // A third of all at once, then the others in their time.
+    flood.iter().for_each(|departure| hear(&mut link, &mut receiver, &departure.bytes));
+    assert!(link.counts().crowded > 0);
+    let (mut clock, mut synced) = (rest[0].at, 0);
+    for departure in rest {
+        while clock < departure.at {
+            clock += source.frame_seconds();
+            link.step();
+            assert!(played.agrees(&link));
+            synced += u32::from(link.synced());
+        }
+        hear(&mut link, &mut receiver, &departure.bytes);
+    }
+    assert!(synced > source.frames(), "{synced} frames were exact");
+}
+
+#[test]
+fn memory_is_what_is_stated() {
+    assert_eq!(core::mem::size_of::<Channel>(), 36);
+}
+
+/// What may happen to a packet on its way.
+#[derive(Clone, Debug)]
+enum Fate {
+    Lost,
+    Flipped(usize, u8),
+    Cut(usize),
+    Twice,
+    /// It comes after so many others.
+    Later(usize),
+    /// What was sent so many packets ago comes instead.
+    Replayed(usize),
+    Foreign,
+    Noise(Vec<u8>),
+}
+
+fn fate() -> impl Strategy<Value = Fate> {
+    prop_oneof![
+        4 => Just(Fate::Lost),
+        2 => (0..100usize, 1..=255u8).prop_map(|(at, mask)| Fate::Flipped(at, mask)),
+        1 => (0..100usize).prop_map(Fate::Cut),
+        1 => Just(Fate::Twice),
+        1 => (1..5usize).prop_map(Fate::Later),
+        1 => (1..200usize).prop_map(Fate::Replayed),
+        1 => Just(Fate::Foreign),
+        1 => prop::collection::vec(any::<u8>(), 0..200).prop_map(Fate::Noise),
+    ]
+}
+
+/// The packets of two rounds, as these fates leave them, and the frame of the last one that was touched.
+fn fated(source: &Source, line: Line, fates: &[(usize, Fate)]) -> (Vec<Departure>, f64) {
+    let sent: Vec<Departure> = Sender::new(7).clip(source, line, Some(2)).collect();
+    let foreign: Vec<Departure> = Sender::new(8).clip(source, line, Some(2)).collect();
+    let mut came: Vec<(f64, Departure)> = sent.iter().enumerate().map(|(i, departure)| (i as f64, departure.clone())).collect();
+    let mut last = 0.0f64;
+    for (at, fate) in fates {
+        let at = at % sent.len();
+        let bytes = &mut came[at].1.bytes;
+        last = last.max(sent[at].at);
+        match fate {
+            Fate::Lost => bytes.clear(),
+            Fate::Flipped(byte, mask) => {
+                let len = bytes.len();
+                if len > 0 {
+                    bytes[byte % len] ^= mask;
+                }
+            }
+            Fate::Cut(len) => bytes.truncate(*len),
+            Fate::Twice => *bytes = [sent[at].bytes.clone(), vec![0], sent[at].bytes.clone()].concat(),
+            Fate::Later(places) => came[at].0 = (at + places) as f64 + 0.5,
+            Fate::Replayed(ago) => *bytes = sent[at.saturating_sub(*ago)].bytes.clone(),
+            Fate::Foreign => *bytes = foreign[at].bytes.clone(),
+            Fate::Noise(noise) => bytes.extend(noise),
+        }
+    }
+    came.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let times: Vec<f64> = sent.iter().map(|departure| departure.at).collect();
+    let came = came.into_iter().zip(times).map(|((_, departure), at)| Departure { at, ..departure });
+    (came.collect(), last)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn whatever_happens_to_packets_what_is_said_to_be_exact_is(
+        clip in 0..CLIPS.len(),
+        fates in prop::collection::vec((0..1000usize, fate()), 0..60),
+    ) {
+        let source = source(CLIPS[clip]);
+        let line = line(&source, 20_000.0);
+        let played = Played { source: &source, states: source.played(line.cycle) };
+        let (came, _) = fated(&source, line, &fates);
+        let mut drawn: Option<Vec<i32>> = None;
+        let (mut met, mut session) = (vec![false; source.starts.len()], 7);
+        play(came.into_iter(), (&source, line), |_, link| {
+            let own = link.head().map_or(session, |head| head.session);
+            if own != session {
+                (session, drawn) = (own, None);
+                met.fill(false);
+            }
+            assert!(played.agrees(link));
+            // No joint is drawn faster than its pace.
+            if let Some(before) = drawn.replace(link.pose().to_vec()) {
+                for (track, start) in source.starts.iter().enumerate() {
+                    if let crate::Start::Moves { pace, .. } = start {
+                        let moved = link.pose()[track].wrapping_sub(before[track]).unsigned_abs();
+                        // One that was told anew in between, of another clip, starts anew too.
+                        let keeps = link.channels()[track].keeps_pace();
+                        assert!(!(met[track] && keeps) || moved <= crate::pace(*pace).unsigned_abs(), "channel {track}: {moved}");
+                        met[track] = keeps;
+                    }
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn all_is_exact_a_cycle_after_the_last_loss_and_drawn_half_a_second_later(
+        clip in 0..CLIPS.len(),
+        first in 0.1..0.6f64,
+        lost in prop::collection::vec(0..100u8, 1..60),
+    ) {
+        let source = source(CLIPS[clip]);
+        let line = line(&source, 20_000.0);
+        let mut sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(3)).collect();
+        let begin = (sent.len() as f64 * first) as usize;
+        let mut last = 0u32;
+        for (departure, lost) in sent[begin..].iter_mut().zip(lost) {
+            if lost < 50 {
+                let mut receiver = Receiver::<PACKET>::new();
+                let packet = departure.bytes.iter().find_map(|&byte| receiver.push(byte).map(|packet| (packet.kind, packet.payload.to_vec())));
+                if let Some((crate::packet::kind::MOTION, payload)) = packet {
+                    let mut messages = crate::Messages::new(&payload);
+                    messages.by_ref().for_each(drop);
+                    last = last.max(u32::from(messages.frame()));
+                    departure.bytes.clear();
+                }
+            }
+        }
+        let half = 500_000_000 / source.head.frame_time_ns;
+        let end = BEGIN + 3 * source.frames();
+        play(sent.into_iter(), (&source, line), |_, link| {
+            let Some(now) = link.now().filter(|&now| last > 0 && now > last + line.cycle && now + 1 < end) else { return };
+            assert!(link.synced(), "{now}: {} of {}, last {last}, cycle {}", link.exact(), link.channels().len(), line.cycle);
+            if now > last + line.cycle + half {
+                let apart = link.channels().iter().zip(link.pose()).position(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] != drawn));
+                assert!(apart.is_none() || (now - BEGIN) % source.frames() < half, "{now} {apart:?}");
+            }
+        });
+    }
+}

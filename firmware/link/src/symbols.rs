@@ -1,0 +1,186 @@
+//! A payload's fields, by rANS with static tables (FORMAT.md 5 has the method). One description serves both ends: [`Coder`] hands back
+//! what it reads, or what it was given to write.
+//!
+//! The coder begins from 2^16 + a **check** of 16 bits, which a reader must find again at the payload's end, with no byte left: it
+//! ties a packet to its session, at no cost, and is a second line behind the CRC.
+
+/// Sizes in 2^-12 of an alphabet's symbols: all at least 1, together 4096.
+pub(crate) type Table = [u16];
+
+const SCALE_BITS: u32 = 12;
+/// The state lies in `LOW..LOW << 8` between symbols.
+const LOW: u32 = 1 << 16;
+
+/// Reads fields, or writes them.
+pub(crate) trait Coder {
+    /// A symbol of an alphabet.
+    fn symbol(&mut self, table: &Table, symbol: u32) -> u32;
+
+    /// 8 bits at most.
+    fn few_bits(&mut self, count: u32, value: u32) -> u32;
+
+    /// 32 bits at most, the least significant first.
+    fn bits(&mut self, count: u32, value: u32) -> u32 {
+        let (mut read, mut shift) = (0, 0);
+        while shift < count {
+            let part = (count - shift).min(8);
+            read |= self.few_bits(part, value >> shift & ((1 << part) - 1)) << shift;
+            shift += part;
+        }
+        read
+    }
+
+    /// A signed number: its length in bits as a symbol of 33, the bits below the highest, the sign.
+    fn magnitude(&mut self, table: &Table, value: i32) -> i32 {
+        let size = value.unsigned_abs();
+        let Some(below) = self.symbol(table, u32::BITS - size.leading_zeros()).checked_sub(1) else { return 0 };
+        let below = below.min(31);
+        let read = 1 << below | self.bits(below, size & !(1 << below));
+        if self.few_bits(1, u32::from(value < 0)) == 0 { read as i32 } else { (read as i32).wrapping_neg() }
+    }
+}
+
+/// Reads a payload.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reader<'a> {
+    bytes: &'a [u8],
+    state: u32,
+    /// Whether it was asked for more than there was.
+    past: bool,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        let mut reader = Reader { bytes, state: 0, past: false };
+        for _ in 0..3 {
+            reader.shift();
+        }
+        // No well-formed payload begins below; from here on the state is never 0, so that every refill ends.
+        reader.state = reader.state.max(LOW);
+        reader
+    }
+
+    fn shift(&mut self) {
+        let byte = if let Some((&first, rest)) = self.bytes.split_first() {
+            self.bytes = rest;
+            first
+        } else {
+            self.past = true;
+            0
+        };
+        self.state = self.state << 8 | u32::from(byte);
+    }
+
+    fn refill(&mut self) {
+        while self.state < LOW {
+            self.shift();
+        }
+    }
+
+    /// Whether more was read than there is.
+    pub(crate) fn past(&self) -> bool {
+        self.past
+    }
+
+    /// Whether this is the end that the writer began from.
+    pub(crate) fn ends_with(&self, check: u16) -> bool {
+        !self.past && self.bytes.is_empty() && self.state == LOW | u32::from(check)
+    }
+}
+
+impl Coder for Reader<'_> {
+    fn symbol(&mut self, table: &Table, _: u32) -> u32 {
+        let mut low = self.state & ((1 << SCALE_BITS) - 1);
+        let mut symbol = 0;
+        for &size in table {
+            let size = u32::from(size);
+            if low < size {
+                // Less than 2^12 times less than 2^12.
+                self.state = size * (self.state >> SCALE_BITS) + low;
+                self.refill();
+                break;
+            }
+            low -= size;
+            symbol += 1;
+        }
+        symbol
+    }
+
+    fn few_bits(&mut self, count: u32, _: u32) -> u32 {
+        let value = self.state & ((1 << count) - 1);
+        self.state >>= count;
+        self.refill();
+        value
+    }
+}
+
+#[cfg(any(test, feature = "std"))]
+pub(crate) mod write {
+    use super::{Coder, LOW, SCALE_BITS, Table};
+
+    /// A stretch of the state's low digits.
+    #[derive(Clone, Copy, Debug)]
+    enum Digit {
+        Symbol { start: u32, size: u32 },
+        Bits { value: u32, count: u32 },
+    }
+
+    /// Gathers fields, and what they take.
+    #[derive(Clone, Debug, Default)]
+    pub(crate) struct Writer {
+        digits: Vec<Digit>,
+        /// Bits so far, without the state.
+        pub(crate) cost: f64,
+    }
+
+    impl Coder for Writer {
+        fn symbol(&mut self, table: &Table, symbol: u32) -> u32 {
+            let start = table.iter().take(symbol as usize).map(|&size| u32::from(size)).sum();
+            let size = u32::from(table[symbol as usize]);
+            self.cost += f64::from(SCALE_BITS) - f64::from(size).log2();
+            self.digits.push(Digit::Symbol { start, size });
+            symbol
+        }
+
+        fn few_bits(&mut self, count: u32, value: u32) -> u32 {
+            self.cost += f64::from(count);
+            self.digits.push(Digit::Bits { value, count });
+            value
+        }
+    }
+
+    impl Writer {
+        /// Adds what another has gathered.
+        pub(crate) fn append(&mut self, other: &Writer) {
+            self.digits.extend_from_slice(&other.digits);
+            self.cost += other.cost;
+        }
+
+        /// The payload.
+        pub(crate) fn finish(&self, check: u16) -> Vec<u8> {
+            let mut state = LOW | u32::from(check);
+            let mut bytes = vec![];
+            let mut shrink = |state: &mut u32, limit: u32| {
+                while *state >= limit {
+                    bytes.push(*state as u8);
+                    *state >>= 8;
+                }
+            };
+            for digit in self.digits.iter().rev() {
+                match *digit {
+                    Digit::Symbol { start, size } => {
+                        shrink(&mut state, (LOW >> SCALE_BITS << 8) * size);
+                        state = (state / size) << SCALE_BITS | (state % size + start);
+                    }
+                    Digit::Bits { value, count } => {
+                        shrink(&mut state, (LOW << 8) >> count);
+                        state = state << count | value;
+                    }
+                }
+            }
+            bytes.extend(state.to_le_bytes().iter().take(3));
+            bytes.reverse();
+            bytes
+        }
+    }
+}

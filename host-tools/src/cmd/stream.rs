@@ -1,0 +1,167 @@
+//! `pantin stream`: clips over a line, while they play.
+
+use crate::cmd::Files;
+use crate::stream::{line::Address, pace};
+use anyhow::{Context, Result, bail};
+use pantin_link::sender::{Bytes, Line, Sender, Source};
+use std::hash::{BuildHasher, Hasher, RandomState};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Send clips over a line while they play: each arrives as fast as it is shown, a little ahead of its time.
+///
+/// The other end has the rig of the clips already, as in a clip of its own: a board with the feature `link`. It joins at any time, and is exact again
+/// a cycle after any loss; `--cycle` and `--refresh` say how short that may be.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Clips, sent one after the other; with --live one of the face that the other end has
+    #[arg(required = true)]
+    pub(super) clips: Vec<PathBuf>,
+    /// The line: serial:DEVICE, tcp:HOST:PORT or udp:HOST:PORT, with @BAUD after it if it is not 38400 (10 bits a byte, on any of them)
+    #[arg(long, value_name = "LINE")]
+    pub(super) to: Address,
+    /// Send a face while it is recorded: udp:PORT takes the datagrams of Live Link Face, - lines of its CSV on stdin, one a frame of the clip
+    #[arg(long, value_name = "FROM", conflicts_with = "looped")]
+    live: Option<String>,
+    /// Greatest error of --live, in percent of full scale
+    #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
+    pub(super) max_scalar_error: f64,
+    /// The rig of clips without one (`pantin convert --rig-out`)
+    #[arg(long)]
+    pub(super) rig: Option<PathBuf>,
+    /// Send the clips again and again
+    #[arg(long = "loop")]
+    looped: bool,
+    /// Part of the line that refreshes may take, in percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 100.0)]
+    refresh: f64,
+    /// Shortest time in which every channel is refreshed, in seconds: longer where the line does not carry it
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
+    cycle: f64,
+    /// Send this much ahead at most, in seconds: the figure starts as much later, and what waits at the other end are 24 packets at most
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.5)]
+    ahead: f64,
+    /// Add 8 bytes to each packet that mend 4 wrong ones, for lines that flip bits; the other end has to know (the board's word `fec`)
+    #[arg(long)]
+    pub(super) fec: bool,
+    /// Say nothing
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    if !(0.0..=100.0).contains(&arguments.refresh) {
+        bail!("--refresh {}: expected 0 to 100 percent", arguments.refresh);
+    }
+    if let Some(from) = &arguments.live {
+        let stop = stopped_by_signal()?;
+        return super::stream_live::run(arguments, from, &stop);
+    }
+    let sources = arguments.clips.iter().map(|path| source(arguments, path)).collect::<Result<Vec<_>>>()?;
+    let lines =
+        sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
+    let mut line = arguments.to.open()?;
+    let stop = stopped_by_signal()?;
+    let mut sender = sender();
+    let (mut bytes, mut seconds) = (Bytes::default(), 0.0);
+    let one = sources.len() == 1;
+    while !stop.load(Ordering::Relaxed) {
+        for ((source, fit), path) in sources.iter().zip(&lines).zip(&arguments.clips) {
+            let rounds = if arguments.looped && one { None } else { Some(1) };
+            let mut schedule = sender.clip(source, *fit, rounds);
+            let start = Instant::now();
+            say(arguments, &opening(source, fit, path));
+            pace::send(&mut line, &mut schedule, &stop).with_context(|| path.display().to_string())?;
+            let length = source.seconds();
+            // What was sent ahead is still to be shown.
+            let end = start + Duration::from_secs_f64(length + f64::from(fit.ahead) * source.frame_seconds());
+            if rounds.is_some() && !pace::wait(end, &stop) {
+                break;
+            }
+            sender.sent(&schedule);
+            bytes = bytes + schedule.bytes();
+            seconds += start.elapsed().as_secs_f64();
+        }
+        if !arguments.looped {
+            break;
+        }
+    }
+    say(arguments, &closing(bytes, seconds));
+    Ok(())
+}
+
+/// A session of its own: no clock or process number is as unlikely to come again.
+pub(super) fn sender() -> Sender {
+    Sender::new(RandomState::new().build_hasher().finish() as u16)
+}
+
+pub(super) fn say(arguments: &Arguments, sentence: &str) {
+    if !arguments.quiet {
+        eprintln!("{sentence}");
+    }
+}
+
+fn source(arguments: &Arguments, path: &Path) -> Result<Source> {
+    let files = Files::read(path, arguments.rig.as_deref())?;
+    let clip = files.open().with_context(|| format!("{}: not a clip that plays; `pantin convert` makes one", path.display()))?;
+    Source::new(&clip)
+        .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
+}
+
+fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
+    let frames = |seconds: f64| (seconds / source.frame_seconds()).round();
+    let wanted = Line {
+        rate: arguments.to.rate(),
+        ahead: frames(arguments.ahead).clamp(4.0, 250.0) as u32,
+        share: arguments.refresh / 100.0,
+        cycle: frames(arguments.cycle).clamp(1.0, 120.0) as u32,
+        parity: arguments.fec,
+    };
+    wanted.fitted(source).with_context(|| {
+        format!(
+            "{}: too much for {:.0} bytes a second; a faster line, a larger --max-error or --fps 30 when it is converted, or a larger --ahead may do",
+            path.display(),
+            wanted.rate
+        )
+    })
+}
+
+fn opening(source: &Source, fit: &Line, path: &Path) -> String {
+    let (off, _) = source.deviation(fit.cycle);
+    let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
+    format!(
+        "{}: {} frames, {} channels; all of them refreshed within {:.0} ms; sent up to {:.0} ms ahead; at most {off:.2} of a channel's step from the clip",
+        path.display(),
+        source.frames(),
+        source.told(),
+        milliseconds(fit.cycle),
+        milliseconds(fit.ahead)
+    )
+}
+
+pub(super) fn closing(bytes: Bytes, seconds: f64) -> String {
+    let part = |part: f64| 100.0 * part / bytes.line.max(1.0);
+    format!(
+        "{} packets, {:.0} bytes in {seconds:.1} s: motion {:.1} %, refresh {:.1} %, heads and starts {:.1} %, framing and CRC {:.1} %, parity {:.1} %",
+        bytes.packets,
+        bytes.line,
+        part(bytes.motion),
+        part(bytes.refresh),
+        part(bytes.announced),
+        part(bytes.framing),
+        part(bytes.parity)
+    )
+}
+
+/// Set by the signals that end a program, so that what was sent is still told.
+fn stopped_by_signal() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register(signal, stop.clone())?;
+    }
+    Ok(stop)
+}

@@ -1,0 +1,97 @@
+//! `pantin stream --live`: a face over a line while it is recorded.
+
+use super::stream::{Arguments, closing, say, sender};
+use crate::cmd::Files;
+use crate::stream::live::Feed;
+use crate::stream::pace;
+use anyhow::{Context, Result, ensure};
+use pantin_link::Form;
+use pantin_link::sender::{Line, Live, Making, Source};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Frames that packets are ahead of their time beside what coding takes: what the line's jitter may be.
+const AHEAD: u32 = 6;
+/// About what a refresh takes, in bytes, and the part of the line that all of them may.
+const REFRESH_BYTES: f64 = 4.3;
+const REFRESHES: f64 = 0.35;
+
+/// Where a value of the feed goes in a pose, and what it is multiplied by.
+struct Place {
+    value: Option<usize>,
+    scale: f64,
+}
+
+/// Runs the command.
+pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Result<()> {
+    let [path] = &arguments.clips[..] else { anyhow::bail!("--live: expected one clip, of the face that the other end has") };
+    let files = Files::read(path, arguments.rig.as_deref())?;
+    let clip = files.open().with_context(|| path.display().to_string())?;
+    ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; --live sends faces alone", path.display());
+    let form = Form::of(&clip).context("a face has no joints")?;
+    let mut feed = Feed::open(from)?;
+    let names = feed.names();
+    let places: Vec<Place> = clip
+        .rig()
+        .scalars()
+        .map(|scalar| Place {
+            value: names.iter().position(|name| name == scalar.name()),
+            scale: (31.0 - f64::from(scalar.exponent)).exp2(),
+        })
+        .collect();
+    ensure!(
+        places.iter().any(|place| place.value.is_some()),
+        "{}: none of its channels is in what --live brings",
+        path.display()
+    );
+    let part = arguments.max_scalar_error / 100.0;
+    ensure!(
+        part > 0.0 && part < 1.0,
+        "--max-scalar-error {}: expected more than 0 and less than 100 percent",
+        arguments.max_scalar_error
+    );
+    let raw = |place: &Place, value: f64| (value * place.scale).round() as i32;
+    let making: Vec<Making> =
+        places.iter().map(|place| Making { bound: raw(place, part).max(1), way: raw(place, 1.0).max(1) as u32 }).collect();
+    let source = Source::live(form, clip.frame_time_ns(), &making);
+    let rate = arguments.to.rate();
+    let cycle = REFRESH_BYTES * places.len() as f64 / (REFRESHES * rate) / source.frame_seconds();
+    let line = Line { rate, ahead: AHEAD, share: 1.0, cycle: cycle.ceil().clamp(8.0, 120.0) as u32, parity: arguments.fec };
+    let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
+    say(
+        arguments,
+        &format!(
+            "live: {} channels; shown {:.0} ms after they came; all of them refreshed within {:.0} ms",
+            places.iter().filter(|place| place.value.is_some()).count(),
+            milliseconds(Live::delay(&line)),
+            milliseconds(line.cycle)
+        ),
+    );
+    let mut live = sender().live(&source, line, &making);
+    let mut out = arguments.to.open()?;
+    let (start, frame) = (Instant::now(), Duration::from_nanos(u64::from(clip.frame_time_ns())));
+    let (mut values, mut left) = (vec![0.0; names.len()], Live::delay(&line));
+    let mut at = start;
+    while !stop.load(Ordering::Relaxed) && left > 0 {
+        match feed.next(at.saturating_duration_since(Instant::now()), &values)? {
+            Some(next) => values = next,
+            // What has been made is still to be shown.
+            None => left -= 1,
+        }
+        let value = |place: &Place| place.value.and_then(|index| values.get(index)).map_or(0, |&value| raw(place, value));
+        let pose: Vec<i32> = places.iter().map(value).collect();
+        pace::wait(at, stop);
+        for departure in live.push(&pose) {
+            out.send(&departure.bytes)?;
+        }
+        at += frame;
+    }
+    say(arguments, &closing(live.bytes(), start.elapsed().as_secs_f64()));
+    if live.left_out() > 0 {
+        say(
+            arguments,
+            &format!("{} segments found no room on the line: a faster one, or a larger --max-scalar-error", live.left_out()),
+        );
+    }
+    Ok(())
+}

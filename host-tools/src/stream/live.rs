@@ -1,0 +1,159 @@
+//! A face that is recorded now: Live Link Face's datagrams, or lines of its CSV on stdin.
+
+use crate::import::livelink::live_link_name;
+use crate::import::text::shown;
+use anyhow::{Context, Result, bail, ensure};
+use std::io::{BufRead, ErrorKind};
+use std::net::UdpSocket;
+use std::time::Duration;
+
+/// Values of a frame by name, in the order of [`Feed::names`].
+pub type Values = Vec<f64>;
+
+/// Where frames come from.
+pub enum Feed {
+    /// A header, then a line a frame.
+    Lines {
+        /// What is left to read.
+        lines: Box<dyn Iterator<Item = std::io::Result<String>>>,
+        /// Names of the columns behind the first two.
+        names: Vec<String>,
+    },
+    /// Datagrams: the last one counts.
+    Datagrams(UdpSocket),
+}
+
+/// Blend shapes and angles of a datagram: as in the app's files, but for the jaw's and the mouth's left and right.
+fn datagram_names() -> Vec<String> {
+    let mut names: Vec<String> = pantin::names::LIVE_LINK.split(' ').map(String::from).collect();
+    for [one, other] in [["JawLeft", "JawRight"], ["MouthLeft", "MouthRight"]] {
+        let place = |name: &str| names.iter().position(|own| own == name);
+        if let (Some(a), Some(b)) = (place(one), place(other)) {
+            names.swap(a, b);
+        }
+    }
+    names
+}
+
+/// The values of a datagram: version, device (37 bytes), length and letters of the subject's name, frame (8), rate (8), how many, and as many floats,
+/// the most significant byte first. None for one without a face.
+fn parse_datagram(bytes: &[u8]) -> Option<Values> {
+    let (name, rest) = bytes.get(41..)?.split_first_chunk::<4>().map(|(len, rest)| (u32::from_be_bytes(*len) as usize, rest))?;
+    let (head, values) = rest.get(name..)?.split_first_chunk::<17>()?;
+    let (values, _) = values.as_chunks::<4>();
+    let count = usize::from(head[16]);
+    (count == 61 && values.len() >= count)
+        .then(|| values[..count].iter().map(|bytes| f64::from(f32::from_be_bytes(*bytes))).collect())
+}
+
+impl Feed {
+    /// `-` is stdin, `udp:PORT` the datagrams that come to that port.
+    pub fn open(from: &str) -> Result<Feed> {
+        if from == "-" {
+            return Feed::lines(Box::new(std::io::stdin().lock().lines()));
+        }
+        let port = from.strip_prefix("udp:").and_then(|port| port.parse::<u16>().ok());
+        let port = port.with_context(|| format!("--live {from}: expected udp:PORT, or - for lines on stdin"))?;
+        let socket = UdpSocket::bind(("0.0.0.0", port)).with_context(|| format!("--live {from}: the port cannot be had"))?;
+        Ok(Feed::Datagrams(socket))
+    }
+
+    fn lines(mut lines: Box<dyn Iterator<Item = std::io::Result<String>>>) -> Result<Feed> {
+        let header = lines.next().context("--live -: nothing on stdin; expected a header of Live Link Face")??;
+        let mut cells = header.trim_start_matches('\u{feff}').split(',').map(|cell| cell.trim().to_owned());
+        let named = |cell: Option<String>, name: &str| cell.is_some_and(|cell| cell.eq_ignore_ascii_case(name));
+        ensure!(
+            named(cells.next(), "Timecode") && named(cells.next(), "BlendshapeCount"),
+            "--live -: line 1: expected `Timecode,BlendshapeCount,` and names of blend shapes"
+        );
+        let names = cells.map(|name| live_link_name(&name)).collect();
+        Ok(Feed::Lines { lines, names })
+    }
+
+    /// Names of a frame's values.
+    pub fn names(&self) -> Vec<String> {
+        match self {
+            Feed::Lines { names, .. } => names.clone(),
+            Feed::Datagrams(_) => datagram_names(),
+        }
+    }
+
+    /// The next frame of lines, or the last datagram that came within `wait`; `Ok(None)` at the end.
+    pub fn next(&mut self, wait: Duration, last: &Values) -> Result<Option<Values>> {
+        match self {
+            Feed::Lines { lines, names } => loop {
+                let Some(line) = lines.next() else { return Ok(None) };
+                let line = line.context("stdin")?;
+                let cells: Vec<&str> = line.split(',').skip(2).map(str::trim).collect();
+                if line.trim().is_empty() || line.split(',').nth(1).is_some_and(|count| count.trim() == "0") {
+                    continue;
+                }
+                let values: Option<Values> =
+                    cells.iter().map(|cell| cell.parse().ok().filter(|value: &f64| value.is_finite())).collect();
+                match values.filter(|values| values.len() == names.len()) {
+                    Some(values) => return Ok(Some(values)),
+                    None => bail!(
+                        "--live -: expected a timecode, a count and {} numbers, found {}",
+                        names.len(),
+                        shown(Some(line.as_bytes()))
+                    ),
+                }
+            },
+            Feed::Datagrams(socket) => {
+                let mut latest = last.clone();
+                let until = std::time::Instant::now() + wait;
+                let mut room = [0; 2048];
+                loop {
+                    let left = until.saturating_duration_since(std::time::Instant::now());
+                    if left.is_zero() {
+                        return Ok(Some(latest));
+                    }
+                    socket.set_read_timeout(Some(left))?;
+                    match socket.recv(&mut room) {
+                        // What is no face is somebody else's.
+                        Ok(len) => latest = room.get(..len).and_then(parse_datagram).unwrap_or(latest),
+                        Err(error)
+                            if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+                        Err(error) => return Err(error).context("--live"),
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_datagram() {
+        let mut bytes = 6u32.to_le_bytes().to_vec();
+        bytes.extend([b'D'; 37]);
+        bytes.extend(4u32.to_be_bytes());
+        bytes.extend(b"face");
+        bytes.extend([0; 16]);
+        bytes.push(61);
+        (0..61).for_each(|i| bytes.extend((i as f32 / 64.0).to_be_bytes()));
+        let values = parse_datagram(&bytes).expect("a face");
+        let names = datagram_names();
+        let place = |name: &str| names.iter().position(|own| own == name).expect("its name");
+        assert_eq!((values.len(), names.len(), values[place("JawOpen")]), (61, 61, 17.0 / 64.0));
+        assert_eq!((place("JawLeft"), place("JawRight"), place("MouthLeft")), (15, 16, 21));
+        for len in 0..bytes.len() {
+            assert_eq!(parse_datagram(&bytes[..len]), None, "{len}");
+        }
+        bytes[41..45].fill(0xff);
+        assert_eq!(parse_datagram(&bytes), None);
+    }
+
+    #[test]
+    fn lines_of_its_csv() {
+        let text = "Timecode,BlendShapeCount,EyeBlinkLeft,jawOpen\n0:0:0:1.0,2,0.5,0.25\n0:0:0:2.0,0\n0:0:0:3.0,2,x,1\n";
+        let mut feed = Feed::lines(Box::new(std::io::Cursor::new(text).lines())).expect("a header");
+        assert_eq!(feed.names(), ["EyeBlinkLeft", "JawOpen"]);
+        assert_eq!(feed.next(Duration::ZERO, &vec![]).unwrap(), Some(vec![0.5, 0.25]));
+        assert!(feed.next(Duration::ZERO, &vec![]).unwrap_err().to_string().contains("2 numbers"));
+        assert_eq!(feed.next(Duration::ZERO, &vec![]).unwrap(), None);
+    }
+}

@@ -1,0 +1,98 @@
+//! A line that loses packets and flips bits, the same way each time; and a receiver at its end, in clip time.
+
+use pantin_link::packet::{Receiver, kind};
+use pantin_link::sender::{Departure, Line, Source};
+use pantin_link::{Channel, Link, Messages, PACKET, QUEUE};
+
+/// What a line does to packets.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damage {
+    /// Part of the packets that are lost.
+    pub loss: f64,
+    /// Part of the bits that are flipped.
+    pub flips: f64,
+}
+
+/// A damaging line, as its seed has it.
+#[derive(Clone, Debug)]
+pub struct Lossy {
+    state: u64,
+}
+
+impl Lossy {
+    /// One of many.
+    pub fn new(seed: u64) -> Lossy {
+        Lossy { state: seed }
+    }
+
+    /// 0 to 1: S. Vigna's splitmix64.
+    fn chance(&mut self) -> f64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// What comes of a packet; whether it was harmed.
+    pub fn pass(&mut self, bytes: &[u8], damage: Damage) -> (Vec<u8>, bool) {
+        if self.chance() < damage.loss {
+            return (vec![], true);
+        }
+        let mut bytes = bytes.to_vec();
+        let mut harmed = false;
+        if damage.flips > 0.0 {
+            for byte in &mut bytes {
+                for bit in 0..8 {
+                    let flip = self.chance() < damage.flips;
+                    *byte ^= u8::from(flip) << bit;
+                    harmed |= flip;
+                }
+            }
+        }
+        (bytes, harmed)
+    }
+}
+
+/// The last frame that a packet of motion tells of.
+pub fn last_frame(bytes: &[u8], line: Line) -> Option<u16> {
+    let mut receiver = if line.parity { Receiver::<PACKET>::mending() } else { Receiver::new() };
+    let packets = bytes.iter().filter_map(|&byte| {
+        let packet = receiver.push(byte).filter(|packet| packet.kind == kind::MOTION)?;
+        let mut messages = Messages::new(packet.payload);
+        messages.by_ref().for_each(drop);
+        Some(messages.frame())
+    });
+    packets.last()
+}
+
+/// Plays departures at a receiver. `line` makes of each what arrives; `each` sees the receiver frame by frame.
+pub fn play(
+    departures: impl Iterator<Item = Departure>,
+    source: &Source,
+    line: Line,
+    mut damage: impl FnMut(&Departure) -> Vec<u8>,
+    mut each: impl FnMut(&Link<QUEUE>),
+) {
+    let channels = source.channels();
+    let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
+    let mut link = Link::<QUEUE>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = if line.parity { Receiver::<PACKET>::mending() } else { Receiver::new() };
+    let frame = source.frame_seconds();
+    let mut clock = None;
+    for departure in departures {
+        let there = departure.at + departure.bytes.len() as f64 / line.rate;
+        let clock = clock.get_or_insert(departure.at);
+        while *clock + frame <= there {
+            *clock += frame;
+            link.step();
+            each(&link);
+        }
+        for byte in damage(&departure) {
+            if let Some(packet) = receiver.push(byte) {
+                // Another rig's clip is passed over, as chance may make one.
+                let _ = link.take(&packet);
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Motion over a line that loses packets and flips bits: the reference board shows what the host's receiver of the same bytes shows, it keeps
+//! moving, and it is exact again when it should be. And in its own time, from a TCP line as fast as a real one.
+
+use std::io::Read;
+use std::net::UdpSocket;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+
+use harness::build::{self, Firmware};
+use harness::lossy::{Damage, Lossy};
+use harness::qemu::{LM3S6965EVB, Launch};
+use harness::{clips, defmt_log, paths, setup, simulator, sync};
+use pantin::Clip;
+use pantin_link::packet::Receiver;
+use pantin_link::sender::{Line, Sender, Source};
+use pantin_link::{Channel, Form, Link, PACKET, QUEUE};
+use tempfile::TempDir;
+
+/// Our greeting: a body and its face.
+static CLIP: LazyLock<(TempDir, PathBuf)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let clip = clips::convert(&paths::root().join("motions/greet.keys"), folder.path()).unwrap();
+    (folder, clip)
+});
+
+fn firmware(features: &str) -> Firmware {
+    Firmware::featuring(features, "lm3s6965evb", "lm3s6965evb", LM3S6965EVB.target, &[&CLIP.1]).unwrap()
+}
+
+fn source() -> Source {
+    let bytes = std::fs::read(&CLIP.1).unwrap();
+    Source::new(&Clip::new_checked(&bytes).unwrap()).unwrap()
+}
+
+/// What arrives in each frame's time of two rounds over a line of 38,400 baud that is damaged between two of them.
+fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
+    let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false };
+    let fit = wanted.fitted(source).expect("the line carries it");
+    let (mut lossy, mut frames) = (Lossy::new(5), vec![]);
+    for departure in Sender::new(3).clip(source, fit, Some(2)) {
+        let there = departure.at + departure.bytes.len() as f64 / fit.rate;
+        let frame = (there / source.frame_seconds() + f64::from(fit.ahead)) as usize;
+        frames.resize_with(frames.len().max(frame + 1), Vec::new);
+        let harms = (from..to).contains(&frame);
+        frames[frame].extend(if harms { lossy.pass(&departure.bytes, damage).0 } else { departure.bytes });
+    }
+    (frames, fit)
+}
+
+/// Half a second of our greeting, in which what is drawn joins the state.
+const JOIN: usize = 60;
+
+#[test]
+fn the_board_shows_what_the_host_shows_of_a_line_that_damages_and_recovers() {
+    if setup::host_only("a line that damages") {
+        return;
+    }
+    let (source, firmware) = (source(), firmware("face,link"));
+    let (from, to) = (70, 190);
+    let damage = Damage { loss: 0.3, flips: 1e-4 };
+    let (line, fit) = line(&source, damage, from, to);
+    let expected = simulator::link(&CLIP.1, &[], &line).unwrap();
+    let whole = simulator::link(&CLIP.1, &[], &self::line(&source, damage, 0, 0).0).unwrap();
+    let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("link").limit(Duration::from_secs(120));
+    let mut session = sync::Session::start(launch).unwrap();
+    let (mut moved, mut before, mut wrong) = (0, None, vec![]);
+    for (frame, bytes) in [&vec![]].into_iter().chain(&line).enumerate() {
+        let (number, picture) = session.hear(bytes).unwrap();
+        assert_eq!((number, &picture), (expected[frame].0, &expected[frame].1), "picture {frame}");
+        if picture != whole[frame].1 {
+            wrong.push(frame);
+        }
+        moved += usize::from((from..to).contains(&frame) && before.as_ref() != Some(&picture));
+        before = Some(picture);
+    }
+    assert_eq!(session.end().unwrap().code, 0);
+    assert!(moved > (to - from) / 2, "while the line damages, {moved} pictures of {} differ from the one before", to - from);
+    // What the last damaged packet told of was ahead of its time.
+    let last = to + (fit.ahead + fit.cycle) as usize + JOIN;
+    println!("pictures {:?} to {:?} are not those of a whole line; at most to {last}", wrong.first(), wrong.last());
+    assert!(!wrong.is_empty() && wrong.iter().all(|frame| (from..last).contains(frame)), "{wrong:?}");
+}
+
+/// Plays in the board's own time what `pantin stream` sends there; what the board then logs.
+fn streamed(features: &str, connect: impl FnOnce(Launch, u16) -> Launch, to: impl Fn(u16) -> String) -> String {
+    let firmware = firmware(features);
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("link").argument("info").argument("frames=320");
+    let mut qemu = connect(launch, port).display().start().unwrap();
+    let mut stream = Command::new(build::host_tool().unwrap());
+    let output = stream.args(["stream", "--ahead", "1", "--to", &to(port)]).arg(&CLIP.1).output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && words.contains("packets") && words.contains("refresh"), "{words}");
+    assert!(qemu.picture().unwrap().pixels.iter().any(|&pixel| pixel > 0));
+    defmt_log::decode(firmware.elf(), &qemu.wait().unwrap().stdout).unwrap().join("\n")
+}
+
+/// Nothing is lost on the way, and all channels were exact.
+fn is_whole(log: &str) {
+    let source = source();
+    assert!(log.contains(&format!("{0} of {0} channels exact", source.channels())), "{log}");
+    assert!(
+        log.lines().last().is_some_and(|last| last.contains(" 0 missing, 0 damaged, 0 foreign, 0 crowded; 0 states lost")),
+        "{log}"
+    );
+}
+
+#[test]
+fn pantin_stream_plays_on_a_board_by_its_serial_line() {
+    if !setup::host_only("pantin stream to a serial line") {
+        let connect = |launch: Launch, port| launch.serial_at(&format!("tcp:127.0.0.1:{port},server=on,wait=off"));
+        is_whole(&streamed("face,link", connect, |port| format!("tcp:127.0.0.1:{port}@38400")));
+    }
+}
+
+#[test]
+fn pantin_stream_plays_on_a_board_by_ethernet() {
+    if !setup::host_only("pantin stream by UDP") {
+        let connect = |launch: Launch, port| launch.network(&format!("user,hostfwd=udp:127.0.0.1:{port}-10.0.2.15:4000"));
+        is_whole(&streamed("face,ethernet", connect, |port| format!("udp:127.0.0.1:{port}@38400")));
+    }
+}
+
+/// Takes what `stream` sends to a UDP socket until it ends, a datagram at a time, and goes on by three frames after each; its words at the end.
+fn heard(stream: &mut Command, socket: &UdpSocket, clip: &Clip, mut each: impl FnMut(&Link<QUEUE>)) -> String {
+    let channels = clip.rig().channels();
+    let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
+    let mut link = Link::<QUEUE>::new(Form::of(clip).unwrap(), &mut states, &mut pose);
+    let (mut receiver, mut room) = (Receiver::<PACKET>::new(), [0; 2048]);
+    socket.set_read_timeout(Some(Duration::from_secs(3))).unwrap();
+    let mut stream = stream.stderr(Stdio::piped()).spawn().unwrap();
+    while let Ok(len) = socket.recv(&mut room) {
+        for &byte in &room[..len] {
+            if let Some(packet) = receiver.push(byte) {
+                link.take(&packet).unwrap();
+            }
+        }
+        for _ in 0..3 {
+            link.step();
+            each(&link);
+        }
+    }
+    assert_eq!(link.counts().missing, 0);
+    let mut words = String::new();
+    stream.stderr.take().unwrap().read_to_string(&mut words).unwrap();
+    assert!(stream.wait().unwrap().success(), "{words}");
+    words
+}
+
+#[test]
+fn pantin_stream_sends_clips_one_after_the_other() {
+    let bytes = std::fs::read(&CLIP.1).unwrap();
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let to = format!("udp:{}@38400", socket.local_addr().unwrap());
+    let mut stream = Command::new(build::host_tool().unwrap());
+    stream.args(["stream", "--ahead", "0.5", "--to", &to]).arg(&CLIP.1).arg(&CLIP.1);
+    let mut exact = [0; 2];
+    let words = heard(&mut stream, &socket, &Clip::new_checked(&bytes).unwrap(), |link| {
+        if let Some(head) = link.head().filter(|_| link.synced()) {
+            exact[usize::from(head.clip)] += 1;
+        }
+    });
+    assert!(exact.iter().all(|&frames| frames > 20), "{exact:?} {words}");
+}
+
+/// Frames of a face that is recorded, and one of its values.
+const RECORDED: usize = 120;
+
+fn recorded(frame: usize, channel: usize) -> f64 {
+    0.5 + 0.4 * (frame as f64 / (5.0 + 3.0 * channel as f64)).sin()
+}
+
+#[test]
+fn pantin_stream_sends_a_face_while_it_is_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let values = |frame: usize| (0..3).map(|channel| format!(",{:.6}", recorded(frame, channel))).collect::<String>();
+    let line = |frame: usize| format!("00:00:{:02}:{:02}.000,3{}\n", frame / 30, frame % 30, values(frame));
+    let text: String = std::iter::once("Timecode,BlendShapeCount,EyeBlinkLeft,JawOpen,MouthSmileLeft\n".into())
+        .chain((0..RECORDED).map(line))
+        .collect();
+    let csv = folder.path().join("face.csv");
+    std::fs::write(&csv, &text).unwrap();
+    let clip = clips::convert(&csv, folder.path()).unwrap();
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let to = format!("udp:{}@38400", socket.local_addr().unwrap());
+    let mut stream = Command::new(build::host_tool().unwrap());
+    stream.args(["stream", "--live", "-", "--to", &to]).arg(&clip).stdin(std::fs::File::open(&csv).unwrap());
+    let bytes = std::fs::read(&clip).unwrap();
+    let mut exact = 0;
+    let words = heard(&mut stream, &socket, &Clip::new_checked(&bytes).unwrap(), |link| {
+        let Some(frame) = link.frame().map(|frame| frame as usize).filter(|frame| link.synced() && (1..RECORDED).contains(frame))
+        else {
+            return;
+        };
+        exact += 1;
+        for (channel, state) in link.channels().iter().enumerate() {
+            let value = f64::from(state.state().unwrap()[0]) / 30f64.exp2();
+            assert!((value - recorded(frame, channel)).abs() < 0.021, "frame {frame}, channel {channel}: {value}");
+        }
+    });
+    assert!(words.contains("3 channels; shown 567 ms after they came") && !words.contains("no room"), "{words}");
+    assert!(exact >= RECORDED - 20, "{exact}");
+}
+
+#[test]
+fn a_line_that_is_not_there_is_told() {
+    let tool = build::host_tool().unwrap();
+    let fails = |arguments: &[&str]| {
+        let start = Instant::now();
+        let output = Command::new(&tool).arg("stream").args(arguments).arg(&CLIP.1).output().unwrap();
+        assert!(!output.status.success() && start.elapsed() < Duration::from_secs(20));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(fails(&["--to", "serial:/dev/pantin-is-not-there"]).contains("cannot be opened"));
+    assert!(fails(&["--to", "tcp:127.0.0.1:1"]).contains("cannot connect"));
+    assert!(fails(&["--to", "tcp:127.0.0.1:1@300"]).contains("too much for 30 bytes a second"));
+    assert!(fails(&["--to", "carrier-pigeon:1"]).contains("expected serial:DEVICE"));
+}
