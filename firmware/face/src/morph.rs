@@ -156,7 +156,7 @@ fn rest(model: &Model, [from, to]: [usize; 2], places: &mut [Place]) {
     }
 }
 
-/// Factors below this move nothing by more than 32 steps, 1/4 mm or a thousandth of Pantin's face: left out.
+/// Factors below this move nothing by more than 16 steps, 1/8 mm of Pantin's face: left out.
 const LEAST: i32 = 32;
 
 /// Adds a shape's deltas.
