@@ -6,6 +6,7 @@ mod buttons;
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
 mod end;
+mod last_words;
 mod pace;
 mod perform;
 #[cfg(feature = "emulated")]
@@ -15,6 +16,7 @@ mod register;
 pub use buttons::Buttons;
 #[cfg(feature = "emulated")]
 pub use end::{Code, exit};
+pub use last_words::last_words;
 pub use markers;
 pub use pace::Pace;
 pub use perform::{IN_STEP, perform};

@@ -25,7 +25,7 @@ impl Pace {
     }
 
     /// Waits, by looking where the counter is, and tells the ticks since the last call: at least one.
-    pub fn wait(&mut self, now: impl Fn() -> u32) -> u32 {
+    pub fn wait(&mut self, mut now: impl FnMut() -> u32) -> u32 {
         loop {
             match self.ticks(now()) {
                 0 => {}

@@ -1,0 +1,30 @@
+//! Pantin on the "Black Pill": plays the clips that it was built with.
+#![no_std]
+#![no_main]
+
+mod board;
+mod clocks;
+mod display;
+mod panic;
+
+use board::BlackPill;
+use display::Lit;
+use pantin_figure::surface::Frame;
+use stm32f4xx_hal::pac::Peripherals;
+
+#[cfg(feature = "defmt")]
+use defmt_rtt as _;
+
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 400;
+const MOVING: usize = 320;
+const JOINTS: usize = 80;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
+    let mut frame = Frame::<Lit>::new();
+    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut BlackPill::new(parts))
+}

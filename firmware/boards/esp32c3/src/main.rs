@@ -1,0 +1,38 @@
+//! Pantin on the ESP32-C3: plays the clips that it was built with.
+#![no_std]
+#![no_main]
+
+mod board;
+mod panic;
+
+use board::Esp32C3;
+use board_parts::ssd1306::Pages;
+use esp_hal::clock::CpuClock;
+use pantin_figure::surface::Frame;
+
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+// For the second stage of the boot. It says no time and date of the build: the same sources make the same image.
+esp_bootloader_esp_idf::esp_app_desc!(
+    env!("CARGO_PKG_VERSION"),
+    "pantin",
+    "-",
+    "-",
+    esp_bootloader_esp_idf::ESP_IDF_COMPATIBLE_VERSION,
+    esp_bootloader_esp_idf::MMU_PAGE_SIZE,
+    0,
+    u16::MAX,
+    esp_bootloader_esp_idf::SECURE_VERSION
+);
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 400;
+const MOVING: usize = 320;
+const JOINTS: usize = 80;
+
+#[esp_hal::main]
+fn main() -> ! {
+    let parts = esp_hal::init(esp_hal::Config::default().with_cpu_clock(CpuClock::max()));
+    let mut frame = Frame::<Pages>::new();
+    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut Esp32C3::new(parts))
+}

@@ -1,0 +1,137 @@
+//! The board's display, lights, buttons, timer and line for the program.
+
+use crate::dog;
+use crate::leds::{self, Leds};
+use crate::line::Line;
+use crate::oled::Oled;
+use board_common::{Buttons, Pace, markers};
+use board_parts::ssd1306::Pages;
+use board_parts::tiny;
+use embedded_hal::digital::InputPin;
+use nrf52833_hal::gpio::{Floating, Input, Level, Pin, p0, p1};
+use nrf52833_hal::pac::{Peripherals, TIMER0};
+use nrf52833_hal::timer::Periodic;
+use nrf52833_hal::wdt::WatchdogHandle;
+use nrf52833_hal::wdt::handles::Hdl0;
+use nrf52833_hal::{Clocks, Timer};
+use pantin_app::{Board, Key};
+use pantin_figure::rotation::Rotation;
+use pantin_figure::surface::Frame;
+
+/// Counts of the timer a microsecond.
+const RATE: u32 = 1;
+
+type Button = Pin<Input<Floating>>;
+
+/// The board.
+pub struct Microbit {
+    oled: Oled,
+    _leds: Leds,
+    line: Line,
+    /// A and B.
+    pins: [Button; 2],
+    /// What B was pressed for.
+    second: u32,
+    buttons: Buttons,
+    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
+    wish: Option<Key>,
+    timer: Timer<TIMER0, Periodic>,
+    pace: Pace,
+    watchdog: Option<WatchdogHandle<Hdl0>>,
+}
+
+impl Microbit {
+    /// Sets it up, once.
+    pub fn new(parts: Peripherals) -> Self {
+        Clocks::new(parts.CLOCK).enable_ext_hfosc();
+        let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));
+        let clock = p0.p0_26.into_floating_input().degrade();
+        let oled = Oled::new(parts.TWIM0, clock, p1.p1_00.into_floating_input().degrade());
+        let rows = [p0.p0_21.degrade(), p0.p0_22.degrade(), p0.p0_15.degrade(), p0.p0_24.degrade(), p0.p0_19.degrade()];
+        let columns = [p0.p0_28.degrade(), p0.p0_11.degrade(), p0.p0_31.degrade(), p1.p1_05.degrade(), p0.p0_30.degrade()];
+        let out = p0.p0_06.into_push_pull_output(Level::High).degrade();
+        let mut timer = Timer::periodic(parts.TIMER0);
+        timer.start(u32::MAX);
+        Microbit {
+            oled,
+            _leds: Leds::new(rows, columns, parts.TIMER1),
+            line: Line::new(parts.UARTE0, out, p1.p1_08.into_floating_input().degrade()),
+            pins: [p0.p0_14.into_floating_input().degrade(), p0.p0_23.into_floating_input().degrade()],
+            second: 0,
+            buttons: Buttons::new(0),
+            wish: None,
+            timer,
+            pace: Pace::new(RATE),
+            watchdog: dog::start(parts.WDT),
+        }
+    }
+
+    /// Tells the watchdog that the program goes on.
+    fn feed(&mut self) {
+        feed(&mut self.watchdog);
+    }
+
+    /// Those that are held, each in the bit of the one it stands for: A is select; B is right, or up where it was pressed after A.
+    fn held(&mut self) -> u32 {
+        let [a, b] = self.pins.each_mut().map(|pin| pin.is_low() == Ok(true));
+        if !b {
+            self.second = if a { Buttons::UP } else { Buttons::RIGHT };
+        }
+        let first = if a { Buttons::SELECT } else { 0 };
+        if b { first | self.second } else { first }
+    }
+}
+
+fn feed(watchdog: &mut Option<WatchdogHandle<Hdl0>>) {
+    if let Some(watchdog) = watchdog {
+        watchdog.pet();
+    }
+}
+
+impl Board for Microbit {
+    type Layout = Pages;
+    type Turning = Rotation;
+
+    fn show(&mut self, frame: &mut Frame<Pages>) {
+        leds::set(&tiny(frame));
+        self.oled.show(frame);
+        self.feed();
+    }
+
+    fn start_timer(&mut self, nanoseconds: u32) {
+        self.pace.start(nanoseconds, self.timer.read());
+    }
+
+    fn wait_ticks(&mut self) -> u32 {
+        let ticks = self.pace.wait(|| {
+            feed(&mut self.watchdog);
+            self.timer.read()
+        });
+        let held = self.held();
+        self.wish = self.buttons.pressed(held);
+        ticks
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.line.send(bytes);
+    }
+
+    fn poll(&mut self) -> Option<u8> {
+        self.feed();
+        self.line.receive()
+    }
+
+    fn button(&mut self) -> Option<Key> {
+        self.wish.take()
+    }
+
+    #[inline(always)]
+    fn mark_start(&mut self) {
+        markers::start();
+    }
+
+    #[inline(always)]
+    fn mark_stop(&mut self) {
+        markers::stop();
+    }
+}
