@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SymbolKind};
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags, SymbolKind, elf};
 
 use crate::build::Firmware;
 use crate::qemu::MICROBIT;
@@ -27,6 +27,15 @@ pub fn loaded(elf: &Path) -> Result<u64> {
     let bytes = std::fs::read(elf).with_context(|| elf.display().to_string())?;
     let file = object::File::parse(&*bytes).context("the image is no ELF file")?;
     Ok(file.segments().map(|segment| segment.file_range().1).sum())
+}
+
+/// Bytes of RAM that an image's statics take; its stack comes beside them.
+pub fn statics(elf: &Path) -> Result<u64> {
+    let bytes = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+    let file = object::File::parse(&*bytes).context("the image is no ELF file")?;
+    let writable = u64::from(elf::SHF_ALLOC | elf::SHF_WRITE);
+    let of_ram = |flags| matches!(flags, SectionFlags::Elf { sh_flags } if sh_flags & writable == writable);
+    Ok(file.sections().filter(|section| of_ram(section.flags())).map(|section| section.size()).sum())
 }
 
 impl Image {

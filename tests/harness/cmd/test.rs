@@ -20,6 +20,7 @@ use harness::build::Core;
 use harness::{clips, paths, setup};
 
 use super::packages::{self, Package};
+use super::sizes;
 use super::steps::Steps;
 
 /// Runs every check and test: format, lints, host tests, firmware builds, QEMU tests.
@@ -50,15 +51,21 @@ impl Test {
                 cargo(Workspace::Firmware, &format!("test{named} --no-fail-fast"), false)
             });
         }
-        for Package { name, targets } in &boards {
+        for Package { name, targets, features, .. } in &boards {
             for target in targets {
                 let build = format!("--release -p {name} --target {target}");
                 steps.run(&format!("{name} for {target}"), || {
                     board(&format!("clippy {build}"), "-- -D warnings", target)?;
                     board(&format!("build {build}"), "", target)
                 });
+                for feature in features {
+                    steps.run(&format!("lints of {name} with {feature} for {target}"), || {
+                        board(&format!("clippy {build} --features {feature}"), "-- -D warnings", target)
+                    });
+                }
             }
         }
+        steps.run("sizes of the images", sizes::check);
         let name = if self.host_only { "harness tests (QEMU left out)" } else { "QEMU tests" };
         steps.run(name, || cargo(Workspace::Host, "test -p harness --no-fail-fast", self.host_only));
         steps.finish()
