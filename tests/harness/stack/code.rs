@@ -44,6 +44,8 @@ pub struct Code {
     pub functions: Vec<Function>,
     /// Those whose addresses lie in its data, vectors aside.
     pub pointed: BTreeSet<usize>,
+    /// Where it begins.
+    entry: u32,
     /// Bytes of its sections, by address.
     sections: Vec<(u32, Vec<u8>)>,
     /// Where the kind of what follows changes.
@@ -59,13 +61,21 @@ impl Code {
             Architecture::Riscv32 => Kind::Riscv,
             other => bail!("stacks are read from code of Arm and 32-bit RISC-V, not of {other:?}"),
         };
-        let mut code = Code { functions: vec![], pointed: BTreeSet::new(), sections: vec![], marks: marks(&file, usual) };
+        let mut code = Code {
+            functions: vec![],
+            pointed: BTreeSet::new(),
+            entry: file.entry() as u32,
+            sections: vec![],
+            marks: marks(&file, usual),
+        };
         let mut data = vec![];
         for section in file.sections().filter(is_loaded) {
             let (start, bytes) = (section.address() as u32, section.data().unwrap_or_default().to_vec());
-            if section.kind() == SectionKind::Text {
+            // Vectors are gone through by the processor alone.
+            let vectors = section.name().unwrap_or_default().contains("vector");
+            if !vectors && section.kind() == SectionKind::Text {
                 code.functions.extend(functions(&file, &section));
-            } else if !section.name().unwrap_or_default().contains("vector") {
+            } else if !vectors {
                 data.extend((0..bytes.len() as u32).step_by(4).map(|offset| start + offset));
             }
             code.sections.push((start, bytes));
@@ -92,12 +102,12 @@ impl Code {
         (address < self.functions[index].end).then_some(index)
     }
 
-    /// The function that a pointer's value stands for.
+    /// The function that a pointer's value stands for. Nobody calls the image's beginning: its address is some other number.
     pub fn starting(&self, pointer: u32) -> Option<usize> {
         let index = self.containing(pointer)?;
         let start = self.functions[index].start;
         let thumb = u32::from(self.kind(start) == Kind::Thumb);
-        (pointer == start | thumb).then_some(index)
+        (pointer == start | thumb && pointer != self.entry).then_some(index)
     }
 
     /// What a function's instructions do.
