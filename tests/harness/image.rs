@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SymbolKind};
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags, SymbolKind, elf};
 
 use crate::build::Firmware;
 use crate::qemu::MICROBIT;
@@ -29,6 +29,26 @@ pub fn loaded(elf: &Path) -> Result<u64> {
     Ok(file.segments().map(|segment| segment.file_range().1).sum())
 }
 
+/// Bytes of RAM that an image's statics take, and code that runs there; its stack comes beside them.
+pub fn statics(elf: &Path) -> Result<u64> {
+    let bytes = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+    let file = object::File::parse(&*bytes).context("the image is no ELF file")?;
+    Ok(file
+        .sections()
+        .filter(|section| is_static(section.name().unwrap_or_default(), section.flags()))
+        .map(|section| section.size())
+        .sum())
+}
+
+/// esp-hal's linker scripts keep code for the RAM in `.rwtext`, have a section for all that is left to the stack, and "dummies" where the
+/// same bytes have a second address.
+fn is_static(name: &str, flags: SectionFlags) -> bool {
+    let SectionFlags::Elf { sh_flags } = flags else { return false };
+    let has = |flag: u32| sh_flags & u64::from(flag) != 0;
+    let reserves = name == ".stack" || name.contains("dummy");
+    has(elf::SHF_ALLOC) && !reserves && (has(elf::SHF_WRITE) || name.starts_with(".rwtext"))
+}
+
 impl Image {
     /// Builds and reads a program of `firmware/testsuite` for the smallest processor.
     pub fn read(program: &str) -> Result<Self> {
@@ -49,5 +69,22 @@ impl Image {
     pub fn unwanted(&self) -> Vec<&str> {
         let bad = |name: &&str| UNWANTED.iter().any(|part| name.contains(part));
         self.symbols.iter().map(|(name, _)| name.as_str()).filter(bad).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_in_the_ram_is_counted_and_what_is_left_of_it_not() {
+        let flags = |flags: u32| SectionFlags::Elf { sh_flags: flags.into() };
+        let (variable, constant) = (flags(elf::SHF_ALLOC | elf::SHF_WRITE), flags(elf::SHF_ALLOC));
+        for (name, flags) in [(".data", variable), (".bss", variable), (".lcd", variable), (".rwtext", constant)] {
+            assert!(is_static(name, flags), "{name}");
+        }
+        for (name, flags) in [(".rodata", constant), (".stack", variable), (".rwdata_dummy", variable), (".debug", flags(0))] {
+            assert!(!is_static(name, flags), "{name}");
+        }
     }
 }

@@ -16,6 +16,8 @@ pub mod rp2040;
 pub mod screen;
 pub mod setup;
 pub mod simulator;
+pub mod sizes;
+pub mod stack;
 pub mod sync;
 pub mod uf2;
 pub mod update;

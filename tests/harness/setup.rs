@@ -151,6 +151,14 @@ pub fn advice(name: &str) -> String {
     }
 }
 
+/// How to get a program that puts images on boards.
+pub fn flasher_advice(name: &str) -> String {
+    match name {
+        "probe-rs" => "cargo install probe-rs-tools --locked (https://probe.rs/docs/getting-started/installation)".into(),
+        other => format!("cargo install {other} --locked"),
+    }
+}
+
 fn is_root() -> bool {
     let id = Command::new("id").arg("-u").output();
     id.is_ok_and(|id| id.stdout.trim_ascii() == b"0")

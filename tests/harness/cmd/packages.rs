@@ -2,11 +2,15 @@
 //!
 //! A board's `Cargo.toml` says `[package.metadata.firmware]` and `targets = ["thumbv7m-none-eabi"]`.
 
+use std::path::PathBuf;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use harness::paths;
 use serde_json::Value;
+
+/// Features that make another image of a board; its other ones are for tests and measurements.
+const MEANT: [&str; 3] = ["face", "st7789", "update"];
 
 /// A package of the firmware workspace.
 pub struct Package {
@@ -14,6 +18,29 @@ pub struct Package {
     pub name: String,
     /// The targets it is built for; none for a library that its tests run on the host.
     pub targets: Vec<String>,
+    /// Its programs.
+    pub programs: Vec<String>,
+    /// Those of its features that make another image.
+    pub features: Vec<String>,
+    /// Its folder.
+    pub folder: PathBuf,
+}
+
+impl Package {
+    /// Whether it is a board's.
+    pub fn is_board(&self) -> bool {
+        self.folder.parent().is_some_and(|folder| folder.ends_with("boards"))
+            && !self.targets.is_empty()
+            && self.programs.contains(&self.name)
+    }
+
+    /// What `cargo run` there starts a program with, if that is something: a word and its arguments.
+    pub fn runner(&self) -> Option<String> {
+        let config = std::fs::read_to_string(self.folder.join(".cargo/config.toml")).ok()?;
+        let runner = config.lines().find_map(|line| line.trim().strip_prefix("runner")?.trim_start().strip_prefix('='))?;
+        let words: Vec<&str> = runner.split(['"', '\'', ',', '[', ']', ' ']).filter(|word| !word.is_empty()).collect();
+        (!words.is_empty()).then(|| words.join(" "))
+    }
 }
 
 /// All of them.
@@ -28,7 +55,19 @@ pub fn firmware() -> Result<Vec<Package>> {
 }
 
 fn package(package: &Value) -> Package {
-    let targets = package["metadata"]["firmware"]["targets"].as_array();
-    let targets = targets.into_iter().flatten().filter_map(|target| target.as_str()).map(String::from);
-    Package { name: package["name"].as_str().unwrap_or_default().to_owned(), targets: targets.collect() }
+    let programs = package["targets"].as_array().into_iter().flatten();
+    let programs = programs.filter(|target| strings(&target["kind"]).any(|kind| kind == "bin"));
+    let has = |feature: &&str| package["features"].get(feature).is_some();
+    let manifest = PathBuf::from(package["manifest_path"].as_str().unwrap_or_default());
+    Package {
+        name: package["name"].as_str().unwrap_or_default().to_owned(),
+        targets: strings(&package["metadata"]["firmware"]["targets"]).map(String::from).collect(),
+        programs: programs.filter_map(|target| target["name"].as_str()).map(String::from).collect(),
+        features: MEANT.iter().filter(|feature| has(feature)).map(|feature| (*feature).to_owned()).collect(),
+        folder: manifest.parent().map(PathBuf::from).unwrap_or_default(),
+    }
+}
+
+fn strings(value: &Value) -> impl Iterator<Item = &str> {
+    value.as_array().into_iter().flatten().filter_map(Value::as_str)
 }

@@ -21,6 +21,7 @@ use harness::web::browser::Browser;
 use harness::{clips, paths, setup, web};
 
 use super::packages::{self, Package};
+use super::sizes;
 use super::steps::Steps;
 
 /// Runs every check and test: format, lints, host tests, firmware builds, QEMU tests.
@@ -52,13 +53,18 @@ impl Test {
                 cargo(Workspace::Firmware, &format!("test{named} --no-fail-fast"), false)
             });
         }
-        for Package { name, targets } in &boards {
+        for Package { name, targets, features, .. } in &boards {
             for target in targets {
                 let build = format!("--release -p {name} --target {target}");
                 steps.run(&format!("{name} for {target}"), || {
                     board(&format!("clippy {build}"), "-- -D warnings", target)?;
                     board(&format!("build {build}"), "", target)
                 });
+                for feature in features {
+                    steps.run(&format!("lints of {name} with {feature} for {target}"), || {
+                        board(&format!("clippy {build} --features {feature}"), "-- -D warnings", target)
+                    });
+                }
             }
         }
         // One by one: together, the player's libraries would get the converter's standard library.
@@ -66,6 +72,7 @@ impl Test {
             let lints = format!("clippy -p {package} --target {} -- -D warnings", web::TARGET);
             steps.run(&format!("lints of {package}"), || cargo(Workspace::Web, &lints, false));
         }
+        steps.run("sizes of the images", sizes::check);
         let name = if self.host_only { "harness tests (QEMU and Chromium left out)" } else { "tests in QEMU and Chromium" };
         steps.run(name, || cargo(Workspace::Host, "test -p harness --no-fail-fast", self.host_only));
         steps.finish()
