@@ -24,7 +24,9 @@ fn a_run_uses_no_more_stack_than_its_code_says_and_hardly_less() {
     let (paint, memory) = (folder.path().join("paint"), folder.path().join("memory"));
     fs::write(&paint, [PAINT; RAM.1]).unwrap();
     let mut session = sync::Session::start(Launch::new(machine, firmware.elf()).loading(&paint, RAM.0)).unwrap();
-    (0..FRAMES).for_each(|_| drop(session.step(b"").unwrap()));
+    for _ in 0..FRAMES {
+        session.step(b"").unwrap();
+    }
     session.memory(RAM.0, RAM.1, &memory).unwrap();
     session.end().unwrap();
     let painted = fs::read(&memory).unwrap().iter().take_while(|byte| **byte == PAINT).count();
