@@ -6,6 +6,7 @@ mod buttons;
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
 mod end;
+#[cfg(not(feature = "emulated"))]
 mod last_words;
 mod pace;
 mod perform;
@@ -16,6 +17,7 @@ mod register;
 pub use buttons::Buttons;
 #[cfg(feature = "emulated")]
 pub use end::{Code, exit};
+#[cfg(not(feature = "emulated"))]
 pub use last_words::last_words;
 pub use markers;
 pub use pace::Pace;
