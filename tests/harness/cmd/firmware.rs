@@ -100,7 +100,9 @@ fn advice(board: &Package) -> String {
     let name = &board.name;
     let mut ways = vec![];
     if name == "pico" {
-        ways.push(format!("hold BOOTSEL while you plug it in, and drag target/firmware/{name}.uf2 onto the drive RPI-RP2"));
+        ways.push(format!(
+            "hold BOOTSEL while you plug it in, and drag target/firmware/{name}.uf2, or another, onto the drive RPI-RP2"
+        ));
     }
     if let Some(runner) = board.runner() {
         ways.push(format!("{runner} target/firmware/{name}.elf"));

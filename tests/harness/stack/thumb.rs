@@ -43,7 +43,7 @@ fn narrow(
         _ if code & 0xff80 == 0xb080 => effects.push(Frame(4 * (code & 0x7f))),
         // LDR rt, [pc, #]
         _ if code & 0xf800 == 0x4800 => {
-            known[(code >> 8 & 7) as usize] = word((address + 4 & !3) + 4 * (code & 0xff));
+            known[(code >> 8 & 7) as usize] = word(((address + 4) & !3) + 4 * (code & 0xff));
         }
         // ADD sp, rm: a negative literal makes a large frame, a positive one ends it
         _ if code & 0xff87 == 0x4485 => {
