@@ -11,9 +11,11 @@ use harness::sync::Session;
 /// Pictures of a run.
 pub const PICTURES: usize = 60;
 
-/// Plays clips in step, one after the other; of each the counts of each kind of region, without the first picture's.
-pub fn played(machine: Machine, features: &str, clips: &[&Path], words: &[String]) -> Result<Vec<Vec<Stats>>> {
-    let firmware = Firmware::featuring(features, machine.name, machine.name, machine.target, clips)?;
+/// Plays clips in step, one after the other, so many pictures of each; of each the counts of each kind of region, without the first
+/// picture's.
+pub fn played(machine: Machine, features: &str, clips: &[(&Path, usize)], words: &[String]) -> Result<Vec<Vec<Stats>>> {
+    let files: Vec<&Path> = clips.iter().map(|(file, _)| *file).collect();
+    let firmware = Firmware::featuring(features, machine.name, machine.name, machine.target, &files)?;
     let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
     let counts = folder.path().join("counts");
     let mut launch = Launch::new(machine, firmware.elf()).counting(&icount::plugin(machine.emulator)?, &counts);
@@ -21,9 +23,9 @@ pub fn played(machine: Machine, features: &str, clips: &[&Path], words: &[String
         launch = launch.argument(word.clone());
     }
     let mut session = Session::start(launch)?;
-    for clip in 0..clips.len() {
+    for (clip, (_, pictures)) in clips.iter().enumerate() {
         session.step(if clip == 0 { b"" } else { b"n" })?;
-        for _ in 1..PICTURES {
+        for _ in 1..*pictures {
             session.step(b"")?;
         }
     }
@@ -31,9 +33,17 @@ pub fn played(machine: Machine, features: &str, clips: &[&Path], words: &[String
     ensure!(outcome.code == 0, "{} ended with code {}: {}", machine.name, outcome.code, outcome.stderr.trim());
     let counts = icount::read(&counts)?;
     let kinds = FRAME_REGIONS.len();
-    ensure!(counts.len() == clips.len() * PICTURES * kinds, "{} counted {} regions", machine.name, counts.len());
-    // The first picture is sent whole, and its clip has just been opened.
-    counts.chunks_exact(PICTURES * kinds).map(|clip| icount::by_kind(&clip[kinds..], kinds)).collect()
+    let mut rest = &counts[..];
+    let mut stats = vec![];
+    for (_, pictures) in clips {
+        let (clip, after) =
+            rest.split_at_checked(pictures * kinds).with_context(|| format!("{} counted too little", machine.name))?;
+        // The first picture is sent whole, and its clip has just been opened.
+        stats.push(icount::by_kind(clip.get(kinds..).unwrap_or(&[]), kinds)?);
+        rest = after;
+    }
+    ensure!(rest.is_empty(), "{} counted {} regions too many", machine.name, rest.len());
+    Ok(stats)
 }
 
 /// The reference board's RAM beside its framebuffer after playing a clip.

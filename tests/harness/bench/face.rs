@@ -11,7 +11,7 @@ use pantin_tools::expand::expand;
 use pantin_tools::import::{self, Options};
 use pantin_tools::motion::Motion;
 
-use super::board::{self, PICTURES, played};
+use super::board::{self, played};
 use super::{Goal, Setting, table};
 use crate::cmd::steps::say;
 
@@ -87,9 +87,9 @@ const FRAMES: [(&str, Machine, f64); 2] = [("M3, 128x64, 4 bits", LM3S6965EVB, 6
 fn frames(clips: &Clips) -> Result<Vec<Goal>> {
     let mut goals = vec![];
     for (machine_name, machine, most) in FRAMES {
-        say(&format!("   instructions a frame of a face, {machine_name} ({}), mean of {} pictures", machine.name, PICTURES - 1));
+        say(&format!("   instructions a frame of a face, {machine_name} ({}), mean of the clip", machine.name));
         let (mut rows, mut own) = (vec![], vec![]);
-        let files: Vec<&Path> = clips.iter().map(|(_, clip)| clip.as_path()).collect();
+        let files = clips.iter().map(|(_, clip)| Ok((clip.as_path(), frames_of(clip)?))).collect::<Result<Vec<_>>>()?;
         for ((name, _), stats) in clips.iter().zip(played(machine, "face", &files, &[])?) {
             let cost = stats[1].mean() + stats[2].mean();
             rows.push(vec![
@@ -115,6 +115,10 @@ fn frames(clips: &Clips) -> Result<Vec<Goal>> {
         ));
     }
     Ok(goals)
+}
+
+fn frames_of(clip: &Path) -> Result<usize> {
+    Ok(pantin::Clip::new_checked(&std::fs::read(clip)?)?.frames() as usize)
 }
 
 /// Begins the names of recordings.

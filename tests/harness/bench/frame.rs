@@ -61,7 +61,7 @@ fn clips(setting: &Setting) -> Result<[(String, PathBuf); 2]> {
 
 /// A clip by itself.
 fn alone(machine: Machine, features: &str, clip: &Path, words: &[String]) -> Result<Vec<Stats>> {
-    Ok(played(machine, features, &[clip], words)?.remove(0))
+    Ok(played(machine, features, &[(clip, PICTURES)], words)?.remove(0))
 }
 
 fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> {
