@@ -32,8 +32,6 @@ pub struct MyBoard<B, L, P, C, W> {
     /// Up, down, left, right and select, to ground while they are pressed.
     pins: [P; 5],
     buttons: Buttons,
-    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
-    wish: Option<Key>,
     clock: C,
     pace: Pace,
     watchdog: W,
@@ -43,7 +41,7 @@ impl<B: I2c, L, P, C: Clock, W> MyBoard<B, L, P, C, W> {
     /// Of a bus of at most 400 kHz, a line, pins with pull-ups, a clock and a watchdog.
     pub fn new(bus: B, line: L, pins: [P; 5], clock: C, watchdog: W) -> Self {
         let (display, buttons, pace) = (Ssd1306::new(bus, ADDRESS), Buttons::new(0), Pace::new(C::RATE));
-        MyBoard { display, line, pins, buttons, wish: None, clock, pace, watchdog }
+        MyBoard { display, line, pins, buttons, clock, pace, watchdog }
     }
 }
 
@@ -69,7 +67,7 @@ impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBo
             self.clock.now()
         });
         let held = self.pins.iter_mut().rev().fold(0, |held, pin| held << 1 | u32::from(matches!(pin.is_low(), Ok(true))));
-        self.wish = self.buttons.pressed(held);
+        self.buttons.look(held);
         ticks
     }
 
@@ -86,6 +84,6 @@ impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBo
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.wish.take()
+        self.buttons.wish()
     }
 }

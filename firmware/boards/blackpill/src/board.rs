@@ -2,8 +2,8 @@
 
 use crate::clocks::{self, CLOCK};
 use crate::display::{Display, Lit, Words};
+use board_common::Buttons;
 use board_common::cortex_m::SysTick;
-use board_common::{Buttons, markers};
 use pantin_app::{Board, Key};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::Frame;
@@ -25,8 +25,6 @@ pub struct BlackPill {
     /// Up, down, left and right on PB12 to PB15, and for select the board's own on PA0: to ground while they are pressed.
     pins: [ErasedPin<Input>; 5],
     buttons: Buttons,
-    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
-    wish: Option<Key>,
     ticks: SysTick,
     watchdog: IndependentWatchdog,
 }
@@ -54,7 +52,7 @@ impl BlackPill {
         let mut watchdog = IndependentWatchdog::new(parts.IWDG);
         watchdog.stop_on_debug(&parts.DBGMCU, true);
         watchdog.start(PATIENCE.millis());
-        BlackPill { display, line, pins, buttons: Buttons::new(0), wish: None, ticks: SysTick::new(CLOCK), watchdog }
+        BlackPill { display, line, pins, buttons: Buttons::new(0), ticks: SysTick::new(CLOCK), watchdog }
     }
 
     /// Shows words.
@@ -88,7 +86,8 @@ impl Board for BlackPill {
 
     fn wait_ticks(&mut self) -> u32 {
         let ticks = self.ticks.wait(|| self.watchdog.feed());
-        self.wish = self.buttons.pressed(self.held());
+        let held = self.held();
+        self.buttons.look(held);
         ticks
     }
 
@@ -103,16 +102,6 @@ impl Board for BlackPill {
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.wish.take()
-    }
-
-    #[inline(always)]
-    fn mark_start(&mut self) {
-        markers::start();
-    }
-
-    #[inline(always)]
-    fn mark_stop(&mut self) {
-        markers::stop();
+        self.buttons.wish()
     }
 }

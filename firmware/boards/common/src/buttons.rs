@@ -11,6 +11,8 @@ pub struct Buttons {
     held: u32,
     /// Another one was pressed while select was held.
     chord: bool,
+    /// What was asked for when [`Buttons::look`] was last called.
+    wish: Option<Key>,
 }
 
 impl Buttons {
@@ -27,7 +29,17 @@ impl Buttons {
 
     /// These are held; that does not count until they are let go.
     pub const fn new(held: u32) -> Self {
-        Buttons { held, chord: true }
+        Buttons { held, chord: true, wish: None }
+    }
+
+    /// Looks which are held. Once a tick and no oftener: a contact that bounces then counts once.
+    pub fn look(&mut self, now: u32) {
+        self.wish = self.pressed(now);
+    }
+
+    /// What the last look saw, once.
+    pub fn wish(&mut self) -> Option<Key> {
+        self.wish.take()
     }
 
     /// What a button asks for that was pressed, or select when it is let go, since the last call; `now` those that are held.

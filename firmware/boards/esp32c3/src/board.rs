@@ -27,8 +27,6 @@ pub struct Esp32C3 {
     /// Up, down, left and right on GPIO0, GPIO1, GPIO3 and GPIO4, and for select the board's own, BOOT, on GPIO9: to ground while they are pressed.
     pins: [Input<'static>; 5],
     buttons: Buttons,
-    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
-    wish: Option<Key>,
     pace: Pace,
     watchdog: Wdt<TIMG0<'static>>,
 }
@@ -62,7 +60,6 @@ impl Esp32C3 {
                 Input::new(parts.GPIO9, pull),
             ],
             buttons: Buttons::new(0),
-            wish: None,
             pace: Pace::new(1),
             watchdog,
         }
@@ -104,7 +101,8 @@ impl Board for Esp32C3 {
             self.watchdog.feed();
             now()
         });
-        self.wish = self.buttons.pressed(self.held());
+        let held = self.held();
+        self.buttons.look(held);
         ticks
     }
 
@@ -124,6 +122,6 @@ impl Board for Esp32C3 {
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.wish.take()
+        self.buttons.wish()
     }
 }

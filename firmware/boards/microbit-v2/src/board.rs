@@ -4,7 +4,7 @@ use crate::dog;
 use crate::leds::{self, Leds};
 use crate::line::Line;
 use crate::oled::Oled;
-use board_common::{Buttons, Pace, markers};
+use board_common::{Buttons, Pace};
 use board_parts::ssd1306::Pages;
 use board_parts::tiny;
 use embedded_hal::digital::InputPin;
@@ -33,8 +33,6 @@ pub struct Microbit {
     /// What B was pressed for.
     second: u32,
     buttons: Buttons,
-    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
-    wish: Option<Key>,
     timer: Timer<TIMER0, Periodic>,
     pace: Pace,
     watchdog: Option<WatchdogHandle<Hdl0>>,
@@ -59,7 +57,6 @@ impl Microbit {
             pins: [p0.p0_14.into_floating_input().degrade(), p0.p0_23.into_floating_input().degrade()],
             second: 0,
             buttons: Buttons::new(0),
-            wish: None,
             timer,
             pace: Pace::new(RATE),
             watchdog: dog::start(parts.WDT),
@@ -108,7 +105,7 @@ impl Board for Microbit {
             self.timer.read()
         });
         let held = self.held();
-        self.wish = self.buttons.pressed(held);
+        self.buttons.look(held);
         ticks
     }
 
@@ -122,16 +119,6 @@ impl Board for Microbit {
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.wish.take()
-    }
-
-    #[inline(always)]
-    fn mark_start(&mut self) {
-        markers::start();
-    }
-
-    #[inline(always)]
-    fn mark_stop(&mut self) {
-        markers::stop();
+        self.buttons.wish()
     }
 }

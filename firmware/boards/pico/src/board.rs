@@ -30,8 +30,6 @@ pub struct Pico {
     /// Up, down, left, right and select: GP10 to GP14, to ground while they are pressed.
     pins: [Button; 5],
     buttons: Buttons,
-    /// A button's wish since the last tick: looked at no oftener, so that a contact that bounces counts once.
-    wish: Option<Key>,
     ticks: SysTick,
     watchdog: Watchdog,
 }
@@ -59,7 +57,7 @@ impl Pico {
         ];
         watchdog.pause_on_debug(true);
         watchdog.start(PATIENCE.millis());
-        Pico { display, line, pins, buttons: Buttons::new(0), wish: None, ticks: SysTick::new(CLOCK), watchdog }
+        Pico { display, line, pins, buttons: Buttons::new(0), ticks: SysTick::new(CLOCK), watchdog }
     }
 
     /// Shows words.
@@ -94,7 +92,7 @@ impl Board for Pico {
     fn wait_ticks(&mut self) -> u32 {
         let ticks = self.ticks.wait(|| self.watchdog.feed());
         let held = self.held();
-        self.wish = self.buttons.pressed(held);
+        self.buttons.look(held);
         ticks
     }
 
@@ -109,7 +107,7 @@ impl Board for Pico {
     }
 
     fn button(&mut self) -> Option<Key> {
-        self.wish.take()
+        self.buttons.wish()
     }
 
     #[inline(always)]
