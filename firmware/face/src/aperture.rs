@@ -1,6 +1,6 @@
 //! Openings between two lids: what is behind them is drawn no farther than their edges, an iris, a row of teeth, a tongue.
 
-use crate::bytes::Bytes;
+use crate::bytes::{Bytes, indices};
 use crate::model::{Error, Model, NO_SHAPE};
 use crate::morph::{Place, Weights};
 use heapless::Vec;
@@ -61,10 +61,10 @@ pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
             }
             let image = |index| usize::from(if mirrored { model.mirror(index) } else { index });
             let (mut upper, mut lower) = (Edge::EMPTY, Edge::EMPTY);
-            each(aperture.upper, model.wide, |index| upper.add(places, image(index)));
-            each(aperture.lower, model.wide, |index| lower.add(places, image(index)));
+            indices(aperture.upper, model.wide).for_each(|index| upper.add(places, image(index)));
+            indices(aperture.lower, model.wide).for_each(|index| lower.add(places, image(index)));
             let (above, below) = (upper.inner(), lower.inner());
-            each(aperture.members, model.wide, |index| {
+            indices(aperture.members, model.wide).for_each(|index| {
                 let Some(place) = places.get_mut(image(index)) else { return };
                 let (x, mut y) = (i32::from(place[0]).max(upper.least).min(upper.most), i32::from(place[1]));
                 if !above.holds(x) || y > above.lowest {
@@ -75,17 +75,6 @@ pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
                 }
                 *place = [x as i16, y as i16, place[2]];
             });
-        }
-    }
-}
-
-#[inline(always)]
-fn each(indices: &[u8], wide: bool, mut visit: impl FnMut(u16)) {
-    for bytes in indices.chunks_exact(1 << u32::from(wide)) {
-        match *bytes {
-            [index] => visit(u16::from(index)),
-            [low, high] => visit(u16::from_le_bytes([low, high])),
-            _ => {}
         }
     }
 }

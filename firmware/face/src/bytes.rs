@@ -36,3 +36,13 @@ impl<'a> Bytes<'a> {
         if wide { self.short() } else { self.byte().map(u16::from) }
     }
 }
+
+/// Indices of vertices, each of one byte or two.
+#[inline(always)]
+pub(crate) fn indices(bytes: &[u8], wide: bool) -> impl Iterator<Item = u16> + '_ {
+    bytes.chunks_exact(1 << u32::from(wide)).map(|bytes| match *bytes {
+        [index] => u16::from(index),
+        [low, high] => u16::from_le_bytes([low, high]),
+        _ => 0,
+    })
+}

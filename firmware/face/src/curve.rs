@@ -1,6 +1,6 @@
 //! Curves on the face that are drawn: brows, lids, lips.
 
-use crate::bytes::Bytes;
+use crate::bytes::{Bytes, indices};
 use crate::model::{Error, Model};
 
 /// A curve through vertices.
@@ -60,11 +60,7 @@ impl<'a> Curve<'a> {
     /// Its vertices.
     #[inline(always)]
     pub fn vertices(&self) -> impl Iterator<Item = u16> + '_ {
-        self.indices.chunks_exact(1 << u32::from(self.wide)).map(|bytes| match *bytes {
-            [index] => u16::from(index),
-            [low, high] => u16::from_le_bytes([low, high]),
-            _ => 0,
-        })
+        indices(self.indices, self.wide)
     }
 }
 
