@@ -205,6 +205,23 @@ fn the_figure_fills_a_terminal_that_grows_and_shrinks() {
     assert!(seat.is_restored());
 }
 
+/// Now and then both are there when it looks for either.
+#[test]
+fn a_key_that_comes_with_a_resize_is_not_lost() {
+    let folder = Folder::new("both");
+    let mut seat = Seat::new(&folder.0, PANTIN, &["play", "walk.ptn"]);
+    seat.status(&[" walk ", " x1 "]);
+    for round in 0..300 {
+        let (rows, key, speed) = if round % 2 == 0 { (30, "+", " x2 ") } else { (24, "-", " x1 ") };
+        seat.screen.lock().unwrap().screen_mut().set_size(side(rows), side(80));
+        seat.master.resize(PtySize { rows, cols: 80, pixel_width: 0, pixel_height: 0 }).unwrap();
+        seat.press(key);
+        seat.status(&[speed]);
+    }
+    seat.press("q");
+    assert!(seat.wait().success());
+}
+
 #[test]
 fn a_clip_plays_at_its_rate_and_once_ends_it() {
     let folder = Folder::new("once");

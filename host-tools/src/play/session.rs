@@ -14,6 +14,9 @@ const LEAST: Duration = Duration::from_nanos(16_600_000);
 /// While it is paused, keys alone are waited for.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
+/// Keys are looked for so long at least, however late a picture is: no time at all finds none.
+const BRIEFLY: Duration = Duration::from_millis(1);
+
 /// Why a clip ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -75,11 +78,11 @@ impl Session {
     /// Waits for the next frame or a key; whether the picture is to be drawn anew, or the clip ends.
     fn wait(&mut self, drawn: Duration) -> Result<(bool, Option<Outcome>)> {
         let now = self.begun.elapsed();
-        let next = self.clock.until_next(now).unwrap_or(PATIENCE).max((drawn + LEAST).saturating_sub(now));
+        let next = self.clock.until_next(now).unwrap_or(PATIENCE).max((drawn + LEAST).saturating_sub(now)).max(BRIEFLY);
         let mut changed = false;
         let mut patience = next;
         while event::poll(patience)? {
-            patience = Duration::ZERO;
+            patience = BRIEFLY;
             match event::read()? {
                 Event::Resize(..) => self.terminal.forget(),
                 Event::Key(key) => {
