@@ -12,6 +12,8 @@ pub struct Curve<'a> {
     pub mirrored: bool,
     /// From which size on it is drawn: 0 always.
     pub detail: u8,
+    /// Whether the smallest displays alone draw it: in place of one with more vertices.
+    pub small: bool,
     /// Whether it has corners at its vertices on displays of any size.
     pub straight: bool,
     /// Brightness.
@@ -23,18 +25,25 @@ pub struct Curve<'a> {
 impl<'a> Curve<'a> {
     fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, Error> {
         let [flags, shade, count] = bytes.array()?;
-        if flags >> 5 != 0 || count < 2 {
+        if flags >> 6 != 0 || count < 2 {
             return Err(Error::Malformed);
         }
         Ok(Curve {
             closed: flags & 1 != 0,
             mirrored: flags & 2 != 0,
             detail: flags >> 2 & 3,
+            small: flags & 32 != 0,
             straight: flags & 16 != 0,
             shade,
             indices: bytes.take(usize::from(count) << u32::from(wide))?,
             wide,
         })
+    }
+
+    /// Whether it is drawn on displays of some detail.
+    #[inline(always)]
+    pub(crate) fn drawn(&self, detail: u8) -> bool {
+        self.detail <= detail && !(self.small && detail > 0)
     }
 
     /// Number of its vertices, at least 2.

@@ -9,6 +9,8 @@ use heapless::Vec;
 const SHADE: u8 = 200;
 /// Most triangles that are kept from frame to frame: what is beyond is looked for in each frame.
 const KEPT: usize = 48;
+/// Lines after which is told what they cover: mirror images follow each other, so their rectangles are as wide as the face anyway.
+const TOLD: usize = 2;
 
 /// The triangles that make the outline, as long as the head keeps its turn.
 #[derive(Clone, Debug)]
@@ -40,8 +42,6 @@ impl Crossed {
         let [apex, one, other] = self.corners;
         let apex = at(apex);
         out.line(between(apex, at(one), self.ways[0].into()), between(apex, at(other), self.ways[1].into()));
-        // It is long, and goes all about the face: what it covers is told line by line.
-        out.end();
     }
 }
 
@@ -79,7 +79,11 @@ impl Outline {
         if self.overflown {
             all(model, screen, out);
         } else {
-            self.triangles.iter().for_each(|crossed| crossed.draw(screen.points, out));
+            // It goes all about the face: what it covers is told every few lines.
+            for some in self.triangles.chunks(TOLD) {
+                some.iter().for_each(|crossed| crossed.draw(screen.points, out));
+                out.end();
+            }
         }
     }
 }
@@ -87,7 +91,10 @@ impl Outline {
 /// More than are kept. In a function of its own: what it needs of memory is seldom needed.
 #[inline(never)]
 fn all(model: &Model, screen: Screen, out: &mut impl Paint) {
-    each_crossed(model, screen.facing, |corners| Crossed::new(corners, screen.facing).draw(screen.points, out));
+    each_crossed(model, screen.facing, |corners| {
+        Crossed::new(corners, screen.facing).draw(screen.points, out);
+        out.end();
+    });
 }
 
 #[inline(always)]

@@ -28,7 +28,7 @@ pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl Pai
         screen.mesh(model, out);
     }
     screen.outline.lines(model, screen, out);
-    for curve in model.curves().filter(|curve| curve.detail <= detail) {
+    for curve in model.curves().filter(|curve| curve.drawn(detail)) {
         let fine = if curve.straight { &[][..] } else { FINE.get(usize::from(detail)).copied().unwrap_or(&[]) };
         for mirrored in [false, true] {
             if mirrored && !curve.mirrored {
@@ -55,7 +55,7 @@ pub(crate) fn leave_out(model: &Model, detail: u8, outline: &Outline, facing: &m
     let mut needed = [0u32; 8];
     let mut need = |index: u16| needed[usize::from(index as u8 >> 5)] |= 1 << (index & 31);
     outline.corners(&mut need);
-    for curve in model.curves().filter(|curve| curve.detail <= detail) {
+    for curve in model.curves().filter(|curve| curve.drawn(detail)) {
         for index in curve.vertices() {
             need(index);
             if curve.mirrored {

@@ -59,6 +59,8 @@ pub struct Curve {
     pub closed: bool,
     /// Whether it keeps its corners at any size.
     pub straight: bool,
+    /// Whether the smallest displays alone draw it.
+    pub small: bool,
     /// Its points.
     pub points: Vec<usize>,
 }

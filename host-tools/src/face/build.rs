@@ -17,6 +17,7 @@ pub fn neutral(head: &Head) -> Blueprint {
         paired: curve.paired,
         closed: curve.closed,
         straight: false,
+        small: curve.small,
         points: curve.points.clone(),
     };
     let opening = |opening: &super::head::Opening| Opening { opening: opening.clone(), release: None };

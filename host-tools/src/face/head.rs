@@ -23,6 +23,8 @@ pub struct Curve {
     pub paired: bool,
     /// Whether it runs back to its first point.
     pub closed: bool,
+    /// Whether the smallest displays alone draw it.
+    pub small: bool,
     /// Its points.
     pub points: Vec<usize>,
 }
@@ -241,6 +243,7 @@ impl Head {
             shade: shade.parse()?,
             paired: options.contains("paired"),
             closed: options.contains("closed"),
+            small: options.contains("small"),
             points: self.path(points)?,
         })
     }

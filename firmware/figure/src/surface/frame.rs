@@ -98,8 +98,8 @@ impl<L: Layout> Frame<L> {
             let Window { columns: [from, to], rows: [top, bottom] } = window.cells::<L>();
             let wide = L::WIDTH / L::CELL[0];
             let rows = self.cells.as_mut().get_mut(top * wide..(bottom + 1) * wide).unwrap_or_default();
-            // Rows in one stretch take less than their parts one by one.
-            if 2 * (to - from) >= wide {
+            // A call takes as long as this many cells: rows in one stretch take less than their parts one by one.
+            if wide - (to + 1 - from) <= CALL && bottom > top {
                 fill(rows, L::Cell::DARK);
                 continue;
             }
@@ -136,6 +136,9 @@ impl<L: Layout> Frame<L> {
         L::get(self.cells(), L::cursor(x, y))
     }
 }
+
+/// Cells that are filled in the time that it takes to begin.
+const CALL: usize = 16;
 
 /// Eight at a time: the library's way takes three instructions a word. A value that the compiler does not know keeps it from
 /// going that way all the same.
