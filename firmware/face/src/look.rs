@@ -184,7 +184,9 @@ fn frame(model: &Model, canvas: Canvas) -> (Camera, u8) {
     (camera, DETAILS.iter().filter(|&&least| covered >= least).count() as u8)
 }
 
-/// Puts the vertices on the display that are drawn there: all, or those that may move.
+/// Puts the vertices on the display that are drawn there: all, or those that may move. In a function of its own: finding the outline
+/// before takes room too.
+#[inline(never)]
 fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: bool, facing: &[i8], points: &mut [[i16; 2]]) {
     let (angles, pivot) = head;
     let head = seen::turned(angles);

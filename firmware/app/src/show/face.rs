@@ -51,12 +51,17 @@ impl Face<'_> {
         self.binding.names()
     }
 
-    #[inline(never)]
     pub(super) fn place(&mut self, pose: &[i32]) {
+        self.shape(pose);
+        self.look.project(self.model, self.morph);
+    }
+
+    /// In a function of its own: the weights are given back.
+    #[inline(never)]
+    fn shape(&mut self, pose: &[i32]) {
         let mut weights = Weights::new();
         self.binding.weigh(pose, &mut weights);
         self.morph.place(self.model, &weights);
-        self.look.project(self.model, self.morph);
     }
 
     pub(super) fn draw<L: Layout>(&mut self, frame: &mut Frame<L>) {

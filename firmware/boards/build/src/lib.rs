@@ -35,7 +35,8 @@ pub fn link(arguments: &[&str]) {
 }
 
 /// Writes `clips.rs`: `CLIPS`, the clips that `PANTIN_CLIP` names (their whole paths, apart as in PATH), or our own:
-/// walk and run, and with the feature `face` of the board's package a greeting and expressions.
+/// walk and run, and with the feature `face` of the board's package a greeting and expressions. Beside them `LARGEST`, what the largest takes:
+/// channels, moving channels, and joints of the figure.
 pub fn clips() {
     println!("cargo::rerun-if-env-changed=PANTIN_CLIP");
     let paths: Vec<PathBuf> = match env::var_os("PANTIN_CLIP") {
@@ -47,6 +48,7 @@ pub fn clips() {
         }
     };
     let mut list = String::new();
+    let mut largest = [0; 3];
     for (index, path) in paths.iter().enumerate() {
         println!("cargo::rerun-if-changed={}", path.display());
         let copy = out().join(format!("clip-{index}.ptn"));
@@ -54,11 +56,22 @@ pub fn clips() {
             let advice = "set PANTIN_CLIP to whole paths of clips; `cargo pantin convert IN -o OUT.ptn` makes one";
             println!("cargo::error={}: {error}: {advice}", path.display());
         }
+        let taken = fs::read(&copy).ok().and_then(|bytes| taken(&bytes)).unwrap_or_default();
+        largest = std::array::from_fn(|kind| taken[kind].max(largest[kind]));
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}) }},");
     }
-    let module = format!("/// The clips that this program was built with.\nstatic CLIPS: &[pantin_app::Entry] = &[\n{list}];\n");
-    fs::write(out().join("clips.rs"), module).expect("OUT_DIR is writable");
+    let clips = format!("/// The clips that this program was built with.\nstatic CLIPS: &[pantin_app::Entry] = &[\n{list}];\n");
+    let largest = format!(
+        "/// Channels, moving channels and joints of the largest of them.\n#[allow(dead_code)]\nconst LARGEST: [usize; 3] = {largest:?};\n"
+    );
+    fs::write(out().join("clips.rs"), clips + &largest).expect("OUT_DIR is writable");
+}
+
+/// Channels, moving channels, and joints of the figure with the crown that it may get; of what is no clip the program tells by itself.
+fn taken(bytes: &[u8]) -> Option<[usize; 3]> {
+    let clip = pantin::Clip::new_checked(bytes).ok()?;
+    Some([clip.rig().channels(), clip.moving(), clip.rig().joint_count() + 1])
 }
 
 fn out() -> PathBuf {

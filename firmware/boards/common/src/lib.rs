@@ -6,7 +6,6 @@ mod buttons;
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
 mod end;
-#[cfg(not(feature = "emulated"))]
 // The emulated boards' panics end the emulator; one of them has no atomic memory access.
 #[cfg(not(feature = "emulated"))]
 mod last_words;
@@ -15,11 +14,11 @@ mod perform;
 #[cfg(feature = "emulated")]
 mod play;
 mod register;
+mod room;
 
 pub use buttons::Buttons;
 #[cfg(feature = "emulated")]
 pub use end::{Code, exit};
-#[cfg(not(feature = "emulated"))]
 #[cfg(not(feature = "emulated"))]
 pub use last_words::last_words;
 pub use markers;
@@ -30,3 +29,4 @@ pub use play::play;
 #[cfg(all(feature = "emulated", feature = "update"))]
 pub use play::play_stored;
 pub use register::Register;
+pub use room::fitted;
