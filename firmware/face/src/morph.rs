@@ -156,8 +156,8 @@ fn rest(model: &Model, [from, to]: [usize; 2], places: &mut [Place]) {
     }
 }
 
-/// Factors below this move nothing by more than 32 steps, 1/4 mm of Pantin's face, a quarter of a pixel of a face 240 pixels high: left out.
-const LEAST: i32 = 64;
+/// Factors below this move nothing by more than 16 steps, 1/8 mm of Pantin's face: left out.
+const LEAST: i32 = 32;
 
 /// Adds a shape's deltas.
 fn add(model: &Model, shape: &Shape, pair: [i32; 2], places: &mut [Place]) {
