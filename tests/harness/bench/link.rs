@@ -1,7 +1,7 @@
 //! A captured body with a captured face over a line that loses packets: after how long all of it is exact again, and drawn so, and what of
 //! the line that takes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use harness::lossy::{Damage, Lossy, last_frame, play};
@@ -10,6 +10,7 @@ use pantin::Clip;
 use pantin_link::sender::{Bytes, Line, Sender, Source};
 use pantin_link::{Link, QUEUE};
 
+use super::link_board::{Board, Seen};
 use super::{Goal, Setting, table};
 use crate::cmd::steps::say;
 
@@ -42,6 +43,8 @@ const DAMAGING: f64 = 1.0;
 const WHOLE: f64 = 2.0;
 /// Times that the clip is sent for one kind of damage.
 const PASSES: u64 = 12;
+/// The same to the emulated board.
+const BOARD_PASSES: u64 = 3;
 
 /// Times that a receiver joins a clip that is under way.
 const JOINS: u32 = 24;
@@ -54,7 +57,10 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
         say(&format!("   {BODY} or {FACE}: not there"));
         return Ok(vec![]);
     }
-    let source = source(setting, &body, &face)?;
+    let clip = clip(setting, &body, &face)?;
+    let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
+    let source = Source::new(&Clip::new_checked(&bytes)?)?;
+    let board = Board::new(&clip)?;
     say(&format!("   hops-and-turn with the face angry: {} frames, {} channels told", source.frames(), source.told()));
     let (mut goals, mut rows) = (vec![], vec![]);
     for (baud, ahead, exact) in LINES {
@@ -63,8 +69,15 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
             wanted.fitted(&source).with_context(|| format!("{baud} baud do not carry the clip"))
         };
         let lines = [fitted(false)?, fitted(true)?];
-        let run = |&(damage, parity): &(Damage, bool)| Run::of(&source, lines[usize::from(parity)], damage, setting.quick);
-        let runs: Vec<Run> = DAMAGES.iter().map(run).collect();
+        let mut runs = vec![];
+        for (damage, parity) in DAMAGES {
+            let line = lines[usize::from(parity)];
+            let mut run = Run::of(&source, line, damage, setting.quick);
+            for pass in 0..if setting.quick { 1 } else { BOARD_PASSES } {
+                run.seen.add(board.plays(&source, line, damage, pass, |at| harms(at, pass))?);
+            }
+            runs.push(run);
+        }
         rows.extend(runs.iter().map(|run| row(baud, run)));
         goals.extend(judged(baud, exact, &source, lines, &runs));
     }
@@ -72,12 +85,15 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     Ok(goals)
 }
 
-fn source(setting: &Setting, body: &Path, face: &Path) -> Result<Source> {
+fn clip(setting: &Setting, body: &Path, face: &Path) -> Result<PathBuf> {
     let mut options: Vec<String> = OPTIONS.map(Into::into).into();
     options.extend(["--with".into(), face.display().to_string()]);
-    let made = setting.tool.converted(body, "link-hops-angry", &options)?;
-    let bytes = std::fs::read(&made.clip).with_context(|| made.clip.display().to_string())?;
-    Ok(Source::new(&Clip::new_checked(&bytes)?)?)
+    Ok(setting.tool.converted(body, "link-hops-angry", &options)?.clip)
+}
+
+/// Whether the line damages what leaves at that time, in the `pass`th time that the clip is sent.
+fn harms(at: f64, pass: u64) -> bool {
+    at > 1.0 && (at + pass as f64 * 0.37) % (DAMAGING + WHOLE) < DAMAGING
 }
 
 /// What a kind of damage did.
@@ -94,6 +110,8 @@ struct Run {
     /// Parts of the channels that are exact, and of frames on which the figure moves, while the line damages all the time.
     held: f64,
     moves: f64,
+    /// On the emulated board.
+    seen: Seen,
 }
 
 impl Run {
@@ -112,12 +130,10 @@ impl Run {
         let milliseconds = 1000.0 * source.frame_seconds();
         let mut lossy = Lossy::new(seed);
         let (mut last, mut exact_at) = (None::<u16>, None::<u16>);
-        let shift = seed as f64 * 0.37;
         let harmed = std::cell::Cell::new(None::<u16>);
         let damaged = |departure: &pantin_link::sender::Departure| {
-            let within = departure.at > 1.0 && (departure.at + shift) % (DAMAGING + WHOLE) < DAMAGING;
             // What channels are is known at both ends: it is told of seldom.
-            match last_frame(&departure.bytes, line).filter(|_| within) {
+            match last_frame(&departure.bytes, line).filter(|_| harms(departure.at, seed)) {
                 None => departure.bytes.clone(),
                 Some(frame) => {
                     let (bytes, hurt) = lossy.pass(&departure.bytes, self.damage);
@@ -203,6 +219,8 @@ fn row(baud: u32, run: &Run) -> Vec<String> {
     let mut row = vec![baud.to_string(), words(run), run.exact.len().to_string()];
     row.extend(exact.iter().chain(&joined).map(|time| format!("{time:.0}")));
     row.extend([run.held, run.moves].map(|part| format!("{:.1} %", 100.0 * part)));
+    row.extend(median_and_worst(&run.seen.right).map(|time| format!("{time:.0}")));
+    row.push(format!("{:.1} %", 100.0 * run.seen.moves()));
     row.extend([run.wrong, run.resets].map(|count| count.to_string()));
     row
 }
@@ -217,6 +235,9 @@ fn print(rows: &[Vec<String>]) {
         "joined after, ms",
         "worst",
         "channels exact",
+        "moves",
+        "on the board right, ms",
+        "worst",
         "moves",
         "wrong",
         "resets",
@@ -265,6 +286,13 @@ fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], ru
     vec![
         Goal::at_most(of("all channels exact after the last error, worst"), worst(|run| &run.exact), exact, 0, "ms"),
         Goal::at_most(of("all of them drawn so after that, worst"), worst(|run| &run.joined), JOINED, 0, "ms"),
+        Goal::at_most(
+            of("the emulated board's pictures right again after the last error, worst"),
+            worst(|run| &run.seen.right),
+            exact + JOINED,
+            0,
+            "ms",
+        ),
         Goal::at_most(of("framing and CRC, of the line"), 100.0 * framing / all, FRAMING, 1, "%"),
         Goal::told(of("motion"), rate(motion)),
         Goal::told(of("refresh"), format!("{}, each channel within {cycle:.0} ms", rate(refresh))),

@@ -12,6 +12,7 @@ mod goals;
 mod guest;
 mod host;
 mod link;
+mod link_board;
 mod paper;
 mod peers;
 mod plot;

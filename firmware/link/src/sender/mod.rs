@@ -25,7 +25,7 @@ pub struct Sender {
 }
 
 /// The line's frame at which a clip begins: frames before it are those of its look-ahead.
-const BEGIN: u32 = 1 << 8;
+pub const BEGIN: u32 = 1 << 8;
 
 impl Sender {
     /// `session` should be drawn by chance.
