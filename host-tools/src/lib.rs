@@ -15,6 +15,8 @@ pub mod fit;
 pub mod fk;
 pub mod import;
 pub mod keys;
+#[cfg(feature = "cli")]
+pub mod line;
 pub mod motion;
 #[cfg(feature = "cli")]
 pub mod play;

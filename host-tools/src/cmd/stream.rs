@@ -1,7 +1,7 @@
 //! `pantin stream`: clips over a line, while they play.
 
 use crate::cmd::Files;
-use crate::stream::{line::Address, pace};
+use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
 use pantin_link::sender::{Bytes, Line, Sender, Source};
 use std::hash::{BuildHasher, Hasher, RandomState};

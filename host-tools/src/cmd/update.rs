@@ -1,6 +1,6 @@
 //! `pantin update`.
 
-use crate::update::line::{Line, Place};
+use crate::update::place::Place;
 use crate::update::{self, Patience};
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -46,7 +46,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let (clip, claim) = update::read(&arguments.input, arguments.name.as_deref())?;
-    let mut line = Line::open(&arguments.to)?;
+    let mut line = arguments.to.open()?;
     let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(claim.length.into()) };
     bar.set_style(ProgressStyle::with_template("{wide_bar} {bytes} of {total_bytes} {eta}")?);
     let patience = Patience { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };

@@ -1,5 +1,5 @@
 //! Motion sent over a line while it plays.
 
-pub mod line;
+pub mod address;
 pub mod live;
 pub mod pace;

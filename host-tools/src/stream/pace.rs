@@ -1,6 +1,6 @@
 //! Packets that leave when it is time.
 
-use super::line::Line;
+use super::address::Line;
 use anyhow::Result;
 use pantin_link::sender::Departure;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,7 @@
 //! A board's clip, replaced: as the image that is flashed beside the firmware, or sent over a line as `pantin_store::message` says.
 
 pub mod image;
-pub mod line;
+pub mod place;
 mod send;
 
 pub use send::{Failure, Outcome, Patience, send};

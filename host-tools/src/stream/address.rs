@@ -1,17 +1,15 @@
 //! Where motion is sent to: a serial line, a TCP connection, or UDP datagrams.
 
+use crate::line::{self, STUCK};
 use anyhow::{Context, Result, bail};
 use std::io::{ErrorKind, Write};
-use std::net::{TcpStream, UdpSocket};
+use std::net::UdpSocket;
 use std::str::FromStr;
-use std::time::Duration;
 
 /// Baud of a line that names none.
 const BAUD: u32 = 38_400;
 /// Bits that a byte takes on a serial line: with start and stop.
 const BITS: f64 = 10.0;
-/// How long the other end may take no bytes.
-const PATIENCE: Duration = Duration::from_secs(5);
 
 /// `serial:DEVICE`, `tcp:HOST:PORT` or `udp:HOST:PORT`, each with `@BAUD` after it if it is not 38,400.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,10 +54,8 @@ impl FromStr for Address {
 
 /// A line that is open.
 pub enum Line {
-    /// A serial line.
-    Serial(serial2::SerialPort),
-    /// A connection.
-    Tcp(TcpStream),
+    /// In order.
+    Bytes(line::Line),
     /// Datagrams.
     Udp(UdpSocket),
 }
@@ -72,25 +68,14 @@ impl Address {
 
     /// Opens the line.
     pub fn open(&self) -> Result<Line> {
-        let line = match self.way {
-            Way::Serial => {
-                let mut port =
-                    serial2::SerialPort::open(&self.to, self.baud).with_context(|| format!("{}: cannot be opened", self.to))?;
-                port.set_write_timeout(PATIENCE)?;
-                Line::Serial(port)
-            }
-            Way::Tcp => {
-                let stream = TcpStream::connect(&self.to).with_context(|| format!("{}: cannot connect", self.to))?;
-                stream.set_nodelay(true)?;
-                stream.set_write_timeout(Some(PATIENCE))?;
-                Line::Tcp(stream)
-            }
+        Ok(match self.way {
+            Way::Serial => Line::Bytes(line::Line::serial(&self.to, self.baud)?),
+            Way::Tcp => Line::Bytes(line::Line::tcp(&self.to)?),
             Way::Udp => {
                 let any = |to: &str| UdpSocket::bind("0.0.0.0:0").and_then(|socket| socket.connect(to).map(|()| socket));
                 Line::Udp(any(&self.to).with_context(|| format!("{}: cannot send there", self.to))?)
             }
-        };
-        Ok(line)
+        })
     }
 }
 
@@ -98,8 +83,7 @@ impl Line {
     /// Sends a packet.
     pub fn send(&mut self, bytes: &[u8]) -> Result<()> {
         let sent = match self {
-            Line::Serial(port) => port.write_all(bytes),
-            Line::Tcp(stream) => stream.write_all(bytes),
+            Line::Bytes(line) => line.write_all(bytes),
             // Nobody who listens yet is no error: a packet is lost.
             Line::Udp(socket) => socket.send(bytes).map(drop).or_else(|error| match error.kind() {
                 ErrorKind::ConnectionRefused => Ok(()),
@@ -108,7 +92,7 @@ impl Line {
         };
         sent.map_err(|error| match error.kind() {
             ErrorKind::WouldBlock | ErrorKind::TimedOut => {
-                anyhow::anyhow!("the other end has taken no bytes for {} s", PATIENCE.as_secs())
+                anyhow::anyhow!("the other end has taken no bytes for {} s", STUCK.as_secs())
             }
             _ => anyhow::Error::new(error).context("the line is gone"),
         })
