@@ -308,6 +308,25 @@ fn a_clip_without_joints_plays_as_bars() {
 }
 
 #[test]
+fn a_face_plays_as_a_face() {
+    let folder = Folder::new("joy");
+    let joy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/face/joy.ptn");
+    let text = |view: &[&str]| folder.text(&[&["play", joy.to_str().unwrap(), "--plain", "--size", "60x24"], view].concat());
+    let front = text(&[]);
+    let frames: Vec<Vec<&str>> = front.lines().collect::<Vec<_>>().chunks(24).map(|rows| rows[..23].to_vec()).collect();
+    // Looked in the eyes, most rows reach as far to the left of the middle as to the right.
+    let even = |frame: &[&str]| {
+        let ends = frame.iter().filter_map(|row| Some((row.find(|letter| letter != ' ')?, row.chars().count())));
+        ends.filter(|(from, to)| (59..=61).contains(&(from + to))).count()
+    };
+    assert!(frames.iter().all(|frame| even(frame) > 18), "{front}");
+    assert!(frames.len() == 36 && frames[0] != frames[18] && frames[0] == frames[35], "{front}");
+    assert_eq!(text(&["--view", "front"]).lines().take(23).collect::<Vec<_>>(), frames[0]);
+    let side = text(&["--view", "right"]);
+    assert!(even(&side.lines().take(23).collect::<Vec<_>>()) < 12, "{side}");
+}
+
+#[test]
 fn without_a_terminal_it_says_what_to_do() {
     let folder = Folder::new("pipe");
     for (arguments, words) in [

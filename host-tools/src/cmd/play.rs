@@ -3,9 +3,11 @@
 use super::Files;
 use super::render::{Axis, Side, Size};
 use crate::expand::expand;
+use crate::face::cast::is_face;
 use crate::play::cells::Dots;
 use crate::play::clock::Clock;
 use crate::play::colours::Colours;
+use crate::play::face::Face;
 use crate::play::figure::Figure;
 use crate::play::meters::Meters;
 use crate::play::picture::{Show, Title, draw};
@@ -24,7 +26,7 @@ use std::time::Duration;
 
 /// Play clips in the terminal, by the firmware's own figure code.
 ///
-/// A clip without joints plays as bars of its channels. Keys: space pause, comma and dot step, r reverse, + and - speed, n and p next and
+/// A clip without joints plays as a face, if its scalars bear names that docs/FACE.md has, or as bars of its channels. Keys: space pause, comma and dot step, r reverse, + and - speed, n and p next and
 /// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, b braille or half blocks, ? help, q quit.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -51,8 +53,9 @@ pub struct Arguments {
     #[arg(long, default_value = "phone")]
     palette: Palette,
     /// Side to see it from: front, side, left, right, back, quarter, or degrees
-    #[arg(long, value_name = "SIDE", default_value = "quarter", allow_hyphen_values = true)]
-    view: Side,
+    /// [default: quarter; a face: front]
+    #[arg(long, value_name = "SIDE", allow_hyphen_values = true)]
+    view: Option<Side>,
     /// The axis that is vertical, where the figure is no person and stands on its hands too
     #[arg(long, value_enum, value_name = "AXIS")]
     up: Option<Axis>,
@@ -103,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     loop {
         let clip = clips[index];
         let title = arguments.title(&clip, index);
-        let outcome = with_show(&clip, |show| session.play(show, &title, clip.frame_time_ns()))
+        let outcome = with_show(&clip, arguments.ahead(), |show| session.play(show, &title, clip.frame_time_ns()))
             .with_context(|| arguments.inputs[index].display().to_string())?;
         index = match outcome {
             Outcome::Quit => break,
@@ -116,12 +119,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// Sets up what shows a clip.
-fn with_show<T>(clip: &Clip, play: impl FnOnce(&mut dyn Show) -> Result<T>) -> Result<T> {
-    if clip.rig().joint_count() == 0 {
+fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Result<T>) -> Result<T> {
+    let face = is_face(clip)?;
+    if clip.rig().joint_count() == 0 && !face {
         return play(&mut Meters::of(expand(clip)?));
     }
     let (mut room, mut memory) = (Room::of(clip), Memory::of(clip));
     let playback = Playback::new(*clip, &mut room)?;
+    if face {
+        return play(&mut Face::new(*clip, playback, ahead));
+    }
     play(&mut Figure::new(playback, memory.player(*clip)?))
 }
 
@@ -136,8 +143,18 @@ impl Arguments {
             DotsOrAuto::Half => Some(Dots::Half),
             DotsOrAuto::Braille => Some(Dots::Braille),
         };
-        let view = View { orbit: self.view.orbit, track, up: self.up.map(|axis| axis as u8), ..View::default() };
+        let view = View {
+            orbit: self.view.as_ref().map_or(View::default().orbit, |side| side.orbit),
+            track,
+            up: self.up.map(|axis| axis as u8),
+            ..View::default()
+        };
         Settings { view, ground: true, dots, colours, palette: self.palette.clone(), help: false }
+    }
+
+    /// The view from which a face is looked in the eyes.
+    fn ahead(&self) -> View {
+        View { orbit: if self.view.is_some() { 0 } else { View::default().orbit }, ..View::default() }
     }
 
     fn title(&self, clip: &Clip, index: usize) -> Title {
@@ -155,7 +172,7 @@ impl Arguments {
             let title = self.title(clip, index);
             let loops = !self.once && self.frames.is_some() && index + 1 == clips.len();
             let frames = if loops { left } else { left.min(clip.frames()) };
-            with_show(clip, |show| {
+            with_show(clip, self.ahead(), |show| {
                 for frame in 0..frames {
                     let clock = Clock::new(clip.frame_time_ns(), Duration::ZERO);
                     let grid = draw(show, &title, frame % clip.frames(), &clock, &settings, self.size.0)?;

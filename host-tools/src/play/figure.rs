@@ -1,7 +1,6 @@
 //! The firmware's figure in a terminal.
 
-use super::cells::Grid;
-use super::colours::Colours;
+use super::cells::{Dots, Grid};
 use super::picture::Show;
 use super::playback::Playback;
 use super::settings::Settings;
@@ -34,20 +33,24 @@ impl<'a, 'm> Figure<'a, 'm> {
     }
 }
 
+/// The pixels of a grid's first `rows`, and how they become letters.
+pub(super) fn canvas(settings: &Settings, grid: &Grid, rows: usize) -> (Dots, Canvas) {
+    let dots = settings.dots(rows);
+    let [across, down] = dots.pixels();
+    let [width, height] = [grid.columns * across, rows * down].map(|pixels| pixels.min(MOST_PIXELS) as u16);
+    (dots, Canvas { width, height })
+}
+
 impl Show for Figure<'_, '_> {
     fn draw(&mut self, frame: u32, settings: &Settings, grid: &mut Grid, rows: usize) -> Result<()> {
-        let dots = settings.dots(rows);
-        let [across, down] = dots.pixels();
-        let [width, height] = [grid.columns * across, rows * down].map(|pixels| pixels.min(MOST_PIXELS));
-        let canvas = Canvas { width: width as u16, height: height as u16 };
+        let (dots, canvas) = canvas(settings, grid, rows);
         self.set_up(canvas, settings.view)?;
         let pose = self.playback.pose(frame);
-        let mut shades = Shades::new(width, height);
-        let coloured = settings.colours != Colours::None;
+        let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
         if let Some((_, _, stage)) = &mut self.stage {
-            shades.draw(stage, pose, settings.ground, !coloured || settings.palette.is_mono());
+            shades.draw(stage, pose, settings.ground, settings.in_bits());
         }
-        grid.show(&shades, rows, dots, &settings.palette, coloured);
+        grid.show(&shades, rows, dots, &settings.palette, settings.coloured());
         Ok(())
     }
 

@@ -1,8 +1,9 @@
-//! Plays clips in a terminal: the firmware's figure in braille dots or half blocks, or a clip's channels as bars.
+//! Plays clips in a terminal: the firmware's figure or face in braille dots or half blocks, or a clip's channels as bars.
 
 pub mod cells;
 pub mod clock;
 pub mod colours;
+pub mod face;
 pub mod figure;
 pub mod keys;
 pub mod meters;

@@ -35,6 +35,16 @@ impl Settings {
         self.dots.unwrap_or(if rows < ROWS_FOR_HALF { Dots::Braille } else { Dots::Half })
     }
 
+    /// Whether the picture has colours.
+    pub fn coloured(&self) -> bool {
+        self.colours != Colours::None
+    }
+
+    /// Whether it is drawn as on a display of two colours.
+    pub fn in_bits(&self) -> bool {
+        !self.coloured() || self.palette.is_mono()
+    }
+
     /// Does what a key asks for, if it is about the picture; whether it was.
     pub fn apply(&mut self, action: Action, rows: usize) -> bool {
         match action {
