@@ -10,6 +10,8 @@ mod end;
 #[cfg(not(feature = "emulated"))]
 mod last_words;
 mod pace;
+#[cfg(feature = "emulated-log")]
+mod panics;
 mod perform;
 #[cfg(feature = "emulated")]
 mod play;
@@ -30,3 +32,7 @@ pub use play::play;
 pub use play::play_stored;
 pub use register::Register;
 pub use room::fitted;
+
+// Linked for what it provides: the log's way out.
+#[cfg(feature = "emulated-log")]
+use defmt_semihosting as _;
