@@ -6,6 +6,8 @@ mod buttons;
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
 mod end;
+#[cfg(feature = "update")]
+mod inbox;
 // The emulated boards' panics end the emulator; one of them has no atomic memory access.
 #[cfg(not(feature = "emulated"))]
 mod last_words;
@@ -17,14 +19,22 @@ mod perform;
 mod play;
 mod register;
 mod room;
+#[cfg(feature = "update")]
+mod slots;
 
 pub use buttons::Buttons;
+#[cfg(feature = "update")]
+pub use embedded_storage::nor_flash;
 #[cfg(feature = "emulated")]
 pub use end::{Code, exit};
+#[cfg(feature = "update")]
+pub use inbox::Inbox;
 #[cfg(not(feature = "emulated"))]
 pub use last_words::last_words;
 pub use markers;
 pub use pace::Pace;
+#[cfg(feature = "update")]
+pub use perform::perform_stored;
 pub use perform::{IN_STEP, perform};
 #[cfg(feature = "emulated")]
 pub use play::play;
@@ -32,6 +42,8 @@ pub use play::play;
 pub use play::play_stored;
 pub use register::Register;
 pub use room::fitted;
+#[cfg(feature = "update")]
+pub use slots::{Area, Chip, store};
 
 // Linked for what it provides: the log's way out.
 #[cfg(feature = "emulated-log")]
