@@ -16,7 +16,8 @@ use std::path::PathBuf;
   pantin flash-image walk.ptn --board pico -o clips.uf2        hold BOOTSEL, plug it in, drag the file onto RPI-RP2
   pantin flash-image walk.ptn --board blackpill -o clips.hex
   probe-rs download --chip STM32F411CEUx --binary-format hex clips.hex
-  pantin flash-image walk.ptn --board microbit-v2 -o clips.bin --name \"my walk\"
+  pantin flash-image walk.ptn --board esp32-c3 -o clips.bin --name \"my walk\"
+  espflash write-bin 0x3e0000 clips.bin
 
 The firmware must be built with feature `update`.")]
 pub struct Arguments {
