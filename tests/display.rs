@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use harness::build::Firmware;
 use harness::display::Picture;
-use harness::qemu::{BOARDS, LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, SX1};
+use harness::qemu::{BOARDS, LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, RISCV_VIRT, SX1};
 use harness::{clips, defmt_log, equal, paths, screen, setup, simulator};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::rotation_float::FloatRotation;
@@ -80,6 +80,11 @@ fn mps2_an386_plays_all_clips_in_floating_point_as_the_host_does() {
 }
 
 #[test]
+fn riscv_virt_plays_all_clips_as_the_host_does() {
+    plays_all_clips(RISCV_VIRT);
+}
+
+#[test]
 fn sx1_plays_all_clips_as_the_host_does() {
     plays_all_clips(SX1);
 }
@@ -109,6 +114,11 @@ fn microbit_takes_keys_as_the_host_does() {
 #[test]
 fn mps2_an386_takes_keys_as_the_host_does() {
     takes_keys(MPS2_AN386);
+}
+
+#[test]
+fn riscv_virt_takes_keys_as_the_host_does() {
+    takes_keys(RISCV_VIRT);
 }
 
 #[test]

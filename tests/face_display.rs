@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use harness::build::Firmware;
 use harness::icount::FRAME_REGIONS;
-use harness::qemu::{LM3S6965EVB, MICROBIT, MPS2_AN386, Machine, SX1};
+use harness::qemu::{LM3S6965EVB, MICROBIT, MPS2_AN386, Machine, RISCV_VIRT, SX1};
 use harness::{clips, equal, paths, setup, simulator};
 use pantin_figure::rotation::Rotation;
 use tempfile::TempDir;
@@ -73,6 +73,11 @@ fn microbit_plays_faces_as_the_host_does() {
 #[test]
 fn mps2_an386_plays_faces_as_the_host_does() {
     plays_faces(MPS2_AN386);
+}
+
+#[test]
+fn riscv_virt_plays_faces_as_the_host_does() {
+    plays_faces(RISCV_VIRT);
 }
 
 #[test]

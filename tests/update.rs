@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpListener;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;
@@ -17,8 +18,10 @@ use harness::qemu::{Launch, MICROBIT};
 use harness::sync::Session;
 use harness::update::{ask, asks, line, send};
 use harness::{clips, paths, screen, setup, simulator};
+use object::read::elf::{ElfFile32, ProgramHeader};
+use object::{Endianness, Object, ObjectSymbol};
 use pantin_figure::rotation::Rotation;
-use pantin_store::region::Region;
+use pantin_store::region::{REGIONS, Region};
 use pantin_store::{Answer, Ask, Claim, Refusal};
 use pantin_tools::update::{self, Patience, image};
 use tempfile::TempDir;
@@ -130,17 +133,41 @@ fn shows(session: &mut Session, film: &Film, what: &str) {
     }
 }
 
+/// The boards of the table: Rust target, all of the flash, and how far from the slots' place in it the processor reads them.
+const FLASHES: [(&str, &str, Range<u64>, u64); 5] = [
+    ("blackpill", "thumbv7em-none-eabihf", 0x0800_0000..0x0808_0000, 0),
+    ("esp32-c3", "riscv32imc-unknown-none-elf", 0..0x40_0000, 0x3c40_0000 - 0x3e_0000),
+    ("microbit", "thumbv6m-none-eabi", 0..0x4_0000, 0),
+    ("microbit-v2", "thumbv7em-none-eabihf", 0..0x8_0000, 0),
+    ("pico", "thumbv6m-none-eabi", 0x1000_0000..0x1020_0000, 0),
+];
+/// Where `espflash` puts a program, which it packs out of parts that are linked elsewhere, each into whole pages of the mapping.
+const PACKED: u64 = 0x1_0000;
+
 #[test]
-fn the_memory_map_and_the_table_of_regions_agree() {
-    use object::{Object, ObjectSymbol};
-    setup::rust_target(MICROBIT.target).unwrap();
-    let bytes = fs::read(BENCH.firmware.elf()).unwrap();
-    let file = object::File::parse(&*bytes).unwrap();
-    let address = |name| file.symbol_by_name(name).unwrap().address();
-    let Region { address: start, slot, sector, .. } = BENCH.region;
-    assert_eq!(address("_clips_start"), u64::from(start));
-    assert_eq!(address("_clips_end"), u64::from(start + 2 * slot));
-    assert_eq!(slot % sector, 0);
+fn memory_maps_keep_the_regions_of_the_table_free() {
+    assert!(REGIONS.iter().map(|region| region.board).eq(FLASHES.iter().map(|(board, ..)| *board)));
+    for (region, (board, target, flash, away)) in REGIONS.iter().zip(FLASHES) {
+        let firmware = Firmware::featuring("update", board, board, target, &[]).unwrap();
+        let bytes = fs::read(firmware.elf()).unwrap();
+        let file = ElfFile32::<Endianness>::parse(&*bytes).unwrap();
+        let Region { address: start, slot, sector, word, .. } = *region;
+        let clips = u64::from(start)..u64::from(start + 2 * slot);
+        let address = |name| file.symbol_by_name(name).unwrap().address();
+        let memory = clips.start + away..clips.end + away;
+        assert_eq!(address("_clips_start")..address("_clips_end"), memory, "{board}");
+        assert!(flash.start <= clips.start && clips.end <= flash.end, "{board}");
+        assert_eq!((slot % sector, (u64::from(start) - flash.start) % u64::from(sector), 256 % word), (0, 0, 0), "{board}");
+        for segment in file.elf_program_headers() {
+            let endian = file.endian();
+            let (from, len) = (u64::from(segment.p_paddr(endian)), u64::from(segment.p_filesz(endian)));
+            assert!(from + len <= memory.start || from >= memory.end, "{board}: {len} bytes at {from:#x}");
+        }
+        if away > 0 {
+            let packed = harness::image::loaded(firmware.elf()).unwrap() + file.elf_program_headers().len() as u64 * PACKED;
+            assert!(flash.start + PACKED + packed <= clips.start, "{board}: {packed} bytes");
+        }
+    }
 }
 
 /// Bytes of flash that the feature costs: growth is to be meant.
@@ -149,13 +176,15 @@ const COST: u64 = 5300;
 #[test]
 fn the_store_brings_no_way_to_panic_and_little_code() {
     setup::rust_target(MICROBIT.target).unwrap();
-    let plain = Firmware::build(MICROBIT.name, MICROBIT.name, MICROBIT.target, &[&BENCH.built_in.path]).unwrap();
-    let [with, without] = [BENCH.firmware.elf(), plain.elf()];
+    // A board has rooms for the clips that are built in, but all it can have where any may come: one that is too wide has both have all.
+    let clips = [BENCH.built_in.path.as_path(), &paths::root().join("tests/vectors/channels-300.ptn")];
+    let images = ["update", ""]
+        .map(|feature| Firmware::featuring(feature, MICROBIT.name, MICROBIT.name, MICROBIT.target, &clips).unwrap());
+    let [with, without] = images.each_ref().map(Firmware::elf);
     let cost = harness::image::loaded(with).unwrap() - harness::image::loaded(without).unwrap();
     println!("feature update: {cost} bytes of flash");
     assert!(cost <= COST, "{cost} bytes");
     let panics = |elf| {
-        use object::{Object, ObjectSymbol};
         let bytes = fs::read(elf).unwrap();
         let file = object::File::parse(&*bytes).unwrap();
         let names = file.symbols().map(|symbol| format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or_default())));

@@ -137,7 +137,8 @@ fn what_is_no_image_of_a_board_is_refused_and_nothing_written() {
         assert!(!folder.path().join(name).exists());
         words(&output)
     };
-    assert!(refused(&walk, "microbit", "clips.elf").contains("expected a name that ends in .bin or .hex"));
+    assert!(refused(&walk, "microbit", "clips.elf").contains("expected a name that ends in .bin, .hex or .uf2"));
+    assert!(refused(&walk, "microbit", "clips.uf2").contains("microbit has no drive that takes UF2 files: use .hex"));
     assert!(refused(&walk, "no-board", "clips.bin").contains("microbit"));
     assert!(refused(&text, "microbit", "clips.bin").contains("text.ptn: a board cannot open it"));
 }

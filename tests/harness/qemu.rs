@@ -22,8 +22,10 @@ const POLL: Duration = Duration::from_millis(2);
 pub struct Machine {
     /// The program that emulates it.
     pub emulator: &'static str,
-    /// QEMU's name for it.
+    /// Its name here: that of the package of its firmware.
     pub name: &'static str,
+    /// QEMU's name for it.
+    pub model: &'static str,
     /// The Rust target of its programs.
     pub target: &'static str,
     /// What else QEMU must be told.
@@ -45,7 +47,7 @@ pub const MPS2_AN386: Machine = arm("mps2-an386", "thumbv7em-none-eabihf", displ
 pub const SX1: Machine = arm("sx1", "armv4t-none-eabi", display::LCD);
 
 /// The machines that play clips on a display.
-pub const BOARDS: [Machine; 4] = [LM3S6965EVB, MICROBIT, MPS2_AN386, SX1];
+pub const BOARDS: [Machine; 5] = [LM3S6965EVB, MICROBIT, MPS2_AN386, RISCV_VIRT, SX1];
 
 /// The machine of [`BOARDS`] of this name.
 pub fn board(name: &str) -> Result<Machine> {
@@ -56,17 +58,22 @@ pub fn board(name: &str) -> Result<Machine> {
 }
 
 const fn arm(name: &'static str, target: &'static str, display: Display) -> Machine {
-    Machine { emulator: "qemu-system-arm", name, target, options: &[], display: Some(display) }
+    Machine { emulator: "qemu-system-arm", name, model: name, target, options: &[], display: Some(display) }
 }
 
 /// RV32IMAC, entered without firmware.
 pub const VIRT: Machine = Machine {
     emulator: "qemu-system-riscv32",
     name: "virt",
+    model: "virt",
     target: "riscv32imac-unknown-none-elf",
     options: &["-bios", "none"],
     display: None,
 };
+
+/// The same machine with the ESP32-C3's instructions, RV32IMC, and its display's layout.
+pub const RISCV_VIRT: Machine =
+    Machine { name: "riscv-virt", target: "riscv32imc-unknown-none-elf", display: Some(display::PAGES), ..VIRT };
 
 /// What to start, and with what attached.
 #[derive(Clone, Debug)]
@@ -188,7 +195,7 @@ impl Launch {
         }
         let elf = self.elf.display().to_string();
         let mut line: Vec<String> =
-            ["-M", self.machine.name, "-display", "none", "-monitor", "none", "-kernel", &elf].map(String::from).into();
+            ["-M", self.machine.model, "-display", "none", "-monitor", "none", "-kernel", &elf].map(String::from).into();
         let serial = self.line.clone().unwrap_or_else(|| socket(self.serial, "serial"));
         line.extend(["-serial".into(), serial, "-semihosting-config".into(), semihosting]);
         line.extend(self.machine.options.iter().map(|option| (*option).to_owned()));

@@ -26,15 +26,18 @@ pub const LCD: Display = Display { width: 240, height: 240, depth: Depth::Rgb565
 /// What to run, as `run.mjs` says.
 #[derive(Clone, Debug, Serialize)]
 pub struct Request {
-    image: PathBuf,
+    images: Vec<PathBuf>,
     vectors: u32,
     display: Option<&'static str>,
     timed: bool,
     keys: Option<Vec<Vec<u8>>>,
     pictures: usize,
+    messages: Option<Vec<Vec<u8>>>,
     servos: usize,
     harm: Option<&'static str>,
+    cut: Option<u64>,
     seconds: f64,
+    save: Option<PathBuf>,
     out: Option<PathBuf>,
     #[serde(skip)]
     shown: Option<Display>,
@@ -51,6 +54,17 @@ pub struct Frame {
     pub bytes: u64,
     /// What the firmware says that it is, in step.
     pub number: Option<u32>,
+}
+
+/// What the program answered to a message.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Answered {
+    /// The packet.
+    pub bytes: Vec<u8>,
+    /// Frames shown by then.
+    pub frames: usize,
+    /// Since the start.
+    pub nanos: f64,
 }
 
 /// A pulse width was set.
@@ -86,6 +100,10 @@ pub struct Outcome {
     pub slices: Vec<Slice>,
     /// What the program printed.
     pub printed: String,
+    /// The answers to messages.
+    pub answers: Vec<Answered>,
+    /// Sectors erased and pages written.
+    pub changes: u64,
     /// What the display showed after each frame.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
@@ -99,17 +117,19 @@ impl Request {
     pub fn new(image: &Path, display: impl Into<Option<Display>>) -> Request {
         let display = display.into();
         let name = display.and_then(|display| if let Way::Bus(name) = display.way { Some(name) } else { None });
-        let image = image.to_owned();
         Request {
-            image,
+            images: vec![image.to_owned()],
             vectors: VECTORS,
             display: name,
             timed: false,
             keys: None,
             pictures: 0,
+            messages: None,
             servos: 0,
             harm: None,
+            cut: None,
             seconds: 60.0,
+            save: None,
             out: None,
             shown: display,
         }
@@ -130,6 +150,30 @@ impl Request {
     /// Plays so many pictures at its own pace.
     pub fn pictures(mut self, count: usize) -> Request {
         self.pictures = count;
+        self
+    }
+
+    /// Puts another image into the flash beside it: a UF2 file, or all of a flash.
+    pub fn beside(mut self, image: &Path) -> Request {
+        self.images.push(image.to_owned());
+        self
+    }
+
+    /// Sends messages while it plays at its own pace, then waits for so many pictures.
+    pub fn messages(mut self, messages: Vec<Vec<u8>>, pictures: usize) -> Request {
+        (self.messages, self.pictures) = (Some(messages), pictures);
+        self
+    }
+
+    /// Power goes amid the change of the flash of this number: a sixteenth of a sector is erased, or of a page written.
+    pub fn cut(mut self, change: u64) -> Request {
+        self.cut = Some(change);
+        self
+    }
+
+    /// Leaves all bytes of the flash in a file, as they are at the end.
+    pub fn saving(mut self, flash: &Path) -> Request {
+        self.save = Some(flash.to_owned());
         self
     }
 

@@ -1,6 +1,4 @@
 //! A linked image as a file that one drags onto the board's drive: UF2 (https://github.com/microsoft/uf2), for the RP2040.
-//!
-//! Written here, since the crates that do it (`elf2uf2-rs`) are programs, not libraries.
 
 use std::collections::BTreeMap;
 
@@ -8,15 +6,9 @@ use anyhow::{Context, Result, ensure};
 use object::Endianness;
 use object::elf::{FileHeader32, PT_LOAD};
 use object::read::elf::{FileHeader, ProgramHeader};
+use pantin_tools::update::uf2::{self, PAGE};
 
-/// Bytes of a block, and those of the flash in it: a page.
-const BLOCK: usize = 512;
-const PAGE: usize = 256;
-/// What a block begins with, and ends with.
-const MAGIC: [u32; 2] = [0x0a32_4655, 0x9e5d_5157];
-const END: u32 = 0x0ab1_6f30;
-/// A family follows, and which.
-const FAMILY: u32 = 0x2000;
+/// The family.
 const RP2040: u32 = 0xe48b_ff56;
 /// The flash of the largest boards.
 const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
@@ -28,12 +20,12 @@ pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
     let pages = pages(elf)?;
     let first = pages.get(&FLASH.start).context("the image has no second stage of the boot at the start of the flash")?;
     ensure!(is_second_stage(first), "the image's second stage of the boot has a wrong CRC: the chip would not start it");
-    Ok(blocks(&pages))
+    Ok(uf2::file(RP2040, &pages))
 }
 
 /// The same without a second stage: for an emulator, which needs none.
 pub fn of_bare_elf(elf: &[u8]) -> Result<Vec<u8>> {
-    Ok(blocks(&pages(elf)?))
+    Ok(uf2::file(RP2040, &pages(elf)?))
 }
 
 /// The pages that a file's segments touch, by address.
@@ -69,23 +61,12 @@ fn is_second_stage(page: &[u8; PAGE]) -> bool {
     page[SECOND_STAGE..] == crc.to_le_bytes()
 }
 
-fn blocks(pages: &BTreeMap<u32, [u8; PAGE]>) -> Vec<u8> {
-    let mut file = Vec::with_capacity(pages.len() * BLOCK);
-    for (number, (&address, page)) in (0..).zip(pages) {
-        let head = [MAGIC[0], MAGIC[1], FAMILY, address, PAGE as u32, number, pages.len() as u32, RP2040];
-        head.iter().for_each(|word| file.extend(word.to_le_bytes()));
-        file.extend(page);
-        file.resize((number as usize + 1) * BLOCK - 4, 0);
-        file.extend(END.to_le_bytes());
-    }
-    file
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use object::elf::{self, Ident, ProgramHeader32};
     use object::{LittleEndian as LE, U16, U32, pod::bytes_of};
+    use pantin_tools::update::uf2::{BLOCK, END, FAMILY, MAGIC};
 
     /// An ELF file of 32 bits with these segments, by address.
     fn elf(segments: &[(u32, &[u8])]) -> Vec<u8> {

@@ -2,23 +2,30 @@
 
 import { readFileSync } from 'node:fs';
 import { LogLevel, ConsoleLogger, RP2040 } from 'rp2040js';
+import { Rom } from './rom.mjs';
 import { load } from './uf2.mjs';
 
 // `mov r9, r9` and `mov r10, r10`: the firmware's markers, around each stretch that is measured.
 const [START, STOP] = [0x46c9, 0x46d2];
 const FLASH = 0x10000000;
+// Where the boot ROM ends, and in which part of the addresses the RAM lies.
+const [ROM_END, RAM] = [0x4000, 0x2];
 // Nanoseconds of a step while the program hangs.
 const HANGS = 1e6;
 // Instructions between looks at the time.
 const STRIDE = 4096;
 
 export class Chip {
-  // `vectors` is the address of the program's vector table: the chip's boot ROM, which would have gone there, is no part of the emulator.
-  constructor(path, vectors) {
+  // `images` are put into the flash one after the other: UF2 files, or all bytes of the flash. `vectors` is the address of the program's vector
+  // table: the chip's boot ROM, which would have gone there, is no part of the emulator. `cut` is as in rom.mjs.
+  constructor(images, vectors, cut) {
     const chip = new RP2040();
     // It warns of every register that it does not model.
     chip.logger = new ConsoleLogger(LogLevel.Error, false);
-    load(readFileSync(path), chip.flash);
+    for (const path of images) {
+      if (path.endsWith('.uf2')) load(readFileSync(path), chip.flash);
+      else chip.flash.set(readFileSync(path));
+    }
     chip.core.VTOR = vectors;
     chip.core.SP = chip.readUint32(vectors);
     chip.core.PC = chip.readUint32(vectors + 4) & ~1;
@@ -26,6 +33,7 @@ export class Chip {
     for (const pin of [10, 11, 12, 13, 14]) chip.gpio[pin].setInputValue(true);
     this.chip = chip;
     this.ended = null;
+    this.rom = new Rom(chip, { cut, end: this });
     // Called with the cycles of each marked stretch.
     this.onStretch = () => {};
     chip.onBreak = (code) => this.break(code);
@@ -47,6 +55,7 @@ export class Chip {
   run(seconds) {
     const { chip } = this;
     const { core, clock, flash16 } = chip;
+    const isMemory = (pc) => pc < ROM_END || pc >>> 28 === RAM || (pc >= FLASH && pc < FLASH + flash16.length * 2);
     const nanos = 1e9 / 125e6;
     let begun = 0;
     for (let count = 0; this.ended === null; count += 1) {
@@ -64,7 +73,7 @@ export class Chip {
       else if (opcode === STOP) this.onStretch(core.cycles - begun);
       if (count % STRIDE === 0) {
         if (this.time > seconds * 1e9) this.end('limit');
-        if (at < 0 || at >= flash16.length * 2) throw new Error(`the program went astray, to 0x${core.PC.toString(16)}`);
+        if (!isMemory(core.PC)) throw new Error(`the program went astray, to 0x${core.PC.toString(16)}`);
       }
     }
     return this.ended;
@@ -84,9 +93,10 @@ export class Chip {
     this.ended ??= why;
   }
 
-  // Semihosting: what the conformance image prints and ends with. Any other breakpoint ends the run.
+  // The boot ROM's functions, or semihosting: what the conformance image prints and ends with. Any other breakpoint ends the run.
   break(code) {
     const { chip } = this;
+    if (chip.core.PC < ROM_END) return this.rom.call(code);
     const { registers } = chip.core;
     const word = (index) => chip.readUint32(registers[1] + 4 * index);
     if (code !== 0xab) return this.end(`breakpoint ${code}`);

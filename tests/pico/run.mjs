@@ -1,16 +1,20 @@
 // node run.mjs REQUEST: runs an image, and prints what came of it as JSON.
 //
 // The request is a JSON file:
-//   image     an UF2 file, and vectors, the address of its vector table
+//   images    UF2 files, or all bytes of the flash, put into the flash in this order, and vectors, the address of the vector table
 //   display   "ssd1306", "st7789" or null; timed: whether the buses take the time that they are set to, or none
 //   keys      where the program is to play in step: letters before each picture but the first, as arrays of bytes; else null
 //   pictures  where it plays at its own pace: as many are waited for
+//   messages  or such that go over the line while it plays, arrays of bytes at the line's speed: the first after a picture, each other one when
+//             the one before was answered; after the last answer so many pictures are waited for
 //   servos    how many writes of pulse widths are waited for
 //   harm      "fault", "hang" or null: what strikes after a tenth of a second
+//   cut       the change of the flash, counted from 0, amid which power goes; else null
 //   seconds   of the chip's time at most
+//   save      a file for all bytes of the flash at the end, or null
 //   out       a file for the pictures: their pixels, 16 bits each with the low byte first; the last one is what is shown at the end
 
-import { closeSync, openSync, readFileSync, writeSync } from 'node:fs';
+import { closeSync, openSync, readFileSync, writeFileSync, writeSync } from 'node:fs';
 import { Chip } from './chip.mjs';
 import { Ssd1306 } from './ssd1306.mjs';
 import { St7789 } from './st7789.mjs';
@@ -20,9 +24,11 @@ const [IN_STEP, NEXT, SHOWN] = [0x16, 0x0a, 0x46];
 const STRETCHES = 4;
 // Register of a pair of pulse widths.
 const COMPARE = 0x0c;
+// Nanoseconds of a byte on the line: ten bits of 115,200 a second.
+const BYTE = 10e9 / 115200;
 
 const request = JSON.parse(readFileSync(process.argv[2]));
-const machine = new Chip(request.image, request.vectors);
+const machine = new Chip(request.images, request.vectors, request.cut);
 const { chip } = machine;
 const [line] = chip.uart;
 const display = request.display && new { ssd1306: Ssd1306, st7789: St7789 }[request.display]();
@@ -42,12 +48,37 @@ machine.onStretch = (count) => {
   cycles = [];
   bytes = display?.bytes ?? 0;
   if (out) writeSync(out, Buffer.from(display.picture().buffer));
-  if (!request.keys && frames.length === request.pictures) machine.end('done');
+  if (request.messages) {
+    if (frames.length === 1) say(request.messages[0]);
+    if (answers.length === request.messages.length && frames.length === answers.at(-1).frames + request.pictures) machine.end('done');
+  } else if (!request.keys && frames.length === request.pictures) machine.end('done');
+};
+
+// Sends bytes one after the other.
+const say = ([byte, ...rest]) => {
+  const alarm = chip.clock.createAlarm(() => {
+    line.feedByte(byte);
+    if (rest.length > 0) say(rest);
+  });
+  alarm.schedule(BYTE);
+};
+
+// A packet ends with a zero, and begins with one.
+const answers = [];
+let packet = [];
+const hear = (byte) => {
+  packet.push(byte);
+  if (byte !== 0 || packet.length === 1) return;
+  answers.push({ bytes: packet, frames: frames.length, nanos: machine.time });
+  packet = [];
+  const next = request.messages[answers.length];
+  if (next) say(next);
 };
 
 // The line's other end: a frame's number, in four bytes, is answered with letters and the wish for another picture.
 const told = [];
 line.onByte = (byte) => {
+  if (request.messages) return hear(byte);
   told.push(byte);
   if (told[0] !== SHOWN) throw new Error(`the firmware sent 0x${byte.toString(16)} in place of a frame's number`);
   if (told.length < 5) return;
@@ -81,5 +112,7 @@ if (out) {
   writeSync(out, Buffer.from(display.picture().buffer));
   closeSync(out);
 }
+if (request.save) writeFileSync(request.save, chip.flash);
+const { changes } = machine.rom;
 const slices = chip.pwm.channels.map(({ top, div }) => ({ top, div }));
-console.log(JSON.stringify({ ended, frames, pulses, slices, printed: Buffer.from(machine.printed).toString() }));
+console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, printed: Buffer.from(machine.printed).toString() }));

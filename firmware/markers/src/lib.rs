@@ -9,13 +9,27 @@ use core::arch::asm;
 /// move instructions that touch no memory across.
 #[inline(always)]
 pub fn start() {
-    // SAFETY: copies a register to itself.
-    unsafe { asm!("mov r9, r9", options(nostack, preserves_flags)) }
+    // SAFETY: copies a register to itself, or sets the one that is always zero.
+    #[cfg(not(target_arch = "riscv32"))]
+    unsafe {
+        asm!("mov r9, r9", options(nostack, preserves_flags))
+    }
+    #[cfg(target_arch = "riscv32")]
+    unsafe {
+        asm!("slti x0, x0, 0x101", options(nostack, preserves_flags))
+    }
 }
 
 /// Counting stops before this.
 #[inline(always)]
 pub fn stop() {
-    // SAFETY: copies a register to itself.
-    unsafe { asm!("mov r10, r10", options(nostack, preserves_flags)) }
+    // SAFETY: copies a register to itself, or sets the one that is always zero.
+    #[cfg(not(target_arch = "riscv32"))]
+    unsafe {
+        asm!("mov r10, r10", options(nostack, preserves_flags))
+    }
+    #[cfg(target_arch = "riscv32")]
+    unsafe {
+        asm!("slti x0, x0, 0x102", options(nostack, preserves_flags))
+    }
 }

@@ -10,16 +10,20 @@ use std::path::PathBuf;
 /// Write the image of a board's clip flash, to be flashed beside the firmware, which is not built anew.
 ///
 /// The output's extension says what is written: .bin the whole region, to be put at the address that is told; .hex (Intel HEX, with its
-/// addresses) the clip alone, and what removes a newer one.
+/// addresses) the clip alone, and what removes a newer one; .uf2 the same in whole sectors, to be dragged onto the Pico's drive.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  pantin flash-image walk.ptn --board microbit -o clips.hex
-  pantin flash-image walk.ptn --board microbit -o clips.bin --name \"my walk\"
-  probe-rs download --chip nRF51822_xxAA --binary-format hex clips.hex")]
+  pantin flash-image walk.ptn --board pico -o clips.uf2        hold BOOTSEL, plug it in, drag the file onto RPI-RP2
+  pantin flash-image walk.ptn --board blackpill -o clips.hex
+  probe-rs download --chip STM32F411CEUx --binary-format hex clips.hex
+  pantin flash-image walk.ptn --board esp32-c3 -o clips.bin --name \"my walk\"
+  espflash write-bin 0x3e0000 clips.bin
+
+The firmware must be built with feature `update`.")]
 pub struct Arguments {
     /// The clip; it must hold its rig
     input: PathBuf,
-    /// The file to write: .bin or .hex
+    /// The file to write: .bin, .hex or .uf2
     #[arg(short, long)]
     output: PathBuf,
     /// The board
@@ -41,11 +45,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {
         Some("bin") => image::binary(region, &clip, &claim).with_context(place)?,
         Some("hex") => image::hex(region, &clip, &claim).with_context(place)?.into_bytes(),
-        _ => bail!("{}: expected a name that ends in .bin or .hex", arguments.output.display()),
+        Some("uf2") => image::uf2(region, &clip, &claim).with_context(place)?,
+        _ => bail!("{}: expected a name that ends in .bin, .hex or .uf2", arguments.output.display()),
     };
     write_whole(&arguments.output, &bytes)?;
     if !arguments.quiet {
-        let Region { board, address, slot, sector, word } = region;
+        let Region { board, address, slot, sector, word, .. } = region;
         eprintln!(
             "{board}: {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}",
             clip.len()

@@ -1,6 +1,7 @@
 //! A store's flash with one clip in it.
 
-use anyhow::{Result, ensure};
+use super::uf2::{self, PAGE};
+use anyhow::{Context, Result, ensure};
 use ihex::Record;
 use pantin_store::header::Header;
 use pantin_store::region::Region;
@@ -34,6 +35,20 @@ pub fn hex(region: &Region, clip: &[u8], claim: &Claim) -> Result<String> {
     data(region.address + region.slot, &[0xff; BLOCK], &mut records);
     records.push(Record::EndOfFile);
     Ok(ihex::create_object_file_representation(&records)?)
+}
+
+/// The same as UF2, in whole sectors, as boards erase them: the clip's, and that of the second slot's header.
+pub fn uf2(region: &Region, clip: &[u8], claim: &Claim) -> Result<Vec<u8>> {
+    let family = region.family.with_context(|| format!("{} has no drive that takes UF2 files: use .hex", region.board))?;
+    let sector = region.sector as usize;
+    let mut slot = slot(region, clip, claim)?;
+    slot.resize(slot.len().next_multiple_of(sector), 0xff);
+    let second = vec![0xff; sector];
+    let of = |start: u32, bytes: &[u8]| -> Vec<(u32, [u8; PAGE])> {
+        (start..).step_by(PAGE).zip(bytes.as_chunks().0.iter().copied()).collect()
+    };
+    let pages = [of(region.address, &slot), of(region.address + region.slot, &second)].concat();
+    Ok(uf2::file(family, &pages.into_iter().collect()))
 }
 
 /// Records of bytes from an address on, which is a multiple of a line's bytes.
@@ -76,6 +91,27 @@ mod tests {
             assert_eq!(memory, binary);
             assert_eq!(told, BLOCK + clip.len() + BLOCK);
         }
+    }
+
+    #[test]
+    fn a_drive_gets_whole_sectors() {
+        let clip: Vec<u8> = (0..9000u32).map(|byte| (byte % 251) as u8).collect();
+        let claim = Claim::of(&clip, "walk").unwrap();
+        let region = Region::of("pico").unwrap();
+        let (file, binary) = (uf2(region, &clip, &claim).unwrap(), binary(region, &clip, &claim).unwrap());
+        // Three sectors of header and clip, and one of the second slot.
+        assert_eq!(file.len(), 4 * 4096 / PAGE * uf2::BLOCK);
+        let mut sectors = std::collections::BTreeMap::<u32, usize>::new();
+        for block in file.chunks(uf2::BLOCK) {
+            let word = |at: usize| u32::from_le_bytes(block[at..at + 4].try_into().unwrap());
+            let at = (word(12) - region.address) as usize;
+            assert_eq!(block[32..32 + PAGE], binary[at..at + PAGE]);
+            *sectors.entry(word(12) / region.sector * region.sector).or_default() += PAGE;
+        }
+        let slots = [0, 4096, 8192, region.slot].map(|at| region.address + at);
+        assert!(sectors.keys().copied().eq(slots) && sectors.values().all(|bytes| *bytes == 4096), "{sectors:x?}");
+        let error = uf2(Region::of("microbit").unwrap(), &clip, &claim).unwrap_err().to_string();
+        assert!(error.contains("use .hex"), "{error}");
     }
 
     #[test]

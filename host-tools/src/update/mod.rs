@@ -3,6 +3,7 @@
 pub mod image;
 pub mod place;
 mod send;
+pub mod uf2;
 
 pub use send::{Failure, Outcome, Patience, send};
 

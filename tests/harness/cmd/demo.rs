@@ -31,7 +31,7 @@ const COLUMNS: usize = 3;
 pub struct Demo {
     /// The motion file; our own walk if none is given
     motion: Option<PathBuf>,
-    /// The machine: lm3s6965evb, microbit, mps2-an386 or sx1
+    /// The machine: lm3s6965evb, microbit, mps2-an386, riscv-virt or sx1
     #[arg(long, default_value = "lm3s6965evb")]
     board: String,
     /// Where the pictures and the clip go

@@ -50,7 +50,7 @@ impl Strips {
     /// Converts, plays, writes the pictures.
     pub fn run(self) -> Result<()> {
         let boards = self.board.as_deref().map_or(Ok(BOARDS.to_vec()), |name| qemu::board(name).map(|board| vec![board]))?;
-        setup::install_emulator("qemu-system-arm")?;
+        boards.iter().try_for_each(|board| setup::install_emulator(board.emulator).map(drop))?;
         std::fs::create_dir_all(&self.out).with_context(|| format!("cannot make {}", self.out.display()))?;
         let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
         let mut films = vec![];

@@ -1,4 +1,4 @@
-//! `cargo xtask uf2 pico [--clip FILE]... [--display st7789] [-o OUT]`: a file to drag onto the board's drive.
+//! `cargo xtask uf2 pico [--clip FILE]... [--display st7789] [--update] [-o OUT]`: a file to drag onto the board's drive.
 //!
 //! ```text
 //! $ cargo xtask uf2 pico --clip walk.ptn
@@ -23,6 +23,9 @@ pub struct Uf2 {
     /// Its display
     #[arg(long, default_value = "ssd1306")]
     display: Display,
+    /// With clips in flash of their own, which `pantin update` and `pantin flash-image` replace
+    #[arg(long)]
+    update: bool,
     /// The file, in place of BOARD.uf2
     #[arg(short, value_name = "OUT")]
     out: Option<PathBuf>,
@@ -50,7 +53,8 @@ impl Uf2 {
         // Our own come with faces.
         let face = if clips.is_empty() { "face" } else { clips::feature(&clips)? };
         let display = if self.display == Display::St7789 { "st7789" } else { "" };
-        let firmware = Firmware::featuring(&[face, display].join(","), "pico", "pico", rp2040::TARGET, &clips)?;
+        let update = if self.update { "update" } else { "" };
+        let firmware = Firmware::featuring(&[face, display, update].join(","), "pico", "pico", rp2040::TARGET, &clips)?;
         let elf = std::fs::read(firmware.elf()).context("the program cannot be read")?;
         let file = uf2::of_elf(&elf)?;
         let out = self.out.unwrap_or("pico.uf2".into());

@@ -16,7 +16,11 @@ use stm32f4xx_hal::watchdog::IndependentWatchdog;
 /// Bits a second of the line.
 const BAUD: u32 = 115_200;
 /// The watchdog starts the board anew when the program was stuck for so long, in milliseconds of a clock that may be half as fast again.
+#[cfg(not(feature = "update"))]
 const PATIENCE: u32 = 2000;
+/// Longer than a sector's erasing, in which nobody feeds it: four seconds.
+#[cfg(feature = "update")]
+const PATIENCE: u32 = 7000;
 
 /// The board.
 pub struct BlackPill {
@@ -38,6 +42,10 @@ impl BlackPill {
         let Ok(line) = Serial::new(parts.USART1, (a.pa9, a.pa10), config, &mut control) else {
             unreachable!("the rate is one that the line can have")
         };
+        #[cfg(feature = "update")]
+        let mut line = line;
+        #[cfg(feature = "update")]
+        crate::received::listen(&mut line);
         #[cfg(not(feature = "st7789"))]
         let display = Display::new(parts.I2C1, b.pb6, b.pb7, &mut control);
         #[cfg(feature = "st7789")]
@@ -98,6 +106,9 @@ impl Board for BlackPill {
 
     fn poll(&mut self) -> Option<u8> {
         self.feed();
+        #[cfg(feature = "update")]
+        return crate::received::take();
+        #[cfg(not(feature = "update"))]
         self.line.read().ok()
     }
 

@@ -5,7 +5,11 @@
 mod board;
 mod clocks;
 mod display;
+#[cfg(feature = "update")]
+mod flash;
 mod panic;
+#[cfg(feature = "update")]
+mod received;
 
 use board::BlackPill;
 use display::Lit;
@@ -26,5 +30,10 @@ const JOINTS: usize = 80;
 fn main() -> ! {
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
     let mut frame = Frame::<Lit>::new();
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut BlackPill::new(parts))
+    let mut board = BlackPill::new(parts);
+    #[cfg(feature = "update")]
+    if let Some(mut store) = board_common::store::<flash::Sectors>() {
+        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+    }
+    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
 }

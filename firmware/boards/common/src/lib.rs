@@ -6,23 +6,35 @@ mod buttons;
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
 mod end;
+#[cfg(feature = "update")]
+mod inbox;
 // The emulated boards' panics end the emulator; one of them has no atomic memory access.
 #[cfg(not(feature = "emulated"))]
 mod last_words;
 mod pace;
+#[cfg(feature = "emulated-log")]
+mod panics;
 mod perform;
 #[cfg(feature = "emulated")]
 mod play;
 mod register;
 mod room;
+#[cfg(feature = "update")]
+mod slots;
 
 pub use buttons::Buttons;
+#[cfg(feature = "update")]
+pub use embedded_storage::nor_flash;
 #[cfg(feature = "emulated")]
 pub use end::{Code, exit};
+#[cfg(feature = "update")]
+pub use inbox::Inbox;
 #[cfg(not(feature = "emulated"))]
 pub use last_words::last_words;
 pub use markers;
 pub use pace::Pace;
+#[cfg(feature = "update")]
+pub use perform::perform_stored;
 pub use perform::{IN_STEP, perform};
 #[cfg(feature = "emulated")]
 pub use play::play;
@@ -30,3 +42,9 @@ pub use play::play;
 pub use play::play_stored;
 pub use register::Register;
 pub use room::fitted;
+#[cfg(feature = "update")]
+pub use slots::{Area, Chip, store};
+
+// Linked for what it provides: the log's way out.
+#[cfg(feature = "emulated-log")]
+use defmt_semihosting as _;

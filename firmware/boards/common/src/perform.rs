@@ -20,12 +20,32 @@ pub fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINT
     board: &mut B,
 ) -> ! {
     loop {
-        let mode = if board.poll() == Some(IN_STEP) { Mode::Sync } else { Mode::Play };
-        let options = Options { mode, ..Options::parse([]) };
+        let options = options(board);
         if clips.is_empty() || run::<B, CHANNELS, MOVING, JOINTS>(clips, options, frame, board) == Exit::BadClip {
             complain(clips, frame, board);
         }
     }
+}
+
+/// The same with a store, whose clip comes first.
+#[cfg(feature = "update")]
+pub fn perform_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    store: &mut pantin_store::Store<S>,
+    clips: &[Entry],
+    frame: &mut Frame<B::Layout>,
+    board: &mut B,
+) -> ! {
+    loop {
+        let options = options(board);
+        if pantin_app::run_stored::<B, S, CHANNELS, MOVING, JOINTS>(store, clips, options, frame, board) == Exit::BadClip {
+            complain(clips, frame, board);
+        }
+    }
+}
+
+fn options<B: Board>(board: &mut B) -> Options {
+    let mode = if board.poll() == Some(IN_STEP) { Mode::Sync } else { Mode::Play };
+    Options { mode, ..Options::parse([]) }
 }
 
 #[inline(never)]

@@ -45,6 +45,10 @@ impl Esp32C3 {
         ) else {
             unreachable!("bus and line can have these rates")
         };
+        #[cfg(feature = "update")]
+        let mut line = line;
+        #[cfg(feature = "update")]
+        crate::received::listen(&mut line);
         let pull = InputConfig::default().with_pull(Pull::Up);
         let mut watchdog = TimerGroup::new(parts.TIMG0).wdt;
         watchdog.set_timeout(MwdtStage::Stage0, PATIENCE);
@@ -116,9 +120,14 @@ impl Board for Esp32C3 {
 
     fn poll(&mut self) -> Option<u8> {
         self.feed();
-        let mut byte = [0];
-        // One that came damaged is left out.
-        self.line.read_buffered(&mut byte).ok().filter(|read| *read > 0).map(|_| byte[0])
+        #[cfg(feature = "update")]
+        return crate::received::take();
+        #[cfg(not(feature = "update"))]
+        {
+            let mut byte = [0];
+            // One that came damaged is left out.
+            self.line.read_buffered(&mut byte).ok().filter(|read| *read > 0).map(|_| byte[0])
+        }
     }
 
     fn button(&mut self) -> Option<Key> {

@@ -3,7 +3,11 @@
 #![no_main]
 
 mod board;
+#[cfg(feature = "update")]
+mod flash;
 mod panic;
+#[cfg(feature = "update")]
+mod received;
 
 use board::Esp32C3;
 use board_parts::ssd1306::Pages;
@@ -34,5 +38,12 @@ const JOINTS: usize = 80;
 fn main() -> ! {
     let parts = esp_hal::init(esp_hal::Config::default().with_cpu_clock(CpuClock::max()));
     let mut frame = Frame::<Pages>::new();
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut Esp32C3::new(parts))
+    let mut board = Esp32C3::new(parts);
+    #[cfg(feature = "update")]
+    flash::map();
+    #[cfg(feature = "update")]
+    if let Some(mut store) = board_common::store::<flash::Rom>() {
+        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+    }
+    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
 }

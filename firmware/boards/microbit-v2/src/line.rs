@@ -1,10 +1,14 @@
 //! The serial line to the board's interface chip, which is a serial port on its USB.
 
 use cortex_m::singleton;
-use embedded_hal_02::serial::{Read, Write};
+#[cfg(not(feature = "update"))]
+use embedded_hal_02::serial::Read;
+use embedded_hal_02::serial::Write;
 use nrf52833_hal::gpio::{Floating, Input, Output, Pin, PushPull};
 use nrf52833_hal::pac::UARTE0;
-use nrf52833_hal::uarte::{Baudrate, Parity, Pins, Uarte, UarteRx, UarteTx};
+#[cfg(not(feature = "update"))]
+use nrf52833_hal::uarte::UarteRx;
+use nrf52833_hal::uarte::{Baudrate, Parity, Pins, Uarte, UarteTx};
 
 /// Bytes that are sent at once.
 const ROOM: usize = 64;
@@ -12,6 +16,7 @@ const ROOM: usize = 64;
 /// The line, of 115,200 bits a second.
 pub struct Line {
     out: UarteTx<UARTE0>,
+    #[cfg(not(feature = "update"))]
     into: UarteRx<UARTE0>,
 }
 
@@ -23,7 +28,13 @@ impl Line {
             unreachable!("the line is set up once")
         };
         match line.split(out, into) {
+            #[cfg(not(feature = "update"))]
             Ok((out, into)) => Line { out, into },
+            #[cfg(feature = "update")]
+            Ok((out, into)) => {
+                crate::received::listen(into);
+                Line { out }
+            }
             Err(_) => unreachable!("its rooms are of sizes that it takes"),
         }
     }
@@ -41,6 +52,9 @@ impl Line {
 
     /// A byte that has come.
     pub fn receive(&mut self) -> Option<u8> {
+        #[cfg(feature = "update")]
+        return crate::received::take();
+        #[cfg(not(feature = "update"))]
         self.into.read().ok()
     }
 }

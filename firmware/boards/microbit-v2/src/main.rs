@@ -4,10 +4,14 @@
 
 mod board;
 mod dog;
+#[cfg(feature = "update")]
+mod flash;
 mod leds;
 mod line;
 mod oled;
 mod panic;
+#[cfg(feature = "update")]
+mod received;
 
 use board::Microbit;
 use board_parts::ssd1306::Pages;
@@ -28,5 +32,10 @@ const JOINTS: usize = 80;
 fn main() -> ! {
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
     let mut frame = Frame::<Pages>::new();
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut Microbit::new(parts))
+    let mut board = Microbit::new(parts);
+    #[cfg(feature = "update")]
+    if let Some(mut store) = board_common::store::<flash::Pages>() {
+        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+    }
+    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
 }

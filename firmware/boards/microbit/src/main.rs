@@ -30,8 +30,7 @@ const SEATS: usize = 1;
 fn main() -> ! {
     let mut frame = Frame::<Pages>::new();
     #[cfg(feature = "update")]
-    if let Some(slots) = flash::slots() {
-        let mut store = pantin_store::Store::new(slots);
+    if let Some(mut store) = board_common::store::<flash::Nvmc>() {
         board_common::play_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut Microbit::new())
     }
     board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Microbit::new())

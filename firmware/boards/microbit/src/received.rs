@@ -2,16 +2,13 @@
 #![allow(unsafe_code)]
 
 use crate::registers::{nvic, uart};
-use core::cell::RefCell;
-use critical_section::Mutex;
-use heapless::Deque;
+use board_common::Inbox;
 
 /// The serial port's interrupt, and the bit of a byte received.
 const UART: u32 = 2;
 const RECEIVED_BIT: u32 = 2;
 
-/// More than a packet of an update, of which the next comes only when the one before was answered.
-static RECEIVED: Mutex<RefCell<Deque<u8, 512>>> = Mutex::new(RefCell::new(Deque::new()));
+static RECEIVED: Inbox = Inbox::new();
 
 /// Starts listening.
 pub fn start() {
@@ -21,21 +18,15 @@ pub fn start() {
 
 /// The next byte, if there is one.
 pub fn take() -> Option<u8> {
-    critical_section::with(|section| RECEIVED.borrow(section).try_borrow_mut().ok()?.pop_front())
+    RECEIVED.take()
 }
 
 extern "C" fn hear() {
-    critical_section::with(|section| {
-        while uart::RECEIVED.read() != 0 {
-            // Before the byte is fetched: fetching it lets the next one in.
-            uart::RECEIVED.write(0);
-            let byte = uart::RXD.read() as u8;
-            if let Ok(mut received) = RECEIVED.borrow(section).try_borrow_mut() {
-                // A line that sends more than was asked for loses it, and the packet's CRC tells.
-                let _ = received.push_back(byte);
-            }
-        }
-    });
+    while uart::RECEIVED.read() != 0 {
+        // Before the byte is fetched: fetching it lets the next one in.
+        uart::RECEIVED.write(0);
+        RECEIVED.put(uart::RXD.read() as u8);
+    }
 }
 
 /// A place of the vector table.

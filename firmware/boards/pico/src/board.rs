@@ -44,6 +44,10 @@ impl Pico {
         let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
         let line = UartPeripheral::new(parts.UART0, (pins.gpio0.into_function(), pins.gpio1.into_function()), &mut resets);
         let Ok(line) = line.enable(config, clocks::RATE.Hz()) else { unreachable!("the rate is one that the line can have") };
+        #[cfg(feature = "update")]
+        let mut line = line;
+        #[cfg(feature = "update")]
+        crate::received::listen(&mut line);
         #[cfg(not(feature = "st7789"))]
         let display = Display::new(parts.I2C0, pins.gpio4, pins.gpio5, &mut resets);
         #[cfg(feature = "st7789")]
@@ -102,8 +106,13 @@ impl Board for Pico {
 
     fn poll(&mut self) -> Option<u8> {
         self.feed();
-        let mut byte = [0];
-        self.line.read_raw(&mut byte).ok().map(|_| byte[0])
+        #[cfg(feature = "update")]
+        return crate::received::take();
+        #[cfg(not(feature = "update"))]
+        {
+            let mut byte = [0];
+            self.line.read_raw(&mut byte).ok().map(|_| byte[0])
+        }
     }
 
     fn button(&mut self) -> Option<Key> {

@@ -5,11 +5,17 @@ mod board;
 mod boot;
 mod clocks;
 mod display;
+#[cfg(feature = "update")]
+mod flash;
 mod panic;
+#[cfg(feature = "update")]
+mod received;
 
 pub use board::Pico;
 pub use clocks::{CLOCK, RATE, start};
 pub use display::Lit;
+#[cfg(feature = "update")]
+pub use flash::Rom;
 
 #[cfg(feature = "defmt")]
 use defmt_rtt as _;

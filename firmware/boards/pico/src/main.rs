@@ -17,5 +17,10 @@ const JOINTS: usize = 80;
 fn main() -> ! {
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
     let mut frame = Frame::<Lit>::new();
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut Pico::new(parts))
+    let mut board = Pico::new(parts);
+    #[cfg(feature = "update")]
+    if let Some(mut store) = board_common::store::<pico::Rom>() {
+        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+    }
+    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
 }

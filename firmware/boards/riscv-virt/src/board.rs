@@ -1,0 +1,69 @@
+//! The machine's line, which carries pictures and keys, and its time for the program.
+
+use crate::registers::{MTIME, uart};
+use board_common::{Pace, markers};
+use pantin_app::{Board, wire};
+use pantin_figure::rotation::Rotation;
+use pantin_figure::surface::{Frame, MonoPages};
+
+/// The pictures: 128x64 pixels, lit or dark, as on the SSD1306 of an ESP32-C3.
+pub type Pages = MonoPages<128, 64, 1024>;
+
+/// Counts of the time a microsecond.
+const RATE: u32 = 10;
+
+const RECEIVED: u8 = 1 << 0;
+const TRANSMIT_EMPTY: u8 = 1 << 5;
+
+/// The machine.
+pub struct Virt {
+    pace: Pace,
+}
+
+impl Virt {
+    pub fn new() -> Self {
+        Virt { pace: Pace::new(RATE) }
+    }
+}
+
+fn send(bytes: &[u8]) {
+    for &byte in bytes {
+        while uart::LINE_STATUS.read() & TRANSMIT_EMPTY == 0 {}
+        uart::DATA.write(byte);
+    }
+}
+
+impl Board for Virt {
+    type Layout = Pages;
+    type Turning = Rotation;
+
+    fn show(&mut self, frame: &mut Frame<Pages>) {
+        wire::send(frame, send);
+    }
+
+    fn start_timer(&mut self, nanoseconds: u32) {
+        self.pace.start(nanoseconds, MTIME.read());
+    }
+
+    fn wait_ticks(&mut self) -> u32 {
+        self.pace.wait(|| MTIME.read())
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        send(bytes);
+    }
+
+    fn poll(&mut self) -> Option<u8> {
+        (uart::LINE_STATUS.read() & RECEIVED != 0).then(|| uart::DATA.read())
+    }
+
+    #[inline(always)]
+    fn mark_start(&mut self) {
+        markers::start();
+    }
+
+    #[inline(always)]
+    fn mark_stop(&mut self) {
+        markers::stop();
+    }
+}

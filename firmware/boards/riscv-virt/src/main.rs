@@ -1,0 +1,27 @@
+//! Pantin on QEMU's virt, a RISC-V: plays the clips that it was built with, and sends the pictures over its serial line.
+#![no_std]
+#![no_main]
+
+mod board;
+mod registers;
+mod trap;
+
+use board::{Pages, Virt};
+use pantin_figure::surface::Frame;
+
+include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+
+/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
+const CHANNELS: usize = 400;
+const MOVING: usize = 320;
+const JOINTS: usize = 80;
+/// Most figures side by side.
+const SEATS: usize = 1;
+
+/// Never returns: the emulator ends.
+#[riscv_rt::entry]
+fn main() -> ! {
+    trap::guard_stack();
+    let mut frame = Frame::<Pages>::new();
+    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Virt::new())
+}
