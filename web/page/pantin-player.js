@@ -157,16 +157,16 @@ export class PantinPlayer extends HTMLElement {
     this.#shown();
   }
 
-  // The face of a clip that may drive one: it is loaded only then.
+  // The face of a clip that may drive one: it is loaded only then. Until it is there nothing is told of the clip.
   async #meet() {
     const wasm = this.#wasm;
-    this.#read();
-    if (this.#face || !this.facts.scalars) return;
+    const { channels, scalars, scalarsAt, scalarsLength } = this.#known();
+    if (this.#face || !scalars) return;
     const face = await instance("pantin-face.wasm");
     if (wasm !== this.#wasm) return;
-    const { channels, scalars, scalarsAt, scalarsLength } = this.facts;
     bytes(face, face.room(scalarsLength)).set(bytes(wasm, scalarsAt, scalarsLength));
     this.#face = { ...face, drawn: face.bind(scalarsLength, scalars, channels - scalars) };
+    this.facts = this.#known();
     this.#aim();
   }
 
@@ -337,13 +337,13 @@ export class PantinPlayer extends HTMLElement {
     return count + more;
   }
 
-  #read() {
+  #known() {
     const words = new Uint32Array(this.#wasm.memory.buffer, this.#wasm.facts());
-    WORDS.forEach((word, index) => (this.facts[word] = words[index]));
+    return Object.fromEntries(WORDS.map((word, index) => [word, words[index]]));
   }
 
   #shown() {
-    this.#read();
+    this.facts = this.#known();
     this.draw();
     this.#told();
   }
