@@ -191,7 +191,12 @@ fn pieces_of_any_size_play_as_the_whole() {
 }
 
 /// Plays a file as it comes, there and back, and returns the frames that could be played and what was said at the end.
-fn arrive(file: &[u8], poses: &[Vec<i32>], mut piece: impl FnMut() -> usize, noise: &mut Noise) -> (usize, Result<(), OpenError>) {
+fn arrive(
+    file: &[u8],
+    poses: &[Vec<i32>],
+    mut piece: impl FnMut() -> usize,
+    noise: &mut Noise,
+) -> (usize, Result<(), OpenError>) {
     let mut come = 0;
     let mut more = || {
         come = (come + piece()).min(file.len());

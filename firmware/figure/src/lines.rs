@@ -2,7 +2,7 @@
 
 use crate::camera::{Camera, Canvas, MAGNIFICATION_BITS, PIXEL_BITS, Projected, magnification};
 use crate::ink::Tone;
-use crate::rotation::{Vector, vector};
+use crate::rotation::Vector;
 use crate::skeleton::Bone;
 use heapless::Vec;
 
@@ -101,7 +101,7 @@ impl Ground {
             step[axis] = spacing;
         }
         let view = camera.view();
-        (view.apply_any(corner), [view.apply_any(steps[0]), view.apply_any(steps[1])])
+        (view.apply_any(corner), steps.map(|step| view.apply_any(step)))
     }
 }
 
@@ -110,9 +110,9 @@ impl Ground {
     #[inline(always)]
     pub(crate) fn each_line(&self, camera: &Camera, target: Vector, mut show: impl FnMut(Line)) {
         let (corner, [a, b]) = self.lattice(camera, target, GROUND_ROWS);
-        let last = |step: Vector| vector(|axis| step[axis] * (GROUND_ROWS - 1));
-        for turned in [false, true] {
-            let (mut start, step, across) = if turned { (corner, b, last(a)) } else { (corner, a, last(b)) };
+        let last = |step: Vector| step.map(|x| x * (GROUND_ROWS - 1));
+        for (start, step, across) in [(corner, a, last(b)), (corner, b, last(a))] {
+            let mut start = start;
             for _ in 0..GROUND_ROWS {
                 let from = camera.project(start);
                 let to = camera.project(sum(start, across));

@@ -223,10 +223,10 @@ fn unit(q: [i32; 4]) -> Option<[i32; 4]> {
     }
     // The largest component goes to 2^14 .. 2^15, the squares sum to 2^28 .. 2^32; short of 2^30 there is room for a bit more.
     let mut shift = 17 - largest.leading_zeros() as i32;
-    let mut square = square_of(&q, shift);
+    let mut square = square_of(q.map(|x| shift_right(x, shift)));
     if square < 1 << 30 {
         shift -= 1;
-        square = square_of(&q, shift);
+        square = square_of(q.map(|x| shift_right(x, shift)));
     }
     let above = square.saturating_sub(1 << 30);
     let index = (above >> 23) as usize;
@@ -239,12 +239,8 @@ fn unit(q: [i32; 4]) -> Option<[i32; 4]> {
     }))
 }
 
-/// Of what a shift leaves of it.
-fn square_of(q: &[i32; 4], shift: i32) -> u32 {
-    q.iter().fold(0, |sum, &x| {
-        let size = shift_right(x, shift).unsigned_abs();
-        sum.saturating_add(size.saturating_mul(size))
-    })
+fn square_of(q: [i32; 4]) -> u32 {
+    q.iter().fold(0, |sum, &x| sum.saturating_add(x.unsigned_abs().saturating_mul(x.unsigned_abs())))
 }
 
 /// `value` / 2^`shift`, rounded; a negative shift multiplies and saturates.
