@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use harness::vectors::{self, Vector};
 use hostile::noise::Noise;
-use pantin::{ChannelState, Clip, Mark, Memory, Player, Rig, Step, Stream, Undo};
+use pantin::{ChannelState, Clip, Front, Mark, Memory, OpenError, Player, Rig, Step, Stream, Undo};
 use pantin_tools::encode::clip::{self, Channel, Coded, Start};
 use pantin_tools::encode::rig;
 use pantin_tools::encode::segment::Segment;
@@ -186,6 +186,78 @@ fn pieces_of_any_size_play_as_the_whole() {
                 assert_eq!((end, frame), (Step::End, poses.len()), "{} in pieces of {size}, buffer of {buffer}", vector.name);
                 assert_eq!(marks, events, "{} in pieces of {size}", vector.name);
             }
+        }
+    }
+}
+
+/// Plays a file as it comes, there and back, and returns the frames that could be played and what was said at the end.
+fn arrive(
+    file: &[u8],
+    poses: &[Vec<i32>],
+    mut piece: impl FnMut() -> usize,
+    noise: &mut Noise,
+) -> (usize, Result<(), OpenError>) {
+    let mut come = 0;
+    let mut more = || {
+        come = (come + piece()).min(file.len());
+        (&file[..come], come == file.len())
+    };
+    let (mut front, mut player) = loop {
+        let (bytes, last) = more();
+        match Front::new(bytes) {
+            Err(OpenError::Truncated) if !last => continue,
+            Err(error) => return (0, Err(error)),
+            Ok(front) => {
+                let channels = front.clip().rig().channels();
+                let (states, pose) = (vec![ChannelState::default(); channels].leak(), vec![0; channels].leak());
+                match front.player(states, pose).unwrap() {
+                    Some(player) => break (front, player),
+                    None if last => return (0, front.finish(bytes)),
+                    None => {}
+                }
+            }
+        }
+    };
+    let moving = player.states().len();
+    let mut lent = (vec![Mark::default(); 5], vec![ChannelState::default(); 5 * moving], vec![0; 5 * moving]);
+    let mut memory = Memory::new(&player, &mut [], &mut lent.0, &mut lent.1, &mut lent.2);
+    let mut playable = 1;
+    loop {
+        let (bytes, last) = more();
+        let outcome = front.extend(bytes);
+        front.seek(&mut player, playable as u32 - 1, &mut memory);
+        assert!(player.pose() == poses[playable - 1]);
+        while front.step(&mut player) {
+            assert!(player.pose() == poses[player.frame() as usize], "frame {} of what came", player.frame());
+        }
+        playable = player.frame() as usize + 1;
+        for _ in 0..3 {
+            let frame = noise.below(playable);
+            front.seek(&mut player, frame as u32, &mut memory);
+            assert!(player.frame() as usize == frame && player.pose() == poses[frame], "frame {frame} of {playable}");
+        }
+        if last {
+            return (playable, outcome.and_then(|()| front.finish(bytes)));
+        }
+    }
+}
+
+#[test]
+fn the_front_of_a_file_plays_as_the_whole_does_and_no_damaged_byte_passes() {
+    for vector in all().into_iter().filter(|vector| vector.rig.is_none()) {
+        let (file, poses) = (&vector.clip, poses(vector.open().unwrap()));
+        let mut noise = Noise::new(11);
+        for size in [1, 7, 255, 256, 257, 1 << 20] {
+            let outcome = arrive(file, &poses, || size, &mut noise);
+            assert_eq!(outcome, (poses.len(), Ok(())), "{} in pieces of {size}", vector.name);
+        }
+        for _ in 0..40 {
+            let len = noise.below(file.len());
+            let (playable, outcome) = arrive(&file[..len], &poses, || 100, &mut noise);
+            assert!(playable <= poses.len() && outcome == Err(OpenError::Truncated), "{} cut to {len}: {outcome:?}", vector.name);
+            let mut damaged = file.clone();
+            damaged[noise.below(file.len())] ^= 1 << noise.below(8);
+            assert!(arrive(&damaged, &poses, || 100, &mut noise).1.is_err(), "{}", vector.name);
         }
     }
 }

@@ -110,14 +110,14 @@ fn the_canvas_shows_what_the_host_shows() {
 }
 
 #[test]
-fn the_module_stands_whatever_bytes_it_gets() {
-    if skipped("the player's module") {
+fn the_modules_stand_whatever_bytes_they_get() {
+    if skipped("the player's modules") {
         return;
     }
-    let module = paths::root().join("target/web").join(web::PLAYER[1]);
-    assert!(!STAGE.1.is_empty(), "it was built");
+    let modules = [web::PLAYER[1], web::FACE[0]].map(|name| paths::root().join("target/web").join(name));
+    assert!(!STAGE.1.is_empty(), "they were built");
     let mut node = Command::new(setup::emulator("node").unwrap());
-    node.arg(paths::root().join("tests/web/module.mjs")).arg(module).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
+    node.arg(paths::root().join("tests/web/module.mjs")).args(modules).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
     let output = node.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));

@@ -12,7 +12,7 @@ use crate::{OpenError, crc};
 #[derive(Clone, Copy, Debug)]
 pub struct Clip<'a> {
     rig: Rig<'a>,
-    motion: &'a [u8],
+    pub(crate) motion: &'a [u8],
     /// Bytes of the rig in the file, with those of its length.
     rig_len: usize,
     head: Head,
@@ -76,6 +76,19 @@ impl<'a> Parts<'a> {
     }
 }
 
+impl<'a> Parts<'a> {
+    /// Checks what follows the motion, whose last CRC is `last_crc`: snapshots, or nothing.
+    pub(crate) fn index(&self, rest: &'a [u8], last_crc: u16) -> Result<&'a [u8], OpenError> {
+        let mut index = &[][..];
+        let mut reader = Bytes(rest);
+        if self.flags & HAS_INDEX != 0 {
+            let len = reader.varint()?;
+            index = blocks::check(reader.take(len as usize)?, index_seed(last_crc, len))?.0;
+        }
+        if reader.0.is_empty() { Ok(index) } else { Err(OpenError::Malformed) }
+    }
+}
+
 /// Whether a clip may code the joint's rotation as an exponential map in place of its three Euler angles.
 pub fn has_choice(joint: &Joint<'_>) -> bool {
     joint.kinds.filter(|kind| kind.is_rotation()).count() == 3
@@ -116,7 +129,7 @@ impl Head {
     /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map. `input` holds the
     /// motion's first block.
     pub(crate) fn is_exponential(&self, input: &Input<'_>, rig: &Rig<'_>, joint: usize) -> bool {
-        if self.flags & HAS_EXPONENTIALS == 0 || !rig.joints().nth(joint).is_some_and(|joint| has_choice(&joint)) {
+        if self.flags & HAS_EXPONENTIALS == 0 || !rig.joint(joint).is_some_and(|joint| has_choice(&joint)) {
             return false;
         }
         let choice = rig.joints().take(joint).filter(has_choice).count();
@@ -162,26 +175,30 @@ impl<'a> Clip<'a> {
     fn assemble(parts: &Parts<'a>, rig: Rig<'a>, rig_id: Option<u32>) -> Result<Clip<'a>, OpenError> {
         let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
         let (motion, last_crc) = blocks::check(motion, parts.seed)?;
-        let mut index = &[][..];
-        let mut reader = Bytes(rest);
-        if parts.flags & HAS_INDEX != 0 {
-            let len = reader.varint()?;
-            index = blocks::check(reader.take(len as usize)?, index_seed(last_crc, len))?.0;
-        }
-        if !reader.0.is_empty() {
-            return Err(OpenError::Malformed);
-        }
+        let index = parts.index(rest, last_crc)?;
+        Ok(Clip { index, ..Clip::read(parts, rig, rig_id, motion, OpenError::Malformed)? })
+    }
+
+    /// Reads what stands before the symbols in the front of a motion, without the last CRC; `short` is what it means that its events go on past
+    /// that.
+    pub(crate) fn read(
+        parts: &Parts<'a>,
+        rig: Rig<'a>,
+        rig_id: Option<u32>,
+        motion: &'a [u8],
+        short: OpenError,
+    ) -> Result<Clip<'a>, OpenError> {
         let input = Input { bytes: motion, base: 0 };
         let head = Head::read(&input, parts.flags, &rig, rig_id)?;
         let mut reader = Reader { input: &input, position: u32::from(head.events) };
         for _ in 0..head.event_count {
             if reader.position as usize > motion.len() {
-                return Err(OpenError::Malformed);
+                return Err(short);
             }
             event(&mut reader, 0);
         }
         let symbols = reader.position;
-        Ok(Clip { rig, motion, rig_len: parts.rig_len, head, symbols, index })
+        Ok(Clip { rig, motion, rig_len: parts.rig_len, head, symbols, index: &[] })
     }
 
     /// The figure.

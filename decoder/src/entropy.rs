@@ -77,7 +77,7 @@ impl Symbols<'_> {
     }
 
     /// The same where calls would cost too much.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub(crate) fn symbol_in_line(&mut self, table: &Table) -> u32 {
         let state = self.at.state;
         let low = state & ((1 << SCALE_BITS) - 1);

@@ -11,6 +11,7 @@ pub mod entropy;
 mod error;
 #[doc = include_str!("../FORMAT.md")]
 pub mod format {}
+mod front;
 mod history;
 mod index;
 pub mod layout;
@@ -29,6 +30,7 @@ pub mod units;
 pub use channel::{ChannelState, length, step_size};
 pub use clip::{Clip, Event, has_choice, index_seed};
 pub use error::{OpenError, TooSmall};
+pub use front::Front;
 pub use history::Undo;
 pub use player::{Memory, Player};
 pub use rig::{Joint, Joints, Kind, Kinds, Rig, Scalar, Scalars};

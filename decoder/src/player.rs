@@ -54,14 +54,14 @@ impl<'m> Memory<'m> {
     }
 }
 
-/// Reads how channels start: where the segments begin, and how many channels move; as many as `usize` holds if there are more than
-/// `states`.
+/// Reads how channels start, up to the last position at which a start is sure to be whole: where the segments begin, and how many channels
+/// move; as many as `usize` holds if there are more than `states`, or if not all of them are there.
 #[inline(never)]
-fn open(clip: &Clip<'_>, states: &mut [ChannelState], pose: &mut [i32]) -> (Cursor, usize) {
+fn open(clip: &Clip<'_>, dry_at: u32, states: &mut [ChannelState], pose: &mut [i32]) -> (Cursor, usize) {
     let input = clip.input();
     let mut starts = Starts::new(&clip.rig(), clip.length_exponent());
     let mut symbols = Symbols { at: Cursor::start(&input, clip.symbols()), input };
-    let opened = starts.read(&mut symbols, u32::MAX, states, pose);
+    let opened = starts.read(&mut symbols, dry_at, states, pose);
     (symbols.at, if opened == Opened::Done { usize::from(starts.moving) } else { usize::MAX })
 }
 
@@ -69,9 +69,47 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Starts at frame 0. `states` needs [`Clip::moving`] elements, `pose` needs [`crate::Rig::channels`].
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, TooSmall> {
         let pose = pose.get_mut(..clip.rig().channels()).ok_or(TooSmall { needed: clip.rig().channels() })?;
-        let (cursor, moving) = open(&clip, states, pose);
+        let (cursor, moving) = open(&clip, u32::MAX, states, pose);
         let states = states.get_mut(..moving).ok_or_else(|| TooSmall { needed: clip.moving() })?;
         Ok(Player { clip, states, pose, position: Position { cursor, frame: 0, next: 0 } })
+    }
+
+    /// [`Player::new`], for a clip of which the front alone may be there; `None` while its channels' starts have not come. `states` needs
+    /// [`crate::Rig::channels`] elements.
+    pub(crate) fn of_front(
+        clip: Clip<'a>,
+        dry_at: u32,
+        states: &'m mut [ChannelState],
+        pose: &'m mut [i32],
+    ) -> Result<Option<Self>, TooSmall> {
+        let needed = clip.rig().channels();
+        let (Some(states), Some(pose)) = (states.get_mut(..needed), pose.get_mut(..needed)) else {
+            return Err(TooSmall { needed });
+        };
+        let (cursor, moving) = open(&clip, dry_at, states, pose);
+        let Some(states) = states.get_mut(..moving) else { return Ok(None) };
+        Ok(Some(Player { clip, states, pose, position: Position { cursor, frame: 0, next: 0 } }))
+    }
+
+    /// Goes on by one frame if its segments have come: those that begin at `dry_at` at the latest.
+    pub(crate) fn step_of_front(&mut self, clip: &Clip<'a>, dry_at: u32) -> bool {
+        self.clip.motion = clip.motion;
+        if self.ended() {
+            return false;
+        }
+        let (input, frames) = (self.clip.input(), self.clip.frames());
+        let (position, mut channels) = self.parts();
+        if reads(position.frame, frames) && !position.read_due(&mut channels, &input, dry_at, None) {
+            return false;
+        }
+        position.advance(&mut channels);
+        true
+    }
+
+    /// Seeks in `clip`, which is the same one: more of it may have come.
+    pub(crate) fn seek_of_front(&mut self, clip: &Clip<'a>, frame: u32, memory: &mut Memory<'_>) {
+        self.clip.motion = clip.motion;
+        self.go::<false>(frame, Some(&mut memory.snapshots));
     }
 
     /// The clip that plays.
@@ -128,14 +166,14 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Goes back to frame 0.
     pub fn rewind(&mut self) {
         // The memory sufficed when the player was made.
-        let (cursor, _) = open(&self.clip, self.states, self.pose);
+        let (cursor, _) = open(&self.clip, u32::MAX, self.states, self.pose);
         self.position = Position { cursor, frame: 0, next: 0 };
     }
 
     /// Goes to `frame`, or to the last one if there are fewer. Forward it costs a hop a segment on the way; backward it
     /// starts from the file's last snapshot before it (`pantin convert --index`), or from frame 0.
     pub fn seek(&mut self, frame: u32) {
-        self.go(frame, None);
+        self.go::<true>(frame, None);
     }
 
     /// [`Player::step`], and keeps what going back needs.
@@ -155,12 +193,13 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// [`Player::seek`], from the nearest snapshot in `memory` if that is closer; keeps the snapshots that it comes past.
     pub fn seek_with(&mut self, frame: u32, memory: &mut Memory<'_>) {
-        self.go(frame, Some(&mut memory.snapshots));
+        self.go::<true>(frame, Some(&mut memory.snapshots));
     }
 
+    /// `STORED` tells whether snapshots in the file serve too.
     #[inline(never)]
-    fn go(&mut self, frame: u32, mut snapshots: Option<&mut Snapshots<'_>>) {
-        let (input, frames, index) = (self.clip.input(), self.clip.frames(), self.clip.index());
+    fn go<const STORED: bool>(&mut self, frame: u32, mut snapshots: Option<&mut Snapshots<'_>>) {
+        let (input, frames, index) = (self.clip.input(), self.clip.frames(), self.clip.index().filter(|_| STORED));
         let target = frame.min(frames - 1);
         let now = self.position.frame;
         let mut from = if now <= target { now } else { 0 };

@@ -143,6 +143,11 @@ impl<'a> Joint<'a> {
     pub fn name(&self) -> &'a str {
         core::str::from_utf8(self.name).unwrap_or("")
     }
+
+    /// Its name's bytes as they stand.
+    pub fn name_bytes(&self) -> &'a [u8] {
+        self.name
+    }
 }
 
 /// In place of the index of a name in a list: the rig has the name's bytes.
@@ -161,11 +166,16 @@ pub struct Scalar<'a> {
 impl<'a> Scalar<'a> {
     /// Its name; empty for one that is not UTF-8, or that no list has.
     pub fn name(&self) -> &'a str {
+        let bytes = if self.listed == SPELLED { self.name } else { names::nth(names::LIVE_LINK, self.listed) };
+        core::str::from_utf8(bytes).unwrap_or("")
+    }
+
+    /// [`names::hash`] of its name's bytes; of none for one that no list has.
+    pub fn name_hash(&self) -> u32 {
         if self.listed == SPELLED {
-            core::str::from_utf8(self.name).unwrap_or("")
-        } else {
-            names::nth(names::LIVE_LINK, self.listed)
+            return names::hash(self.name);
         }
+        names::HASHES.get(usize::from(self.listed)).copied().unwrap_or(names::HASH_OF_NOTHING)
     }
 }
 
@@ -239,8 +249,15 @@ impl<'a> Rig<'a> {
     }
 
     /// Joints, End Sites included. The root comes first, and every parent before its children.
+    #[inline(never)]
     pub fn joints(&self) -> Joints<'a> {
         Joints { bytes: Bytes(self.body.get(usize::from(self.joints_at)..).unwrap_or(&[])), left: self.joints, first_channel: 0 }
+    }
+
+    /// One of the joints.
+    #[inline(never)]
+    pub fn joint(&self, index: usize) -> Option<Joint<'a>> {
+        self.joints().nth(index)
     }
 
     /// Channels that move no joint. In a pose they follow the joints' channels.
@@ -282,13 +299,13 @@ pub(crate) struct Id(pub u32);
 
 impl Default for Id {
     fn default() -> Self {
-        Id(0x811c_9dc5)
+        Id(names::HASH_OF_NOTHING)
     }
 }
 
 impl Id {
     pub fn and(self, byte: u8) -> Id {
-        Id((self.0 ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+        Id(names::hash_on(self.0, byte))
     }
 }
 
@@ -393,6 +410,16 @@ pub struct Scalars<'a> {
 impl<'a> Scalars<'a> {
     fn new(bytes: Bytes<'a>, left: u16) -> Scalars<'a> {
         Scalars { bytes, left, listed: 0, more: 0, exponent: 0 }
+    }
+
+    /// Of bytes that [`Scalars::bytes`] gave: of a checked rig, of which no more is at hand.
+    pub fn of_bytes(bytes: &'a [u8], count: usize) -> Scalars<'a> {
+        Scalars::new(Bytes(bytes), count as u16)
+    }
+
+    /// Where those that are still to come stand in the rig.
+    pub fn bytes(&self) -> &'a [u8] {
+        self.bytes.0
     }
 
     fn parse(&mut self) -> Result<Scalar<'a>, OpenError> {

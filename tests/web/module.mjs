@@ -1,11 +1,13 @@
-// The player's module alone, in node: `node module.mjs MODULE CLIP...`. Whatever bytes it gets, it answers and goes on; however they come, the frames are
-// the same.
+// The player's modules alone, in node: `node module.mjs PLAYER FACE CLIP...`. Whatever bytes they get, they answer and go on; however these come, the frames
+// are the same.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 
-const [, , path, ...clips] = process.argv;
-const module = new WebAssembly.Module(readFileSync(path));
+const [, , player, facial, ...clips] = process.argv;
+const [module, faces] = [player, facial].map((path) => new WebAssembly.Module(readFileSync(path)));
 const [OLED, TRUNCATED] = [[128, 64, -50, 12], 3];
+// Places of what is known of a clip.
+const [PLAYABLE, CHANNELS, SCALARS, SCALARS_AT, SCALARS_LENGTH, POSE] = [1, 5, 10, 11, 12, 13];
 
 function fed(bytes, piece) {
   const wasm = new WebAssembly.Instance(module).exports;
@@ -21,8 +23,34 @@ function fed(bytes, piece) {
   return { wasm, trouble };
 }
 
-const facts = (wasm) => new Uint32Array(wasm.memory.buffer, wasm.facts(), 10);
-const grey = (wasm, frame) => (wasm.go(frame), Buffer.from(new Uint8Array(wasm.memory.buffer, wasm.grey(), 8192)).toString("latin1"));
+const facts = (wasm) => new Uint32Array(wasm.memory.buffer, wasm.facts(), 14);
+
+// The face that a clip drives, if it does.
+function faceOf(wasm) {
+  const known = facts(wasm);
+  const scalars = new Uint8Array(wasm.memory.buffer, known[SCALARS_AT], known[SCALARS_LENGTH]);
+  const face = new WebAssembly.Instance(faces).exports;
+  new Uint8Array(face.memory.buffer, face.room(scalars.length)).set(scalars);
+  if (!face.bind(scalars.length, known[SCALARS], known[CHANNELS] - known[SCALARS])) return null;
+  face.aim(64, 64, 64, 0, 0);
+  return face;
+}
+
+// What the display shows of a frame, the face on the picture's right.
+function grey(wasm, frame) {
+  wasm.go(frame);
+  let count = wasm.strokes();
+  const face = faceOf(wasm);
+  if (face && facts(wasm)[PLAYABLE]) {
+    const known = facts(wasm);
+    const pose = new Uint8Array(wasm.memory.buffer, known[POSE], 4 * known[CHANNELS]);
+    new Uint8Array(face.memory.buffer, face.room(pose.length)).set(pose);
+    const strokes = new Uint8Array(face.memory.buffer, face.picture(), 12 * face.place(known[CHANNELS]));
+    new Uint8Array(wasm.memory.buffer, wasm.picture() + 12 * count).set(strokes);
+    count += strokes.length / 12;
+  }
+  return Buffer.from(new Uint8Array(wasm.memory.buffer, wasm.grey(count), 8192)).toString("latin1");
+}
 
 let [troubles, runs] = [new Map(), 0];
 for (const clip of clips) {
@@ -34,7 +62,7 @@ for (const clip of clips) {
   for (const piece of [1, 7, 300, bytes.length]) {
     const { wasm, trouble } = fed(bytes, piece);
     assert.equal(trouble, 0);
-    assert.equal(facts(wasm)[1], frames, "all frames are playable before the end is told");
+    assert.equal(facts(wasm)[PLAYABLE], frames, "all frames are playable before the end is told");
     wasm.aim(...OLED);
     for (const frame of [0, 5, 4, 3, frames - 1, frames >> 1, frames + 9, 1]) assert.equal(grey(wasm, frame), grey(whole, frame), `${clip} ${piece} ${frame}`);
   }

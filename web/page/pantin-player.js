@@ -5,9 +5,10 @@
 // progress, frame, ready, error, change.
 // Keys: space plays, arrows step (with shift they turn the view), Home, End, R backwards, L look, + and - speed, 0 the usual view.
 
-const MODULE = new URL("pantin-player.wasm", import.meta.url);
 const MOST = 64 << 20;
-const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "kind", "channels", "moving", "rigBytes", "motionBytes"];
+const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars", "scalarsAt", "scalarsLength", "pose"];
+// Bytes of a stroke, and how many of them there is room for.
+const [STROKE, STROKES] = [12, 4096];
 const TROUBLES = [
   "", "this is no Pantin clip", "the clip is of another version of the format", "the clip ends early", "the clip is damaged: a checksum does not match",
   "the clip contradicts itself", "the clip's rig is in another file", "the clip has more joints or channels than there is room for", "there is nothing to show",
@@ -18,11 +19,15 @@ const LOOKS = {
   dark: { paper: [19, 22, 27], tones: [[170, 190, 195], [255, 240, 215], [255, 166, 77], [96, 196, 255], [255, 240, 215], [170, 190, 195]] },
 };
 
-let compiled;
-const compile = () => (compiled ??= fetch(MODULE).then(async (response) => {
-  if (!response.ok) throw new Error(`${MODULE}: ${response.status}`);
+const compiled = {};
+const compile = async (url) => {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: ${response.status}`);
   return WebAssembly.compile(await response.arrayBuffer());
-}));
+};
+// A module's exports, in an instance of its own.
+const instance = async (name) => (await WebAssembly.instantiate(await (compiled[name] ??= compile(new URL(name, import.meta.url))))).exports;
+const bytes = (wasm, place, length) => new Uint8Array(wasm.memory.buffer, place, length);
 
 const TEMPLATE = `<style>
 :host { display: block; font: 14px/1.4 system-ui, sans-serif; color: CanvasText; }
@@ -50,6 +55,7 @@ export class PantinPlayer extends HTMLElement {
   static observedAttributes = ["src", "look", "speed"];
   #root = this.attachShadow({ mode: "open" });
   #wasm = null;
+  #face = null;
   #abort = null;
   #request = 0;
   #before = 0;
@@ -123,15 +129,15 @@ export class PantinPlayer extends HTMLElement {
     const coming = typeof what === "string" ? fetch(new URL(what, document.baseURI), { signal }) : Promise.resolve(what);
     coming.catch(() => {});
     try {
-      const module = await compile();
-      const wasm = (await WebAssembly.instantiate(module)).exports;
-      if (abort.signal.aborted) return;
+      const wasm = await instance("pantin-player.wasm");
+      if (signal.aborted) return;
       this.#wasm = wasm;
+      this.#face = null;
       this.#aim();
       await (what.poses ? this.#table(what) : this.#receive(await coming, signal));
-      if (!abort.signal.aborted) this.#tell("ready");
+      if (!signal.aborted) this.#tell("ready");
     } catch (error) {
-      if (abort.signal.aborted) return;
+      if (signal.aborted) return;
       this.trouble = error.message;
       this.#told();
       this.#tell("error", error.message);
@@ -139,14 +145,29 @@ export class PantinPlayer extends HTMLElement {
     }
   }
 
-  #table({ rig, poses, frames, frameTime, lengthExponent }) {
+  async #table({ rig, poses, frames, frameTime, lengthExponent }) {
+    const wasm = this.#wasm;
     const start = Math.ceil(rig.length / 4) * 4;
-    const place = this.#wasm.room(start + poses.byteLength);
+    const place = wasm.room(start + poses.byteLength);
     if (!place) throw new Error("there is no room for so many poses");
-    new Uint8Array(this.#wasm.memory.buffer, place, rig.length).set(rig);
-    new Int32Array(this.#wasm.memory.buffer, place + start, poses.length).set(poses);
-    this.#check(this.#wasm.poses(rig.length, frames, frameTime, lengthExponent));
+    bytes(wasm, place).set(rig);
+    new Int32Array(wasm.memory.buffer, place + start).set(poses);
+    this.#check(wasm.poses(rig.length, frames, frameTime, lengthExponent));
+    await this.#meet();
     this.#shown();
+  }
+
+  // The face of a clip that may drive one: it is loaded only then. Until it is there nothing is told of the clip.
+  async #meet() {
+    const wasm = this.#wasm;
+    const { channels, scalars, scalarsAt, scalarsLength } = this.#known();
+    if (this.#face || !scalars) return;
+    const face = await instance("pantin-face.wasm");
+    if (wasm !== this.#wasm) return;
+    bytes(face, face.room(scalarsLength)).set(bytes(wasm, scalarsAt, scalarsLength));
+    this.#face = { ...face, drawn: face.bind(scalarsLength, scalars, channels - scalars) };
+    this.facts = this.#known();
+    this.#aim();
   }
 
   async #receive(what, signal) {
@@ -169,9 +190,11 @@ export class PantinPlayer extends HTMLElement {
         reader.cancel();
         throw new Error(`a clip may have ${MOST} bytes here`);
       }
-      new Uint8Array(this.#wasm.memory.buffer, place + this.received, value.length).set(value);
+      bytes(this.#wasm, place + this.received).set(value);
       this.received += value.length;
       trouble ||= this.#wasm.arrived(this.received);
+      await this.#meet();
+      if (signal.aborted) return reader.cancel();
       this.#shown();
       if (this.hasAttribute("autoplay") && this.paused && !this.#at && this.playable > 1 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
       this.#tell("progress");
@@ -196,7 +219,12 @@ export class PantinPlayer extends HTMLElement {
     const scale = Math.min(devicePixelRatio || 1, 2047 / this.stage.clientWidth);
     const [width, height] = this.look === "oled" ? [128, 64] : [this.stage.clientWidth, this.stage.clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
     Object.assign(this.canvas, { width, height });
-    this.#wasm.aim(width, height, Math.round(this.orbit), Math.round(this.tilt));
+    const [orbit, tilt] = [Math.round(this.orbit), Math.round(this.tilt)];
+    // A face stands beside the body as the firmware divides its displays, or has all of the picture.
+    const [face, wide] = [this.#face?.drawn, 2 * width >= 3 * height];
+    const side = !this.facts.joints ? width : wide ? height : Math.floor(width / 5) * 2;
+    this.#wasm.aim(!face ? width : !this.facts.joints ? 0 : wide ? width - side : width, height, orbit, tilt);
+    if (face) this.#face.aim(side, this.facts.joints ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
     this.#shown();
   }
 
@@ -293,12 +321,29 @@ export class PantinPlayer extends HTMLElement {
 
   // The greys of the 128x64 display, 17 times 0 to 15; in that look alone.
   grey() {
-    return new Uint8Array(this.#wasm.memory.buffer, this.#wasm.grey(), 128 * 64);
+    const count = this.#gather();
+    return bytes(this.#wasm, this.#wasm.grey(count), 128 * 64);
+  }
+
+  // Puts the frame's strokes into the module's memory, from far to near, and counts them.
+  #gather() {
+    const [wasm, face] = [this.#wasm, this.#face];
+    const count = wasm.strokes();
+    if (!face?.drawn || !this.playable) return count;
+    const { channels, pose } = this.facts;
+    bytes(face, face.room(4 * channels)).set(bytes(wasm, pose, 4 * channels));
+    const more = Math.min(face.place(channels), STROKES - count);
+    bytes(wasm, wasm.picture() + STROKE * count).set(bytes(face, face.picture(), STROKE * more));
+    return count + more;
+  }
+
+  #known() {
+    const words = new Uint32Array(this.#wasm.memory.buffer, this.#wasm.facts());
+    return Object.fromEntries(WORDS.map((word, index) => [word, words[index]]));
   }
 
   #shown() {
-    const words = new Uint32Array(this.#wasm.memory.buffer, this.#wasm.facts(), WORDS.length);
-    WORDS.forEach((word, index) => (this.facts[word] = words[index]));
+    this.facts = this.#known();
     this.draw();
     this.#told();
   }
@@ -319,13 +364,13 @@ export class PantinPlayer extends HTMLElement {
   #drawLines() {
     const { context, canvas } = this;
     const look = LOOKS[this.dark?.matches ? "dark" : "light"];
-    const at = this.#wasm.strokes();
-    const view = new DataView(this.#wasm.memory.buffer, Number(at & 0xffffffffn), Number(at >> 32n) * 12);
+    const end = this.#gather() * STROKE;
+    const view = new DataView(this.#wasm.memory.buffer, this.#wasm.picture(), end);
     context.fillStyle = mix(look.paper, look.paper, 0);
     context.fillRect(0, 0, canvas.width, canvas.height);
     context.lineCap = context.lineJoin = "round";
     const thin = Math.max(1, canvas.height / 280);
-    for (let place = 0, before = ""; place < view.byteLength; place += 12) {
+    for (let place = 0, before = ""; place < end; place += STROKE) {
       const [x, y, u, v] = [0, 2, 4, 6].map((offset) => view.getInt16(place + offset, true) / 16);
       const [shade, what, width] = [8, 9, 10].map((offset) => view.getUint8(place + offset));
       const ink = (this.#inks[look.paper + [what, shade]] ??= mix(look.paper, look.tones[what], shade / 255));

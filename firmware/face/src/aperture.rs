@@ -92,7 +92,7 @@ struct Edge {
 impl Edge {
     const EMPTY: Edge = Edge { vertices: Vec::new(), least: i32::MAX, most: i32::MIN };
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn add(&mut self, places: &[Place], index: usize) {
         let Some(&[x, y, _]) = places.get(index) else { return };
         let _ = self.vertices.push([x, y]);
@@ -100,7 +100,7 @@ impl Edge {
     }
 
     /// Its vertices but the corners.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn inner(&self) -> Inner {
         let mut inner = Inner { least: i32::MAX, most: i32::MIN, lowest: i32::MAX, highest: i32::MIN };
         let corners = self.vertices.len().saturating_sub(1);

@@ -1,10 +1,10 @@
 //! Which of a clip's scalars drive which shapes: found by name once, then a multiplication and a shift each.
 
-use crate::model::{Model, Name, Target, hash};
+use crate::model::{Model, Name, Target};
 use crate::morph::Weights;
 use crate::{BINDINGS, FULL};
 use heapless::Vec;
-use pantin::Rig;
+use pantin::{Rig, Scalars};
 
 /// One scalar that drives one shape.
 #[derive(Clone, Copy, Debug)]
@@ -42,12 +42,18 @@ impl Binding {
     /// The same, where nothing was bound: as [`crate::Morph::set_up`].
     #[inline(never)]
     pub fn set_up(&mut self, rig: &Rig, model: &Model) {
-        for (index, scalar) in rig.scalars().enumerate() {
-            let wanted = hash(scalar.name().as_bytes());
+        self.bind(rig.scalars(), rig.joint_channels(), model);
+    }
+
+    /// The same for scalars of which the first is channel `first`.
+    #[inline(always)]
+    pub fn bind(&mut self, scalars: Scalars, first: usize, model: &Model) {
+        for (index, scalar) in scalars.enumerate() {
+            let wanted = scalar.name_hash();
             let mut known = false;
             for name in model.names().filter(|name| name.hash == wanted) {
                 known = true;
-                let channel = (rig.joint_channels() + index) as u16;
+                let channel = (first + index) as u16;
                 let shift = scalar.exponent.saturating_add(name.exponent);
                 let Name { target, mantissa, .. } = name;
                 let _ = self.drives.push(Drive { channel, target, mantissa, shift });

@@ -4,6 +4,7 @@ use crate::SHAPES;
 use crate::bytes::Bytes;
 use crate::curve::Curves;
 use crate::shape::Shapes;
+pub use pantin::names::hash;
 
 /// The only version.
 pub const VERSION: u8 = 1;
@@ -289,9 +290,4 @@ impl Target {
     pub fn sides(self) -> [bool; 2] {
         [self.0 & 0x40 != 0, self.0 & 0x80 != 0]
     }
-}
-
-/// FNV-1a of a channel's name.
-pub fn hash(name: &[u8]) -> u32 {
-    name.iter().fold(0x811c_9dc5, |hash, &byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
 }

@@ -36,7 +36,7 @@ impl Crossed {
         Crossed { corners, ways: [way(of(apex), of(one)) as u16, way(of(apex), of(other)) as u16] }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn draw(&self, points: &[[i16; 2]], out: &mut impl Paint) {
         let at = |index: u16| points.get(usize::from(index)).copied().unwrap_or_default();
         let [apex, one, other] = self.corners;
@@ -54,7 +54,7 @@ impl Outline {
     pub fn of(&mut self, model: &Model, facing: &[i8]) {
         self.triangles.clear();
         self.overflown = false;
-        each_crossed(model, facing, |corners| self.keep(corners, facing));
+        each_crossed(model, facing, &mut |corners| self.keep(corners, facing));
     }
 
     #[inline(never)]
@@ -91,14 +91,14 @@ impl Outline {
 /// More than are kept. In a function of its own: what it needs of memory is seldom needed.
 #[inline(never)]
 fn all(model: &Model, screen: Screen, out: &mut impl Paint) {
-    each_crossed(model, screen.facing, |corners| {
+    each_crossed(model, screen.facing, &mut |corners| {
         Crossed::new(corners, screen.facing).draw(screen.points, out);
         out.end();
     });
 }
 
-#[inline(always)]
-fn each_crossed(model: &Model, facing: &[i8], mut visit: impl FnMut([u16; 3])) {
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn each_crossed(model: &Model, facing: &[i8], visit: &mut dyn FnMut([u16; 3])) {
     let of = |index: u16| facing.get(usize::from(index)).copied().unwrap_or(0);
     let signs = signs(model, facing);
     // Most triangles and their images have all corners on one side: no two signs differ.

@@ -73,7 +73,7 @@ impl Seen {
     }
 
     /// Rows are no longer than 2^15, places no farther than 2^15.8: sums stay below 2^31.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn point(&self, place: Place) -> [i16; 2] {
         let (x, y, z) = (i32::from(place[0]), i32::from(place[1]), i32::from(place[2]));
         let along =
@@ -84,7 +84,7 @@ impl Seen {
     }
 
     /// On a display a place is within 2^15 sixteenths, magnified at most twice.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn onto(&self, along: i32, magnification: i32, axis: usize) -> i16 {
         let flat = along.wrapping_add(self.offset[axis]) >> self.shift;
         (flat.wrapping_mul(magnification) >> 12).wrapping_add(self.centre[axis]) as i16

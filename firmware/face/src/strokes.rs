@@ -5,6 +5,7 @@ use crate::model::Model;
 use crate::outline::{Outline, each_triangle};
 use crate::pen::Paint;
 use crate::seen::UNSEEN;
+use pantin_figure::trig::WORKED_OUT;
 
 /// Brightness of the mesh.
 const MESH: u8 = 44;
@@ -76,7 +77,7 @@ impl Screen<'_> {
         self.facing.get(usize::from(index)).copied().unwrap_or(-127)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn end(&self, index: u16) -> End {
         End { at: self.points.get(usize::from(index)).copied().unwrap_or_default(), facing: self.facing(index) }
     }
@@ -174,7 +175,9 @@ impl End {
 /// The part of the way, Q8, at which what is `from` here and `to` at its end passes 0: their signs differ, both are below 2^8.
 #[inline]
 pub(crate) fn way(from: i32, to: i32) -> i32 {
-    (from.abs() * RECIPROCALS.get((from - to).unsigned_abs() as usize).map_or(0, |&x| i32::from(x))) >> 7
+    let whole = (from - to).unsigned_abs() as usize;
+    let reciprocal = if WORKED_OUT { reciprocal(whole) } else { RECIPROCALS.get(whole).copied().unwrap_or(0) };
+    (from.abs() * i32::from(reciprocal)) >> 7
 }
 
 /// A place on the way from one to another, Q8.
@@ -203,14 +206,18 @@ static RECIPROCALS: [u16; 256] = {
     let mut table = [0; 256];
     let mut x = 1;
     while x < 256 {
-        table[x] = ((1 << 15) / x) as u16;
+        table[x] = reciprocal(x);
         x += 1;
     }
     table
 };
 
+const fn reciprocal(x: usize) -> u16 {
+    if x == 0 { 0 } else { ((1 << 15) / x) as u16 }
+}
+
 /// The part of a line that looks here.
-#[inline(always)]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 fn visible(from: End, to: End, out: &mut impl Paint) {
     match (from.facing > GRAZING, to.facing > GRAZING) {
         (true, true) => out.line(from.at, to.at),

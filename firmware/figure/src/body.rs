@@ -86,17 +86,22 @@ impl<'w> Limbs<'w> {
         let limbs = room.get_mut(..rig.joint_count()).filter(|limbs| limbs.len() <= most);
         let limbs = limbs.ok_or(Error::TooManyJoints { most })?;
         let hips = placement_end(rig);
-        let bones = || rig.joints().enumerate().map(|(index, joint)| bone(&joint, pose, index <= hips));
         let exponent_of = |moved| i32::from(if moved { position_exponent } else { rig.length_exponent() });
-        let bits = |(raw, moved): (i32, bool)| exponent_of(moved) + 32 - raw.unsigned_abs().leading_zeros() as i32;
-        let longest = bones().skip(hips + 1).flatten().filter(|&(raw, _)| raw != 0).map(bits).max();
+        let mut longest = None;
+        for joint in rig.joints().skip(hips + 1) {
+            for (raw, moved) in bone(&joint, pose) {
+                if raw != 0 {
+                    longest = longest.max(Some(exponent_of(moved) + 32 - raw.unsigned_abs().leading_zeros() as i32));
+                }
+            }
+        }
         let exponent = longest.unwrap_or(0) - BONE_BITS;
         let mut has_head = false;
-        for (((index, joint), bone), limb) in rig.joints().enumerate().zip(bones()).zip(limbs.iter_mut()) {
-            let bone = if index <= hips { [(0, false); 3] } else { bone };
+        for ((index, joint), limb) in rig.joints().enumerate().zip(limbs.iter_mut()) {
+            let bone = if index <= hips { [(0, false); 3] } else { bone(&joint, pose) };
             // Below 2^14 by the choice of the exponent.
             let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)) as i16);
-            let head = !has_head && contains(joint.name(), "head");
+            let head = !has_head && contains(joint.name_bytes(), b"head");
             has_head |= head;
             let parent = joint.parent.map_or(NO_PARENT, |parent| parent as u8);
             *limb = Limb { bone, length: length(bone.map(i32::from)) as u16, parent, flags: flag::KEPT, ..Limb::default() };
@@ -206,9 +211,10 @@ fn placement_end(rig: &Rig) -> usize {
 }
 
 /// Raw components of a joint's bone, and whether each comes from a position channel.
-fn bone(joint: &Joint, pose: &[i32], placement: bool) -> [(i32, bool); 3] {
+#[inline(never)]
+fn bone(joint: &Joint, pose: &[i32]) -> [(i32, bool); 3] {
     let mut bone = joint.offset.map(|raw| (raw, false));
-    for (slot, kind) in joint.kinds.enumerate().filter(|(_, kind)| kind.is_position() && !placement) {
+    for (slot, kind) in joint.kinds.enumerate().filter(|(_, kind)| kind.is_position()) {
         let raw = pose.get(usize::from(joint.first_channel) + slot).copied().unwrap_or(0);
         if let Some(component) = kind.axis().and_then(|axis| bone.get_mut(axis)) {
             *component = (raw, true);

@@ -2,7 +2,7 @@
 
 use crate::rotation::{Rotation, Vector};
 use crate::survey::{Bearings, Survey, cross};
-use crate::trig::{FRACTION_BITS, HALF, ONE, sin_cos};
+use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, sin_cos, table};
 
 /// Fraction bits of a pixel in projected places.
 pub const PIXEL_BITS: u32 = 4;
@@ -169,7 +169,7 @@ impl Camera {
     }
 
     /// The perspective, for a place in the camera's axes.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn project(&self, place: Vector) -> Projected {
         let [x, y, away] = place;
         let (x, y, away) = (sixteen_bits(x >> self.shift), sixteen_bits(y >> self.shift), sixteen_bits(away >> self.shift));
@@ -221,17 +221,14 @@ fn sixteen_bits(x: i32) -> i32 {
 }
 
 /// Distances from half to one and a half times the camera's, in 128 steps: value at the start of each, and step to the next.
-static MAGNIFICATION: [(u16, i16); 128] = {
-    let mut table = [(0, 0); 128];
-    let mut distance = 64;
-    while distance < 192 {
-        let from = ((1 << 21) + distance / 2) / distance;
-        let to = ((1 << 21) + distance / 2) / (distance + 1);
-        table[distance as usize - 64] = (from as u16, (to - from) as i16);
-        distance += 1;
-    }
-    table
-};
+static MAGNIFICATION: [(u16, i16); 128] = table!(magnification_from, 128);
+
+const fn magnification_from(index: usize) -> (u16, i16) {
+    let distance = 64 + index as i32;
+    let from = ((1 << 21) + distance / 2) / distance;
+    let to = ((1 << 21) + distance / 2) / (distance + 1);
+    (from as u16, (to - from) as i16)
+}
 
 /// Fraction bits of a magnification.
 pub(crate) const MAGNIFICATION_BITS: i32 = 14;
@@ -241,6 +238,11 @@ pub(crate) const MAGNIFICATION_BITS: i32 = 14;
 pub(crate) fn magnification(depth: i32) -> i32 {
     let distance = (depth + (1 << (DEPTH_BITS - 1))).clamp(0, (1 << DEPTH_BITS) - 1);
     let (index, place) = ((distance >> 8) as usize, distance & 0xff);
-    let Some(&(from, step)) = MAGNIFICATION.get(index) else { return 1 << 14 };
+    let (from, step) = if WORKED_OUT {
+        magnification_from(index)
+    } else {
+        let Some(&entry) = MAGNIFICATION.get(index) else { return 1 << 14 };
+        entry
+    };
     i32::from(from) + ((i32::from(step) * place) >> 8)
 }

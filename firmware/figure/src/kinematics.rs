@@ -16,7 +16,7 @@ pub struct Kinematics<const N: usize, R: Turning = Rotation> {
 impl<const N: usize, R: Turning> Kinematics<N, R> {
     /// Nothing placed yet.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Kinematics { positions: Vec::new(), rotations: [R::NONE; SLOTS] }
     }
 

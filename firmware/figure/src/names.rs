@@ -1,15 +1,15 @@
 //! What the names of joints tell.
 
 /// Whether `name` contains `word`, in any case.
-pub(crate) fn contains(name: &str, word: &str) -> bool {
-    name.as_bytes().windows(word.len()).any(|part| part.eq_ignore_ascii_case(word.as_bytes()))
+pub(crate) fn contains(name: &[u8], word: &[u8]) -> bool {
+    name.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word))
 }
 
 /// For two names that differ in "left" and "right" or "l" and "r" alone, in any case: whether `a` is the left one.
-pub(crate) fn is_left_of(a: &str, b: &str) -> Option<bool> {
-    let same = a.bytes().zip(b.bytes()).take_while(|(a, b)| a.eq_ignore_ascii_case(b)).count();
-    let (is_left, a) = side(a.as_bytes().get(same..)?)?;
-    let (other_is_left, b) = side(b.as_bytes().get(same..)?)?;
+pub(crate) fn is_left_of(a: &[u8], b: &[u8]) -> Option<bool> {
+    let same = a.iter().zip(b).take_while(|(a, b)| a.eq_ignore_ascii_case(b)).count();
+    let (is_left, a) = side(a.get(same..)?)?;
+    let (other_is_left, b) = side(b.get(same..)?)?;
     (is_left != other_is_left && a.eq_ignore_ascii_case(b)).then_some(is_left)
 }
 
@@ -27,12 +27,12 @@ mod tests {
 
     #[test]
     fn counterparts_are_told_by_one_word_or_letter() {
-        assert_eq!(is_left_of("LeftUpLeg", "RightUpLeg"), Some(true));
-        assert_eq!(is_left_of("Beta:RightArm", "Beta:LeftArm"), Some(false));
-        assert_eq!(is_left_of("UpperLeg_L", "UpperLeg_R"), Some(true));
-        assert_eq!(is_left_of("rfemur", "lfemur"), Some(false));
-        assert_eq!(is_left_of("LeftUpLeg", "RightLeg"), None);
-        assert_eq!(is_left_of("Spine", "Spine"), None);
-        assert_eq!(is_left_of("LowerBack", "Root"), None);
+        assert_eq!(is_left_of(b"LeftUpLeg", b"RightUpLeg"), Some(true));
+        assert_eq!(is_left_of(b"Beta:RightArm", b"Beta:LeftArm"), Some(false));
+        assert_eq!(is_left_of(b"UpperLeg_L", b"UpperLeg_R"), Some(true));
+        assert_eq!(is_left_of(b"rfemur", b"lfemur"), Some(false));
+        assert_eq!(is_left_of(b"LeftUpLeg", b"RightLeg"), None);
+        assert_eq!(is_left_of(b"Spine", b"Spine"), None);
+        assert_eq!(is_left_of(b"LowerBack", b"Root"), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Square roots of integers: only used while a figure is set up.
 
-use crate::rotation::Vector;
+use crate::rotation::{Vector, vector};
 use crate::trig::ONE;
 
 /// The root, rounded down.
@@ -29,7 +29,7 @@ pub(crate) fn direction(v: Vector) -> Option<Vector> {
         return None;
     }
     let shift = 17 - largest.leading_zeros() as i32;
-    let v = v.map(|x| if shift >= 0 { x >> shift } else { x << -shift });
+    let v = vector(|axis| if shift >= 0 { v[axis] >> shift } else { v[axis] << -shift });
     let length = integer_root(v.iter().map(|x| x.unsigned_abs().pow(2)).sum()) as i32;
-    Some(v.map(|x| x * ONE / length.max(1)))
+    Some(vector(|axis| v[axis] * ONE / length.max(1)))
 }

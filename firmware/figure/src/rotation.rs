@@ -3,10 +3,16 @@
 //! Every product fits 32 bits because rows and columns of a rotation are unit vectors: no partial sum of their products
 //! exceeds 1, that is 2^30.
 
-use crate::trig::{FRACTION_BITS, HALF, ONE, series, sin_cos};
+use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, series, sin_cos, table};
 
 /// A vector: Q15 for directions, figure units for places.
 pub type Vector = [i32; 3];
+
+/// A vector, axis by axis: where it is to be small, less code than an array of the library's.
+#[inline(always)]
+pub(crate) fn vector(of: impl Fn(usize) -> i32) -> Vector {
+    [of(0), of(1), of(2)]
+}
 
 /// What forward kinematics asks of a rotation, however it is held.
 pub trait Turning: Copy {
@@ -103,7 +109,7 @@ impl Rotation {
     }
 
     /// The image of a vector whose components lie within -2^15 .. 2^15 and whose length is below 2^16.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn apply(&self, v: Vector) -> Vector {
         let [x, y, z] = &self.0;
         let row = |row: usize| (x[row] * v[0] + y[row] * v[1] + z[row] * v[2] + HALF) >> FRACTION_BITS;
@@ -154,7 +160,7 @@ impl Rotation {
         let square = map.iter().fold(0, |sum: u32, &x| sum.saturating_add_signed(square(x)));
         let index = (square >> 24) as usize;
         let place = ((square >> 12) & 0xfff) as i32;
-        let (Some(from), Some(to)) = (HALF_ANGLE.get(index), HALF_ANGLE.get(index + 1)) else { return Rotation::IDENTITY };
+        let Some((from, to)) = two(&HALF_ANGLE, half_angle, index) else { return Rotation::IDENTITY };
         let between = |from: i32, to: i32| from + (((to - from) * place) >> 12);
         let (w, scale) = (between(from[0], to[0]), between(from[1], to[1]));
         // Components in 17 bits, the scale's 16 and 7 bits apart: all products fit.
@@ -174,38 +180,35 @@ const TABLE_BITS: i32 = 22;
 
 /// Cosine of half the angle, and pi/2 times its sine over it, by the square of the half angle, in 2^24 / 2^30 of (pi/2)^2.
 /// A step of the table stays below 2^18. Linear between: the cosine's second derivative, at most 1/12, leaves 1.6e-5.
-static HALF_ANGLE: [[i32; 2]; INTERVALS + 2] = half_angles();
+static HALF_ANGLE: [[i32; 2]; INTERVALS + 2] = table!(half_angle, INTERVALS + 2);
 
-const fn half_angles() -> [[i32; 2]; INTERVALS + 2] {
+const fn half_angle(index: usize) -> [i32; 2] {
     const ONE_TABLE: f64 = (1 << TABLE_BITS) as f64;
     const QUARTER_TURN: f64 = core::f64::consts::FRAC_PI_2;
-    let mut table = [[0; 2]; INTERVALS + 2];
-    let mut index = 0;
-    while index < table.len() {
-        let square = index as f64 / 64.0 * QUARTER_TURN * QUARTER_TURN;
-        table[index] = [round(series(square, 0.0) * ONE_TABLE), round(QUARTER_TURN * series(square, 1.0) * ONE_TABLE / 2.0)];
-        index += 1;
+    let square = index as f64 / 64.0 * QUARTER_TURN * QUARTER_TURN;
+    [round(series(square, 0.0) * ONE_TABLE), round(QUARTER_TURN * series(square, 1.0) * ONE_TABLE / 2.0)]
+}
+
+/// Two entries in a row.
+#[inline(always)]
+fn two<T: Copy>(table: &[T], entry: impl Fn(usize) -> T, index: usize) -> Option<(T, T)> {
+    if WORKED_OUT {
+        return (index + 1 < table.len()).then(|| (entry(index), entry(index + 1)));
     }
-    table
+    Some((*table.get(index)?, *table.get(index + 1)?))
 }
 
 /// Inverse square roots (Q22) of 1 .. 4 in steps of 1/128. Linear between: the second derivative, at most 3/4, leaves 6e-6.
-static INVERSE_ROOT: [i32; 386] = inverse_roots();
+static INVERSE_ROOT: [i32; 386] = table!(inverse_root, 386);
 
-const fn inverse_roots() -> [i32; 386] {
-    let mut table = [0; 386];
-    let mut index = 0;
-    while index < table.len() {
-        let x = 1.0 + index as f64 / 128.0;
-        let (mut root, mut step) = (x, 0);
-        while step < 40 {
-            root = (root + x / root) / 2.0;
-            step += 1;
-        }
-        table[index] = round((1 << TABLE_BITS) as f64 / root);
-        index += 1;
+const fn inverse_root(index: usize) -> i32 {
+    let x = 1.0 + index as f64 / 128.0;
+    let (mut root, mut step) = (x, 0);
+    while step < 40 {
+        root = (root + x / root) / 2.0;
+        step += 1;
     }
-    table
+    round((1 << TABLE_BITS) as f64 / root)
 }
 
 const fn round(x: f64) -> i32 {
@@ -228,7 +231,7 @@ fn unit(q: [i32; 4]) -> Option<[i32; 4]> {
     let above = square.saturating_sub(1 << 30);
     let index = (above >> 23) as usize;
     let place = ((above >> 8) & 0x7fff) as i32;
-    let (&from, &to) = (INVERSE_ROOT.get(index)?, INVERSE_ROOT.get(index + 1)?);
+    let (from, to) = two(&INVERSE_ROOT, inverse_root, index)?;
     let inverse = from + (((to - from) * place) >> FRACTION_BITS);
     Some(q.map(|x| {
         let x = shift_right(x, shift);

@@ -168,7 +168,7 @@ pub enum Detail {
 impl<const N: usize> Skeleton<N> {
     /// No joints.
     #[inline(always)]
-    pub fn empty() -> Self {
+    pub const fn empty() -> Self {
         Skeleton {
             bones: Vec::new(),
             drives: Vec::new(),
@@ -214,10 +214,10 @@ impl<const N: usize> Skeleton<N> {
             Detail::Full => limbs.settle(0),
         }
         self.clear(&limbs, limbs.exponent - i32::from(position_exponent));
-        let mut next = limbs.after(None);
-        while let Some(index) = next {
+        let mut before = None;
+        while let Some(index) = limbs.after(before) {
             self.add(rig, detail, &mut limbs, index, is_exponential(index))?;
-            next = limbs.after(Some(index));
+            before = Some(index);
         }
         self.hips = limbs.limbs.get(self.hips).map_or(0, |hips| usize::from(hips.link));
         self.find_sides(rig, &limbs);
@@ -238,7 +238,7 @@ impl<const N: usize> Skeleton<N> {
 
     /// Adds a joint of the rig.
     fn add(&mut self, rig: &Rig, detail: Detail, limbs: &mut Limbs, index: usize, exponential: bool) -> Result<(), Error> {
-        let (Some(joint), Some(&limb)) = (rig.joints().nth(index), limbs.limbs.get(index)) else { return Ok(()) };
+        let (Some(joint), Some(&limb)) = (rig.joint(index), limbs.limbs.get(index)) else { return Ok(()) };
         let (placement, head) = (limb.is(flag::PLACEMENT), limb.is(flag::HEAD));
         let parent = limbs.limbs.get(usize::from(limb.parent)).map(|parent| parent.link);
         let drives = self.drive(&joint, limb.is(flag::BEARS) || head, exponential)?;
@@ -254,7 +254,7 @@ impl<const N: usize> Skeleton<N> {
             drives,
             slot: NOWHERE,
             parent_slot: NOWHERE,
-            foot: contains(joint.name(), "foot") || contains(joint.name(), "ankle"),
+            foot: contains(joint.name_bytes(), b"foot") || contains(joint.name_bytes(), b"ankle"),
             moves: { joint.kinds }.any(|kind| kind.is_position()),
         };
         let at = self.push(bone)?;
@@ -279,12 +279,15 @@ impl<const N: usize> Skeleton<N> {
         use Kind::*;
         let before = self.driven;
         let (mut moved, mut grouped) = (false, !turns);
-        let of = |kinds: &[Kind], act| {
+        // The first channels of so many kinds in a row.
+        let of = |first: Kind, count: usize, act| {
             let mut members = [None; 4];
-            for (member, kind) in members.iter_mut().zip(kinds) {
-                *member = joint.kinds.zip(joint.first_channel..).find(|(own, _)| own == kind).map(|(_, channel)| channel);
+            for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
+                if let Some(member @ None) = members.get_mut((kind as usize).wrapping_sub(first as usize)) {
+                    *member = Some(channel);
+                }
             }
-            Drive::group(act, members.get(..kinds.len()).unwrap_or(&[]))
+            Drive::group(act, members.get(..count).unwrap_or(&[]))
         };
         for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
             let drive = match kind {
@@ -292,7 +295,7 @@ impl<const N: usize> Skeleton<N> {
                 _ if kind.is_position() && moved => continue,
                 _ if kind.is_position() => {
                     moved = true;
-                    of(&[Xposition, Yposition, Zposition], 3)
+                    of(Xposition, 3, 3)
                 }
                 _ if kind.is_rotation() && !exponential && turns => Some(Drive::turn(kind.axis().unwrap_or(0) as u16, channel)),
                 // The rest work as a group, in the place of its first channel.
@@ -300,9 +303,9 @@ impl<const N: usize> Skeleton<N> {
                 _ => {
                     grouped = true;
                     if kind.is_quaternion() {
-                        of(&[Wquaternion, Xquaternion, Yquaternion, Zquaternion], 5)
+                        of(Wquaternion, 4, 5)
                     } else if kind.is_exponential() {
-                        of(&[Xexponential, Yexponential, Zexponential], 4)
+                        of(Xexponential, 3, 4)
                     } else {
                         angles(joint)
                     }
@@ -331,49 +334,50 @@ impl<const N: usize> Skeleton<N> {
     /// Which bones are of which side: by joints whose names are counterparts, and all that hangs on them. The first pair whose
     /// bones differ tells where the figure faces.
     fn find_sides(&mut self, rig: &Rig, limbs: &Limbs) {
-        let mut best: Option<[usize; 2]> = None;
+        let mut best = usize::MAX;
+        self.sides = None;
         for at in 0..self.bones.len() {
             let Some(&bone) = self.bones.get(at) else { return };
             let above = bone.parent.and_then(|parent| self.bones.get(usize::from(parent))).map_or(Tone::Middle, |bone| bone.tone);
             let mut tone = above;
             let joint = usize::from(bone.joint);
-            if let Some((left, other)) = counterpart(rig, limbs, joint) {
+            if let Some((left, other)) = counterpart(rig, limbs, joint)
+                && let (Some(own), Some(theirs)) = (limbs.limbs.get(joint), limbs.limbs.get(other))
+            {
                 tone = if left { Tone::Left } else { Tone::Right };
-                let differ = limbs.limbs.get(joint).map(|limb| limb.bone) != limbs.limbs.get(other).map(|limb| limb.bone);
-                let pair = [joint.min(other), joint.max(other)];
-                if differ && best.is_none_or(|best| pair < best) {
-                    best = Some(pair);
-                    let pair = if left { [joint, other] } else { [other, joint] };
-                    self.sides = Some(pair.map(|joint| limbs.limbs.get(joint).map_or(0, |limb| limb.link)));
+                // Indices are below 2^8.
+                let pair = joint.min(other) << 8 | joint.max(other);
+                if own.bone != theirs.bone && pair < best {
+                    best = pair;
+                    self.sides = Some(if left { [own.link, theirs.link] } else { [theirs.link, own.link] });
                 }
             }
             if let Some(bone) = self.bones.get_mut(at) {
                 bone.tone = tone;
             }
         }
-        if best.is_none() {
-            self.sides = None;
-        }
     }
 
     /// Gives every joint that others hang on a place for its rotation until the last of those has been placed.
     fn keep_rotations(&mut self) {
-        let mut used = [false; SLOTS];
+        // A bit a place; there is always a free one: the order sees to it. The shift takes NOWHERE for 31, which is none.
+        let mut used = 0u32;
         for at in 0..self.bones.len() {
             let Some(parent) = self.bones.get(at).map(|bone| bone.parent) else { return };
             let parent_slot = parent.and_then(|parent| self.bones.get(usize::from(parent))).map_or(NOWHERE, |bone| bone.slot);
-            let rest = self.bones.get(at + 1..).unwrap_or(&[]);
-            let last = parent.is_some() && !rest.iter().any(|bone| bone.parent == parent);
-            if let Some(used) = used.get_mut(usize::from(parent_slot)).filter(|_| last) {
-                *used = false;
+            let (mut last, mut bears) = (parent.is_some(), false);
+            for bone in self.bones.get(at + 1..).unwrap_or(&[]) {
+                last &= bone.parent != parent;
+                bears |= bone.parent == Some(at as u8);
             }
-            let bears = rest.iter().any(|bone| bone.parent == Some(at as u8));
-            // There is always one: the order sees to it.
-            let free = used.iter_mut().enumerate().find(|(_, used)| !**used).filter(|_| bears);
-            let slot = free.map_or(NOWHERE, |(slot, used)| {
-                *used = true;
-                slot as u8
-            });
+            if last {
+                used &= !1u32.wrapping_shl(parent_slot.into());
+            }
+            let mut slot = NOWHERE;
+            if bears {
+                slot = (0..SLOTS as u8).find(|slot| used >> slot & 1 == 0).unwrap_or(NOWHERE);
+                used |= 1u32.wrapping_shl(slot.into());
+            }
             if let Some(bone) = self.bones.get_mut(at) {
                 (bone.slot, bone.parent_slot) = (slot, parent_slot);
             }
@@ -383,10 +387,10 @@ impl<const N: usize> Skeleton<N> {
 
 /// The kept joint whose name is the counterpart of a joint's, and whether the joint is the left one of them.
 fn counterpart(rig: &Rig, limbs: &Limbs, index: usize) -> Option<(bool, usize)> {
-    let own = rig.joints().nth(index)?;
+    let own = rig.joint(index)?;
     let mut others =
         rig.joints().zip(limbs.limbs.iter()).enumerate().filter(|(other, (_, limb))| *other != index && limb.is(flag::KEPT));
-    others.find_map(|(other, (joint, _))| Some((is_left_of(own.name(), joint.name())?, other)))
+    others.find_map(|(other, (joint, _))| Some((is_left_of(own.name_bytes(), joint.name_bytes())?, other)))
 }
 
 /// Euler angles that a clip codes as an exponential map: their slots hold x, y, z in turn.

@@ -37,7 +37,7 @@ const SAMPLES: u32 = 48;
 impl<const N: usize, R: Turning> Stage<N, R> {
     /// No figure yet.
     #[inline(always)]
-    pub fn empty() -> Self {
+    pub const fn empty() -> Self {
         Stage {
             skeleton: Skeleton::empty(),
             bearings: Bearings::UPRIGHT,
@@ -92,10 +92,16 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
     /// argument; it is called twice and must show the same ones.
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
-        let mut stage = Stage { skeleton, canvas, ..Self::empty() };
-        stage.choose();
-        stage.frame(view, poses);
+        let mut stage = Stage { skeleton, ..Self::empty() };
+        stage.look_at(canvas, view, poses);
         stage
+    }
+
+    /// [`Stage::new`] in place, for the skeleton that it has.
+    pub fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+        self.canvas = canvas;
+        self.choose();
+        self.frame(view, poses);
     }
 
     fn frame(&mut self, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
@@ -106,22 +112,22 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         });
         let bearings = survey.bearings(view.up);
         let size = self.skeleton.size;
-        let at_scale = |scale| {
-            let camera = Camera::new(&survey, bearings, size, view, scale);
-            (R::of_view(camera.view()), camera)
+        let set_camera = |stage: &mut Self, scale| {
+            stage.camera = Camera::new(&survey, bearings, size, view, scale);
+            stage.view = R::of_view(stage.camera.view());
         };
         let upwards = bearings.up[bearings.axis] > 0;
         let height = if upwards { survey.low[bearings.axis] } else { survey.high[bearings.axis] };
         self.ground = Ground::new(bearings.axis, height, size, self.canvas);
         self.bearings = bearings;
-        (self.view, self.camera) = at_scale(TRIAL_SCALE);
+        set_camera(self, TRIAL_SCALE);
         let mut frame = Frame::default();
         poses(&mut |pose| {
             self.place(pose);
             frame.include(self);
         });
         let scale = frame.scale(self.canvas);
-        (self.view, self.camera) = at_scale(scale);
+        set_camera(self, scale);
         let [columns, rows] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
         self.camera.show(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
@@ -244,6 +250,11 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     /// The figure's joints.
     pub fn skeleton(&self) -> &Skeleton<N> {
         &self.skeleton
+    }
+
+    /// The same, to be set up in place before [`Stage::look_at`].
+    pub fn skeleton_mut(&mut self) -> &mut Skeleton<N> {
+        &mut self.skeleton
     }
 
     /// The camera.

@@ -2,7 +2,7 @@
 
 use crate::kinematics::Kinematics;
 use crate::root::direction;
-use crate::rotation::{Turning, Vector};
+use crate::rotation::{Turning, Vector, vector};
 use crate::skeleton::{Part, Skeleton};
 use crate::trig::ONE;
 
@@ -51,11 +51,11 @@ impl Survey {
         let (mut crown, mut feet, mut footed) = (None, [0i32; 3], 0);
         for (index, (bone, &position)) in skeleton.bones.iter().zip(joints.positions()).enumerate() {
             if index >= skeleton.hips {
-                low = core::array::from_fn(|axis| low[axis].min(position[axis]));
-                high = core::array::from_fn(|axis| high[axis].max(position[axis]));
+                low = vector(|axis| low[axis].min(position[axis]));
+                high = vector(|axis| high[axis].max(position[axis]));
             }
             if bone.foot {
-                feet = core::array::from_fn(|axis| feet[axis].wrapping_add(position[axis] >> 4));
+                feet = vector(|axis| feet[axis].wrapping_add(position[axis] >> 4));
                 footed += 1;
             }
             if bone.part == Part::Crown {
@@ -69,13 +69,13 @@ impl Survey {
             Some(crown) if footed > 0 => add(&mut self.upright, crown, feet.map(|x| x.checked_div(footed).unwrap_or(0) * 16)),
             _ => add(&mut self.upright, [0, high[1], high[2]], [0, low[1], low[2]]),
         }
-        self.low = core::array::from_fn(|axis| low[axis].min(self.low[axis]));
-        self.high = core::array::from_fn(|axis| high[axis].max(self.high[axis]));
+        self.low = vector(|axis| low[axis].min(self.low[axis]));
+        self.high = vector(|axis| high[axis].max(self.high[axis]));
     }
 
     /// The middle of everything seen.
     pub fn middle(&self) -> Vector {
-        core::array::from_fn(|axis| (self.low[axis] >> 1).wrapping_add(self.high[axis] >> 1))
+        vector(|axis| (self.low[axis] >> 1).wrapping_add(self.high[axis] >> 1))
     }
 
     /// Half the extent along an axis.
@@ -117,7 +117,7 @@ fn add(sum: &mut Vector, to: Vector, from: Vector) {
 
 /// The cross product of two Q15 vectors of length 1.
 pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
-    core::array::from_fn(|axis| {
+    vector(|axis| {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         (a[next] * b[last] - a[last] * b[next]) >> 15
     })

@@ -1,6 +1,6 @@
 //! Sine and cosine by table, from an angle in turns (2^32 is one turn) to Q15 (32768 is 1).
 //!
-//! The tables are worked out by the compiler; at run time there are integers only, and no product is wider than 32 bits.
+//! The tables are worked out by the compiler; at run time there are integers only (but in a page, see [`WORKED_OUT`]), and no product is wider than 32 bits.
 
 /// Fraction bits of sines, cosines and of every element of a rotation.
 pub const FRACTION_BITS: u32 = 15;
@@ -10,32 +10,50 @@ pub const ONE: i32 = 1 << FRACTION_BITS;
 /// Half a unit of the last place, for rounding shifts by [`FRACTION_BITS`].
 pub(crate) const HALF: i32 = ONE / 2;
 
+/// Whether entries of tables are worked out where they are needed, by the same instructions that the compiler works the tables out with, to the
+/// same bits: in a page, where a byte to be loaded counts and numbers are cheap.
+pub const WORKED_OUT: bool = cfg!(target_arch = "wasm32");
+
+/// A table of what a constant function makes of each index.
+macro_rules! table {
+    ($entry:ident, $len:expr) => {{
+        let mut table = [$entry(0); $len];
+        let mut index = 0;
+        while index < $len {
+            table[index] = $entry(index);
+            index += 1;
+        }
+        table
+    }};
+}
+pub(crate) use table;
+
 /// Angles of the table in a turn.
 const ANGLES: usize = 128;
 /// Fraction bits of the table: its own rounding must not show in Q15.
 const TABLE_BITS: u32 = 22;
 
 /// Sine and cosine of each angle.
-static CIRCLE: [[i32; 2]; ANGLES] = circle();
+static CIRCLE: [[i32; 2]; ANGLES] = table!(on_circle, ANGLES);
 
-const fn circle() -> [[i32; 2]; ANGLES] {
-    let mut table = [[0; 2]; ANGLES];
-    let mut index = 0;
-    while index < ANGLES {
-        // The table's own quarter, and the angle in it: the series converges to the last bit.
-        let (quarter, place) = (index / (ANGLES / 4), index % (ANGLES / 4));
-        let angle = place as f64 * core::f64::consts::TAU / ANGLES as f64;
-        let sin = round(angle * series(angle * angle, 1.0));
-        let cos = round(series(angle * angle, 0.0));
-        table[index] = match quarter {
-            0 => [sin, cos],
-            1 => [cos, -sin],
-            2 => [-sin, -cos],
-            _ => [-cos, sin],
-        };
-        index += 1;
+/// Sine and cosine of an angle of the table.
+#[inline(always)]
+fn nearest_angle(index: usize) -> [i32; 2] {
+    if WORKED_OUT { on_circle(index) } else { CIRCLE.get(index).copied().unwrap_or([0; 2]) }
+}
+
+const fn on_circle(index: usize) -> [i32; 2] {
+    // The table's own quarter, and the angle in it: the series converges to the last bit.
+    let (quarter, place) = (index / (ANGLES / 4), index % (ANGLES / 4));
+    let angle = place as f64 * core::f64::consts::TAU / ANGLES as f64;
+    let sin = round(angle * series(angle * angle, 1.0));
+    let cos = round(series(angle * angle, 0.0));
+    match quarter {
+        0 => [sin, cos],
+        1 => [cos, -sin],
+        2 => [-sin, -cos],
+        _ => [-cos, sin],
     }
-    table
 }
 
 const fn round(x: f64) -> i32 {
@@ -44,6 +62,7 @@ const fn round(x: f64) -> i32 {
 
 /// The alternating series sum of (-u)^k / (first + 2k)! * first!: with `first` 0 the cosine of the root of u, with 1 its sine
 /// over the root. Converges to the last bit for u up to 16.
+#[inline(never)]
 pub(crate) const fn series(u: f64, first: f64) -> f64 {
     let mut sum = 0.0;
     let mut term = 1.0;
@@ -61,7 +80,7 @@ pub(crate) const fn series(u: f64, first: f64) -> f64 {
 #[inline(always)]
 pub fn sin_cos(angle: i32) -> (i32, i32) {
     let nearest = (angle as u32).wrapping_add(1 << 24);
-    let [sin, cos] = CIRCLE.get((nearest >> 25) as usize).copied().unwrap_or([0; 2]);
+    let [sin, cos] = nearest_angle((nearest >> 25) as usize);
     // At most 2^-8 turns either way: in radians 0.0246, in Q20 less than 2^15. A sixth of its third power is below 3e-6.
     let rest = ((nearest >> 9) & 0xffff) as i32 - (1 << 15);
     let rest = (rest * 25_736) >> 15;

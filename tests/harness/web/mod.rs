@@ -2,6 +2,7 @@
 
 pub mod browser;
 mod pack;
+mod script;
 pub mod slow;
 
 use std::ffi::OsString;
@@ -19,8 +20,15 @@ use crate::{paths, setup};
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
-/// The modules' packages.
-pub const PACKAGES: [&str; 2] = ["pantin-web-player", "pantin-web-converter"];
+/// For the smallest player: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
+const SMALL: &str = "-Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
+
+/// The modules' packages, the profiles that they are built in, and their names in the site.
+pub const MODULES: [(&str, &str, &str); 3] = [
+    ("pantin-web-player", "release", PLAYER[1]),
+    ("pantin-web-face", "release", FACE[0]),
+    ("pantin-web-converter", "converter", CONVERTER[1]),
+];
 
 /// A file of the player, or of the converter, and its bytes.
 pub struct Size {
@@ -32,6 +40,8 @@ pub struct Size {
 
 /// What a page that plays clips loads.
 pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
+/// What it loads too once a clip may drive a face.
+pub const FACE: [&str; 1] = ["pantin-face.wasm"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
 
@@ -40,13 +50,14 @@ pub fn build(out: &Path) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
-    write(&out.join(PLAYER[1]), &module(PACKAGES[0], "release")?)?;
-    write(&out.join(CONVERTER[1]), &module(PACKAGES[1], "converter")?)?;
+    for (package, profile, name) in MODULES {
+        write(&out.join(name), &module(package, profile)?)?;
+    }
     for entry in listed(&paths::root().join("web/page"))? {
         let name = entry.file_name().unwrap_or_default();
         let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
         let scripted = entry.extension().is_some_and(|extension| extension == "js");
-        write(&out.join(name), &if scripted { bare(&bytes) } else { bytes })?;
+        write(&out.join(name), &if scripted { script::shortened(&bytes)? } else { bytes })?;
     }
     clips(out)
 }
@@ -75,20 +86,15 @@ pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
 /// A package of the web workspace as a module.
 fn module(package: &str, profile: &str) -> Result<Vec<u8>> {
     let arguments = ["--profile", profile, "--package", package, "--target", TARGET];
+    let environment = (profile == "release").then(|| ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS".into(), SMALL.into()));
     let product = build::cargo(&Build {
         workspace: paths::root().join("web"),
         arguments: arguments.map(OsString::from).into(),
-        environment: vec![],
+        environment: environment.into_iter().collect(),
         product: package.replace('-', "_"),
     })?;
     let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
     pack::pack(&bytes).with_context(|| product.display().to_string())
-}
-
-/// A script without indents and without lines of comment alone: our scripts have no text of several lines in which they would count.
-fn bare(script: &[u8]) -> Vec<u8> {
-    let lines = script.split(|&byte| byte == b'\n').map(|line| line.trim_ascii()).filter(|line| !line.is_empty());
-    lines.filter(|line| !line.starts_with(b"//")).flat_map(|line| [line, b"\n"].concat()).collect()
 }
 
 /// Our own clips, and the list of them that the page reads.

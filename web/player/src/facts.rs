@@ -16,14 +16,19 @@ pub struct Facts {
     pub frame_time_ns: u32,
     /// Whether frame 0 follows the last one.
     pub looped: u32,
-    /// 1 for a body, 2 for a face, 3 for both, 4 for channels that are neither.
-    pub kind: u32,
     /// Channels of a pose, and how many of them the clip codes as moving; 0 while it is not there as a whole.
     pub channels: u32,
     pub moving: u32,
     /// Of the file: bytes of the rig, and of the motion.
     pub rig_bytes: u32,
     pub motion_bytes: u32,
+    /// Joints of the rig, and channels that move none.
+    pub joints: u32,
+    pub scalars: u32,
+    /// Where the rig's scalars and the pose that is shown stand, and how many bytes these scalars have.
+    pub scalars_at: usize,
+    pub scalars_len: usize,
+    pub pose: usize,
 }
 
 impl Facts {
@@ -34,11 +39,15 @@ impl Facts {
         frame: 0,
         frame_time_ns: 0,
         looped: 0,
-        kind: 0,
         channels: 0,
         moving: 0,
         rig_bytes: 0,
         motion_bytes: 0,
+        joints: 0,
+        scalars: 0,
+        scalars_at: 0,
+        scalars_len: 0,
+        pose: 0,
     };
 }
 

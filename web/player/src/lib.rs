@@ -4,9 +4,11 @@
 //! room(bytes)          -> where the file belongs; the page writes what has come to its front
 //! arrived(bytes)       -> how many are there now: frames become playable while the rest is on its way
 //! finish()             -> that was all: the clip is checked as a whole
-//! aim(w, h, o, t, l)   -> picture in pixels, view in degrees, look
+//! aim(w, h, o, t)      -> picture in pixels, view in degrees
 //! go(frame)            -> exactly that frame, forwards or backwards
-//! strokes(), grey()    -> the frame as lines, or as the 128x64 display shows it
+//! strokes()            -> how many strokes the frame is drawn with; the page may put more behind them, of a face
+//! picture()            -> where they stand
+//! grey(strokes)        -> what the 128x64 display shows of them
 //! ```
 //! Answers of `arrived`, `finish`, `poses` and `aim` are a [`Trouble`], 0 for none. What there is to know stands in [`Facts`].
 #![no_std]
@@ -16,34 +18,23 @@
 mod actor;
 mod arriving;
 mod facts;
+mod grey;
 mod memory;
 mod picture;
 mod source;
 mod world;
 
-use core::mem::MaybeUninit;
 use facts::{Facts, Trouble};
-use memory::Only;
-use picture::Stroke;
+use pantin_web_module::memory::{room as make_room, written};
+use pantin_web_module::{Only, Stroke};
 use world::World;
 
-/// Made at the first call.
-static WORLD: Only<MaybeUninit<World>> = Only::new(MaybeUninit::zeroed());
-static MADE: Only<bool> = Only::new(false);
-
-#[panic_handler]
-fn panic(_info: &core::panic::PanicInfo) -> ! {
-    core::arch::wasm32::unreachable()
-}
+/// Mostly zeros, which do not stand in the file.
+static WORLD: Only<World> = Only::new(World::NEW);
 
 fn with<T>(act: impl FnOnce(&mut World) -> T) -> T {
     // SAFETY: exports are the only callers, none of them calls another or the page, and the memory has no threads.
-    let (world, made) = unsafe { (WORLD.get(), MADE.get()) };
-    if !core::mem::replace(made, true) {
-        world.write(World::new());
-    }
-    // SAFETY: it was written before it is read.
-    act(unsafe { world.assume_init_mut() })
+    act(unsafe { WORLD.get() })
 }
 
 fn code(outcome: Result<(), Trouble>) -> u32 {
@@ -54,13 +45,13 @@ fn code(outcome: Result<(), Trouble>) -> u32 {
 // SAFETY: nothing else is named so; this holds for every export below.
 #[unsafe(no_mangle)]
 extern "C" fn room(bytes: usize) -> *mut u8 {
-    memory::room(bytes)
+    make_room(bytes)
 }
 
 /// The file's first `bytes` bytes are there.
 #[unsafe(no_mangle)]
 extern "C" fn arrived(bytes: usize) -> u32 {
-    with(|world| code(world.arrived(memory::file(bytes))))
+    with(|world| code(world.arrived(written(bytes))))
 }
 
 /// No more bytes will come.
@@ -75,7 +66,7 @@ extern "C" fn poses(rig: usize, frames: usize, frame_time_ns: u32, length_expone
     with(|world| code(world.poses(rig, frames, frame_time_ns, length_exponent as i8)))
 }
 
-/// Sets the camera up for a picture of `width` x `height` pixels (at most 2047), seen from `orbit` degrees about the figure and `tilt` above
+/// Sets the camera up for a picture of `width` x `height` pixels (at most 2047; no width shows no bars), seen from `orbit` degrees about the figure and `tilt` above
 /// the horizon.
 #[unsafe(no_mangle)]
 extern "C" fn aim(width: u32, height: u32, orbit: i32, tilt: i32) -> u32 {
@@ -94,17 +85,24 @@ extern "C" fn facts() -> *const Facts {
     with(|world| world.facts() as *const Facts)
 }
 
-/// Gathers what the frame is drawn with: where it stands, and how many strokes they are in the upper half.
+/// Gathers what the frame is drawn with, and counts it.
 #[unsafe(no_mangle)]
-extern "C" fn strokes() -> u64 {
-    // SAFETY: as of the world; what was returned before is the page's, which reads it between calls.
-    let strokes: &[Stroke] = with(|world| world.strokes(unsafe { memory::picture() }));
-    (strokes.len() as u64) << 32 | strokes.as_ptr() as u64
+extern "C" fn strokes() -> usize {
+    // SAFETY: as of the world.
+    with(|world| world.strokes(unsafe { memory::picture() }))
 }
 
-/// The frame on a display of 128x64 pixels and 16 greys, a byte a pixel: 17 times the grey. The camera must be set up for that size.
+/// Where strokes stand. There is room for [`picture::STROKES`].
 #[unsafe(no_mangle)]
-extern "C" fn grey() -> *const u8 {
-    // SAFETY: as above.
-    with(|world| world.grey(unsafe { memory::picture() })).as_ptr()
+extern "C" fn picture() -> *const Stroke {
+    // SAFETY: as of the world; what is returned is the page's, which reads and writes it between calls.
+    unsafe { memory::picture() }.strokes.as_ptr()
+}
+
+/// The first so many strokes on a display of 128x64 pixels and 16 greys, a byte a pixel: 17 times the grey. The camera must be set up for that
+/// size.
+#[unsafe(no_mangle)]
+extern "C" fn grey(strokes: usize) -> *const u8 {
+    // SAFETY: as of the world.
+    unsafe { memory::picture() }.draw(strokes).as_ptr()
 }

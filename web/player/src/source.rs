@@ -1,9 +1,8 @@
-//! Where poses come from: bytes that arrive, a whole clip, or a table.
+//! Where poses come from: a clip that arrives, or a table.
 
 use crate::arriving::Arriving;
 use crate::facts::{Facts, Trouble};
-use crate::memory::{Who, past, seat};
-use pantin::{Clip, Memory, Player, Rig};
+use pantin::Rig;
 
 /// Poses as they are, a raw value a channel a frame.
 pub struct Table {
@@ -46,28 +45,15 @@ impl Table {
 #[allow(clippy::large_enum_variant)]
 pub enum Source {
     Nothing,
-    Arriving(Arriving),
-    Whole(Player<'static, 'static>, Memory<'static>, [u32; 3]),
+    Clip(Arriving),
     Table(Table),
 }
 
 impl Source {
-    /// A whole file. To be called once.
-    pub fn whole(file: &'static [u8]) -> Result<Source, Trouble> {
-        let clip = Clip::new_checked(file)?;
-        // SAFETY: this is called once.
-        let (seat, past) = unsafe { (seat(Who::Whole), past()) };
-        let player = Player::new(clip, &mut seat.states, &mut seat.pose)?;
-        let memory = Memory::new(&player, &mut [], &mut past.marks, &mut past.states, &mut past.values);
-        let sizes = [clip.moving(), clip.rig_len(), clip.motion_len()].map(|size| size as u32);
-        Ok(Source::Whole(player, memory, sizes))
-    }
-
     pub fn rig(&self) -> Option<Rig<'static>> {
         match self {
             Source::Nothing => None,
-            Source::Arriving(arriving) => Some(arriving.rig),
-            Source::Whole(player, ..) => Some(player.clip().rig()),
+            Source::Clip(clip) => Some(clip.clip().rig()),
             Source::Table(table) => Some(table.rig),
         }
     }
@@ -76,8 +62,7 @@ impl Source {
     pub fn playable(&self) -> u32 {
         match self {
             Source::Nothing => 0,
-            Source::Arriving(arriving) => arriving.playable(),
-            Source::Whole(player, ..) => player.clip().frames(),
+            Source::Clip(clip) => clip.playable,
             Source::Table(table) => table.frames,
         }
     }
@@ -87,12 +72,7 @@ impl Source {
         let frame = frame.min(self.playable().saturating_sub(1));
         match self {
             Source::Nothing => &[],
-            Source::Arriving(arriving) => arriving.go(frame),
-            Source::Whole(player, memory, _) => {
-                // Steps are seeks of one frame, and those back start from a snapshot near by: without records of each step.
-                player.seek_with(frame, memory);
-                player.pose()
-            }
+            Source::Clip(clip) => clip.go(frame),
             Source::Table(table) => {
                 table.frame = frame;
                 table.pose()
@@ -104,8 +84,7 @@ impl Source {
     pub fn pose(&self) -> &[i32] {
         match self {
             Source::Nothing => &[],
-            Source::Arriving(arriving) => arriving.pose(),
-            Source::Whole(player, ..) => player.pose(),
+            Source::Clip(clip) => clip.player().pose(),
             Source::Table(table) => table.pose(),
         }
     }
@@ -113,43 +92,54 @@ impl Source {
     pub fn length_exponent(&self) -> i8 {
         match self {
             Source::Nothing => 0,
-            Source::Arriving(arriving) => arriving.head().length_exponent(),
-            Source::Whole(player, ..) => player.clip().length_exponent(),
+            Source::Clip(clip) => clip.clip().length_exponent(),
             Source::Table(table) => table.length_exponent,
         }
     }
 
     pub fn is_exponential(&self, joint: usize) -> bool {
         match self {
-            Source::Arriving(arriving) => arriving.is_exponential(joint),
-            Source::Whole(player, ..) => player.clip().is_exponential(joint),
+            Source::Clip(clip) => clip.clip().is_exponential(joint),
             Source::Nothing | Source::Table(_) => false,
         }
     }
 
-    /// All but the kind.
-    pub fn facts(&self) -> Facts {
-        let facts =
-            Facts { playable: self.playable(), channels: self.rig().map_or(0, |rig| rig.channels() as u32), ..Facts::NONE };
+    /// The frame that is shown.
+    pub fn frame(&self) -> u32 {
         match self {
-            Source::Nothing => facts,
-            Source::Arriving(arriving) => {
-                let head = arriving.head();
-                let (frames, frame_time_ns, looped) = (head.frames(), head.frame_time_ns(), head.looped().into());
-                Facts { frames, frame: arriving.frame(), frame_time_ns, looped, ..facts }
+            Source::Nothing => 0,
+            Source::Clip(clip) => clip.player().frame(),
+            Source::Table(table) => table.frame,
+        }
+    }
+
+    /// Tells what there is to know.
+    pub fn tell(&self, facts: &mut Facts) {
+        facts.playable = self.playable();
+        facts.frame = self.frame();
+        facts.pose = self.pose().as_ptr() as usize;
+        if let Some(rig) = self.rig() {
+            facts.channels = rig.channels() as u32;
+            facts.joints = rig.joint_count() as u32;
+            facts.scalars = (rig.channels() - rig.joint_channels()) as u32;
+            let scalars = rig.scalars().bytes();
+            (facts.scalars_at, facts.scalars_len) = (scalars.as_ptr() as usize, scalars.len());
+        }
+        match self {
+            Source::Nothing => {}
+            Source::Clip(arriving) => {
+                let clip = arriving.clip();
+                facts.frames = clip.frames();
+                facts.frame_time_ns = clip.frame_time_ns();
+                facts.looped = clip.looped().into();
+                if arriving.whole {
+                    facts.moving = arriving.player().states().len() as u32;
+                    facts.rig_bytes = clip.rig_len() as u32;
+                    facts.motion_bytes = clip.motion_len() as u32;
+                }
             }
-            Source::Whole(player, _, [moving, rig_bytes, motion_bytes]) => Facts {
-                frames: player.clip().frames(),
-                frame: player.frame(),
-                frame_time_ns: player.clip().frame_time_ns(),
-                looped: player.clip().looped().into(),
-                moving: *moving,
-                rig_bytes: *rig_bytes,
-                motion_bytes: *motion_bytes,
-                ..facts
-            },
-            Source::Table(Table { frames, frame, frame_time_ns, .. }) => {
-                Facts { frames: *frames, frame: *frame, frame_time_ns: *frame_time_ns, ..facts }
+            Source::Table(table) => {
+                (facts.frames, facts.frame_time_ns) = (table.frames, table.frame_time_ns);
             }
         }
     }

@@ -1,12 +1,13 @@
 //! The clip, what it is drawn as, and its picture.
 
 use crate::actor::Actor;
-use crate::arriving::{self, Arriving};
+use crate::arriving::Arriving;
 use crate::facts::{Facts, Trouble};
-use crate::memory;
-use crate::picture::{DISPLAY, Picture, Stroke};
+use crate::grey::DISPLAY;
+use crate::picture::Picture;
 use crate::source::{Source, Table};
 use pantin_figure::{Canvas, View};
+use pantin_web_module::memory;
 
 /// Everything that an instance holds.
 pub struct World {
@@ -22,20 +23,17 @@ pub struct World {
 }
 
 impl World {
-    /// Not constant: as a constant it would lie in the file, zeros and all.
-    #[inline(never)]
-    pub fn new() -> World {
-        World {
-            source: Source::Nothing,
-            actor: Actor::NONE,
-            file: &[],
-            canvas: DISPLAY,
-            view: None,
-            surveyed: 0,
-            facts: Facts::NONE,
-            finished: false,
-        }
-    }
+    /// Nothing yet.
+    pub const NEW: World = World {
+        source: Source::Nothing,
+        actor: Actor::NOBODY,
+        file: &[],
+        canvas: DISPLAY,
+        view: None,
+        surveyed: 0,
+        facts: Facts::NONE,
+        finished: false,
+    };
 
     /// The file's front is there. Camera and scale are those of the frames that are playable: they are set up anew whenever these have doubled.
     pub fn arrived(&mut self, file: &'static [u8]) -> Result<(), Trouble> {
@@ -43,12 +41,13 @@ impl World {
             return Ok(());
         }
         self.file = file;
-        if matches!(self.source, Source::Nothing) {
-            let Some(rig) = arriving::rig(file)? else { return Ok(()) };
-            self.source = Source::Arriving(Arriving::new(rig)?);
+        if matches!(self.source, Source::Nothing)
+            && let Some(clip) = Arriving::new(file)?
+        {
+            self.source = Source::Clip(clip);
         }
-        let Source::Arriving(arriving) = &mut self.source else { return Ok(()) };
-        let outcome = arriving.extend(file);
+        let Source::Clip(clip) = &mut self.source else { return Ok(()) };
+        let outcome = clip.extend(file);
         if self.source.playable() > 2 * self.surveyed {
             self.look()?;
         }
@@ -61,22 +60,23 @@ impl World {
             return Ok(());
         }
         self.finished = true;
-        let now = self.source.facts().frame;
-        let whole = Source::whole(self.file)?;
-        self.source = whole;
-        self.source.go(now);
+        match &mut self.source {
+            Source::Clip(clip) => clip.finish(self.file)?,
+            // It ends before its first frame.
+            _ => return Err(Trouble::Truncated),
+        }
         self.look()
     }
 
     /// Takes a table in place of a clip.
     pub fn poses(&mut self, rig: usize, frames: usize, frame_time_ns: u32, length_exponent: i8) -> Result<(), Trouble> {
         self.finished = true;
-        self.source = Source::Table(Table::new(memory::file(usize::MAX), rig, frames, frame_time_ns, length_exponent)?);
+        self.source = Source::Table(Table::new(memory::written(usize::MAX), rig, frames, frame_time_ns, length_exponent)?);
         self.look()
     }
 
     pub fn aim(&mut self, width: u16, height: u16, orbit: i16, tilt: i16) -> Result<(), Trouble> {
-        self.canvas = Canvas { width: width.clamp(1, 2047), height: height.clamp(1, 2047) };
+        self.canvas = Canvas { width: width.min(2047), height: height.clamp(1, 2047) };
         self.view = Some(View { orbit, tilt, ..View::default() });
         self.look()
     }
@@ -99,17 +99,12 @@ impl World {
     }
 
     pub fn facts(&mut self) -> &Facts {
-        self.facts = Facts { kind: self.actor.kind(), ..self.source.facts() };
+        self.source.tell(&mut self.facts);
         &self.facts
     }
 
-    pub fn strokes(&mut self, picture: &'static mut Picture) -> &'static [Stroke] {
+    pub fn strokes(&mut self, picture: &mut Picture) -> usize {
         let pose = self.source.pose();
         picture.gather(&mut self.actor, pose)
-    }
-
-    pub fn grey(&mut self, picture: &'static mut Picture) -> &'static [u8] {
-        let pose = self.source.pose();
-        picture.draw(&mut self.actor, pose)
     }
 }

@@ -1,0 +1,110 @@
+//! A file that is still coming, kept as a whole: its blocks are checked as they come, and played where they lie.
+
+use crate::blocks::STRIDE;
+use crate::channel::ChannelState;
+use crate::clip::{Clip, Parts};
+use crate::layout::CRC_BYTES;
+use crate::player::{Memory, Player};
+use crate::rig::Rig;
+use crate::segment::MAX_SEGMENT_BYTES;
+use crate::{OpenError, TooSmall, crc};
+
+/// The front of a file that holds its rig: as much of a [`Clip`] as is there. For bytes that are not kept there is [`crate::Stream`].
+#[derive(Clone, Copy, Debug)]
+pub struct Front<'a> {
+    clip: Clip<'a>,
+    /// Bytes of the motion's blocks that were checked, their CRCs included.
+    checked: usize,
+    /// The last position at which a segment or a start is sure to be whole.
+    dry_at: u32,
+}
+
+impl<'a> Front<'a> {
+    /// Reads the head of what has come of a file. After [`OpenError::Truncated`] it may be tried again with more. That a later block is damaged,
+    /// [`Front::extend`] tells.
+    #[inline(never)]
+    pub fn new(file: &'a [u8]) -> Result<Front<'a>, OpenError> {
+        let parts = Parts::split(file)?;
+        let rig = Rig::new_checked(parts.rig.ok_or(OpenError::WrongRig)?)?;
+        let (checked, outcome) = check(&parts, 0);
+        let Some(motion) = without_last_crc(&parts, checked) else {
+            outcome?;
+            return Err(OpenError::Truncated);
+        };
+        let short = if checked < parts.motion_len { OpenError::Truncated } else { OpenError::Malformed };
+        let clip = Clip::read(&parts, rig, None, motion, short)?;
+        let dry_at = dry_at(&parts, checked);
+        if clip.symbols() > dry_at {
+            return Err(OpenError::Truncated);
+        }
+        Ok(Front { clip, checked, dry_at })
+    }
+
+    /// Takes a longer front of the same file. A damaged block is told each time, and what stands before it stays playable.
+    pub fn extend(&mut self, file: &'a [u8]) -> Result<(), OpenError> {
+        let parts = Parts::split(file)?;
+        let (checked, outcome) = check(&parts, self.checked);
+        if let Some(motion) = without_last_crc(&parts, checked) {
+            self.clip.motion = motion;
+        }
+        (self.checked, self.dry_at) = (checked, dry_at(&parts, checked));
+        outcome
+    }
+
+    /// Checks that `file`, which it was extended by, is whole.
+    pub fn finish(&self, file: &'a [u8]) -> Result<(), OpenError> {
+        let parts = Parts::split(file)?;
+        let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
+        let last = motion.last_chunk().filter(|_| self.checked == motion.len()).ok_or(OpenError::BadCrc)?;
+        parts.index(rest, u16::from_le_bytes(*last))?;
+        Ok(())
+    }
+
+    /// What is known of the clip.
+    pub fn clip(&self) -> &Clip<'a> {
+        &self.clip
+    }
+
+    /// A player at frame 0; `None` while that has not come. `states` and `pose` need [`Rig::channels`] elements.
+    pub fn player<'m>(&self, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Option<Player<'a, 'm>>, TooSmall> {
+        Player::of_front(self.clip, self.dry_at, states, pose)
+    }
+
+    /// Goes on by one frame with a player of it; false if not all of that has come, or at the last frame. Then the player may have read some of the next
+    /// segments: it may go on by this, or back.
+    pub fn step(&self, player: &mut Player<'a, '_>) -> bool {
+        player.step_of_front(&self.clip, self.dry_at)
+    }
+
+    /// Goes with a player of it to a frame that [`Front::step`] has come to, as [`Player::seek_with`] does, but not by snapshots in the file.
+    pub fn seek(&self, player: &mut Player<'a, '_>, frame: u32, memory: &mut Memory<'_>) {
+        player.seek_of_front(&self.clip, frame, memory);
+    }
+}
+
+/// Checks the motion's whole blocks from the first one that was not: how many bytes of them are good.
+fn check(parts: &Parts<'_>, mut checked: usize) -> (usize, Result<(), OpenError>) {
+    let motion = parts.rest.get(..parts.motion_len).unwrap_or(parts.rest);
+    for block in motion.get(checked..).unwrap_or(&[]).chunks(STRIDE) {
+        if block.len() < STRIDE && motion.len() < parts.motion_len {
+            break;
+        }
+        let seed = if checked == 0 { parts.seed } else { crc::INITIAL };
+        let good =
+            block.split_last_chunk::<CRC_BYTES>().is_some_and(|(body, crc)| crc::update(seed, body) == u16::from_le_bytes(*crc));
+        if !good {
+            return (checked, Err(OpenError::BadCrc));
+        }
+        checked += block.len();
+    }
+    (checked, Ok(()))
+}
+
+/// The checked blocks: what a decoder reads past the end is zeros, not the last CRC.
+fn without_last_crc<'a>(parts: &Parts<'a>, checked: usize) -> Option<&'a [u8]> {
+    parts.rest.get(..checked.checked_sub(CRC_BYTES)?)
+}
+
+fn dry_at(parts: &Parts<'_>, checked: usize) -> u32 {
+    if checked < parts.motion_len { (checked as u32).saturating_sub(MAX_SEGMENT_BYTES) } else { u32::MAX }
+}

@@ -1,0 +1,100 @@
+//! The face of one clip, beside the player's module: a page loads it once a clip may drive one. An instance is for one clip.
+//!
+//! ```text
+//! room(bytes)              -> where the page writes a rig's scalars, and later poses
+//! bind(bytes, count, first) -> whether these scalars drive a face
+//! aim(w, h, shift, o, t)   -> picture in pixels, how far right it lies, view in degrees
+//! place(channels)          -> how many strokes the pose that stands there is drawn with
+//! picture()                -> where they stand
+//! ```
+#![no_std]
+// The page calls these functions, and finds and writes memory by plain addresses.
+#![allow(unsafe_code)]
+
+use pantin::Scalars;
+use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
+use pantin_figure::Canvas;
+use pantin_web_module::memory::{room as make_room, written};
+use pantin_web_module::{Only, Stroke};
+
+/// Pantin's own face: docs/FACE.md.
+static MODEL: &[u8] = include_bytes!("../../../motions/face.model");
+
+/// Lines of a face at most, with its mesh.
+const STROKES: usize = 3072;
+
+struct Face {
+    model: Option<Model<'static>>,
+    binding: Binding,
+    morph: Morph<VERTICES>,
+    look: Look<VERTICES>,
+    strokes: [Stroke; STROKES],
+}
+
+/// As good as zeros in the file.
+static FACE: Only<Face> = Only::new(Face {
+    model: None,
+    binding: Binding::EMPTY,
+    morph: Morph::EMPTY,
+    look: Look::EMPTY,
+    strokes: [Stroke::NONE; STROKES],
+});
+
+fn face() -> &'static mut Face {
+    // SAFETY: exports are the only callers, none of them calls another or the page, and the memory has no threads.
+    unsafe { FACE.get() }
+}
+
+/// Makes room for so many bytes, and tells where they begin; 0 if that is more than there may be.
+// SAFETY: nothing else is named so; this holds for every export below.
+#[unsafe(no_mangle)]
+extern "C" fn room(bytes: usize) -> *mut u8 {
+    make_room(bytes)
+}
+
+/// Whether `count` scalars, of which the first is channel `first`, drive a face: those of a rig whose bytes from there on were written there. To be
+/// called once.
+#[unsafe(no_mangle)]
+extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
+    let face = face();
+    let Ok(model) = Model::new_checked(MODEL) else { return false };
+    face.binding.bind(Scalars::of_bytes(written(bytes), count), first, &model);
+    face.model = Some(model);
+    face.binding.is_face() && face.morph.set_up(&model).is_ok()
+}
+
+/// Sets the camera up for a part of the picture of `width` x `height` pixels (at most 2047), `right` of the picture's left edge, seen from `orbit`
+/// degrees about the face and `tilt` above the horizon.
+#[unsafe(no_mangle)]
+extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
+    let Face { model: Some(model), look, .. } = face() else { return };
+    let canvas = Canvas { width: width.clamp(1, 2047) as u16, height: height.clamp(1, 2047) as u16 };
+    look.set_up(model, canvas, View { orbit: orbit as i16, tilt: tilt as i16 });
+    look.shift(right as i16, 0);
+}
+
+/// Takes a pose of so many values, gathers what it is drawn with, and counts that.
+#[unsafe(no_mangle)]
+extern "C" fn place(channels: usize) -> usize {
+    let Face { model: Some(model), binding, morph, look, strokes } = face() else { return 0 };
+    // SAFETY: any bits are integers.
+    let (_, pose, _) = unsafe { written(channels.saturating_mul(4)).align_to::<i32>() };
+    let mut weights = Weights::new();
+    binding.weigh(pose, &mut weights);
+    morph.place(model, &weights);
+    look.project(model, morph);
+    let mut count = 0;
+    look.lines(model, |line| {
+        if let Some(place) = strokes.get_mut(count) {
+            *place = line.into();
+            count += 1;
+        }
+    });
+    count
+}
+
+/// Where strokes stand.
+#[unsafe(no_mangle)]
+extern "C" fn picture() -> *const Stroke {
+    face().strokes.as_ptr()
+}

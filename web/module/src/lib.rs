@@ -1,0 +1,15 @@
+//! What the player's modules have in common: memory that the page writes, statics that one at a time changes, and strokes.
+#![no_std]
+// The page finds and writes memory by plain addresses.
+#![allow(unsafe_code)]
+
+pub mod memory;
+mod stroke;
+
+pub use memory::Only;
+pub use stroke::{HEAD, Stroke};
+
+#[panic_handler]
+fn panic(_info: &core::panic::PanicInfo) -> ! {
+    core::arch::wasm32::unreachable()
+}
