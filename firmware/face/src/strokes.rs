@@ -213,7 +213,10 @@ static RECIPROCALS: [u16; 256] = {
 };
 
 const fn reciprocal(x: usize) -> u16 {
-    if x == 0 { 0 } else { ((1 << 15) / x) as u16 }
+    match (1usize << 15).checked_div(x) {
+        Some(reciprocal) => reciprocal as u16,
+        None => 0,
+    }
 }
 
 /// The part of a line that looks here.
