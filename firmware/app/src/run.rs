@@ -189,6 +189,7 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
 }
 
 /// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture, or a clip came whole.
+#[inline(never)]
 pub(crate) fn listen<B: Board>(
     frame: u32,
     scene: &mut Scene,
@@ -215,6 +216,7 @@ pub(crate) fn listen<B: Board>(
 }
 
 /// The letters and what they do, a line each.
+#[inline(never)]
 fn help<B: Board>(board: &mut B) {
     for (letter, _, words) in LETTERS {
         board.send(&[letter, b' ']);

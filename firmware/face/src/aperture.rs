@@ -80,7 +80,7 @@ pub(crate) fn close(model: &Model, places: &mut [Place], weights: &Weights) {
 }
 
 /// Most vertices of an edge; further ones are left out.
-const EDGE: usize = 16;
+const EDGE: usize = 10;
 
 /// A row of vertices from one corner to the other.
 struct Edge {

@@ -9,7 +9,8 @@ use pantin::{Rig, Scalars};
 /// One scalar that drives one shape.
 #[derive(Clone, Copy, Debug)]
 struct Drive {
-    channel: u16,
+    /// As bytes: a list of these is long, and would have holes.
+    channel: [u8; 2],
     /// The shape, and which of its weights, as the model's names have them.
     target: Target,
     mantissa: i8,
@@ -53,7 +54,7 @@ impl Binding {
             let mut known = false;
             for name in model.names().filter(|name| name.hash == wanted) {
                 known = true;
-                let channel = (first + index) as u16;
+                let channel = ((first + index) as u16).to_le_bytes();
                 let shift = scalar.exponent.saturating_add(name.exponent);
                 let Name { target, mantissa, .. } = name;
                 let _ = self.drives.push(Drive { channel, target, mantissa, shift });
@@ -77,7 +78,7 @@ impl Binding {
     pub fn weigh(&self, pose: &[i32], weights: &mut Weights) {
         weights.clear();
         for drive in &self.drives {
-            let raw = pose.get(usize::from(drive.channel)).map_or(0, |raw| raw >> 16);
+            let raw = pose.get(usize::from(u16::from_le_bytes(drive.channel))).map_or(0, |raw| raw >> 16);
             if raw == 0 {
                 continue;
             }

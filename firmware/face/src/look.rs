@@ -116,7 +116,8 @@ impl<const N: usize> Look<N> {
         self.camera.centre[1] += i32::from(y) << PIXEL_BITS;
     }
 
-    /// Puts the vertices that are drawn on the display.
+    /// Puts the vertices that are drawn on the display. In a function of its own: the morph before takes room too.
+    #[inline(never)]
     pub fn project(&mut self, model: &Model, morph: &Morph<N>) {
         let head = morph.turn();
         // Where surfaces look, and what makes the outline, depends on the head's turn alone, and hardly on a degree of it.

@@ -9,9 +9,10 @@ use pantin_figure::trig::{ONE, sin_cos};
 /// A vertex, in steps of the model.
 pub type Place = [i16; 3];
 
-/// Weights of a model's shapes, Q15: each as it is stored (or its left side), and mirrored (or its right side).
+/// Weights of a model's shapes, Q15: each as it is stored (or its left side), and mirrored (or its right side). They are kept in Q14: nearly up to two
+/// whole ones.
 #[derive(Clone, Debug)]
-pub struct Weights([[i32; 2]; SHAPES]);
+pub struct Weights([[i16; 2]; SHAPES]);
 
 impl Default for Weights {
     fn default() -> Self {
@@ -36,10 +37,10 @@ impl Weights {
         let Some(pair) = self.0.get_mut(target.shape()) else { return };
         let sides = target.sides();
         if sides[0] {
-            pair[0] = pair[0].saturating_add(weight);
+            pair[0] = pair[0].saturating_add(kept(weight));
         }
         if sides[1] {
-            pair[1] = pair[1].saturating_add(weight);
+            pair[1] = pair[1].saturating_add(kept(weight));
         }
     }
 
@@ -47,15 +48,27 @@ impl Weights {
     #[inline(always)]
     pub fn pairs(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
         self.0.iter().map(|&pair| match pair {
-            [0, 0] => pair,
-            [stored, mirrored] => [stored.clamp(-FULL, FULL), mirrored.clamp(-FULL, FULL)],
+            [0, 0] => [0; 2],
+            pair => pair.map(given),
         })
     }
 
     /// The two weights of a shape.
     pub fn of(&self, shape: usize) -> [i32; 2] {
-        self.0.get(shape).map_or([0; 2], |pair| pair.map(|weight| weight.clamp(-FULL, FULL)))
+        self.0.get(shape).map_or([0; 2], |pair| pair.map(given))
     }
+}
+
+/// Q15 to Q14.
+#[inline(always)]
+fn kept(weight: i32) -> i16 {
+    (weight >> 1).clamp(i16::MIN.into(), i16::MAX.into()) as i16
+}
+
+/// And back, a whole weight at most.
+#[inline(always)]
+fn given(weight: i16) -> i32 {
+    (i32::from(weight) << 1).clamp(-FULL, FULL)
 }
 
 /// The vertices of a face of at most `N`.

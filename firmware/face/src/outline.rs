@@ -25,7 +25,7 @@ struct Crossed {
     /// The corner that is alone on its side, and the two others.
     corners: [u16; 3],
     /// The part of the way to these, Q8, at which the surface turns away.
-    ways: [u16; 2],
+    ways: [u8; 2],
 }
 
 impl Crossed {
@@ -33,7 +33,7 @@ impl Crossed {
     fn new(corners: [u16; 3], facing: &[i8]) -> Self {
         let of = |index: u16| i32::from(facing.get(usize::from(index)).copied().unwrap_or(0));
         let [apex, one, other] = corners;
-        Crossed { corners, ways: [way(of(apex), of(one)) as u16, way(of(apex), of(other)) as u16] }
+        Crossed { corners, ways: [one, other].map(|index| way(of(apex), of(index)).min(255) as u8) }
     }
 
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
@@ -101,10 +101,11 @@ fn all(model: &Model, screen: Screen, out: &mut impl Paint) {
 fn each_crossed(model: &Model, facing: &[i8], visit: &mut dyn FnMut([u16; 3])) {
     let of = |index: u16| facing.get(usize::from(index)).copied().unwrap_or(0);
     let signs = signs(model, facing);
+    let looked_up = model.middles() + model.pairs() <= signs.len();
     // Most triangles and their images have all corners on one side: no two signs differ.
     let crossed = |[x, y, z]: [u16; 3]| {
-        let [a, b, c] = [signs[usize::from(x as u8)], signs[usize::from(y as u8)], signs[usize::from(z as u8)]];
-        model.wide || (a ^ b) | (a ^ c) != 0
+        let [a, b, c] = [signs[usize::from(x) % SIGNS], signs[usize::from(y) % SIGNS], signs[usize::from(z) % SIGNS]];
+        !looked_up || (a ^ b) | (a ^ c) != 0
     };
     each_triangle(model, model.outline(), crossed, |[x, y, z]| {
         let (a, b, c) = (of(x), of(y), of(z));
@@ -121,10 +122,13 @@ fn each_crossed(model: &Model, facing: &[i8], visit: &mut dyn FnMut([u16; 3])) {
     });
 }
 
-/// Which stored vertices look away (bit 0), and which of their images (bit 1); of no use for wide models.
+/// Most stored vertices of which it is looked up whether they look away.
+const SIGNS: usize = 128;
+
+/// Which stored vertices look away (bit 0), and which of their images (bit 1); of no use for models that have more.
 #[inline(always)]
-fn signs(model: &Model, facing: &[i8]) -> [u8; 256] {
-    let mut signs = [0; 256];
+fn signs(model: &Model, facing: &[i8]) -> [u8; SIGNS] {
+    let mut signs = [0; SIGNS];
     let (middles, left) = facing.split_at_checked(model.middles()).unwrap_or((facing, &[]));
     let right = left.get(model.pairs()..).unwrap_or(&[]);
     for (sign, &own) in signs.iter_mut().zip(middles) {

@@ -72,9 +72,10 @@ fn beside<B: Board, const JOINTS: usize>(
     parts: Parts,
     scenery: Scenery<B>,
 ) -> After {
-    let clip = *player.clip();
-    let now = *scenery.scene;
-    let after = face::with(&clip, parts.face, parts.column, &now, |face| {
+    let rig = player.clip().rig();
+    let views = [scenery.scene.view, scenery.scene.ahead];
+    let after = face::with(&rig, parts.face, parts.column, views, |face| {
+        let clip = player.clip();
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
             scenery.entry.name,

@@ -4,8 +4,7 @@ use super::{Show, display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::run::{After, Scenery, play};
-use crate::scene::Scene;
-use pantin::{Clip, Player};
+use pantin::{Clip, Player, Rig};
 use pantin_face::{Binding, Model, Morph, VERTICES, Weights};
 use pantin_figure::surface::{Frame, Layout};
 use pantin_figure::{Canvas, Look, View};
@@ -32,16 +31,22 @@ pub(super) struct Face<'a> {
 /// Shows the face that a clip drives on a part of the display, given with its first column; none where the model is no use. What a face
 /// needs stays where it was made, in the caller: it is too large to be handed on.
 #[inline(always)]
-pub(super) fn with<T>(clip: &Clip, canvas: Canvas, column: i16, scene: &Scene, then: impl FnOnce(Face) -> T) -> Option<T> {
+pub(super) fn with<T>(
+    rig: &Rig,
+    canvas: Canvas,
+    column: i16,
+    [view, ahead]: [View; 2],
+    then: impl FnOnce(Face) -> T,
+) -> Option<T> {
     let model = Model::new_checked(MODEL).ok()?;
     let mut binding = Binding::EMPTY;
-    binding.set_up(&clip.rig(), &model);
+    binding.set_up(rig, &model);
     let mut morph = Morph::EMPTY;
     morph.set_up(&model).ok()?;
     let mut look = pantin_face::Look::EMPTY;
-    look.set_up(&model, canvas, from(scene.view, scene.ahead));
+    look.set_up(&model, canvas, from(view, ahead));
     look.shift(column, 0);
-    Some(then(Face { model: &model, binding: &binding, morph: &mut morph, look: &mut look, ahead: scene.ahead }))
+    Some(then(Face { model: &model, binding: &binding, morph: &mut morph, look: &mut look, ahead }))
 }
 
 impl Face<'_> {
@@ -95,9 +100,10 @@ impl<L: Layout> Show<L> for Face<'_> {
 /// Plays it on the whole display.
 #[inline(never)]
 pub(super) fn perform<B: Board>(player: &mut Player, scenery: Scenery<B>) -> After {
-    let clip = *player.clip();
-    let now = *scenery.scene;
-    let after = with(&clip, display::<B::Layout>(), 0, &now, |mut face| {
+    let rig = player.clip().rig();
+    let views = [scenery.scene.view, scenery.scene.ahead];
+    let after = with(&rig, display::<B::Layout>(), 0, views, |mut face| {
+        let clip = player.clip();
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
             scenery.entry.name,
