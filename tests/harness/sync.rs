@@ -18,9 +18,9 @@ use crate::wire::{self, Memory};
 /// The word that asks for this mode on the semihosting command line.
 pub const ARGUMENT: &str = "sync";
 
-/// A letter as it shares the line with packets.
-pub fn letter(letter: u8) -> [u8; 3] {
-    [0, letter, 0]
+/// A letter as it shares the line with packets, damaged ones too.
+pub fn letter(letter: u8) -> [u8; 5] {
+    [0, 0, letter, 0, 0]
 }
 
 /// A firmware that plays in step.
@@ -95,8 +95,8 @@ impl Session {
 
     /// Ends the firmware and waits for that.
     pub fn end(mut self) -> Result<Outcome> {
-        // Where packets share the line, a letter ends with a zero.
-        self.send(&[pantin_app::QUIT, 0])?;
+        // Where packets share the line, a letter ends with two zeros.
+        self.send(&[pantin_app::QUIT, 0, 0])?;
         self.qemu.wait()
     }
 

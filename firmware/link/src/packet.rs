@@ -83,6 +83,10 @@ pub struct Receiver<const N: usize> {
     since: usize,
     first: u8,
     letter: Option<u8>,
+    /// A letter, until what follows shows that it is no damaged packet's first byte.
+    held: Option<u8>,
+    /// What was last is damaged: a letter may be its last byte.
+    torn: bool,
     damaged: u32,
     /// What mends packets with parity: programs without it need not hold it.
     mends: Option<fn(&mut [u8]) -> bool>,
@@ -98,7 +102,18 @@ impl<const N: usize> Receiver<N> {
     /// Waits for the first byte.
     pub const fn new() -> Self {
         let stuffing = cobs::Decoder::new();
-        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: None, damaged: 0, mends: None }
+        Receiver {
+            bytes: [0; N],
+            len: 0,
+            stuffing,
+            since: 0,
+            first: 0,
+            letter: None,
+            held: None,
+            torn: false,
+            damaged: 0,
+            mends: None,
+        }
     }
 
     /// The same for packets with parity, which count among the `N` bytes.
@@ -127,7 +142,12 @@ impl<const N: usize> Receiver<N> {
     fn end(&mut self) -> Option<Packet<'_>> {
         let since = core::mem::take(&mut self.since);
         if since < 2 {
-            self.letter = if since == 1 { Some(self.first) } else { self.letter };
+            self.letter = self.held.take().or(self.letter);
+            if since == 1 {
+                self.held = Some(self.first).filter(|_| !self.torn);
+            } else {
+                self.torn = false;
+            }
             return None;
         }
         // A damaged stuffing puts zeros in wrong places, but none too many: parity may mend that too.
@@ -140,13 +160,18 @@ impl<const N: usize> Receiver<N> {
             None => Some(bytes),
         };
         let packet = bytes.and_then(unmended).and_then(|bytes| open(bytes));
-        if packet.is_none() {
+        self.torn = packet.is_none();
+        if self.torn {
             self.damaged = self.damaged.wrapping_add(1);
+            self.held = None;
+        } else {
+            self.letter = self.held.take().or(self.letter);
         }
         packet
     }
 
-    /// A byte that came alone between two zeros since the last call.
+    /// A byte that came alone between two zeros since the last call, once it is no piece of a packet in which a flipped bit has made a zero: what follows it is
+    /// whole, another letter, or a second zero; what stands before it too.
     pub fn letter(&mut self) -> Option<u8> {
         self.letter.take()
     }
@@ -158,7 +183,7 @@ impl<const N: usize> Receiver<N> {
             self.since = 0;
             return Some(self.first);
         }
-        self.letter()
+        self.held.take().or(self.letter.take())
     }
 
     /// How many packets came damaged, modulo 2^32. Pieces count: a zero that a flipped bit made gives two.
@@ -223,6 +248,23 @@ mod tests {
         assert_eq!(receiver.letter(), None);
         assert_eq!((receiver.letter_of_silence(), receiver.letter_of_silence()), (Some(b'h'), None));
         assert_eq!(received(&mut receiver, &line(1, 3, b"ghi")).len(), 1);
+    }
+
+    #[test]
+    fn a_zero_that_a_flipped_bit_makes_presses_no_key() {
+        let payload: Vec<u8> = (1..=40).collect();
+        let good = line(1, 1, &payload);
+        for torn in 1..good.len() - 1 {
+            let mut bad = good.clone();
+            bad[torn] = 0;
+            let mut receiver = Receiver::<64>::new();
+            let mut letters = vec![];
+            for byte in [&good[..], &bad, &good, &[0, 0, b'q', 0, 0], &bad[..bad.len() - 1], &[0, 0, b'w', 0, 0]].concat() {
+                receiver.push(byte);
+                letters.extend(receiver.letter());
+            }
+            assert_eq!(letters, b"qw", "byte {torn}");
+        }
     }
 
     #[test]
