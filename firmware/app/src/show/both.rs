@@ -75,14 +75,13 @@ fn beside<B: Board, const JOINTS: usize>(
     let rig = player.clip().rig();
     let views = [scenery.scene.view, scenery.scene.ahead];
     let after = face::with(&rig, parts.face, parts.column, views, |face| {
-        let clip = player.clip();
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
             scenery.entry.name,
-            clip.frames(),
-            clip.frame_time_ns(),
-            clip.rig().channels(),
-            clip.moving(),
+            player.clip().frames(),
+            player.clip().frame_time_ns(),
+            player.clip().rig().channels(),
+            player.clip().moving(),
             stage.skeleton().bones.len(),
             face.names()
         );

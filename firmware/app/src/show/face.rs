@@ -103,14 +103,13 @@ pub(super) fn perform<B: Board>(player: &mut Player, scenery: Scenery<B>) -> Aft
     let rig = player.clip().rig();
     let views = [scenery.scene.view, scenery.scene.ahead];
     let after = with(&rig, display::<B::Layout>(), 0, views, |mut face| {
-        let clip = player.clip();
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
             scenery.entry.name,
-            clip.frames(),
-            clip.frame_time_ns(),
-            clip.rig().channels(),
-            clip.moving(),
+            player.clip().frames(),
+            player.clip().frame_time_ns(),
+            player.clip().rig().channels(),
+            player.clip().moving(),
             face.names()
         );
         let face: &mut dyn Show<B::Layout> = &mut face;
