@@ -82,9 +82,10 @@ pub struct Receiver<const N: usize> {
     /// Bytes since the last zero.
     since: usize,
     first: u8,
-    letter: Option<u8>,
-    /// A letter, until what follows shows that it is no damaged packet's first byte.
-    held: Option<u8>,
+    /// 0 for none: no letter is that.
+    letter: u8,
+    /// A letter, until what follows shows that it is no damaged packet's first byte; 0 for none.
+    held: u8,
     /// What was last is damaged: a letter may be its last byte.
     torn: bool,
     damaged: u32,
@@ -102,18 +103,7 @@ impl<const N: usize> Receiver<N> {
     /// Waits for the first byte.
     pub const fn new() -> Self {
         let stuffing = cobs::Decoder::new();
-        Receiver {
-            bytes: [0; N],
-            len: 0,
-            stuffing,
-            since: 0,
-            first: 0,
-            letter: None,
-            held: None,
-            torn: false,
-            damaged: 0,
-            mends: None,
-        }
+        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: 0, held: 0, torn: false, damaged: 0, mends: None }
     }
 
     /// The same for packets with parity, which count among the `N` bytes.
@@ -142,11 +132,11 @@ impl<const N: usize> Receiver<N> {
     fn end(&mut self) -> Option<Packet<'_>> {
         let since = core::mem::take(&mut self.since);
         if since < 2 {
-            self.letter = self.held.take().or(self.letter);
-            if since == 1 {
-                self.held = Some(self.first).filter(|_| !self.torn);
-            } else {
+            settle(&mut self.held, &mut self.letter);
+            if since == 0 {
                 self.torn = false;
+            } else if !self.torn {
+                self.held = self.first;
             }
             return None;
         }
@@ -163,9 +153,9 @@ impl<const N: usize> Receiver<N> {
         self.torn = packet.is_none();
         if self.torn {
             self.damaged = self.damaged.wrapping_add(1);
-            self.held = None;
+            self.held = 0;
         } else {
-            self.letter = self.held.take().or(self.letter);
+            settle(&mut self.held, &mut self.letter);
         }
         packet
     }
@@ -173,7 +163,7 @@ impl<const N: usize> Receiver<N> {
     /// A byte that came alone between two zeros since the last call, once it is no piece of a packet in which a flipped bit has made a zero: what follows it is
     /// whole, another letter, or a second zero; what stands before it too.
     pub fn letter(&mut self) -> Option<u8> {
-        self.letter.take()
+        Some(core::mem::take(&mut self.letter)).filter(|&letter| letter != 0)
     }
 
     /// The same for a byte alone behind the last zero, for when the line has been silent for a while: a packet's first byte that is
@@ -183,12 +173,20 @@ impl<const N: usize> Receiver<N> {
             self.since = 0;
             return Some(self.first);
         }
-        self.held.take().or(self.letter.take())
+        settle(&mut self.held, &mut self.letter);
+        self.letter()
     }
 
     /// How many packets came damaged, modulo 2^32. Pieces count: a zero that a flipped bit made gives two.
     pub fn damaged(&self) -> u32 {
         self.damaged
+    }
+}
+
+/// What follows a letter is no piece of the same packet.
+fn settle(held: &mut u8, letter: &mut u8) {
+    if *held != 0 {
+        *letter = core::mem::take(held);
     }
 }
 
