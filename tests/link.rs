@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use harness::build::{self, Firmware};
-use harness::lossy::{Damage, Lossy};
+use harness::lossy::{Damage, Lossy, arrivals};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
@@ -38,14 +38,10 @@ fn source() -> Source {
 fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
     let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false };
     let fit = wanted.fitted(source).expect("the line carries it");
-    let (mut lossy, mut frames) = (Lossy::new(5), vec![]);
-    for departure in Sender::new(3).clip(source, fit, Some(2)) {
-        let there = departure.at + departure.bytes.len() as f64 / fit.rate;
-        let frame = (there / source.frame_seconds() + f64::from(fit.ahead)) as usize;
-        frames.resize_with(frames.len().max(frame + 1), Vec::new);
-        let harms = (from..to).contains(&frame);
-        frames[frame].extend(if harms { lossy.pass(&departure.bytes, damage).0 } else { departure.bytes });
-    }
+    let mut lossy = Lossy::new(5);
+    let frames = arrivals(Sender::new(3).clip(source, fit, Some(2)), source, fit, |frame, departure| {
+        if (from..to).contains(&frame) { lossy.pass(&departure.bytes, damage).0 } else { departure.bytes }
+    });
     (frames, fit)
 }
 

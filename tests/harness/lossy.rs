@@ -66,6 +66,24 @@ pub fn last_frame(bytes: &[u8], line: Line) -> Option<u16> {
     packets.last()
 }
 
+/// What arrives in each frame's time, from the first that the line carries on. `pass` makes of a departure, and of the frame's time in which it
+/// comes, the bytes that are left of it.
+pub fn arrivals(
+    departures: impl Iterator<Item = Departure>,
+    source: &Source,
+    line: Line,
+    mut pass: impl FnMut(usize, Departure) -> Vec<u8>,
+) -> Vec<Vec<u8>> {
+    let mut frames = vec![];
+    for departure in departures {
+        let there = departure.at + departure.bytes.len() as f64 / line.rate;
+        let frame = (there / source.frame_seconds() + f64::from(line.ahead)) as usize;
+        frames.resize_with(frames.len().max(frame + 1), Vec::new);
+        frames[frame].extend(pass(frame, departure));
+    }
+    frames
+}
+
 /// Plays departures at a receiver. `line` makes of each what arrives; `each` sees the receiver frame by frame.
 pub fn play(
     departures: impl Iterator<Item = Departure>,

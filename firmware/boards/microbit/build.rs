@@ -1,11 +1,14 @@
 //! The board's memory map, and the clips.
 
 fn main() {
-    let update = std::env::var_os("CARGO_FEATURE_UPDATE").is_some();
+    let update = board_build::feature("update");
     board_build::memory_map(if update { "update.x" } else { "memory.x" });
     board_build::link(&["--nmagic", "-Tlink.x", "-Tdefmt.x"]);
     if update {
         board_build::interrupts("device.x");
     }
-    board_build::clips();
+    let clips = board_build::clips();
+    let most = [144, 96, 36];
+    // Any clip may come over the line.
+    board_build::rooms(if update { most } else { clips }, most);
 }

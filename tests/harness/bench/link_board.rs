@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, ensure};
 use harness::build::Firmware;
-use harness::lossy::{Damage, Lossy, last_frame};
+use harness::lossy::{Damage, Lossy, arrivals, last_frame};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::simulator;
 use harness::sync::Session;
@@ -53,8 +53,8 @@ impl Board<'_> {
     /// Plays a line that is damaged, as the seed has it, while `harms` says so of a departure's time.
     pub fn plays(&self, source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Result<Seen> {
         let words: &[&str] = if line.parity { &["fec"] } else { &[] };
-        let (bytes, harmed) = arrivals(source, line, damage, seed, harms);
-        let whole = simulator::link(self.clip, words, &arrivals(source, line, damage, seed, |_| false).0)?;
+        let (bytes, harmed) = damaged(source, line, damage, seed, harms);
+        let whole = simulator::link(self.clip, words, &damaged(source, line, damage, seed, |_| false).0)?;
         let launch = words.iter().fold(Launch::new(LM3S6965EVB, self.firmware.elf()), |launch, word| launch.argument(*word));
         let mut session = Session::start(launch.argument("link"))?;
         let (mut wrong, mut moved, mut before) = (vec![], vec![], None);
@@ -73,24 +73,16 @@ impl Board<'_> {
     }
 }
 
-fn arrivals(source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Arrivals {
-    let (mut lossy, mut frames, mut harmed) = (Lossy::new(seed), vec![], vec![]);
-    for departure in Sender::new(1).clip(source, line, Some(1)) {
-        let there = departure.at + departure.bytes.len() as f64 / line.rate;
-        let at = (there / source.frame_seconds() + f64::from(line.ahead)) as usize;
-        frames.resize_with(frames.len().max(at + 1), Vec::new);
-        let bytes = match last_frame(&departure.bytes, line).filter(|_| harms(departure.at)) {
-            None => departure.bytes,
-            Some(frame) => {
-                let (bytes, hurt) = lossy.pass(&departure.bytes, damage);
-                if hurt {
-                    harmed.push((at, u32::from(frame) - BEGIN));
-                }
-                bytes
-            }
-        };
-        frames[at].extend(bytes);
-    }
+fn damaged(source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Arrivals {
+    let (mut lossy, mut harmed) = (Lossy::new(seed), vec![]);
+    let frames = arrivals(Sender::new(1).clip(source, line, Some(1)), source, line, |at, departure| {
+        let Some(frame) = last_frame(&departure.bytes, line).filter(|_| harms(departure.at)) else { return departure.bytes };
+        let (bytes, hurt) = lossy.pass(&departure.bytes, damage);
+        if hurt {
+            harmed.push((at, u32::from(frame) - BEGIN));
+        }
+        bytes
+    });
     (frames, harmed)
 }
 

@@ -35,14 +35,14 @@ pub fn link(arguments: &[&str]) {
 }
 
 /// Writes `clips.rs`: `CLIPS`, the clips that `PANTIN_CLIP` names (their whole paths, apart as in PATH), or our own:
-/// walk and run, and with the feature `face` of the board's package a greeting and expressions. Beside them `LARGEST`, what the largest takes:
+/// walk and run, and with the feature `face` of the board's package a greeting and expressions. Returns what the largest takes:
 /// channels, moving channels, and joints of the figure.
-pub fn clips() {
+pub fn clips() -> [usize; 3] {
     println!("cargo::rerun-if-env-changed=PANTIN_CLIP");
     let paths: Vec<PathBuf> = match env::var_os("PANTIN_CLIP") {
         Some(paths) => env::split_paths(&paths).collect(),
         None => {
-            let faces: &[&str] = if env::var_os("CARGO_FEATURE_FACE").is_some() { &FACES } else { &[] };
+            let faces: &[&str] = if feature("face") { &FACES } else { &[] };
             let own = OWN.iter().chain(faces);
             own.map(|own| Path::new(ROOT).join("motions").join(own).with_extension("ptn")).collect()
         }
@@ -62,10 +62,24 @@ pub fn clips() {
         let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}) }},");
     }
     let clips = format!("/// The clips that this program was built with.\nstatic CLIPS: &[pantin_app::Entry] = &[\n{list}];\n");
-    let largest = format!(
-        "/// Channels, moving channels and joints of the largest of them.\n#[allow(dead_code)]\nconst LARGEST: [usize; 3] = {largest:?};\n"
+    fs::write(out().join("clips.rs"), clips).expect("OUT_DIR is writable");
+    largest
+}
+
+/// Writes `rooms.rs`: `CHANNELS`, `MOVING` and `JOINTS`, room for what `clips` take, but no more than the board has. A clip that takes more is refused
+/// when it is opened.
+pub fn rooms(clips: [usize; 3], most: [usize; 3]) {
+    let [channels, moving, joints] = std::array::from_fn(|kind| clips[kind].min(most[kind]));
+    let rooms = format!(
+        "/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.\n\
+         const CHANNELS: usize = {channels};\nconst MOVING: usize = {moving};\nconst JOINTS: usize = {joints};\n"
     );
-    fs::write(out().join("clips.rs"), clips + &largest).expect("OUT_DIR is writable");
+    fs::write(out().join("rooms.rs"), rooms).expect("OUT_DIR is writable");
+}
+
+/// Whether a feature of the board's package is on.
+pub fn feature(name: &str) -> bool {
+    env::var_os(format!("CARGO_FEATURE_{}", name.to_uppercase())).is_some()
 }
 
 /// Channels, moving channels, and joints of the figure with the crown that it may get; of what is no clip the program tells by itself.

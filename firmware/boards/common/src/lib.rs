@@ -18,7 +18,6 @@ mod perform;
 #[cfg(feature = "emulated")]
 mod play;
 mod register;
-mod room;
 #[cfg(feature = "update")]
 mod slots;
 
@@ -41,7 +40,6 @@ pub use play::play;
 #[cfg(all(feature = "emulated", feature = "update"))]
 pub use play::play_stored;
 pub use register::Register;
-pub use room::fitted;
 #[cfg(feature = "update")]
 pub use slots::{Area, Chip, store};
 

@@ -10,19 +10,12 @@ mod received;
 mod registers;
 
 use board::{Microbit, Pages};
-use board_common::fitted;
 use cortex_m_rt::entry;
 use pantin_figure::surface::Frame;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
+include!(concat!(env!("OUT_DIR"), "/rooms.rs"));
 
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const MOST: [usize; 3] = [144, 96, 36];
-/// Any clip may come over the line.
-const TAKEN: [usize; 3] = if cfg!(feature = "update") { MOST } else { LARGEST };
-const CHANNELS: usize = fitted(TAKEN[0], MOST[0]);
-const MOVING: usize = fitted(TAKEN[1], MOST[1]);
-const JOINTS: usize = fitted(TAKEN[2], MOST[2]);
 /// Most figures side by side.
 const SEATS: usize = 1;
 
