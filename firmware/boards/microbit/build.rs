@@ -8,7 +8,7 @@ fn main() {
         board_build::interrupts("device.x");
     }
     let clips = board_build::clips();
-    let most = [144, 96, 36];
+    let most = board_build::LITTLE;
     // Any clip may come over the line.
     board_build::rooms(if update { most } else { clips }, most);
 }

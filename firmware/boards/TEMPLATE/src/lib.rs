@@ -6,6 +6,7 @@ mod board;
 
 pub use board::{Clock, MyBoard, Watchdog};
 
+use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use embedded_hal::digital::InputPin;
 use embedded_hal::i2c::I2c;
@@ -13,13 +14,8 @@ use embedded_hal_nb::serial::{Read, Write};
 use pantin_app::Entry;
 use pantin_figure::surface::Frame;
 
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like: those of the
-/// boards that have 128 KiB of RAM or more. The first micro:bit's 16 KiB hold 144, 96 and 36, without the feature `large` of `pantin-app`.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
-
-/// What `main` does once the chip's crate has set up clocks and pins.
+/// What `main` does once the chip's crate has set up clocks and pins. The room for clips is that of boards with 128 KiB of RAM or more; the first
+/// micro:bit's 16 KiB hold 144 channels, 96 that move and 36 joints, without the feature `large` of `pantin-app`.
 pub fn main<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog>(
     clips: &[Entry],
     mut board: MyBoard<B, L, P, C, W>,

@@ -12,6 +12,7 @@ mod panic;
 mod received;
 
 use board::BlackPill;
+use board_common::{CHANNELS, JOINTS, MOVING};
 use display::Lit;
 use pantin_figure::surface::Frame;
 use stm32f4xx_hal::pac::Peripherals;
@@ -20,11 +21,6 @@ use stm32f4xx_hal::pac::Peripherals;
 use defmt_rtt as _;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
-
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {

@@ -66,6 +66,9 @@ pub fn clips() -> [usize; 3] {
     largest
 }
 
+/// Channels, moving channels and joints that 16 KiB of RAM leave room for.
+pub const LITTLE: [usize; 3] = [144, 96, 36];
+
 /// Writes `rooms.rs`: `CHANNELS`, `MOVING` and `JOINTS`, room for what `clips` take, but no more than the board has. A clip that takes more is refused
 /// when it is opened.
 pub fn rooms(clips: [usize; 3], most: [usize; 3]) {

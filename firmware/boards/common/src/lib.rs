@@ -18,6 +18,7 @@ mod perform;
 #[cfg(feature = "emulated")]
 mod play;
 mod register;
+mod rooms;
 #[cfg(feature = "update")]
 mod slots;
 
@@ -40,6 +41,7 @@ pub use play::play;
 #[cfg(all(feature = "emulated", feature = "update"))]
 pub use play::play_stored;
 pub use register::Register;
+pub use rooms::{CHANNELS, JOINTS, MOVING};
 #[cfg(feature = "update")]
 pub use slots::{Area, Chip, store};
 

@@ -10,6 +10,7 @@ mod panic;
 mod received;
 
 use board::Esp32C3;
+use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use esp_hal::clock::CpuClock;
 use pantin_figure::surface::Frame;
@@ -28,11 +29,6 @@ esp_bootloader_esp_idf::esp_app_desc!(
     u16::MAX,
     esp_bootloader_esp_idf::SECURE_VERSION
 );
-
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
 
 #[esp_hal::main]
 fn main() -> ! {

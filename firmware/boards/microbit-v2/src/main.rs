@@ -14,6 +14,7 @@ mod panic;
 mod received;
 
 use board::Microbit;
+use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use nrf52833_hal::pac::Peripherals;
 use pantin_figure::surface::Frame;
@@ -22,11 +23,6 @@ use pantin_figure::surface::Frame;
 use defmt_rtt as _;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
-
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {

@@ -6,15 +6,12 @@ mod board;
 mod registers;
 
 use board::{Mps2, Oled};
+use board_common::{CHANNELS, JOINTS, MOVING};
 use cortex_m_rt::entry;
 use pantin_figure::surface::Frame;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
 /// Most figures side by side.
 const SEATS: usize = 16;
 

@@ -2,16 +2,12 @@
 #![no_std]
 #![no_main]
 
+use board_common::{CHANNELS, JOINTS, MOVING};
 use pantin_figure::surface::Frame;
 use pico::{Lit, Pico};
 use rp2040_hal::pac::Peripherals;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
-
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
 
 #[rp2040_hal::entry]
 fn main() -> ! {

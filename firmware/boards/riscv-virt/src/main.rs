@@ -7,14 +7,11 @@ mod registers;
 mod trap;
 
 use board::{Pages, Virt};
+use board_common::{CHANNELS, JOINTS, MOVING};
 use pantin_figure::surface::Frame;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
-/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
-const JOINTS: usize = 80;
 /// Most figures side by side.
 const SEATS: usize = 1;
 

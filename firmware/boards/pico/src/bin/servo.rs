@@ -3,6 +3,7 @@
 #![no_main]
 
 use board_common::cortex_m::SysTick;
+use board_common::{CHANNELS, MOVING};
 use board_parts::servo::{Law, Servo, channel, slew};
 use embedded_hal::pwm::SetDutyCycle;
 use pantin::{ChannelState, Clip, Kind, Player};
@@ -19,10 +20,6 @@ const JOINTS: [&str; 4] = ["left-thigh", "right-thigh", "left-upper-arm", "right
 const SPEED: u32 = 5500;
 /// Microseconds from pulse to pulse.
 const PERIOD: u16 = 20_000;
-
-/// Most channels of a clip, and most of them that move.
-const CHANNELS: usize = 400;
-const MOVING: usize = 320;
 
 #[rp2040_hal::entry]
 fn main() -> ! {
