@@ -16,6 +16,7 @@ pub mod rp2040;
 pub mod screen;
 pub mod setup;
 pub mod simulator;
+pub mod size_tables;
 pub mod sizes;
 pub mod stack;
 pub mod sync;

@@ -1,4 +1,4 @@
-//! `cargo xtask sizes [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps.
+//! `cargo xtask sizes [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps, which documents say too.
 //!
 //! ```text
 //! $ cargo xtask sizes
@@ -11,8 +11,10 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use harness::size_tables::{DOCUMENTS, filled};
 use harness::sizes::{FREE, Sizes};
 use harness::{paths, stack};
+use pantin_tools::cmd::write_whole;
 
 use super::images;
 use super::steps::say;
@@ -24,7 +26,7 @@ use super::steps::say;
 /// other in a circle count once. Above what a run uses, then, except that recursion and interrupts are left out.
 #[derive(Args)]
 pub struct Sizing {
-    /// Writes tests/sizes.txt: to be committed with what made the images grow
+    /// Writes tests/sizes.txt and the documents' tables: to be committed with what made the images grow
     #[arg(long)]
     update: bool,
     /// Prints the calls that make each stack
@@ -40,10 +42,12 @@ impl Sizing {
         if !self.update {
             return compare(&sizes);
         }
-        let part = file().with_extension("part");
-        let written = std::fs::write(&part, sizes.text()).and_then(|()| std::fs::rename(&part, file()));
-        written.context("cannot write tests/sizes.txt")?;
+        write_whole(&file(), sizes.text().as_bytes())?;
         say("written to tests/sizes.txt");
+        for (document, text) in stale(&sizes)? {
+            write_whole(&paths::root().join(document), text.as_bytes())?;
+            say(&format!("written to {document}"));
+        }
         Ok(())
     }
 }
@@ -59,13 +63,28 @@ fn file() -> PathBuf {
 
 fn compare(sizes: &Sizes) -> Result<()> {
     let text = std::fs::read_to_string(file()).context("cannot read tests/sizes.txt (cargo xtask sizes --update writes it)")?;
-    let complaints = sizes.against(&Sizes::parse(&text).context("tests/sizes.txt")?);
+    let kept = Sizes::parse(&text).context("tests/sizes.txt")?;
+    let mut complaints = sizes.against(&kept);
+    complaints.extend(stale(&kept)?.into_iter().map(|(document, _)| format!("{document}: its table says otherwise")));
     if complaints.is_empty() {
         say(&format!("no number grew by more than {FREE} % over tests/sizes.txt"));
         return Ok(());
     }
     let list = complaints.join("\n  ");
-    bail!("tests/sizes.txt disagrees:\n  {list}\nIf that is meant, run `cargo xtask sizes --update` and commit the file.")
+    bail!("tests/sizes.txt disagrees:\n  {list}\nIf that is meant, run `cargo xtask sizes --update` and commit the files.")
+}
+
+/// The documents whose tables say otherwise, and what they are to hold.
+fn stale(sizes: &Sizes) -> Result<Vec<(&'static str, String)>> {
+    let mut stale = vec![];
+    for document in DOCUMENTS {
+        let before = std::fs::read_to_string(paths::root().join(document)).context(document)?;
+        let after = filled(&before, sizes).context(document)?;
+        if after != before {
+            stale.push((document, after));
+        }
+    }
+    Ok(stale)
 }
 
 /// Builds every image with its own clips.
