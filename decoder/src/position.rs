@@ -2,10 +2,10 @@
 
 use crate::blocks::Input;
 use crate::channel::ChannelState;
-use crate::entropy::{Cursor, Symbols};
+use crate::entropy::Cursor;
 use crate::history::History;
 use crate::layout::MAX_STEP;
-use crate::segment;
+use crate::segment::{self, Segments};
 
 /// All of a player's state but the channels and the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,21 +73,21 @@ impl Position {
     ) -> bool {
         let now = self.frame as u8;
         let states = channels.states.get_mut(usize::from(self.next)..).unwrap_or(&mut []);
-        let mut symbols = Symbols { at: self.cursor, input: *input };
+        let mut segments = Segments::at(self.cursor, input);
         for state in states {
             if state.due == now {
-                if symbols.at.position > dry_at {
-                    self.cursor = symbols.at;
+                if segments.symbols.at.position > dry_at {
+                    self.cursor = segments.symbols.at;
                     return false;
                 }
                 if let Some(history) = &mut history {
-                    history.push(self.frame, self.next, symbols.at, state);
+                    history.push(self.frame, self.next, segments.symbols.at, state);
                 }
-                segment::read(state, &mut symbols);
+                segment::read(state, &mut segments);
             }
             self.next += 1;
         }
-        self.cursor = symbols.at;
+        self.cursor = segments.symbols.at;
         follow(channels);
         true
     }
@@ -117,18 +117,17 @@ impl Position {
     /// One frame on, with its segments: what `read_due` and `advance` do, in one loop.
     pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>) {
         let now = self.frame as u8;
-        let mut symbols = Symbols { at: self.cursor, input: *input };
-        let mut followers = false;
+        let mut segments = Segments::at(self.cursor, input);
         for state in channels.states.iter_mut() {
             if state.due == now {
-                followers |= segment::read(state, &mut symbols);
+                segment::read(state, &mut segments);
             }
             state.add(channels.pose);
         }
-        if followers {
+        if segments.followers {
             follow(channels);
         }
-        self.cursor = symbols.at;
+        self.cursor = segments.symbols.at;
         self.frame += 1;
     }
 
@@ -136,7 +135,7 @@ impl Position {
     #[inline(never)]
     pub(crate) fn run_to(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32, target: u32) {
         self.hop_all(channels, true);
-        let mut symbols = Symbols { at: self.cursor, input: *input };
+        let mut segments = Segments::at(self.cursor, input);
         while self.frame < target {
             if reads(self.frame, frames) {
                 let now = self.frame as u8;
@@ -146,13 +145,13 @@ impl Position {
                     if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
                         state.hop(p, i32::from(state.length()));
                     }
-                    segment::read(state, &mut symbols);
+                    segment::read(state, &mut segments);
                     rest = after;
                 }
             }
             self.frame += 1;
         }
-        self.cursor = symbols.at;
+        self.cursor = segments.symbols.at;
         self.next = 0;
         self.hop_all(channels, false);
         // What was made of them on the way is of no account.

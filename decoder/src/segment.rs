@@ -1,7 +1,8 @@
 //! One segment: its mode, then its acceleration, its slope, both, or neither.
 
+use crate::blocks::Input;
 use crate::channel::{ChannelState, length, mantissa};
-use crate::entropy::Symbols;
+use crate::entropy::{Cursor, Symbols};
 use crate::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
 use crate::tables;
 
@@ -81,13 +82,27 @@ impl Context {
     }
 }
 
-/// Reads the segment that follows the one that `state` has ended. True if it is one that follows:
-/// [`crate::position::follow`] is for it once all have read.
-#[inline(never)]
-pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) -> bool {
-    if state.step > MAX_STEP {
-        return true;
+/// What segments are read from.
+pub(crate) struct Segments<'a> {
+    pub(crate) symbols: Symbols<'a>,
+    /// Whether one was due that follows: [`crate::position::follow`] is for it once all have read.
+    pub(crate) followers: bool,
+}
+
+impl<'a> Segments<'a> {
+    pub(crate) fn at(at: Cursor, input: &Input<'a>) -> Segments<'a> {
+        Segments { symbols: Symbols { at, input: *input }, followers: false }
     }
+}
+
+/// Reads the segment that follows the one that `state` has ended.
+#[inline(never)]
+pub(crate) fn read(state: &mut ChannelState, segments: &mut Segments<'_>) {
+    if state.step > MAX_STEP {
+        segments.followers = true;
+        return;
+    }
+    let symbols = &mut segments.symbols;
     let mode = mode(symbols, state.mode);
     let (kind, length_index) = (mode >> 4, mode as u8 & 15);
     state.mode = mode as u8;
@@ -98,13 +113,8 @@ pub(crate) fn read(state: &mut ChannelState, symbols: &mut Symbols<'_>) -> bool 
         let context = Context::new(length_index, state.w, state.turn, unit);
         state.turn = context.sign;
         state.w = number(symbols, &context, unit);
-        if kind == u32::from(segment_type::W) {
-            state.k = 0;
-            return false;
-        }
     }
-    state.k = if kind == u32::from(segment_type::NONE) { 0 } else { slope(symbols, state) };
-    false
+    state.k = if matches!(kind as u8, segment_type::K | segment_type::WK) { slope(symbols, state) } else { 0 };
 }
 
 /// A new slope: captured motion has few.
@@ -118,8 +128,8 @@ fn slope(symbols: &mut Symbols<'_>, state: &ChannelState) -> i32 {
 /// A new acceleration or slope in raw units.
 #[inline(always)]
 fn number(symbols: &mut Symbols<'_>, context: &Context, unit: u32) -> i32 {
-    let symbol = symbols.symbol_in_line(tables::number(context.index));
-    let mut size = (symbol + 1) >> 1;
+    let next = symbols.symbol_in_line(tables::number(context.index)) + 1;
+    let mut size = next >> 1;
     if size > DIRECT {
         size = match size - DIRECT {
             bits @ 1..=GROUPS => group(bits) + symbols.few_bits(bits),
@@ -127,7 +137,7 @@ fn number(symbols: &mut Symbols<'_>, context: &Context, unit: u32) -> i32 {
         };
     }
     // All ones if it is negative.
-    let sign = -((symbol & 1) as i32) ^ context.flip;
+    let sign = ((next & 1) as i32 - 1) ^ context.flip;
     (size.wrapping_mul(unit) as i32 ^ sign).wrapping_sub(sign)
 }
 
