@@ -44,7 +44,7 @@ impl Cursor {
 
     /// Goes on where another reader was.
     pub(crate) fn at(position: u32, state: u32) -> Cursor {
-        // No well-formed stream holds a state outside; one inside never becomes 0, so that every refill ends.
+        // No well-formed stream holds a state outside; from one inside, two bytes lead back into the range.
         Cursor { position, state: state.clamp(LOW, (LOW << 8) - 1) }
     }
 
@@ -62,12 +62,22 @@ pub(crate) struct Symbols<'a> {
 }
 
 impl Symbols<'_> {
-    /// Shifts bytes in until the state is in range: two at most after any symbol of a well-formed stream.
+    /// Shifts bytes in until the state is in range: two at most, as a symbol leaves LOW >> 12 or more, and 8 bits LOW >> 8.
     #[inline(always)]
     fn refill(&mut self) {
-        while self.at.state < LOW {
+        if self.at.state < LOW {
             self.at.state = (self.at.state << 8) | u32::from(self.input.byte(&mut self.at.position));
+            if self.at.state < LOW {
+                self.second_byte();
+            }
         }
+    }
+
+    /// Few symbols are so rare that they need it.
+    #[cold]
+    #[inline(never)]
+    fn second_byte(&mut self) {
+        self.at.state = (self.at.state << 8) | u32::from(self.input.byte(&mut self.at.position));
     }
 
     /// The next symbol of the alphabet `table`.
