@@ -9,7 +9,7 @@ pub trait Board {
     /// How the display keeps its pixels.
     type Layout: Layout;
 
-    /// How it turns joints: in whole numbers, or, where that is faster, in floating point.
+    /// How it turns joints: in whole numbers or in floating point.
     type Turning: Turning;
 
     /// Brings the display up to date: what [`Frame::send`] names has changed.

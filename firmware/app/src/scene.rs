@@ -54,8 +54,8 @@ pub(crate) enum Wish {
 
 /// Greatest and least pace.
 const PACES: core::ops::RangeInclusive<i8> = -3..=3;
-/// Degrees about the figure that the view key goes through: three quarters, front, side, back.
-const VIEWS: [i16; 4] = [-50, 0, 90, 140];
+/// Degrees about the figure that the view key goes through: three quarters, front, side, from behind.
+const VIEWS: [i16; 4] = [-50, 0, -90, 140];
 
 impl Scene {
     pub fn new(options: &Options) -> Scene {

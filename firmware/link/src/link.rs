@@ -13,7 +13,7 @@ pub const QUEUE: usize = 24;
 /// Bytes of any packet of this crate, for [`crate::packet::Receiver`]: with parity.
 pub const PACKET: usize = PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
 
-/// A packet of motion that waits for its frames: 72 bytes.
+/// A packet of motion that waits for its frames.
 #[derive(Clone, Debug)]
 struct Waiting {
     /// The line's frame of its last message.

@@ -1,4 +1,4 @@
-//! Statistics of what is sent: made by `cargo test -p pantin-link --features std -- --ignored train`, not by hand.
+//! Statistics of what is sent: made by `PANTIN_TRAIN=a.ptn,b.ptn cargo test -p pantin-link --features std -- --ignored --nocapture train`, not by hand.
 
 /// Neither, refresh, cut, both.
 pub(crate) static FLAGS: [u16; 4] = [1947, 1095, 46, 1008];

@@ -8,7 +8,8 @@ use std::path::PathBuf;
 
 /// Turn a clip back into per-frame motion, or into source text for firmware.
 ///
-/// The output's extension says what is written: .bvh has the same joints, channels and frames; .csv a row of all channels' values a frame, with the
+/// The output's extension says what is written: .bvh has the same joints, channels and frames; .glb is a
+/// tree of nodes, with scalars as morph weights; .csv a row of all channels' values a frame, with the
 /// time in seconds; .h and .rs have the clip's own bytes, their length, the frame rate and the channels' names.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:

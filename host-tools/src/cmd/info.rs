@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
   pantin info --json walk.ptn
   pantin info figure.glb")]
 pub struct Arguments {
-    /// The clip, or a .glb, .gltf, .fbx or .wrl
+    /// The clip, or a .glb, .gltf, .fbx, .wrl or .x3dv
     input: PathBuf,
     /// One JSON object; `motion_bytes` is the file without its rig
     #[arg(long)]

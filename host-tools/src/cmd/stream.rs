@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 
 /// Send clips over a line while they play: each arrives as fast as it is shown, a little ahead of its time.
 ///
-/// The other end has the rig of the clips already, as in a clip of its own: a board with the feature `link`. It joins at any time, and is exact again
+/// The other end has the rig of the clips already, as in a clip of its own: the reference board with the feature `link`, started with the
+/// word `link` (firmware/link/LINK.md 9). It joins at any time, and is exact again
 /// a cycle after any loss; `--cycle` and `--refresh` say how short that may be.
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -23,7 +24,7 @@ pub struct Arguments {
     #[arg(long, value_name = "LINE")]
     pub(super) to: Address,
     /// Send a face while it is recorded: udp:PORT takes the datagrams of Live Link Face, - lines of its CSV on stdin, one a frame of the clip
-    #[arg(long, value_name = "FROM", conflicts_with = "looped")]
+    #[arg(long, value_name = "FROM", conflicts_with_all = ["looped", "refresh", "cycle", "ahead"])]
     live: Option<String>,
     /// Greatest error of --live, in percent of full scale
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]

@@ -1,4 +1,4 @@
-//! Euler angles or exponential map, joint by joint, by what they cost (METHOD 5: "by cost or by flag").
+//! Euler angles or exponential map, joint by joint, by what they cost (docs/METHOD.md 5).
 
 use super::figure::exponential_near;
 use crate::fk::local;

@@ -19,7 +19,7 @@ pub enum Action {
     Orbit(i16),
     /// The camera above the horizon, degrees.
     Tilt(i16),
-    /// From the front, the side, or between.
+    /// From the front, the side, behind, or between.
     View,
     /// Follow the figure, or keep still.
     Follow,

@@ -9,8 +9,8 @@ use pantin_figure::{Track, View};
 /// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
 const ROWS_FOR_HALF: usize = 48;
 
-/// Degrees about the figure that a key goes through: three quarters, front, side, back, as on the board.
-const VIEWS: [i16; 4] = [-50, 0, 90, 140];
+/// Degrees about the figure that a key goes through: three quarters, front, side, from behind, as on the board.
+const VIEWS: [i16; 4] = [-50, 0, -90, 140];
 
 /// All of it.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 //! ```text
 //! $ cargo xtask sizes
 //! # image          flash       RAM     stack
-//! lm3s6965evb      57652      1036     12160
+//! lm3s6965evb      45604        28      9544
 //! ...
 //! ```
 

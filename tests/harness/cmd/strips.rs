@@ -23,7 +23,7 @@ use super::pictures;
 use super::steps::say;
 
 /// Degrees about the figure, and their names.
-const VIEWS: [(i16, &str); 3] = [(0, "front"), (90, "side"), (-50, "three quarters")];
+const VIEWS: [(i16, &str); 3] = [(0, "front"), (-90, "side"), (-50, "three quarters")];
 /// Pictures of a motion in a view.
 const COUNT: u32 = 8;
 /// And in a row of them.

@@ -48,7 +48,7 @@ impl<B: I2c, L, P, C: Clock, W> MyBoard<B, L, P, C, W> {
 impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBoard<B, L, P, C, W> {
     // YOUR BOARD: the display's layout, one of `pantin_figure::surface`, or your own.
     type Layout = Pages;
-    // YOUR BOARD: `FloatRotation` is faster where floating point is in the processor; it wants `pantin-figure/micromath`.
+    // YOUR BOARD: in whole numbers; `FloatRotation` (feature `micromath` of `pantin-figure`) takes longer even on a Cortex-M4F.
     type Turning = Rotation;
 
     fn show(&mut self, frame: &mut Frame<Pages>) {
