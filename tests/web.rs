@@ -78,7 +78,7 @@ fn the_canvas_shows_what_the_host_shows() {
     if skipped("the page's pictures") {
         return;
     }
-    let views: [(&[u8], i32, i32); 4] = [(b"", -50, 12), (b"aa", -80, 12), (b"ddddw", 10, 17), (b"vvss", 90, 2)];
+    let views: [(&[u8], i32, i32); 4] = [(b"", -50, 12), (b"aa", -80, 12), (b"ddddw", 10, 17), (b"vvss", -90, 2)];
     let (mut parts, mut expected) = (vec![], vec![]);
     for clip in ["walk.ptn", "face/hello.ptn", "greet.ptn", "face/wink.ptn"] {
         let path = own(clip);
