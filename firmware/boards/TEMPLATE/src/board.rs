@@ -45,6 +45,19 @@ impl<B: I2c, L, P, C: Clock, W> MyBoard<B, L, P, C, W> {
     }
 }
 
+impl<B: I2c, L, P, C, W: Watchdog> MyBoard<B, L, P, C, W> {
+    /// Shows words: a panic's.
+    pub fn tell(&mut self, page: &mut Frame<Pages>) {
+        // Nobody is left who could be told that the display does not answer.
+        let _ = self.display.show(page);
+    }
+
+    /// Tells the watchdog that the program goes on.
+    pub fn feed(&mut self) {
+        self.watchdog.feed();
+    }
+}
+
 impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBoard<B, L, P, C, W> {
     // YOUR BOARD: the display's layout, one of `pantin_figure::surface`, or your own.
     type Layout = Pages;

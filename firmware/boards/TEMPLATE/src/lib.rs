@@ -14,7 +14,7 @@ use embedded_hal_nb::serial::{Read, Write};
 use pantin_app::Entry;
 use pantin_figure::surface::Frame;
 
-/// What `main` does once the chip's crate has set up clocks and pins. The room for clips is that of boards with 128 KiB of RAM or more; the first
+/// What `main` does once the chip's crate has set up clocks and pins. The room for clips is that of boards with 64 KiB of RAM or more; the first
 /// micro:bit's 16 KiB hold 144 channels, 96 that move and 36 joints, without the feature `large` of `pantin-app`.
 pub fn main<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog>(
     clips: &[Entry],

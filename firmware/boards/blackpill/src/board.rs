@@ -1,6 +1,6 @@
 //! The board's display, buttons, timer and line for the program.
 
-use crate::clocks::{self, CLOCK};
+use crate::clocks;
 use crate::display::{Display, Lit, Words};
 use board_common::Buttons;
 use board_common::cortex_m::SysTick;
@@ -29,7 +29,7 @@ pub struct BlackPill {
     /// Up, down, left and right on PB12 to PB15, and for select the board's own on PA0: to ground while they are pressed.
     pins: [ErasedPin<Input>; 5],
     buttons: Buttons,
-    ticks: SysTick,
+    ticks: SysTick<{ clocks::RATE * 1000 }>,
     watchdog: IndependentWatchdog,
 }
 
@@ -60,7 +60,7 @@ impl BlackPill {
         let mut watchdog = IndependentWatchdog::new(parts.IWDG);
         watchdog.stop_on_debug(&parts.DBGMCU, true);
         watchdog.start(PATIENCE.millis());
-        BlackPill { display, line, pins, buttons: Buttons::new(0), ticks: SysTick::new(CLOCK), watchdog }
+        BlackPill { display, line, pins, buttons: Buttons::new(0), ticks: SysTick::new(), watchdog }
     }
 
     /// Shows words.

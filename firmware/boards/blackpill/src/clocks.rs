@@ -7,9 +7,7 @@ use stm32f4xx_hal::rcc::{Config, Rcc};
 /// Megahertz of the crystal.
 const CRYSTAL: u32 = 25;
 /// Megahertz of the processor.
-const RATE: u32 = 100;
-/// Nanoseconds of a clock of it.
-pub const CLOCK: u32 = 1000 / RATE;
+pub const RATE: u32 = 100;
 
 /// Starts them.
 pub fn start(control: RCC) -> Rcc {
@@ -18,5 +16,5 @@ pub fn start(control: RCC) -> Rcc {
 
 /// Waits by counting.
 pub fn wait(nanoseconds: u32) {
-    cortex_m::asm::delay(nanoseconds / CLOCK);
+    cortex_m::asm::delay(nanoseconds.div_ceil(1000) * RATE);
 }

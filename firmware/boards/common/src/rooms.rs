@@ -1,4 +1,4 @@
-//! Room for clips on boards with 128 KiB of RAM or more.
+//! Room for clips on boards with 64 KiB of RAM or more.
 
 /// Most channels of a clip.
 pub const CHANNELS: usize = 400;

@@ -10,8 +10,8 @@ use pantin_app::{Board, Key};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Frame, Gray4Rows};
 
-/// One tick of the core clock as it is out of reset: 12.5 MHz.
-const CLOCK_NS: u32 = 80;
+/// Kilohertz of the core clock as it is out of reset.
+const RATE: u32 = 12_500;
 
 const TRANSMIT_FULL: u32 = 1 << 5;
 const RECEIVE_EMPTY: u32 = 1 << 4;
@@ -26,7 +26,7 @@ pub type Oled = Gray4Rows<128, 64, 1024>;
 
 /// The board.
 pub struct Lm3s {
-    timer: SysTick,
+    timer: SysTick<RATE>,
     buttons: Buttons,
     #[cfg(feature = "ethernet")]
     ethernet: Ethernet,
@@ -38,7 +38,7 @@ impl Lm3s {
         #[cfg(feature = "link")]
         uart0::LCRH.write(EIGHT_BITS | FIFO);
         Lm3s {
-            timer: SysTick::new(CLOCK_NS),
+            timer: SysTick::new(),
             buttons: buttons::start(),
             #[cfg(feature = "ethernet")]
             ethernet: Ethernet::new(),

@@ -6,8 +6,8 @@ use board_common::markers;
 use pantin_app::{Board, wire};
 use pantin_figure::surface::{Frame, Gray4Rows};
 
-/// One tick of the core clock: 25 MHz.
-const CLOCK_NS: u32 = 40;
+/// Kilohertz of the core clock.
+const RATE: u32 = 25_000;
 /// Clocks a bit: 115 200 bits a second.
 const BAUD_CLOCKS: u32 = 217;
 
@@ -19,7 +19,7 @@ pub type Oled = Gray4Rows<128, 64, 1024>;
 
 /// The board.
 pub struct Mps2 {
-    timer: SysTick,
+    timer: SysTick<RATE>,
 }
 
 impl Mps2 {
@@ -27,7 +27,7 @@ impl Mps2 {
         uart0::BAUDDIV.write(BAUD_CLOCKS);
         // Transmitter and receiver.
         uart0::CTRL.write(1 << 0 | 1 << 1);
-        Mps2 { timer: SysTick::new(CLOCK_NS) }
+        Mps2 { timer: SysTick::new() }
     }
 }
 

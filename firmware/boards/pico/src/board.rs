@@ -1,6 +1,6 @@
 //! The board's display, buttons, timer and line for the program.
 
-use crate::clocks::{self, CLOCK};
+use crate::clocks;
 use crate::display::{Display, Lit, Words};
 use board_common::cortex_m::SysTick;
 use board_common::{Buttons, markers};
@@ -30,7 +30,7 @@ pub struct Pico {
     /// Up, down, left, right and select: GP10 to GP14, to ground while they are pressed.
     pins: [Button; 5],
     buttons: Buttons,
-    ticks: SysTick,
+    ticks: SysTick<{ clocks::RATE / 1000 }>,
     watchdog: Watchdog,
 }
 
@@ -61,7 +61,7 @@ impl Pico {
         ];
         watchdog.pause_on_debug(true);
         watchdog.start(PATIENCE.millis());
-        Pico { display, line, pins, buttons: Buttons::new(0), ticks: SysTick::new(CLOCK), watchdog }
+        Pico { display, line, pins, buttons: Buttons::new(0), ticks: SysTick::new(), watchdog }
     }
 
     /// Shows words.

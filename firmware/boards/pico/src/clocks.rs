@@ -8,8 +8,6 @@ use rp2040_hal::watchdog::Watchdog;
 const CRYSTAL: u32 = 12_000_000;
 /// Of the processor and what is around it, a second.
 pub const RATE: u32 = 125_000_000;
-/// Nanoseconds of a clock of it.
-pub const CLOCK: u32 = 8;
 
 /// Starts them, and the watchdog's microseconds.
 pub fn start(crystal: XOSC, clocks: CLOCKS, plls: (PLL_SYS, PLL_USB), resets: &mut RESETS, watchdog: &mut Watchdog) {

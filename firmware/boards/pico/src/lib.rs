@@ -12,7 +12,7 @@ mod panic;
 mod received;
 
 pub use board::Pico;
-pub use clocks::{CLOCK, RATE, start};
+pub use clocks::{RATE, start};
 pub use display::Lit;
 #[cfg(feature = "update")]
 pub use flash::Rom;

@@ -18,26 +18,29 @@ fn SysTick() {
     PERIODS.store(PERIODS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
 }
 
-/// The timer.
-pub struct SysTick {
+/// The timer of a processor that runs at so many kilohertz.
+pub struct SysTick<const KILOHERTZ: u32> {
     timer: Option<SYST>,
-    /// Nanoseconds of a clock.
-    clock: u32,
     /// Timer periods in a tick: more than one where a tick is longer than the timer can count.
     periods: u32,
     /// Periods up to the last tick that was told of.
     told: u32,
 }
 
-impl SysTick {
-    /// With a clock of so many nanoseconds. Only the first of them ticks.
-    pub fn new(clock: u32) -> Self {
-        SysTick { timer: Peripherals::take().map(|peripherals| peripherals.SYST), clock, periods: 1, told: 0 }
+impl<const KILOHERTZ: u32> SysTick<KILOHERTZ> {
+    /// Clocks in 2^32 nanoseconds: rounded up, so that no tick of whole clocks loses one.
+    const CLOCKS: u64 = ((KILOHERTZ as u64) << 32).div_ceil(1_000_000);
+
+    /// Takes `cortex_m::Peripherals`: only the first of them ticks, and none where a program has taken these before.
+    #[allow(clippy::new_without_default)]
+    pub fn new() -> Self {
+        SysTick { timer: Peripherals::take().map(|peripherals| peripherals.SYST), periods: 1, told: 0 }
     }
 
     /// Ticks every `nanoseconds` from now on.
     pub fn start(&mut self, nanoseconds: u32) {
-        let clocks = nanoseconds.checked_div(self.clock).unwrap_or(LONGEST);
+        // At most 2^32 where the processor runs at a gigahertz or less.
+        let clocks = u32::try_from((u64::from(nanoseconds) * Self::CLOCKS) >> 32).unwrap_or(u32::MAX);
         self.periods = clocks.div_ceil(LONGEST).max(1);
         self.told = PERIODS.load(Ordering::Relaxed);
         if let Some(timer) = &mut self.timer {

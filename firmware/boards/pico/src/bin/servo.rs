@@ -65,7 +65,7 @@ fn perform(mut set: impl FnMut([u16; 4])) -> ! {
     // The right side's servos are mounted the other way round.
     let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
     let channels = JOINTS.map(|joint| channel(&clip, joint, Kind::Xrotation));
-    let mut ticks = SysTick::new(pico::CLOCK);
+    let mut ticks = SysTick::<{ pico::RATE / 1000 }>::new();
     ticks.start(clip.frame_time_ns());
     loop {
         let mut pulses = [0; 4];

@@ -1,7 +1,6 @@
 //! The ST7789: clock on GP18, data on GP19, chip select on GP17, data or command on GP20.
 
 use super::Free;
-use crate::clocks::CLOCK;
 use board_parts::St7789;
 use core::convert::Infallible;
 use embedded_graphics::pixelcolor::Rgb565;
@@ -36,7 +35,7 @@ struct Wait;
 
 impl DelayNs for Wait {
     fn delay_ns(&mut self, nanoseconds: u32) {
-        cortex_m::asm::delay(nanoseconds / CLOCK);
+        cortex_m::asm::delay(nanoseconds.div_ceil(1000) * (crate::clocks::RATE / 1_000_000));
     }
 }
 
