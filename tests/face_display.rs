@@ -57,7 +57,7 @@ fn plays_faces(machine: Machine) {
     plays(machine, &firmware, &turns);
     let talk = vec![&b""[..]; 59];
     let means = plays(machine, &firmware, &talk);
-    println!("{}: instructions a frame of hello: {FRAME_REGIONS:?} {means:.0?}", machine.name);
+    println!("{}: instructions per frame of hello: {FRAME_REGIONS:?} {means:.0?}", machine.name);
 }
 
 #[test]

@@ -46,7 +46,7 @@ fn polynomials() -> Result<Vec<Goal>> {
     let rows: Vec<_> = KINDS.iter().enumerate().map(row).collect();
     table::print(&["instructions a value and frame", "Cortex-M0", "Cortex-M3"], &rows);
     let shown = |core: usize| columns[core].iter().map(|number| format!("{number:.0}")).collect::<Vec<_>>().join(" / ");
-    let what = "instructions a value: additions / Horner, 32 bits / Horner, 16 bits / from keys";
+    let what = "instructions per value: additions / Horner, 32 bits / Horner, 16 bits / from keys";
     Ok(vec![Goal::told(format!("{what}, Cortex-M0"), shown(0)), Goal::told(format!("{what}, Cortex-M3"), shown(1))])
 }
 
@@ -76,7 +76,7 @@ fn link(
     let header = format!("{name}, {} bytes of motion against {per_frame}: baud", made.info.motion_bytes);
     table::print(&[&header, "sent ms", "decoded ms", "both", "per-frame sent ms", "times sooner"], &rows);
     Ok(fastest.map(|(link, times)| {
-        let what = format!("{name} there and decoded (Cortex-M3, 50 MHz) at {link} baud, against its per-frame file there");
+        let what = format!("{name}: transfer at {link} baud and decoding (Cortex-M3, 50 MHz), against its per-frame file");
         Goal::told(what, format!("{times:.1} times sooner"))
     }))
 }

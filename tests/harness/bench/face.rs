@@ -33,14 +33,14 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     goals.extend(frames(&played)?);
     let memory = board::memory("face", &played[0].1)?;
     goals.push(Goal::at_most(
-        format!("RAM beside the framebuffer, {} on Cortex-M3", played[0].0),
+        format!("RAM without the framebuffer, {} on Cortex-M3", played[0].0),
         memory as f64,
         RAM,
         0,
         "bytes",
     ));
     let own = size_of::<Morph<VERTICES>>() + size_of::<Look<VERTICES>>() + size_of::<Binding>() + size_of::<Weights>();
-    goals.push(Goal::told("of it vertices, display, names and weights", format!("{own} bytes")));
+    goals.push(Goal::told("share of vertices, display, names and weights", format!("{own} bytes")));
     let model = std::fs::metadata(paths::root().join("motions/face.model")).context("motions/face.model")?.len();
     goals.push(Goal::at_most("the face's model in flash", model as f64, MODEL, 0, "bytes"));
     Ok(goals)
@@ -90,7 +90,7 @@ const FRAMES: [(&str, Machine, f64); 2] = [("M3, 128x64, 4 bits", LM3S6965EVB, 6
 fn frames(clips: &Clips) -> Result<Vec<Goal>> {
     let mut goals = vec![];
     for (machine_name, machine, most) in FRAMES {
-        say(&format!("   instructions a frame of a face, {machine_name} ({}), mean of the clip", machine.name));
+        say(&format!("   instructions per frame of a face, {machine_name} ({}), mean of the clip", machine.name));
         let (mut rows, mut own) = (vec![], vec![]);
         let files = clips.iter().map(|(_, clip)| Ok((clip.as_path(), frames_of(clip)?))).collect::<Result<Vec<_>>>()?;
         for ((name, _), stats) in clips.iter().zip(played(machine, "face", &files, &[])?) {
@@ -102,7 +102,7 @@ fn frames(clips: &Clips) -> Result<Vec<Goal>> {
                 format!("{cost:.0}"),
             ]);
             if name.starts_with(RECORDED) {
-                goals.push(Goal::at_most(format!("instructions a frame, {machine_name}: {name}"), cost, most, 0, ""));
+                goals.push(Goal::at_most(format!("instructions per frame, {machine_name}: {name}"), cost, most, 0, ""));
             } else {
                 own.push(cost);
             }
@@ -110,7 +110,7 @@ fn frames(clips: &Clips) -> Result<Vec<Goal>> {
         table::print(&["clip", "morph and project", "clear and draw", "together"], &rows);
         let worst = own.iter().copied().fold(0.0, f64::max);
         goals.push(Goal::at_most(
-            format!("instructions a frame, {machine_name}: the dearest of our own clips"),
+            format!("instructions per frame, {machine_name}: the most expensive of our own clips"),
             worst,
             most,
             0,
@@ -227,9 +227,9 @@ fn goals(row: &Row) -> Vec<Goal> {
     let of = |what: &str| format!("face {}, {PERCENT} % of full scale: {what}", row.name);
     vec![
         Goal::at_most(of("with its channels' names"), row.rates[0], row.most, 3, "kbit/s"),
-        Goal::at_most(of("of a plain first-difference coder's ideal entropy"), row.rates[0] / row.plain, OF_PLAIN, 2, ""),
+        Goal::at_most(of("relative to the ideal entropy of a first-difference coder"), row.rates[0] / row.plain, OF_PLAIN, 2, ""),
         Goal::told(of("motion alone"), format!("{:.3} kbit/s", row.rates[1])),
-        Goal::at_most(of("greatest second difference, of the source's"), row.bends.all, BEND, 2, ""),
+        Goal::at_most(of("largest second difference, relative to the source"), row.bends.all, BEND, 2, ""),
         Goal::at_most(of("the same, worst channel"), row.bends.worst.0, BEND, 2, ""),
     ]
 }

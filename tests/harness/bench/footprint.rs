@@ -58,9 +58,9 @@ fn memory(name: &str, clip: &Path) -> Result<Vec<Goal>> {
     let of = |what: &str| numbers.iter().find(|(name, _)| *name == what).map(|(_, bytes)| *bytes);
     let stack = numbers.iter().filter(|(name, _)| !["channel", "player"].contains(name)).map(|(_, bytes)| *bytes);
     Ok(vec![
-        Goal::at_most("RAM a moving channel", of("channel").context("no size of a channel")?, 20.0, 0, "bytes"),
+        Goal::at_most("RAM per moving channel", of("channel").context("no size of a channel")?, 20.0, 0, "bytes"),
         Goal::at_most(
-            "RAM of a player beside them and the pose",
+            "RAM of a player, without channels and pose",
             of("player").context("no size of a player")?,
             128.0,
             0,

@@ -66,7 +66,7 @@ fn alone(machine: Machine, features: &str, clip: &Path, words: &[String]) -> Res
 
 fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> {
     let Column { name, machine, features, most } = column;
-    say(&format!("   instructions a frame, {name} ({}), mean of {} pictures", machine.name, PICTURES - 1));
+    say(&format!("   instructions per frame, {name} ({}), mean of {} pictures", machine.name, PICTURES - 1));
     let [whole, body] = [&clips[0], &clips[1]].map(|(_, clip)| alone(*machine, features, clip, &[]));
     let (whole, body) = (whole?, body?);
     let rows: Vec<_> = [(&clips[0].0, &whole), (&clips[1].0, &body)]
@@ -87,7 +87,7 @@ fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> 
         .zip(values)
         .enumerate()
         .map(|(index, (what, value))| {
-            let what = format!("instructions a frame, {name}: {what}");
+            let what = format!("instructions per frame, {name}: {what}");
             match most {
                 Some(most) => Goal::at_most(what, value, most[index], 0, ""),
                 None => Goal::told(what, format!("{value:.0}")),
@@ -103,7 +103,7 @@ fn reference_image(clip: &Path) -> Result<Vec<Goal>> {
     let used = board::memory("", clip)?;
     Ok(vec![
         Goal::at_most("flash of the reference board's whole image, two clips in it", size as f64, 48.0 * 1024.0, 0, "bytes"),
-        Goal::at_most("its RAM beside the framebuffer, playing 31 joints", used as f64, 8.0 * 1024.0, 0, "bytes"),
+        Goal::at_most("its RAM without the framebuffer, playing 31 joints", used as f64, 8.0 * 1024.0, 0, "bytes"),
     ])
 }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::table;
 
-/// A number that the README shows.
+/// A row of docs/BENCHMARKS.md: a measured number and its goal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
     /// What was measured.

@@ -43,8 +43,8 @@ fn play(setting: &Setting, name: &str, path: &std::path::Path, unit: Option<f64>
     ];
     table::print(&[&format!("{name}, {BOUND_CM} cm, {} moving channels", made.info.moving), "ns"], &rows);
     Ok(vec![
-        Goal::at_most("a pose on this machine, in order", step, (ACL_NS / 3.0).floor(), 0, "ns"),
-        Goal::told("a pose on this machine, by a seek to any frame", format!("{seek:.0} ns")),
+        Goal::at_most("time per pose on this machine, in order", step, (ACL_NS / 3.0).floor(), 0, "ns"),
+        Goal::told("time per pose on this machine, by a seek to any frame", format!("{seek:.0} ns")),
     ])
 }
 
@@ -80,7 +80,7 @@ fn encode(setting: &Setting, name: &str, path: &std::path::Path, unit: Option<f6
     Ok(vec![
         at_least("encoding 31 joints at 120 fps, default effort", speed, 1.0),
         at_least("encoding, fast", fast, 20.0),
-        Goal::at_most("bytes, fast of default", fast_bytes / bytes, 2.0, 2, ""),
-        Goal::told("bytes, best of default", format!("{:.3} ({best:.1} x real time)", best_bytes / bytes)),
+        Goal::at_most("bytes, fast relative to default", fast_bytes / bytes, 2.0, 2, ""),
+        Goal::told("bytes, best relative to default", format!("{:.3} ({best:.1} x real time)", best_bytes / bytes)),
     ])
 }

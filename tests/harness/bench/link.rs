@@ -284,30 +284,27 @@ fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], ru
     let of = |what: &str| format!("{baud} baud: {what}");
     let cycle = f64::from(line.cycle) * source.frame_seconds() * 1000.0;
     vec![
-        Goal::at_most(of("all channels exact after the last error, worst"), worst(|run| &run.exact), exact, 0, "ms"),
-        Goal::at_most(of("all of them drawn so after that, worst"), worst(|run| &run.joined), JOINED, 0, "ms"),
+        Goal::at_most(of("all channels exact after the last damage, worst"), worst(|run| &run.exact), exact, 0, "ms"),
+        Goal::at_most(of("then until all are drawn exactly, worst"), worst(|run| &run.joined), JOINED, 0, "ms"),
         Goal::at_most(
-            of("the emulated board's pictures right again after the last error, worst"),
+            of("the emulated board's pictures correct after the last damage, worst"),
             worst(|run| &run.seen.right),
             exact + JOINED,
             0,
             "ms",
         ),
-        Goal::at_most(of("framing and CRC, of the line"), 100.0 * framing / all, FRAMING, 1, "%"),
+        Goal::at_most(of("framing and CRC, share of the line"), 100.0 * framing / all, FRAMING, 1, "%"),
         Goal::told(of("motion"), rate(motion)),
         Goal::told(of("refresh"), format!("{}, each channel within {cycle:.0} ms", rate(refresh))),
         Goal::told(of("heads and starts"), rate(announced)),
         Goal::told(of("all channels exact after a late join, worst"), format!("{:.0} ms", late_join(source, line))),
+        Goal::told(of("look-ahead, at most"), format!("{:.0} ms", f64::from(line.ahead) * source.frame_seconds() * 1000.0)),
         Goal::told(
-            of("sent ahead of its time, at most"),
-            format!("{:.0} ms", f64::from(line.ahead) * source.frame_seconds() * 1000.0),
-        ),
-        Goal::told(
-            of("parity against a bit error rate of 1e-3, of the line"),
+            of("parity at a bit error rate of 1e-3, share of the line"),
             format!("{:.1} %", 100.0 * with.parity / with.line),
         ),
-        Goal::told(of("played beside the clip, greatest, of a channel's step"), format!("{:.3}", source.deviation(line.cycle).0)),
-        Goal::at_most(of("frames that said exact and were not"), count(|run| run.wrong), 0.0, 0, ""),
-        Goal::at_most(of("times begun anew"), count(|run| run.resets), 0.0, 0, ""),
+        Goal::told(of("largest deviation from the clip, in channel steps"), format!("{:.3}", source.deviation(line.cycle).0)),
+        Goal::at_most(of("frames wrongly reported as exact"), count(|run| run.wrong), 0.0, 0, ""),
+        Goal::at_most(of("clock resets"), count(|run| run.resets), 0.0, 0, ""),
     ]
 }

@@ -4,6 +4,7 @@ mod argument;
 mod board;
 mod decimation;
 mod decode;
+mod document;
 mod error;
 mod face;
 mod footprint;
@@ -16,15 +17,14 @@ mod link_board;
 mod paper;
 mod peers;
 mod plot;
-mod readme;
 mod reference;
 mod size;
 mod table;
 mod tool;
 mod web;
 
+pub use document::{store, write};
 pub use goals::{Goal, print};
-pub use readme::{store, write};
 
 use std::path::PathBuf;
 
@@ -81,7 +81,7 @@ impl Setting {
 }
 
 impl Part {
-    /// Measures, prints, and returns what stands in the README's table.
+    /// Measures, prints, and returns the rows of the table in docs/BENCHMARKS.md.
     pub fn run(self, setting: &Setting) -> Result<Vec<Goal>> {
         match self {
             Self::Size => size::run(setting),

@@ -75,7 +75,7 @@ fn measure(setting: &Setting, clip: &Reference, bound: f64) -> Result<Row> {
 }
 
 impl Row {
-    /// Our bytes of the ideal coder's, of ACL's, of the best working coder's, and of the best at our mean error.
+    /// Our bytes relative to the ideal coder, to ACL, to the best working coder, and to the best at our mean error.
     fn ratios(&self) -> [Option<f64>; 4] {
         [self.peers.ideal, self.peers.acl, self.peers.real, self.at_mean].map(|bytes| bytes.map(|bytes| self.bytes / bytes))
     }
@@ -109,10 +109,10 @@ fn goals(rows: &[Row], (bound, most): &(f64, [f64; 4])) -> Vec<Goal> {
     let [ideal, acl, real, mean] = [0, 1, 2, 3].map(ratios);
     let of = |what: &str| format!("bytes at {bound} cm, {what}");
     let numbers = [
-        (of("of an ideal second-difference coder's, geometric mean"), geometric_mean(&ideal), most[0]),
-        (of("of ACL's, geometric mean"), geometric_mean(&acl), most[1]),
-        (of("of the best working peer's, worst clip"), worst(&real), most[2]),
-        (of("of the best peer's at equal mean error, geometric mean"), geometric_mean(&mean), most[3]),
+        (of("relative to an ideal second-difference coder, geometric mean"), geometric_mean(&ideal), most[0]),
+        (of("relative to ACL, geometric mean"), geometric_mean(&acl), most[1]),
+        (of("relative to the best working peer, worst clip"), worst(&real), most[2]),
+        (of("relative to the best peer at equal mean error, geometric mean"), geometric_mean(&mean), most[3]),
     ];
     let mut goals: Vec<_> = numbers
         .into_iter()
@@ -120,7 +120,7 @@ fn goals(rows: &[Row], (bound, most): &(f64, [f64; 4])) -> Vec<Goal> {
         .collect();
     let (bytes, seconds): (f64, f64) = rows.iter().fold((0.0, 0.0), |sum, row| (sum.0 + row.bytes, sum.1 + row.seconds));
     if seconds > 0.0 {
-        goals.push(Goal::told(of(&format!("a second of motion ({} clips)", rows.len())), format!("{:.0}", bytes / seconds)));
+        goals.push(Goal::told(of(&format!("per second of motion ({} clips)", rows.len())), format!("{:.0}", bytes / seconds)));
     }
     goals
 }

@@ -47,8 +47,8 @@ fn sizes() -> Result<Vec<Goal>> {
     let [player, face, converter] = sums[..] else { return Ok(vec![]) };
     Ok(vec![
         Goal::at_most("player, wasm and JavaScript, uncompressed", (player[0] + face[0]) as f64, MOST, 0, "bytes"),
-        Goal::at_most("of it what a page loads for clips without a face", player[0] as f64, MOST, 0, "bytes"),
-        Goal::told("of it what a clip with a face loads too", format!("{} bytes", face[0])),
+        Goal::at_most("loaded by a page for clips without a face", player[0] as f64, MOST, 0, "bytes"),
+        Goal::told("loaded in addition for a clip with a face", format!("{} bytes", face[0])),
         Goal::told("player, gzip", format!("{} bytes, {} of them for the face", player[1] + face[1], face[1])),
         Goal::told("converter, uncompressed", format!("{} bytes", converter[0])),
         Goal::told("converter, gzip", format!("{} bytes", converter[1])),
@@ -73,7 +73,7 @@ fn times(browser: &Browser, site: &str) -> Result<Vec<Goal>> {
     let mut goals = vec![Goal::told("time to the first frame of our walk, no cache, median of 5", format!("{first:.0} ms"))];
     goals.extend(frames.iter().map(|(what, one)| {
         Goal::told(
-            format!("a frame in Chromium, decoded and drawn, {what}"),
+            format!("time per frame in Chromium, decoded and drawn, {what}"),
             format!("{:.2} ms", one["ms"].as_f64().unwrap_or_default()),
         )
     }));

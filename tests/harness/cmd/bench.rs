@@ -1,4 +1,4 @@
-//! `cargo xtask bench [PART...] [--quick] [--write-readme]`: the project's numbers, measured.
+//! `cargo xtask bench [PART...] [--quick] [--write]`: measures the project's numbers.
 //!
 //! ```text
 //! $ cargo xtask bench paper
@@ -6,7 +6,7 @@
 //! motion  bound   frames  moving  per-frame bytes  bytes   saved  the paper's
 //! walk    0.5 cm     160      21             6720    ...
 //! ```
-//! Parts that need motion clips take them from `$PANTIN_DATA`, and say so where there are none.
+//! Parts that need motion clips read them from `$PANTIN_DATA`; without clips they print that they are skipped.
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
@@ -26,9 +26,9 @@ pub struct Bench {
     /// Only reference clips whose name holds this
     #[arg(long)]
     only: Option<String>,
-    /// Write the README's table from the last full run of every part
+    /// Write docs/BENCHMARKS.md from the last full run of every part
     #[arg(long)]
-    write_readme: bool,
+    write: bool,
 }
 
 impl Bench {
@@ -52,6 +52,6 @@ impl Bench {
         println!();
         bench::print(&all);
         steps.finish()?;
-        if self.write_readme { bench::write(&setting.out) } else { Ok(()) }
+        if self.write { bench::write(&setting.out) } else { Ok(()) }
     }
 }

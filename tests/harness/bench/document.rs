@@ -1,4 +1,4 @@
-//! What the parts measured, kept from run to run, and the README's table of it.
+//! Stores what the parts measured from run to run, and writes it as the tables of docs/BENCHMARKS.md.
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +9,16 @@ use pantin_tools::cmd::write_whole;
 
 use super::{Goal, Part, goals};
 
+const DOCUMENT: &str = "docs/BENCHMARKS.md";
 const START: &str = "<!-- bench -->";
 const END: &str = "<!-- /bench -->";
 
-/// Keeps a part's numbers of a full run.
+/// Stores a part's numbers of a full run.
 pub fn store(folder: &Path, part: Part, goals: &[Goal]) -> Result<()> {
     write_whole(&file(folder, part), &serde_json::to_vec_pretty(goals)?)
 }
 
-/// Writes the numbers of all parts into the README, between its markers.
+/// Writes the numbers of all parts into docs/BENCHMARKS.md, between its markers.
 pub fn write(folder: &Path) -> Result<()> {
     let mut text = String::new();
     for part in Part::value_variants() {
@@ -25,21 +26,21 @@ pub fn write(folder: &Path) -> Result<()> {
         let stored = std::fs::read(&path);
         let stored = stored.with_context(|| format!("no full run of `cargo xtask bench {}` yet", part.name()))?;
         let goals: Vec<Goal> = serde_json::from_slice(&stored).with_context(|| path.display().to_string())?;
-        ensure!(!goals.is_empty(), "`cargo xtask bench {}` measured nothing: the README needs all of it", part.name());
-        text.push_str(&format!("`cargo xtask bench {}`\n\n{}\n", part.name(), goals::markdown(&goals)));
+        ensure!(!goals.is_empty(), "`cargo xtask bench {}` measured nothing: {DOCUMENT} needs every part", part.name());
+        text.push_str(&format!("## `cargo xtask bench {}`\n\n{}\n", part.name(), goals::markdown(&goals)));
     }
-    let readme = paths::root().join("README.md");
-    let before = std::fs::read_to_string(&readme).context("README.md")?;
-    write_whole(&readme, replaced(&before, &text)?.as_bytes())
+    let document = paths::root().join(DOCUMENT);
+    let before = std::fs::read_to_string(&document).context(DOCUMENT)?;
+    write_whole(&document, replaced(&before, &text)?.as_bytes())
 }
 
 fn file(folder: &Path, part: Part) -> PathBuf {
     folder.join(part.name()).with_extension("json")
 }
 
-fn replaced(readme: &str, table: &str) -> Result<String> {
-    let parts = readme.split_once(START).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
-    let Some((head, tail)) = parts else { bail!("README.md has no {START} ... {END}") };
+fn replaced(document: &str, table: &str) -> Result<String> {
+    let parts = document.split_once(START).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
+    let Some((head, tail)) = parts else { bail!("{DOCUMENT} has no {START} ... {END}") };
     Ok(format!("{head}{START}\n{}\n{END}{tail}", table.trim_end()))
 }
 
