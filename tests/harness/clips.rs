@@ -5,8 +5,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
+use pantin_face::MODEL;
 use pantin_face::{Binding, Model};
-use pantin_tools::face::cast::MODEL;
 
 use crate::build;
 use crate::qemu::{LM3S6965EVB, Machine};

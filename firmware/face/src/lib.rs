@@ -31,6 +31,9 @@ pub use look::{Look, View};
 pub use model::{Error, Model, Target};
 pub use morph::{Morph, Weights};
 
+/// Pantin's own face, as [`Model::new_checked`] takes it. `pantin face model` writes it; docs/FACE.md lists its units.
+pub static MODEL: &[u8] = include_bytes!("../face.model");
+
 /// Most vertices of Pantin's own face; other models take more room.
 pub const VERTICES: usize = 216;
 /// Most shapes of a model.

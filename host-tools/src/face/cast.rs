@@ -2,12 +2,9 @@
 
 use anyhow::Result;
 use pantin::Clip;
-use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, Look, MODEL, Model, Morph, VERTICES, View, Weights};
 use pantin_figure::Canvas;
 use pantin_figure::lines::Line;
-
-/// The model that devices have, too.
-pub static MODEL: &[u8] = include_bytes!("../../../motions/face.model");
 
 /// Whether a clip is a face and nothing else.
 pub fn is_face(clip: &Clip) -> Result<bool> {

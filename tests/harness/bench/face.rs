@@ -41,7 +41,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     ));
     let own = size_of::<Morph<VERTICES>>() + size_of::<Look<VERTICES>>() + size_of::<Binding>() + size_of::<Weights>();
     goals.push(Goal::told("share of vertices, display, names and weights", format!("{own} bytes")));
-    let model = std::fs::metadata(paths::root().join("motions/face.model")).context("motions/face.model")?.len();
+    let model = pantin_face::MODEL.len();
     goals.push(Goal::at_most("the face's model in flash", model as f64, MODEL, 0, "bytes"));
     Ok(goals)
 }

@@ -12,13 +12,10 @@
 #![allow(unsafe_code)]
 
 use pantin::Scalars;
-use pantin_face::{Binding, Look, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, Look, MODEL, Model, Morph, VERTICES, View, Weights};
 use pantin_figure::Canvas;
 use pantin_web_module::memory::{room as make_room, written};
 use pantin_web_module::{Only, Stroke};
-
-/// Pantin's own face: docs/FACE.md.
-static MODEL: &[u8] = include_bytes!("../../../motions/face.model");
 
 /// Lines of a face at most, with its mesh.
 const STROKES: usize = 3072;

@@ -5,12 +5,9 @@ use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::run::{After, Scenery, play};
 use pantin::{Clip, Player, Rig};
-use pantin_face::{Binding, Model, Morph, VERTICES, Weights};
+use pantin_face::{Binding, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::surface::{Frame, Layout};
 use pantin_figure::{Canvas, Look, View};
-
-/// Pantin's own face: docs/FACE.md.
-static MODEL: &[u8] = include_bytes!("../../../../motions/face.model");
 
 /// Whether a clip drives a face. In a function of its own: what the names are bound to is given back.
 #[inline(never)]
