@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use harness::vectors::{self, Vector};
 use hostile::noise::Noise;
-use pantin::{ChannelState, Clip, Front, Mark, Memory, OpenError, Player, Rig, Step, Stream, Undo};
+use pantin::{ChannelState, Clip, OpenError, PartialClip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 use pantin_tools::encode::clip::{self, Channel, Coded, Start};
 use pantin_tools::encode::rig;
 use pantin_tools::encode::segment::Segment;
@@ -38,11 +38,11 @@ fn wander(clip: Clip<'_>, undo: usize, marks: usize, noise: &mut Noise) {
     let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
     let mut lent = (
         vec![Undo::default(); undo],
-        vec![Mark::default(); marks],
+        vec![SnapshotPos::default(); marks],
         vec![ChannelState::default(); marks * clip.moving()],
         vec![0; marks * clip.moving()],
     );
-    let mut memory = Memory::new(&player, &mut lent.0, &mut lent.1, &mut lent.2, &mut lent.3);
+    let mut memory = SeekCache::new(&player, &mut lent.0, &mut lent.1, &mut lent.2, &mut lent.3);
     let mut frame = 0;
     for turn in 0..600 {
         let far = noise.below(last + 2);
@@ -99,7 +99,7 @@ fn a_player_that_plays_and_goes_back_ping_pong_never_leaves_the_clip() {
         let (mut states, mut pose) = memory(&clip);
         let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
         let mut undo = vec![Undo::default(); 2 * clip.moving()];
-        let mut memory = Memory::new(&player, &mut undo, &mut [], &mut [], &mut []);
+        let mut memory = SeekCache::new(&player, &mut undo, &mut [], &mut [], &mut []);
         for _ in 0..2 {
             while !player.ended() {
                 player.step_with(&mut memory);
@@ -119,16 +119,16 @@ fn push(
     bytes: &[u8],
     buffer: usize,
     mut piece: impl FnMut() -> usize,
-    mut seen: impl FnMut(Step, &Stream<'_, '_>) -> ControlFlow<()>,
-) -> Step {
+    mut seen: impl FnMut(Progress, &Stream<'_, '_>) -> ControlFlow<()>,
+) -> Progress {
     let mut buffer = vec![0; buffer];
     let (mut states, mut pose) = (vec![ChannelState::default(); rig.channels()], vec![0; rig.channels()]);
     let mut stream = Stream::new(rig, &mut buffer, &mut states, &mut pose).unwrap();
     let mut rest = bytes;
     loop {
         match stream.step() {
-            Step::NeedMore if rest.is_empty() => return Step::NeedMore,
-            Step::NeedMore => {
+            Progress::NeedMore if rest.is_empty() => return Progress::NeedMore,
+            Progress::NeedMore => {
                 let taken = stream.feed(&rest[..piece().min(rest.len())]);
                 // A full buffer that can't be played on would wait for ever.
                 assert!(taken > 0, "{} bytes left, none taken", rest.len());
@@ -136,7 +136,7 @@ fn push(
             }
             step => {
                 let done = seen(step, &stream).is_break();
-                if done || matches!(step, Step::End | Step::Damaged(_) | Step::TooSmall) {
+                if done || matches!(step, Progress::End | Progress::Damaged(_) | Progress::TooSmall) {
                     return step;
                 }
             }
@@ -167,14 +167,14 @@ fn pieces_of_any_size_play_as_the_whole() {
                 let mut piece = || if size == 0 { 1 + noise.below(300) } else { size };
                 let end = push(Rig::new_checked(&rig).unwrap(), &vector.clip, buffer, &mut piece, |step, stream| {
                     match step {
-                        Step::Opened => {
+                        Progress::Opened => {
                             assert_eq!((stream.frames(), stream.frame_time_ns()), (clip.frames(), clip.frame_time_ns()));
                             assert_eq!((stream.looped(), stream.length_exponent()), (clip.looped(), clip.length_exponent()));
                             let joints = 0..clip.rig().joint_count();
                             assert!(joints.into_iter().all(|j| stream.is_exponential(j) == Some(clip.is_exponential(j))));
                         }
-                        Step::Event(event) => marks.push(event),
-                        Step::Frame => {
+                        Progress::Event(event) => marks.push(event),
+                        Progress::Frame => {
                             assert_eq!(stream.frame() as usize, frame);
                             assert!(stream.pose() == poses[frame], "{} in pieces of {size}: frame {frame}", vector.name);
                             frame += 1;
@@ -183,7 +183,7 @@ fn pieces_of_any_size_play_as_the_whole() {
                     }
                     ControlFlow::Continue(())
                 });
-                assert_eq!((end, frame), (Step::End, poses.len()), "{} in pieces of {size}, buffer of {buffer}", vector.name);
+                assert_eq!((end, frame), (Progress::End, poses.len()), "{} in pieces of {size}, buffer of {buffer}", vector.name);
                 assert_eq!(marks, events, "{} in pieces of {size}", vector.name);
             }
         }
@@ -204,7 +204,7 @@ fn arrive(
     };
     let (mut front, mut player) = loop {
         let (bytes, last) = more();
-        match Front::new(bytes) {
+        match PartialClip::new(bytes) {
             Err(OpenError::Truncated) if !last => continue,
             Err(error) => return (0, Err(error)),
             Ok(front) => {
@@ -219,8 +219,8 @@ fn arrive(
         }
     };
     let moving = player.states().len();
-    let mut lent = (vec![Mark::default(); 5], vec![ChannelState::default(); 5 * moving], vec![0; 5 * moving]);
-    let mut memory = Memory::new(&player, &mut [], &mut lent.0, &mut lent.1, &mut lent.2);
+    let mut lent = (vec![SnapshotPos::default(); 5], vec![ChannelState::default(); 5 * moving], vec![0; 5 * moving]);
+    let mut memory = SeekCache::new(&player, &mut [], &mut lent.0, &mut lent.1, &mut lent.2);
     let mut playable = 1;
     loop {
         let (bytes, last) = more();
@@ -275,11 +275,11 @@ fn playing_begins_before_the_last_byte_has_come() {
         Stream::BUFFER,
         || 1,
         |step, _| {
-            frames += u32::from(step == Step::Frame);
+            frames += u32::from(step == Progress::Frame);
             ControlFlow::Continue(())
         },
     );
-    assert_eq!(end, Step::NeedMore);
+    assert_eq!(end, Progress::NeedMore);
     // A quarter at least: a block of 256 bytes and a segment's worth wait.
     assert!(4 * frames > clip.frames(), "{}: {frames} frames of {} from half of the motion", vector.name, clip.frames());
 }
@@ -301,14 +301,14 @@ fn every_file_cut_short_is_refused_whole_and_waited_for_in_pieces() {
                 Stream::BUFFER,
                 || 33,
                 |step, stream| {
-                    if step == Step::Frame {
+                    if step == Progress::Frame {
                         assert!(stream.pose() == poses[frame], "{} cut to {len}: frame {frame}", vector.name);
                         frame += 1;
                     }
                     ControlFlow::Continue(())
                 },
             );
-            assert!(end == Step::NeedMore || len >= complete, "{} cut to {len}: {end:?}", vector.name);
+            assert!(end == Progress::NeedMore || len >= complete, "{} cut to {len}: {end:?}", vector.name);
         }
     }
 }
@@ -332,7 +332,7 @@ fn every_flipped_bit_is_found_before_a_wrong_pose_is_shown() {
                 Stream::BUFFER,
                 || 100,
                 |step, stream| {
-                    if step == Step::Frame {
+                    if step == Progress::Frame {
                         assert!(stream.pose() == poses[frame], "{}: bit {bit} flipped, frame {frame}", vector.name);
                         frame += 1;
                     }
@@ -341,7 +341,7 @@ fn every_flipped_bit_is_found_before_a_wrong_pose_is_shown() {
             );
             let in_rig = bit / 8 >= 4 && bit / 8 < 4 + clip.rig_len();
             let passes = bit / 8 + 4 >= motion && clip.index_len() > 0 || in_rig;
-            assert!(end != Step::End || passes, "{}: bit {bit} flipped and played to the end", vector.name);
+            assert!(end != Progress::End || passes, "{}: bit {bit} flipped and played to the end", vector.name);
         }
     }
 }
@@ -360,14 +360,14 @@ fn damage_stays_damage() {
     let mut rest = &damaged[..];
     let first = loop {
         match stream.step() {
-            Step::NeedMore => rest = &rest[stream.feed(rest)..],
-            Step::Damaged(error) => break error,
-            Step::End => panic!("played to the end"),
+            Progress::NeedMore => rest = &rest[stream.feed(rest)..],
+            Progress::Damaged(error) => break error,
+            Progress::End => panic!("played to the end"),
             _ => {}
         }
     };
     stream.feed(&vector.clip);
-    assert_eq!(stream.step(), Step::Damaged(first));
+    assert_eq!(stream.step(), Progress::Damaged(first));
 }
 
 /// A clip of scalars that all move, and its rig.
@@ -382,7 +382,7 @@ fn scalars(frames: u32, channels: usize) -> (Vec<u8>, Vec<u8>) {
             let mode = ((index + segments.len() * 5) % 16) as u8;
             let side = if segments.len() % 2 == 0 { 1 } else { -1 };
             segments.push(Segment { mode, w: side * (1 + index as i32 % 5), k: 0 });
-            frame += u32::from(pantin::length(mode));
+            frame += u32::from(pantin::segment_frames(mode));
         }
         // From one end of the range: it runs through it and comes round.
         Channel { start: Start::Moving { p: i32::MAX >> 20, v: 3, step: 42 }, segments }
@@ -415,14 +415,14 @@ fn long_clips_and_many_channels_play_by_every_route() {
             Stream::BUFFER,
             || 500,
             |step, stream| {
-                if step == Step::Frame {
+                if step == Progress::Frame {
                     assert!(stream.pose() == poses[frame], "frame {frame} of {frames}, {channels} channels");
                     frame += 1;
                 }
                 ControlFlow::Continue(())
             },
         );
-        assert_eq!((end, frame), (Step::End, poses.len()));
+        assert_eq!((end, frame), (Progress::End, poses.len()));
     }
 }
 

@@ -10,9 +10,9 @@ use harness::display::{Display, Picture};
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request};
 use harness::{clips, paths, screen, setup, simulator};
 use pantin::{ChannelState, Clip, Kind, Player};
-use pantin_app::Page;
+use pantin_app::TextScreen;
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::{Frame, MonoPages};
+use pantin_figure::surface::{Framebuffer, MonoPages};
 use tempfile::TempDir;
 
 /// Our walk, as converted now, and a greeting with body and face.
@@ -180,8 +180,8 @@ fn servos_get_the_pulses_that_the_host_computes() {
 
 /// What a display shows that shows nothing but these words.
 fn words(text: &str) -> Picture {
-    let mut frame = Frame::<MonoPages<128, 64, 1024>>::new();
-    Page::new(&mut frame).write_str(text).unwrap();
+    let mut frame = Framebuffer::<MonoPages<128, 64, 1024>>::new();
+    TextScreen::new(&mut frame).write_str(text).unwrap();
     let pixels = (0..OLED.width * OLED.height).map(|index| frame.pixel(index % OLED.width, index / OLED.width).is_on().into());
     Picture { display: OLED, pixels: pixels.collect() }
 }

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         start.elapsed().as_secs_f64() / f64::from(frames.max(2) - 1)
     });
     // A stride that is prime meets frames everywhere, and goes back about as often as forward.
-    let targets: Vec<u32> = (0..50).map(|turn| turn * 7919 % frames).collect();
+    let targets: Vec<u32> = (0..50).map(|prev_sign| prev_sign * 7919 % frames).collect();
     let seek = median(|| {
         let start = Instant::now();
         for &target in &targets {

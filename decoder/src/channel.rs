@@ -18,12 +18,12 @@ pub struct ChannelState {
     /// Index of the channel's step; above MAX_STEP by how many moving channels back the one stands that it follows.
     pub(crate) step: u8,
     /// Sign of the acceleration that the last new one took over from, 0 if it was small: a context of the next.
-    pub(crate) turn: i8,
+    pub(crate) prev_sign: i8,
 }
 
 impl Default for ChannelState {
     fn default() -> Self {
-        ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, turn: 0 }
+        ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, prev_sign: 0 }
     }
 }
 
@@ -31,7 +31,8 @@ impl ChannelState {
     /// Becomes `other`, field by field: as a whole it would drag the library's memory move into small images.
     pub(crate) fn become_as(&mut self, other: &ChannelState) {
         (self.v, self.w, self.k) = (other.v, other.w, other.k);
-        (self.slot, self.due, self.mode, self.step, self.turn) = (other.slot, other.due, other.mode, other.step, other.turn);
+        (self.slot, self.due, self.mode, self.step, self.prev_sign) =
+            (other.slot, other.due, other.mode, other.step, other.prev_sign);
     }
 
     /// Index in the pose of the channel that this is the state of.
@@ -65,8 +66,8 @@ impl ChannelState {
     }
 
     /// Frames of the running segment, 0 if there was none yet.
-    pub(crate) fn length(&self) -> u8 {
-        if self.mode == START_MODE { 0 } else { length(self.mode) }
+    pub(crate) fn segment_frames(&self) -> u8 {
+        if self.mode == START_MODE { 0 } else { segment_frames(self.mode) }
     }
 
     /// The three additions: a frame on.
@@ -92,7 +93,7 @@ impl ChannelState {
 }
 
 /// Frames of a segment of this mode.
-pub const fn length(mode: u8) -> u8 {
+pub const fn segment_frames(mode: u8) -> u8 {
     LENGTHS[(mode & 15) as usize]
 }
 

@@ -4,8 +4,8 @@ use crate::blocks::{self, Input, Reader, STRIDE};
 use crate::bytes::Bytes;
 use crate::entropy::{Cursor, Symbols};
 use crate::layout::*;
-use crate::opening::Starts;
 use crate::rig::{Joint, Rig};
+use crate::start::ChannelStarts;
 use crate::{OpenError, crc};
 
 /// A checked clip.
@@ -273,7 +273,8 @@ impl<'a> Clip<'a> {
     #[inline(never)]
     pub fn moving(&self) -> usize {
         let input = self.input();
-        Starts::new(&self.rig, self.head.length_exponent).count(&mut Symbols { at: Cursor::start(&input, self.symbols), input })
+        ChannelStarts::new(&self.rig, self.head.length_exponent)
+            .count(&mut Symbols { at: Cursor::start(&input, self.symbols), input })
     }
 
     /// Bytes of the snapshots in the file, their CRCs included; 0 if there are none.

@@ -2,7 +2,7 @@
 
 use crate::channel::ChannelState;
 use crate::entropy::Cursor;
-use crate::position::{Channels, Position};
+use crate::play_state::{Channels, PlayState};
 
 /// What reading one segment changed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -13,7 +13,7 @@ pub struct Undo {
     frame: u32,
     channel: u16,
     mode: u8,
-    turn: i8,
+    prev_sign: i8,
 }
 
 /// A ring of the last segments read.
@@ -67,12 +67,12 @@ impl<'m> History<'m> {
         } else {
             self.len += 1;
         }
-        *place = Undo { w: state.w, k: state.k, cursor, frame, channel, mode: state.mode, turn: state.turn };
+        *place = Undo { w: state.w, k: state.k, cursor, frame, channel, mode: state.mode, prev_sign: state.prev_sign };
         self.end = if self.end + 1 == self.ring.len() { 0 } else { self.end + 1 };
     }
 
     /// Takes the last step back; false if what is kept does not lead there.
-    pub(crate) fn step_back(&mut self, position: &mut Position, channels: &mut Channels<'_>) -> bool {
+    pub(crate) fn step_back(&mut self, position: &mut PlayState, channels: &mut Channels<'_>) -> bool {
         if self.frame != position.frame || self.floor >= position.frame {
             return false;
         }
@@ -82,7 +82,7 @@ impl<'m> History<'m> {
             let before = if self.end == 0 { self.ring.len() } else { self.end } - 1;
             let Some(undo) = self.ring.get(before).filter(|undo| undo.frame == position.frame) else { break };
             if let Some(state) = channels.states.get_mut(usize::from(undo.channel)) {
-                (state.w, state.k, state.turn, state.mode) = (undo.w, undo.k, undo.turn, undo.mode);
+                (state.w, state.k, state.prev_sign, state.mode) = (undo.w, undo.k, undo.prev_sign, undo.mode);
                 // It was read when it was due.
                 state.due = undo.frame as u8;
             }

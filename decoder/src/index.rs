@@ -4,7 +4,7 @@ use crate::blocks::{Input, Reader};
 use crate::channel::ChannelState;
 use crate::entropy::{Cursor, STATE_BYTES};
 use crate::layout::{START_MODE, segment_type};
-use crate::position::{Channels, Position};
+use crate::play_state::{Channels, PlayState};
 
 /// Where a snapshot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,15 +31,15 @@ pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
 }
 
 /// Goes to where the snapshot was taken. Every channel has its slot and step from its start.
-pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut Position, channels: &mut Channels<'_>) {
+pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut PlayState, channels: &mut Channels<'_>) {
     let mut reader = Reader { input, position: entry.position };
     let at = reader.varint();
     let state = (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(reader.byte()));
-    *position = Position { cursor: Cursor::at(at, state), frame: entry.frame, next: 0 };
+    *position = PlayState { cursor: Cursor::at(at, state), frame: entry.frame, next: 0 };
     for state in channels.states.iter_mut() {
         let mode = reader.byte();
         state.mode = (mode & START_MODE).min(START_MODE - 1);
-        state.turn = (mode >> 6).min(2) as i8 - 1;
+        state.prev_sign = (mode >> 6).min(2) as i8 - 1;
         state.due = (entry.frame as u8).wrapping_add(reader.byte());
         let p = reader.zigzag();
         state.v = reader.zigzag();
@@ -52,12 +52,12 @@ pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut Position, 
 }
 
 /// Writes what [`restore`] reads.
-pub(crate) fn write(position: &Position, states: &[ChannelState], pose: &[i32], put: &mut dyn FnMut(u8)) {
+pub(crate) fn write(position: &PlayState, states: &[ChannelState], pose: &[i32], put: &mut dyn FnMut(u8)) {
     varint(position.cursor.position, put);
     let state = position.cursor.state();
     (0..STATE_BYTES).rev().for_each(|byte| put((state >> (8 * byte)) as u8));
     for state in states {
-        put(state.mode | ((state.turn + 1) as u8) << 6);
+        put(state.mode | ((state.prev_sign + 1) as u8) << 6);
         put(state.due.wrapping_sub(position.frame as u8));
         let p = pose.get(usize::from(state.slot)).copied().unwrap_or(0);
         [p, state.v, state.w].into_iter().for_each(|value| zigzag(value, put));

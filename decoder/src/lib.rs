@@ -11,28 +11,28 @@ pub mod entropy;
 mod error;
 #[doc = include_str!("../FORMAT.md")]
 pub mod format {}
-mod front;
 mod history;
 mod index;
 pub mod layout;
 pub mod names;
-mod opening;
+mod partial;
+mod play_state;
 mod player;
-mod position;
 mod prefix;
 mod rig;
 pub mod segment;
 mod snapshots;
+mod start;
 mod stream;
 pub mod tables;
 pub mod units;
 
-pub use channel::{ChannelState, length, step_size};
+pub use channel::{ChannelState, segment_frames, step_size};
 pub use clip::{Clip, Event, has_choice, index_seed};
 pub use error::{OpenError, TooSmall};
-pub use front::Front;
 pub use history::Undo;
-pub use player::{Memory, Player};
+pub use partial::PartialClip;
+pub use player::{Player, SeekCache};
 pub use rig::{Joint, Joints, Kind, Kinds, Rig, Scalar, Scalars};
-pub use snapshots::Mark;
-pub use stream::{Step, Stream};
+pub use snapshots::SnapshotPos;
+pub use stream::{Progress, Stream};

@@ -4,9 +4,9 @@ use crate::channel::ChannelState;
 use crate::clip::Clip;
 use crate::entropy::{Cursor, Symbols};
 use crate::history::{History, Undo};
-use crate::opening::{Opened, Starts};
-use crate::position::{Channels, Position, reads};
-use crate::snapshots::{Mark, Snapshots};
+use crate::play_state::{Channels, PlayState, reads};
+use crate::snapshots::{SnapshotPos, Snapshots};
+use crate::start::{ChannelStarts, Opened};
 use crate::{TooSmall, index};
 
 /// Plays a [`Clip`] in memory of the caller's: a [`ChannelState`] for each of the clip's moving channels, and a pose of
@@ -28,29 +28,29 @@ pub struct Player<'a, 'm> {
     clip: Clip<'a>,
     states: &'m mut [ChannelState],
     pose: &'m mut [i32],
-    position: Position,
+    position: PlayState,
 }
 
 /// Memory lent to a [`Player`] that steps back or seeks much. What is kept in it is of that player's clip alone.
 #[derive(Debug)]
-pub struct Memory<'m> {
+pub struct SeekCache<'m> {
     history: History<'m>,
     snapshots: Snapshots<'m>,
 }
 
-impl<'m> Memory<'m> {
+impl<'m> SeekCache<'m> {
     /// `undo` holds a record for each segment read of late: with one a moving channel it reaches back about 8 frames of lively
     /// motion, and everything beyond is played anew. Each snapshot takes one of `marks` and as many of `states` and `values` as
     /// the clip has moving channels. Any of them may be empty.
     pub fn new(
         player: &Player<'_, '_>,
         undo: &'m mut [Undo],
-        marks: &'m mut [Mark],
+        marks: &'m mut [SnapshotPos],
         states: &'m mut [ChannelState],
         values: &'m mut [i32],
-    ) -> Memory<'m> {
+    ) -> SeekCache<'m> {
         let snapshots = Snapshots::new(marks, states, values, player.states.len(), player.clip.frames());
-        Memory { history: History::new(undo), snapshots }
+        SeekCache { history: History::new(undo), snapshots }
     }
 }
 
@@ -59,7 +59,7 @@ impl<'m> Memory<'m> {
 #[inline(never)]
 fn open(clip: &Clip<'_>, dry_at: u32, states: &mut [ChannelState], pose: &mut [i32]) -> (Cursor, usize) {
     let input = clip.input();
-    let mut starts = Starts::new(&clip.rig(), clip.length_exponent());
+    let mut starts = ChannelStarts::new(&clip.rig(), clip.length_exponent());
     let mut symbols = Symbols { at: Cursor::start(&input, clip.symbols()), input };
     let opened = starts.read(&mut symbols, dry_at, states, pose);
     (symbols.at, if opened == Opened::Done { usize::from(starts.moving) } else { usize::MAX })
@@ -71,12 +71,12 @@ impl<'a, 'm> Player<'a, 'm> {
         let pose = pose.get_mut(..clip.rig().channels()).ok_or(TooSmall { needed: clip.rig().channels() })?;
         let (cursor, moving) = open(&clip, u32::MAX, states, pose);
         let states = states.get_mut(..moving).ok_or_else(|| TooSmall { needed: clip.moving() })?;
-        Ok(Player { clip, states, pose, position: Position { cursor, frame: 0, next: 0 } })
+        Ok(Player { clip, states, pose, position: PlayState { cursor, frame: 0, next: 0 } })
     }
 
     /// [`Player::new`], for a clip of which the front alone may be there; `None` while its channels' starts have not come. `states` needs
     /// [`crate::Rig::channels`] elements.
-    pub(crate) fn of_front(
+    pub(crate) fn from_partial(
         clip: Clip<'a>,
         dry_at: u32,
         states: &'m mut [ChannelState],
@@ -88,11 +88,11 @@ impl<'a, 'm> Player<'a, 'm> {
         };
         let (cursor, moving) = open(&clip, dry_at, states, pose);
         let Some(states) = states.get_mut(..moving) else { return Ok(None) };
-        Ok(Some(Player { clip, states, pose, position: Position { cursor, frame: 0, next: 0 } }))
+        Ok(Some(Player { clip, states, pose, position: PlayState { cursor, frame: 0, next: 0 } }))
     }
 
     /// Goes on by one frame if its segments have come: those that begin at `dry_at` at the latest.
-    pub(crate) fn step_of_front(&mut self, clip: &Clip<'a>, dry_at: u32) -> bool {
+    pub(crate) fn step_partial(&mut self, clip: &Clip<'a>, dry_at: u32) -> bool {
         self.clip.motion = clip.motion;
         if self.ended() {
             return false;
@@ -107,7 +107,7 @@ impl<'a, 'm> Player<'a, 'm> {
     }
 
     /// Seeks in `clip`, which is the same one: more of it may have come.
-    pub(crate) fn seek_of_front(&mut self, clip: &Clip<'a>, frame: u32, memory: &mut Memory<'_>) {
+    pub(crate) fn seek_partial(&mut self, clip: &Clip<'a>, frame: u32, memory: &mut SeekCache<'_>) {
         self.clip.motion = clip.motion;
         self.go::<false>(frame, Some(&mut memory.snapshots));
     }
@@ -144,7 +144,7 @@ impl<'a, 'm> Player<'a, 'm> {
         self.clip.events().filter(|event| event.frame == self.position.frame).map(|event| event.id)
     }
 
-    fn parts(&mut self) -> (&mut Position, Channels<'_>) {
+    fn parts(&mut self) -> (&mut PlayState, Channels<'_>) {
         (&mut self.position, Channels { states: &mut *self.states, pose: &mut *self.pose })
     }
 
@@ -167,7 +167,7 @@ impl<'a, 'm> Player<'a, 'm> {
     pub fn rewind(&mut self) {
         // The memory sufficed when the player was made.
         let (cursor, _) = open(&self.clip, u32::MAX, self.states, self.pose);
-        self.position = Position { cursor, frame: 0, next: 0 };
+        self.position = PlayState { cursor, frame: 0, next: 0 };
     }
 
     /// Goes to `frame`, or to the last one if there are fewer. Forward it costs a hop a segment on the way; backward it
@@ -177,7 +177,7 @@ impl<'a, 'm> Player<'a, 'm> {
     }
 
     /// [`Player::step`], and keeps what going back needs.
-    pub fn step_with(&mut self, memory: &mut Memory<'_>) {
+    pub fn step_with(&mut self, memory: &mut SeekCache<'_>) {
         if self.ended() {
             return self.rewind();
         }
@@ -192,7 +192,7 @@ impl<'a, 'm> Player<'a, 'm> {
     }
 
     /// [`Player::seek`], from the nearest snapshot in `memory` if that is closer; keeps the snapshots that it comes past.
-    pub fn seek_with(&mut self, frame: u32, memory: &mut Memory<'_>) {
+    pub fn seek_with(&mut self, frame: u32, memory: &mut SeekCache<'_>) {
         self.go::<true>(frame, Some(&mut memory.snapshots));
     }
 
@@ -227,7 +227,7 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// Goes back by one frame; from frame 0 to the last one. Takes back the additions and the segments in `memory`; where that
     /// does not reach, it plays some frames before anew.
-    pub fn step_back(&mut self, memory: &mut Memory<'_>) {
+    pub fn step_back(&mut self, memory: &mut SeekCache<'_>) {
         let Some(target) = self.position.frame.checked_sub(1) else { return self.seek_with(u32::MAX, memory) };
         let (position, mut channels) = self.parts();
         if memory.history.step_back(position, &mut channels) {

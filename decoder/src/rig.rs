@@ -311,7 +311,7 @@ impl Id {
 
 /// Walks the channels of a pose.
 #[derive(Clone, Debug)]
-pub(crate) struct Slots<'a> {
+pub(crate) struct ChannelIter<'a> {
     joints: Joints<'a>,
     kinds: Kinds<'a>,
     offset: [i32; 3],
@@ -319,13 +319,13 @@ pub(crate) struct Slots<'a> {
 }
 
 impl<'a> Rig<'a> {
-    pub(crate) fn slots(&self) -> Slots<'a> {
+    pub(crate) fn slots(&self) -> ChannelIter<'a> {
         let kinds = Kinds { halves: &[], next: 0, len: 0 };
-        Slots { joints: self.joints(), kinds, offset: [0; 3], scalars: self.scalars }
+        ChannelIter { joints: self.joints(), kinds, offset: [0; 3], scalars: self.scalars }
     }
 }
 
-impl Iterator for Slots<'_> {
+impl Iterator for ChannelIter<'_> {
     /// A channel's kind and, for positions, the offset that it replaces, in steps of the rig.
     type Item = (Kind, i32);
 

@@ -1,7 +1,7 @@
 //! One segment: its mode, then its acceleration, its slope, both, or neither.
 
 use crate::blocks::Input;
-use crate::channel::{ChannelState, length, mantissa};
+use crate::channel::{ChannelState, mantissa, segment_frames};
 use crate::entropy::{Cursor, Symbols};
 use crate::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
 use crate::tables;
@@ -35,7 +35,7 @@ pub struct Context {
     pub index: u8,
     /// -1 if the symbol tells the opposite number, else 0.
     pub flip: i32,
-    /// Sign of the running number, 0 if it is small: the next context's `turn`.
+    /// Sign of the running number, 0 if it is small: the next context's `prev_sign`.
     pub sign: i8,
 }
 
@@ -56,14 +56,14 @@ const FIRST_CONTEXTS: [u8; 16] = {
 };
 
 impl Context {
-    /// `which` as in [`step`], which gave `unit`: `now` is the running w or k; `turn` the sign before, 0 for a slope.
+    /// `which` as in [`step`], which gave `unit`: `now` is the running w or k; `prev_sign` the sign before, 0 for a slope.
     #[inline(always)]
-    pub const fn new(which: u8, now: i32, turn: i8, unit: u32) -> Context {
+    pub const fn new(which: u8, now: i32, prev_sign: i8, unit: u32) -> Context {
         // unit < 2^30, so nothing here passes 2^32.
         let half = (unit + 1) >> 1;
         let mut size = now.unsigned_abs();
-        let turn = turn as i32;
-        let (mut a, mut sign, mut flip) = (0, 0, turn >> 31);
+        let prev_sign = prev_sign as i32;
+        let (mut a, mut sign, mut flip) = (0, 0, prev_sign >> 31);
         if size >= half {
             flip = now >> 31;
             sign = flip | 1;
@@ -77,7 +77,7 @@ impl Context {
             }
         }
         let first = FIRST_CONTEXTS[(which & 15) as usize] + if which & SLOPE == 0 { 0 } else { ACCELERATIONS };
-        let index = first as i32 + a + (turn ^ flip) - flip + 1;
+        let index = first as i32 + a + (prev_sign ^ flip) - flip + 1;
         Context { index: index as u8, flip, sign: sign as i8 }
     }
 }
@@ -85,7 +85,7 @@ impl Context {
 /// What segments are read from.
 pub(crate) struct Segments<'a> {
     pub(crate) symbols: Symbols<'a>,
-    /// Whether one was due that follows: [`crate::position::follow`] is for it once all have read.
+    /// Whether one was due that follows: [`crate::play_state::follow`] is for it once all have read.
     pub(crate) followers: bool,
 }
 
@@ -107,11 +107,11 @@ pub(crate) fn read(state: &mut ChannelState, segments: &mut Segments<'_>) {
     let (kind, length_index) = (mode >> 4, mode as u8 & 15);
     state.mode = mode as u8;
     // It was due at this frame.
-    state.due = state.due.wrapping_add(length(length_index));
+    state.due = state.due.wrapping_add(segment_frames(length_index));
     if kind & 1 == 0 {
         let unit = step(length_index, state.step);
-        let context = Context::new(length_index, state.w, state.turn, unit);
-        state.turn = context.sign;
+        let context = Context::new(length_index, state.w, state.prev_sign, unit);
+        state.prev_sign = context.sign;
         state.w = number(symbols, &context, unit);
     }
     state.k = if matches!(kind as u8, segment_type::K | segment_type::WK) { slope(symbols, state) } else { 0 };

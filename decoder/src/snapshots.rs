@@ -1,16 +1,16 @@
 //! Whole states at evenly spaced frames, in memory that the caller lends.
 
 use crate::channel::ChannelState;
-use crate::position::{Channels, Position};
+use crate::play_state::{Channels, PlayState};
 
 /// What a snapshot holds beside channels: where it is.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Mark(Position);
+pub struct SnapshotPos(PlayState);
 
 /// Snapshot i is of frame (i + 1) 2^shift; frame 0 needs none.
 #[derive(Debug)]
 pub(crate) struct Snapshots<'m> {
-    marks: &'m mut [Mark],
+    marks: &'m mut [SnapshotPos],
     states: &'m mut [ChannelState],
     values: &'m mut [i32],
     moving: usize,
@@ -20,7 +20,7 @@ pub(crate) struct Snapshots<'m> {
 impl<'m> Snapshots<'m> {
     /// As many as fit the memory, at the closest spacing that serves all `frames`.
     pub(crate) fn new(
-        marks: &'m mut [Mark],
+        marks: &'m mut [SnapshotPos],
         states: &'m mut [ChannelState],
         values: &'m mut [i32],
         moving: usize,
@@ -32,7 +32,7 @@ impl<'m> Snapshots<'m> {
             count += 1;
         }
         let marks = marks.get_mut(..count).unwrap_or(&mut []);
-        marks.fill(Mark::default());
+        marks.fill(SnapshotPos::default());
         let mut shift = 0;
         while shift < 31 && (frames >> shift) as usize > count {
             shift += 1;
@@ -46,14 +46,14 @@ impl<'m> Snapshots<'m> {
     }
 
     /// Keeps this frame if it is one of the evenly spaced.
-    pub(crate) fn keep(&mut self, position: &Position, channels: &Channels<'_>) {
+    pub(crate) fn keep(&mut self, position: &PlayState, channels: &Channels<'_>) {
         let frame = position.frame;
         let index = (frame >> self.shift).wrapping_sub(1) as usize;
         if (frame >> self.shift) << self.shift != frame {
             return;
         }
         let Some(mark) = self.marks.get_mut(index).filter(|mark| mark.0.frame != frame) else { return };
-        *mark = Mark(*position);
+        *mark = SnapshotPos(*position);
         let at = index * self.moving;
         let kept = self.states.iter_mut().zip(self.values.iter_mut()).skip(at);
         for (state, (kept, value)) in channels.states.iter().zip(kept) {
@@ -70,7 +70,7 @@ impl<'m> Snapshots<'m> {
     }
 
     /// Goes to where snapshot `index` was taken.
-    pub(crate) fn restore(&self, index: usize, position: &mut Position, channels: &mut Channels<'_>) {
+    pub(crate) fn restore(&self, index: usize, position: &mut PlayState, channels: &mut Channels<'_>) {
         let Some(mark) = self.marks.get(index) else { return };
         *position = mark.0;
         let kept = self.states.iter().zip(self.values.iter()).skip(index * self.moving);

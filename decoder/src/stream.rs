@@ -6,16 +6,16 @@ use crate::clip::{Event, Head, event};
 use crate::crc;
 use crate::entropy::{Cursor, Symbols};
 use crate::layout::*;
-use crate::opening::{Opened, Starts};
-use crate::position::{Channels, Position, reads};
+use crate::play_state::{Channels, PlayState, reads};
 use crate::prefix::Prefix;
 use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
+use crate::start::{ChannelStarts, Opened};
 use crate::{OpenError, TooSmall};
 
 /// What a step of a [`Stream`] came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum Progress {
     /// Feed more bytes. The pose is to be shown again only after the next `Frame`.
     NeedMore,
     /// The clip's head has been read: what the clip says of itself is known from here on.
@@ -34,13 +34,13 @@ pub enum Step {
 
 /// What is read next.
 #[derive(Debug)]
-enum Stage<'a> {
+enum Phase<'a> {
     Prefix(Prefix),
     Head,
     Events { left: u32, position: u32, frame: u32 },
-    Starts(Starts<'a>),
+    ChannelStarts(ChannelStarts<'a>),
     Frames,
-    Failed(Step),
+    Failed(Progress),
 }
 
 /// The bytes of the motion that are at hand, in the caller's memory: whole blocks, and the part of one.
@@ -120,16 +120,16 @@ impl Window<'_> {
 /// Plays a clip of a known rig from pieces of any size: a file (its own rig is passed over if it is the known one) from its
 /// first byte on. Bit for bit the poses of a [`crate::Player`].
 ///
-/// Call [`Stream::step`] until it answers [`Step::NeedMore`], then [`Stream::feed`].
+/// Call [`Stream::step`] until it answers [`Progress::NeedMore`], then [`Stream::feed`].
 #[derive(Debug)]
 pub struct Stream<'a, 'm> {
     rig: Rig<'a>,
     states: &'m mut [ChannelState],
     pose: &'m mut [i32],
     window: Window<'m>,
-    stage: Stage<'a>,
+    phase: Phase<'a>,
     head: Head,
-    position: Position,
+    position: PlayState,
 }
 
 impl<'a, 'm> Stream<'a, 'm> {
@@ -149,14 +149,14 @@ impl<'a, 'm> Stream<'a, 'm> {
             return Err(TooSmall { needed: Self::BUFFER });
         }
         let window = Window { buffer, len: 0, checked: 0, base: 0, left: 0, seed: 0, damaged: false };
-        let stage = Stage::Prefix(Prefix::default());
-        Ok(Stream { rig, states, pose, window, stage, head: Head::default(), position: Position::default() })
+        let phase = Phase::Prefix(Prefix::default());
+        Ok(Stream { rig, states, pose, window, phase, head: Head::default(), position: PlayState::default() })
     }
 
     /// Takes bytes and returns how many: fewer than all if the buffer is full (then step) or the motion is complete.
     pub fn feed(&mut self, bytes: &[u8]) -> usize {
         let mut taken = 0;
-        while let Stage::Prefix(prefix) = &mut self.stage {
+        while let Phase::Prefix(prefix) = &mut self.phase {
             let Some(&byte) = bytes.get(taken) else { return taken };
             taken += 1;
             match prefix.push(byte, &self.rig) {
@@ -164,100 +164,100 @@ impl<'a, 'm> Stream<'a, 'm> {
                 Ok(Some(motion_len)) => {
                     (self.window.left, self.window.seed) = (motion_len, prefix.seed(motion_len));
                     self.head.flags = prefix.flags;
-                    self.stage = Stage::Head;
+                    self.phase = Phase::Head;
                 }
-                Err(error) => self.stage = Stage::Failed(Step::Damaged(error)),
+                Err(error) => self.phase = Phase::Failed(Progress::Damaged(error)),
             }
         }
-        let reading = match &self.stage {
-            Stage::Events { position, .. } => *position,
-            Stage::Starts(_) | Stage::Frames => self.position.cursor.position,
-            Stage::Prefix(_) | Stage::Head | Stage::Failed(_) => 0,
+        let reading = match &self.phase {
+            Phase::Events { position, .. } => *position,
+            Phase::ChannelStarts(_) | Phase::Frames => self.position.cursor.position,
+            Phase::Prefix(_) | Phase::Head | Phase::Failed(_) => 0,
         };
         self.window.drop_before(reading.max(self.window.base));
         taken + self.window.fill(bytes.get(taken..).unwrap_or(&[]))
     }
 
     /// Goes on as far as one answer.
-    pub fn step(&mut self) -> Step {
-        match self.stage {
-            Stage::Prefix(_) => Step::NeedMore,
-            Stage::Head => self.head(),
-            Stage::Events { left, position, frame } => self.event(left, position, frame),
-            Stage::Starts(_) => self.starts(),
-            Stage::Frames => self.frame_on(),
-            Stage::Failed(step) => step,
+    pub fn step(&mut self) -> Progress {
+        match self.phase {
+            Phase::Prefix(_) => Progress::NeedMore,
+            Phase::Head => self.head(),
+            Phase::Events { left, position, frame } => self.event(left, position, frame),
+            Phase::ChannelStarts(_) => self.starts(),
+            Phase::Frames => self.frame_on(),
+            Phase::Failed(step) => step,
         }
     }
 
     /// What it means that the window ran dry.
-    fn dry(&mut self) -> Step {
-        if self.window.damaged { self.fail(Step::Damaged(OpenError::BadCrc)) } else { Step::NeedMore }
+    fn dry(&mut self) -> Progress {
+        if self.window.damaged { self.fail(Progress::Damaged(OpenError::BadCrc)) } else { Progress::NeedMore }
     }
 
-    fn fail(&mut self, step: Step) -> Step {
-        self.stage = Stage::Failed(step);
+    fn fail(&mut self, step: Progress) -> Progress {
+        self.phase = Phase::Failed(step);
         step
     }
 
-    fn head(&mut self) -> Step {
+    fn head(&mut self) -> Progress {
         if self.window.checked == 0 {
-            let step = if self.window.left == 0 { Step::Damaged(OpenError::Malformed) } else { Step::NeedMore };
+            let step = if self.window.left == 0 { Progress::Damaged(OpenError::Malformed) } else { Progress::NeedMore };
             return if self.window.damaged { self.dry() } else { step };
         }
         let flags = self.head.flags;
         let rig_id = if flags & HAS_RIG == 0 { Some(self.rig.id()) } else { None };
         match Head::read(&self.window.input(), flags, &self.rig, rig_id) {
-            Err(error) => self.fail(Step::Damaged(error)),
+            Err(error) => self.fail(Progress::Damaged(error)),
             Ok(head) => {
                 self.head = head;
-                self.stage = Stage::Events { left: head.event_count, position: u32::from(head.events), frame: 0 };
-                Step::Opened
+                self.phase = Phase::Events { left: head.event_count, position: u32::from(head.events), frame: 0 };
+                Progress::Opened
             }
         }
     }
 
-    fn event(&mut self, left: u32, position: u32, frame: u32) -> Step {
+    fn event(&mut self, left: u32, position: u32, frame: u32) -> Progress {
         if position > self.window.dry_at() {
             return self.dry();
         }
         let input = self.window.input();
         if left == 0 {
-            self.position = Position { cursor: Cursor::start(&input, position), ..Position::default() };
-            self.stage = Stage::Starts(Starts::new(&self.rig, self.head.length_exponent));
+            self.position = PlayState { cursor: Cursor::start(&input, position), ..PlayState::default() };
+            self.phase = Phase::ChannelStarts(ChannelStarts::new(&self.rig, self.head.length_exponent));
             return self.starts();
         }
         if position as usize > self.window.base as usize + input.bytes.len() {
-            return self.fail(Step::Damaged(OpenError::Malformed));
+            return self.fail(Progress::Damaged(OpenError::Malformed));
         }
         let mut reader = Reader { input: &input, position };
         let event = event(&mut reader, frame);
-        self.stage = Stage::Events { left: left - 1, position: reader.position, frame: event.frame };
-        Step::Event(event)
+        self.phase = Phase::Events { left: left - 1, position: reader.position, frame: event.frame };
+        Progress::Event(event)
     }
 
-    fn starts(&mut self) -> Step {
-        let Stage::Starts(starts) = &mut self.stage else { return Step::NeedMore };
+    fn starts(&mut self) -> Progress {
+        let Phase::ChannelStarts(starts) = &mut self.phase else { return Progress::NeedMore };
         let (input, dry_at) = (self.window.input(), self.window.dry_at());
         let mut symbols = Symbols { at: self.position.cursor, input };
         let opened = starts.read(&mut symbols, dry_at, self.states, self.pose);
         self.position.cursor = symbols.at;
         match opened {
-            Opened::Dry => self.dry(),
-            Opened::Full => self.fail(Step::TooSmall),
+            Opened::NeedMore => self.dry(),
+            Opened::Full => self.fail(Progress::TooSmall),
             Opened::Done => {
                 let states = core::mem::take(&mut self.states);
                 self.states = states.get_mut(..usize::from(starts.moving)).unwrap_or(&mut []);
-                self.stage = Stage::Frames;
-                Step::Frame
+                self.phase = Phase::Frames;
+                Progress::Frame
             }
         }
     }
 
-    fn frame_on(&mut self) -> Step {
+    fn frame_on(&mut self) -> Progress {
         let frame = self.position.frame;
         if frame + 1 >= self.head.frames {
-            return Step::End;
+            return Progress::End;
         }
         let (input, dry_at) = (self.window.input(), self.window.dry_at());
         let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
@@ -265,7 +265,7 @@ impl<'a, 'm> Stream<'a, 'm> {
             return self.dry();
         }
         self.position.advance(&mut channels);
-        Step::Frame
+        Progress::Frame
     }
 
     /// The frame that the pose shows.
@@ -278,12 +278,12 @@ impl<'a, 'm> Stream<'a, 'm> {
         self.pose
     }
 
-    /// Number of frames; 0 before [`Step::Opened`].
+    /// Number of frames; 0 before [`Progress::Opened`].
     pub fn frames(&self) -> u32 {
         self.head.frames
     }
 
-    /// Time from one frame to the next; 0 before [`Step::Opened`].
+    /// Time from one frame to the next; 0 before [`Progress::Opened`].
     pub fn frame_time_ns(&self) -> u32 {
         self.head.frame_time_ns
     }
@@ -299,7 +299,7 @@ impl<'a, 'm> Stream<'a, 'm> {
     }
 
     /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map. `None` unless
-    /// asked between [`Step::Opened`] and the next call of `feed` or `step`: later the bytes that tell may be gone.
+    /// asked between [`Progress::Opened`] and the next call of `feed` or `step`: later the bytes that tell may be gone.
     pub fn is_exponential(&self, joint: usize) -> Option<bool> {
         (self.window.base == 0 && self.head.frames > 0).then(|| self.head.is_exponential(&self.window.input(), &self.rig, joint))
     }

@@ -1,7 +1,7 @@
 //! The model that devices play: the committed bytes, the device's arithmetic against full precision, hostile bytes, names.
 
 use pantin_face::model::{Error, hash};
-use pantin_face::{Binding, Look, Model, Morph, Target, VERTICES, View, Weights};
+use pantin_face::{Binding, FaceRenderer, Model, Morph, Target, VERTICES, View, Weights};
 use pantin_figure::Canvas;
 use pantin_tools::face::cast::{Cast, is_face};
 use pantin_tools::face::{Face, error, export, fit, outside, pose};
@@ -31,7 +31,7 @@ fn the_committed_model_is_what_the_tables_make() {
         "the face has changed: write its model again by `pantin face model -o firmware/face/face.model`"
     );
     assert!(face.bytes.len() <= 8 << 10, "{} bytes", face.bytes.len());
-    let parts = [size_of::<Morph<VERTICES>>(), size_of::<Look<VERTICES>>(), size_of::<Binding>(), size_of::<Weights>()];
+    let parts = [size_of::<Morph<VERTICES>>(), size_of::<FaceRenderer<VERTICES>>(), size_of::<Binding>(), size_of::<Weights>()];
     println!("RAM: vertices {}, display {}, names {}, weights {} bytes", parts[0], parts[1], parts[2], parts[3]);
     assert!(parts.iter().sum::<usize>() <= 6 << 10, "{parts:?} bytes");
 }
@@ -47,14 +47,14 @@ fn the_device_keeps_within_a_tenth_of_a_percent() {
 fn play(model: &Model) {
     let Ok(mut morph) = Morph::<512>::new(model) else { return };
     for view in [View::default(), View { orbit: 70, tilt: -30 }] {
-        let mut look = Look::<512>::new(model, pantin_figure::Canvas { width: 240, height: 240 }, view);
+        let mut renderer = FaceRenderer::<512>::new(model, pantin_figure::Canvas { width: 240, height: 240 }, view);
         for weight in [0, 20_000, 1 << 15, -(1 << 15)] {
             let mut weights = Weights::new();
             (0..model.shape_count()).for_each(|shape| weights.add(Target::of(shape as u8, [true, shape % 2 == 0]), weight));
             morph.place(model, &weights);
-            look.project(model, &morph);
+            renderer.project(model, &morph);
             let mut lines = 0;
-            look.lines(model, |_| lines += 1);
+            renderer.lines(model, |_| lines += 1);
             assert!(lines < 1 << 16);
         }
     }

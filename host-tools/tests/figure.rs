@@ -9,7 +9,7 @@ use pantin::{Kind, layout::MAX_JOINTS};
 use pantin_figure::camera::DISTANCE;
 use pantin_figure::kinematics::Kinematics;
 use pantin_figure::surface::OnTarget;
-use pantin_figure::{Canvas, Detail, Look, Skeleton, Stage, Track, View};
+use pantin_figure::{Canvas, Detail, DrawStyle, FigureRenderer, Skeleton, Track, View};
 use pantin_tools::motion::{Joint, Motion, Rig};
 use pantin_tools::{encode, fk, import};
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ impl Case {
         let mut joints: Kinematics<JOINTS> = Kinematics::new();
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
-            joints.place(&skeleton, &self.pose(frame));
+            joints.set_pose(&skeleton, &self.pose(frame));
             let truth = self.truth(&skeleton, frame);
             assert_eq!(truth.len(), joints.positions().len());
             for (bone, position) in skeleton.bones.iter().zip(joints.positions()) {
@@ -83,27 +83,27 @@ impl Case {
         worst
     }
 
-    fn stage(&self, view: View) -> Stage<JOINTS> {
+    fn renderer(&self, view: View) -> FigureRenderer<JOINTS> {
         let stride = self.motion.frames.div_ceil(48);
-        Stage::new(self.skeleton(Detail::Full), CANVAS, view, |visit| {
+        FigureRenderer::new(self.skeleton(Detail::Full), CANVAS, view, |visit| {
             (0..self.motion.frames).step_by(stride).for_each(|frame| visit(&self.pose(frame)));
         })
     }
 
     /// Greatest distance in pixels of a joint on the display from where a camera in real numbers puts its true place.
     fn worst_pixel(&self, view: View, stride: usize) -> f64 {
-        let mut stage = self.stage(view);
+        let mut renderer = self.renderer(view);
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
-            stage.place(&self.pose(frame));
-            let hips = stage.skeleton().hips;
-            let target = stage.target();
-            let truth = self.truth(stage.skeleton(), frame);
+            renderer.set_pose(&self.pose(frame));
+            let hips = renderer.skeleton().hips;
+            let target = renderer.target();
+            let truth = self.truth(renderer.skeleton(), frame);
             // A joint above the hips only says where the clip began: it may be far away.
-            let root = truth[usize::from(stage.skeleton().bones[hips].joint)];
-            for (bone, position) in stage.skeleton().bones.iter().zip(stage.joints().positions()).skip(hips) {
-                let got = stage.camera().project(*position);
-                let want = project(&stage, view, root, target, truth[usize::from(bone.joint)]);
+            let root = truth[usize::from(renderer.skeleton().bones[hips].joint)];
+            for (bone, position) in renderer.skeleton().bones.iter().zip(renderer.joints().positions()).skip(hips) {
+                let got = renderer.camera().project(*position);
+                let want = project(&renderer, view, root, target, truth[usize::from(bone.joint)]);
                 worst = worst.max((f64::from(got.x) - want[0]).hypot(f64::from(got.y) - want[1]) / 16.0);
             }
         }
@@ -125,12 +125,12 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 
 /// A perspective camera in real numbers: sixteenths of a pixel. Along the axes that the camera follows, the target is the
 /// true place of the hips.
-fn project(stage: &Stage<JOINTS>, view: View, hips: [f64; 3], target: [i32; 3], place: [f64; 3]) -> [f64; 2] {
+fn project(renderer: &FigureRenderer<JOINTS>, view: View, hips: [f64; 3], target: [i32; 3], place: [f64; 3]) -> [f64; 2] {
     let unit = |v: [i32; 3]| {
         let length = dot(v.map(f64::from), v.map(f64::from)).sqrt();
         v.map(|x| f64::from(x) / length)
     };
-    let (up, facing) = (unit(stage.bearings().up), unit(stage.bearings().facing));
+    let (up, facing) = (unit(renderer.orientation().up), unit(renderer.orientation().facing));
     let left = cross(up, facing);
     let (orbit, tilt) = (f64::from(view.orbit).to_radians(), f64::from(view.tilt).to_radians());
     let level: [f64; 3] = std::array::from_fn(|axis| orbit.cos() * facing[axis] + orbit.sin() * left[axis]);
@@ -138,10 +138,10 @@ fn project(stage: &Stage<JOINTS>, view: View, hips: [f64; 3], target: [i32; 3], 
     let near: [f64; 3] = std::array::from_fn(|axis| tilt.cos() * level[axis] + tilt.sin() * up[axis]);
     let upwards: [f64; 3] = std::array::from_fn(|axis| tilt.cos() * up[axis] - tilt.sin() * level[axis]);
     let relative: [f64; 3] = std::array::from_fn(|axis| {
-        let followed = stage.camera().target([0; 3])[axis] != stage.camera().target([1; 3])[axis];
+        let followed = renderer.camera().target([0; 3])[axis] != renderer.camera().target([1; 3])[axis];
         place[axis] - if followed { hips[axis] } else { f64::from(target[axis]) }
     });
-    let (scale, size, centre) = stage.camera().framing();
+    let (scale, size, centre) = renderer.camera().framing();
     let away = f64::from(DISTANCE * size);
     let magnified = f64::from(scale) / f64::from(size) * away / (away - dot(near, relative));
     [f64::from(centre[0]) + dot(right, relative) * magnified, f64::from(centre[1]) - dot(upwards, relative) * magnified]
@@ -224,7 +224,7 @@ fn euler_slots_that_hold_an_exponential_map_turn_as_one() {
     let exponent = slots.rig().length_exponent();
     let skeleton = Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, &slots.pose(0), exponent, |joint| joint == 0).unwrap();
     let mut joints: Kinematics<JOINTS> = Kinematics::new();
-    joints.place(&skeleton, &slots.pose(0));
+    joints.set_pose(&skeleton, &slots.pose(0));
     let error = distance(joints.position(1).map(f64::from), truth.truth(&skeleton, 0)[1]);
     assert!(error / f64::from(skeleton.size) < 5e-4, "{error}");
 }
@@ -269,15 +269,16 @@ fn a_person_is_drawn_as_a_person() {
     let case = Case::new(person());
     let canvas = Canvas { width: 40, height: 40 };
     let view = View { orbit: 0, tilt: 0, ..View::default() };
-    let mut stage: Stage<JOINTS> = Stage::new(case.skeleton(Detail::Body), canvas, view, |visit| visit(&case.pose(0)));
+    let mut renderer: FigureRenderer<JOINTS> =
+        FigureRenderer::new(case.skeleton(Detail::Body), canvas, view, |visit| visit(&case.pose(0)));
     let mut display = MockDisplay::<BinaryColor>::new();
     display.set_allow_overdraw(true);
     display.set_allow_out_of_bounds_drawing(true);
-    stage.place(&case.pose(0));
+    renderer.set_pose(&case.pose(0));
     let mut inside = display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)));
     inside.clear(BinaryColor::Off).unwrap();
     let mut surface = OnTarget::new(&mut inside);
-    stage.draw_on(&mut surface, Look { ground: false, ..Look::default() });
+    renderer.draw_on(&mut surface, DrawStyle { ground: false, ..DrawStyle::default() });
     surface.outcome().unwrap();
     #[rustfmt::skip]
     display.assert_pattern(&[
@@ -343,10 +344,10 @@ fn clips() -> Vec<(String, Motion)> {
 fn every_clip_keeps_to_real_numbers() {
     for (name, motion) in clips() {
         let case = Case::new(motion);
-        let stage = case.stage(View::default());
-        let axis = stage.bearings().axis;
-        let first = case.truth(stage.skeleton(), 0);
-        let places = || first.iter().skip(stage.skeleton().hips).map(|place| place[axis]);
+        let renderer = case.renderer(View::default());
+        let axis = renderer.orientation().axis;
+        let first = case.truth(renderer.skeleton(), 0);
+        let places = || first.iter().skip(renderer.skeleton().hips).map(|place| place[axis]);
         let height = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
         let stride = case.motion.frames.div_ceil(500);
         let error = case.worst(stride) / height;

@@ -189,8 +189,8 @@ fn drawn_bones(clip: &pantin::Clip) -> usize {
     let mut memory = Memory::of(clip);
     let mut player = memory.player(*clip).unwrap();
     let canvas = pantin_figure::Canvas { width: 300, height: 400 };
-    let mut stage = pantin_figure::Stage::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
-    stage.look(player.pose()).bones.len()
+    let mut renderer = pantin_figure::FigureRenderer::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
+    renderer.lines(player.pose()).bones.len()
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn palettes_colour_the_paper_and_the_ink() {
 
 #[test]
 fn the_phones_picture_is_the_firmwares_own() {
-    type Phone = surface::Frame<surface::Rgb565Rows<176, 220, { 176 * 220 / 2 }>>;
+    type Phone = surface::Framebuffer<surface::Rgb565Rows<176, 220, { 176 * 220 / 2 }>>;
     let folder = Folder::new("phone");
     let (size, pixels) =
         png(&folder.render("a.png", &["--frame", "30", "--size", "176x220", "--palette", "phone", "--scale", "1"]));
@@ -215,11 +215,11 @@ fn the_phones_picture_is_the_firmwares_own() {
     let mut memory = Memory::of(&clip);
     let mut player = memory.player(clip).unwrap();
     let canvas = pantin_figure::Canvas { width: 176, height: 220 };
-    let mut stage = pantin_figure::Stage::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
+    let mut renderer = pantin_figure::FigureRenderer::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
     let mut frame = Phone::new();
     player.seek(30);
-    stage.place(player.pose());
-    stage.draw_on(&mut frame, pantin_figure::Look::default());
+    renderer.set_pose(player.pose());
+    renderer.draw_on(&mut frame, pantin_figure::DrawStyle::default());
     let shown = |index: usize| Rgb888::from(frame.pixel(index % 176, index / 176));
     assert!((0..176 * 220).all(|index| pixels[index] == [shown(index).r(), shown(index).g(), shown(index).b()]));
     // The figure's sides have hues of their own.

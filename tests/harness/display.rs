@@ -18,7 +18,7 @@ pub enum Depth {
 pub enum Way {
     /// QEMU shows it in a window, each pixel as a square of so many.
     Window(usize),
-    /// The firmware sends what changed over the serial port, as `pantin_app::wire` says.
+    /// The firmware sends what changed over the serial port, as `pantin_app::frame_stream` says.
     Wire,
     /// A model of this display under an emulated bus.
     Bus(&'static str),

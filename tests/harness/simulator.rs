@@ -8,8 +8,8 @@ use anyhow::{Context, Result, ensure};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
 use pantin_app::{Board, Entry, Exit, Options};
-use pantin_figure::rotation::{Rotation, Turning};
-use pantin_figure::surface::{Frame, Gray4Rows, Layout, MonoPages, Rgb565Rows};
+use pantin_figure::rotation::{Rotation, RotationBackend};
+use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
 use crate::display::{self, Depth, Display, Picture};
 use crate::sync;
@@ -35,7 +35,12 @@ impl File {
 
 /// The pictures of a display that plays `clips` in step, with their frames' numbers: the first, then one after each of the keys'
 /// letters. `words` are those of the firmware's command line; `R` is what turns its joints.
-pub fn play<R: Turning>(display: Display, clips: &[PathBuf], words: &[&str], keys: &[&[u8]]) -> Result<Vec<(u32, Picture)>> {
+pub fn play<R: RotationBackend>(
+    display: Display,
+    clips: &[PathBuf],
+    words: &[&str],
+    keys: &[&[u8]],
+) -> Result<Vec<(u32, Picture)>> {
     let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
     let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes }).collect();
     let options = Options::parse(words.iter().copied().chain([sync::ARGUMENT]));
@@ -60,7 +65,7 @@ pub fn link(clip: &Path, words: &[&str], line: &[Vec<u8>]) -> Result<Vec<(u32, P
     simulate::<Rotation, Gray4Rows<128, 64, 1024>>(display::OLED, &entries, options, wishes)
 }
 
-fn simulate<R: Turning, L: Layout<Ink: Value>>(
+fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
     display: Display,
     entries: &[Entry],
     options: Options,
@@ -68,7 +73,7 @@ fn simulate<R: Turning, L: Layout<Ink: Value>>(
 ) -> Result<Vec<(u32, Picture)>> {
     let mut simulator = Simulator::<R, L> { display, wishes, told: vec![], shown: vec![], kind: PhantomData };
     // The display's memory and the player's would be much of a test thread's stack.
-    let mut frame = Box::new(Frame::<L>::new());
+    let mut frame = Box::new(Framebuffer::<L>::new());
     let exit = pantin_app::run::<_, CHANNELS, MOVING, JOINTS>(entries, options, &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "a clip cannot be played");
     ensure!(simulator.told.len() == 5 * simulator.shown.len(), "the program told something else than frames' numbers");
@@ -88,11 +93,11 @@ struct Simulator<R, L> {
     kind: PhantomData<(R, L)>,
 }
 
-impl<R: Turning, L: Layout<Ink: Value>> Board for Simulator<R, L> {
+impl<R: RotationBackend, L: Layout<Ink: Value>> Board for Simulator<R, L> {
     type Layout = L;
-    type Turning = R;
+    type Rotation = R;
 
-    fn show(&mut self, frame: &mut Frame<L>) {
+    fn show(&mut self, frame: &mut Framebuffer<L>) {
         let Display { width, height, .. } = self.display;
         let pixels = (0..width * height).map(|index| frame.pixel(index % width, index / width).value()).collect();
         self.shown.push(Picture { display: self.display, pixels });

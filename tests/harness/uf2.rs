@@ -18,8 +18,8 @@ const SECOND_STAGE: usize = 252;
 /// The blocks for the parts of an ELF file that lie in the flash.
 pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
     let pages = pages(elf)?;
-    let first = pages.get(&FLASH.start).context("the image has no second stage of the boot at the start of the flash")?;
-    ensure!(is_second_stage(first), "the image's second stage of the boot has a wrong CRC: the chip would not start it");
+    let first = pages.get(&FLASH.start).context("the image has no second renderer of the boot at the start of the flash")?;
+    ensure!(is_second_stage(first), "the image's second renderer of the boot has a wrong CRC: the chip would not start it");
     Ok(uf2::file(RP2040, &pages))
 }
 
@@ -151,7 +151,7 @@ mod tests {
     fn what_would_not_start_or_not_stay_is_refused() {
         let mut boot = second_stage();
         let refused = |segments: &[(u32, &[u8])]| of_elf(&elf(segments)).unwrap_err().to_string();
-        assert!(refused(&[(0x1000_0100, &[1])]).contains("no second stage"));
+        assert!(refused(&[(0x1000_0100, &[1])]).contains("no second renderer"));
         assert!(refused(&[(FLASH.start, &boot), (0x2000_0000, &[1])]).contains("0x20000000, 1 bytes"));
         boot[100] ^= 1;
         assert!(refused(&[(FLASH.start, &boot)]).contains("wrong CRC"));

@@ -70,7 +70,7 @@ pub fn shown(line: &mut impl Read, mut memory: Option<&mut Memory>) -> Result<u3
                 line.read_exact(&mut number).context("a frame number cut short")?;
                 return Ok(u32::from_le_bytes(number));
             }
-            (pantin_app::wire::WINDOW, Some(memory)) => memory.take(&mut *line)?,
+            (pantin_app::frame_stream::WINDOW, Some(memory)) => memory.take(&mut *line)?,
             (other, _) => bail!("the firmware sent {other:#x} in place of a frame's number"),
         }
     }

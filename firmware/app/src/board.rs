@@ -1,8 +1,8 @@
 //! What a board does for the program.
 
-use crate::keys::Key;
-use pantin_figure::rotation::Turning;
-use pantin_figure::surface::{Frame, Layout};
+use crate::commands::Command;
+use pantin_figure::rotation::RotationBackend;
+use pantin_figure::surface::{Framebuffer, Layout};
 
 /// The hardware.
 pub trait Board {
@@ -10,10 +10,10 @@ pub trait Board {
     type Layout: Layout;
 
     /// How it turns joints: in whole numbers or in floating point.
-    type Turning: Turning;
+    type Rotation: RotationBackend;
 
-    /// Brings the display up to date: what [`Frame::send`] names has changed.
-    fn show(&mut self, frame: &mut Frame<Self::Layout>);
+    /// Brings the display up to date: what [`Framebuffer::send`] names has changed.
+    fn show(&mut self, frame: &mut Framebuffer<Self::Layout>);
 
     /// Starts a timer that ticks every `nanoseconds`, or changes its pace.
     fn start_timer(&mut self, nanoseconds: u32);
@@ -43,7 +43,7 @@ pub trait Board {
     }
 
     /// A button that was pressed since the last call.
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         None
     }
 

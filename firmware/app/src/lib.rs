@@ -5,28 +5,28 @@
 #![forbid(unsafe_code)]
 
 mod board;
-mod crowd;
+pub mod commands;
+mod content;
+pub mod frame_stream;
 mod hud;
-pub mod keys;
 #[cfg(feature = "link")]
 mod link;
 mod log;
+mod multi;
 mod options;
-mod page;
 mod run;
-mod scene;
-mod show;
 #[cfg(feature = "update")]
 mod stored;
+mod text_screen;
 mod update;
-pub mod wire;
+mod view_state;
 
 pub use board::{Board, Exit};
-pub use crowd::{FIGURES, Seat, crowd};
-pub use keys::Key;
+pub use commands::Command;
+pub use multi::{FIGURES, FigureBuffers, multi};
 pub use options::{Mode, Options};
-pub use page::Page;
 pub use run::{NEXT, QUIT, RIG, SHOWN, run};
-pub use scene::Entry;
 #[cfg(feature = "update")]
 pub use stored::run_stored;
+pub use text_screen::TextScreen;
+pub use view_state::Entry;

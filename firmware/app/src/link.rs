@@ -3,13 +3,13 @@
 //! In [`Mode::Sync`] a frame's time is a letter between two zeros, [`NEXT`]; letters of the view's keys come in the same way.
 
 use crate::board::{Board, Exit};
+use crate::commands::Command;
+use crate::content::Content;
 use crate::hud;
-use crate::keys::Key;
 use crate::log::{error, info};
 use crate::options::Mode;
-use crate::run::{After, NEXT, QUIT, SHOWN, Scenery, show};
-use crate::scene::{Scene, Wish};
-use crate::show::Show;
+use crate::run::{NEXT, Outcome, PlayContext, QUIT, SHOWN, show};
+use crate::view_state::{Effect, ViewState};
 use pantin::Player;
 use pantin_link::packet::Receiver;
 use pantin_link::{Channel, Counts, Form, Link, PACKET, QUEUE, Refusal};
@@ -18,7 +18,7 @@ use pantin_link::{Channel, Counts, Form, Link, PACKET, QUEUE, Refusal};
 const CHANNELS: usize = 144;
 /// What is shown of the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Told {
+pub(crate) struct LinkStatus {
     pub counts: Counts,
     pub damaged: u32,
     /// Channels that are exact, and all of them.
@@ -42,34 +42,38 @@ impl End<'_> {
         self.receiver.letter()
     }
 
-    fn told(&self) -> Told {
+    fn status(&self) -> LinkStatus {
         let channels = self.link.head().map_or(0, |head| head.channels);
         let exact = [self.link.exact() as u16, channels];
-        Told { counts: self.link.counts(), damaged: self.receiver.damaged(), exact, refusal: self.refusal }
+        LinkStatus { counts: self.link.counts(), damaged: self.receiver.damaged(), exact, refusal: self.refusal }
     }
 }
 
 /// Plays what comes over the line until the mode's end, on a stage that is set up.
 #[inline(never)]
-pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, stage: &mut S, scenery: Scenery<B>) -> After {
-    let Scenery { entry, mode, scene, frame, board, .. } = scenery;
+pub(crate) fn play<B: Board, S: Content<B::Layout> + ?Sized>(
+    player: &mut Player,
+    renderer: &mut S,
+    context: PlayContext<B>,
+) -> Outcome {
+    let PlayContext { entry, mode, view_state, frame, board, .. } = context;
     let (mut channels, mut pose) = ([Channel::default(); CHANNELS], [0; CHANNELS]);
     let Some(form) = Form::of(player.clip()).filter(|_| player.pose().len() <= CHANNELS) else {
         error!("the rig is too big for the line");
-        return After::Exit(Exit::BadClip);
+        return Outcome::Exit(Exit::BadClip);
     };
     pose.iter_mut().zip(player.pose()).for_each(|(value, own)| *value = *own);
     let link = Link::new(form, &mut channels, &mut pose);
-    let receiver = if scene.fec { Receiver::mending() } else { Receiver::new() };
+    let receiver = if view_state.fec { Receiver::mending() } else { Receiver::new() };
     let mut end = End { receiver, link, refusal: None };
     let (mut shown, mut frame_ns) = (0u32, player.clip().frame_time_ns());
     board.start_timer(frame_ns);
     loop {
-        stage.place(end.link.pose());
+        renderer.set_pose(end.link.pose());
         frame.clear();
-        stage.draw(frame, scene.look);
-        if scene.hud {
-            hud::draw_line(entry, &end.told(), frame);
+        renderer.draw(frame, view_state.style);
+        if view_state.hud {
+            hud::draw_line(entry, &end.status(), frame);
         }
         show(frame, board);
         shown = shown.wrapping_add(1);
@@ -77,7 +81,7 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
             board.send(&[SHOWN]);
             board.send(&end.link.frame().unwrap_or(0).to_le_bytes());
         }
-        if matches!(mode, Mode::Frames(count) if shown >= count) || !wait(&mut end, mode, player, stage, scene, board) {
+        if matches!(mode, Mode::Frames(count) if shown >= count) || !wait(&mut end, mode, player, renderer, view_state, board) {
             break;
         }
         let exact = end.link.exact();
@@ -92,16 +96,16 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
     }
     info!("{} pictures", shown);
     log(&end);
-    After::Exit(Exit::Done)
+    Outcome::Exit(Exit::Done)
 }
 
 /// Listens until it is time for the next frame; false if it is time to end.
-fn wait<B: Board, S: Show<B::Layout> + ?Sized>(
+fn wait<B: Board, S: Content<B::Layout> + ?Sized>(
     end: &mut End,
     mode: Mode,
     player: &mut Player,
-    stage: &mut S,
-    scene: &mut Scene,
+    renderer: &mut S,
+    view_state: &mut ViewState,
     board: &mut B,
 ) -> bool {
     let mut heard = false;
@@ -112,33 +116,33 @@ fn wait<B: Board, S: Show<B::Layout> + ?Sized>(
         match letter {
             Some(NEXT) if mode == Mode::Sync => return true,
             Some(QUIT) if mode == Mode::Sync => return false,
-            letter => see(letter.and_then(Key::of_letter), player, stage, scene),
+            letter => see(letter.and_then(Command::from_letter), player, renderer, view_state),
         }
         if mode != Mode::Sync && byte.is_none() && board.ticks() > 0 {
             // A letter that was typed has nothing behind it.
             let typed = if heard { None } else { end.receiver.letter_of_silence() };
-            see(board.button().or(typed.and_then(Key::of_letter)), player, stage, scene);
+            see(board.button().or(typed.and_then(Command::from_letter)), player, renderer, view_state);
             return true;
         }
     }
 }
 
 /// Takes a key of the view; time is the sender's.
-fn see<L: pantin_figure::surface::Layout, S: Show<L> + ?Sized>(
-    key: Option<Key>,
+fn see<L: pantin_figure::surface::Layout, S: Content<L> + ?Sized>(
+    key: Option<Command>,
     player: &mut Player,
-    stage: &mut S,
-    scene: &mut Scene,
+    renderer: &mut S,
+    view_state: &mut ViewState,
 ) {
     if let Some(key) = key
-        && scene.take(key) == Wish::Aim
+        && view_state.take(key) == Effect::Aim
     {
-        stage.aim(player, scene.view);
+        renderer.aim(player, view_state.view);
     }
 }
 
 fn log(end: &End) {
-    let Told { counts, damaged, exact, refusal } = end.told();
+    let LinkStatus { counts, damaged, exact, refusal } = end.status();
     info!(
         "{} packets, {} missing, {} damaged, {} foreign, {} crowded; {} states lost; {} of {} channels exact",
         counts.packets, counts.missing, damaged, counts.foreign, counts.crowded, counts.losses, exact[0], exact[1]

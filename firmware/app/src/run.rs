@@ -1,18 +1,18 @@
 //! The program: open a clip, then decode, place, draw and show frame by frame, and take what is asked for in between.
 
 use crate::board::{Board, Exit};
+use crate::commands::{Command, LETTERS};
+use crate::content::{self, Content};
 use crate::hud;
-use crate::keys::{Key, LETTERS};
 use crate::log::{error, info};
 use crate::options::{Mode, Options};
-use crate::scene::{Entry, Scene, Wish};
-use crate::show::{self, Show};
 use crate::update::Listener;
+use crate::view_state::{Effect, Entry, ViewState};
 use heapless::Deque;
 use pantin::{ChannelState, Clip, Player};
-use pantin_figure::rotation::Turning;
-use pantin_figure::surface::Frame;
-use pantin_figure::{Canvas, Limb, Stage};
+use pantin_figure::rotation::RotationBackend;
+use pantin_figure::surface::Framebuffer;
+use pantin_figure::{Canvas, FigureRenderer, JointInfo};
 
 /// In [`Mode::Sync`]: asks for the next picture. Any letter of [`LETTERS`] may come before it.
 pub const NEXT: u8 = b'\n';
@@ -22,10 +22,10 @@ pub const QUIT: u8 = b'q';
 pub const SHOWN: u8 = b'F';
 
 /// Wishes that wait to be granted.
-pub(crate) type Wishes = Deque<Wish, 8>;
+pub(crate) type Effects = Deque<Effect, 8>;
 
 /// Where to go when a clip is left.
-pub(crate) enum After {
+pub(crate) enum Outcome {
     Clip(i32),
     Exit(Exit),
     /// A clip came over the line, at this frame.
@@ -41,16 +41,16 @@ pub(crate) enum After {
 pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
     entries: &[Entry],
     options: Options,
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
-    let mut scene = Scene::new(&options);
+    let mut view_state = ViewState::new(&options);
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
-        let scenery = Scenery {
+        let context = PlayContext {
             entry,
             mode: options.mode,
-            scene: &mut scene,
+            view_state: &mut view_state,
             frame,
             board,
             listener: Listener::default(),
@@ -59,22 +59,22 @@ pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
             #[cfg(feature = "update")]
             trial: false,
         };
-        match perform::<B, CHANNELS, MOVING, JOINTS>(scenery) {
-            After::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
-            After::Exit(exit) => return exit,
+        match perform::<B, CHANNELS, MOVING, JOINTS>(context) {
+            Outcome::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
+            Outcome::Exit(exit) => return exit,
             #[cfg(feature = "update")]
-            After::Whole(_) | After::Ready => {}
+            Outcome::Whole(_) | Outcome::Ready => {}
         }
     }
     Exit::Done
 }
 
 /// What a clip is played with.
-pub(crate) struct Scenery<'a, B: Board> {
+pub(crate) struct PlayContext<'a, B: Board> {
     pub entry: &'a Entry<'a>,
     pub mode: Mode,
-    pub scene: &'a mut Scene,
-    pub frame: &'a mut Frame<B::Layout>,
+    pub view_state: &'a mut ViewState,
+    pub frame: &'a mut Framebuffer<B::Layout>,
     pub board: &'a mut B,
     /// Who listens for a clip that is to replace this one.
     pub listener: Listener<'a>,
@@ -86,12 +86,14 @@ pub(crate) struct Scenery<'a, B: Board> {
     pub trial: bool,
 }
 
-pub(crate) fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(scenery: Scenery<B>) -> After {
-    let clip = match Clip::new_checked(scenery.entry.bytes) {
+pub(crate) fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+    context: PlayContext<B>,
+) -> Outcome {
+    let clip = match Clip::new_checked(context.entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
             error!("the clip cannot be opened: {}", error);
-            return After::Exit(Exit::BadClip);
+            return Outcome::Exit(Exit::BadClip);
         }
     };
     let mut states = [ChannelState::default(); MOVING];
@@ -100,10 +102,10 @@ pub(crate) fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, cons
         Ok(player) => player,
         Err(error) => {
             error!("the clip is too big: {}", error);
-            return After::Exit(Exit::BadClip);
+            return Outcome::Exit(Exit::BadClip);
         }
     };
-    show::on_stage::<B, JOINTS>(&mut player, scenery)
+    content::build::<B, JOINTS>(&mut player, context)
 }
 
 /// Most joints of a rig, fingers and the like among them.
@@ -111,47 +113,51 @@ pub const RIG: usize = if cfg!(feature = "large") { 192 } else { 60 };
 
 /// In a function of its own: the workspace is given back before the first frame.
 #[inline(never)]
-pub(crate) fn set_up<R: Turning, const JOINTS: usize>(
-    stage: &mut Stage<JOINTS, R>,
+pub(crate) fn set_up<R: RotationBackend, const JOINTS: usize>(
+    renderer: &mut FigureRenderer<JOINTS, R>,
     player: &mut Player,
     canvas: Canvas,
 ) -> Result<(), pantin_figure::Error> {
-    stage.set_up(player, canvas, &mut [Limb::default(); RIG])
+    renderer.set_up(player, canvas, &mut [JointInfo::default(); RIG])
 }
 
 /// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
 #[inline(never)]
-pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, stage: &mut S, scenery: Scenery<B>) -> After {
+pub(crate) fn play<B: Board, S: Content<B::Layout> + ?Sized>(
+    player: &mut Player,
+    renderer: &mut S,
+    context: PlayContext<B>,
+) -> Outcome {
     #[cfg(feature = "update")]
     {
-        if scenery.trial {
-            return After::Ready;
+        if context.trial {
+            return Outcome::Ready;
         }
-        player.seek(scenery.start);
+        player.seek(context.start);
     }
     #[cfg(feature = "link")]
-    if scenery.scene.link {
-        return crate::link::play(player, stage, scenery);
+    if context.view_state.link {
+        return crate::link::play(player, renderer, context);
     }
-    let Scenery { entry, mode, scene, frame, board, mut listener, .. } = scenery;
+    let PlayContext { entry, mode, view_state, frame, board, mut listener, .. } = context;
     let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
-    let mut wishes = Wishes::new();
+    let mut effects = Effects::new();
     if mode != Mode::Sync {
-        board.start_timer(scene.tick_ns(player.clip().frame_time_ns()));
+        board.start_timer(view_state.tick_ns(player.clip().frame_time_ns()));
     }
     loop {
         decode(player, due, board);
-        place(player, stage, board);
-        draw(stage, scene, frame, board);
-        if scene.hud {
-            hud::draw(scene, entry, [player.frame(), player.clip().frames()], frame);
+        place(player, renderer, board);
+        draw(renderer, view_state, frame, board);
+        if view_state.hud {
+            hud::draw(view_state, entry, [player.frame(), player.clip().frames()], frame);
         }
         show(frame, board);
         shown = shown.wrapping_add(1);
         listener.picture();
         due = match mode {
-            Mode::Sync => match listen(player.frame(), scene, &mut wishes, &mut listener, board) {
-                true => scene.frames(1),
+            Mode::Sync => match listen(player.frame(), view_state, &mut effects, &mut listener, board) {
+                true => view_state.frames(1),
                 false => break,
             },
             Mode::Frames(count) if shown >= count => break,
@@ -159,41 +165,41 @@ pub(crate) fn play<B: Board, S: Show<B::Layout> + ?Sized>(player: &mut Player, s
                 // The clip keeps its time on a board that is too slow for every frame.
                 let ticks = board.wait_ticks();
                 late = late.wrapping_add(ticks - 1);
-                while let Some(key) = board.button().or_else(|| Key::of_letter(listener.poll(board)?)) {
+                while let Some(key) = board.button().or_else(|| Command::from_letter(listener.poll(board)?)) {
                     // More keys than fit between two pictures are a mistake of theirs.
-                    let _ = wishes.push_back(scene.take(key));
+                    let _ = effects.push_back(view_state.take(key));
                 }
-                scene.frames(if mode == Mode::Play { ticks } else { 1 })
+                view_state.frames(if mode == Mode::Play { ticks } else { 1 })
             }
         };
         #[cfg(feature = "update")]
         if listener.is_whole() {
-            return After::Whole(player.frame());
+            return Outcome::Whole(player.frame());
         }
-        while let Some(wish) = wishes.pop_front() {
-            match wish {
-                Wish::Nothing => {}
-                Wish::Aim => {
-                    stage.aim(player, scene.view);
+        while let Some(effect) = effects.pop_front() {
+            match effect {
+                Effect::Nothing => {}
+                Effect::Aim => {
+                    renderer.aim(player, view_state.view);
                 }
-                Wish::Pace if mode == Mode::Sync => {}
-                Wish::Pace => board.start_timer(scene.tick_ns(player.clip().frame_time_ns())),
-                Wish::Move(frames) => due = frames,
-                Wish::Clip(steps) => return After::Clip(steps),
-                Wish::Help => help(board),
+                Effect::Pace if mode == Mode::Sync => {}
+                Effect::Pace => board.start_timer(view_state.tick_ns(player.clip().frame_time_ns())),
+                Effect::Move(frames) => due = frames,
+                Effect::Clip(steps) => return Outcome::Clip(steps),
+                Effect::Help => help(board),
             }
         }
     }
     info!("{} pictures, {} ticks late", shown, late);
-    After::Exit(Exit::Done)
+    Outcome::Exit(Exit::Done)
 }
 
 /// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture, or a clip came whole.
 #[inline(never)]
 pub(crate) fn listen<B: Board>(
     frame: u32,
-    scene: &mut Scene,
-    wishes: &mut Wishes,
+    view_state: &mut ViewState,
+    effects: &mut Effects,
     listener: &mut Listener,
     board: &mut B,
 ) -> bool {
@@ -205,8 +211,8 @@ pub(crate) fn listen<B: Board>(
             Some(NEXT) => return true,
             Some(QUIT) => return false,
             Some(letter) => {
-                if let Some(key) = Key::of_letter(letter) {
-                    let _ = wishes.push_back(scene.take(key));
+                if let Some(key) = Command::from_letter(letter) {
+                    let _ = effects.push_back(view_state.take(key));
                 }
             }
             None => {}
@@ -239,22 +245,27 @@ fn decode<B: Board>(player: &mut Player, frames: i32, board: &mut B) {
 }
 
 #[inline(never)]
-fn place<B: Board, S: Show<B::Layout> + ?Sized>(player: &Player, stage: &mut S, board: &mut B) {
+fn place<B: Board, S: Content<B::Layout> + ?Sized>(player: &Player, renderer: &mut S, board: &mut B) {
     board.mark_start();
-    stage.place(player.pose());
+    renderer.set_pose(player.pose());
     board.mark_stop();
 }
 
 #[inline(never)]
-fn draw<B: Board, S: Show<B::Layout> + ?Sized>(stage: &mut S, scene: &Scene, frame: &mut Frame<B::Layout>, board: &mut B) {
+fn draw<B: Board, S: Content<B::Layout> + ?Sized>(
+    renderer: &mut S,
+    view_state: &ViewState,
+    frame: &mut Framebuffer<B::Layout>,
+    board: &mut B,
+) {
     board.mark_start();
     frame.clear();
-    stage.draw(frame, scene.look);
+    renderer.draw(frame, view_state.style);
     board.mark_stop();
 }
 
 #[inline(never)]
-pub(crate) fn show<B: Board>(frame: &mut Frame<B::Layout>, board: &mut B) {
+pub(crate) fn show<B: Board>(frame: &mut Framebuffer<B::Layout>, board: &mut B) {
     board.mark_start();
     board.show(frame);
     board.mark_stop();

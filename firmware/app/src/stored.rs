@@ -3,10 +3,10 @@
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::options::Options;
-use crate::run::{After, Scenery, perform};
-use crate::scene::{Entry, Scene};
+use crate::run::{Outcome, PlayContext, perform};
 use crate::update::Listener;
-use pantin_figure::surface::Frame;
+use crate::view_state::{Entry, ViewState};
+use pantin_figure::surface::Framebuffer;
 use pantin_store::{Slot, Store, Stored, Update};
 
 /// What [`run`](crate::run) does, with a store. A clip that came is played from its first frame; one that this board cannot play is refused,
@@ -15,32 +15,32 @@ pub fn run_stored<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize,
     store: &mut Store<S>,
     entries: &[Entry],
     options: Options,
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
-    let mut scene = Scene::new(&options);
+    let mut view_state = ViewState::new(&options);
     loop {
         let (stored, mut update) = Update::open(store);
-        let stage = Stage { options, scene: &mut scene, frame, board };
-        if let Some(exit) = until_sealed::<B, S, CHANNELS, MOVING, JOINTS>(stored, &mut update, entries, stage) {
+        let context = StoredContext { options, view_state: &mut view_state, frame, board };
+        if let Some(exit) = until_sealed::<B, S, CHANNELS, MOVING, JOINTS>(stored, &mut update, entries, context) {
             return exit;
         }
     }
 }
 
 /// What clips are played on.
-struct Stage<'a, B: Board> {
+struct StoredContext<'a, B: Board> {
     options: Options,
-    scene: &'a mut Scene,
-    frame: &'a mut Frame<B::Layout>,
+    view_state: &'a mut ViewState,
+    frame: &'a mut Framebuffer<B::Layout>,
     board: &'a mut B,
 }
 
-impl<B: Board> Stage<'_, B> {
+impl<B: Board> StoredContext<'_, B> {
     /// One clip on it.
-    fn scenery<'s>(&'s mut self, entry: &'s Entry<'s>, start: u32, listener: Listener<'s>) -> Scenery<'s, B> {
-        let Stage { options, scene, frame, board } = self;
-        Scenery { entry, mode: options.mode, scene, frame, board, start, listener, trial: false }
+    fn context<'s>(&'s mut self, entry: &'s Entry<'s>, start: u32, listener: Listener<'s>) -> PlayContext<'s, B> {
+        let StoredContext { options, view_state, frame, board } = self;
+        PlayContext { entry, mode: options.mode, view_state, frame, board, start, listener, trial: false }
     }
 }
 
@@ -53,20 +53,20 @@ fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, c
     stored: Option<Stored>,
     update: &mut Update<S>,
     entries: &[Entry],
-    mut stage: Stage<B>,
+    mut stored_context: StoredContext<B>,
 ) -> Option<Exit> {
     let mut own = stored.as_ref().map(entry);
     let (mut at, mut start) = (0, 0);
     while let Some(entry) = own.as_ref().into_iter().chain(entries).nth(at) {
-        let scenery = stage.scenery(entry, start, Listener { over: Some(update) });
-        match perform::<B, CHANNELS, MOVING, JOINTS>(scenery) {
-            After::Clip(steps) => {
+        let context = stored_context.context(entry, start, Listener { over: Some(update) });
+        match perform::<B, CHANNELS, MOVING, JOINTS>(context) {
+            Outcome::Clip(steps) => {
                 let count = (entries.len() + usize::from(own.is_some())) as i32;
                 (at, start) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
             }
-            After::Whole(frame) => {
-                let playable = try_out::<B, S, CHANNELS, MOVING, JOINTS>(update, &mut stage);
-                if update.finish(playable, |bytes| stage.board.send(bytes)) {
+            Outcome::Whole(frame) => {
+                let playable = try_out::<B, S, CHANNELS, MOVING, JOINTS>(update, &mut stored_context);
+                if update.finish(playable, |bytes| stored_context.board.send(bytes)) {
                     info!("a new clip");
                     return None;
                 }
@@ -74,9 +74,9 @@ fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, c
                 start = frame;
             }
             // Flashed with a clip that is too much for it, a board plays its own.
-            After::Exit(Exit::BadClip) if at == 0 && own.is_some() => own = None,
-            After::Exit(exit) => return Some(exit),
-            After::Ready => {}
+            Outcome::Exit(Exit::BadClip) if at == 0 && own.is_some() => own = None,
+            Outcome::Exit(exit) => return Some(exit),
+            Outcome::Ready => {}
         }
     }
     Some(Exit::Done)
@@ -86,10 +86,10 @@ fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, c
 #[inline(never)]
 fn try_out<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
     update: &Update<S>,
-    stage: &mut Stage<B>,
+    stored_context: &mut StoredContext<B>,
 ) -> bool {
     let Some(candidate) = update.candidate() else { return false };
     let entry = entry(&candidate);
-    let scenery = Scenery { trial: true, ..stage.scenery(&entry, 0, Listener::default()) };
-    matches!(perform::<B, CHANNELS, MOVING, JOINTS>(scenery), After::Ready)
+    let context = PlayContext { trial: true, ..stored_context.context(&entry, 0, Listener::default()) };
+    matches!(perform::<B, CHANNELS, MOVING, JOINTS>(context), Outcome::Ready)
 }

@@ -7,7 +7,7 @@ use pantin::{ChannelState, Clip, Player, TooSmall, crc};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Play {
     /// By one step from the frame before.
-    Step,
+    Progress,
     /// By a seek from whatever frame was sought before.
     Seek,
 }
@@ -36,10 +36,10 @@ pub fn play(
 ) -> Result<(), TooSmall> {
     let frames = clip.frames();
     let mut player = Player::new(clip, states, pose)?;
-    tell(Play::Step, crc_of(player.pose()));
+    tell(Play::Progress, crc_of(player.pose()));
     for _ in 1..frames {
         player.step();
-        tell(Play::Step, crc_of(player.pose()));
+        tell(Play::Progress, crc_of(player.pose()));
     }
     for frame in sought(frames) {
         player.seek(frame);

@@ -16,20 +16,20 @@ mod aperture;
 pub mod binding;
 mod bytes;
 pub mod curve;
-pub mod look;
 pub mod model;
 pub mod morph;
 mod outline;
 mod pen;
-mod seen;
+mod projection;
+pub mod renderer;
 pub mod shape;
 mod strokes;
 mod turn;
 
 pub use binding::Binding;
-pub use look::{Look, View};
 pub use model::{Error, Model, Target};
 pub use morph::{Morph, Weights};
+pub use renderer::{FaceRenderer, View};
 
 /// Pantin's own face, as [`Model::new_checked`] takes it. `pantin face model` writes it; docs/FACE.md lists its units.
 pub static MODEL: &[u8] = include_bytes!("../face.model");

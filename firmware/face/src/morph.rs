@@ -115,7 +115,7 @@ impl<const N: usize> Morph<N> {
         (self.head, self.pivot)
     }
 
-    /// Puts the vertices where `weights` have them. The head's own turn is left to [`crate::Look`].
+    /// Puts the vertices where `weights` have them. The head's own turn is left to [`crate::FaceRenderer`].
     pub fn place(&mut self, model: &Model, weights: &Weights) {
         self.place_open(model, weights);
         aperture::close(model, &mut self.places, weights);

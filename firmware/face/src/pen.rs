@@ -1,7 +1,7 @@
 //! Strokes of a face on a surface: many short lines, of which the beginning costs more than the pixels.
 
 use pantin_figure::draw::stroke;
-use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::lines::{Line, pixel};
 use pantin_figure::raster::{Pace, walk};
 use pantin_figure::surface::Surface;
@@ -41,7 +41,7 @@ impl<F: FnMut(Line)> Paint for Each<F> {
 }
 
 fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
-    Line { from, to, depth: 0, shade, tone: Tone::Middle, width: 1 }
+    Line { from, to, depth: 0, shade, body_part: BodyPart::Middle, width: 1 }
 }
 
 /// Sets the pixels that [`stroke`] would, and tells the surface of a whole stroke at once.
@@ -88,7 +88,7 @@ impl<'a, S: Surface> Pen<'a, S> {
 impl<S: Surface> Paint for Pen<'_, S> {
     #[inline(always)]
     fn begin(&mut self, shade: u8) {
-        (self.shade, self.ink, self.at) = (shade, S::Ink::of(Tone::Middle, shade), NOWHERE);
+        (self.shade, self.ink, self.at) = (shade, S::Ink::of(BodyPart::Middle, shade), NOWHERE);
     }
 
     #[inline(never)]
@@ -131,9 +131,9 @@ impl<S: Surface> Paint for Pen<'_, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pantin_figure::surface::{Frame, Gray4Rows};
+    use pantin_figure::surface::{Framebuffer, Gray4Rows};
 
-    type Small = Frame<Gray4Rows<32, 24, 96>>;
+    type Small = Framebuffer<Gray4Rows<32, 24, 96>>;
 
     #[test]
     fn a_pen_sets_what_strokes_do_and_marks_what_it_sets() {

@@ -4,7 +4,7 @@ use crate::curve::Curve;
 use crate::model::Model;
 use crate::outline::{Outline, each_triangle};
 use crate::pen::Paint;
-use crate::seen::UNSEEN;
+use crate::projection::UNSEEN;
 use pantin_figure::trig::WORKED_OUT;
 
 /// Brightness of the mesh.

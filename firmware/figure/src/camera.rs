@@ -1,7 +1,7 @@
 //! A perspective camera in integers: no division a point, no product wider than 32 bits.
 
+use crate::bounds::{Bounds, Orientation, cross};
 use crate::rotation::{Rotation, Vector};
-use crate::survey::{Bearings, Survey, cross};
 use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, sin_cos, table};
 
 /// Fraction bits of a pixel in projected places.
@@ -105,18 +105,18 @@ impl Camera {
         size: 1,
     };
 
-    /// A camera for what `survey` saw of a figure of `size`, with a size `scale` sixteenths of a pixel (at most 2^14) big and
+    /// A camera for what `bounds` saw of a figure of `size`, with a size `scale` sixteenths of a pixel (at most 2^14) big and
     /// the target in the top left corner: [`Camera::show`] moves it to its place.
-    pub fn new(survey: &Survey, bearings: Bearings, size: i32, view: View, scale: i32) -> Self {
-        let middle = survey.middle();
-        let climbs = survey.half_extent(bearings.axis) > size;
+    pub fn new(bounds: &Bounds, orientation: Orientation, size: i32, view: View, scale: i32) -> Self {
+        let middle = bounds.middle();
+        let climbs = bounds.half_extent(orientation.axis) > size;
         let fixed = core::array::from_fn(|axis| match view.track {
             Track::Fixed => Some(middle[axis]),
-            Track::Follow => (axis == bearings.axis && !climbs).then_some(middle[axis]),
+            Track::Follow => (axis == orientation.axis && !climbs).then_some(middle[axis]),
         });
         let size = match view.track {
             Track::Follow => size,
-            Track::Fixed => (0..3).fold(size, |size, axis| size.max(survey.half_extent(axis))),
+            Track::Fixed => (0..3).fold(size, |size, axis| size.max(bounds.half_extent(axis))),
         };
         // The factor is scale / size * 2^fine; in Q15, with the size cut to its highest bits, a shift is all there is to choose.
         let cut = (32 - size.leading_zeros()).saturating_sub(SIZE_BITS);
@@ -127,7 +127,7 @@ impl Camera {
         }
         let factor = (scale << room) / short;
         let fine = (room + cut) as i32 - FRACTION_BITS as i32;
-        let rows = axes(bearings, view).map(|row| row.map(|x| (x * factor + HALF) >> FRACTION_BITS));
+        let rows = axes(orientation, view).map(|row| row.map(|x| (x * factor + HALF) >> FRACTION_BITS));
         let shift = (fine - SPARE).max(0);
         let spare = fine - shift;
         // A unit of depth is 2^-15 of DISTANCE scales. A place loses all but 2^15 of its bits, so the factor has 15 too.
@@ -149,7 +149,7 @@ impl Camera {
     }
 
     /// Puts the target at a place of the display, in sixteenths of a pixel.
-    pub fn show(&mut self, x: i32, y: i32) {
+    pub fn set_center(&mut self, x: i32, y: i32) {
         self.centre = [x, y];
     }
 
@@ -195,18 +195,18 @@ impl Camera {
 }
 
 /// Right, down and away for a view.
-fn axes(bearings: Bearings, view: View) -> [Vector; 3] {
+fn axes(orientation: Orientation, view: View) -> [Vector; 3] {
     let (sin, cos) = sin_cos(of_degrees(view.orbit));
-    let left = cross(bearings.up, bearings.facing);
+    let left = cross(orientation.up, orientation.facing);
     // Towards the camera, in the plane; then raised.
-    let level: Vector = core::array::from_fn(|axis| (cos * bearings.facing[axis] + sin * left[axis] + HALF) >> FRACTION_BITS);
+    let level: Vector = core::array::from_fn(|axis| (cos * orientation.facing[axis] + sin * left[axis] + HALF) >> FRACTION_BITS);
     let (sin, cos) = sin_cos(of_degrees(view.tilt));
     let mix = |a: i32, b: i32| -> Vector {
         let one = |level: i32, up: i32| (a * level + b * up + HALF) >> FRACTION_BITS;
-        let up = bearings.up;
+        let up = orientation.up;
         [one(level[0], up[0]), one(level[1], up[1]), one(level[2], up[2])]
     };
-    [cross(bearings.up, level), mix(sin, -cos), mix(-cos, -sin)]
+    [cross(orientation.up, level), mix(sin, -cos), mix(-cos, -sin)]
 }
 
 /// Degrees in 2^-32 turns.

@@ -1,43 +1,43 @@
 //! Draws a frame's lines on any surface, and into any `embedded-graphics` target.
 
-use crate::ink::{Ink, Tone};
+use crate::ink::{BodyPart, Ink};
 use crate::lines::{Line, pixel};
 use crate::raster::{Dots, disc, dotted, line, smooth, thick};
-use crate::rotation::Turning;
-use crate::stage::Stage;
+use crate::renderer::FigureRenderer;
+use crate::rotation::RotationBackend;
 use crate::surface::{OnTarget, Surface};
 use embedded_graphics::draw_target::DrawTarget;
 
 /// How lines are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Look {
+pub struct DrawStyle {
     /// The grid below the figure.
     pub ground: bool,
     /// Edges between the pixels' greys.
     pub smooth: bool,
 }
 
-impl Default for Look {
+impl Default for DrawStyle {
     fn default() -> Self {
-        Look { ground: true, smooth: false }
+        DrawStyle { ground: true, smooth: false }
     }
 }
 
-impl<const N: usize, R: Turning> Stage<N, R> {
+impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     /// Draws the pose that was placed last on a clear surface: the ground, the bones from far to near, and the head.
     #[inline(never)]
-    pub fn draw_on<S: Surface>(&mut self, surface: &mut S, look: Look) {
-        if look.ground && self.ground().dotted {
+    pub fn draw_on<S: Surface>(&mut self, surface: &mut S, style: DrawStyle) {
+        if style.ground && self.ground().dotted {
             let mut dots = Dots::on(surface);
-            self.each_dot(|dot| dots.put([pixel(dot.place[0]), pixel(dot.place[1])], S::Ink::of(Tone::Ground, dot.shade)));
+            self.each_dot(|dot| dots.put([pixel(dot.place[0]), pixel(dot.place[1])], S::Ink::of(BodyPart::Ground, dot.shade)));
             dots.mark();
-        } else if look.ground {
-            self.each_ground_line(|line| stroke(&line, surface, look.smooth));
+        } else if style.ground {
+            self.each_ground_line(|line| stroke(&line, surface, style.smooth));
         }
         self.sort();
-        self.each_bone(|line| stroke(&line, surface, look.smooth));
+        self.each_bone(|line| stroke(&line, surface, style.smooth));
         if let Some(head) = self.head() {
-            let ink = S::Ink::of(Tone::Middle, head.shade);
+            let ink = S::Ink::of(BodyPart::Middle, head.shade);
             disc(surface, head.centre.map(pixel), pixel(head.radius.saturating_add(8)).max(1), ink, S::Ink::DARK);
         }
     }
@@ -49,17 +49,17 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         D::Color: Ink,
     {
         target.clear(D::Color::DARK)?;
-        self.place(pose);
+        self.set_pose(pose);
         let mut surface = OnTarget::new(target);
-        self.draw_on(&mut surface, Look::default());
+        self.draw_on(&mut surface, DrawStyle::default());
         surface.outcome()
     }
 }
 
 /// Draws a line in its width.
 pub fn stroke<S: Surface>(of: &Line, surface: &mut S, soft: bool) {
-    let ink = S::Ink::of(of.tone, of.shade);
-    let gap = S::Ink::gap(of.tone);
+    let ink = S::Ink::of(of.body_part, of.shade);
+    let gap = S::Ink::gap(of.body_part);
     let [from, to] = [of.from, of.to];
     if soft && gap == 1 {
         let [from, to] = [from, to].map(|end| end.map(i32::from));

@@ -4,7 +4,7 @@ use embedded_graphics::pixelcolor::{BinaryColor, Gray4, Gray8, PixelColor, Rgb56
 
 /// What a line is of: displays with colours tell it by hue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tone {
+pub enum BodyPart {
     /// The grid on which the figure stands.
     Ground,
     /// Trunk and head, and limbs of no side.
@@ -21,10 +21,10 @@ pub trait Ink: PixelColor {
     const DARK: Self;
 
     /// The colour of a tone in a brightness.
-    fn of(tone: Tone, shade: u8) -> Self;
+    fn of(body_part: BodyPart, shade: u8) -> Self;
 
     /// Pixels from one dot of a line to the next: more than 1 where the colour cannot set the ground apart from the figure.
-    fn gap(_tone: Tone) -> u32 {
+    fn gap(_tone: BodyPart) -> u32 {
         1
     }
 }
@@ -33,7 +33,7 @@ impl Ink for Gray4 {
     const DARK: Self = Gray4::new(0);
 
     #[inline]
-    fn of(_tone: Tone, shade: u8) -> Self {
+    fn of(_tone: BodyPart, shade: u8) -> Self {
         Gray4::new(shade >> 4)
     }
 }
@@ -42,7 +42,7 @@ impl Ink for Gray8 {
     const DARK: Self = Gray8::new(0);
 
     #[inline]
-    fn of(_tone: Tone, shade: u8) -> Self {
+    fn of(_tone: BodyPart, shade: u8) -> Self {
         Gray8::new(shade)
     }
 }
@@ -51,37 +51,37 @@ impl Ink for BinaryColor {
     const DARK: Self = BinaryColor::Off;
 
     #[inline]
-    fn of(_tone: Tone, shade: u8) -> Self {
+    fn of(_tone: BodyPart, shade: u8) -> Self {
         BinaryColor::from(shade > 0)
     }
 
     #[inline]
-    fn gap(tone: Tone) -> u32 {
-        if tone == Tone::Ground { 5 } else { 1 }
+    fn gap(body_part: BodyPart) -> u32 {
+        if body_part == BodyPart::Ground { 5 } else { 1 }
     }
 }
 
 /// Red, green and blue of a tone at full brightness.
-const fn hue(tone: Tone) -> [u32; 3] {
-    match tone {
-        Tone::Ground => [170, 255, 230],
-        Tone::Middle => [255, 236, 205],
-        Tone::Left => [255, 160, 60],
-        Tone::Right => [80, 190, 255],
+const fn hue(body_part: BodyPart) -> [u32; 3] {
+    match body_part {
+        BodyPart::Ground => [170, 255, 230],
+        BodyPart::Middle => [255, 236, 205],
+        BodyPart::Left => [255, 160, 60],
+        BodyPart::Right => [80, 190, 255],
     }
 }
 
 #[inline]
-fn tinted(tone: Tone, shade: u8) -> [u8; 3] {
-    hue(tone).map(|full| ((full * u32::from(shade)) >> 8) as u8)
+fn tinted(body_part: BodyPart, shade: u8) -> [u8; 3] {
+    hue(body_part).map(|full| ((full * u32::from(shade)) >> 8) as u8)
 }
 
 impl Ink for Rgb565 {
     const DARK: Self = Rgb565::new(0, 0, 0);
 
     #[inline]
-    fn of(tone: Tone, shade: u8) -> Self {
-        let [red, green, blue] = tinted(tone, shade);
+    fn of(body_part: BodyPart, shade: u8) -> Self {
+        let [red, green, blue] = tinted(body_part, shade);
         Rgb565::new(red >> 3, green >> 2, blue >> 3)
     }
 }
@@ -90,8 +90,8 @@ impl Ink for Rgb888 {
     const DARK: Self = Rgb888::new(0, 0, 0);
 
     #[inline]
-    fn of(tone: Tone, shade: u8) -> Self {
-        let [red, green, blue] = tinted(tone, shade);
+    fn of(body_part: BodyPart, shade: u8) -> Self {
+        let [red, green, blue] = tinted(body_part, shade);
         Rgb888::new(red, green, blue)
     }
 }

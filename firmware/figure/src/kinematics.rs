@@ -1,19 +1,19 @@
 //! Forward kinematics: from a pose to where every joint is.
 
-use crate::rotation::{Rotation, Turning, Vector, shift_right};
+use crate::rotation::{Rotation, RotationBackend, Vector, shift_right};
 use crate::skeleton::{Act, Bone, Drive, Part, SLOTS, Skeleton};
 use heapless::Vec;
 
 /// The joints of one frame, in figure units of the world or of a camera. Positions in the world are within 0.05 % of the figure's height of what real numbers give.
 #[derive(Clone, Debug)]
-pub struct Kinematics<const N: usize, R: Turning = Rotation> {
+pub struct Kinematics<const N: usize, R: RotationBackend = Rotation> {
     /// In the skeleton's order.
     positions: Vec<Vector, N>,
     /// Those that joints wait for.
     rotations: [R; SLOTS],
 }
 
-impl<const N: usize, R: Turning> Kinematics<N, R> {
+impl<const N: usize, R: RotationBackend> Kinematics<N, R> {
     /// Nothing placed yet.
     #[inline(always)]
     pub const fn new() -> Self {
@@ -21,7 +21,7 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
     }
 
     /// Places every joint of the skeleton in the world. Channels that the pose lacks are 0.
-    pub fn place(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
+    pub fn set_pose(&mut self, skeleton: &Skeleton<N>, pose: &[i32]) {
         self.place_in(skeleton, pose, &R::NONE, [0; 3], skeleton.bones.len());
     }
 
@@ -38,7 +38,7 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
             let position = match parent {
                 Some(parent) if !bone.moves => {
                     let [x, y, z] = bone.offset;
-                    let reach = turned.image([x.into(), y.into(), z.into()]);
+                    let reach = turned.rotate([x.into(), y.into(), z.into()]);
                     [parent[0].wrapping_add(reach[0]), parent[1].wrapping_add(reach[1]), parent[2].wrapping_add(reach[2])]
                 }
                 _ => {
@@ -91,7 +91,7 @@ impl<const N: usize, R: Turning> Kinematics<N, R> {
     }
 }
 
-impl<const N: usize, R: Turning> Default for Kinematics<N, R> {
+impl<const N: usize, R: RotationBackend> Default for Kinematics<N, R> {
     fn default() -> Self {
         Self::new()
     }
@@ -99,11 +99,11 @@ impl<const N: usize, R: Turning> Default for Kinematics<N, R> {
 
 /// The place of a joint that is itself moved, or that has no parent: its offset is from the origin of the world then.
 #[inline(never)]
-fn moved<R: Turning>(parent: Option<&Vector>, turned: &R, offset: Vector, origin: Vector) -> Vector {
+fn moved<R: RotationBackend>(parent: Option<&Vector>, turned: &R, offset: Vector, origin: Vector) -> Vector {
     match parent {
-        None => turned.image_any(core::array::from_fn(|axis| offset[axis].wrapping_sub(origin[axis]))),
+        None => turned.rotate_any(core::array::from_fn(|axis| offset[axis].wrapping_sub(origin[axis]))),
         Some(parent) => {
-            let reach = turned.image_any(offset);
+            let reach = turned.rotate_any(offset);
             core::array::from_fn(|axis| parent[axis].wrapping_add(reach[axis]))
         }
     }
@@ -128,7 +128,7 @@ fn offset<const N: usize>(skeleton: &Skeleton<N>, bone: &Bone, index: usize, dri
 
 /// Turns a rotation by everything that turns the joint.
 #[inline(always)]
-fn rotate<R: Turning>(rotation: &mut R, drives: &[Drive], pose: &[i32]) {
+fn rotate<R: RotationBackend>(rotation: &mut R, drives: &[Drive], pose: &[i32]) {
     let member = |drive: &Drive, index| drive.member(index).map_or(0, |channel| value(pose, channel));
     for drive in drives {
         match drive.act() {

@@ -1,34 +1,34 @@
 //! From a pose to a wireframe figure: fixed-point forward kinematics, a perspective camera, lines with depth, and their
 //! drawing into any `embedded-graphics` target. No heap, no float, no product wider than 32 bits a frame.
 //!
-//! [`Stage`] is the whole way; firmware, host tool and browser call the same code and get the same pixels.
+//! [`FigureRenderer`] is the whole way; firmware, host tool and browser call the same code and get the same pixels.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-mod body;
+pub mod bounds;
 pub mod camera;
 pub mod draw;
 pub mod ink;
+mod joint_info;
 pub mod kinematics;
 pub mod lines;
 mod names;
 pub mod raster;
+pub mod renderer;
 mod root;
 pub mod rotation;
 #[cfg(feature = "micromath")]
 pub mod rotation_float;
 pub mod skeleton;
-pub mod stage;
 pub mod surface;
-pub mod survey;
 pub mod trig;
 
-pub use body::Limb;
 pub use camera::{Canvas, Track, View};
-pub use draw::Look;
+pub use draw::DrawStyle;
 pub use ink::Ink;
+pub use joint_info::JointInfo;
+pub use renderer::FigureRenderer;
 pub use skeleton::{Detail, Skeleton};
-pub use stage::Stage;
 
 /// Most joints of a rig that a figure is made of, End Sites included, before fingers and the like are left out.
 pub const RIG_JOINTS: usize = 192;

@@ -1,7 +1,7 @@
 //! What a frame is made of: lines and dots of the ground, lines of the bones, the head.
 
 use crate::camera::{Camera, Canvas, MAGNIFICATION_BITS, PIXEL_BITS, Projected, magnification};
-use crate::ink::Tone;
+use crate::ink::BodyPart;
 use crate::rotation::Vector;
 use crate::skeleton::Bone;
 use heapless::Vec;
@@ -18,7 +18,7 @@ pub struct Line {
     /// Brightness: 255 is nearest.
     pub shade: u8,
     /// What it is of.
-    pub tone: Tone,
+    pub body_part: BodyPart,
     /// Pixels across.
     pub width: u8,
 }
@@ -43,7 +43,7 @@ pub struct Dot {
     pub shade: u8,
 }
 
-/// Everything that is drawn for a frame, gathered: for who draws it otherwise than [`Stage::draw_on`](crate::Stage::draw_on).
+/// Everything that is drawn for a frame, gathered: for who draws it otherwise than [`FigureRenderer::draw_on`](crate::Stage::draw_on).
 #[derive(Clone, Debug, Default)]
 pub struct Lines<const N: usize> {
     /// The ground as a grid of lines, on a large display.
@@ -118,7 +118,14 @@ impl Ground {
                 let to = camera.project(sum(start, across));
                 let depth = (from.depth + to.depth) >> 1;
                 let shade = (GROUND_SHADE - (depth >> 9)).clamp(24, 56) as u8;
-                show(Line { from: from.place(), to: to.place(), depth: narrow(depth), shade, tone: Tone::Ground, width: 1 });
+                show(Line {
+                    from: from.place(),
+                    to: to.place(),
+                    depth: narrow(depth),
+                    shade,
+                    body_part: BodyPart::Ground,
+                    width: 1,
+                });
                 start = sum(start, step);
             }
         }
@@ -146,18 +153,18 @@ impl Ground {
 impl Bone {
     /// The line from where the camera sees its parent to where it sees the joint.
     #[inline(always)]
-    pub(crate) fn line(&self, from: Seen, to: Seen, camera: &Camera) -> Line {
+    pub(crate) fn line(&self, from: Visible, to: Visible, camera: &Camera) -> Line {
         let depth = between(from, to);
         // Near limbs are thicker: half as thick again at a quarter of the camera's distance.
         let breadth = camera.breadth();
         let width = ((breadth - ((breadth * depth) >> 14)) >> PIXEL_BITS).clamp(1, 9) as u8;
-        Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), tone: self.tone, width }
+        Line { from: from.place, to: to.place, depth: depth as i16, shade: shade(depth), body_part: self.body_part, width }
     }
 }
 
 impl Head {
     /// Between the head's joint and the crown.
-    pub(crate) fn new(from: Seen, to: Seen, camera: &Camera, radius: i32) -> Head {
+    pub(crate) fn new(from: Visible, to: Visible, camera: &Camera, radius: i32) -> Head {
         let depth = between(from, to);
         let radius = (camera.length(radius) * magnification(to.depth.into())) >> MAGNIFICATION_BITS;
         let middle = |from: i16, to: i16| ((i32::from(from) + i32::from(to)) >> 1) as i16;
@@ -168,23 +175,23 @@ impl Head {
 
 /// Depth of the middle.
 #[inline(always)]
-pub(crate) fn between(from: Seen, to: Seen) -> i32 {
+pub(crate) fn between(from: Visible, to: Visible) -> i32 {
     (i32::from(from.depth) + i32::from(to.depth)) >> 1
 }
 
 /// Where the camera sees a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Seen {
+pub struct Visible {
     /// Sixteenths of a pixel from the left and the top edge.
     pub place: [i16; 2],
     /// See [`Projected::depth`].
     pub depth: i16,
 }
 
-impl From<Projected> for Seen {
+impl From<Projected> for Visible {
     #[inline(always)]
-    fn from(projected: Projected) -> Seen {
-        Seen { place: projected.place(), depth: narrow(projected.depth) }
+    fn from(projected: Projected) -> Visible {
+        Visible { place: projected.place(), depth: narrow(projected.depth) }
     }
 }
 

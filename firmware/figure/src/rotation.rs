@@ -15,7 +15,7 @@ pub(crate) fn vector(of: impl Fn(usize) -> i32) -> Vector {
 }
 
 /// What forward kinematics asks of a rotation, however it is held.
-pub trait Turning: Copy {
+pub trait RotationBackend: Copy {
     /// No rotation.
     const NONE: Self;
 
@@ -35,13 +35,13 @@ pub trait Turning: Copy {
     fn turn_quaternion(&mut self, q: [i32; 4]);
 
     /// The image of a vector whose components lie within -2^14 .. 2^14.
-    fn image(&self, v: Vector) -> Vector;
+    fn rotate(&self, v: Vector) -> Vector;
 
     /// The image of a vector of any length: cut off at 2^29.
-    fn image_any(&self, v: Vector) -> Vector;
+    fn rotate_any(&self, v: Vector) -> Vector;
 }
 
-impl Turning for Rotation {
+impl RotationBackend for Rotation {
     const NONE: Self = Rotation::IDENTITY;
 
     #[inline(always)]
@@ -69,11 +69,11 @@ impl Turning for Rotation {
     }
 
     #[inline(always)]
-    fn image(&self, v: Vector) -> Vector {
+    fn rotate(&self, v: Vector) -> Vector {
         self.apply(v)
     }
 
-    fn image_any(&self, v: Vector) -> Vector {
+    fn rotate_any(&self, v: Vector) -> Vector {
         self.apply_any(v)
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Additions, multiplications and conversions alone, in the order in which they are written: a host computes the same bits.
 
-use crate::rotation::{Rotation, Turning, Vector};
+use crate::rotation::{Rotation, RotationBackend, Vector};
 use crate::trig::ONE;
 use core::f32::consts::TAU;
 use micromath::F32Ext;
@@ -45,7 +45,7 @@ fn inverse_root(x: f32) -> f32 {
     root
 }
 
-impl Turning for FloatRotation {
+impl RotationBackend for FloatRotation {
     const NONE: Self = FloatRotation([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
 
     #[inline(always)]
@@ -97,12 +97,12 @@ impl Turning for FloatRotation {
     }
 
     #[inline(always)]
-    fn image(&self, v: Vector) -> Vector {
+    fn rotate(&self, v: Vector) -> Vector {
         self.apply(v.map(|x| x as f32)).map(|x| x as i32)
     }
 
-    fn image_any(&self, v: Vector) -> Vector {
-        self.image(v.map(|x| x.clamp(-(1 << 29), 1 << 29)))
+    fn rotate_any(&self, v: Vector) -> Vector {
+        self.rotate(v.map(|x| x.clamp(-(1 << 29), 1 << 29)))
     }
 }
 
@@ -126,11 +126,11 @@ mod tests {
         for _ in 0..100_000 {
             let values = [next(), next(), next(), next()];
             let turns: [(&dyn Fn(&mut FloatRotation), &dyn Fn(&mut Rotation)); 3] = [
-                (&|r| r.turn(1, values[0]), &|r| Turning::turn(r, 1, values[0])),
+                (&|r| r.turn(1, values[0]), &|r| RotationBackend::turn(r, 1, values[0])),
                 (&|r| r.turn_exponential([values[0], values[1], values[2]]), &|r| {
-                    Turning::turn_exponential(r, [values[0], values[1], values[2]])
+                    RotationBackend::turn_exponential(r, [values[0], values[1], values[2]])
                 }),
-                (&|r| r.turn_quaternion(values), &|r| Turning::turn_quaternion(r, values)),
+                (&|r| r.turn_quaternion(values), &|r| RotationBackend::turn_quaternion(r, values)),
             ];
             for ((float_turn, fixed_turn), most) in turns.into_iter().zip(&mut most) {
                 let (mut float, mut fixed) = (FloatRotation::NONE, Rotation::NONE);

@@ -1,7 +1,7 @@
 //! The figure's joints, set up once from the rig in the form that forward kinematics reads frame by frame.
 
-use crate::body::{Limb, Limbs, flag, length};
-use crate::ink::Tone;
+use crate::ink::BodyPart;
+use crate::joint_info::{JointInfo, JointTable, flag, length};
 use crate::names::{contains, is_left_of};
 use crate::rotation::{Vector, shift_right};
 use crate::{Error, RIG_JOINTS};
@@ -103,7 +103,7 @@ pub struct Bone {
     /// What it is for the picture.
     pub part: Part,
     /// Which side's.
-    pub tone: Tone,
+    pub body_part: BodyPart,
     /// Number of entries of [`Skeleton::drives`] that are this joint's; they follow those of the joint before.
     pub drives: u8,
     /// Where its rotation is kept while joints that hang on it wait; [`NOWHERE`] if none does.
@@ -193,7 +193,7 @@ impl<const N: usize> Skeleton<N> {
         is_exponential: impl Fn(usize) -> bool,
     ) -> Result<Self, Error> {
         let mut skeleton = Skeleton::empty();
-        let mut room = [Limb::default(); RIG_JOINTS];
+        let mut room = [JointInfo::default(); RIG_JOINTS];
         skeleton.set_up(rig, detail, (pose, position_exponent), is_exponential, &mut room)?;
         Ok(skeleton)
     }
@@ -206,51 +206,51 @@ impl<const N: usize> Skeleton<N> {
         detail: Detail,
         (pose, position_exponent): (&[i32], i8),
         is_exponential: impl Fn(usize) -> bool,
-        room: &mut [Limb],
+        room: &mut [JointInfo],
     ) -> Result<(), Error> {
-        let mut limbs = Limbs::new(rig, pose, position_exponent, room)?;
+        let mut table = JointTable::new(rig, pose, position_exponent, room)?;
         match detail {
-            Detail::Body => limbs.prune(),
-            Detail::Full => limbs.settle(0),
+            Detail::Body => table.prune(),
+            Detail::Full => table.settle(0),
         }
-        self.clear(&limbs, limbs.exponent - i32::from(position_exponent));
+        self.clear(&table, table.exponent - i32::from(position_exponent));
         let mut before = None;
-        while let Some(index) = limbs.after(before) {
-            self.add(rig, detail, &mut limbs, index, is_exponential(index))?;
+        while let Some(index) = table.after(before) {
+            self.add(rig, detail, &mut table, index, is_exponential(index))?;
             before = Some(index);
         }
-        self.hips = limbs.limbs.get(self.hips).map_or(0, |hips| usize::from(hips.link));
-        self.find_sides(rig, &limbs);
+        self.hips = table.table.get(self.hips).map_or(0, |hips| usize::from(hips.link));
+        self.find_sides(rig, &table);
         self.keep_rotations();
         Ok(())
     }
 
-    fn clear(&mut self, limbs: &Limbs, position_shift: i32) {
+    fn clear(&mut self, table: &JointTable, position_shift: i32) {
         self.bones.clear();
         self.drives.clear();
         self.driven = 0;
         self.position_shift = position_shift;
-        self.exponent = limbs.exponent;
-        self.size = limbs.size;
-        self.hips = limbs.hips;
+        self.exponent = table.exponent;
+        self.size = table.size;
+        self.hips = table.hips;
         self.head_radius = 0;
     }
 
     /// Adds a joint of the rig.
-    fn add(&mut self, rig: &Rig, detail: Detail, limbs: &mut Limbs, index: usize, exponential: bool) -> Result<(), Error> {
-        let (Some(joint), Some(&limb)) = (rig.joint(index), limbs.limbs.get(index)) else { return Ok(()) };
-        let (placement, head) = (limb.is(flag::PLACEMENT), limb.is(flag::HEAD));
-        let parent = limbs.limbs.get(usize::from(limb.parent)).map(|parent| parent.link);
-        let drives = self.drive(&joint, limb.is(flag::BEARS) || head, exponential)?;
+    fn add(&mut self, rig: &Rig, detail: Detail, table: &mut JointTable, index: usize, exponential: bool) -> Result<(), Error> {
+        let (Some(joint), Some(&info)) = (rig.joint(index), table.table.get(index)) else { return Ok(()) };
+        let (placement, head) = (info.is(flag::PLACEMENT), info.is(flag::HEAD));
+        let parent = table.table.get(usize::from(info.parent)).map(|parent| parent.link);
+        let drives = self.drive(&joint, info.is(flag::BEARS) || head, exponential)?;
         if placement && let Some(place) = self.places.get_mut(index) {
-            *place = joint.offset.map(|raw| shift_right(raw, limbs.exponent - i32::from(rig.length_exponent())));
+            *place = joint.offset.map(|raw| shift_right(raw, table.exponent - i32::from(rig.length_exponent())));
         }
         let bone = Bone {
-            offset: limb.bone,
+            offset: info.bone,
             parent,
             joint: index as u8,
-            part: if placement || limb.length == 0 { Part::Hidden } else { Part::Bone },
-            tone: Tone::Middle,
+            part: if placement || info.length == 0 { Part::Hidden } else { Part::Bone },
+            body_part: BodyPart::Middle,
             drives,
             slot: NOWHERE,
             parent_slot: NOWHERE,
@@ -258,12 +258,12 @@ impl<const N: usize> Skeleton<N> {
             moves: { joint.kinds }.any(|kind| kind.is_position()),
         };
         let at = self.push(bone)?;
-        if let Some(limb) = limbs.limbs.get_mut(index) {
-            limb.link = at;
+        if let Some(info) = table.table.get_mut(index) {
+            info.link = at;
         }
         if head && detail == Detail::Body {
-            let offset = crown(limbs, index, &limb);
-            self.head_radius = (length(offset.map(i32::from)) / 2).max(limbs.size / 22).min(limbs.size / 14);
+            let offset = crown(table, index, &info);
+            self.head_radius = (length(offset.map(i32::from)) / 2).max(table.size / 22).min(table.size / 14);
             self.push(Bone { offset, parent: Some(at), part: Part::Crown, drives: 0, foot: false, moves: false, ..bone })?;
         }
         Ok(())
@@ -333,18 +333,21 @@ impl<const N: usize> Skeleton<N> {
 
     /// Which bones are of which side: by joints whose names are counterparts, and all that hangs on them. The first pair whose
     /// bones differ tells where the figure faces.
-    fn find_sides(&mut self, rig: &Rig, limbs: &Limbs) {
+    fn find_sides(&mut self, rig: &Rig, table: &JointTable) {
         let mut best = usize::MAX;
         self.sides = None;
         for at in 0..self.bones.len() {
             let Some(&bone) = self.bones.get(at) else { return };
-            let above = bone.parent.and_then(|parent| self.bones.get(usize::from(parent))).map_or(Tone::Middle, |bone| bone.tone);
-            let mut tone = above;
+            let above = bone
+                .parent
+                .and_then(|parent| self.bones.get(usize::from(parent)))
+                .map_or(BodyPart::Middle, |bone| bone.body_part);
+            let mut body_part = above;
             let joint = usize::from(bone.joint);
-            if let Some((left, other)) = counterpart(rig, limbs, joint)
-                && let (Some(own), Some(theirs)) = (limbs.limbs.get(joint), limbs.limbs.get(other))
+            if let Some((left, other)) = counterpart(rig, table, joint)
+                && let (Some(own), Some(theirs)) = (table.table.get(joint), table.table.get(other))
             {
-                tone = if left { Tone::Left } else { Tone::Right };
+                body_part = if left { BodyPart::Left } else { BodyPart::Right };
                 // Indices are below 2^8.
                 let pair = joint.min(other) << 8 | joint.max(other);
                 if own.bone != theirs.bone && pair < best {
@@ -353,7 +356,7 @@ impl<const N: usize> Skeleton<N> {
                 }
             }
             if let Some(bone) = self.bones.get_mut(at) {
-                bone.tone = tone;
+                bone.body_part = body_part;
             }
         }
     }
@@ -386,10 +389,10 @@ impl<const N: usize> Skeleton<N> {
 }
 
 /// The kept joint whose name is the counterpart of a joint's, and whether the joint is the left one of them.
-fn counterpart(rig: &Rig, limbs: &Limbs, index: usize) -> Option<(bool, usize)> {
+fn counterpart(rig: &Rig, table: &JointTable, index: usize) -> Option<(bool, usize)> {
     let own = rig.joint(index)?;
     let mut others =
-        rig.joints().zip(limbs.limbs.iter()).enumerate().filter(|(other, (_, limb))| *other != index && limb.is(flag::KEPT));
+        rig.joints().zip(table.table.iter()).enumerate().filter(|(other, (_, info))| *other != index && info.is(flag::KEPT));
     others.find_map(|(other, (joint, _))| Some((is_left_of(own.name_bytes(), joint.name_bytes())?, other)))
 }
 
@@ -401,10 +404,11 @@ fn angles(joint: &Joint) -> Option<Drive> {
 
 /// The crown in the head's own frame: its End Site, or, if that is not worth the name, as much again in the direction of the
 /// bone that leads to the head, a tenth of the figure.
-fn crown(limbs: &Limbs, index: usize, head: &Limb) -> [i16; 3] {
-    let tenth = limbs.size / 10;
-    let worth = |limb: &&Limb| limb.is(flag::END_SITE) && usize::from(limb.parent) == index && i32::from(limb.length) > tenth / 3;
-    match limbs.limbs.iter().find(worth) {
+fn crown(table: &JointTable, index: usize, head: &JointInfo) -> [i16; 3] {
+    let tenth = table.size / 10;
+    let worth =
+        |info: &&JointInfo| info.is(flag::END_SITE) && usize::from(info.parent) == index && i32::from(info.length) > tenth / 3;
+    match table.table.iter().find(worth) {
         Some(end) => end.bone,
         None => head.bone.map(|x| (i32::from(x) * 64 / (i32::from(head.length) / 64).max(1) * (tenth / 64) / 64) as i16),
     }

@@ -3,7 +3,7 @@
 use crate::symbols::{Coder, Reader};
 use crate::tables;
 use pantin::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
-use pantin::{length, segment, step_size};
+use pantin::{segment, segment_frames, step_size};
 
 /// A segment from a frame on, and perhaps the state that it starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,12 +55,12 @@ impl Message {
 
     /// Reads or writes one.
     pub(crate) fn code<C: Coder>(&self, coder: &mut C) -> Message {
-        let cut = self.run != length(self.mode);
+        let cut = self.run != segment_frames(self.mode);
         let flags = (u32::from(self.refresh.is_some()) * REFRESH) | (u32::from(cut) * CUT);
         let flags = coder.symbol(&tables::FLAGS, flags);
         let mode = coder.symbol(&tables::MODE, u32::from(self.mode)) as u8;
         let mut message = Message { mode: mode.min(START_MODE - 1), ..Message::default() };
-        message.run = length(message.mode);
+        message.run = segment_frames(message.mode);
         if flags & CUT != 0 {
             message.run = coder.bits(RUN_BITS, u32::from(self.run)).max(1) as u8;
         }

@@ -18,7 +18,7 @@ pub struct Segment {
 impl Segment {
     /// Its length in frames.
     pub fn length(&self) -> usize {
-        usize::from(pantin::length(self.mode))
+        usize::from(pantin::segment_frames(self.mode))
     }
 
     /// Its type.

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use pantin::Clip;
-use pantin_face::{Binding, Look, MODEL, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, View, Weights};
 use pantin_figure::Canvas;
 use pantin_figure::lines::Line;
 
@@ -17,7 +17,7 @@ pub struct Cast {
     binding: Binding,
     weights: Weights,
     morph: Morph<VERTICES>,
-    looks: Vec<Look<VERTICES>>,
+    looks: Vec<FaceRenderer<VERTICES>>,
 }
 
 impl Cast {
@@ -28,7 +28,7 @@ impl Cast {
         }
         let model = Model::new_checked(MODEL)?;
         let view = |view: &pantin_figure::View| View { orbit: view.orbit, tilt: view.tilt };
-        let looks = views.iter().map(|seen| Look::new(&model, canvas, view(seen))).collect();
+        let looks = views.iter().map(|seen| FaceRenderer::new(&model, canvas, view(seen))).collect();
         let (binding, weights, morph) = (Binding::of(&clip.rig(), &model), Weights::new(), Morph::new(&model)?);
         Ok(Some(Cast { model, binding, weights, morph, looks }))
     }
@@ -37,10 +37,10 @@ impl Cast {
     pub fn lines(&mut self, pose: &[i32], view: usize) -> Vec<Line> {
         self.binding.weigh(pose, &mut self.weights);
         self.morph.place(&self.model, &self.weights);
-        let look = &mut self.looks[view];
-        look.project(&self.model, &self.morph);
+        let renderer = &mut self.looks[view];
+        renderer.project(&self.model, &self.morph);
         let mut lines = Vec::new();
-        look.lines(&self.model, |line| lines.push(line));
+        renderer.lines(&self.model, |line| lines.push(line));
         lines
     }
 }

@@ -1,7 +1,7 @@
 //! Pictures of a face, by the device's own code.
 
 use crate::render::shades::Shades;
-use pantin_face::{Look, Model, Morph, View, Weights};
+use pantin_face::{FaceRenderer, Model, Morph, View, Weights};
 use pantin_figure::Canvas;
 
 /// Room for models from outside too.
@@ -10,11 +10,11 @@ pub const ROOM: usize = 1 << 15;
 /// One picture of a face: rows of greys.
 pub fn picture(model: &Model, weights: &Weights, canvas: Canvas, view: View) -> Vec<u8> {
     let mut morph = Box::new(Morph::<ROOM>::new(model).expect("a model has at most ROOM vertices"));
-    let mut look = Box::new(Look::<ROOM>::new(model, canvas, view));
+    let mut renderer = Box::new(FaceRenderer::<ROOM>::new(model, canvas, view));
     morph.place(model, weights);
-    look.project(model, &morph);
+    renderer.project(model, &morph);
     let mut lines = Vec::new();
-    look.lines(model, |line| lines.push(line));
+    renderer.lines(model, |line| lines.push(line));
     let (width, height) = (usize::from(canvas.width), usize::from(canvas.height));
     let mut shades = Shades::new(width, height);
     shades.draw_lines(&lines, false);

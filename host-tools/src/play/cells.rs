@@ -2,7 +2,7 @@
 
 use crate::render::palette::{Palette, Rgb};
 use crate::render::shades::{Mark, Shades};
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 
 /// How pixels become letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -94,7 +94,7 @@ fn half(shades: &Shades, column: usize, row: usize, palette: &Palette, coloured:
         [true, true] if !coloured => '█',
         [_, true] => '▀',
     };
-    let [ink, paper] = marks.map(|mark| palette.pixel(mark.tone, mark.shade));
+    let [ink, paper] = marks.map(|mark| palette.pixel(mark.body_part, mark.shade));
     match coloured && letter != ' ' {
         true => Cell { letter, ink, paper },
         false => Cell { letter, ink: palette.letters(), paper: palette.paper() },
@@ -108,13 +108,13 @@ const NO_DOTS: u32 = 0x2800;
 
 fn braille(shades: &Shades, column: usize, row: usize, palette: &Palette) -> Cell {
     let dots = || (0..2).flat_map(|x| (0..4).map(move |y| (BRAILLE[x][y], shades.at(2 * column + x, 4 * row + y))));
-    let brightness = |mark: &Mark| (mark.shade > 0 && mark.tone != Tone::Ground, mark.shade);
+    let brightness = |mark: &Mark| (mark.shade > 0 && mark.body_part != BodyPart::Ground, mark.shade);
     let brightest = dots().map(|(_, mark)| mark).max_by_key(brightness).unwrap_or(shades.at(usize::MAX, 0));
     // Where the figure is, it hides the ground's dots: they would have its colour.
-    let shows = |mark: Mark| mark.shade > 0 && (mark.tone == Tone::Ground) <= (brightest.tone == Tone::Ground);
+    let shows = |mark: Mark| mark.shade > 0 && (mark.body_part == BodyPart::Ground) <= (brightest.body_part == BodyPart::Ground);
     let bits: u32 = dots().filter(|&(_, mark)| shows(mark)).map(|(bit, _)| bit).sum();
     let letter = if bits == 0 { ' ' } else { char::from_u32(NO_DOTS + bits).unwrap_or(' ') };
-    let ink = if bits == 0 { palette.letters() } else { palette.pixel(brightest.tone, brightest.shade) };
+    let ink = if bits == 0 { palette.letters() } else { palette.pixel(brightest.body_part, brightest.shade) };
     Cell { letter, ink, paper: palette.paper() }
 }
 
@@ -125,12 +125,12 @@ mod tests {
     use embedded_graphics::draw_target::DrawTarget;
     use embedded_graphics::geometry::Point;
 
-    const FIGURE: Tone = Tone::Left;
-    const GROUND: Tone = Tone::Ground;
+    const FIGURE: BodyPart = BodyPart::Left;
+    const GROUND: BodyPart = BodyPart::Ground;
 
-    fn shades(width: usize, height: usize, lit: &[(i32, i32, Tone, u8)]) -> Shades {
+    fn shades(width: usize, height: usize, lit: &[(i32, i32, BodyPart, u8)]) -> Shades {
         let mut shades = Shades::new(width, height);
-        let pixels = lit.iter().map(|&(x, y, tone, shade)| Pixel(Point::new(x, y), Mark { tone, shade }));
+        let pixels = lit.iter().map(|&(x, y, body_part, shade)| Pixel(Point::new(x, y), Mark { body_part, shade }));
         let Ok(()) = shades.draw_iter(pixels);
         shades
     }

@@ -8,26 +8,26 @@ use crate::render::figure::MOST_PIXELS;
 use crate::render::shades::Shades;
 use anyhow::{Context, Result};
 use pantin::Player;
-use pantin_figure::{Canvas, RIG_JOINTS, Stage, View};
+use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
 
 /// A clip's figure, its camera set up anew when the terminal or the view changes.
 pub struct Figure<'a, 'm> {
     playback: Playback<'a, 'm>,
     /// Looks through the clip for the camera, so that the playback keeps its place.
     scout: Player<'a, 'm>,
-    stage: Option<(Canvas, View, Stage<RIG_JOINTS>)>,
+    renderer: Option<(Canvas, View, FigureRenderer<RIG_JOINTS>)>,
 }
 
 impl<'a, 'm> Figure<'a, 'm> {
     /// Both at the clip's begin.
     pub fn new(playback: Playback<'a, 'm>, scout: Player<'a, 'm>) -> Figure<'a, 'm> {
-        Figure { playback, scout, stage: None }
+        Figure { playback, scout, renderer: None }
     }
 
     fn set_up(&mut self, canvas: Canvas, view: View) -> Result<()> {
-        if self.stage.as_ref().is_none_or(|(before, seen, _)| (*before, *seen) != (canvas, view)) {
-            let stage = Stage::of_clip(&mut self.scout, canvas, view).context("this figure cannot be drawn")?;
-            self.stage = Some((canvas, view, stage));
+        if self.renderer.as_ref().is_none_or(|(before, seen, _)| (*before, *seen) != (canvas, view)) {
+            let renderer = FigureRenderer::of_clip(&mut self.scout, canvas, view).context("this figure cannot be drawn")?;
+            self.renderer = Some((canvas, view, renderer));
         }
         Ok(())
     }
@@ -47,8 +47,8 @@ impl Show for Figure<'_, '_> {
         self.set_up(canvas, settings.view)?;
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
-        if let Some((_, _, stage)) = &mut self.stage {
-            shades.draw(stage, pose, settings.ground, settings.in_bits());
+        if let Some((_, _, renderer)) = &mut self.renderer {
+            shades.draw(renderer, pose, settings.ground, settings.in_bits());
         }
         grid.show(&shades, rows, dots, &settings.palette, settings.coloured());
         Ok(())

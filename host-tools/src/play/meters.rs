@@ -6,7 +6,7 @@ use super::settings::Settings;
 use crate::motion::Motion;
 use crate::render::palette::{FARTHEST, NEAREST};
 use anyhow::Result;
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 
 /// Letters of a channel's name and of its value.
 const NAME: usize = 22;
@@ -57,7 +57,7 @@ impl Show for Meters {
             let part = (value - meter.least) / (meter.most.max(0.0) - meter.least);
             let name: String = meter.name.chars().take(NAME).collect();
             grid.write_text(0, row, &format!(" {name:<NAME$}{value:>VALUE$.3} "), letters, paper);
-            let ink = palette.pixel(Tone::Middle, FARTHEST + (part.clamp(0.0, 1.0) * f64::from(NEAREST - FARTHEST)) as u8);
+            let ink = palette.pixel(BodyPart::Middle, FARTHEST + (part.clamp(0.0, 1.0) * f64::from(NEAREST - FARTHEST)) as u8);
             grid.write_text(NAME + VALUE + 2, row, &bar(part, room), ink, paper);
         }
         Ok(())

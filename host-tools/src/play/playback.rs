@@ -1,7 +1,7 @@
 //! A player with the memory that it needs to go back.
 
 use anyhow::Result;
-use pantin::{ChannelState, Clip, Mark, Memory, Player, Undo};
+use pantin::{ChannelState, Clip, Player, SeekCache, SnapshotPos, Undo};
 
 /// Frames of lively motion that steps back reach without playing anew, and snapshots of the clip.
 const FRAMES_BACK: usize = 8;
@@ -12,7 +12,7 @@ pub struct Room {
     states: Vec<ChannelState>,
     pose: Vec<i32>,
     undo: Vec<Undo>,
-    marks: Vec<Mark>,
+    marks: Vec<SnapshotPos>,
     kept_states: Vec<ChannelState>,
     kept_values: Vec<i32>,
 }
@@ -25,7 +25,7 @@ impl Room {
             states: vec![ChannelState::default(); moving],
             pose: vec![0; clip.rig().channels()],
             undo: vec![Undo::default(); FRAMES_BACK * moving],
-            marks: vec![Mark::default(); SNAPSHOTS],
+            marks: vec![SnapshotPos::default(); SNAPSHOTS],
             kept_states: vec![ChannelState::default(); SNAPSHOTS * moving],
             kept_values: vec![0; SNAPSHOTS * moving],
         }
@@ -35,7 +35,7 @@ impl Room {
 /// Goes to any frame, cheaply to those nearby.
 pub struct Playback<'a, 'm> {
     player: Player<'a, 'm>,
-    memory: Memory<'m>,
+    memory: SeekCache<'m>,
 }
 
 impl<'a, 'm> Playback<'a, 'm> {
@@ -43,7 +43,7 @@ impl<'a, 'm> Playback<'a, 'm> {
     pub fn new(clip: Clip<'a>, room: &'m mut Room) -> Result<Playback<'a, 'm>> {
         let player = Player::new(clip, &mut room.states, &mut room.pose)?;
         let (undo, marks) = (&mut room.undo, &mut room.marks);
-        let memory = Memory::new(&player, undo, marks, &mut room.kept_states, &mut room.kept_values);
+        let memory = SeekCache::new(&player, undo, marks, &mut room.kept_states, &mut room.kept_values);
         Ok(Playback { player, memory })
     }
 

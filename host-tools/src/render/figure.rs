@@ -8,7 +8,7 @@ use super::smooth;
 use crate::face::cast::Cast;
 use anyhow::{Context, Result};
 use pantin::{ChannelState, Clip, Player};
-use pantin_figure::{Canvas, RIG_JOINTS, Stage, View};
+use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
 
 /// Most columns and rows of a picture made of a display's pixels: the figure's places have 16 bits, four of them below the pixel.
 pub const MOST_PIXELS: usize = 1024;
@@ -42,7 +42,7 @@ impl Memory {
 
 /// What is before the cameras.
 enum Shown {
-    Body(Vec<Stage<RIG_JOINTS>>),
+    Body(Vec<FigureRenderer<RIG_JOINTS>>),
     Face(Box<Cast>),
 }
 
@@ -63,8 +63,9 @@ impl<'a, 'm> Figure<'a, 'm> {
         let shown = match Cast::of_clip(player.clip(), canvas, views)? {
             Some(cast) => Shown::Face(Box::new(cast)),
             None => {
-                let stage = |view: &View| Stage::of_clip(&mut player, canvas, *view).context("this figure cannot be drawn");
-                Shown::Body(views.iter().map(stage).collect::<Result<_>>()?)
+                let renderer =
+                    |view: &View| FigureRenderer::of_clip(&mut player, canvas, *view).context("this figure cannot be drawn");
+                Shown::Body(views.iter().map(renderer).collect::<Result<_>>()?)
             }
         };
         Ok(Figure { player, shown, size, factor })

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use embedded_graphics::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use pantin_figure::Ink;
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 use std::str::FromStr;
 
 /// Red, green and blue, 0 to 255.
@@ -53,19 +53,19 @@ pub struct Palette {
 
 impl Palette {
     /// The colour of a display's pixel.
-    pub fn pixel(&self, tone: Tone, shade: u8) -> Rgb {
+    pub fn pixel(&self, body_part: BodyPart, shade: u8) -> Rgb {
         match self.scale {
-            Scale::Mono => self.ramp(tone, if shade == 0 { 0 } else { NEAREST }),
-            Scale::Grey => self.ramp(tone, (shade >> 4) * 17),
-            Scale::Hues => rgb(Rgb565::of(tone, shade).into()),
-            Scale::Ramp => self.ramp(tone, shade),
+            Scale::Mono => self.ramp(body_part, if shade == 0 { 0 } else { NEAREST }),
+            Scale::Grey => self.ramp(body_part, (shade >> 4) * 17),
+            Scale::Hues => rgb(Rgb565::of(body_part, shade).into()),
+            Scale::Ramp => self.ramp(body_part, shade),
         }
     }
 
     /// The colour of a brightness, without steps.
-    pub fn ramp(&self, tone: Tone, shade: u8) -> Rgb {
+    pub fn ramp(&self, body_part: BodyPart, shade: u8) -> Rgb {
         match shade {
-            _ if self.scale == Scale::Hues => rgb(Rgb888::of(tone, shade)),
+            _ if self.scale == Scale::Hues => rgb(Rgb888::of(body_part, shade)),
             ..FARTHEST => mix(self.paper, self.far, shade, FARTHEST),
             _ => mix(self.far, self.near, shade - FARTHEST, NEAREST - FARTHEST),
         }
@@ -91,8 +91,8 @@ impl Palette {
         self.scale == Scale::Mono
     }
 
-    fn tones(&self) -> &'static [Tone] {
-        if self.scale == Scale::Hues { &[Tone::Middle, Tone::Left, Tone::Right] } else { &[Tone::Middle] }
+    fn tones(&self) -> &'static [BodyPart] {
+        if self.scale == Scale::Hues { &[BodyPart::Middle, BodyPart::Left, BodyPart::Right] } else { &[BodyPart::Middle] }
     }
 
     /// At most 256 colours in which a smooth picture is told as well as by all of them: those of the figure, each in 16 parts to
@@ -100,9 +100,9 @@ impl Palette {
     pub fn smooth_colours(&self) -> Vec<Rgb> {
         let steps = 14 / self.tones().len() as u16;
         let shade = move |step: u16| FARTHEST + (step * u16::from(NEAREST - FARTHEST) / (steps - 1)) as u8;
-        let inks = self.tones().iter().flat_map(|&tone| (0..steps).map(move |step| self.ramp(tone, shade(step))));
+        let inks = self.tones().iter().flat_map(|&body_part| (0..steps).map(move |step| self.ramp(body_part, shade(step))));
         let figure = inks.flat_map(|ink| (1..=16).map(move |part| mix(self.paper, ink, part, 16)));
-        let ground = (1..=24).map(|step| self.ramp(Tone::Ground, step * 8));
+        let ground = (1..=24).map(|step| self.ramp(BodyPart::Ground, step * 8));
         [self.paper, self.margin(), self.letters()].into_iter().chain(ground).chain(figure).collect()
     }
 
@@ -112,8 +112,8 @@ impl Palette {
         let step = if self.tones().len() > 1 { 4 } else { 1 };
         let shades = || (DARKEST..=NEAREST).rev().step_by(step);
         let mut colours = vec![self.paper, self.margin(), self.letters()];
-        let tones = self.tones().iter().chain([&Tone::Ground]);
-        for colour in tones.flat_map(|&tone| shades().map(move |shade| self.pixel(tone, shade))) {
+        let tones = self.tones().iter().chain([&BodyPart::Ground]);
+        for colour in tones.flat_map(|&body_part| shades().map(move |shade| self.pixel(body_part, shade))) {
             if !colours.contains(&colour) && colours.len() < 256 {
                 colours.push(colour);
             }
@@ -175,7 +175,7 @@ fn mix(from: Rgb, to: Rgb, part: u8, whole: u8) -> Rgb {
 mod tests {
     use super::*;
 
-    const MIDDLE: Tone = Tone::Middle;
+    const MIDDLE: BodyPart = BodyPart::Middle;
 
     #[test]
     fn grey_is_the_reference_display_and_no_colour_gets_lost() {
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(grey, Palette::default());
         for shade in 0..=255u8 {
             assert_eq!(grey.ramp(MIDDLE, shade), [shade; 3]);
-            assert_eq!(grey.pixel(Tone::Left, shade), [(shade >> 4) * 17; 3]);
+            assert_eq!(grey.pixel(BodyPart::Left, shade), [(shade >> 4) * 17; 3]);
         }
         for (name, _) in NAMED {
             let palette: Palette = name.parse().unwrap();
@@ -192,13 +192,13 @@ mod tests {
             let colours = palette.pixel_colours();
             // A GIF's colours are exact, or one of the phone's 32 steps off where there are hues.
             let off = if name == "phone" { 9 } else { 0 };
-            for (tone, shade) in [MIDDLE, Tone::Left, Tone::Right, Tone::Ground]
+            for (body_part, shade) in [MIDDLE, BodyPart::Left, BodyPart::Right, BodyPart::Ground]
                 .into_iter()
-                .flat_map(|tone| (DARKEST..=255).map(move |s| (tone, s)))
+                .flat_map(|body_part| (DARKEST..=255).map(move |s| (body_part, s)))
             {
-                let colour = palette.pixel(tone, shade);
+                let colour = palette.pixel(body_part, shade);
                 let apart = |other: &Rgb| (0..3).map(|i| colour[i].abs_diff(other[i])).max();
-                assert!(colours.iter().filter_map(apart).min() <= Some(off), "{name} {tone:?} {shade}");
+                assert!(colours.iter().filter_map(apart).min() <= Some(off), "{name} {body_part:?} {shade}");
             }
         }
     }
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn the_phones_sides_have_their_hues() {
         let phone: Palette = "phone".parse().unwrap();
-        let [left, right] = [Tone::Left, Tone::Right].map(|tone| phone.pixel(tone, 255));
+        let [left, right] = [BodyPart::Left, BodyPart::Right].map(|body_part| phone.pixel(body_part, 255));
         assert!(left[0] > left[2] && right[2] > right[0]);
     }
 }

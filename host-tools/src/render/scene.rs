@@ -1,9 +1,9 @@
 //! A frame of the figure as strokes in pixels, thicker the nearer they are: for what draws more finely than a display does.
 
 use super::palette::{FARTHEST, NEAREST};
-use pantin_figure::Stage;
+use pantin_figure::FigureRenderer;
 use pantin_figure::camera::PIXEL_BITS;
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 use pantin_figure::lines::Line;
 
 /// Widths of the farthest and the nearest bones, and of the ground's lines, as parts of the figure's height.
@@ -26,7 +26,7 @@ pub struct Stroke {
     /// In pixels.
     pub width: f32,
     /// What it is of.
-    pub tone: Tone,
+    pub body_part: BodyPart,
     /// Brightness.
     pub shade: u8,
 }
@@ -71,16 +71,16 @@ pub struct Scene {
 
 impl Scene {
     /// The frame of a pose, `factor` times as big as the stage has it.
-    pub fn of<const N: usize>(stage: &mut Stage<N>, pose: &[i32], factor: f32) -> Scene {
+    pub fn of<const N: usize>(renderer: &mut FigureRenderer<N>, pose: &[i32], factor: f32) -> Scene {
         let unit = factor / f32::from(1u8 << PIXEL_BITS);
-        let height = stage.camera().length(stage.skeleton().size) as f32 * unit;
-        let lines = stage.look(pose);
+        let height = renderer.camera().length(renderer.skeleton().size) as f32 * unit;
+        let lines = renderer.lines(pose);
         let place = |[x, y]: [i16; 2]| [f32::from(x) * unit, f32::from(y) * unit];
         let stroke = |line: &Line, width: f32| Stroke {
             from: place(line.from),
             to: place(line.to),
             width: (width * height).max(0.75),
-            tone: line.tone,
+            body_part: line.body_part,
             shade: line.shade,
         };
         Scene {
@@ -114,7 +114,7 @@ impl Scene {
             from: place(line.from),
             to: place(line.to),
             width: (FACE_WIDTH * side).max(1.0),
-            tone: line.tone,
+            body_part: line.body_part,
             shade: line.shade,
         };
         Scene { ground: lines.iter().map(stroke).collect(), dots: Vec::new(), bones: Vec::new(), head: None }

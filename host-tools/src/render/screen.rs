@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use embedded_graphics::pixelcolor::GrayColor;
 use pantin::{ChannelState, Clip, Player};
 use pantin_figure::surface::{self, Gray4Rows};
-use pantin_figure::{Canvas, Look, Stage, View};
+use pantin_figure::{Canvas, DrawStyle, FigureRenderer, View};
 
 /// Pixels in a row.
 pub const WIDTH: usize = 128;
@@ -16,7 +16,7 @@ pub const CANVAS: Canvas = Canvas { width: WIDTH as u16, height: HEIGHT as u16 }
 const JOINTS: usize = pantin_figure::RIG_JOINTS;
 
 /// What the firmware draws into: two pixels a byte, the left one in the high half.
-pub type Frame = surface::Frame<Gray4Rows<WIDTH, HEIGHT, { WIDTH * HEIGHT / 8 }>>;
+pub type Framebuffer = surface::Framebuffer<Gray4Rows<WIDTH, HEIGHT, { WIDTH * HEIGHT / 8 }>>;
 
 /// One picture of the display: brightness 0 to 15 a pixel, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub struct Picture {
 
 impl Picture {
     /// What a framebuffer shows.
-    pub fn of(frame: &Frame) -> Picture {
+    pub fn of(frame: &Framebuffer) -> Picture {
         Picture { pixels: (0..HEIGHT * WIDTH).map(|index| frame.pixel(index % WIDTH, index / WIDTH).luma()).collect() }
     }
 
@@ -47,13 +47,13 @@ pub fn pictures(clip: &Clip, view: View, frames: impl IntoIterator<Item = u32>) 
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(*clip, &mut states, &mut pose).map_err(|error| anyhow::anyhow!("{error}"))?;
-    let mut stage = Stage::<JOINTS>::of_clip(&mut player, CANVAS, view).context("this figure cannot be drawn")?;
-    let mut frame = Frame::new();
+    let mut renderer = FigureRenderer::<JOINTS>::of_clip(&mut player, CANVAS, view).context("this figure cannot be drawn")?;
+    let mut frame = Framebuffer::new();
     let draw = |number| {
         player.seek(number);
         frame.clear();
-        stage.place(player.pose());
-        stage.draw_on(&mut frame, Look::default());
+        renderer.set_pose(player.pose());
+        renderer.draw_on(&mut frame, DrawStyle::default());
         Picture::of(&frame)
     };
     Ok(frames.into_iter().map(draw).collect())

@@ -6,9 +6,9 @@ use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::{BinaryColor, PixelColor};
-use pantin_figure::Stage;
+use pantin_figure::FigureRenderer;
 use pantin_figure::draw::stroke;
-use pantin_figure::ink::{Ink, Tone};
+use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::lines::Line;
 use pantin_figure::surface::OnTarget;
 use std::convert::Infallible;
@@ -17,7 +17,7 @@ use std::convert::Infallible;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     /// What it is of.
-    pub tone: Tone,
+    pub body_part: BodyPart,
     /// How bright; 0 is dark, and of nothing.
     pub shade: u8,
 }
@@ -27,10 +27,10 @@ impl PixelColor for Mark {
 }
 
 impl Ink for Mark {
-    const DARK: Mark = Mark { tone: Tone::Ground, shade: 0 };
+    const DARK: Mark = Mark { body_part: BodyPart::Ground, shade: 0 };
 
-    fn of(tone: Tone, shade: u8) -> Mark {
-        Mark { tone, shade }
+    fn of(body_part: BodyPart, shade: u8) -> Mark {
+        Mark { body_part, shade }
     }
 }
 
@@ -58,14 +58,14 @@ impl Shades {
     }
 
     /// Draws a pose as the firmware does: on a display of two colours, or of more.
-    pub fn draw<const N: usize>(&mut self, stage: &mut Stage<N>, pose: &[i32], ground: bool, mono: bool) {
-        stage.place(pose);
+    pub fn draw<const N: usize>(&mut self, renderer: &mut FigureRenderer<N>, pose: &[i32], ground: bool, mono: bool) {
+        renderer.set_pose(pose);
         self.marks.fill(Mark::DARK);
-        let look = pantin_figure::Look { ground, smooth: false };
+        let look = pantin_figure::DrawStyle { ground, smooth: false };
         if mono {
-            stage.draw_on(&mut OnTarget::new(&mut Bits(self)), look);
+            renderer.draw_on(&mut OnTarget::new(&mut Bits(self)), look);
         } else {
-            stage.draw_on(&mut OnTarget::new(self), look);
+            renderer.draw_on(&mut OnTarget::new(self), look);
         }
     }
 
@@ -84,7 +84,7 @@ impl Shades {
 
     /// What it looks like.
     pub fn image(&self, palette: &Palette) -> Image {
-        Image::of(self.width, self.marks.iter().map(|mark| palette.pixel(mark.tone, mark.shade)).collect())
+        Image::of(self.width, self.marks.iter().map(|mark| palette.pixel(mark.body_part, mark.shade)).collect())
     }
 }
 
@@ -125,7 +125,7 @@ impl DrawTarget for Bits<'_> {
 
     fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         let mark = |Pixel(place, bit): Pixel<BinaryColor>| {
-            Pixel(place, if bit.is_on() { Mark { tone: Tone::Middle, shade: 255 } } else { Mark::DARK })
+            Pixel(place, if bit.is_on() { Mark { body_part: BodyPart::Middle, shade: 255 } } else { Mark::DARK })
         };
         self.0.draw_iter(pixels.into_iter().map(mark))
     }

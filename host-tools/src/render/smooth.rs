@@ -3,7 +3,7 @@
 use super::image::Image;
 use super::palette::{Palette, Rgb};
 use super::scene::{Disc, Scene, Stroke};
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 use tiny_skia::{FillRule, LineCap, Paint, PathBuilder, Pixmap, Transform};
 
 /// Draws a scene.
@@ -12,16 +12,16 @@ pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Im
     let Some(mut pixmap) = Pixmap::new(width as u32, height as u32) else { return Image::new(width, height, palette.paper()) };
     pixmap.fill(colour(palette.paper()));
     for stroke in &scene.ground {
-        line(&mut pixmap, stroke, palette.ramp(stroke.tone, stroke.shade), cap(stroke));
+        line(&mut pixmap, stroke, palette.ramp(stroke.body_part, stroke.shade), cap(stroke));
     }
     for dot in &scene.dots {
-        fill(&mut pixmap, dot, palette.ramp(Tone::Ground, dot.shade));
+        fill(&mut pixmap, dot, palette.ramp(BodyPart::Ground, dot.shade));
     }
     for bone in &scene.bones {
         if let Some(gap) = bone.clearance() {
             line(&mut pixmap, &gap, palette.paper(), LineCap::Butt);
         }
-        line(&mut pixmap, bone, palette.ramp(bone.tone, bone.shade), LineCap::Round);
+        line(&mut pixmap, bone, palette.ramp(bone.body_part, bone.shade), LineCap::Round);
     }
     if let Some(head) = scene.head {
         circle(&mut pixmap, &head, palette);
@@ -32,7 +32,7 @@ pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Im
 
 /// The lines of a face join; the ground's cross.
 fn cap(stroke: &Stroke) -> LineCap {
-    if stroke.tone == Tone::Ground { LineCap::Butt } else { LineCap::Round }
+    if stroke.body_part == BodyPart::Ground { LineCap::Butt } else { LineCap::Round }
 }
 
 fn line(pixmap: &mut Pixmap, stroke: &Stroke, ink: Rgb, line_cap: LineCap) {
@@ -50,7 +50,7 @@ fn circle(pixmap: &mut Pixmap, head: &Disc, palette: &Palette) {
     let Some(path) = PathBuilder::from_circle(head.centre[0], head.centre[1], head.radius) else { return };
     fill(pixmap, head, palette.paper());
     let style = tiny_skia::Stroke { width: head.width, ..Default::default() };
-    pixmap.stroke_path(&path, &paint(palette.ramp(Tone::Middle, head.shade)), &style, Transform::identity(), None);
+    pixmap.stroke_path(&path, &paint(palette.ramp(BodyPart::Middle, head.shade)), &style, Transform::identity(), None);
 }
 
 fn fill(pixmap: &mut Pixmap, disc: &Disc, ink: Rgb) {

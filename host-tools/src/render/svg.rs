@@ -3,7 +3,7 @@
 use super::palette::{Palette, Rgb};
 use super::scene::{Disc, Scene, Stroke};
 use super::sheet::Layout;
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 use std::fmt::Write;
 
 /// Size of letters.
@@ -44,9 +44,9 @@ fn head([width, height]: [usize; 2]) -> String {
 
 fn push(out: &mut String, scene: &Scene, palette: &Palette) {
     out.push_str("<g class=\"ground\">\n");
-    scene.ground.iter().for_each(|stroke| line(out, stroke, palette.ramp(stroke.tone, stroke.shade), ""));
+    scene.ground.iter().for_each(|stroke| line(out, stroke, palette.ramp(stroke.body_part, stroke.shade), ""));
     for Disc { centre: [x, y], radius, shade, .. } in &scene.dots {
-        let ink = hex(palette.ramp(Tone::Ground, *shade));
+        let ink = hex(palette.ramp(BodyPart::Ground, *shade));
         let _ = writeln!(out, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"{ink}\"/>");
     }
     out.push_str("</g>\n<g class=\"figure\" stroke-linecap=\"round\">\n");
@@ -54,11 +54,11 @@ fn push(out: &mut String, scene: &Scene, palette: &Palette) {
         if let Some(gap) = bone.clearance() {
             line(out, &gap, palette.paper(), " stroke-linecap=\"butt\"");
         }
-        line(out, bone, palette.ramp(bone.tone, bone.shade), "");
+        line(out, bone, palette.ramp(bone.body_part, bone.shade), "");
     }
     out.push_str("</g>\n");
     if let Some(Disc { centre: [x, y], radius, width, shade }) = scene.head {
-        let (ink, paper) = (hex(palette.ramp(Tone::Middle, shade)), hex(palette.paper()));
+        let (ink, paper) = (hex(palette.ramp(BodyPart::Middle, shade)), hex(palette.paper()));
         let circle = format!("cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius:.2}\"");
         let _ = writeln!(out, "<circle {circle} fill=\"{paper}\" stroke=\"{ink}\" stroke-width=\"{width:.2}\"/>");
     }

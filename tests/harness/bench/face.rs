@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use harness::paths;
 use harness::qemu::{LM3S6965EVB, MICROBIT, Machine};
-use pantin_face::{Binding, Look, Morph, VERTICES, Weights};
+use pantin_face::{Binding, FaceRenderer, Morph, VERTICES, Weights};
 use pantin_tools::expand::expand;
 use pantin_tools::import::{self, Options};
 use pantin_tools::motion::Motion;
@@ -39,7 +39,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
         0,
         "bytes",
     ));
-    let own = size_of::<Morph<VERTICES>>() + size_of::<Look<VERTICES>>() + size_of::<Binding>() + size_of::<Weights>();
+    let own = size_of::<Morph<VERTICES>>() + size_of::<FaceRenderer<VERTICES>>() + size_of::<Binding>() + size_of::<Weights>();
     goals.push(Goal::told("share of vertices, display, names and weights", format!("{own} bytes")));
     let model = pantin_face::MODEL.len();
     goals.push(Goal::at_most("the face's model in flash", model as f64, MODEL, 0, "bytes"));

@@ -30,7 +30,7 @@ pub fn crcs(clip: &Clip<'_>) -> Result<Crcs> {
     let mut pose = vec![0; clip.rig().channels()];
     let mut found = Crcs { stepped: vec![], sought: vec![] };
     conformance::play(*clip, &mut states, &mut pose, &mut |way, crc| match way {
-        Play::Step => found.stepped.push(crc),
+        Play::Progress => found.stepped.push(crc),
         Play::Seek => found.sought.push(crc),
     })?;
     Ok(found)

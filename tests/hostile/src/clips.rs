@@ -1,6 +1,6 @@
 //! Clips and rigs: an error or poses, in bounded time, the same by every route.
 
-use pantin::{ChannelState, Clip, Mark, Memory, Player, Rig, Step, Stream, Undo};
+use pantin::{ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 
 use crate::fix;
 use crate::noise::Noise;
@@ -89,8 +89,9 @@ fn play(clip: Clip<'_>, bytes: &[u8]) {
     }
     player.rewind();
     assert!(player.pose() == &stepped[..channels]);
-    let mut lent = ([Undo::default(); 9], [Mark::default(); 3], vec![ChannelState::default(); 3 * moving], vec![0; 3 * moving]);
-    let mut memory = Memory::new(&player, &mut lent.0, &mut lent.1, &mut lent.2, &mut lent.3);
+    let mut lent =
+        ([Undo::default(); 9], [SnapshotPos::default(); 3], vec![ChannelState::default(); 3 * moving], vec![0; 3 * moving]);
+    let mut memory = SeekCache::new(&player, &mut lent.0, &mut lent.1, &mut lent.2, &mut lent.3);
     player.seek_with(noise.below(frames) as u32, &mut memory);
     for _ in 0..BACK.min(player.frame()) {
         player.step_back(&mut memory);
@@ -110,20 +111,20 @@ fn stream(clip: Clip<'_>, bytes: &[u8], stepped: &[i32]) {
     let mut noise = Noise::new(bytes.len() as u64);
     loop {
         match stream.step() {
-            Step::NeedMore => {
+            Progress::NeedMore => {
                 let taken = stream.feed(&rest[..(1 + noise.below(400)).min(rest.len())]);
                 assert!(taken > 0, "a stream waits for more than there is");
                 rest = &rest[taken..];
             }
-            Step::Frame => {
+            Progress::Frame => {
                 let begin = stream.frame() as usize * channels;
                 let Some(pose) = stepped.get(begin..begin + channels).filter(|_| begin < stepped.len()) else { return };
                 assert!(stream.pose() == pose, "frame {} by streaming is another", stream.frame());
             }
-            Step::End => return,
-            Step::Opened | Step::Event(_) => {}
-            Step::Damaged(error) => panic!("a stream refuses what opened: {error:?}"),
-            Step::TooSmall => panic!("more channels move than there are"),
+            Progress::End => return,
+            Progress::Opened | Progress::Event(_) => {}
+            Progress::Damaged(error) => panic!("a stream refuses what opened: {error:?}"),
+            Progress::TooSmall => panic!("more channels move than there are"),
         }
     }
 }

@@ -12,7 +12,7 @@
 #![allow(unsafe_code)]
 
 use pantin::Scalars;
-use pantin_face::{Binding, Look, MODEL, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, View, Weights};
 use pantin_figure::Canvas;
 use pantin_web_module::memory::{room as make_room, written};
 use pantin_web_module::{Only, Stroke};
@@ -24,7 +24,7 @@ struct Face {
     model: Option<Model<'static>>,
     binding: Binding,
     morph: Morph<VERTICES>,
-    look: Look<VERTICES>,
+    renderer: FaceRenderer<VERTICES>,
     strokes: [Stroke; STROKES],
 }
 
@@ -33,7 +33,7 @@ static FACE: Only<Face> = Only::new(Face {
     model: None,
     binding: Binding::EMPTY,
     morph: Morph::EMPTY,
-    look: Look::EMPTY,
+    renderer: FaceRenderer::EMPTY,
     strokes: [Stroke::NONE; STROKES],
 });
 
@@ -64,24 +64,24 @@ extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
 /// degrees about the face and `tilt` above the horizon.
 #[unsafe(no_mangle)]
 extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
-    let Face { model: Some(model), look, .. } = face() else { return };
+    let Face { model: Some(model), renderer, .. } = face() else { return };
     let canvas = Canvas { width: width.clamp(1, 2047) as u16, height: height.clamp(1, 2047) as u16 };
-    look.set_up(model, canvas, View { orbit: orbit as i16, tilt: tilt as i16 });
-    look.shift(right as i16, 0);
+    renderer.set_up(model, canvas, View { orbit: orbit as i16, tilt: tilt as i16 });
+    renderer.shift(right as i16, 0);
 }
 
 /// Takes a pose of so many values, gathers what it is drawn with, and counts that.
 #[unsafe(no_mangle)]
 extern "C" fn place(channels: usize) -> usize {
-    let Face { model: Some(model), binding, morph, look, strokes } = face() else { return 0 };
+    let Face { model: Some(model), binding, morph, renderer, strokes } = face() else { return 0 };
     // SAFETY: any bits are integers.
     let (_, pose, _) = unsafe { written(channels.saturating_mul(4)).align_to::<i32>() };
     let mut weights = Weights::new();
     binding.weigh(pose, &mut weights);
     morph.place(model, &weights);
-    look.project(model, morph);
+    renderer.project(model, morph);
     let mut count = 0;
-    look.lines(model, |line| {
+    renderer.lines(model, |line| {
         if let Some(place) = strokes.get_mut(count) {
             *place = line.into();
             count += 1;

@@ -31,7 +31,7 @@ impl Stroke {
 
 impl From<Line> for Stroke {
     fn from(line: Line) -> Stroke {
-        Stroke { from: line.from, to: line.to, shade: line.shade, what: line.tone as u8, width: line.width, padding: 0 }
+        Stroke { from: line.from, to: line.to, shade: line.shade, what: line.body_part as u8, width: line.width, padding: 0 }
     }
 }
 

@@ -4,21 +4,21 @@ use crate::facts::Trouble;
 use crate::picture::Picture;
 use crate::source::Source;
 use pantin_figure::camera::PIXEL_BITS;
-use pantin_figure::ink::Tone;
+use pantin_figure::ink::BodyPart;
 use pantin_figure::lines::Line;
 use pantin_figure::skeleton::Detail;
-use pantin_figure::{Canvas, Limb, RIG_JOINTS, Stage, View};
+use pantin_figure::{Canvas, FigureRenderer, JointInfo, RIG_JOINTS, View};
 
 /// Joints of a figure: those of the rig, and a crown.
 const JOINTS: usize = RIG_JOINTS + 1;
-/// Poses in which a clip is looked at before it plays, as [`Stage::aim`] does.
+/// Poses in which a clip is looked at before it plays, as [`FigureRenderer::aim`] does.
 const SAMPLES: u32 = 48;
 /// Pixels that a bar is across at most.
 const THICKEST: i32 = 24;
 
 /// What stands before the camera.
 pub struct Actor {
-    stage: Stage<JOINTS>,
+    renderer: FigureRenderer<JOINTS>,
     /// Whether a figure stands on the stage.
     body: bool,
     bars: Option<Bars>,
@@ -32,7 +32,7 @@ struct Bars {
 
 impl Actor {
     /// Nobody.
-    pub const NOBODY: Actor = Actor { stage: Stage::empty(), body: false, bars: None };
+    pub const NOBODY: Actor = Actor { renderer: FigureRenderer::empty(), body: false, bars: None };
 
     /// Sets everything up for a picture; leaves the source at the frame that it shows.
     #[inline(never)]
@@ -46,12 +46,12 @@ impl Actor {
         if !self.body {
             source.go(0);
             let pose = (source.pose(), source.length_exponent());
-            let mut room = [Limb::default(); RIG_JOINTS];
-            let skeleton = self.stage.skeleton_mut();
+            let mut room = [JointInfo::default(); RIG_JOINTS];
+            let skeleton = self.renderer.skeleton_mut();
             skeleton.set_up(&rig, Detail::Body, pose, |joint| source.is_exponential(joint), &mut room)?;
             self.body = true;
         }
-        self.stage.look_at(canvas, view, |visit| sample(source, visit));
+        self.renderer.look_at(canvas, view, |visit| sample(source, visit));
         self.place(source.go(now));
         Ok(())
     }
@@ -59,22 +59,22 @@ impl Actor {
     /// Takes a pose.
     pub fn place(&mut self, pose: &[i32]) {
         if self.body {
-            self.stage.place(pose);
+            self.renderer.set_pose(pose);
         }
     }
 
     /// Shows everything of the pose that was placed last, from far to near.
     pub fn each(&mut self, pose: &[i32], picture: &mut Picture) {
-        let stage = &mut self.stage;
+        let renderer = &mut self.renderer;
         if self.body {
-            stage.sort();
-            if stage.ground().dotted {
-                stage.each_dot(|dot| picture.add(dot.into()));
+            renderer.sort();
+            if renderer.ground().dotted {
+                renderer.each_dot(|dot| picture.add(dot.into()));
             } else {
-                stage.each_ground_line(|line| picture.add(line.into()));
+                renderer.each_ground_line(|line| picture.add(line.into()));
             }
-            stage.each_bone(|line| picture.add(line.into()));
-            if let Some(head) = stage.head() {
+            renderer.each_bone(|line| picture.add(line.into()));
+            if let Some(head) = renderer.head() {
                 picture.add(head.into());
             }
         }
@@ -90,14 +90,14 @@ impl Bars {
         let [width, height] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
         let (middle, count) = (width / 2, (bars.len() as i32).max(1));
         let breadth = (i32::from(self.canvas.height) / (2 * count)).clamp(1, THICKEST) as u8;
-        let mut line = |from: [i32; 2], to: [i32; 2], tone, shade, width| {
+        let mut line = |from: [i32; 2], to: [i32; 2], body_part, shade, width| {
             let [from, to] = [from, to].map(|end| end.map(|place| place as i16));
-            picture.add(Line { from, to, depth: 0, shade, tone, width }.into());
+            picture.add(Line { from, to, depth: 0, shade, body_part, width }.into());
         };
-        line([middle, 0], [middle, height], Tone::Ground, 80, 1);
+        line([middle, 0], [middle, height], BodyPart::Ground, 80, 1);
         for (index, raw) in (0..).zip(bars) {
             let y = (2 * index + 1) * height / (2 * count);
-            line([middle, y], [middle + (((raw >> 16) * middle) >> 15), y], Tone::Left, 208, breadth);
+            line([middle, y], [middle + (((raw >> 16) * middle) >> 15), y], BodyPart::Left, 208, breadth);
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::facts::Trouble;
 use crate::memory::{past, seat};
-use pantin::{Clip, Front, Memory, Player};
+use pantin::{Clip, PartialClip, Player, SeekCache};
 
 /// The front of a file, and what plays it.
 pub struct Arriving {
-    front: Front<'static>,
+    front: PartialClip<'static>,
     player: Player<'static, 'static>,
-    memory: Memory<'static>,
+    memory: SeekCache<'static>,
     /// Frames that can be shown.
     pub playable: u32,
     /// All of it is there, and good.
@@ -19,14 +19,14 @@ impl Arriving {
     /// Of what has come of a file; `None` while frame 0 has not. Not to be called once there is one.
     #[inline(never)]
     pub fn new(file: &'static [u8]) -> Result<Option<Arriving>, Trouble> {
-        let front = match Front::new(file) {
+        let front = match PartialClip::new(file) {
             Err(pantin::OpenError::Truncated) => return Ok(None),
             front => front?,
         };
         // SAFETY: whoever sat there is gone.
         let (seat, past) = unsafe { (seat(), past()) };
         let Some(player) = front.player(&mut seat.states, &mut seat.pose)? else { return Ok(None) };
-        let memory = Memory::new(&player, &mut [], &mut past.marks, &mut past.states, &mut past.values);
+        let memory = SeekCache::new(&player, &mut [], &mut past.marks, &mut past.states, &mut past.values);
         Ok(Some(Arriving { front, player, memory, playable: 1, whole: false }))
     }
 

@@ -3,18 +3,18 @@
 use crate::picture::Picture;
 use core::mem::MaybeUninit;
 use pantin::layout::MAX_CHANNELS;
-use pantin::{ChannelState, Mark};
+use pantin::{ChannelState, SnapshotPos};
 use pantin_web_module::Only;
 
 /// What a player needs for any clip.
-pub struct Seat {
+pub struct FigureBuffers {
     pub states: [ChannelState; MAX_CHANNELS],
     pub pose: [i32; MAX_CHANNELS],
 }
 
 /// What going back and seeking use: for 22 channels, a snapshot each frame of 512.
 pub struct Past {
-    pub marks: [Mark; 512],
+    pub marks: [SnapshotPos; 512],
     pub states: [ChannelState; 32768],
     pub values: [i32; 32768],
 }
@@ -24,13 +24,13 @@ macro_rules! zeroed {
         static $name: Only<MaybeUninit<$kind>> = Only::new(MaybeUninit::zeroed());
     };
 }
-zeroed!(SEAT: Seat);
+zeroed!(SEAT: FigureBuffers);
 zeroed!(PAST: Past);
 zeroed!(PICTURE: Picture);
 
 /// # Safety
 /// Nobody may sit there any more.
-pub unsafe fn seat() -> &'static mut Seat {
+pub unsafe fn seat() -> &'static mut FigureBuffers {
     // SAFETY: the caller's promise; a seat is made of integers, for which zeros are values.
     unsafe { SEAT.get().assume_init_mut() }
 }

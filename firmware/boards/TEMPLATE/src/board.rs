@@ -6,9 +6,9 @@ use embedded_hal::digital::InputPin;
 use embedded_hal::i2c::I2c;
 use embedded_hal_nb::nb;
 use embedded_hal_nb::serial::{Read, Write};
-use pantin_app::{Board, Key};
+use pantin_app::{Board, Command};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 /// A counter that runs on: 32 bits, and round again.
 pub trait Clock {
@@ -47,7 +47,7 @@ impl<B: I2c, L, P, C: Clock, W> MyBoard<B, L, P, C, W> {
 
 impl<B: I2c, L, P, C, W: Watchdog> MyBoard<B, L, P, C, W> {
     /// Shows words: a panic's.
-    pub fn tell(&mut self, page: &mut Frame<Pages>) {
+    pub fn tell(&mut self, page: &mut Framebuffer<Pages>) {
         // Nobody is left who could be told that the display does not answer.
         let _ = self.display.show(page);
     }
@@ -62,9 +62,9 @@ impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBo
     // YOUR BOARD: the display's layout, one of `pantin_figure::surface`, or your own.
     type Layout = Pages;
     // YOUR BOARD: in whole numbers; `FloatRotation` (feature `micromath` of `pantin-figure`) takes longer even on a Cortex-M4F.
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Pages>) {
+    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
         // A display that does not answer is asked again with the next picture.
         let _ = self.display.show(frame);
         self.watchdog.feed();
@@ -96,7 +96,7 @@ impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBo
         self.line.read().ok()
     }
 
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         self.buttons.wish()
     }
 }

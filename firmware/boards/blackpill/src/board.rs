@@ -4,9 +4,9 @@ use crate::clocks;
 use crate::display::{Display, Lit, Words};
 use board_common::Buttons;
 use board_common::cortex_m::SysTick;
-use pantin_app::{Board, Key};
+use pantin_app::{Board, Command};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 use stm32f4xx_hal::gpio::{ErasedPin, Input};
 use stm32f4xx_hal::pac::{Peripherals, USART1};
 use stm32f4xx_hal::prelude::*;
@@ -64,7 +64,7 @@ impl BlackPill {
     }
 
     /// Shows words.
-    pub fn tell(&mut self, page: &mut Frame<Words>) {
+    pub fn tell(&mut self, page: &mut Framebuffer<Words>) {
         self.display.show(page);
     }
 
@@ -81,9 +81,9 @@ impl BlackPill {
 
 impl Board for BlackPill {
     type Layout = Lit;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Lit>) {
+    fn show(&mut self, frame: &mut Framebuffer<Lit>) {
         self.display.show(frame);
         self.feed();
     }
@@ -112,7 +112,7 @@ impl Board for BlackPill {
         self.line.read().ok()
     }
 
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         self.buttons.wish()
     }
 }

@@ -14,7 +14,7 @@ mod received;
 use board::BlackPill;
 use board_common::{CHANNELS, JOINTS, MOVING};
 use display::Lit;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 use stm32f4xx_hal::pac::Peripherals;
 
 #[cfg(feature = "defmt")]
@@ -25,7 +25,7 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
-    let mut frame = Frame::<Lit>::new();
+    let mut frame = Framebuffer::<Lit>::new();
     let mut board = BlackPill::new(parts);
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Sectors>() {

@@ -3,7 +3,7 @@
 //! Alone, up and down change the speed, left and right go round the figure, and select pauses. While select is held, left and
 //! right step back and forward, up goes to the next clip and down plays the other way round; select let go after that does not pause.
 
-use pantin_app::Key;
+use pantin_app::Command;
 
 /// Which are held, and what that has meant so far.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub struct Buttons {
     /// Another one was pressed while select was held.
     chord: bool,
     /// What was asked for when [`Buttons::look`] was last called.
-    wish: Option<Key>,
+    wish: Option<Command>,
 }
 
 impl Buttons {
@@ -38,12 +38,12 @@ impl Buttons {
     }
 
     /// What the last look saw, once.
-    pub fn wish(&mut self) -> Option<Key> {
+    pub fn wish(&mut self) -> Option<Command> {
         self.wish.take()
     }
 
     /// What a button asks for that was pressed, or select when it is let go, since the last call; `now` those that are held.
-    pub fn pressed(&mut self, now: u32) -> Option<Key> {
+    pub fn pressed(&mut self, now: u32) -> Option<Command> {
         let (down, up) = (now & !self.held, self.held & !now);
         self.held = now;
         let select = now & Self::SELECT != 0;
@@ -51,17 +51,17 @@ impl Buttons {
             self.chord = false;
         }
         if up & Self::SELECT != 0 && !self.chord {
-            return Some(Key::Pause);
+            return Some(Command::Pause);
         }
         let key = match (down & !Self::SELECT, select) {
-            (Self::UP, false) => Key::Faster,
-            (Self::DOWN, false) => Key::Slower,
-            (Self::LEFT, false) => Key::OrbitLeft,
-            (Self::RIGHT, false) => Key::OrbitRight,
-            (Self::UP, true) => Key::NextClip,
-            (Self::DOWN, true) => Key::Reverse,
-            (Self::LEFT, true) => Key::Back,
-            (Self::RIGHT, true) => Key::Step,
+            (Self::UP, false) => Command::Faster,
+            (Self::DOWN, false) => Command::Slower,
+            (Self::LEFT, false) => Command::OrbitLeft,
+            (Self::RIGHT, false) => Command::OrbitRight,
+            (Self::UP, true) => Command::NextClip,
+            (Self::DOWN, true) => Command::Reverse,
+            (Self::LEFT, true) => Command::Back,
+            (Self::RIGHT, true) => Command::Step,
             _ => return None,
         };
         self.chord = true;

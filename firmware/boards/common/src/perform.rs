@@ -2,8 +2,8 @@
 
 use core::fmt::Write;
 use pantin::Clip;
-use pantin_app::{Board, Entry, Exit, Mode, Options, Page, run};
-use pantin_figure::surface::Frame;
+use pantin_app::{Board, Entry, Exit, Mode, Options, TextScreen, run};
+use pantin_figure::surface::Framebuffer;
 
 /// The letter that, sent before the first picture, has the program play in step ([`Mode::Sync`]); its end there begins it anew. ASCII's
 /// "synchronous idle".
@@ -16,7 +16,7 @@ const PAUSE_NS: u32 = 100_000_000;
 /// there is a letter or a button; then it all begins anew.
 pub fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
     clips: &[Entry],
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> ! {
     loop {
@@ -32,7 +32,7 @@ pub fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINT
 pub fn perform_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
     store: &mut pantin_store::Store<S>,
     clips: &[Entry],
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> ! {
     loop {
@@ -49,8 +49,8 @@ fn options<B: Board>(board: &mut B) -> Options {
 }
 
 #[inline(never)]
-fn complain<B: Board>(clips: &[Entry], frame: &mut Frame<B::Layout>, board: &mut B) {
-    let mut page = Page::new(frame);
+fn complain<B: Board>(clips: &[Entry], frame: &mut Framebuffer<B::Layout>, board: &mut B) {
+    let mut page = TextScreen::new(frame);
     let bad = clips.iter().find_map(|entry| Some((entry.name, Clip::new_checked(entry.bytes).err()?)));
     // Writing on a page cannot fail.
     let _ = match bad {

@@ -5,8 +5,8 @@ use crate::end::{Code, exit};
 use heapless::Vec;
 use pantin_app::{Board, Entry, Exit, Options, run};
 #[cfg(feature = "several")]
-use pantin_app::{Seat, crowd};
-use pantin_figure::surface::Frame;
+use pantin_app::{FigureBuffers, multi};
+use pantin_figure::surface::Framebuffer;
 #[allow(deprecated)]
 use semihosting::sys::arm_compat::{CommandLine, sys_get_cmdline};
 
@@ -16,7 +16,7 @@ const ROOM: usize = 512;
 /// Plays the clips, and ends the emulator. The numbers are those of [`run`], and the most figures side by side.
 pub fn play<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize, const SEATS: usize>(
     clips: &[Entry],
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> ! {
     let options = options();
@@ -32,7 +32,7 @@ pub fn play<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: 
 pub fn play_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
     store: &mut pantin_store::Store<S>,
     clips: &[Entry],
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> ! {
     exit(pantin_app::run_stored::<B, S, CHANNELS, MOVING, JOINTS>(store, clips, options(), frame, board).into())
@@ -44,14 +44,14 @@ pub fn play_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const
 fn several<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize, const SEATS: usize>(
     clips: &[Entry],
     options: Options,
-    frame: &mut Frame<B::Layout>,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
-    let mut seats = Vec::<Seat<B::Turning, CHANNELS, MOVING, JOINTS>, SEATS>::new();
+    let mut seats = Vec::<FigureBuffers<B::Rotation, CHANNELS, MOVING, JOINTS>, SEATS>::new();
     while seats.len() < options.figures && !seats.is_full() {
-        let _ = seats.push(Seat::empty());
+        let _ = seats.push(FigureBuffers::empty());
     }
-    crowd(clips, options, &mut seats, frame, board)
+    multi(clips, options, &mut seats, frame, board)
 }
 
 /// In a function of its own: the room is given back.

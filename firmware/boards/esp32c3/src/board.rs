@@ -11,9 +11,9 @@ use esp_hal::peripherals::{Peripherals, TIMG0};
 use esp_hal::time::{Duration, Instant, Rate};
 use esp_hal::timer::timg::{MwdtStage, TimerGroup, Wdt};
 use esp_hal::uart::{self, Uart};
-use pantin_app::{Board, Key};
+use pantin_app::{Board, Command};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 /// The watchdog starts the board anew when the program was stuck for so long.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -70,7 +70,7 @@ impl Esp32C3 {
     }
 
     /// Shows a panic's page, and says it over the line.
-    pub fn tell(&mut self, page: &mut Frame<Pages>, info: &PanicInfo) {
+    pub fn tell(&mut self, page: &mut Framebuffer<Pages>, info: &PanicInfo) {
         let _ = self.display.show(page);
         let _ = write!(self.line, "\r\n{info}\r\n");
     }
@@ -88,10 +88,10 @@ impl Esp32C3 {
 
 impl Board for Esp32C3 {
     type Layout = Pages;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
     /// A display that does not answer is asked again with the next picture.
-    fn show(&mut self, frame: &mut Frame<Pages>) {
+    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
         let _ = self.display.show(frame);
         self.feed();
     }
@@ -130,7 +130,7 @@ impl Board for Esp32C3 {
         }
     }
 
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         self.buttons.wish()
     }
 }

@@ -13,7 +13,7 @@ use board::Esp32C3;
 use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use esp_hal::clock::CpuClock;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
@@ -33,7 +33,7 @@ esp_bootloader_esp_idf::esp_app_desc!(
 #[esp_hal::main]
 fn main() -> ! {
     let parts = esp_hal::init(esp_hal::Config::default().with_cpu_clock(CpuClock::max()));
-    let mut frame = Frame::<Pages>::new();
+    let mut frame = Framebuffer::<Pages>::new();
     let mut board = Esp32C3::new(parts);
     #[cfg(feature = "update")]
     flash::map();

@@ -6,9 +6,9 @@ use crate::registers::uart0;
 use crate::{buttons, display};
 use board_common::cortex_m::SysTick;
 use board_common::{Buttons, markers};
-use pantin_app::{Board, Key};
+use pantin_app::{Board, Command};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::{Frame, Gray4Rows};
+use pantin_figure::surface::{Framebuffer, Gray4Rows};
 
 /// Kilohertz of the core clock as it is out of reset.
 const RATE: u32 = 12_500;
@@ -48,9 +48,9 @@ impl Lm3s {
 
 impl Board for Lm3s {
     type Layout = Oled;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Oled>) {
+    fn show(&mut self, frame: &mut Framebuffer<Oled>) {
         display::show(frame);
     }
 
@@ -81,7 +81,7 @@ impl Board for Lm3s {
         serial()
     }
 
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         self.buttons.pressed(buttons::read())
     }
 

@@ -4,7 +4,7 @@
 
 use crate::board::Oled;
 use crate::registers::{gpio_c, ssi0, system};
-use pantin_figure::surface::{Cell, Frame};
+use pantin_figure::surface::{Cell, Framebuffer};
 
 const PIN_7: u32 = 1 << 7;
 /// The port is still shifting bits out.
@@ -28,7 +28,7 @@ pub fn start() {
 }
 
 /// Writes what changed of a picture.
-pub fn show(frame: &mut Frame<Oled>) {
+pub fn show(frame: &mut Framebuffer<Oled>) {
     for window in frame.send() {
         let cells = window.cells::<Oled>();
         // Columns are bytes of two pixels, of which a cell has four.

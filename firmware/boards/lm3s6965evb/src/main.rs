@@ -11,7 +11,7 @@ mod registers;
 
 use board::{Lm3s, Oled};
 use cortex_m_rt::entry;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 include!(concat!(env!("OUT_DIR"), "/rooms.rs"));
@@ -22,6 +22,6 @@ const SEATS: usize = 4;
 #[entry]
 fn main() -> ! {
     board_common::cortex_m::guard_stack();
-    let mut frame = Frame::<Oled>::new();
+    let mut frame = Framebuffer::<Oled>::new();
     board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Lm3s::new())
 }

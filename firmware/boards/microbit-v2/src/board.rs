@@ -14,9 +14,9 @@ use nrf52833_hal::timer::Periodic;
 use nrf52833_hal::wdt::WatchdogHandle;
 use nrf52833_hal::wdt::handles::Hdl0;
 use nrf52833_hal::{Clocks, Timer};
-use pantin_app::{Board, Key};
+use pantin_app::{Board, Command};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 /// Counts of the timer a microsecond.
 const RATE: u32 = 1;
@@ -87,9 +87,9 @@ fn feed(watchdog: &mut Option<WatchdogHandle<Hdl0>>) {
 
 impl Board for Microbit {
     type Layout = Pages;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Pages>) {
+    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
         leds::set(&tiny(frame));
         self.oled.show(frame);
         self.feed();
@@ -118,7 +118,7 @@ impl Board for Microbit {
         self.line.receive()
     }
 
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         self.buttons.wish()
     }
 }

@@ -17,7 +17,7 @@ use board::Microbit;
 use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use nrf52833_hal::pac::Peripherals;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 #[cfg(feature = "defmt")]
 use defmt_rtt as _;
@@ -27,7 +27,7 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
-    let mut frame = Frame::<Pages>::new();
+    let mut frame = Framebuffer::<Pages>::new();
     let mut board = Microbit::new(parts);
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Pages>() {

@@ -4,7 +4,7 @@ use board_parts::ssd1306::{ADDRESS, Pages, Ssd1306};
 use nrf52833_hal::gpio::{Floating, Input, Pin};
 use nrf52833_hal::pac::TWIM0;
 use nrf52833_hal::twim::{Frequency, Pins, Twim};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 /// The display.
 pub struct Oled(Ssd1306<Twim<TWIM0>>);
@@ -18,7 +18,7 @@ impl Oled {
     }
 
     /// Brings it up to date. One that does not answer is asked again with the next picture.
-    pub fn show(&mut self, frame: &mut Frame<Pages>) {
+    pub fn show(&mut self, frame: &mut Framebuffer<Pages>) {
         let _ = self.0.show(frame);
     }
 }

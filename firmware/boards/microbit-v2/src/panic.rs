@@ -8,7 +8,7 @@ use board_parts::tiny::Lights;
 use core::panic::PanicInfo;
 use nrf52833_hal::gpio::{p0, p1};
 use nrf52833_hal::pac::Peripherals;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 /// How long it stays, in milliseconds, and clocks of one.
 const STAYS: u32 = 10_000;
@@ -28,7 +28,7 @@ fn panic(info: &PanicInfo) -> ! {
     cortex_m::peripheral::SCB::sys_reset()
 }
 
-fn tell(page: &mut Frame<Pages>) {
+fn tell(page: &mut Framebuffer<Pages>) {
     // Safety: whoever had the peripherals does not run any more.
     let parts = unsafe { Peripherals::steal() };
     let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));

@@ -2,9 +2,9 @@
 
 use crate::registers::{timer0, uart};
 use board_common::{Pace, markers};
-use pantin_app::{Board, wire};
+use pantin_app::{Board, frame_stream};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::{Frame, MonoPages};
+use pantin_figure::surface::{Framebuffer, MonoPages};
 
 /// The pictures: 128x64 pixels, lit or dark.
 pub type Pages = MonoPages<128, 64, 1024>;
@@ -48,10 +48,10 @@ fn send(bytes: &[u8]) {
 
 impl Board for Microbit {
     type Layout = Pages;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Pages>) {
-        wire::send(frame, send);
+    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
+        frame_stream::send(frame, send);
     }
 
     fn start_timer(&mut self, nanoseconds: u32) {

@@ -11,7 +11,7 @@ mod registers;
 
 use board::{Microbit, Pages};
 use cortex_m_rt::entry;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 include!(concat!(env!("OUT_DIR"), "/rooms.rs"));
@@ -21,7 +21,7 @@ const SEATS: usize = 1;
 
 #[entry]
 fn main() -> ! {
-    let mut frame = Frame::<Pages>::new();
+    let mut frame = Framebuffer::<Pages>::new();
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Nvmc>() {
         board_common::play_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut Microbit::new())

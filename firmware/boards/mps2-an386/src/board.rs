@@ -3,8 +3,8 @@
 use crate::registers::uart0;
 use board_common::cortex_m::SysTick;
 use board_common::markers;
-use pantin_app::{Board, wire};
-use pantin_figure::surface::{Frame, Gray4Rows};
+use pantin_app::{Board, frame_stream};
+use pantin_figure::surface::{Framebuffer, Gray4Rows};
 
 /// Kilohertz of the core clock.
 const RATE: u32 = 25_000;
@@ -41,12 +41,12 @@ fn send(bytes: &[u8]) {
 impl Board for Mps2 {
     type Layout = Oled;
     #[cfg(not(feature = "micromath"))]
-    type Turning = pantin_figure::rotation::Rotation;
+    type Rotation = pantin_figure::rotation::Rotation;
     #[cfg(feature = "micromath")]
-    type Turning = pantin_figure::rotation_float::FloatRotation;
+    type Rotation = pantin_figure::rotation_float::FloatRotation;
 
-    fn show(&mut self, frame: &mut Frame<Oled>) {
-        wire::send(frame, send);
+    fn show(&mut self, frame: &mut Framebuffer<Oled>) {
+        frame_stream::send(frame, send);
     }
 
     fn start_timer(&mut self, nanoseconds: u32) {

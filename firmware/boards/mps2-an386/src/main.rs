@@ -8,7 +8,7 @@ mod registers;
 use board::{Mps2, Oled};
 use board_common::{CHANNELS, JOINTS, MOVING};
 use cortex_m_rt::entry;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
@@ -18,6 +18,6 @@ const SEATS: usize = 16;
 #[entry]
 fn main() -> ! {
     board_common::cortex_m::guard_stack();
-    let mut frame = Frame::<Oled>::new();
+    let mut frame = Framebuffer::<Oled>::new();
     board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Mps2::new())
 }

@@ -4,7 +4,7 @@
 //! its own. Here a page that changed is one transfer, straight from the framebuffer: 8 bytes and its columns.
 
 use embedded_hal::i2c::{I2c, Operation};
-use pantin_figure::surface::{BAND, Frame, Layout, MonoPages, Surface};
+use pantin_figure::surface::{BAND, Framebuffer, Layout, MonoPages, Surface};
 
 /// The display's memory.
 pub type Pages = MonoPages<128, 64, 1024>;
@@ -45,7 +45,7 @@ impl<B: I2c> Ssd1306<B> {
     }
 
     /// Sends what changed of a picture: after an error all of the next one, so that a display whose plug was loose comes back.
-    pub fn show(&mut self, frame: &mut Frame<Pages>) -> Result<(), B::Error> {
+    pub fn show(&mut self, frame: &mut Framebuffer<Pages>) -> Result<(), B::Error> {
         let sent = self.send(frame);
         self.ready = sent.is_ok();
         if !self.ready {
@@ -54,7 +54,7 @@ impl<B: I2c> Ssd1306<B> {
         sent
     }
 
-    fn send(&mut self, frame: &mut Frame<Pages>) -> Result<(), B::Error> {
+    fn send(&mut self, frame: &mut Framebuffer<Pages>) -> Result<(), B::Error> {
         if !self.ready {
             self.bus.write(self.address, &START)?;
         }
@@ -120,14 +120,14 @@ mod tests {
         Ssd1306::new(Panel { memory: [0xaa; 1024], lit: false, bytes: 0, plugged: true }, ADDRESS)
     }
 
-    fn put(frame: &mut Frame<Pages>, x: i32, y: i32) {
+    fn put(frame: &mut Framebuffer<Pages>, x: i32, y: i32) {
         frame.mark([x, y], [x, y]);
         frame.put(Pages::cursor(x as usize, y as usize), BinaryColor::On);
     }
 
     #[test]
     fn the_first_picture_is_sent_whole_and_then_what_changed() {
-        let (mut display, mut frame) = (panel(), Frame::new());
+        let (mut display, mut frame) = (panel(), Framebuffer::new());
         put(&mut frame, 0, 0);
         display.show(&mut frame).unwrap();
         assert!(display.bus.lit && display.bus.memory == frame.cells());
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn a_display_that_was_unplugged_shows_everything_again() {
-        let (mut display, mut frame) = (panel(), Frame::new());
+        let (mut display, mut frame) = (panel(), Framebuffer::new());
         put(&mut frame, 5, 5);
         display.show(&mut frame).unwrap();
         display.bus.plugged = false;

@@ -15,7 +15,7 @@ use mipidsi::dcs::{InterfaceExt, SetColumnAddress, SetPageAddress, WriteMemorySt
 use mipidsi::interface::{Interface, InterfaceKind};
 use mipidsi::models::ST7789;
 use mipidsi::options::ColorInversion;
-use pantin_figure::surface::{Cursor, Frame, Layout, Window};
+use pantin_figure::surface::{Cursor, Framebuffer, Layout, Window};
 
 /// Columns, and rows.
 pub const SIDE: usize = 240;
@@ -72,7 +72,7 @@ impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<S, D> {
     }
 
     /// Sends what changed of a picture.
-    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Frame<L>) -> Result<(), Error<S::Error, D::Error>> {
+    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Framebuffer<L>) -> Result<(), Error<S::Error, D::Error>> {
         const { assert!(L::WIDTH == SIDE && L::HEIGHT == SIDE) };
         let mut room = [[0; 2]; SIDE];
         for Window { columns: [left, right], rows: [top, bottom] } in frame.send() {
@@ -200,7 +200,7 @@ mod tests {
         let panel = RefCell::new(Panel::new());
         let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut NoTime).unwrap();
         assert!(panel.borrow().commands.ends_with(&[0x29]), "it is on");
-        let mut frame = Box::new(Frame::<L>::new());
+        let mut frame = Box::new(Framebuffer::<L>::new());
         for at in [0, 100, 220] {
             frame.clear();
             frame.mark([at, at], [at + 19, at + 19]);

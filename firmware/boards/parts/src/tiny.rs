@@ -4,7 +4,7 @@
 //! column for where the picture's upper half, in which there is no ground, has most lit pixels.
 
 use crate::ssd1306::Pages;
-use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::surface::{Framebuffer, Layout};
 
 /// Lights in a row, and rows.
 pub const SIDE: usize = 5;
@@ -18,7 +18,7 @@ const ABOVE: usize = 2;
 const STEPS: [usize; 3] = [4, 8, 14];
 
 /// The lights of a picture.
-pub fn tiny(frame: &Frame<Pages>) -> Lights {
+pub fn tiny(frame: &Framebuffer<Pages>) -> Lights {
     let left = middle(frame).saturating_sub(SIDE * CELL[0] / 2).min(Pages::WIDTH - SIDE * CELL[0]);
     let mut lights = Lights::default();
     for (row, line) in lights.iter_mut().enumerate() {
@@ -31,12 +31,12 @@ pub fn tiny(frame: &Frame<Pages>) -> Lights {
 }
 
 /// Lit pixels of a light, from its upper left one.
-fn count(frame: &Frame<Pages>, left: usize, top: usize) -> usize {
+fn count(frame: &Framebuffer<Pages>, left: usize, top: usize) -> usize {
     (top..top + CELL[1]).map(|y| (left..left + CELL[0]).filter(|x| frame.pixel(*x, y).is_on()).count()).sum()
 }
 
 /// The mean column of what is lit in the upper half, or that of the picture where nothing is.
-fn middle(frame: &Frame<Pages>) -> usize {
+fn middle(frame: &Framebuffer<Pages>) -> usize {
     let (mut sum, mut lit) = (0, 0);
     for (x, y) in (0..Pages::HEIGHT / 2).flat_map(|y| (0..Pages::WIDTH).map(move |x| (x, y))) {
         if frame.pixel(x, y).is_on() {
@@ -56,14 +56,14 @@ mod tests {
 
     const THIN: PrimitiveStyle<BinaryColor> = PrimitiveStyle::with_stroke(BinaryColor::On, 1);
 
-    fn line(frame: &mut Frame<Pages>, from: [i32; 2], to: [i32; 2]) {
+    fn line(frame: &mut Framebuffer<Pages>, from: [i32; 2], to: [i32; 2]) {
         let [from, to] = [from, to].map(|[x, y]| Point::new(x, y));
         Line::new(from, to).into_styled(THIN).draw(frame).unwrap();
     }
 
     /// Head, trunk and two legs apart, so far to the right of the middle, on a dotted ground.
-    fn stands(right: i32) -> Frame<Pages> {
-        let (mut frame, middle) = (Frame::new(), 63 + right);
+    fn stands(right: i32) -> Framebuffer<Pages> {
+        let (mut frame, middle) = (Framebuffer::new(), 63 + right);
         for (x, row) in (0..30).map(|dot| (dot % 10 * 13, dot / 10)) {
             line(&mut frame, [x + row, 52 + row * 4], [x + row, 52 + row * 4]);
         }
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn lights_are_brighter_where_more_is_lit() {
-        let mut frame = Frame::new();
+        let mut frame = Framebuffer::new();
         assert_eq!(tiny(&frame), Lights::default(), "nothing is lit");
         for (rows, light) in [(1, 1), (2, 2), (3, 3), (12, 3)] {
             line(&mut frame, [61, 1 + rows], [66, 1 + rows]);

@@ -5,9 +5,9 @@ use crate::display::{Display, Lit, Words};
 use board_common::cortex_m::SysTick;
 use board_common::{Buttons, markers};
 use embedded_hal::digital::InputPin;
-use pantin_app::{Board, Key};
+use pantin_app::{Board, Command};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 use rp2040_hal::fugit::{ExtU32, RateExtU32};
 use rp2040_hal::gpio::bank0::{Gpio0, Gpio1};
 use rp2040_hal::gpio::{DynPinId, FunctionSio, FunctionUart, Pin, PullDown, PullUp, SioInput};
@@ -65,7 +65,7 @@ impl Pico {
     }
 
     /// Shows words.
-    pub fn tell(&mut self, page: &mut Frame<Words>) {
+    pub fn tell(&mut self, page: &mut Framebuffer<Words>) {
         self.display.show(page);
     }
 
@@ -82,9 +82,9 @@ impl Pico {
 
 impl Board for Pico {
     type Layout = Lit;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Lit>) {
+    fn show(&mut self, frame: &mut Framebuffer<Lit>) {
         self.display.show(frame);
         self.feed();
     }
@@ -115,7 +115,7 @@ impl Board for Pico {
         }
     }
 
-    fn button(&mut self) -> Option<Key> {
+    fn button(&mut self) -> Option<Command> {
         self.buttons.wish()
     }
 

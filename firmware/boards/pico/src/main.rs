@@ -3,7 +3,7 @@
 #![no_main]
 
 use board_common::{CHANNELS, JOINTS, MOVING};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 use pico::{Lit, Pico};
 use rp2040_hal::pac::Peripherals;
 
@@ -12,7 +12,7 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 #[rp2040_hal::entry]
 fn main() -> ! {
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
-    let mut frame = Frame::<Lit>::new();
+    let mut frame = Framebuffer::<Lit>::new();
     let mut board = Pico::new(parts);
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<pico::Rom>() {

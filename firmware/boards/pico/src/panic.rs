@@ -5,8 +5,8 @@ use crate::board::Pico;
 use core::fmt::Write;
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
-use pantin_app::Page;
-use pantin_figure::surface::Frame;
+use pantin_app::TextScreen;
+use pantin_figure::surface::Framebuffer;
 use rp2040_hal::pac::Peripherals;
 
 /// How long it stays, in clocks.
@@ -30,8 +30,8 @@ fn panic(info: &PanicInfo) -> ! {
 fn tell(info: &PanicInfo) {
     #[cfg(feature = "defmt")]
     defmt::error!("{}", defmt::Display2Format(info));
-    let mut frame = Frame::new();
-    let _ = write!(Page::new(&mut frame), "{info}");
+    let mut frame = Framebuffer::new();
+    let _ = write!(TextScreen::new(&mut frame), "{info}");
     // Safety: whoever had the peripherals does not run any more, and they are set up from their reset.
     let mut pico = Pico::new(unsafe { Peripherals::steal() });
     pico.tell(&mut frame);

@@ -8,7 +8,7 @@ mod trap;
 
 use board::{Pages, Virt};
 use board_common::{CHANNELS, JOINTS, MOVING};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
@@ -19,6 +19,6 @@ const SEATS: usize = 1;
 #[riscv_rt::entry]
 fn main() -> ! {
     trap::guard_stack();
-    let mut frame = Frame::<Pages>::new();
+    let mut frame = Framebuffer::<Pages>::new();
     board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Virt::new())
 }

@@ -5,7 +5,7 @@ use crate::registers::{timer1, uart1};
 use board_common::{Pace, markers};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::{Frame, Rgb565Rows};
+use pantin_figure::surface::{Framebuffer, Rgb565Rows};
 
 /// The display: 176x220 pixels of 16 bits.
 pub type Lcd = Rgb565Rows<176, 220, 19360>;
@@ -38,9 +38,9 @@ fn now() -> u32 {
 
 impl Board for Sx1 {
     type Layout = Lcd;
-    type Turning = Rotation;
+    type Rotation = Rotation;
 
-    fn show(&mut self, frame: &mut Frame<Lcd>) {
+    fn show(&mut self, frame: &mut Framebuffer<Lcd>) {
         display::show(frame);
     }
 

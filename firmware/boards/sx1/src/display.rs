@@ -4,7 +4,7 @@
 use crate::board::Lcd;
 use crate::registers::{lcd, lcd_dma};
 use core::ptr;
-use pantin_figure::surface::{Frame, Layout, Pair};
+use pantin_figure::surface::{Framebuffer, Layout, Pair};
 
 /// Palette that says: no palette, 12 or 16 bits a pixel.
 const NO_PALETTE: u16 = 0x4000;
@@ -53,7 +53,7 @@ fn bring(start: usize, end: usize) {
 }
 
 /// Copies what changed of a picture to where the channel finds it.
-pub fn show(frame: &mut Frame<Lcd>) {
+pub fn show(frame: &mut Framebuffer<Lcd>) {
     for window in frame.send() {
         let cells = window.cells::<Lcd>();
         for (row, stretch) in (cells.rows[0]..).zip(frame.stretches(window)) {

@@ -10,7 +10,7 @@ mod start;
 
 use board::{Lcd, Sx1};
 use board_common::{CHANNELS, JOINTS, MOVING};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
@@ -18,6 +18,6 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 const SEATS: usize = 8;
 
 fn main() -> ! {
-    let mut frame = Frame::<Lcd>::new();
+    let mut frame = Framebuffer::<Lcd>::new();
     board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Sx1::new())
 }

@@ -37,7 +37,7 @@ pub fn run(print: &mut dyn FnMut(&[u8])) -> bool {
 /// `step 01ef`
 fn line(way: Play, crc: u16) -> [u8; 10] {
     let mut line = match way {
-        Play::Step => *b"step 0000\n",
+        Play::Progress => *b"step 0000\n",
         Play::Seek => *b"seek 0000\n",
     };
     for (digit, shift) in line[5..9].iter_mut().zip([12, 8, 4, 0]) {

@@ -56,11 +56,11 @@ fn span<S: Surface>(surface: &mut S, columns: [i32; 2], y: i32, ink: S::Ink) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{Frame, Gray4Rows};
+    use crate::surface::{Framebuffer, Gray4Rows};
     use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 
     fn picture(centre: [i32; 2], radius: i32) -> String {
-        let mut frame = Frame::<Gray4Rows<16, 9, 18>>::new();
+        let mut frame = Framebuffer::<Gray4Rows<16, 9, 18>>::new();
         disc(&mut frame, centre, radius, Gray4::new(15), Gray4::new(1));
         let letter = |x, y| [".", "o", "#"][usize::from(frame.pixel(x, y).luma()).min(2)];
         (0..9).map(|y| (0..16).map(|x| letter(x, y)).collect::<String>() + "\n").collect()

@@ -156,11 +156,11 @@ fn walk_so<S: Surface, const STEEP: bool, const BACK: bool>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{Frame, MonoPages};
+    use crate::surface::{Framebuffer, MonoPages};
     use embedded_graphics::pixelcolor::BinaryColor;
 
-    type Small = Frame<MonoPages<32, 16, 64>>;
-    type Large = Frame<MonoPages<160, 144, 2880>>;
+    type Small = Framebuffer<MonoPages<32, 16, 64>>;
+    type Large = Framebuffer<MonoPages<160, 144, 2880>>;
 
     fn picture(frame: &Small) -> String {
         let row = |y: usize| (0..32).map(|x| if frame.pixel(x, y).is_on() { '#' } else { '.' }).collect::<String>();

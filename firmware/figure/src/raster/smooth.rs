@@ -48,10 +48,10 @@ pub fn smooth<S: Surface>(surface: &mut S, from: [i32; 2], to: [i32; 2], ink: S:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{Frame, Gray4Rows};
+    use crate::surface::{Framebuffer, Gray4Rows};
     use embedded_graphics::pixelcolor::{Gray4, GrayColor};
 
-    type Small = Frame<Gray4Rows<16, 8, 16>>;
+    type Small = Framebuffer<Gray4Rows<16, 8, 16>>;
 
     fn picture(frame: &Small) -> String {
         let row = |y: usize| (0..16).map(|x| char::from_digit(frame.pixel(x, y).luma().into(), 16).unwrap()).collect::<String>();

@@ -76,20 +76,20 @@ impl Window {
 
 /// A display's memory.
 #[derive(Clone, Debug)]
-pub struct Frame<L: Layout> {
+pub struct Framebuffer<L: Layout> {
     cells: L::Cells,
-    /// Drawn since the last [`Frame::clear`].
+    /// Drawn since the last [`Framebuffer::clear`].
     drawn: Bands,
     /// What the display shows otherwise: drawn before that, or darkened by it.
     before: Bands,
     layout: PhantomData<L>,
 }
 
-impl<L: Layout> Frame<L> {
+impl<L: Layout> Framebuffer<L> {
     /// A dark picture, of which the display has seen nothing.
     pub fn new() -> Self {
         const { assert!(L::WIDTH <= 256 && L::HEIGHT <= 320) };
-        Frame { cells: L::DARK, drawn: Bands::CLEAN, before: Bands::all(L::WIDTH, L::HEIGHT), layout: PhantomData }
+        Framebuffer { cells: L::DARK, drawn: Bands::CLEAN, before: Bands::all(L::WIDTH, L::HEIGHT), layout: PhantomData }
     }
 
     /// Darkens what was drawn.
@@ -153,13 +153,13 @@ fn fill<C: Cell>(cells: &mut [C], with: C) {
     rest.iter_mut().for_each(|cell| *cell = with);
 }
 
-impl<L: Layout> Default for Frame<L> {
+impl<L: Layout> Default for Framebuffer<L> {
     fn default() -> Self {
-        Frame::new()
+        Framebuffer::new()
     }
 }
 
-impl<L: Layout> Surface for Frame<L> {
+impl<L: Layout> Surface for Framebuffer<L> {
     type Ink = L::Ink;
     type Cursor = L::Cursor;
 
@@ -187,14 +187,14 @@ impl<L: Layout> Surface for Frame<L> {
     }
 }
 
-impl<L: Layout> OriginDimensions for Frame<L> {
+impl<L: Layout> OriginDimensions for Framebuffer<L> {
     fn size(&self) -> Size {
         Size::new(L::WIDTH as u32, L::HEIGHT as u32)
     }
 }
 
 /// For text and whatever else `embedded-graphics` draws.
-impl<L: Layout> DrawTarget for Frame<L> {
+impl<L: Layout> DrawTarget for Framebuffer<L> {
     type Color = L::Ink;
     type Error = Infallible;
 

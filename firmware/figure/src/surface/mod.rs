@@ -9,7 +9,7 @@ mod rgb565;
 mod rows;
 
 pub use bands::{BAND, Bands, Window};
-pub use frame::{Cell, Frame, Layout};
+pub use frame::{Cell, Framebuffer, Layout};
 pub use gray4::Gray4Rows;
 pub use mono::MonoPages;
 pub use on_target::OnTarget;

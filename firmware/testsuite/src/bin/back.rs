@@ -5,7 +5,7 @@
 
 use core::hint::black_box;
 
-use pantin::{ChannelState, Clip, Mark, Memory, Player, Undo};
+use pantin::{ChannelState, Clip, Player, SeekCache, SnapshotPos, Undo};
 use testsuite::{clip, markers};
 
 /// What a device with 64 KiB of RAM may lend: 12 KiB of history, and 16 snapshots of up to 50 channels, or fewer of more, in 19 KB.
@@ -22,12 +22,12 @@ fn main() -> ! {
     let mut pose = [0; clip::CHANNELS];
     // One by one: a tuple of arrays would stand on the stack twice.
     let mut undo = [Undo::default(); RECORDS];
-    let mut marks = [Mark::default(); MARKS];
+    let mut marks = [SnapshotPos::default(); MARKS];
     let mut kept = [ChannelState::default(); MARKS * KEPT];
     let mut values = [0; MARKS * KEPT];
     let Ok(clip) = Clip::new_checked(bytes) else { panic!() };
     let Ok(mut player) = Player::new(clip, &mut states, &mut pose) else { panic!() };
-    let mut memory = Memory::new(&player, &mut undo, &mut marks, &mut kept, &mut values);
+    let mut memory = SeekCache::new(&player, &mut undo, &mut marks, &mut kept, &mut values);
     let last = player.clip().frames() - 1;
     forth(&mut player, &mut memory, last);
     let there = sum(player.pose());
@@ -44,7 +44,7 @@ fn main() -> ! {
 }
 
 #[inline(never)]
-fn forth(player: &mut Player, memory: &mut Memory, last: u32) {
+fn forth(player: &mut Player, memory: &mut SeekCache, last: u32) {
     markers::start();
     for _ in 0..last {
         player.step_with(memory);
@@ -53,7 +53,7 @@ fn forth(player: &mut Player, memory: &mut Memory, last: u32) {
 }
 
 #[inline(never)]
-fn back(player: &mut Player, memory: &mut Memory) {
+fn back(player: &mut Player, memory: &mut SeekCache) {
     markers::start();
     while player.frame() > 0 {
         player.step_back(memory);
@@ -62,7 +62,7 @@ fn back(player: &mut Player, memory: &mut Memory) {
 }
 
 #[inline(never)]
-fn seek(player: &mut Player, memory: &mut Memory, last: u32) {
+fn seek(player: &mut Player, memory: &mut SeekCache, last: u32) {
     markers::start();
     player.seek_with(last, memory);
     markers::stop();

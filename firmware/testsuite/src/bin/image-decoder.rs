@@ -5,7 +5,7 @@
 
 use core::hint::black_box;
 
-use pantin::{ChannelState, Clip, Mark, Memory, Player, Rig, Step, Stream, Undo};
+use pantin::{ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -19,8 +19,8 @@ fn main() -> ! {
 fn play(bytes: &[u8], states: &mut [ChannelState], pose: &mut [i32]) {
     let Ok(clip) = Clip::new_checked(bytes) else { return };
     let Ok(mut player) = Player::new(clip, states, pose) else { return };
-    let (undo, marks): (&mut [Undo], &mut [Mark]) = (black_box(&mut []), black_box(&mut []));
-    let mut memory = Memory::new(&player, undo, marks, black_box(&mut []), black_box(&mut []));
+    let (undo, marks): (&mut [Undo], &mut [SnapshotPos]) = (black_box(&mut []), black_box(&mut []));
+    let mut memory = SeekCache::new(&player, undo, marks, black_box(&mut []), black_box(&mut []));
     player.step();
     player.seek(black_box(7));
     player.step_with(&mut memory);
@@ -32,7 +32,7 @@ fn play(bytes: &[u8], states: &mut [ChannelState], pose: &mut [i32]) {
 fn stream(bytes: &[u8], buffer: &mut [u8], states: &mut [ChannelState], pose: &mut [i32]) {
     let Ok(rig) = Rig::new_checked(bytes) else { return };
     let Ok(mut stream) = Stream::new(rig, buffer, states, pose) else { return };
-    while stream.step() != Step::End {
+    while stream.step() != Progress::End {
         stream.feed(bytes);
     }
     black_box(stream.pose());

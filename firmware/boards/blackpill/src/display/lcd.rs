@@ -6,7 +6,7 @@ use embedded_graphics::pixelcolor::Rgb565;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::MODE_0;
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
-use pantin_figure::surface::{Frame, Gray4Rows, Layout, MonoPages};
+use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages};
 use stm32f4xx_hal::gpio::{Output, PA4, PA5, PA7, PB0};
 use stm32f4xx_hal::pac::SPI1;
 use stm32f4xx_hal::prelude::*;
@@ -47,7 +47,7 @@ impl Display {
     }
 
     /// Brings it up to date. What a bus that fails has lost is sent when it changes again.
-    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Frame<L>) {
+    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Framebuffer<L>) {
         let _ = self.0.show(frame);
     }
 }

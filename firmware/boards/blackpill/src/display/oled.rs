@@ -1,7 +1,7 @@
 //! The SSD1306: SCL on PB6, SDA on PB7.
 
 use board_parts::ssd1306::{ADDRESS, Pages, Ssd1306};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 use stm32f4xx_hal::gpio::{PB6, PB7};
 use stm32f4xx_hal::i2c::I2c;
 use stm32f4xx_hal::pac::I2C1;
@@ -24,7 +24,7 @@ impl Display {
     }
 
     /// Brings it up to date. One that does not answer is asked again with the next picture.
-    pub fn show(&mut self, frame: &mut Frame<Pages>) {
+    pub fn show(&mut self, frame: &mut Framebuffer<Pages>) {
         let _ = self.0.show(frame);
     }
 }

@@ -8,7 +8,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, MODE_0, SpiBus};
 use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
 use embedded_hal_nb::spi::FullDuplex;
-use pantin_figure::surface::{Frame, Layout, MonoPages, Rgb565Rows};
+use pantin_figure::surface::{Framebuffer, Layout, MonoPages, Rgb565Rows};
 use rp2040_hal::Spi;
 use rp2040_hal::fugit::RateExtU32;
 use rp2040_hal::gpio::bank0::{Gpio17, Gpio18, Gpio19, Gpio20};
@@ -94,7 +94,7 @@ impl Display {
     }
 
     /// Brings it up to date.
-    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Frame<L>) {
+    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Framebuffer<L>) {
         let Ok(()) = self.0.show(frame);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Free;
 use board_parts::ssd1306::{ADDRESS, Pages, Ssd1306};
-use pantin_figure::surface::Frame;
+use pantin_figure::surface::Framebuffer;
 use rp2040_hal::I2C;
 use rp2040_hal::fugit::RateExtU32;
 use rp2040_hal::gpio::bank0::{Gpio4, Gpio5};
@@ -26,7 +26,7 @@ impl Display {
     }
 
     /// Brings it up to date. One that does not answer is asked again with the next picture.
-    pub fn show(&mut self, frame: &mut Frame<Pages>) {
+    pub fn show(&mut self, frame: &mut Framebuffer<Pages>) {
         let _ = self.0.show(frame);
     }
 }

@@ -3,53 +3,55 @@
 use crate::board::{Board, Exit};
 use crate::log::error;
 use crate::options::{Mode, Options};
-use crate::run::{Wishes, listen, set_up, show};
-use crate::scene::{Entry, Scene};
+use crate::run::{Effects, listen, set_up, show};
 use crate::update::Listener;
+use crate::view_state::{Entry, ViewState};
 use heapless::Vec;
 use pantin::{ChannelState, Clip, Player};
-use pantin_figure::rotation::Turning;
-use pantin_figure::surface::{Frame, Layout};
-use pantin_figure::{Canvas, Stage};
+use pantin_figure::rotation::RotationBackend;
+use pantin_figure::surface::{Framebuffer, Layout};
+use pantin_figure::{Canvas, FigureRenderer};
 
 /// Most figures.
 pub const FIGURES: usize = 16;
 
 /// Room for one figure: see [`crate::run`] for the numbers.
-pub struct Seat<R: Turning, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> {
+pub struct FigureBuffers<R: RotationBackend, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> {
     states: [ChannelState; MOVING],
     pose: [i32; CHANNELS],
-    stage: Stage<JOINTS, R>,
+    renderer: FigureRenderer<JOINTS, R>,
 }
 
-impl<R: Turning, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Seat<R, CHANNELS, MOVING, JOINTS> {
+impl<R: RotationBackend, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>
+    FigureBuffers<R, CHANNELS, MOVING, JOINTS>
+{
     /// Nobody sits there.
     #[inline(always)]
     pub fn empty() -> Self {
-        Seat { states: [ChannelState::default(); MOVING], pose: [0; CHANNELS], stage: Stage::empty() }
+        FigureBuffers { states: [ChannelState::default(); MOVING], pose: [0; CHANNELS], renderer: FigureRenderer::empty() }
     }
 }
 
 /// A figure on its seat.
-struct Actor<'a, R: Turning, const JOINTS: usize> {
+struct Actor<'a, R: RotationBackend, const JOINTS: usize> {
     player: Player<'a, 'a>,
-    stage: &'a mut Stage<JOINTS, R>,
+    renderer: &'a mut FigureRenderer<JOINTS, R>,
 }
 
 /// Plays a clip a seat until the mode's end: the clips in turn, each round of them begun a little later. Time is the first clip's; of the
 /// keys, those that change how figures are drawn work.
 #[inline(never)]
-pub fn crowd<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+pub fn multi<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
     entries: &[Entry],
     options: Options,
-    seats: &mut [Seat<B::Turning, CHANNELS, MOVING, JOINTS>],
-    frame: &mut Frame<B::Layout>,
+    buffers: &mut [FigureBuffers<B::Rotation, CHANNELS, MOVING, JOINTS>],
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
-    let mut scene = Scene::new(&options);
-    let mut actors: Vec<Actor<B::Turning, JOINTS>, FIGURES> = Vec::new();
-    let count = seats.len().min(FIGURES);
-    for (index, (seat, entry)) in seats.iter_mut().zip(entries.iter().cycle()).take(count).enumerate() {
+    let mut view_state = ViewState::new(&options);
+    let mut actors: Vec<Actor<B::Rotation, JOINTS>, FIGURES> = Vec::new();
+    let count = buffers.len().min(FIGURES);
+    for (index, (buffers, entry)) in buffers.iter_mut().zip(entries.iter().cycle()).take(count).enumerate() {
         let clip = match Clip::new_checked(entry.bytes) {
             Ok(clip) => clip,
             Err(error) => {
@@ -57,50 +59,52 @@ pub fn crowd<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS:
                 return Exit::BadClip;
             }
         };
-        let mut player = match Player::new(clip, &mut seat.states, &mut seat.pose) {
+        let mut player = match Player::new(clip, &mut buffers.states, &mut buffers.pose) {
             Ok(player) => player,
             Err(error) => {
                 error!("a clip is too big: {}", error);
                 return Exit::BadClip;
             }
         };
-        if let Err(error) = sit(&mut seat.stage, &mut player, &scene, [index, count], [B::Layout::WIDTH, B::Layout::HEIGHT]) {
+        if let Err(error) =
+            arrange(&mut buffers.renderer, &mut player, &view_state, [index, count], [B::Layout::WIDTH, B::Layout::HEIGHT])
+        {
             error!("a rig is too big: {}", error);
             return Exit::BadClip;
         }
         player.seek(clip.frames() / count as u32 * index as u32);
         // There is room for as many.
-        let _ = actors.push(Actor { player, stage: &mut seat.stage });
+        let _ = actors.push(Actor { player, renderer: &mut buffers.renderer });
     }
-    play(&mut actors, &options, &mut scene, frame, board);
+    play(&mut actors, &options, &mut view_state, frame, board);
     Exit::Done
 }
 
 /// Sets a figure up in its column: the display's height, and half as wide again as its share.
 #[inline(never)]
-fn sit<R: Turning, const JOINTS: usize>(
-    stage: &mut Stage<JOINTS, R>,
+fn arrange<R: RotationBackend, const JOINTS: usize>(
+    renderer: &mut FigureRenderer<JOINTS, R>,
     player: &mut Player,
-    scene: &Scene,
+    view_state: &ViewState,
     [index, count]: [usize; 2],
     [width, height]: [usize; 2],
 ) -> Result<(), pantin_figure::Error> {
     let share = width / count;
     let canvas = Canvas { width: (share * 3 / 2) as u16, height: height as u16 };
-    set_up(stage, player, canvas)?;
-    stage.aim(player, scene.view);
-    stage.shift((share * index + share / 2) as i16 - (canvas.width / 2) as i16, 0);
+    set_up(renderer, player, canvas)?;
+    renderer.aim(player, view_state.view);
+    renderer.shift((share * index + share / 2) as i16 - (canvas.width / 2) as i16, 0);
     Ok(())
 }
 
 fn play<B: Board, const JOINTS: usize>(
-    actors: &mut [Actor<B::Turning, JOINTS>],
+    actors: &mut [Actor<B::Rotation, JOINTS>],
     options: &Options,
-    scene: &mut Scene,
-    frame: &mut Frame<B::Layout>,
+    view_state: &mut ViewState,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) {
-    let mut wishes = Wishes::new();
+    let mut effects = Effects::new();
     let (mut due, mut shown) = (0, 0u32);
     if let (Some(first), true) = (actors.first(), options.mode != Mode::Sync) {
         board.start_timer(first.player.clip().frame_time_ns());
@@ -108,13 +112,13 @@ fn play<B: Board, const JOINTS: usize>(
     loop {
         decode(actors, due, board);
         place(actors, board);
-        draw(actors, scene, frame, board);
+        draw(actors, view_state, frame, board);
         show(frame, board);
         shown = shown.wrapping_add(1);
         due = match options.mode {
             Mode::Sync => {
                 let number = actors.first().map_or(0, |first| first.player.frame());
-                if !listen(number, scene, &mut wishes, &mut Listener::default(), board) {
+                if !listen(number, view_state, &mut effects, &mut Listener::default(), board) {
                     return;
                 }
                 1
@@ -122,12 +126,12 @@ fn play<B: Board, const JOINTS: usize>(
             Mode::Frames(count) if shown >= count => return,
             Mode::Frames(_) | Mode::Play => board.wait_ticks(),
         };
-        wishes.clear();
+        effects.clear();
     }
 }
 
 #[inline(never)]
-fn decode<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Turning, JOINTS>], frames: u32, board: &mut B) {
+fn decode<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Rotation, JOINTS>], frames: u32, board: &mut B) {
     board.mark_start();
     for actor in actors {
         (0..frames).for_each(|_| actor.player.step());
@@ -136,25 +140,25 @@ fn decode<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Turning, JOINTS>
 }
 
 #[inline(never)]
-fn place<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Turning, JOINTS>], board: &mut B) {
+fn place<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Rotation, JOINTS>], board: &mut B) {
     board.mark_start();
     for actor in actors {
-        actor.stage.place(actor.player.pose());
+        actor.renderer.set_pose(actor.player.pose());
     }
     board.mark_stop();
 }
 
 #[inline(never)]
 fn draw<B: Board, const JOINTS: usize>(
-    actors: &mut [Actor<B::Turning, JOINTS>],
-    scene: &Scene,
-    frame: &mut Frame<B::Layout>,
+    actors: &mut [Actor<B::Rotation, JOINTS>],
+    view_state: &ViewState,
+    frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) {
     board.mark_start();
     frame.clear();
     for actor in actors {
-        actor.stage.draw_on(frame, scene.look);
+        actor.renderer.draw_on(frame, view_state.style);
     }
     board.mark_stop();
 }

@@ -3,24 +3,24 @@
 use crate::channel::{ChannelState, step_size};
 use crate::entropy::{Symbols, Table};
 use crate::layout::{FIRST_STEP, FOLLOW_BITS, MAX_STEP, STEP_BITS, STEP_CHANGES, status};
-use crate::position::{self, Channels};
-use crate::rig::{Kind, Rig, Slots};
+use crate::play_state::{self, Channels};
+use crate::rig::{ChannelIter, Kind, Rig};
 use crate::tables;
 
 /// What the channels read so far tell about the next one.
 #[derive(Clone, Copy, Debug)]
-struct Opening {
+struct ChannelStart {
     status: u8,
     steps: [u8; 2],
 }
 
-impl Default for Opening {
+impl Default for ChannelStart {
     fn default() -> Self {
-        Opening { status: 0, steps: [FIRST_STEP; 2] }
+        ChannelStart { status: 0, steps: [FIRST_STEP; 2] }
     }
 }
 
-impl Opening {
+impl ChannelStart {
     /// The next channel's start: its position unless it rests, and velocity and index of its step if it moves. One that follows
     /// has the index [`MAX_STEP`] + how many of the moving channels before it it goes back.
     #[inline(never)]
@@ -73,16 +73,16 @@ pub(crate) enum Opened {
     /// All are read.
     Done,
     /// The input ran dry: go on when it holds more.
-    Dry,
+    NeedMore,
     /// There are more moving channels than states.
     Full,
 }
 
 /// Reads the starts of a rig's channels, one after the other.
 #[derive(Clone, Debug)]
-pub(crate) struct Starts<'a> {
-    slots: Slots<'a>,
-    opening: Opening,
+pub(crate) struct ChannelStarts<'a> {
+    slots: ChannelIter<'a>,
+    opening: ChannelStart,
     /// Steps of the rig's offsets in those of the clip: 2^shift.
     shift: i32,
     slot: u16,
@@ -90,10 +90,10 @@ pub(crate) struct Starts<'a> {
     pub(crate) moving: u16,
 }
 
-impl<'a> Starts<'a> {
-    pub(crate) fn new(rig: &Rig<'a>, length_exponent: i8) -> Starts<'a> {
+impl<'a> ChannelStarts<'a> {
+    pub(crate) fn new(rig: &Rig<'a>, length_exponent: i8) -> ChannelStarts<'a> {
         let shift = i32::from(rig.length_exponent()) - i32::from(length_exponent);
-        Starts { slots: rig.slots(), opening: Opening::default(), shift, slot: 0, moving: 0 }
+        ChannelStarts { slots: rig.slots(), opening: ChannelStart::default(), shift, slot: 0, moving: 0 }
     }
 
     /// Reads on, up to the last position at which a start is sure to be whole. `pose` has a value for every channel.
@@ -107,7 +107,7 @@ impl<'a> Starts<'a> {
         while symbols.at.position <= dry_at {
             let Some((kind, rest)) = self.slots.next() else {
                 let states = states.get_mut(..usize::from(self.moving)).unwrap_or(&mut []);
-                position::follow(&mut Channels { states, pose });
+                play_state::follow(&mut Channels { states, pose });
                 return Opened::Done;
             };
             let (p, start) = self.opening.read(symbols, kind);
@@ -121,12 +121,12 @@ impl<'a> Starts<'a> {
             }
             self.slot += 1;
         }
-        Opened::Dry
+        Opened::NeedMore
     }
 
     /// Number of moving channels, all starts being at hand.
     pub(crate) fn count(self, symbols: &mut Symbols<'_>) -> usize {
-        let Starts { mut opening, slots, .. } = self;
+        let ChannelStarts { mut opening, slots, .. } = self;
         slots.filter(|&(kind, _)| opening.read(symbols, kind).1.is_some()).count()
     }
 }

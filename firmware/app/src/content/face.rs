@@ -1,13 +1,13 @@
 //! A face.
 
-use super::{Show, display};
+use super::{Content, display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
-use crate::run::{After, Scenery, play};
+use crate::run::{Outcome, PlayContext, play};
 use pantin::{Clip, Player, Rig};
 use pantin_face::{Binding, MODEL, Model, Morph, VERTICES, Weights};
-use pantin_figure::surface::{Frame, Layout};
-use pantin_figure::{Canvas, Look, View};
+use pantin_figure::surface::{Framebuffer, Layout};
+use pantin_figure::{Canvas, DrawStyle, View};
 
 /// Whether a clip drives a face. In a function of its own: what the names are bound to is given back.
 #[inline(never)]
@@ -20,7 +20,7 @@ pub(super) struct Face<'a> {
     model: &'a Model<'static>,
     binding: &'a Binding,
     morph: &'a mut Morph<VERTICES>,
-    look: &'a mut pantin_face::Look<VERTICES>,
+    renderer: &'a mut pantin_face::FaceRenderer<VERTICES>,
     /// From where it is seen straight ahead.
     ahead: View,
 }
@@ -40,10 +40,10 @@ pub(super) fn with<T>(
     binding.set_up(rig, &model);
     let mut morph = Morph::EMPTY;
     morph.set_up(&model).ok()?;
-    let mut look = pantin_face::Look::EMPTY;
-    look.set_up(&model, canvas, from(view, ahead));
-    look.shift(column, 0);
-    Some(then(Face { model: &model, binding: &binding, morph: &mut morph, look: &mut look, ahead }))
+    let mut renderer = pantin_face::FaceRenderer::EMPTY;
+    renderer.set_up(&model, canvas, from(view, ahead));
+    renderer.shift(column, 0);
+    Some(then(Face { model: &model, binding: &binding, morph: &mut morph, renderer: &mut renderer, ahead }))
 }
 
 impl Face<'_> {
@@ -53,9 +53,9 @@ impl Face<'_> {
         self.binding.names()
     }
 
-    pub(super) fn place(&mut self, pose: &[i32]) {
+    pub(super) fn set_pose(&mut self, pose: &[i32]) {
         self.shape(pose);
-        self.look.project(self.model, self.morph);
+        self.renderer.project(self.model, self.morph);
     }
 
     /// In a function of its own: the weights are given back.
@@ -66,12 +66,12 @@ impl Face<'_> {
         self.morph.place(self.model, &weights);
     }
 
-    pub(super) fn draw<L: Layout>(&mut self, frame: &mut Frame<L>) {
-        self.look.draw_on(self.model, frame);
+    pub(super) fn draw<L: Layout>(&mut self, frame: &mut Framebuffer<L>) {
+        self.renderer.draw_on(self.model, frame);
     }
 
     pub(super) fn aim(&mut self, view: View) {
-        self.look.aim(from(view, self.ahead));
+        self.renderer.aim(from(view, self.ahead));
     }
 }
 
@@ -80,12 +80,12 @@ fn from(view: View, ahead: View) -> pantin_face::View {
     pantin_face::View { orbit: view.orbit - ahead.orbit, tilt: view.tilt - ahead.tilt }
 }
 
-impl<L: Layout> Show<L> for Face<'_> {
-    fn place(&mut self, pose: &[i32]) {
-        Face::place(self, pose);
+impl<L: Layout> Content<L> for Face<'_> {
+    fn set_pose(&mut self, pose: &[i32]) {
+        Face::set_pose(self, pose);
     }
 
-    fn draw(&mut self, frame: &mut Frame<L>, _look: Look) {
+    fn draw(&mut self, frame: &mut Framebuffer<L>, _style: DrawStyle) {
         Face::draw(self, frame);
     }
 
@@ -96,27 +96,27 @@ impl<L: Layout> Show<L> for Face<'_> {
 
 /// Plays it on the whole display.
 #[inline(never)]
-pub(super) fn perform<B: Board>(player: &mut Player, scenery: Scenery<B>) -> After {
+pub(super) fn perform<B: Board>(player: &mut Player, context: PlayContext<B>) -> Outcome {
     let rig = player.clip().rig();
-    let views = [scenery.scene.view, scenery.scene.ahead];
+    let views = [context.view_state.view, context.view_state.ahead];
     let after = with(&rig, display::<B::Layout>(), 0, views, |mut face| {
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
-            scenery.entry.name,
+            context.entry.name,
             player.clip().frames(),
             player.clip().frame_time_ns(),
             player.clip().rig().channels(),
             player.clip().moving(),
             face.names()
         );
-        let face: &mut dyn Show<B::Layout> = &mut face;
-        play(player, face, scenery)
+        let face: &mut dyn Content<B::Layout> = &mut face;
+        play(player, face, context)
     });
     after.unwrap_or_else(no_model)
 }
 
 /// The model is the program's own; its bytes may have been damaged.
-pub(super) fn no_model() -> After {
+pub(super) fn no_model() -> Outcome {
     error!("the face's model is no use");
-    After::Exit(Exit::BadClip)
+    Outcome::Exit(Exit::BadClip)
 }

@@ -4,14 +4,14 @@ use crate::blocks::STRIDE;
 use crate::channel::ChannelState;
 use crate::clip::{Clip, Parts};
 use crate::layout::CRC_BYTES;
-use crate::player::{Memory, Player};
+use crate::player::{Player, SeekCache};
 use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
 use crate::{OpenError, TooSmall, crc};
 
 /// The front of a file that holds its rig: as much of a [`Clip`] as is there. For bytes that are not kept there is [`crate::Stream`].
 #[derive(Clone, Copy, Debug)]
-pub struct Front<'a> {
+pub struct PartialClip<'a> {
     clip: Clip<'a>,
     /// Bytes of the motion's blocks that were checked, their CRCs included.
     checked: usize,
@@ -19,11 +19,11 @@ pub struct Front<'a> {
     dry_at: u32,
 }
 
-impl<'a> Front<'a> {
+impl<'a> PartialClip<'a> {
     /// Reads the head of what has come of a file. After [`OpenError::Truncated`] it may be tried again with more. That a later block is damaged,
-    /// [`Front::extend`] tells.
+    /// [`PartialClip::extend`] tells.
     #[inline(never)]
-    pub fn new(file: &'a [u8]) -> Result<Front<'a>, OpenError> {
+    pub fn new(file: &'a [u8]) -> Result<PartialClip<'a>, OpenError> {
         let parts = Parts::split(file)?;
         let rig = Rig::new_checked(parts.rig.ok_or(OpenError::WrongRig)?)?;
         let (checked, outcome) = check(&parts, 0);
@@ -37,7 +37,7 @@ impl<'a> Front<'a> {
         if clip.symbols() > dry_at {
             return Err(OpenError::Truncated);
         }
-        Ok(Front { clip, checked, dry_at })
+        Ok(PartialClip { clip, checked, dry_at })
     }
 
     /// Takes a longer front of the same file. A damaged block is told each time, and what stands before it stays playable.
@@ -67,18 +67,18 @@ impl<'a> Front<'a> {
 
     /// A player at frame 0; `None` while that has not come. `states` and `pose` need [`Rig::channels`] elements.
     pub fn player<'m>(&self, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Option<Player<'a, 'm>>, TooSmall> {
-        Player::of_front(self.clip, self.dry_at, states, pose)
+        Player::from_partial(self.clip, self.dry_at, states, pose)
     }
 
     /// Goes on by one frame with a player of it; false if not all of that has come, or at the last frame. Then the player may have read some of the next
     /// segments: it may go on by this, or back.
     pub fn step(&self, player: &mut Player<'a, '_>) -> bool {
-        player.step_of_front(&self.clip, self.dry_at)
+        player.step_partial(&self.clip, self.dry_at)
     }
 
-    /// Goes with a player of it to a frame that [`Front::step`] has come to, as [`Player::seek_with`] does, but not by snapshots in the file.
-    pub fn seek(&self, player: &mut Player<'a, '_>, frame: u32, memory: &mut Memory<'_>) {
-        player.seek_of_front(&self.clip, frame, memory);
+    /// Goes with a player of it to a frame that [`PartialClip::step`] has come to, as [`Player::seek_with`] does, but not by snapshots in the file.
+    pub fn seek(&self, player: &mut Player<'a, '_>, frame: u32, memory: &mut SeekCache<'_>) {
+        player.seek_partial(&self.clip, frame, memory);
     }
 }
 

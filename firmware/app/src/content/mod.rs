@@ -7,33 +7,33 @@ mod both;
 mod face;
 
 use crate::board::Board;
-use crate::run::{After, Scenery};
+use crate::run::{Outcome, PlayContext};
 use pantin::Player;
-use pantin_figure::surface::{Frame, Layout};
-use pantin_figure::{Canvas, Look, View};
+use pantin_figure::surface::{Framebuffer, Layout};
+use pantin_figure::{Canvas, DrawStyle, View};
 
 /// What is before the camera.
-pub(crate) trait Show<L: Layout> {
+pub(crate) trait Content<L: Layout> {
     /// Puts it where a pose has it.
-    fn place(&mut self, pose: &[i32]);
+    fn set_pose(&mut self, pose: &[i32]);
 
     /// Draws that on a clear display.
-    fn draw(&mut self, frame: &mut Frame<L>, look: Look);
+    fn draw(&mut self, frame: &mut Framebuffer<L>, style: DrawStyle);
 
     /// Sets the camera up for another view; leaves the player where it is.
     fn aim(&mut self, player: &mut Player, view: View);
 }
 
 /// Plays the clip as what it is. Each kind has its room in a function of its own: the largest counts, not their sum.
-pub(crate) fn on_stage<B: Board, const JOINTS: usize>(player: &mut Player, scenery: Scenery<B>) -> After {
+pub(crate) fn build<B: Board, const JOINTS: usize>(player: &mut Player, context: PlayContext<B>) -> Outcome {
     #[cfg(feature = "face")]
     if face::is_in(player.clip()) {
         return match player.clip().rig().joint_count() {
-            0 => face::perform(player, scenery),
-            _ => both::perform::<B, JOINTS>(player, scenery),
+            0 => face::perform(player, context),
+            _ => both::perform::<B, JOINTS>(player, context),
         };
     }
-    body::perform::<B, JOINTS>(player, scenery)
+    body::perform::<B, JOINTS>(player, context)
 }
 
 /// All of a board's display.

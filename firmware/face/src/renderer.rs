@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::morph::{Morph, Place, coordinates};
 use crate::outline::Outline;
 use crate::pen::{Each, Paint, Pen};
-use crate::seen::{self, Seen};
+use crate::projection::{self, Projection};
 use crate::strokes::{self, Screen};
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
@@ -40,7 +40,7 @@ pub(crate) struct Camera {
 
 /// A camera and what it sees of a face of at most `N` vertices.
 #[derive(Clone, Debug)]
-pub struct Look<const N: usize> {
+pub struct FaceRenderer<const N: usize> {
     camera: Camera,
     detail: u8,
     vertices: usize,
@@ -70,9 +70,9 @@ const DETAILS: [i32; 3] = [96, 150, 190];
 /// The camera is so many times the face's height away, as a power of two.
 const DISTANCE_BITS: u32 = 2;
 
-impl<const N: usize> Look<N> {
+impl<const N: usize> FaceRenderer<N> {
     /// No camera yet.
-    pub const EMPTY: Self = Look {
+    pub const EMPTY: Self = FaceRenderer {
         camera: Camera { centre: [0; 2], rows: [[0; 3]; 3], scale: 1, shift: 16, nearer: 0, middle: [0; 3] },
         detail: 0,
         vertices: 0,
@@ -86,9 +86,9 @@ impl<const N: usize> Look<N> {
     /// A camera for a display.
     #[inline(always)]
     pub fn new(model: &Model, canvas: Canvas, view: View) -> Self {
-        let mut look = Look::EMPTY;
-        look.set_up(model, canvas, view);
-        look
+        let mut renderer = FaceRenderer::EMPTY;
+        renderer.set_up(model, canvas, view);
+        renderer
     }
 
     /// A camera for a display, where there was none: as [`Morph::set_up`].
@@ -123,8 +123,8 @@ impl<const N: usize> Look<N> {
         // Where surfaces look, and what makes the outline, depends on the head's turn alone, and hardly on a degree of it.
         let rounded = head.0.map(|angle| (((angle >> (ROUNDED_BITS - 1)) + 1) >> 1) as i8);
         if self.rounded != Some(rounded) {
-            let towards = seen::towards(&self.camera, rounded.map(|angle| i32::from(angle) << ROUNDED_BITS));
-            seen::facing(model, towards, &mut self.facing);
+            let towards = projection::towards(&self.camera, rounded.map(|angle| i32::from(angle) << ROUNDED_BITS));
+            projection::facing(model, towards, &mut self.facing);
             self.outline.of(model, &self.facing);
             strokes::leave_out(model, self.detail, &self.outline, &mut self.facing);
             (self.rounded, self.before) = (Some(rounded), None);
@@ -190,10 +190,10 @@ fn frame(model: &Model, canvas: Canvas) -> (Camera, u8) {
 #[inline(never)]
 fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: bool, facing: &[i8], points: &mut [[i16; 2]]) {
     let (angles, pivot) = head;
-    let head = seen::turned(angles);
+    let head = projection::turned(angles);
     let pivot = pivot.map(i32::from);
     let carried = head.apply_any(pivot);
-    let whole = Seen::new(camera, &head, core::array::from_fn(|axis| pivot[axis] - carried[axis] - camera.middle[axis]));
+    let whole = Projection::new(camera, &head, core::array::from_fn(|axis| pivot[axis] - carried[axis] - camera.middle[axis]));
     if !all {
         for [from, to] in model.moving() {
             if let (Some(places), Some(facing), Some(points)) =
@@ -205,7 +205,7 @@ fn project(model: &Model, camera: &Camera, places: &[Place], head: Turned, all: 
         return;
     }
     whole.points(places, facing, points);
-    let still = Seen::new(camera, &Rotation::IDENTITY, camera.middle.map(|x| -x));
+    let still = Projection::new(camera, &Rotation::IDENTITY, camera.middle.map(|x| -x));
     let mut fixed = Bytes(model.fixed);
     while let Ok(index) = fixed.index(model.wide) {
         if let (Some(point), Some(&place)) = (points.get_mut(usize::from(index)), places.get(usize::from(index))) {

@@ -2,13 +2,13 @@
 
 use crate::kinematics::Kinematics;
 use crate::root::direction;
-use crate::rotation::{Turning, Vector, vector};
+use crate::rotation::{RotationBackend, Vector, vector};
 use crate::skeleton::{Part, Skeleton};
 use crate::trig::ONE;
 
 /// Gathers what a clip's poses show, axis by axis. Lengths are figure units.
 #[derive(Clone, Copy, Debug)]
-pub struct Survey {
+pub struct Bounds {
     /// Least coordinates of any joint.
     pub low: Vector,
     /// Greatest coordinates of any joint.
@@ -21,7 +21,7 @@ pub struct Survey {
 
 /// Which way is up and where the figure faces, in Q15 of the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bearings {
+pub struct Orientation {
     /// The axis that is vertical.
     pub axis: usize,
     /// Up: 1 along that axis, forwards or backwards.
@@ -30,22 +30,22 @@ pub struct Bearings {
     pub facing: Vector,
 }
 
-impl Bearings {
+impl Orientation {
     /// Up along y, looking along z.
-    pub(crate) const UPRIGHT: Bearings = Bearings { axis: 1, up: [0, ONE, 0], facing: [0, 0, ONE] };
+    pub(crate) const UPRIGHT: Orientation = Orientation { axis: 1, up: [0, ONE, 0], facing: [0, 0, ONE] };
 }
 
 /// Sums of lengths up to 2^19 over a few hundred poses stay below 2^31.
 const SUM_SHIFT: u32 = 6;
 
-impl Survey {
+impl Bounds {
     /// Nothing seen yet.
     pub const fn new() -> Self {
-        Survey { low: [i32::MAX; 3], high: [i32::MIN; 3], upright: [0; 3], leftward: [0; 3] }
+        Bounds { low: [i32::MAX; 3], high: [i32::MIN; 3], upright: [0; 3], leftward: [0; 3] }
     }
 
     /// Takes in a pose.
-    pub fn include<const N: usize, R: Turning>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N, R>) {
+    pub fn include<const N: usize, R: RotationBackend>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N, R>) {
         let mut low = [i32::MAX; 3];
         let mut high = [i32::MIN; 3];
         let (mut crown, mut feet, mut footed) = (None, [0i32; 3], 0);
@@ -86,7 +86,7 @@ impl Survey {
 
     /// Up and facing. Up is one of the axes, `given` or found; a figure that names no left and right is taken to look along z, or against
     /// y if z is up.
-    pub fn bearings(&self, given: Option<u8>) -> Bearings {
+    pub fn orientation(&self, given: Option<u8>) -> Orientation {
         let size = |axis: usize| self.upright[axis].unsigned_abs();
         let mut axis = if size(2) > size(1) { 2 } else { 1 };
         if size(0) > size(axis) {
@@ -99,13 +99,13 @@ impl Survey {
         level[axis] = 0;
         let ahead = if axis == 2 { [0, -ONE, 0] } else { [0, 0, ONE] };
         let facing = direction(level).map_or(ahead, |left| cross(left, up));
-        Bearings { axis, up, facing }
+        Orientation { axis, up, facing }
     }
 }
 
-impl Default for Survey {
+impl Default for Bounds {
     fn default() -> Self {
-        Survey::new()
+        Bounds::new()
     }
 }
 

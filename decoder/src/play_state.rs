@@ -9,7 +9,7 @@ use crate::segment::{self, Segments};
 
 /// All of a player's state but the channels and the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Position {
+pub(crate) struct PlayState {
     pub(crate) cursor: Cursor,
     pub(crate) frame: u32,
     /// Channels below have read what they need for the step from this frame.
@@ -60,7 +60,7 @@ pub(crate) fn follow(channels: &mut Channels<'_>) {
     }
 }
 
-impl Position {
+impl PlayState {
     /// Reads the segments that start at this frame, in the order of channels, and keeps in `history` what undoes it. False if
     /// the input ran dry: call again when it holds more.
     #[inline(never)]
@@ -143,7 +143,7 @@ impl Position {
                 while let Some((_, [state, after @ ..])) = rest.split_at_mut_checked(first_due(rest, now)) {
                     // It stands at the start of its last segment.
                     if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                        state.hop(p, i32::from(state.length()));
+                        state.hop(p, i32::from(state.segment_frames()));
                     }
                     segment::read(state, &mut segments);
                     rest = after;
@@ -164,7 +164,7 @@ impl Position {
             if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
                 // -96 to 2: none starts at the last two frames, and a channel that has had none is due at frame 0.
                 let past = i32::from((self.frame as u8).wrapping_sub(state.due) as i8);
-                let run = i32::from(state.length()) + past;
+                let run = i32::from(state.segment_frames()) + past;
                 state.hop(p, if back { -run } else { run });
             }
         }

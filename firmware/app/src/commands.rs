@@ -2,7 +2,7 @@
 
 /// A wish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
+pub enum Command {
     /// Stop where it is, or go on.
     Pause,
     /// A frame forward; pauses.
@@ -42,30 +42,30 @@ pub enum Key {
 }
 
 /// Letters and their keys, with what they do in a few words.
-pub const LETTERS: [(u8, Key, &str); 18] = [
-    (b' ', Key::Pause, "pause"),
-    (b'.', Key::Step, "step"),
-    (b',', Key::Back, "step back"),
-    (b'r', Key::Reverse, "reverse"),
-    (b'n', Key::NextClip, "next clip"),
-    (b'p', Key::PreviousClip, "previous clip"),
-    (b'+', Key::Faster, "faster"),
-    (b'-', Key::Slower, "slower"),
-    (b'a', Key::OrbitLeft, "orbit left"),
-    (b'd', Key::OrbitRight, "orbit right"),
-    (b'w', Key::TiltUp, "tilt up"),
-    (b's', Key::TiltDown, "tilt down"),
-    (b'v', Key::View, "view"),
-    (b'f', Key::Track, "follow or fixed"),
-    (b'g', Key::Ground, "ground"),
-    (b'l', Key::Smooth, "smooth lines"),
-    (b'i', Key::Hud, "info"),
-    (b'?', Key::Help, "this list"),
+pub const LETTERS: [(u8, Command, &str); 18] = [
+    (b' ', Command::Pause, "pause"),
+    (b'.', Command::Step, "step"),
+    (b',', Command::Back, "step back"),
+    (b'r', Command::Reverse, "reverse"),
+    (b'n', Command::NextClip, "next clip"),
+    (b'p', Command::PreviousClip, "previous clip"),
+    (b'+', Command::Faster, "faster"),
+    (b'-', Command::Slower, "slower"),
+    (b'a', Command::OrbitLeft, "orbit left"),
+    (b'd', Command::OrbitRight, "orbit right"),
+    (b'w', Command::TiltUp, "tilt up"),
+    (b's', Command::TiltDown, "tilt down"),
+    (b'v', Command::View, "view"),
+    (b'f', Command::Track, "follow or fixed"),
+    (b'g', Command::Ground, "ground"),
+    (b'l', Command::Smooth, "smooth lines"),
+    (b'i', Command::Hud, "info"),
+    (b'?', Command::Help, "this list"),
 ];
 
-impl Key {
+impl Command {
     /// The key of a letter.
-    pub fn of_letter(letter: u8) -> Option<Key> {
+    pub fn from_letter(letter: u8) -> Option<Command> {
         LETTERS.iter().find(|(own, ..)| *own == letter).map(|(_, key, _)| *key)
     }
 }

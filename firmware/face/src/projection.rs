@@ -1,13 +1,13 @@
 //! Vertices through the camera: nine multiplications for the place, two for perspective, no division.
 
-use crate::look::Camera;
 use crate::model::Model;
 use crate::morph::Place;
+use crate::renderer::Camera;
 use pantin_figure::rotation::{Rotation, Vector};
 use pantin_figure::trig::FRACTION_BITS;
 
 /// Places in one orientation, before the camera.
-pub(crate) struct Seen {
+pub(crate) struct Projection {
     /// Right and down: sixteenths of a pixel after `shift`.
     across: [Vector; 2],
     /// Added before the shift.
@@ -19,9 +19,9 @@ pub(crate) struct Seen {
     nearer: i32,
 }
 
-impl Seen {
+impl Projection {
     /// `offset` is added to places after `head` has turned them.
-    pub fn new(camera: &Camera, head: &Rotation, offset: Vector) -> Seen {
+    pub fn new(camera: &Camera, head: &Rotation, offset: Vector) -> Projection {
         let [right, up, towards] = camera.rows;
         let rows = [right, up.map(|x| -x)];
         // A row of length 1 in Q15 times a scale below 2^15.
@@ -30,7 +30,7 @@ impl Seen {
             let along = scaled(row).into_iter().zip(offset).fold(0i32, |sum, (a, b)| sum.wrapping_add(a.wrapping_mul(b)));
             along.wrapping_add((1 << camera.shift) >> 1)
         };
-        Seen {
+        Projection {
             across: rows.map(|row| scaled(row_times(row, head))),
             offset: rows.map(moved),
             shift: camera.shift,

@@ -1,8 +1,8 @@
 //! What is on: which clip, from where it is seen, how fast it plays.
 
-use crate::keys::Key;
+use crate::commands::Command;
 use crate::options::Options;
-use pantin_figure::{Look, Track, View};
+use pantin_figure::{DrawStyle, Track, View};
 
 /// A clip and what it is called.
 #[derive(Clone, Copy, Debug)]
@@ -15,12 +15,12 @@ pub struct Entry<'a> {
 
 /// The state that keys change and that outlives a clip.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scene {
+pub(crate) struct ViewState {
     pub view: View,
     /// The view from which a face is seen straight ahead: the usual one, but where degrees were asked for, those of the face are meant.
     #[cfg(feature = "face")]
     pub ahead: View,
-    pub look: Look,
+    pub style: DrawStyle,
     pub paused: bool,
     /// Frames run backwards.
     pub backwards: bool,
@@ -37,7 +37,7 @@ pub(crate) struct Scene {
 
 /// What a key asks of the player.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wish {
+pub(crate) enum Effect {
     /// Nothing: the scene has changed.
     Nothing,
     /// The camera must be set up anew.
@@ -57,15 +57,15 @@ const PACES: core::ops::RangeInclusive<i8> = -3..=3;
 /// Degrees about the figure that the view key goes through: three quarters, front, side, from behind.
 const VIEWS: [i16; 4] = [-50, 0, -90, 140];
 
-impl Scene {
-    pub fn new(options: &Options) -> Scene {
+impl ViewState {
+    pub fn new(options: &Options) -> ViewState {
         let view = View { orbit: options.orbit.unwrap_or(View::default().orbit), ..View::default() };
-        let look = Look { smooth: options.smooth, ..Look::default() };
-        Scene {
+        let style = DrawStyle { smooth: options.smooth, ..DrawStyle::default() };
+        ViewState {
             view,
             #[cfg(feature = "face")]
             ahead: View { orbit: options.orbit.map_or(View::default().orbit, |_| 0), ..View::default() },
-            look,
+            style,
             paused: false,
             backwards: false,
             pace: 0,
@@ -78,46 +78,46 @@ impl Scene {
     }
 
     /// Takes a key.
-    pub fn take(&mut self, key: Key) -> Wish {
+    pub fn take(&mut self, key: Command) -> Effect {
         match key {
-            Key::Pause => self.paused = !self.paused,
-            Key::Step | Key::Back => {
+            Command::Pause => self.paused = !self.paused,
+            Command::Step | Command::Back => {
                 self.paused = true;
-                return Wish::Move(if key == Key::Step { 1 } else { -1 });
+                return Effect::Move(if key == Command::Step { 1 } else { -1 });
             }
-            Key::Reverse => self.backwards = !self.backwards,
-            Key::NextClip => return Wish::Clip(1),
-            Key::PreviousClip => return Wish::Clip(-1),
-            Key::Faster | Key::Slower => {
-                let change = if key == Key::Faster { 1 } else { -1 };
+            Command::Reverse => self.backwards = !self.backwards,
+            Command::NextClip => return Effect::Clip(1),
+            Command::PreviousClip => return Effect::Clip(-1),
+            Command::Faster | Command::Slower => {
+                let change = if key == Command::Faster { 1 } else { -1 };
                 self.pace = (self.pace + change).clamp(*PACES.start(), *PACES.end());
-                return Wish::Pace;
+                return Effect::Pace;
             }
-            Key::OrbitLeft | Key::OrbitRight => {
-                let change = if key == Key::OrbitRight { 15 } else { -15 };
+            Command::OrbitLeft | Command::OrbitRight => {
+                let change = if key == Command::OrbitRight { 15 } else { -15 };
                 self.view.orbit = turned(self.view.orbit + change);
-                return Wish::Aim;
+                return Effect::Aim;
             }
-            Key::TiltUp | Key::TiltDown => {
-                let change = if key == Key::TiltUp { 5 } else { -5 };
+            Command::TiltUp | Command::TiltDown => {
+                let change = if key == Command::TiltUp { 5 } else { -5 };
                 self.view.tilt = (self.view.tilt + change).clamp(-30, 85);
-                return Wish::Aim;
+                return Effect::Aim;
             }
-            Key::View => {
+            Command::View => {
                 let at = VIEWS.iter().position(|orbit| *orbit == self.view.orbit);
                 self.view.orbit = VIEWS[at.map_or(0, |at| (at + 1) % VIEWS.len())];
-                return Wish::Aim;
+                return Effect::Aim;
             }
-            Key::Track => {
+            Command::Track => {
                 self.view.track = if self.view.track == Track::Follow { Track::Fixed } else { Track::Follow };
-                return Wish::Aim;
+                return Effect::Aim;
             }
-            Key::Ground => self.look.ground = !self.look.ground,
-            Key::Smooth => self.look.smooth = !self.look.smooth,
-            Key::Hud => self.hud = !self.hud,
-            Key::Help => return Wish::Help,
+            Command::Ground => self.style.ground = !self.style.ground,
+            Command::Smooth => self.style.smooth = !self.style.smooth,
+            Command::Hud => self.hud = !self.hud,
+            Command::Help => return Effect::Help,
         }
-        Wish::Nothing
+        Effect::Nothing
     }
 
     /// Frames on for so many ticks of the timer.
@@ -149,24 +149,24 @@ mod tests {
 
     #[test]
     fn keys_go_round_and_stop_at_the_ends() {
-        let mut scene = Scene::new(&Options::parse([]));
-        let start = scene.view.orbit;
+        let mut view_state = ViewState::new(&Options::parse([]));
+        let start = view_state.view.orbit;
         for _ in 0..24 {
-            assert_eq!(scene.take(Key::OrbitLeft), Wish::Aim);
-            assert!((-180..180).contains(&scene.view.orbit));
+            assert_eq!(view_state.take(Command::OrbitLeft), Effect::Aim);
+            assert!((-180..180).contains(&view_state.view.orbit));
         }
-        assert_eq!(scene.view.orbit, start);
+        assert_eq!(view_state.view.orbit, start);
         for _ in 0..VIEWS.len() {
-            scene.take(Key::View);
+            view_state.take(Command::View);
         }
-        assert_eq!(scene.view.orbit, start);
-        (0..9).for_each(|_| assert_eq!(scene.take(Key::Slower), Wish::Pace));
-        assert_eq!(scene.tick_ns(1000), 8000);
-        (0..9).for_each(|_| assert_eq!(scene.take(Key::Faster), Wish::Pace));
-        assert_eq!(scene.tick_ns(1000), 125);
-        scene.take(Key::Reverse);
-        assert_eq!(scene.frames(3), -3);
-        assert_eq!(scene.take(Key::Back), Wish::Move(-1));
-        assert_eq!(scene.frames(3), 0);
+        assert_eq!(view_state.view.orbit, start);
+        (0..9).for_each(|_| assert_eq!(view_state.take(Command::Slower), Effect::Pace));
+        assert_eq!(view_state.tick_ns(1000), 8000);
+        (0..9).for_each(|_| assert_eq!(view_state.take(Command::Faster), Effect::Pace));
+        assert_eq!(view_state.tick_ns(1000), 125);
+        view_state.take(Command::Reverse);
+        assert_eq!(view_state.frames(3), -3);
+        assert_eq!(view_state.take(Command::Back), Effect::Move(-1));
+        assert_eq!(view_state.frames(3), 0);
     }
 }

@@ -5,22 +5,22 @@ use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
-use pantin_figure::ink::{Ink, Tone};
-use pantin_figure::surface::{Frame, Layout};
+use pantin_figure::ink::{BodyPart, Ink};
+use pantin_figure::surface::{Framebuffer, Layout};
 
 const FONT: &MonoFont = &FONT_6X10;
 
 /// A page of text, written with [`write!`]. Lines go on below where they are too long; what is below the display is lost.
-pub struct Page<'a, L: Layout> {
-    frame: &'a mut Frame<L>,
+pub struct TextScreen<'a, L: Layout> {
+    frame: &'a mut Framebuffer<L>,
     at: Point,
 }
 
-impl<'a, L: Layout> Page<'a, L> {
+impl<'a, L: Layout> TextScreen<'a, L> {
     /// An empty one.
-    pub fn new(frame: &'a mut Frame<L>) -> Self {
+    pub fn new(frame: &'a mut Framebuffer<L>) -> Self {
         frame.clear();
-        Page { frame, at: Point::zero() }
+        TextScreen { frame, at: Point::zero() }
     }
 
     fn line_end(&mut self) {
@@ -28,9 +28,9 @@ impl<'a, L: Layout> Page<'a, L> {
     }
 }
 
-impl<L: Layout> fmt::Write for Page<'_, L> {
+impl<L: Layout> fmt::Write for TextScreen<'_, L> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        let style = MonoTextStyle::new(FONT, L::Ink::of(Tone::Middle, u8::MAX));
+        let style = MonoTextStyle::new(FONT, L::Ink::of(BodyPart::Middle, u8::MAX));
         for letter in text.chars() {
             if letter == '\n' {
                 self.line_end();
@@ -55,20 +55,20 @@ mod tests {
     type Pages = MonoPages<128, 64, 1024>;
 
     /// Rows of letters and columns of them in which anything is lit.
-    fn written(frame: &Frame<Pages>) -> Vec<(usize, usize)> {
+    fn written(frame: &Framebuffer<Pages>) -> Vec<(usize, usize)> {
         let lit = |&(row, column): &(usize, usize)| (0..60).any(|at| frame.pixel(column * 6 + at % 6, row * 10 + at / 6).is_on());
         (0..6).flat_map(|row| (0..21).map(move |column| (row, column))).filter(lit).collect()
     }
 
     #[test]
     fn long_lines_go_on_below_and_the_rest_is_lost() {
-        let mut frame = Frame::<Pages>::new();
-        write!(Page::new(&mut frame), "{}\n\n{}", "a".repeat(22), 7).unwrap();
+        let mut frame = Framebuffer::<Pages>::new();
+        write!(TextScreen::new(&mut frame), "{}\n\n{}", "a".repeat(22), 7).unwrap();
         let first = (0..21).map(|column| (0, column));
         assert_eq!(written(&frame), first.chain([(1, 0), (3, 0)]).collect::<Vec<_>>());
-        write!(Page::new(&mut frame), "{}b\u{e9}", "\n".repeat(5)).unwrap();
+        write!(TextScreen::new(&mut frame), "{}b\u{e9}", "\n".repeat(5)).unwrap();
         assert_eq!(written(&frame), [(5, 0), (5, 1)]);
-        write!(Page::new(&mut frame), "{}b", "\n".repeat(9)).unwrap();
+        write!(TextScreen::new(&mut frame), "{}b", "\n".repeat(9)).unwrap();
         assert_eq!(written(&frame), []);
     }
 }

@@ -1,21 +1,21 @@
 //! The whole way from a pose to a picture. What is drawn depends on the clip and the pose alone, never on frames before.
 
-use crate::body::Limb;
+use crate::bounds::{Bounds, Orientation};
 use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
+use crate::joint_info::JointInfo;
 use crate::kinematics::Kinematics;
-use crate::lines::{Dot, Ground, Head, Line, Lines, Seen};
-use crate::rotation::{Rotation, Turning, Vector};
+use crate::lines::{Dot, Ground, Head, Line, Lines, Visible};
+use crate::rotation::{Rotation, RotationBackend, Vector};
 use crate::skeleton::{Detail, Part, Skeleton};
-use crate::survey::{Bearings, Survey};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
 use pantin::Player;
 
 /// A figure of at most `N` joints before its camera.
 #[derive(Clone, Debug)]
-pub struct Stage<const N: usize, R: Turning = Rotation> {
+pub struct FigureRenderer<const N: usize, R: RotationBackend = Rotation> {
     skeleton: Skeleton<N>,
-    bearings: Bearings,
+    orientation: Orientation,
     canvas: Canvas,
     camera: Camera,
     /// The camera's axes, in the form of the joints' rotations.
@@ -23,7 +23,7 @@ pub struct Stage<const N: usize, R: Turning = Rotation> {
     target: Vector,
     ground: Ground,
     joints: Kinematics<N, R>,
-    seen: Vec<Seen, N>,
+    visible: Vec<Visible, N>,
     /// Indices of the bones that are drawn, the farthest first.
     order: Vec<u8, N>,
 }
@@ -34,36 +34,36 @@ const TRIAL_SCALE: i32 = 1 << 14;
 /// A clip is looked at in about this many places before it plays.
 const SAMPLES: u32 = 48;
 
-impl<const N: usize, R: Turning> Stage<N, R> {
+impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     /// No figure yet.
     #[inline(always)]
     pub const fn empty() -> Self {
-        Stage {
+        FigureRenderer {
             skeleton: Skeleton::empty(),
-            bearings: Bearings::UPRIGHT,
+            orientation: Orientation::UPRIGHT,
             canvas: Canvas { width: 0, height: 0 },
             camera: Camera::NOWHERE,
             view: R::NONE,
             target: [0; 3],
             ground: Ground { axis: 1, height: 0, spacing: 1, dotted: false },
             joints: Kinematics::new(),
-            seen: Vec::new(),
+            visible: Vec::new(),
             order: Vec::new(),
         }
     }
 
     /// A figure and a camera for a clip of up to 192 joints; leaves the player at frame 0.
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
-        let mut stage = Self::empty();
-        stage.set_up(player, canvas, &mut [Limb::default(); RIG_JOINTS])?;
-        stage.aim(player, view);
-        Ok(stage)
+        let mut renderer = Self::empty();
+        renderer.set_up(player, canvas, &mut [JointInfo::default(); RIG_JOINTS])?;
+        renderer.aim(player, view);
+        Ok(renderer)
     }
 
-    /// The first half of [`Stage::of_clip`] in place, for a rig of as many joints as `room` has elements. [`Stage::aim`] is the other
+    /// The first half of [`FigureRenderer::of_clip`] in place, for a rig of as many joints as `room` has elements. [`FigureRenderer::aim`] is the other
     /// half: the room is given back before it.
     #[inline(never)]
-    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, room: &mut [Limb]) -> Result<(), Error> {
+    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, room: &mut [JointInfo]) -> Result<(), Error> {
         player.rewind();
         let clip = *player.clip();
         let pose = (player.pose(), clip.length_exponent());
@@ -92,12 +92,12 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
     /// argument; it is called twice and must show the same ones.
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
-        let mut stage = Stage { skeleton, ..Self::empty() };
-        stage.look_at(canvas, view, poses);
-        stage
+        let mut renderer = FigureRenderer { skeleton, ..Self::empty() };
+        renderer.look_at(canvas, view, poses);
+        renderer
     }
 
-    /// [`Stage::new`] in place, for the skeleton that it has.
+    /// [`FigureRenderer::new`] in place, for the skeleton that it has.
     pub fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
         self.canvas = canvas;
         self.choose();
@@ -105,44 +105,44 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     }
 
     fn frame(&mut self, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
-        let mut survey = Survey::new();
+        let mut bounds = Bounds::new();
         poses(&mut |pose| {
-            self.joints.place(&self.skeleton, pose);
-            survey.include(&self.skeleton, &self.joints);
+            self.joints.set_pose(&self.skeleton, pose);
+            bounds.include(&self.skeleton, &self.joints);
         });
-        let bearings = survey.bearings(view.up);
+        let orientation = bounds.orientation(view.up);
         let size = self.skeleton.size;
-        let set_camera = |stage: &mut Self, scale| {
-            stage.camera = Camera::new(&survey, bearings, size, view, scale);
-            stage.view = R::of_view(stage.camera.view());
+        let set_camera = |renderer: &mut Self, scale| {
+            renderer.camera = Camera::new(&bounds, orientation, size, view, scale);
+            renderer.view = R::of_view(renderer.camera.view());
         };
-        let upwards = bearings.up[bearings.axis] > 0;
-        let height = if upwards { survey.low[bearings.axis] } else { survey.high[bearings.axis] };
-        self.ground = Ground::new(bearings.axis, height, size, self.canvas);
-        self.bearings = bearings;
+        let upwards = orientation.up[orientation.axis] > 0;
+        let height = if upwards { bounds.low[orientation.axis] } else { bounds.high[orientation.axis] };
+        self.ground = Ground::new(orientation.axis, height, size, self.canvas);
+        self.orientation = orientation;
         set_camera(self, TRIAL_SCALE);
-        let mut frame = Frame::default();
+        let mut frame = Extent::default();
         poses(&mut |pose| {
-            self.place(pose);
+            self.set_pose(pose);
             frame.include(self);
         });
         let scale = frame.scale(self.canvas);
         set_camera(self, scale);
         let [columns, rows] = [self.canvas.width, self.canvas.height].map(|pixels| i32::from(pixels) << PIXEL_BITS);
-        self.camera.show(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
+        self.camera.set_center(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
 
     /// Forward kinematics of a pose, and where the camera sees the joints.
     #[inline(never)]
-    pub fn place(&mut self, pose: &[i32]) {
+    pub fn set_pose(&mut self, pose: &[i32]) {
         let hips = self.skeleton.hips;
         self.target = self.camera.target(self.joints.place_one(&self.skeleton, pose, hips));
         self.joints.place_in(&self.skeleton, pose, &self.view, self.target, self.skeleton.bones.len());
-        self.seen.clear();
+        self.visible.clear();
         let camera = &self.camera;
         // One a joint: there is room.
         for &position in self.joints.positions() {
-            let _ = self.seen.push(Seen::from(camera.project(position)));
+            let _ = self.visible.push(Visible::from(camera.project(position)));
         }
     }
 
@@ -171,9 +171,9 @@ impl<const N: usize, R: Turning> Stage<N, R> {
 
     /// Where the camera sees a joint's parent, and the joint.
     #[inline(always)]
-    fn ends(&self, index: u8) -> Option<(Seen, Seen)> {
+    fn ends(&self, index: u8) -> Option<(Visible, Visible)> {
         let parent = self.skeleton.bones.get(usize::from(index))?.parent?;
-        Some((*self.seen.get(usize::from(parent))?, *self.seen.get(usize::from(index))?))
+        Some((*self.visible.get(usize::from(parent))?, *self.visible.get(usize::from(index))?))
     }
 
     /// The head, for a rig that names one.
@@ -199,8 +199,8 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     #[inline(never)]
     pub fn sort(&mut self) {
         // Twice the depth of a bone's middle, then its index.
-        let key = |stage: &Self, index: u8| {
-            let ends = stage.ends(index);
+        let key = |renderer: &Self, index: u8| {
+            let ends = renderer.ends(index);
             ends.map_or(0, |(from, to)| (i32::from(from.depth) + i32::from(to.depth)) * 256 - i32::from(index))
         };
         for place in 1..self.order.len() {
@@ -221,8 +221,8 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     }
 
     /// The frame of a pose, gathered.
-    pub fn look(&mut self, pose: &[i32]) -> Lines<N> {
-        self.place(pose);
+    pub fn lines(&mut self, pose: &[i32]) -> Lines<N> {
+        self.set_pose(pose);
         self.sort();
         let mut lines = Lines::default();
         // There is room for all of them.
@@ -252,7 +252,7 @@ impl<const N: usize, R: Turning> Stage<N, R> {
         &self.skeleton
     }
 
-    /// The same, to be set up in place before [`Stage::look_at`].
+    /// The same, to be set up in place before [`FigureRenderer::look_at`].
     pub fn skeleton_mut(&mut self) -> &mut Skeleton<N> {
         &mut self.skeleton
     }
@@ -265,12 +265,12 @@ impl<const N: usize, R: Turning> Stage<N, R> {
     /// Moves the picture by whole pixels: a place among several figures.
     pub fn shift(&mut self, x: i16, y: i16) {
         let (_, _, [column, row]) = self.camera.framing();
-        self.camera.show(column + (i32::from(x) << PIXEL_BITS), row + (i32::from(y) << PIXEL_BITS));
+        self.camera.set_center(column + (i32::from(x) << PIXEL_BITS), row + (i32::from(y) << PIXEL_BITS));
     }
 
     /// Up and facing, as the camera takes them.
-    pub fn bearings(&self) -> Bearings {
-        self.bearings
+    pub fn orientation(&self) -> Orientation {
+        self.orientation
     }
 
     /// Where in the world the camera looked at the last pose.
@@ -286,19 +286,19 @@ impl<const N: usize, R: Turning> Stage<N, R> {
 
 /// What the figure covers of the display over a clip, in sixteenths of a pixel from the target.
 #[derive(Default)]
-struct Frame {
+struct Extent {
     top: i32,
     bottom: i32,
     side: i32,
 }
 
-impl Frame {
-    fn include<const N: usize, R: Turning>(&mut self, stage: &Stage<N, R>) {
-        stage.each_bone(|Line { from, to, .. }| {
+impl Extent {
+    fn include<const N: usize, R: RotationBackend>(&mut self, renderer: &FigureRenderer<N, R>) {
+        renderer.each_bone(|Line { from, to, .. }| {
             self.widen(from, 0);
             self.widen(to, 0);
         });
-        if let Some(head) = stage.head() {
+        if let Some(head) = renderer.head() {
             self.widen(head.centre, head.radius);
         }
     }

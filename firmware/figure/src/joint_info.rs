@@ -8,7 +8,7 @@ use pantin::{Joint, Rig};
 
 /// What is known of one joint of the whole rig before the figure's skeleton is built. Lengths are in figure units.
 #[derive(Clone, Copy, Debug)]
-pub struct Limb {
+pub struct JointInfo {
     /// Its bone: the rest offset, or what position channels put in its place. Nothing for a placement.
     pub(crate) bone: [i16; 3],
     /// Length of the bone.
@@ -27,9 +27,18 @@ pub struct Limb {
 }
 
 /// Fills a workspace.
-impl Default for Limb {
+impl Default for JointInfo {
     fn default() -> Self {
-        Limb { bone: [0; 3], length: 0, reach: 0, finger: NO_FINGER, parent: NO_PARENT, weight: 0, link: NO_PARENT, flags: 0 }
+        JointInfo {
+            bone: [0; 3],
+            length: 0,
+            reach: 0,
+            finger: NO_FINGER,
+            parent: NO_PARENT,
+            weight: 0,
+            link: NO_PARENT,
+            flags: 0,
+        }
     }
 }
 
@@ -48,7 +57,7 @@ pub(crate) mod flag {
     pub const PARENT: u8 = 64;
 }
 
-impl Limb {
+impl JointInfo {
     pub(crate) fn is(&self, flags: u8) -> bool {
         self.flags & flags == flags
     }
@@ -63,8 +72,8 @@ pub(crate) const NO_PARENT: u8 = u8::MAX;
 const NO_FINGER: u16 = u16::MAX;
 
 /// All joints of a rig, and what follows from them together.
-pub(crate) struct Limbs<'w> {
-    pub limbs: &'w mut [Limb],
+pub(crate) struct JointTable<'w> {
+    pub table: &'w mut [JointInfo],
     /// One figure unit is 2^exponent source units.
     pub exponent: i32,
     /// Rough height of the figure: 5/4 of its longest chain of bones from the hips.
@@ -78,13 +87,13 @@ const BONE_BITS: i32 = 14;
 /// The size of a figure without bones.
 const NO_SIZE: i32 = 1 << 14;
 
-impl<'w> Limbs<'w> {
+impl<'w> JointTable<'w> {
     /// Reads the rig; where a joint's bone is a matter of position channels, as `pose` has them. `room` is for a limb a joint.
     #[inline(never)]
-    pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8, room: &'w mut [Limb]) -> Result<Self, Error> {
+    pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8, room: &'w mut [JointInfo]) -> Result<Self, Error> {
         let most = room.len().min(usize::from(NO_PARENT));
-        let limbs = room.get_mut(..rig.joint_count()).filter(|limbs| limbs.len() <= most);
-        let limbs = limbs.ok_or(Error::TooManyJoints { most })?;
+        let table = room.get_mut(..rig.joint_count()).filter(|table| table.len() <= most);
+        let table = table.ok_or(Error::TooManyJoints { most })?;
         let hips = placement_end(rig);
         let exponent_of = |moved| i32::from(if moved { position_exponent } else { rig.length_exponent() });
         let mut longest = None;
@@ -97,28 +106,29 @@ impl<'w> Limbs<'w> {
         }
         let exponent = longest.unwrap_or(0) - BONE_BITS;
         let mut has_head = false;
-        for ((index, joint), limb) in rig.joints().enumerate().zip(limbs.iter_mut()) {
+        for ((index, joint), info) in rig.joints().enumerate().zip(table.iter_mut()) {
             let bone = if index <= hips { [(0, false); 3] } else { bone(&joint, pose) };
             // Below 2^14 by the choice of the exponent.
             let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)) as i16);
             let head = !has_head && contains(joint.name_bytes(), b"head");
             has_head |= head;
             let parent = joint.parent.map_or(NO_PARENT, |parent| parent as u8);
-            *limb = Limb { bone, length: length(bone.map(i32::from)) as u16, parent, flags: flag::KEPT, ..Limb::default() };
-            limb.set(flag::PLACEMENT, index <= hips);
-            limb.set(flag::END_SITE, joint.end_site);
-            limb.set(flag::HEAD, head);
+            *info =
+                JointInfo { bone, length: length(bone.map(i32::from)) as u16, parent, flags: flag::KEPT, ..JointInfo::default() };
+            info.set(flag::PLACEMENT, index <= hips);
+            info.set(flag::END_SITE, joint.end_site);
+            info.set(flag::HEAD, head);
         }
-        let mut limbs = Limbs { limbs, exponent, size: NO_SIZE, hips };
-        limbs.measure();
-        Ok(limbs)
+        let mut table = JointTable { table, exponent, size: NO_SIZE, hips };
+        table.measure();
+        Ok(table)
     }
 
     /// Reaches, from the ends of the limbs upwards, and the size.
     fn measure(&mut self) {
-        for index in (0..self.limbs.len()).rev() {
-            let Some(&Limb { parent, length, reach, .. }) = self.limbs.get(index) else { return };
-            if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
+        for index in (0..self.table.len()).rev() {
+            let Some(&JointInfo { parent, length, reach, .. }) = self.table.get(index) else { return };
+            if let Some(parent) = self.table.get_mut(usize::from(parent)) {
                 parent.set(flag::FORKS, parent.is(flag::PARENT));
                 parent.set(flag::PARENT, true);
                 let chain = reach.saturating_add(length / 8);
@@ -128,7 +138,7 @@ impl<'w> Limbs<'w> {
                 }
             }
         }
-        let reach = self.limbs.get(self.hips).map_or(0, |hips| i32::from(hips.reach) * 8);
+        let reach = self.table.get(self.hips).map_or(0, |hips| i32::from(hips.reach) * 8);
         if reach > 0 {
             self.size = reach + reach / 4;
         }
@@ -138,32 +148,32 @@ impl<'w> Limbs<'w> {
     /// limb and is too short to see.
     pub fn prune(&mut self) {
         let eighths = self.size / 8;
-        for index in 0..self.limbs.len() {
-            let parent = self.limbs.get(index).map_or(NO_PARENT, |limb| limb.parent);
-            let Some(&parent) = self.limbs.get(usize::from(parent)) else { continue };
+        for index in 0..self.table.len() {
+            let parent = self.table.get(index).map_or(NO_PARENT, |info| info.parent);
+            let Some(&parent) = self.table.get(usize::from(parent)) else { continue };
             let hand = parent.is(flag::FORKS) && i32::from(parent.reach) < eighths / 6;
             let finger = if hand { 0 } else { parent.finger };
             let longest = parent.link == index as u8;
             let short = parent.finger == NO_FINGER || i32::from(parent.finger) < eighths / 25;
             let shows = finger == NO_FINGER || (longest && short);
-            let Some(limb) = self.limbs.get_mut(index) else { return };
-            limb.set(flag::KEPT, parent.is(flag::KEPT) && !parent.is(flag::HEAD) && shows);
-            limb.finger = if finger == NO_FINGER { NO_FINGER } else { finger.saturating_add(limb.length / 8).min(NO_FINGER - 1) };
+            let Some(info) = self.table.get_mut(index) else { return };
+            info.set(flag::KEPT, parent.is(flag::KEPT) && !parent.is(flag::HEAD) && shows);
+            info.finger = if finger == NO_FINGER { NO_FINGER } else { finger.saturating_add(info.length / 8).min(NO_FINGER - 1) };
         }
         self.settle(self.size / 64);
     }
 
     /// Drops what ends a limb and is shorter than `shortest`, marks what bears the rest and counts it.
     pub fn settle(&mut self, shortest: i32) {
-        for index in (0..self.limbs.len()).rev() {
-            let Some(limb) = self.limbs.get_mut(index) else { return };
+        for index in (0..self.table.len()).rev() {
+            let Some(info) = self.table.get_mut(index) else { return };
             let stays =
-                limb.is(flag::PLACEMENT) || limb.is(flag::HEAD) || limb.is(flag::BEARS) || i32::from(limb.length) >= shortest;
-            let kept = limb.is(flag::KEPT) && stays;
-            limb.set(flag::KEPT, kept);
-            limb.weight = limb.weight.saturating_add(u8::from(kept));
-            let (parent, weight) = (limb.parent, limb.weight);
-            if let Some(parent) = self.limbs.get_mut(usize::from(parent)) {
+                info.is(flag::PLACEMENT) || info.is(flag::HEAD) || info.is(flag::BEARS) || i32::from(info.length) >= shortest;
+            let kept = info.is(flag::KEPT) && stays;
+            info.set(flag::KEPT, kept);
+            info.weight = info.weight.saturating_add(u8::from(kept));
+            let (parent, weight) = (info.parent, info.weight);
+            if let Some(parent) = self.table.get_mut(usize::from(parent)) {
                 parent.set(flag::BEARS, parent.is(flag::BEARS) || kept);
                 parent.weight = parent.weight.saturating_add(weight);
             }
@@ -181,16 +191,16 @@ impl<'w> Limbs<'w> {
             }
             done = Some(above);
             // Above the root there is nothing.
-            above = usize::from(self.limbs.get(above)?.parent);
+            above = usize::from(self.table.get(above)?.parent);
         }
     }
 
     /// The kept child of a joint that comes after `done`, its child too, or the first.
     fn lightest(&self, parent: usize, done: Option<usize>) -> Option<usize> {
-        let key = |index: usize| self.limbs.get(index).map(|limb| (limb.weight, index));
+        let key = |index: usize| self.table.get(index).map(|info| (info.weight, index));
         let done = done.and_then(key);
         let children =
-            self.limbs.iter().enumerate().filter(|(_, limb)| usize::from(limb.parent) == parent && limb.is(flag::KEPT));
+            self.table.iter().enumerate().filter(|(_, info)| usize::from(info.parent) == parent && info.is(flag::KEPT));
         children
             .filter_map(|(index, _)| key(index))
             .filter(|own| done.is_none_or(|done| *own > done))

@@ -1,14 +1,14 @@
 //! A body and its face: side by side on a wide display, the face in a corner of a tall one.
 
 use super::face::{self, Face};
-use super::{Show, display};
+use super::{Content, display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
-use crate::run::{After, Scenery, play, set_up};
+use crate::run::{Outcome, PlayContext, play, set_up};
 use pantin::Player;
-use pantin_figure::rotation::Turning;
-use pantin_figure::surface::{Frame, Layout};
-use pantin_figure::{Canvas, Look, Stage, View};
+use pantin_figure::rotation::RotationBackend;
+use pantin_figure::surface::{Framebuffer, Layout};
+use pantin_figure::{Canvas, DrawStyle, FigureRenderer, View};
 
 /// The parts of the display: the body's, and the face's square at the top right.
 struct Parts {
@@ -29,64 +29,64 @@ impl Parts {
 }
 
 /// Both.
-struct Both<'a, const N: usize, R: Turning> {
-    stage: &'a mut Stage<N, R>,
+struct Both<'a, const N: usize, R: RotationBackend> {
+    renderer: &'a mut FigureRenderer<N, R>,
     face: Face<'a>,
 }
 
-impl<L: Layout, const N: usize, R: Turning> Show<L> for Both<'_, N, R> {
-    fn place(&mut self, pose: &[i32]) {
-        self.stage.place(pose);
-        self.face.place(pose);
+impl<L: Layout, const N: usize, R: RotationBackend> Content<L> for Both<'_, N, R> {
+    fn set_pose(&mut self, pose: &[i32]) {
+        self.renderer.set_pose(pose);
+        self.face.set_pose(pose);
     }
 
-    fn draw(&mut self, frame: &mut Frame<L>, look: Look) {
-        self.stage.draw_on(frame, look);
+    fn draw(&mut self, frame: &mut Framebuffer<L>, style: DrawStyle) {
+        self.renderer.draw_on(frame, style);
         self.face.draw(frame);
     }
 
     fn aim(&mut self, player: &mut Player, view: View) {
-        self.stage.aim(player, view);
+        self.renderer.aim(player, view);
         self.face.aim(view);
     }
 }
 
 /// Plays them.
 #[inline(never)]
-pub(super) fn perform<B: Board, const JOINTS: usize>(player: &mut Player, scenery: Scenery<B>) -> After {
+pub(super) fn perform<B: Board, const JOINTS: usize>(player: &mut Player, context: PlayContext<B>) -> Outcome {
     let parts = Parts::of::<B::Layout>();
-    let mut stage = Stage::<JOINTS, B::Turning>::empty();
-    if let Err(error) = set_up(&mut stage, player, parts.body) {
+    let mut renderer = FigureRenderer::<JOINTS, B::Rotation>::empty();
+    if let Err(error) = set_up(&mut renderer, player, parts.body) {
         error!("the rig is too big: {}", error);
-        return After::Exit(Exit::BadClip);
+        return Outcome::Exit(Exit::BadClip);
     }
-    stage.aim(player, scenery.scene.view);
-    beside(player, &mut stage, parts, scenery)
+    renderer.aim(player, context.view_state.view);
+    beside(player, &mut renderer, parts, context)
 }
 
 /// Makes room for the face once the body is set up, which takes room of its own.
 #[inline(never)]
 fn beside<B: Board, const JOINTS: usize>(
     player: &mut Player,
-    stage: &mut Stage<JOINTS, B::Turning>,
+    renderer: &mut FigureRenderer<JOINTS, B::Rotation>,
     parts: Parts,
-    scenery: Scenery<B>,
-) -> After {
+    context: PlayContext<B>,
+) -> Outcome {
     let rig = player.clip().rig();
-    let views = [scenery.scene.view, scenery.scene.ahead];
+    let views = [context.view_state.view, context.view_state.ahead];
     let after = face::with(&rig, parts.face, parts.column, views, |face| {
         info!(
             "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn, {} drive the face",
-            scenery.entry.name,
+            context.entry.name,
             player.clip().frames(),
             player.clip().frame_time_ns(),
             player.clip().rig().channels(),
             player.clip().moving(),
-            stage.skeleton().bones.len(),
+            renderer.skeleton().bones.len(),
             face.names()
         );
-        let both: &mut dyn Show<B::Layout> = &mut Both { stage, face };
-        play(player, both, scenery)
+        let both: &mut dyn Content<B::Layout> = &mut Both { renderer, face };
+        play(player, both, context)
     });
     after.unwrap_or_else(face::no_model)
 }
