@@ -1,0 +1,6 @@
+//! The suites of the store, one module each.
+
+mod board;
+mod mock;
+mod power;
+mod transfer;

@@ -1,0 +1,86 @@
+//! FBX from a small text file of our own: what is read, what is refused, and that neither takes long.
+
+use pantin_tools::fk;
+use pantin_tools::import::{self, Imported, Options};
+
+/// In metres and z up: a hip that a pre-rotation turns a quarter about x, a knee and a foot below it, a camera, a face with a weight; one
+/// stack of a second that turns the hip a quarter about x and shows half of the smile, and one that does nothing.
+const LEG: &str = include_str!("../data/leg.fbx");
+
+fn load_as(file: &[u8], options: &Options) -> Result<Imported, String> {
+    let name = format!("pantin-fbx-{}-{:?}.fbx", std::process::id(), std::thread::current().id());
+    let path = std::env::temp_dir().join(name);
+    std::fs::write(&path, file).unwrap();
+    let read = import::load(&path, options).map_err(|error| format!("{error:#}"));
+    std::fs::remove_file(&path).unwrap();
+    read
+}
+
+fn load(file: &str) -> Result<Imported, String> {
+    load_as(file.as_bytes(), &Options::default())
+}
+
+fn near(a: [f64; 3], b: [f64; 3]) {
+    assert!((0..3).all(|i| (a[i] - b[i]).abs() < 1e-3), "{a:?} is not {b:?}");
+}
+
+#[test]
+fn a_leg_in_metres_and_z_up_is_turned_to_cm_and_y_up() {
+    let leg = load(LEG).unwrap();
+    let motion = &leg.motion;
+    let names: Vec<String> = (0..motion.rig.joints.len()).map(|joint| motion.rig.joint_name(joint)).collect();
+    assert_eq!(names, ["hip", "knee", "foot"]);
+    assert_eq!((motion.frames, motion.frame_time, motion.rig.cm_per_unit), (25, 1.0 / 24.0, 1.0));
+    assert!(leg.units.contains("as the file says"), "{}", leg.units);
+    for frame in 0..25 {
+        let angle = (frame as f64 / 24.0) * std::f64::consts::FRAC_PI_2;
+        let places = fk::positions(&motion.rig, &motion.values, frame);
+        near(places[0], [0.0, 100.0, 0.0]);
+        // In the file's axes the knee hangs by (0, 0, -0.5) turned by the pre-rotation and the angle about x.
+        let turn = angle + std::f64::consts::FRAC_PI_2;
+        let (y, z) = (0.5 * turn.sin(), -0.5 * turn.cos());
+        near(places[1], [0.0, 100.0 + 100.0 * z, -100.0 * y]);
+    }
+    assert_eq!(motion.rig.scalars[0].name, "smile");
+    assert!((motion.values.last().unwrap()[24] - 0.5).abs() < 1e-6 && (motion.values.last().unwrap()[12] - 0.25).abs() < 1e-6);
+    assert!(leg.warnings.iter().any(|warning| warning.contains("1 cameras")), "{:?}", leg.warnings);
+}
+
+#[test]
+fn stacks_are_chosen_by_name_or_number() {
+    for choice in ["kick", "0"] {
+        let options = Options { animation: Some(choice.into()), fps: Some(60.0), ..Options::default() };
+        assert_eq!(load_as(LEG.as_bytes(), &options).unwrap().motion.frames, 61);
+    }
+    let rest = load_as(LEG.as_bytes(), &Options { animation: Some("rest".into()), ..Options::default() }).unwrap();
+    assert!(rest.warnings.iter().any(|warning| warning.contains("moves nothing")));
+    let wrong = load_as(LEG.as_bytes(), &Options { animation: Some("2".into()), ..Options::default() });
+    assert!(wrong.unwrap_err().contains("there are 0 (kick), 1 (rest)"));
+}
+
+#[test]
+fn damage_gives_an_error_or_a_motion() {
+    assert!(load("; FBX 7.4.0 project file\n").is_err());
+    assert!(load("Kaydara FBX Binary  \0\u{1a}\0garbage that is no node").unwrap_err().contains("not a readable FBX file"));
+    let mut refused = 0;
+    for end in (1..LEG.len()).step_by(7) {
+        refused += usize::from(load(&LEG[..end]).is_err());
+    }
+    assert!(refused > 100, "only {refused} beginnings are refused");
+    for (from, to) in [
+        ("\"LocalStop\", \"KTime\", \"Time\", \"\",46186158000", "\"LocalStop\", \"KTime\", \"Time\", \"\",9000000000000000000"),
+        ("*2 {", "*2000000000 {"),
+        ("a: 0,90", "a: 0,nan"),
+        ("a: 0,90", "a: 0,1e38"),
+        ("a: 0,46186158000", "a: 46186158000,0"),
+        ("C: \"OO\",1,0", "C: \"OO\",1,3"),
+        ("\"UnitScaleFactor\", \"double\", \"Number\", \"\",100", "\"UnitScaleFactor\", \"double\", \"Number\", \"\",-1e300"),
+    ] {
+        assert!(LEG.contains(from), "{from}");
+        if let Ok(read) = load(&LEG.replace(from, to)) {
+            assert!(read.motion.values.iter().flatten().all(|value| value.is_finite()), "{to}");
+        }
+    }
+    let nested = format!("; FBX 7.4.0 project file\n{}", "A: {\n".repeat(100_000));
+    assert!(load(&nested).is_err());
+}

@@ -1,0 +1,40 @@
+//! The suites of the host tool, one module each: in one program, which links once.
+
+mod amc_bad_input;
+mod amc_real_clips;
+mod batch_command;
+mod bvh_bad_input;
+mod bvh_real_clips;
+mod by_channel;
+mod convert_laws;
+mod edits;
+mod export_source;
+mod face_laws;
+mod face_model;
+mod face_real_clips;
+mod fap_input;
+#[cfg(feature = "fbx")]
+mod fbx_input;
+#[cfg(feature = "fbx")]
+mod fbx_real_files;
+mod figure;
+mod format_example;
+mod gltf_input;
+mod gltf_real_files;
+mod import_hostile;
+mod keyframes_input;
+mod livelink_input;
+mod optimum;
+mod own_clips;
+mod own_motions;
+#[cfg(unix)]
+mod play_command;
+mod procedural_input;
+mod real;
+mod render_command;
+mod scalars_command;
+mod serve;
+mod table_input;
+mod update_command;
+mod vrml_input;
+mod vrml_real_files;

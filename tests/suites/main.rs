@@ -1,0 +1,18 @@
+//! The suites that need more than one crate, one module each: on the host, in QEMU, in a Pico's emulator and in Chromium.
+
+mod conformance;
+mod display;
+mod face_display;
+mod hostile;
+mod icount;
+mod image;
+mod laws;
+mod link;
+mod memory;
+mod pico;
+mod pico_update;
+mod qemu;
+mod sizes;
+mod update;
+mod vectors;
+mod web;

@@ -1,0 +1,71 @@
+//! The decoder's memory on the smallest processor: code and tables from the image's ELF file, RAM and stack from a run.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use harness::image::Image;
+use harness::paths;
+use harness::qemu::MICROBIT;
+
+use super::guest::Guest;
+use super::{Goal, Setting, reference, table, tool};
+use crate::steps::say;
+
+/// Functions shown.
+const SHOWN: usize = 12;
+
+/// Builds, reads, runs.
+pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
+    let (empty, decoder) = (Image::read("image-empty")?, Image::read("image-decoder")?);
+    let own = decoder.symbols.iter().filter(|symbol| !empty.symbols.contains(symbol));
+    let rows: Vec<_> = own.take(SHOWN).map(|(name, size)| vec![name.clone(), size.to_string()]).collect();
+    table::print(&["largest functions and tables, Cortex-M0", "bytes"], &rows);
+    let unwanted = decoder.unwanted();
+    if !unwanted.is_empty() {
+        say(&format!("   panic, formatting, float, divide or heap in the image: {}", unwanted.join(", ")));
+    }
+    let mut goals = vec![
+        Goal::at_most("code on Cortex-M0", (decoder.code - empty.code) as f64, 4096.0, 0, "bytes"),
+        Goal::at_most("tables", (decoder.tables - empty.tables) as f64, 2048.0, 0, "bytes"),
+        Goal::at_most("symbols of panic, formatting, float, divide or heap", unwanted.len() as f64, 0.0, 0, ""),
+    ];
+    let (name, clip) = clip(setting)?;
+    goals.extend(memory(&name, &clip)?);
+    Ok(goals)
+}
+
+/// A clip of 31 joints where there is one, else our walk.
+fn clip(setting: &Setting) -> Result<(String, std::path::PathBuf)> {
+    let (name, path, unit) = match reference::named("bvh_xia_strut-walk")? {
+        Some(clip) => (clip.name.clone(), clip.path.clone(), clip.cm_per_unit()),
+        None => ("walk".into(), paths::root().join("motions/walk.keys"), None),
+    };
+    let made = setting.tool.converted(&path, &format!("{name}-1cm"), &tool::options(1.0, unit))?;
+    Ok((name, made.clip))
+}
+
+fn memory(name: &str, clip: &Path) -> Result<Vec<Goal>> {
+    let log = Guest::new(MICROBIT, "memory")?.log(clip)?;
+    let numbers: Vec<(&str, f64)> = log
+        .iter()
+        .filter_map(|line| {
+            let mut words = line.split(' ').skip(1);
+            Some((words.next()?, words.next()?.parse().ok()?))
+        })
+        .collect();
+    let rows: Vec<_> = numbers.iter().map(|(what, bytes)| vec![(*what).to_owned(), bytes.to_string()]).collect();
+    table::print(&[&format!("RAM of a channel and a player, stack of the calls; {name}"), "bytes"], &rows);
+    let of = |what: &str| numbers.iter().find(|(name, _)| *name == what).map(|(_, bytes)| *bytes);
+    let stack = numbers.iter().filter(|(name, _)| !["channel", "player"].contains(name)).map(|(_, bytes)| *bytes);
+    Ok(vec![
+        Goal::at_most("RAM per moving channel", of("channel").context("no size of a channel")?, 20.0, 0, "bytes"),
+        Goal::at_most(
+            "RAM of a player, without channels and pose",
+            of("player").context("no size of a player")?,
+            128.0,
+            0,
+            "bytes",
+        ),
+        Goal::at_most("stack of any call", stack.fold(0.0, f64::max), 512.0, 0, "bytes"),
+    ])
+}

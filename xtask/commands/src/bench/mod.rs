@@ -1,0 +1,106 @@
+//! What `cargo xtask bench` measures: one part a file, and what the parts share.
+
+mod argument;
+mod board;
+pub mod command;
+mod decimation;
+mod decode;
+mod document;
+mod error;
+mod face;
+mod footprint;
+mod frame;
+mod goals;
+mod guest;
+mod host;
+mod link;
+mod link_board;
+mod paper;
+mod peers;
+mod plot;
+mod reference;
+mod size;
+mod table;
+mod tool;
+mod web;
+
+pub use document::{store, write};
+pub use goals::{Goal, print};
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use harness::paths;
+
+/// What can be measured by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// Bytes against error of the reference clips, the peers beside
+    Size,
+    /// What twice the frames a second cost in bytes
+    Decimation,
+    /// The paper's walk and run, in our own motions
+    Paper,
+    /// Guest instructions a pose and a seek
+    Decode,
+    /// Code, tables, RAM and stack of the decoder
+    Footprint,
+    /// Time a pose on this machine, and encoding speed
+    Host,
+    /// Guest instructions of a frame on every machine, the firmware's size and memory, and how many figures fit
+    Frame,
+    /// Additions against polynomials, and a clip against a per-frame file over a link
+    Argument,
+    /// Faces: bits a second and how smooth, bytes of our own clips, guest instructions of a frame, memory, the model's size
+    Face,
+    /// The web page: bytes, time to the first frame, time a frame, time to convert
+    Web,
+    /// Motion over a line that loses packets: how soon it is exact again, and what that takes
+    Link,
+}
+
+/// What every part works with.
+pub struct Setting {
+    /// The host tool, as its users have it.
+    pub tool: tool::Tool,
+    /// Where plots and clips go.
+    pub out: PathBuf,
+    /// Fewer and shorter clips.
+    pub quick: bool,
+    /// Only reference clips whose name holds this.
+    pub only: Option<String>,
+}
+
+impl Setting {
+    /// Builds the host tool and makes the folder.
+    pub fn new(quick: bool, only: Option<String>) -> Result<Self> {
+        let out = paths::root().join("target/bench");
+        std::fs::create_dir_all(out.join("clips")).with_context(|| format!("cannot make {}", out.display()))?;
+        Ok(Self { tool: tool::Tool::build(out.join("clips"))?, out, quick, only })
+    }
+}
+
+impl Part {
+    /// Measures, prints, and returns the rows of the table in docs/BENCHMARKS.md.
+    pub fn run(self, setting: &Setting) -> Result<Vec<Goal>> {
+        match self {
+            Self::Size => size::run(setting),
+            Self::Decimation => decimation::run(setting),
+            Self::Paper => paper::run(setting),
+            Self::Decode => decode::run(setting),
+            Self::Footprint => footprint::run(setting),
+            Self::Host => host::run(setting),
+            Self::Frame => frame::run(setting),
+            Self::Argument => argument::run(setting),
+            Self::Face => face::run(setting),
+            Self::Web => web::run(),
+            Self::Link => link::run(setting),
+        }
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}

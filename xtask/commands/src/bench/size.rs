@@ -1,0 +1,151 @@
+//! Bytes against error: every reference clip at three bounds, the peers at the error that we measure.
+//!
+//! Errors are of joints alone where peers are compared, because they were not told of End Sites; the bound covers those too.
+//! Bytes are the file without its rig.
+
+use anyhow::Result;
+
+use super::error::{self, Distance};
+use super::peers::{self, Bytes};
+use super::reference::{self, Reference};
+use super::table::{geometric_mean, number};
+use super::{Goal, Setting, plot, table, tool};
+use crate::steps::say;
+
+/// Bounds in cm, and the goals at each: of the ideal coder, of ACL (geometric means), of the best working coder (the worst
+/// clip), of the best at our mean error (geometric mean).
+const LEVELS: [(f64, [f64; 4]); 3] =
+    [(0.3, [0.36, 0.20, 0.70, 0.45]), (1.0, [0.27, 0.15, 0.55, 0.33]), (3.0, [0.21, 0.12, 0.45, 0.20])];
+
+/// One clip at one bound.
+struct Row {
+    clip: String,
+    bound: f64,
+    got: Distance,
+    bytes: f64,
+    seconds: f64,
+    peers: Bytes,
+    at_mean: Option<f64>,
+    encode: f64,
+}
+
+/// Encodes one clip after the other, so that the times are of a clip that has the machine to itself.
+pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
+    let Some(clips) = reference::all(setting)? else { return Ok(vec![]) };
+    let (mut rows, mut failed) = (vec![], 0);
+    for clip in &clips {
+        for (bound, _) in LEVELS {
+            match measure(setting, clip, bound) {
+                Ok(row) => {
+                    say(&format!("   {} at {bound} cm: {} bytes, {:.1} s", row.clip, row.bytes, row.encode));
+                    rows.push(row);
+                }
+                Err(error) => {
+                    say(&format!("   {} at {bound} cm FAILED: {error:#}", clip.name));
+                    failed += 1;
+                }
+            }
+        }
+    }
+    print(&rows);
+    draw(setting, &clips, &rows)?;
+    let broken = rows.iter().filter(|row| row.got.greatest > row.bound * 1.000_001).count();
+    let mut goals: Vec<_> = LEVELS.iter().flat_map(|level| goals(&rows, level)).collect();
+    goals.push(Goal::at_most("bounds broken, or clips refused", (broken + failed) as f64, 0.0, 0, ""));
+    Ok(goals)
+}
+
+fn measure(setting: &Setting, clip: &Reference, bound: f64) -> Result<Row> {
+    let unit = clip.cm_per_unit();
+    let made = setting.tool.convert(&clip.path, &format!("{}-{bound}cm", clip.name), &tool::options(bound, unit))?;
+    let back = tempfile::Builder::new().suffix(".bvh").tempfile()?;
+    setting.tool.expand(&made.clip, back.path())?;
+    let got = error::between(&clip.path, back.path(), unit)?;
+    let peers = clip.peers.as_ref();
+    Ok(Row {
+        clip: clip.name.clone(),
+        bound,
+        got,
+        bytes: made.info.motion_bytes,
+        seconds: made.info.seconds(),
+        peers: peers.map(|peers| peers.at(got.joints)).unwrap_or_default(),
+        at_mean: peers.and_then(|peers| peers.at_mean(got.mean)),
+        encode: made.seconds.unwrap_or_default(),
+    })
+}
+
+impl Row {
+    /// Our bytes relative to the ideal coder, to ACL, to the best working coder, and to the best at our mean error.
+    fn ratios(&self) -> [Option<f64>; 4] {
+        [self.peers.ideal, self.peers.acl, self.peers.real, self.at_mean].map(|bytes| bytes.map(|bytes| self.bytes / bytes))
+    }
+}
+
+fn print(rows: &[Row]) {
+    let header = ["clip", "asked", "got", "joints", "bytes", "B/s", "/ideal", "/ACL", "/real", "/mean", "encode s", "x real"];
+    let lines: Vec<_> = rows
+        .iter()
+        .map(|row| {
+            let mut line = vec![
+                row.clip.clone(),
+                row.bound.to_string(),
+                format!("{:.3}", row.got.greatest),
+                format!("{:.3}", row.got.joints),
+                row.bytes.to_string(),
+                format!("{:.0}", row.bytes / row.seconds),
+            ];
+            line.extend(row.ratios().map(|ratio| number(ratio, 2)));
+            line.extend([format!("{:.1}", row.encode), format!("{:.1}", row.seconds / row.encode)]);
+            line
+        })
+        .collect();
+    table::print(&header, &lines);
+}
+
+fn goals(rows: &[Row], (bound, most): &(f64, [f64; 4])) -> Vec<Goal> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.bound == *bound).collect();
+    let ratios = |index: usize| rows.iter().filter_map(|row| row.ratios()[index]).collect::<Vec<_>>();
+    let worst = |values: &[f64]| values.iter().copied().reduce(f64::max);
+    let [ideal, acl, real, mean] = [0, 1, 2, 3].map(ratios);
+    let of = |what: &str| format!("bytes at {bound} cm, {what}");
+    let numbers = [
+        (of("relative to an ideal second-difference coder, geometric mean"), geometric_mean(&ideal), most[0]),
+        (of("relative to ACL, geometric mean"), geometric_mean(&acl), most[1]),
+        (of("relative to the best working peer, worst clip"), worst(&real), most[2]),
+        (of("relative to the best peer at equal mean error, geometric mean"), geometric_mean(&mean), most[3]),
+    ];
+    let mut goals: Vec<_> = numbers
+        .into_iter()
+        .filter_map(|(what, value, most)| value.map(|value| Goal::at_most(what, value, most, 3, "")))
+        .collect();
+    let (bytes, seconds): (f64, f64) = rows.iter().fold((0.0, 0.0), |sum, row| (sum.0 + row.bytes, sum.1 + row.seconds));
+    if seconds > 0.0 {
+        goals.push(Goal::told(of(&format!("per second of motion ({} clips)", rows.len())), format!("{:.0}", bytes / seconds)));
+    }
+    goals
+}
+
+/// Bytes a second against error, over all clips together.
+fn draw(setting: &Setting, clips: &[Reference], rows: &[Row]) -> Result<()> {
+    let ours = LEVELS.iter().filter_map(|&(bound, _)| {
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.bound == bound).collect();
+        let error = geometric_mean(&rows.iter().map(|row| row.got.joints).collect::<Vec<_>>())?;
+        Some((error, rows.iter().map(|row| row.bytes).sum::<f64>() / rows.iter().map(|row| row.seconds).sum::<f64>()))
+    });
+    let mut series = vec![plot::Series { name: "pantin".into(), points: ours.collect() }];
+    let known: Vec<&peers::Clip> = clips.iter().filter_map(|clip| clip.peers.as_ref()).collect();
+    let seconds: f64 = known.iter().map(|clip| clip.seconds).sum();
+    let names: std::collections::BTreeSet<&String> = known.iter().flat_map(|clip| clip.greatest.keys()).collect();
+    for name in names {
+        // A point only where every clip has one: 0.1 to 4 cm, 40 steps.
+        let points = (0..=40).map(|step| 0.1 * 40_f64.powf(f64::from(step) / 40.0)).filter_map(|error| {
+            let bytes: Option<f64> = known.iter().map(|clip| peers::at(clip.greatest.get(name)?, error)).sum();
+            Some((error, bytes? / seconds))
+        });
+        series.push(plot::Series { name: name.clone(), points: points.collect() });
+    }
+    let path = setting.out.join("size.svg");
+    plot::logarithmic(&path, ["greatest error of a joint, cm", "bytes a second of motion"], &series)?;
+    say(&format!("   wrote {}", path.display()));
+    Ok(())
+}

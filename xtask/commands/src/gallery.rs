@@ -1,0 +1,135 @@
+//! `cargo xtask gallery`: every captured clip converted, expanded, compared and drawn on one sheet.
+//!
+//! Bodies keep 1 cm, or 0.5 % of their height where that is no person's and their unit means nothing; scalars keep 2 %.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use harness::{build, paths};
+use pantin_tools::cmd::write_whole;
+use pantin_tools::expand::expand;
+use pantin_tools::import::{self, units};
+use pantin_tools::render::gallery::{self, Cell};
+use pantin_tools::verify::compare;
+
+use crate::steps::say;
+
+/// What a file's name begins with, and the axis that its format has upwards.
+const KINDS: [(&str, Option<u8>); 7] =
+    [("bvh_", None), ("amc_", None), ("gltf_", Some(1)), ("fbx_", None), ("vrml_", Some(1)), ("face_", None), ("fap_", None)];
+/// Endings of what lies beside motions: skeletons.
+const BESIDE: [&str; 1] = ["asf"];
+/// A figure of another height is no person in a known unit, in cm.
+const PERSONS_CM: std::ops::Range<f64> = 60.0..400.0;
+const SCALAR_PERCENT: f64 = 2.0;
+
+/// Converts every captured clip and draws one contact sheet of all.
+#[derive(Args)]
+pub struct Gallery {
+    /// Where the sheet and the clips go
+    #[arg(long, default_value = "target/gallery")]
+    out: PathBuf,
+    /// Only files whose names contain this
+    #[arg(long)]
+    only: Option<String>,
+}
+
+/// A line of the table.
+struct Row {
+    frames: usize,
+    channels: usize,
+    bytes: usize,
+    error: String,
+    cell: Cell,
+}
+
+impl Gallery {
+    /// Converts, compares, draws; fails if a file did.
+    pub fn run(self) -> Result<()> {
+        let Some(data) = paths::data() else {
+            bail!(
+                "no motion clips: set PANTIN_DATA to the folder that holds the bvh_, amc_, gltf_, fbx_, vrml_, face_ and fap_ files"
+            );
+        };
+        let files = self.files(&data)?;
+        ensure!(!files.is_empty(), "{}: no file to show", data.display());
+        let out = paths::root().join(&self.out);
+        fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
+        let tool = build::host_tool()?;
+        let wide = files.iter().map(|(path, _)| name(path).len()).max().unwrap_or(0);
+        println!("{:wide$} {:>7} {:>8} {:>8}  {:44} ok", "file", "frames", "channels", "bytes", "greatest error");
+        let mut cells = Vec::new();
+        let mut failed = 0;
+        for (path, up) in &files {
+            let file = name(path);
+            let made =
+                if import::is_motion(path) { one(&tool, path, *up, &out) } else { Err(anyhow::anyhow!("no importer for it")) };
+            match made {
+                Ok(row) => {
+                    println!("{file:wide$} {:7} {:8} {:8}  {:44} yes", row.frames, row.channels, row.bytes, row.error);
+                    cells.push(row.cell);
+                }
+                Err(error) => {
+                    failed += 1;
+                    println!("{file:wide$} NO: {error:#}");
+                    cells.push(Cell::without(format!("{file}: not converted")));
+                }
+            }
+        }
+        let mut sheet = Vec::new();
+        gallery::write(&mut sheet, &cells)?;
+        write_whole(&out.join("gallery.png"), &sheet)?;
+        say(&format!("wrote {}", out.join("gallery.png").display()));
+        ensure!(failed == 0, "{failed} of {} files failed", files.len());
+        Ok(())
+    }
+
+    fn files(&self, data: &Path) -> Result<Vec<(PathBuf, Option<u8>)>> {
+        let mut paths: Vec<PathBuf> = fs::read_dir(data)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
+        paths.sort();
+        paths.retain(|path| !BESIDE.iter().any(|ending| path.extension().is_some_and(|extension| extension == *ending)));
+        let wanted = |path: &PathBuf| self.only.as_ref().is_none_or(|part| name(path).contains(part));
+        let kind = |path: PathBuf| {
+            let &(_, up) = KINDS.iter().find(|(begin, _)| name(&path).starts_with(begin))?;
+            Some((path, up))
+        };
+        Ok(paths.into_iter().filter(wanted).filter_map(kind).collect())
+    }
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Converts by the program, expands by the library, and compares with what the importer reads.
+fn one(tool: &Path, path: &Path, up: Option<u8>, out: &Path) -> Result<Row> {
+    let motion = import::load(path, &import::Options::default())?.motion;
+    let height = units::figure_height_cm(&motion);
+    let (bound, text) = match height {
+        Some(height) if !PERSONS_CM.contains(&height) => (0.005 * height, "0.5%"),
+        _ => (1.0, "1cm"),
+    };
+    let clip = out.join(name(path)).with_extension("ptn");
+    let done =
+        Command::new(tool).arg("convert").arg(path).arg("-o").arg(&clip).args(["--quiet", "--max-error", text]).output()?;
+    ensure!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr).trim());
+    let bytes = fs::read(&clip)?;
+    let opened = pantin::Clip::new_checked(&bytes)?;
+    let report = compare(&motion, &expand(&opened)?)?;
+    let percent = height.map_or(String::new(), |height| format!(" ({:.2} % of the height)", 100.0 * report.max_cm / height));
+    let mut errors = Vec::new();
+    if !motion.rig.joints.is_empty() {
+        errors.push(format!("{:.3} cm{percent}", report.max_cm));
+    }
+    if !motion.rig.scalars.is_empty() {
+        errors.push(format!("{:.2} % of scale", 100.0 * report.max_scalar));
+    }
+    let error = errors.join(", ");
+    ensure!(report.max_cm <= bound && 100.0 * report.max_scalar <= SCALAR_PERCENT, "expanded, it is off by {error}");
+    let label = format!("{}  {} frames, {} bytes, {error}", name(path), motion.frames, bytes.len());
+    let cell = Cell::of(&opened, up, label)?;
+    Ok(Row { frames: motion.frames, channels: motion.rig.channels(), bytes: bytes.len(), error, cell })
+}

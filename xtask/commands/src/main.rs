@@ -1,0 +1,64 @@
+//! `cargo xtask`: the commands of the repository.
+
+mod bench;
+mod conformance;
+mod demo;
+mod firmware;
+mod fuzz;
+mod gallery;
+mod images;
+mod packages;
+mod pictures;
+mod sizes;
+mod steps;
+mod strips;
+mod test;
+mod uf2;
+mod vectors;
+mod web;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Runs pantin's figures on emulated boards, and tests everything.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+enum Command {
+    Conformance(conformance::Conformance),
+    Bench(bench::command::Bench),
+    Demo(demo::Demo),
+    Firmware(firmware::Firmware),
+    Fuzz(fuzz::Fuzz),
+    Gallery(gallery::Gallery),
+    Sizes(sizes::Sizing),
+    Strips(strips::Strips),
+    Test(test::Test),
+    Uf2(uf2::Uf2),
+    Vectors(vectors::Vectors),
+    Web(web::Web),
+}
+
+fn main() -> ExitCode {
+    let result = match Command::parse() {
+        Command::Conformance(conformance) => conformance.run(),
+        Command::Bench(bench) => bench.run(),
+        Command::Demo(demo) => demo.run(),
+        Command::Firmware(firmware) => firmware.run(),
+        Command::Fuzz(fuzz) => fuzz.run(),
+        Command::Gallery(gallery) => gallery.run(),
+        Command::Sizes(sizes) => sizes.run(),
+        Command::Strips(strips) => strips.run(),
+        Command::Test(test) => test.run(),
+        Command::Uf2(uf2) => uf2.run(),
+        Command::Vectors(vectors) => vectors.run(),
+        Command::Web(web) => web.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

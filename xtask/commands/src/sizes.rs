@@ -1,0 +1,118 @@
+//! `cargo xtask sizes [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps, which documents say too.
+//!
+//! ```text
+//! $ cargo xtask sizes
+//! # image          flash       RAM     stack
+//! lm3s6965evb      45604        28      9544
+//! ...
+//! ```
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use harness::size_tables::{DOCUMENTS, filled};
+use harness::sizes::{FREE, Sizes};
+use harness::{paths, stack};
+use pantin_tools::cmd::write_whole;
+
+use crate::images;
+use crate::steps::say;
+
+/// Flash, RAM and stack of every board's images; fails where one grew by more than 2 % over tests/sizes.txt
+///
+/// Flash: all bytes that are loaded. RAM: statics. Stack: the largest sum of frames along a way of calls, read from the machine
+/// code; a call through a pointer is taken to reach every function whose address the image holds, and functions that call each
+/// other in a circle count once. Above what a run uses, then, except that recursion and interrupts are left out.
+#[derive(Args)]
+pub struct Sizing {
+    /// Writes tests/sizes.txt and the documents' tables: to be committed with what made the images grow
+    #[arg(long)]
+    update: bool,
+    /// Prints the calls that make each stack
+    #[arg(long)]
+    calls: bool,
+}
+
+impl Sizing {
+    /// Measures, and compares or writes.
+    pub fn run(self) -> Result<()> {
+        let sizes = measured(self.calls)?;
+        say(&sizes.table());
+        if !self.update {
+            return compare(&sizes);
+        }
+        write_whole(&file(), sizes.text().as_bytes())?;
+        say("written to tests/sizes.txt");
+        for (document, text) in stale(&sizes)? {
+            write_whole(&paths::root().join(document), text.as_bytes())?;
+            say(&format!("written to {document}"));
+        }
+        Ok(())
+    }
+}
+
+/// What `cargo xtask test` runs.
+pub fn check() -> Result<()> {
+    Sizing { update: false, calls: false }.run()
+}
+
+fn file() -> PathBuf {
+    paths::root().join("tests/sizes.txt")
+}
+
+fn compare(sizes: &Sizes) -> Result<()> {
+    let text = std::fs::read_to_string(file()).context("cannot read tests/sizes.txt (cargo xtask sizes --update writes it)")?;
+    let kept = Sizes::parse(&text).context("tests/sizes.txt")?;
+    let mut complaints = sizes.against(&kept);
+    complaints.extend(stale(&kept)?.into_iter().map(|(document, _)| format!("{document}: its table says otherwise")));
+    if complaints.is_empty() {
+        say(&format!("no number grew by more than {FREE} % over tests/sizes.txt"));
+        return Ok(());
+    }
+    let list = complaints.join("\n  ");
+    bail!("tests/sizes.txt disagrees:\n  {list}\nIf that is meant, run `cargo xtask sizes --update` and commit the files.")
+}
+
+/// The documents whose tables say otherwise, and what they are to hold.
+fn stale(sizes: &Sizes) -> Result<Vec<(&'static str, String)>> {
+    let mut stale = vec![];
+    for document in DOCUMENTS {
+        let before = std::fs::read_to_string(paths::root().join(document)).context(document)?;
+        let after = filled(&before, sizes).context(document)?;
+        if after != before {
+            stale.push((document, after));
+        }
+    }
+    Ok(stale)
+}
+
+/// Builds every image with its own clips.
+fn measured(calls: bool) -> Result<Sizes> {
+    for name in ["PANTIN_CLIP", "DEFMT_LOG"] {
+        ensure!(std::env::var_os(name).is_none(), "{name} is set, which makes other images than the sizes are kept of: unset it");
+    }
+    let mut sizes = Sizes { compiler: compiler()?, ..Sizes::default() };
+    for board in images::boards(&[])? {
+        for image in images::of(&board) {
+            let firmware = image.build(&[])?;
+            let [flash, ram] = images::flash_and_ram(&firmware)?;
+            let stack = stack::worst(firmware.elf()).with_context(|| image.name.clone())?;
+            if calls {
+                say(&format!(
+                    "{}: {} calls through pointers, {} functions in circles",
+                    image.name, stack.indirect, stack.circular
+                ));
+                stack.way.iter().for_each(|(function, frame)| say(&format!("{frame:>9} {function}")));
+            }
+            sizes.images.insert(image.name, [flash, ram, stack.bytes.into()]);
+        }
+    }
+    Ok(sizes)
+}
+
+fn compiler() -> Result<String> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
+    let output = std::process::Command::new(rustc).arg("--version").output().context("cannot start rustc")?;
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
