@@ -10,8 +10,9 @@ use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::paths;
-use crate::setup;
+use xtask::core_library::Core;
+
+use crate::{paths, setup};
 
 /// One call of `cargo build`.
 pub struct Build {
@@ -45,32 +46,6 @@ pub fn cargo(build: &Build) -> Result<PathBuf> {
     }
     ensure!(child.wait()?.success(), "cargo could not build {}", build.product);
     product.with_context(|| format!("cargo built no {}", build.product))
-}
-
-/// What a build needs beside its own words for the core library of its target.
-#[derive(Default)]
-pub struct Core {
-    /// Words for cargo.
-    pub arguments: Vec<OsString>,
-    /// Variables for it.
-    pub environment: Vec<(OsString, OsString)>,
-}
-
-impl Core {
-    /// For a Rust target of the firmware.
-    pub fn of(target: &str) -> Core {
-        if setup::is_from_source(target) { core_from_source() } else { Core::default() }
-    }
-}
-
-/// Cargo compiles core itself: unstable, so the stable compiler must be told to allow it. In a folder of its own, since build
-/// scripts run again whenever that permission comes or goes.
-fn core_from_source() -> Core {
-    let folder = paths::firmware().join("target/core-from-source");
-    Core {
-        arguments: vec!["-Zbuild-std=core".into()],
-        environment: vec![("RUSTC_BOOTSTRAP".into(), "1".into()), ("CARGO_TARGET_DIR".into(), folder.into())],
-    }
 }
 
 /// A firmware program, as an ELF file of its own: a later build of the same program does not change it.

@@ -9,12 +9,10 @@ pub mod equal;
 pub mod icount;
 pub mod image;
 pub mod lossy;
-pub mod paths;
 pub mod qemu;
 pub mod qmp;
 pub mod rp2040;
 pub mod screen;
-pub mod setup;
 pub mod simulator;
 pub mod size_tables;
 pub mod sizes;
@@ -25,3 +23,5 @@ pub mod update;
 pub mod vectors;
 pub mod web;
 pub mod wire;
+
+pub use xtask::{paths, setup};

@@ -1,6 +1,5 @@
 //! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
 
-pub mod browser;
 mod pack;
 mod script;
 pub mod slow;
@@ -9,6 +8,8 @@ use std::ffi::OsString;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::thread;
+
+pub use xtask::browser;
 
 use anyhow::{Context, Result};
 use pantin_tools::serve::{Site, serve};

@@ -12,7 +12,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use harness::conformance::{CORES, Expected, Place};
 
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Plays the golden vectors on every core, and compares the CRC of every pose
 #[derive(Args)]

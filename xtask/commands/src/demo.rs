@@ -18,8 +18,8 @@ use harness::{build, paths, qemu, setup};
 use pantin_tools::cmd::write_whole;
 
 use crate::pictures;
-use crate::steps::say;
 use report::{Clip, Report};
+use xtask::steps::say;
 
 /// Pictures on the contact sheet.
 const SHEET: usize = 12;

@@ -15,8 +15,8 @@ use harness::qemu::BOARDS;
 use harness::{clips, paths, setup, uf2};
 
 use crate::images::{self, Image};
-use crate::packages::Package;
-use crate::steps::say;
+use xtask::packages::Package;
+use xtask::steps::say;
 
 /// Builds every board's images into target/firmware, and says how to flash them
 #[derive(Args)]

@@ -15,7 +15,7 @@ use clap::builder::PossibleValuesParser;
 use harness::{paths, vectors};
 use hostile::{DOORS, Door};
 
-use crate::steps::Steps;
+use xtask::steps::Steps;
 
 /// Fuzzes a target, or one after the other; needs a nightly Rust and cargo-fuzz
 #[derive(Args)]

@@ -15,7 +15,7 @@ use pantin_tools::import::{self, units};
 use pantin_tools::render::gallery::{self, Cell};
 use pantin_tools::verify::compare;
 
-use crate::steps::say;
+use xtask::steps::say;
 
 /// What a file's name begins with, and the axis that its format has upwards.
 const KINDS: [(&str, Option<u8>); 7] =

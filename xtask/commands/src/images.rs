@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use harness::build::Firmware;
 use harness::{image, setup};
 
-use crate::packages::{self, Package};
+use xtask::packages::{self, Package};
 
 /// An image of a board.
 pub struct Image {

@@ -1,4 +1,4 @@
-//! `cargo xtask`: the commands of the repository.
+//! The commands of `cargo xtask` that need the harness or the host tool.
 
 mod bench;
 mod conformance;
@@ -7,12 +7,9 @@ mod firmware;
 mod fuzz;
 mod gallery;
 mod images;
-mod packages;
 mod pictures;
 mod sizes;
-mod steps;
 mod strips;
-mod test;
 mod uf2;
 mod vectors;
 mod web;
@@ -33,7 +30,6 @@ enum Command {
     Gallery(gallery::Gallery),
     Sizes(sizes::Sizing),
     Strips(strips::Strips),
-    Test(test::Test),
     Uf2(uf2::Uf2),
     Vectors(vectors::Vectors),
     Web(web::Web),
@@ -49,7 +45,6 @@ fn main() -> ExitCode {
         Command::Gallery(gallery) => gallery.run(),
         Command::Sizes(sizes) => sizes.run(),
         Command::Strips(strips) => strips.run(),
-        Command::Test(test) => test.run(),
         Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
         Command::Web(web) => web.run(),

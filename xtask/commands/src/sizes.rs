@@ -17,7 +17,7 @@ use harness::{paths, stack};
 use pantin_tools::cmd::write_whole;
 
 use crate::images;
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Flash, RAM and stack of every board's images; fails where one grew by more than 2 % over tests/sizes.txt
 ///

@@ -20,7 +20,7 @@ use pantin::Clip;
 use pantin_tools::cmd::write_whole;
 
 use crate::pictures;
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Degrees about the figure, and their names.
 const VIEWS: [(i16, &str); 3] = [(0, "front"), (-90, "side"), (-50, "three quarters")];

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Args;
 use harness::web::{self, Size};
 
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Builds the web page with its player and our clips: files for any web server, `pantin serve` among them.
 #[derive(Args)]

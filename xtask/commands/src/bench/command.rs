@@ -12,7 +12,7 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 
 use crate::bench::{self, Part, Setting};
-use crate::steps::{Steps, say};
+use xtask::steps::{Steps, say};
 
 /// Measures size, speed and memory, beside what they should be.
 #[derive(Args)]

@@ -10,7 +10,7 @@ use pantin::{ChannelState, Clip, Player};
 use super::guest::Guest;
 use super::table::mean;
 use super::{Goal, Setting, reference, table, tool};
-use crate::steps::say;
+use xtask::steps::say;
 
 const BOUND_CM: f64 = 1.0;
 

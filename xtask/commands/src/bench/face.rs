@@ -14,7 +14,7 @@ use pantin_tools::motion::Motion;
 
 use super::board::{self, played};
 use super::{Goal, Setting, table};
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Greatest error, in percent of full scale.
 const PERCENT: f64 = 2.0;

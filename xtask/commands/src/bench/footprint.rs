@@ -9,7 +9,7 @@ use harness::qemu::MICROBIT;
 
 use super::guest::Guest;
 use super::{Goal, Setting, reference, table, tool};
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Functions shown.
 const SHOWN: usize = 12;

@@ -11,7 +11,7 @@ use harness::{image, paths};
 
 use super::board::{self, PICTURES, played};
 use super::{Goal, Setting, reference, table, tool};
-use crate::steps::say;
+use xtask::steps::say;
 
 const BOUND_CM: f64 = 1.0;
 

@@ -12,7 +12,7 @@ use pantin_link::{Link, QUEUE};
 
 use super::link_board::{Board, Seen};
 use super::{Goal, Setting, table};
-use crate::steps::say;
+use xtask::steps::say;
 
 /// The clip: a body, and a face that plays with it.
 const BODY: &str = "bvh_cmu01_hops-and-turn.bvh";

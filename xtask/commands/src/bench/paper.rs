@@ -10,7 +10,7 @@ use pantin_tools::motion::{Kind, Motion};
 
 use super::tool::{self, Converted};
 use super::{Goal, Setting, plot, table};
-use crate::steps::say;
+use xtask::steps::say;
 
 const BOUND_CM: f64 = 0.5;
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use harness::paths;
 
 use super::{Setting, peers};
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Clips of a quick run: different rigs, rates and moods, a few seconds each.
 const QUICK: [&str; 4] = ["bvh_bandai1_kick", "bvh_diema_anger", "bvh_mixamo-beta_run-loop", "bvh_xia_strut-walk"];

@@ -10,7 +10,7 @@ use super::peers::{self, Bytes};
 use super::reference::{self, Reference};
 use super::table::{geometric_mean, number};
 use super::{Goal, Setting, plot, table, tool};
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Bounds in cm, and the goals at each: of the ideal coder, of ACL (geometric means), of the best working coder (the worst
 /// clip), of the best at our mean error (geometric mean).

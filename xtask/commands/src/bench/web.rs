@@ -11,7 +11,7 @@ use harness::web::{self, CONVERTER, FACE, PLAYER};
 use serde_json::{Value, json};
 
 use super::{Goal, table};
-use crate::steps::say;
+use xtask::steps::say;
 
 /// Bytes of the player as the server sends it without compression.
 const MOST: f64 = 40.0 * 1024.0;

@@ -11,7 +11,7 @@ use harness::qemu::{Launch, Machine};
 use harness::{clips, defmt_log, setup, simulator, sync};
 use pantin_figure::rotation::Rotation;
 
-use crate::steps::{progress, say};
+use xtask::steps::{progress, say};
 
 /// The longest that a demo may play.
 const LIMIT: Duration = Duration::from_secs(180);

@@ -2,12 +2,13 @@
 //!
 //! A board's `Cargo.toml` says `[package.metadata.firmware]` and `targets = ["thumbv7m-none-eabi"]`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use harness::paths;
 use serde_json::Value;
+
+use crate::paths;
 
 /// Features that make another image of a board; its other ones are for tests and measurements.
 const MEANT: [&str; 3] = ["face", "st7789", "update"];
@@ -43,10 +44,19 @@ impl Package {
     }
 }
 
-/// All of them.
+/// All packages of the firmware workspace.
 pub fn firmware() -> Result<Vec<Package>> {
+    of(&paths::firmware())
+}
+
+/// The packages of the web page's workspace.
+pub fn web() -> Result<Vec<Package>> {
+    of(&paths::root().join("web"))
+}
+
+fn of(workspace: &Path) -> Result<Vec<Package>> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    let output = cargo.args(["metadata", "--no-deps", "--format-version=1"]).current_dir(paths::firmware()).output();
+    let output = cargo.args(["metadata", "--no-deps", "--format-version=1"]).current_dir(workspace).output();
     let output = output.context("cannot start cargo")?;
     ensure!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr).trim());
     let metadata: Value = serde_json::from_slice(&output.stdout).context("cargo metadata")?;

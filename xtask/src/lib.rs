@@ -1,0 +1,9 @@
+//! What the commands and the tests share, without dependencies that take long to compile: paths, tools, packages, steps.
+
+pub mod browser;
+pub mod core_library;
+pub mod packages;
+pub mod paths;
+pub mod setup;
+pub mod shape;
+pub mod steps;

@@ -1,0 +1,88 @@
+//! `cargo xtask`: the commands of the repository. Those that need the harness are programs of their own, which are built when they
+//! are asked for.
+
+mod test;
+
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result, bail, ensure};
+use xtask::{paths, shape};
+
+/// Where a command is.
+enum Place {
+    /// In this program: what runs it with its arguments.
+    Here(fn(&[String]) -> Result<()>),
+    /// In the program of this package.
+    Package(&'static str),
+}
+
+const COMMANDS: Place = Place::Package("xtask-commands");
+
+/// Every command, where it is and what it does.
+const LIST: [(&str, Place, &str); 13] = [
+    ("demo", COMMANDS, "Plays a motion on the display of an emulated board, and shows what it costs"),
+    ("test", Place::Here(test::run), "Runs every check and test; --host-only leaves out QEMU and Chromium"),
+    ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
+    ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
+    ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),
+    ("fuzz", COMMANDS, "Fuzzes the entry points for untrusted input; needs a nightly Rust and cargo-fuzz"),
+    ("gallery", COMMANDS, "Converts every captured clip and draws one contact sheet of all"),
+    ("shape", Place::Here(shape), "Counts equal lines among the boards, and circles of imports"),
+    ("sizes", COMMANDS, "Measures flash, RAM and stack of every image, and compares them with tests/sizes.txt"),
+    ("strips", COMMANDS, "Plays motions on every emulated board and draws a contact sheet of each"),
+    ("uf2", COMMANDS, "Makes a file to drag onto a board's drive"),
+    ("vectors", COMMANDS, "Makes the golden vectors again"),
+    ("web", COMMANDS, "Builds the web page with its player and our clips"),
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match run(&arguments) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &[String]) -> Result<ExitCode> {
+    let Some((name, rest)) = arguments.split_first() else {
+        eprint!("{}", help());
+        return Ok(ExitCode::from(2));
+    };
+    if ["help", "--help", "-h"].contains(&name.as_str()) {
+        print!("{}", help());
+        return Ok(ExitCode::SUCCESS);
+    }
+    let Some((_, place, _)) = LIST.iter().find(|(known, ..)| known == name) else {
+        bail!("no command is called {name}\n\n{}", help());
+    };
+    match place {
+        Place::Here(run) => run(rest).map(|()| ExitCode::SUCCESS),
+        Place::Package(package) => program(package, arguments),
+    }
+}
+
+fn help() -> String {
+    let list: String = LIST.iter().map(|(name, _, purpose)| format!("  {name:<12} {purpose}\n")).collect();
+    format!("Usage: cargo xtask <COMMAND>\n\nCommands:\n{list}\n`cargo xtask <COMMAND> --help` prints its options.\n")
+}
+
+/// Builds the program of a package and runs it; returns its exit code.
+fn program(package: &str, arguments: &[String]) -> Result<ExitCode> {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo
+        .arg("run")
+        .arg("--manifest-path")
+        .arg(paths::root().join("Cargo.toml"))
+        .args(["--package", package, "--"])
+        .args(arguments);
+    let status = cargo.status().context("cannot start cargo")?;
+    Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+fn shape(arguments: &[String]) -> Result<()> {
+    ensure!(arguments.is_empty(), "Usage: cargo xtask shape");
+    shape::print()
+}
