@@ -25,3 +25,8 @@ pub mod web;
 pub mod wire;
 
 pub use xtask::{paths, setup};
+
+/// The README's examples, compiled with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

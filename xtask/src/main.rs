@@ -86,3 +86,16 @@ fn shape(arguments: &[String]) -> Result<()> {
     ensure!(arguments.is_empty(), "Usage: cargo xtask shape");
     shape::print()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_reference_names_every_command() {
+        let reference = std::fs::read_to_string(paths::root().join("docs/CLI.md")).unwrap();
+        for (name, ..) in LIST {
+            assert!(reference.contains(&format!("| `cargo xtask {name}")), "docs/CLI.md has no row for cargo xtask {name}");
+        }
+    }
+}
