@@ -1,12 +1,12 @@
 //! The clips that boards play of their own are what `pantin convert` makes of our motions by its defaults.
 //!
-//! After a change of the motions, the fit or the format, `PANTIN_UPDATE=1 cargo test -p pantin-tools own_clips::` writes them anew.
+//! After a change of the motions, the fit or the format, `PANTIN_UPDATE=1 cargo test -p pantin-tools own_clips::` writes them again.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// All of them, without their endings, from the folder `motions`.
-const CLIPS: [&str; 7] = ["walk", "run", "greet", "face/hello", "face/joy", "face/surprise", "face/wink"];
+const CLIPS: [&str; 8] = ["walk", "run", "greet", "kneebend", "face/hello", "face/joy", "face/surprise", "face/wink"];
 
 fn motions() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions")
@@ -35,7 +35,7 @@ fn the_committed_clips_are_what_the_tool_makes() {
         }
     }
     std::fs::remove_dir_all(&folder).unwrap();
-    assert!(stale.is_empty(), "{stale:?}: set PANTIN_UPDATE=1 to write them anew");
+    assert!(stale.is_empty(), "{stale:?}: set PANTIN_UPDATE=1 to write them again");
 }
 
 #[test]

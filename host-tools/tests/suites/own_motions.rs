@@ -157,17 +157,20 @@ fn clearance(clip: &Clip, side: &str) -> Vec<f64> {
     (0..clip.motion.frames).map(|frame| tracks.iter().map(|track| track[frame]).fold(f64::MAX, f64::min)).collect()
 }
 
-/// Degrees by which an elbow is bent, in every frame: 0 is a straight arm, whatever pose the rig rests in.
-fn elbow(clip: &Clip, side: &str) -> Vec<f64> {
-    let arm = ["upper-arm", "forearm", "hand"].map(|part| clip.joint(&format!("{side}-{part}")));
+/// Degrees by which the middle joint of a limb is bent, in every frame: 0 is straight, whatever pose the rig rests in.
+fn bend(clip: &Clip, limb: [usize; 3]) -> Vec<f64> {
     let bend = |places: &Vec<[f64; 3]>| {
-        let [shoulder, elbow, wrist] = arm.map(|joint| places[joint]);
-        let upper: [f64; 3] = std::array::from_fn(|axis| elbow[axis] - shoulder[axis]);
-        let lower: [f64; 3] = std::array::from_fn(|axis| wrist[axis] - elbow[axis]);
+        let [above, middle, below] = limb.map(|joint| places[joint]);
+        let upper: [f64; 3] = std::array::from_fn(|axis| middle[axis] - above[axis]);
+        let lower: [f64; 3] = std::array::from_fn(|axis| below[axis] - middle[axis]);
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         (dot(upper, lower) / (dot(upper, upper) * dot(lower, lower)).sqrt()).acos().to_degrees()
     };
     clip.places.iter().map(bend).collect()
+}
+
+fn elbow(clip: &Clip, side: &str) -> Vec<f64> {
+    bend(clip, ["upper-arm", "forearm", "hand"].map(|part| clip.joint(&format!("{side}-{part}"))))
 }
 
 /// At 0.5 cm it takes no more than `most` bytes, and `least` channels at least are coded as moving.
@@ -232,6 +235,32 @@ fn the_run_is_a_run() {
         assert!(min(&bends) > 60.0 && max(&bends) < 130.0, "{side} elbow bent by {} to {}", min(&bends), max(&bends));
     }
     assert!(min(&clip.ahead(clip.joint("head"))) > 5.0, "leans forward");
+}
+
+/// Its clip is for whoever reads a knee's angle: the rig names three Euler angles, the clip holds an exponential map.
+#[test]
+fn the_knees_bend_and_are_coded_as_exponential_maps() {
+    let motion = import::load(&motions("kneebend"), &Options::default()).unwrap().motion;
+    let places: Vec<_> = (0..motion.frames).map(|frame| fk::positions(&motion.rig, &motion.values, frame)).collect();
+    let clip = Clip { motion, places, stride: 0.0 };
+    loops_smoothly(&clip);
+    let bytes = std::fs::read(motions("kneebend").with_extension("ptn")).unwrap();
+    let coded = pantin::Clip::new_checked(&bytes).unwrap();
+    assert_eq!(coded.frames() as usize, clip.motion.frames);
+    for side in ["left", "right"] {
+        let shin = clip.joint(&format!("{side}-shin"));
+        assert!(clip.motion.rig.joints[shin].kinds.iter().all(|kind| kind.is_rotation()));
+        assert!(coded.is_exponential(shin), "{side}-shin");
+        let angles = ["Z", "Y", "X"].map(|axis| channel(&clip.motion, &format!("{side}-shin.{axis}rotation")));
+        let swing = angles.map(|angles| max(angles) - min(angles));
+        assert!(swing[0] > 30.0 && swing[1] > 20.0 && swing[2] > 50.0, "{swing:?}");
+        let bends = bend(&clip, ["thigh", "shin", "foot"].map(|part| clip.joint(&format!("{side}-{part}"))));
+        assert!(min(&bends) < 10.0 && max(&bends) > 80.0, "{side} knee bent by {} to {}", min(&bends), max(&bends));
+        for sole in clip.sole(side) {
+            let moved = [0, 1, 2].map(|axis| max(&clip.track(sole, axis)) - min(&clip.track(sole, axis)));
+            assert!(moved.iter().all(|&cm| cm < 0.5), "{}: moves by {moved:?} cm", clip.motion.rig.joint_name(sole));
+        }
+    }
 }
 
 /// What one motion holds all along is no saving if the rig holds it instead: both have the same.
