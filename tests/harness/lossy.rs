@@ -1,8 +1,8 @@
 //! A line that loses packets and flips bits, the same way each time; and a receiver at its end, in clip time.
 
 use pantin_link::packet::{Receiver, kind};
-use pantin_link::sender::{Departure, Line, Source};
-use pantin_link::{Channel, Link, Messages, PACKET, QUEUE};
+use pantin_link::sender::{Line, Source, TimedPacket};
+use pantin_link::{Channel, Link, MAX_PACKET, Messages, QUEUE_PACKETS};
 
 /// What a line does to packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,7 +56,7 @@ impl Lossy {
 
 /// The last frame that a packet of motion tells of.
 pub fn last_frame(bytes: &[u8], line: Line) -> Option<u16> {
-    let mut receiver = if line.parity { Receiver::<PACKET>::mending() } else { Receiver::new() };
+    let mut receiver = if line.parity { Receiver::<MAX_PACKET>::with_parity() } else { Receiver::new() };
     let packets = bytes.iter().filter_map(|&byte| {
         let packet = receiver.push(byte).filter(|packet| packet.kind == kind::MOTION)?;
         let mut messages = Messages::new(packet.payload);
@@ -66,50 +66,50 @@ pub fn last_frame(bytes: &[u8], line: Line) -> Option<u16> {
     packets.last()
 }
 
-/// What arrives in each frame's time, from the first that the line carries on. `pass` makes of a departure, and of the frame's time in which it
+/// What arrives in each frame's time, from the first that the line carries on. `pass` makes of a timed, and of the frame's time in which it
 /// comes, the bytes that are left of it.
 pub fn arrivals(
-    departures: impl Iterator<Item = Departure>,
+    timed_packets: impl Iterator<Item = TimedPacket>,
     source: &Source,
     line: Line,
-    mut pass: impl FnMut(usize, Departure) -> Vec<u8>,
+    mut pass: impl FnMut(usize, TimedPacket) -> Vec<u8>,
 ) -> Vec<Vec<u8>> {
     let mut frames = vec![];
-    for departure in departures {
-        let there = departure.at + departure.bytes.len() as f64 / line.rate;
+    for timed in timed_packets {
+        let there = timed.at + timed.bytes.len() as f64 / line.rate;
         let frame = (there / source.frame_seconds() + f64::from(line.ahead)) as usize;
         frames.resize_with(frames.len().max(frame + 1), Vec::new);
-        frames[frame].extend(pass(frame, departure));
+        frames[frame].extend(pass(frame, timed));
     }
     frames
 }
 
-/// Plays departures at a receiver. `line` makes of each what arrives; `each` sees the receiver frame by frame.
+/// Plays timed_packets at a receiver. `line` makes of each what arrives; `each` sees the receiver frame by frame.
 pub fn play(
-    departures: impl Iterator<Item = Departure>,
+    timed_packets: impl Iterator<Item = TimedPacket>,
     source: &Source,
     line: Line,
-    mut damage: impl FnMut(&Departure) -> Vec<u8>,
-    mut each: impl FnMut(&Link<QUEUE>),
+    mut damage: impl FnMut(&TimedPacket) -> Vec<u8>,
+    mut each: impl FnMut(&Link<QUEUE_PACKETS>),
 ) {
     let channels = source.channels();
     let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
-    let mut link = Link::<QUEUE>::new(source.form(), &mut states, &mut pose);
-    let mut receiver = if line.parity { Receiver::<PACKET>::mending() } else { Receiver::new() };
+    let mut link = Link::<QUEUE_PACKETS>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = if line.parity { Receiver::<MAX_PACKET>::with_parity() } else { Receiver::new() };
     let frame = source.frame_seconds();
     let mut clock = None;
-    for departure in departures {
-        let there = departure.at + departure.bytes.len() as f64 / line.rate;
-        let clock = clock.get_or_insert(departure.at);
+    for timed in timed_packets {
+        let there = timed.at + timed.bytes.len() as f64 / line.rate;
+        let clock = clock.get_or_insert(timed.at);
         while *clock + frame <= there {
             *clock += frame;
             link.step();
             each(&link);
         }
-        for byte in damage(&departure) {
+        for byte in damage(&timed) {
             if let Some(packet) = receiver.push(byte) {
                 // Another rig's clip is passed over, as chance may make one.
-                let _ = link.take(&packet);
+                let _ = link.receive(&packet);
             }
         }
     }

@@ -2,22 +2,26 @@
 
 use anyhow::{Context, Result};
 use pantin_link::packet::{self, Receiver};
-use pantin_store::message::ANSWER;
-use pantin_store::{Answer, Ask, BLOCK, Claim};
+use pantin_store::message::MAX_RESPONSE;
+use pantin_store::{BLOCK_BYTES, ClipInfo, Request, Response};
 
 use crate::sync::Session;
 
 /// The messages of a transfer.
-pub fn asks<'a>(clip: &'a [u8], claim: &Claim) -> Vec<Ask<'a>> {
-    let id = claim.crc;
-    let data = clip.chunks(BLOCK).enumerate().map(|(block, bytes)| Ask::Data { id, offset: (block * BLOCK) as u32, bytes });
-    [Ask::Begin(*claim)].into_iter().chain(data).chain([Ask::End { id }]).collect()
+pub fn requests<'a>(clip: &'a [u8], info: &ClipInfo) -> Vec<Request<'a>> {
+    let id = info.crc;
+    let data = clip.chunks(BLOCK_BYTES).enumerate().map(|(block, bytes)| Request::Data {
+        id,
+        offset: (block * BLOCK_BYTES) as u32,
+        bytes,
+    });
+    [Request::Begin(*info)].into_iter().chain(data).chain([Request::End { id }]).collect()
 }
 
 /// A message as it goes over the line.
-pub fn line(ask: &Ask) -> Result<Vec<u8>> {
-    let mut out = vec![0; packet::line_len(8 + BLOCK)];
-    let len = ask.write(0, &mut out).context("a message that does not fit its packet")?;
+pub fn line(request: &Request) -> Result<Vec<u8>> {
+    let mut out = vec![0; packet::line_len(8 + BLOCK_BYTES)];
+    let len = request.write(0, &mut out).context("a message that does not fit its packet")?;
     out.truncate(len);
     Ok(out)
 }
@@ -31,24 +35,24 @@ pub fn nothing() -> Result<Vec<u8>> {
 }
 
 /// Says something to a board that waits for the next picture to be asked for, and returns what it answers.
-pub fn ask(session: &mut Session, ask: &Ask) -> Result<Answer> {
-    session.send(&line(ask)?)?;
-    let mut receiver = Receiver::<ANSWER>::new();
+pub fn request(session: &mut Session, request: &Request) -> Result<Response> {
+    session.send(&line(request)?)?;
+    let mut receiver = Receiver::<MAX_RESPONSE>::new();
     loop {
         let byte = session.receive()?;
         if let Some(packet) = receiver.push(byte) {
-            return Answer::read(&packet).with_context(|| format!("the board says {packet:?}"));
+            return Response::read(&packet).with_context(|| format!("the board says {packet:?}"));
         }
     }
 }
 
 /// Sends a whole clip, and returns the last answer.
-pub fn send(session: &mut Session, clip: &[u8], claim: &Claim) -> Result<Answer> {
+pub fn send(session: &mut Session, clip: &[u8], info: &ClipInfo) -> Result<Response> {
     let mut last = None;
-    for message in asks(clip, claim) {
-        let answer = ask(session, &message)?;
+    for message in requests(clip, info) {
+        let answer = request(session, &message)?;
         last = Some(answer);
-        if !matches!(answer, Answer::Want { .. }) {
+        if !matches!(answer, Response::Next { .. }) {
             break;
         }
     }

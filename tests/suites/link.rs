@@ -15,7 +15,7 @@ use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
 use pantin_link::packet::Receiver;
 use pantin_link::sender::{Line, Sender, Source};
-use pantin_link::{Channel, Form, Link, PACKET, QUEUE};
+use pantin_link::{Channel, Form, Link, MAX_PACKET, QUEUE_PACKETS};
 use tempfile::TempDir;
 
 /// Our greeting: a body and its face.
@@ -39,8 +39,8 @@ fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>
     let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false };
     let fit = wanted.fitted(source).expect("the line carries it");
     let mut lossy = Lossy::new(5);
-    let frames = arrivals(Sender::new(3).clip(source, fit, Some(2)), source, fit, |frame, departure| {
-        if (from..to).contains(&frame) { lossy.pass(&departure.bytes, damage).0 } else { departure.bytes }
+    let frames = arrivals(Sender::new(3).clip(source, fit, Some(2)), source, fit, |frame, timed| {
+        if (from..to).contains(&frame) { lossy.pass(&timed.bytes, damage).0 } else { timed.bytes }
     });
     (frames, fit)
 }
@@ -120,17 +120,17 @@ fn pantin_stream_plays_on_a_board_by_ethernet() {
 }
 
 /// Takes what `stream` sends to a UDP socket until it ends, a datagram at a time, and goes on by three frames after each; its words at the end.
-fn heard(stream: &mut Command, socket: &UdpSocket, clip: &Clip, mut each: impl FnMut(&Link<QUEUE>)) -> String {
+fn heard(stream: &mut Command, socket: &UdpSocket, clip: &Clip, mut each: impl FnMut(&Link<QUEUE_PACKETS>)) -> String {
     let channels = clip.rig().channels();
     let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
-    let mut link = Link::<QUEUE>::new(Form::of(clip).unwrap(), &mut states, &mut pose);
-    let (mut receiver, mut room) = (Receiver::<PACKET>::new(), [0; 2048]);
+    let mut link = Link::<QUEUE_PACKETS>::new(Form::of(clip).unwrap(), &mut states, &mut pose);
+    let (mut receiver, mut room) = (Receiver::<MAX_PACKET>::new(), [0; 2048]);
     socket.set_read_timeout(Some(Duration::from_secs(3))).unwrap();
     let mut stream = stream.stderr(Stdio::piped()).spawn().unwrap();
     while let Ok(len) = socket.recv(&mut room) {
         for &byte in &room[..len] {
             if let Some(packet) = receiver.push(byte) {
-                link.take(&packet).unwrap();
+                link.receive(&packet).unwrap();
             }
         }
         for _ in 0..3 {
@@ -154,7 +154,7 @@ fn pantin_stream_sends_clips_one_after_the_other() {
     stream.args(["stream", "--ahead", "0.5", "--to", &to]).arg(&CLIP.1).arg(&CLIP.1);
     let mut exact = [0; 2];
     let words = heard(&mut stream, &socket, &Clip::new_checked(&bytes).unwrap(), |link| {
-        if let Some(head) = link.head().filter(|_| link.synced()) {
+        if let Some(head) = link.head().filter(|_| link.is_synced()) {
             exact[usize::from(head.clip)] += 1;
         }
     });
@@ -186,7 +186,8 @@ fn pantin_stream_sends_a_face_while_it_is_recorded() {
     let bytes = std::fs::read(&clip).unwrap();
     let mut exact = 0;
     let words = heard(&mut stream, &socket, &Clip::new_checked(&bytes).unwrap(), |link| {
-        let Some(frame) = link.frame().map(|frame| frame as usize).filter(|frame| link.synced() && (1..RECORDED).contains(frame))
+        let Some(frame) =
+            link.frame().map(|frame| frame as usize).filter(|frame| link.is_synced() && (1..RECORDED).contains(frame))
         else {
             return;
         };

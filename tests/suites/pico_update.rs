@@ -9,13 +9,13 @@ use std::sync::LazyLock;
 use harness::build::Firmware;
 use harness::display::Picture;
 use harness::rp2040::{self, Answered, OLED, Outcome, Request};
-use harness::update::{asks, line};
+use harness::update::{line, requests};
 use harness::{clips, paths, screen, setup, simulator};
 use pantin_figure::rotation::Rotation;
 use pantin_link::packet::Receiver;
-use pantin_store::message::ANSWER;
+use pantin_store::message::MAX_RESPONSE;
 use pantin_store::region::Region;
-use pantin_store::{Answer, Claim};
+use pantin_store::{ClipInfo, Response};
 use pantin_tools::update::{self, image};
 use tempfile::TempDir;
 
@@ -37,16 +37,16 @@ struct Bench {
 /// A clip and its pictures.
 struct Film {
     bytes: Vec<u8>,
-    claim: Claim,
+    info: ClipInfo,
     pictures: Vec<Picture>,
 }
 
 impl Film {
     fn of(path: &Path) -> Film {
-        let (bytes, claim) = update::read(path, None).unwrap();
+        let (bytes, info) = update::read(path, None).unwrap();
         let keys = [&b""[..]; 60];
         let pictures = simulator::play::<Rotation>(OLED, &[path.to_owned()], &[], &keys).unwrap();
-        Film { bytes, claim, pictures: pictures.into_iter().map(|(_, picture)| picture).collect() }
+        Film { bytes, info, pictures: pictures.into_iter().map(|(_, picture)| picture).collect() }
     }
 
     /// The pictures are this clip's, in order and from its beginning on.
@@ -84,14 +84,14 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 /// A file of a clip as one drags it onto the board.
 fn uf2(folder: &Path, film: &Film) -> PathBuf {
     let path = folder.join("clips.uf2");
-    fs::write(&path, image::uf2(Region::of("pico").unwrap(), &film.bytes, &film.claim).unwrap()).unwrap();
+    fs::write(&path, image::uf2(Region::of("pico").unwrap(), &film.bytes, &film.info).unwrap()).unwrap();
     path
 }
 
 impl Bench {
     /// A board with this flash, to which the new clip is sent.
     fn sending(&self, flash: &Path) -> Request {
-        let messages = asks(&self.new.bytes, &self.new.claim).iter().map(|message| line(message).unwrap()).collect();
+        let messages = requests(&self.new.bytes, &self.new.info).iter().map(|message| line(message).unwrap()).collect();
         Request::new(flash, OLED).timed().messages(messages, PICTURES)
     }
 
@@ -110,18 +110,18 @@ impl Bench {
     }
 }
 
-fn answer(answered: &Answered) -> Answer {
-    let mut receiver = Receiver::<ANSWER>::new();
-    answered.bytes.iter().find_map(|&byte| Answer::read(&receiver.push(byte)?)).expect("a packet that answers")
+fn answer(answered: &Answered) -> Response {
+    let mut receiver = Receiver::<MAX_RESPONSE>::new();
+    answered.bytes.iter().find_map(|&byte| Response::read(&receiver.push(byte)?)).expect("a packet that answers")
 }
 
 /// Every message was answered, each as one that came whole and but once; the answers' last.
-fn answered(outcome: &Outcome, film: &Film) -> Answer {
-    let (id, length) = (film.claim.crc, film.claim.length);
+fn answered(outcome: &Outcome, film: &Film) -> Response {
+    let (id, length) = (film.info.crc, film.info.length);
     let (last, wants) = outcome.answers.split_last().unwrap();
     for (index, answered) in wants.iter().enumerate() {
         let offset = length.min((index * PAGE) as u32);
-        assert_eq!(answer(answered), Answer::Want { id, offset }, "message {index}");
+        assert_eq!(answer(answered), Response::Next { id, offset }, "message {index}");
     }
     answer(last)
 }
@@ -153,7 +153,7 @@ fn a_clip_comes_over_the_line_while_the_board_draws_and_stays() {
     let saved = bench.folder.path().join("whole.bin");
     let outcome = bench.sending(&bench.flash).saving(&saved).run().unwrap();
     assert_eq!(outcome.ended, "done");
-    assert_eq!(answered(&outcome, &bench.new), Answer::Done { id: bench.new.claim.crc });
+    assert_eq!(answered(&outcome, &bench.new), Response::Done { id: bench.new.info.crc });
     assert_eq!(outcome.changes as usize, bench.changes());
     let begins = outcome.answers.last().unwrap().frames;
     // The first picture was shown before the clock ran.

@@ -16,14 +16,14 @@ use harness::build::{self, Firmware};
 use harness::display::Picture;
 use harness::qemu::{Launch, MICROBIT};
 use harness::sync::Session;
-use harness::update::{ask, asks, line, send};
+use harness::update::{line, request, requests, send};
 use harness::{clips, paths, screen, setup, simulator};
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol};
 use pantin_figure::rotation::Rotation;
 use pantin_store::region::{REGIONS, Region};
-use pantin_store::{Answer, Ask, Claim, Refusal};
-use pantin_tools::update::{self, Patience, image};
+use pantin_store::{ClipInfo, Refusal, Request, Response};
+use pantin_tools::update::{self, RetryPolicy, image};
 use tempfile::TempDir;
 
 /// Pictures by which clips are told apart.
@@ -42,21 +42,21 @@ struct Bench {
 /// A clip and how it begins.
 struct Film {
     bytes: Vec<u8>,
-    claim: Claim,
+    info: ClipInfo,
     path: PathBuf,
     pictures: Vec<(u32, Picture)>,
 }
 
 impl Film {
     fn of(path: PathBuf) -> Film {
-        let (bytes, claim) = update::read(&path, None).unwrap();
+        let (bytes, info) = update::read(&path, None).unwrap();
         let keys = [&b""[..]; PICTURES - 1];
         let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&path), &[], &keys).unwrap();
-        Film { bytes, claim, path, pictures }
+        Film { bytes, info, path, pictures }
     }
 
-    fn done(&self) -> Answer {
-        Answer::Done { id: self.claim.crc }
+    fn done(&self) -> Response {
+        Response::Done { id: self.info.crc }
     }
 }
 
@@ -72,7 +72,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 });
 
 /// A clip of more channels than the board has room for.
-fn wide() -> (Vec<u8>, Claim) {
+fn wide() -> (Vec<u8>, ClipInfo) {
     update::read(&paths::root().join("tests/vectors/channels-300.ptn"), None).unwrap()
 }
 
@@ -96,7 +96,7 @@ impl Bench {
     /// One that plays the old clip from its flash.
     fn playing_old(&self) -> Session {
         let mut session = self.start();
-        assert_eq!(send(&mut session, &self.old.bytes, &self.old.claim).unwrap(), self.old.done());
+        assert_eq!(send(&mut session, &self.old.bytes, &self.old.info).unwrap(), self.old.done());
         session.begins();
         shows(&mut session, &self.old, "the first update");
         session
@@ -205,18 +205,18 @@ fn a_clip_comes_over_the_line_while_another_plays_and_stays() {
     let long = [&b""[..]; 100];
     let old = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&bench.old.path), &[], &long).unwrap();
     let mut last = None;
-    for (message, (number, picture)) in asks(&bench.new.bytes, &bench.new.claim).iter().zip(&old[PICTURES..]) {
+    for (message, (number, picture)) in requests(&bench.new.bytes, &bench.new.info).iter().zip(&old[PICTURES..]) {
         assert_eq!(session.next(&[]).unwrap(), (*number, picture.clone()));
-        last = Some(ask(&mut session, message).unwrap());
+        last = Some(request(&mut session, message).unwrap());
     }
     assert_eq!(last, Some(bench.new.done()));
     session.begins();
     shows(&mut session, &bench.new, "the new clip");
-    assert_eq!(ask(&mut session, &Ask::Begin(bench.new.claim)).unwrap(), bench.new.done(), "it has it already");
+    assert_eq!(request(&mut session, &Request::Begin(bench.new.info)).unwrap(), bench.new.done(), "it has it already");
     session.reset().unwrap();
     shows(&mut session, &bench.new, "the new clip after a reset");
     // The next one goes where the first was.
-    assert_eq!(send(&mut session, &bench.old.bytes, &bench.old.claim).unwrap(), bench.old.done());
+    assert_eq!(send(&mut session, &bench.old.bytes, &bench.old.info).unwrap(), bench.old.done());
     session.begins();
     shows(&mut session, &bench.old, "the old clip again");
     // The clips that it was built with come after it.
@@ -229,7 +229,7 @@ fn a_clip_comes_over_the_line_while_another_plays_and_stays() {
 fn a_transfer_that_ends_at_any_sixteenth_leaves_the_old_clip_playing() {
     let Some(bench) = bench("interrupted transfers") else { return };
     let mut session = bench.playing_old();
-    let messages = asks(&bench.new.bytes, &bench.new.claim);
+    let messages = requests(&bench.new.bytes, &bench.new.info);
     let all: usize = messages.iter().map(|message| line(message).unwrap().len()).sum();
     for part in 0..16 {
         let mut left = all * part / 16;
@@ -240,8 +240,8 @@ fn a_transfer_that_ends_at_any_sixteenth_leaves_the_old_clip_playing() {
                 break;
             }
             left -= bytes.len();
-            let answer = ask(&mut session, message).unwrap();
-            assert!(matches!(answer, Answer::Want { .. }), "{answer:?}");
+            let answer = request(&mut session, message).unwrap();
+            assert!(matches!(answer, Response::Next { .. }), "{answer:?}");
         }
         // What is still on its way would reach the board that starts, out of a packet's midst.
         thread::sleep(Duration::from_millis(100));
@@ -249,7 +249,7 @@ fn a_transfer_that_ends_at_any_sixteenth_leaves_the_old_clip_playing() {
         session.send(&harness::update::nothing().unwrap()).unwrap();
         shows(&mut session, &bench.old, &format!("cut off at {part} sixteenths, reset"));
     }
-    assert_eq!(send(&mut session, &bench.new.bytes, &bench.new.claim).unwrap(), bench.new.done());
+    assert_eq!(send(&mut session, &bench.new.bytes, &bench.new.info).unwrap(), bench.new.done());
     session.reset().unwrap();
     shows(&mut session, &bench.new, "a whole transfer");
 }
@@ -257,7 +257,7 @@ fn a_transfer_that_ends_at_any_sixteenth_leaves_the_old_clip_playing() {
 #[test]
 fn a_board_killed_at_any_moment_plays_the_old_clip_and_takes_the_new_one() {
     let Some(bench) = bench("killed boards") else { return };
-    let messages = asks(&bench.new.bytes, &bench.new.claim);
+    let messages = requests(&bench.new.bytes, &bench.new.info);
     let mut session = bench.playing_old();
     let flash = bench.flash(&mut session);
     drop(session);
@@ -266,7 +266,7 @@ fn a_board_killed_at_any_moment_plays_the_old_clip_and_takes_the_new_one() {
         shows(&mut session, &bench.old, &format!("before the transfer of {part} sixteenths"));
         let cut = messages.len() * part / 16;
         for message in &messages[..cut] {
-            ask(&mut session, message).unwrap();
+            request(&mut session, message).unwrap();
         }
         // The machine stops while it takes this one: before, amid or after the flash is written.
         session.send(&line(&messages[cut]).unwrap()).unwrap();
@@ -276,7 +276,7 @@ fn a_board_killed_at_any_moment_plays_the_old_clip_and_takes_the_new_one() {
         drop(session);
         let mut session = bench.with_flash(&left);
         shows(&mut session, &bench.old, &format!("killed at {part} sixteenths"));
-        assert_eq!(send(&mut session, &bench.new.bytes, &bench.new.claim).unwrap(), bench.new.done());
+        assert_eq!(send(&mut session, &bench.new.bytes, &bench.new.info).unwrap(), bench.new.done());
         session.begins();
         shows(&mut session, &bench.new, &format!("killed at {part} sixteenths, the next transfer"));
     }
@@ -286,7 +286,7 @@ fn a_board_killed_at_any_moment_plays_the_old_clip_and_takes_the_new_one() {
 fn flipped_bits_on_the_line_cost_a_message_and_in_the_flash_a_clip() {
     let Some(bench) = bench("flipped bits") else { return };
     let mut session = bench.playing_old();
-    for (index, message) in asks(&bench.new.bytes, &bench.new.claim).iter().enumerate() {
+    for (index, message) in requests(&bench.new.bytes, &bench.new.info).iter().enumerate() {
         // The first zero stays: what is no packet would be letters of keys.
         let mut damaged = line(message).unwrap();
         let at = 1 + index * 37 % (damaged.len() - 1);
@@ -294,7 +294,7 @@ fn flipped_bits_on_the_line_cost_a_message_and_in_the_flash_a_clip() {
         session.send(&damaged).unwrap();
         // Ends what a flipped zero left open.
         session.send(&[0]).unwrap();
-        ask(&mut session, message).unwrap();
+        request(&mut session, message).unwrap();
     }
     session.begins();
     shows(&mut session, &bench.new, "each message damaged once");
@@ -316,22 +316,22 @@ fn a_clip_that_the_board_cannot_play_is_refused_and_the_old_one_goes_on() {
     let Some(bench) = bench("refused clips") else { return };
     let mut session = bench.playing_old();
     let (wide, wide_claim) = wide();
-    let too_big = Answer::Refused { id: wide_claim.crc, refusal: Refusal::TooBig };
+    let too_big = Response::Refused { id: wide_claim.crc, refusal: Refusal::TooBig };
     let mut at = bench.old.pictures.last().unwrap().clone();
-    let mut damaged = Claim::of(&bench.new.bytes, "").unwrap();
+    let mut damaged = ClipInfo::of(&bench.new.bytes, "").unwrap();
     damaged.crc ^= 1;
-    let spoilt = Answer::Refused { id: damaged.crc, refusal: Refusal::BadCrc };
-    for (bytes, claim, expected) in [(&wide, &wide_claim, too_big), (&bench.new.bytes, &damaged, spoilt)] {
-        assert_eq!(send(&mut session, bytes, claim).unwrap(), expected);
+    let spoilt = Response::Refused { id: damaged.crc, refusal: Refusal::BadCrc };
+    for (bytes, info, expected) in [(&wide, &wide_claim, too_big), (&bench.new.bytes, &damaged, spoilt)] {
+        assert_eq!(send(&mut session, bytes, info).unwrap(), expected);
         // It shows the picture again at which it was.
         session.begins();
         assert_eq!(session.next(&[]).unwrap(), at, "{expected:?}");
         at = session.next(&[]).unwrap();
     }
     let long = vec![0; bench.region.slot as usize];
-    let claim = Claim::of(&long, "").unwrap();
-    let refusal = Refusal::TooLong { room: bench.region.slot - 256 };
-    assert_eq!(send(&mut session, &long, &claim).unwrap(), Answer::Refused { id: claim.crc, refusal });
+    let info = ClipInfo::of(&long, "").unwrap();
+    let refusal = Refusal::TooLong { capacity: bench.region.slot - 256 };
+    assert_eq!(send(&mut session, &long, &info).unwrap(), Response::Refused { id: info.crc, refusal });
     session.reset().unwrap();
     shows(&mut session, &bench.old, "after refused clips");
 }
@@ -342,15 +342,15 @@ fn a_flash_image_plays_and_one_that_the_board_has_no_memory_for_does_not() {
     let mut session = bench.playing_old();
     let firmware = bench.flash(&mut session);
     drop(session);
-    let flashed = |bytes: &[u8], claim: &Claim| {
+    let flashed = |bytes: &[u8], info: &ClipInfo| {
         let mut flash = firmware.clone();
-        let image = image::binary(&bench.region, bytes, claim).unwrap();
+        let image = image::binary(&bench.region, bytes, info).unwrap();
         flash[bench.region.address as usize..][..image.len()].copy_from_slice(&image);
         bench.with_flash(&flash)
     };
-    shows(&mut flashed(&bench.new.bytes, &bench.new.claim), &bench.new, "a flash image");
-    let (wide, claim) = wide();
-    shows(&mut flashed(&wide, &claim), &bench.built_in, "a clip of too many channels");
+    shows(&mut flashed(&bench.new.bytes, &bench.new.info), &bench.new, "a flash image");
+    let (wide, info) = wide();
+    shows(&mut flashed(&wide, &info), &bench.built_in, "a clip of too many channels");
 }
 
 /// Connects a board that plays at its own pace to a port of this machine, for one connection.
@@ -398,16 +398,16 @@ fn one_connection_after_another_takes_a_transfer_up() {
     let board = qemu.serial().unwrap();
     board.set_read_timeout(Some(Duration::from_millis(20))).unwrap();
     let mut line = Breaking { line: board, left: 1000 };
-    let patience = Patience { answer: Duration::from_millis(300), tries: 2 };
+    let patience = RetryPolicy { answer: Duration::from_millis(300), tries: 2 };
     let mut told = vec![];
-    let first = update::send(&mut line, &bench.new.bytes, &bench.new.claim, patience, &mut |bytes| told.push(bytes));
+    let first = update::send(&mut line, &bench.new.bytes, &bench.new.info, patience, &mut |bytes| told.push(bytes));
     let first = first.unwrap_err().to_string();
     let reached = *told.last().unwrap();
     assert!(reached > 0 && first.contains(&format!("after {reached} bytes")), "{first}");
     line.left = usize::MAX;
     told.clear();
-    let patience = Patience { answer: Duration::from_secs(2), tries: 5 };
-    let outcome = update::send(&mut line, &bench.new.bytes, &bench.new.claim, patience, &mut |bytes| told.push(bytes)).unwrap();
+    let patience = RetryPolicy { answer: Duration::from_secs(2), tries: 5 };
+    let outcome = update::send(&mut line, &bench.new.bytes, &bench.new.info, patience, &mut |bytes| told.push(bytes)).unwrap();
     assert!(told[0] >= reached, "it goes on at {} of {reached}", told[0]);
     assert_eq!(outcome.sent, bench.new.bytes.len() as u32 - told[0]);
 }

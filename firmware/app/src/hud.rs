@@ -54,9 +54,9 @@ pub(crate) fn draw_line<L: Layout>(entry: &Entry, status: &crate::link::LinkStat
     let style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
     let (mut first, mut second): (String<32>, String<32>) = (String::new(), String::new());
     let words = match status.refusal {
-        Some(pantin_link::Refusal::Rig) => "another rig",
-        Some(pantin_link::Refusal::Form) => "another coding",
-        Some(pantin_link::Refusal::Channels) => "too many channels",
+        Some(pantin_link::ClipMismatch::Rig) => "another rig",
+        Some(pantin_link::ClipMismatch::Form) => "another coding",
+        Some(pantin_link::ClipMismatch::Channels) => "too many channels",
         None => entry.name.get(..24).unwrap_or(entry.name),
     };
     let _ = first.push_str(words);

@@ -12,7 +12,7 @@ use crate::run::{NEXT, Outcome, PlayContext, QUIT, SHOWN, show};
 use crate::view_state::{Effect, ViewState};
 use pantin::Player;
 use pantin_link::packet::Receiver;
-use pantin_link::{Channel, Counts, Form, Link, PACKET, QUEUE, Refusal};
+use pantin_link::{Channel, ClipMismatch, Counts, Form, Link, MAX_PACKET, QUEUE_PACKETS};
 
 /// Most channels of the rig.
 const CHANNELS: usize = 144;
@@ -23,28 +23,28 @@ pub(crate) struct LinkStatus {
     pub damaged: u32,
     /// Channels that are exact, and all of them.
     pub exact: [u16; 2],
-    pub refusal: Option<Refusal>,
+    pub refusal: Option<ClipMismatch>,
 }
 
 /// The line's end.
 struct End<'m> {
-    receiver: Receiver<PACKET>,
-    link: Link<'m, QUEUE>,
-    refusal: Option<Refusal>,
+    receiver: Receiver<MAX_PACKET>,
+    link: Link<'m, QUEUE_PACKETS>,
+    refusal: Option<ClipMismatch>,
 }
 
 impl End<'_> {
     /// Takes a byte, and hands on the letter that it ends.
     fn take(&mut self, byte: u8) -> Option<u8> {
         if let Some(packet) = self.receiver.push(byte) {
-            self.refusal = self.link.take(&packet).err();
+            self.refusal = self.link.receive(&packet).err();
         }
-        self.receiver.letter()
+        self.receiver.take_key()
     }
 
     fn status(&self) -> LinkStatus {
         let channels = self.link.head().map_or(0, |head| head.channels);
-        let exact = [self.link.exact() as u16, channels];
+        let exact = [self.link.exact_channels() as u16, channels];
         LinkStatus { counts: self.link.counts(), damaged: self.receiver.damaged(), exact, refusal: self.refusal }
     }
 }
@@ -64,7 +64,7 @@ pub(crate) fn play<B: Board, S: Content<B::Layout> + ?Sized>(
     };
     pose.iter_mut().zip(player.pose()).for_each(|(value, own)| *value = *own);
     let link = Link::new(form, &mut channels, &mut pose);
-    let receiver = if view_state.fec { Receiver::mending() } else { Receiver::new() };
+    let receiver = if view_state.fec { Receiver::with_parity() } else { Receiver::new() };
     let mut end = End { receiver, link, refusal: None };
     let (mut shown, mut frame_ns) = (0u32, player.clip().frame_time_ns());
     board.start_timer(frame_ns);
@@ -84,9 +84,9 @@ pub(crate) fn play<B: Board, S: Content<B::Layout> + ?Sized>(
         if matches!(mode, Mode::Frames(count) if shown >= count) || !wait(&mut end, mode, player, renderer, view_state, board) {
             break;
         }
-        let exact = end.link.exact();
+        let exact = end.link.exact_channels();
         end.link.step();
-        if exact != end.link.exact() {
+        if exact != end.link.exact_channels() {
             log(&end);
         }
         if let Some(head) = end.link.head().filter(|head| head.frame_time_ns != frame_ns) {
@@ -120,7 +120,7 @@ fn wait<B: Board, S: Content<B::Layout> + ?Sized>(
         }
         if mode != Mode::Sync && byte.is_none() && board.ticks() > 0 {
             // A letter that was typed has nothing behind it.
-            let typed = if heard { None } else { end.receiver.letter_of_silence() };
+            let typed = if heard { None } else { end.receiver.take_key_after_timeout() };
             see(board.button().or(typed.and_then(Command::from_letter)), player, renderer, view_state);
             return true;
         }
@@ -145,7 +145,7 @@ fn log(end: &End) {
     let LinkStatus { counts, damaged, exact, refusal } = end.status();
     info!(
         "{} packets, {} missing, {} damaged, {} foreign, {} crowded; {} states lost; {} of {} channels exact",
-        counts.packets, counts.missing, damaged, counts.foreign, counts.crowded, counts.losses, exact[0], exact[1]
+        counts.packets, counts.missing, damaged, counts.rejected, counts.dropped, counts.desyncs, exact[0], exact[1]
     );
     if let Some(refusal) = refusal {
         error!("the line's clip cannot be played: {}", refusal);

@@ -7,7 +7,7 @@ use crate::run::{Outcome, PlayContext, perform};
 use crate::update::Listener;
 use crate::view_state::{Entry, ViewState};
 use pantin_figure::surface::Framebuffer;
-use pantin_store::{Slot, Store, Stored, Update};
+use pantin_store::{Slot, Store, StoredClip, Update};
 
 /// What [`run`](crate::run) does, with a store. A clip that came is played from its first frame; one that this board cannot play is refused,
 /// and the one before goes on where it was.
@@ -44,13 +44,13 @@ impl<B: Board> StoredContext<'_, B> {
     }
 }
 
-fn entry<'a>(stored: &'a Stored) -> Entry<'a> {
-    Entry { name: stored.claim.name.as_str(), bytes: stored.bytes }
+fn entry<'a>(stored: &'a StoredClip) -> Entry<'a> {
+    Entry { name: stored.info.name.as_str(), bytes: stored.bytes }
 }
 
 /// Plays until the program ends, or a new clip is sealed: then none.
 fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
-    stored: Option<Stored>,
+    stored: Option<StoredClip>,
     update: &mut Update<S>,
     entries: &[Entry],
     mut stored_context: StoredContext<B>,

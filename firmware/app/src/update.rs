@@ -16,15 +16,15 @@ pub(crate) trait Listen {
 #[cfg(feature = "update")]
 impl<S: pantin_store::Slot> Listen for pantin_store::Update<'_, S> {
     fn take(&mut self, byte: u8, send: &mut dyn FnMut(&[u8])) -> Option<u8> {
-        pantin_store::Update::take(self, byte, send)
+        pantin_store::Update::receive(self, byte, send)
     }
 
     fn is_whole(&self) -> bool {
-        pantin_store::Update::is_whole(self)
+        pantin_store::Update::is_complete(self)
     }
 
     fn picture(&mut self) {
-        pantin_store::Update::picture(self);
+        pantin_store::Update::frame_shown(self);
     }
 }
 

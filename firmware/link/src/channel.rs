@@ -1,16 +1,16 @@
 //! A channel at the receiver: the state that the sender's equals while both are in step, and the value that is drawn.
 
-use crate::head::{Start, pace};
+use crate::head::{ChannelKind, pace};
 use crate::message::Message;
 
 /// What is known of a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Known {
+enum Sync {
     /// Nothing yet.
     #[default]
-    Nothing,
+    Unknown,
     /// That it has one value.
-    Still,
+    Constant,
     /// That it moves, but not where it is.
     Lost,
     /// Its state.
@@ -23,50 +23,50 @@ pub struct Channel {
     /// p, v, w, k.
     state: [i32; 4],
     /// What the drawn value moved by last.
-    glide: i32,
+    last_move: i32,
     /// p when it was drawn last, for one that was exact then.
-    before: Option<i32>,
+    last_exact: Option<i32>,
     /// The frame at which the next message is due.
     due: u16,
     /// How many channels before it stands the one that it follows; 0 if it leads.
     back: u16,
     step: u8,
     pace: u8,
-    known: Known,
+    sync: Sync,
     /// Whether the drawn value has once been the state.
-    met: bool,
+    joined: bool,
 }
 
 impl Channel {
-    /// Takes what the channel is. Told again it changes nothing.
-    pub(crate) fn start(&mut self, start: Start) {
-        let known = match start {
-            Start::Still(p) => {
+    /// Takes what the channel is. ScheduledMessage again it changes nothing.
+    pub(crate) fn set_kind(&mut self, kind: ChannelKind) {
+        let sync = match kind {
+            ChannelKind::Constant(p) => {
                 self.state = [p, 0, 0, 0];
-                Known::Still
+                Sync::Constant
             }
-            Start::Moves { step, pace } => {
+            ChannelKind::Moving { step, pace } => {
                 (self.step, self.pace, self.back) = (step, pace, 0);
-                Known::Lost
+                Sync::Lost
             }
-            Start::Follows(back) => {
+            ChannelKind::Follower(back) => {
                 self.back = back.max(1);
-                Known::Lost
+                Sync::Lost
             }
         };
-        if known == Known::Still || self.known != Known::Exact {
-            self.known = known;
+        if sync == Sync::Constant || self.sync != Sync::Exact {
+            self.sync = sync;
         }
     }
 
     /// Forgets all but what is drawn.
     pub(crate) fn forget(&mut self) {
-        *self = Channel { glide: self.glide, ..Channel::default() };
+        *self = Channel { last_move: self.last_move, ..Channel::default() };
     }
 
     /// Whether it is all that the sender has of it.
     pub(crate) fn is_exact(&self) -> bool {
-        matches!(self.known, Known::Still | Known::Exact)
+        matches!(self.sync, Sync::Constant | Sync::Exact)
     }
 
     /// How many channels before it the one stands that it follows.
@@ -76,13 +76,13 @@ impl Channel {
 
     /// Becomes as the channel that it follows.
     pub(crate) fn follow(&mut self, leader: &Channel) {
-        (self.state, self.pace, self.known) = (leader.state, leader.pace, leader.known);
+        (self.state, self.pace, self.sync) = (leader.state, leader.pace, leader.sync);
     }
 
     /// Whether what is drawn keeps to the pace: it has once been the state.
     #[cfg(test)]
     pub(crate) fn keeps_pace(&self) -> bool {
-        self.met
+        self.joined
     }
 
     /// p, v, w and k, where they are known.
@@ -91,61 +91,61 @@ impl Channel {
     }
 
     /// Takes a message of this frame. A segment alone is of use where the one before it ends.
-    pub(crate) fn take(&mut self, frame: u16, message: &Message) {
-        let moves = matches!(self.known, Known::Lost | Known::Exact) && self.back == 0;
+    pub(crate) fn apply(&mut self, frame: u16, message: &Message) {
+        let moves = matches!(self.sync, Sync::Lost | Sync::Exact) && self.back == 0;
         if moves && (message.refresh.is_some() || self.is_due(frame)) {
             self.state = message.apply(self.state, self.step);
             self.due = frame.wrapping_add(u16::from(message.run));
-            self.known = Known::Exact;
+            self.sync = Sync::Exact;
         }
     }
 
     /// Whether a segment has to begin at this frame.
     fn is_due(&self, frame: u16) -> bool {
-        self.known == Known::Exact && self.due == frame && self.back == 0
+        self.sync == Sync::Exact && self.due == frame && self.back == 0
     }
 
     /// Loses the state if none began at this frame; whether it did.
     pub(crate) fn check(&mut self, frame: u16) -> bool {
         let lost = self.is_due(frame);
         if lost {
-            self.known = Known::Lost;
+            self.sync = Sync::Lost;
         }
         lost
     }
 
     /// Loses the state: time has jumped.
     pub(crate) fn lose(&mut self) {
-        if self.known == Known::Exact {
-            self.known = Known::Lost;
+        if self.sync == Sync::Exact {
+            self.sync = Sync::Lost;
         }
     }
 
     /// The three additions.
-    pub(crate) fn add(&mut self) {
+    pub(crate) fn advance(&mut self) {
         let [p, v, w, k] = self.state;
         self.state = [p.wrapping_add(v), v.wrapping_add(w), w.wrapping_add(k), k];
     }
 
     /// The value to draw after `drawn`; `went` is whether time went on. It never moves by more than the pace, but where the figure first
-    /// appears: a channel that has not met its state yet goes three quarters of the way.
+    /// appears: a channel that has not joined its state yet goes three quarters of the way.
     pub(crate) fn draw(&mut self, drawn: i32, went: bool) -> i32 {
-        let exact = self.is_exact() && (went || self.known == Known::Still);
+        let exact = self.is_exact() && (went || self.sync == Sync::Constant);
         let p = if exact { Some(self.state[0]) } else { None };
-        let before = core::mem::replace(&mut self.before, p);
-        self.glide = match (p, before) {
+        let before = core::mem::replace(&mut self.last_exact, p);
+        self.last_move = match (p, before) {
             // It comes to rest; what came by three quarters may have been faster.
-            (None, _) if self.met => (self.glide / 2).clamp(-pace(self.pace), pace(self.pace)),
-            (None, _) => self.glide / 2,
+            (None, _) if self.joined => (self.last_move / 2).clamp(-pace(self.pace), pace(self.pace)),
+            (None, _) => self.last_move / 2,
             (Some(p), before) => {
                 let moved = before.map_or(0, |before| p.wrapping_sub(before));
                 let off = p.wrapping_sub(moved).wrapping_sub(drawn);
-                let glide = if self.met { self.joining(moved, off) } else { moved.wrapping_add(off - off / 4) };
-                self.met |= drawn.wrapping_add(glide) == p;
-                glide
+                let last_move = if self.joined { self.joining(moved, off) } else { moved.wrapping_add(off - off / 4) };
+                self.joined |= drawn.wrapping_add(last_move) == p;
+                last_move
             }
         };
-        drawn.wrapping_add(self.glide)
+        drawn.wrapping_add(self.last_move)
     }
 
     /// As the state has moved, and a third of the way to it; at least an eighth of the pace, so that it arrives; at most the pace in all.

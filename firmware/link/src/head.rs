@@ -119,18 +119,18 @@ impl Head {
 
 /// What a channel is for the whole clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub enum ChannelKind {
     /// It has this value at all frames.
-    Still(i32),
+    Constant(i32),
     /// It moves.
-    Moves {
+    Moving {
         /// Index of its step: FORMAT.md 7.
         step: u8,
         /// What it may move by in a frame while it joins: [`pace`] of this.
         pace: u8,
     },
     /// It is the same as the channel so many before it.
-    Follows(u16),
+    Follower(u16),
 }
 
 /// Greatest index of a [`pace`].
@@ -146,34 +146,34 @@ pub const fn pace(index: u8) -> i32 {
     }
 }
 
-const STILL: u32 = 0;
-const MOVES: u32 = 1;
-const FOLLOWS: u32 = 2;
+const CONSTANT: u32 = 0;
+const MOVING: u32 = 1;
+const FOLLOWER: u32 = 2;
 /// Still, at 0.
 const ZERO: u32 = 3;
 
-impl Start {
-    fn code<C: Coder>(&self, coder: &mut C) -> Start {
-        let (kind, still, moves, back) = match *self {
-            Start::Still(0) => (ZERO, 0, (0, 0), 0),
-            Start::Still(p) => (STILL, p, (0, 0), 0),
-            Start::Moves { step, pace } => (MOVES, 0, (step, pace), 0),
-            Start::Follows(back) => (FOLLOWS, 0, (0, 0), back),
+impl ChannelKind {
+    fn code<C: Coder>(&self, coder: &mut C) -> ChannelKind {
+        let (kind, constant, moves, back) = match *self {
+            ChannelKind::Constant(0) => (ZERO, 0, (0, 0), 0),
+            ChannelKind::Constant(p) => (CONSTANT, p, (0, 0), 0),
+            ChannelKind::Moving { step, pace } => (MOVING, 0, (step, pace), 0),
+            ChannelKind::Follower(back) => (FOLLOWER, 0, (0, 0), back),
         };
         match coder.bits(2, kind) {
-            MOVES => Start::Moves {
+            MOVING => ChannelKind::Moving {
                 step: coder.bits(6, u32::from(moves.0)).min(u32::from(MAX_STEP)) as u8,
                 pace: coder.bits(6, u32::from(moves.1)) as u8,
             },
-            FOLLOWS => Start::Follows(coder.bits(10, u32::from(back)) as u16),
-            ZERO => Start::Still(0),
+            FOLLOWER => ChannelKind::Follower(coder.bits(10, u32::from(back)) as u16),
+            ZERO => ChannelKind::Constant(0),
             _ => {
-                let zeros = coder.bits(5, still.trailing_zeros() & 31);
-                let digits = still >> (still.trailing_zeros() & 31);
+                let zeros = coder.bits(5, constant.trailing_zeros() & 31);
+                let digits = constant >> (constant.trailing_zeros() & 31);
                 let count = coder.bits(6, if digits == 0 { 0 } else { 33 - (digits ^ digits >> 31).leading_zeros() }).min(32);
                 let read = coder.bits(count, digits as u32 & (u32::MAX >> (32 - count.max(1))));
                 let sign = 32 - count.max(1);
-                Start::Still((((read << sign) as i32) >> sign) << zeros)
+                ChannelKind::Constant((((read << sign) as i32) >> sign) << zeros)
             }
         }
     }
@@ -184,12 +184,12 @@ const COUNT_BITS: u32 = 8;
 
 /// Reads the payload of a packet of kind STARTS, checked by the clip's [`Head::identity`], and shows each channel of the pose with what it is.
 /// Nothing is shown of one that is not whole.
-pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, Start)) -> bool {
-    let go = |show: &mut dyn FnMut(u16, Start)| {
+pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, ChannelKind)) -> bool {
+    let go = |show: &mut dyn FnMut(u16, ChannelKind)| {
         let mut reader = Reader::new(payload);
         let first = reader.bits(FIRST_BITS, 0) as u16;
         for more in 0..reader.bits(COUNT_BITS, 0) as u16 {
-            show(first + more, Start::Still(0).code(&mut reader));
+            show(first + more, ChannelKind::Constant(0).code(&mut reader));
         }
         reader.ends_with(identity)
     };
@@ -198,7 +198,7 @@ pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, Star
 
 /// Writes a payload of the starts from channel `first` on, of up to `room` bytes: with how many.
 #[cfg(any(test, feature = "std"))]
-pub fn write_starts(first: u16, starts: &[Start], identity: u16, room: usize) -> (Vec<u8>, usize) {
+pub fn write_starts(first: u16, starts: &[ChannelKind], identity: u16, room: usize) -> (Vec<u8>, usize) {
     let payload = |count: usize| {
         let mut writer = crate::symbols::write::Writer::default();
         writer.bits(FIRST_BITS, u32::from(first));

@@ -1,24 +1,24 @@
 //! The receiver: packets in, a pose a frame out. Nothing that comes can make it fail; what it says of itself is true.
 
 use crate::channel::Channel;
-use crate::head::{Form, Head, Start, read_starts};
+use crate::head::{ChannelKind, Form, Head, read_starts};
 use crate::message::Messages;
 use crate::packet::{Packet, kind};
 use heapless::Vec;
 
 /// Bytes of a motion's payload that a sender makes at most.
-pub const PAYLOAD: usize = 96;
+pub const MAX_PAYLOAD: usize = 96;
 /// Packets of motion that wait for their frames at a receiver at most: a sender counts on as many places.
-pub const QUEUE: usize = 24;
+pub const QUEUE_PACKETS: usize = 24;
 /// Bytes of any packet of this crate, for [`crate::packet::Receiver`]: with parity.
-pub const PACKET: usize = PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
+pub const MAX_PACKET: usize = MAX_PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
 
 /// A packet of motion that waits for its frames.
 #[derive(Clone, Debug)]
-struct Waiting {
+struct QueuedPacket {
     /// The line's frame of its last message.
     last: u32,
-    payload: Vec<u8, PAYLOAD>,
+    payload: Vec<u8, MAX_PAYLOAD>,
 }
 
 /// What has come, modulo 2^32.
@@ -29,14 +29,14 @@ pub struct Counts {
     /// Packets that are missing by their sequence; such as come later than others are counted here too.
     pub missing: u32,
     /// Packets of another clip, with a check that is not right, or too late.
-    pub foreign: u32,
+    pub rejected: u32,
     /// Packets that found the queue full.
-    pub crowded: u32,
+    pub dropped: u32,
     /// Times that a channel's state was lost.
-    pub losses: u32,
+    pub desyncs: u32,
 }
 
-/// Plays what comes over a line in memory of the caller's. `Q` packets wait for their frames: [`QUEUE`] is
+/// Plays what comes over a line in memory of the caller's. `Q` packets wait for their frames: [`QUEUE_PACKETS`] is
 /// what senders count on.
 #[derive(Debug)]
 pub struct Link<'m, const Q: usize> {
@@ -46,7 +46,7 @@ pub struct Link<'m, const Q: usize> {
     head: Option<Head>,
     /// A clip that was told of, with where the sender was: it begins with the first other packet of it.
     next: Option<(Head, u32)>,
-    queue: Vec<Waiting, Q>,
+    queue: Vec<QueuedPacket, Q>,
     clock: Option<Clock>,
     /// Where the sender was when it told of the clip.
     heard: u32,
@@ -60,23 +60,23 @@ struct Clock {
     /// The frame that is shown.
     now: u32,
     /// Where the sender is.
-    sender: u32,
+    sender_frame: u32,
     /// All that is told of frames before this has been sent.
-    told: u32,
+    received_until: u32,
 }
 
 /// Frames that the clock may be behind the sender's before it takes two at once, and ahead (negative) before it waits: the jitter of packets.
-const TWICE: i32 = 5;
-const WAIT: i32 = -2;
+const CATCH_UP_FRAMES: i32 = 5;
+const HOLD_FRAMES: i32 = -2;
 /// Frames behind from which it takes all at once,
-const JUMP: i32 = 12;
+const SKIP_FRAMES: i32 = 12;
 /// and from which it no longer follows what has gone on since.
-const FAR: u32 = 256;
+const FORGET_FRAMES: u32 = 256;
 
 /// A clip that this receiver cannot play.
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
+pub enum ClipMismatch {
     /// It is of another rig.
     Rig,
     /// Its positions or its rotations are coded in another way; `pantin convert --rotations euler` leaves no choice.
@@ -95,7 +95,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
     }
 
     /// Takes a packet. Those of other kinds are passed over.
-    pub fn take(&mut self, packet: &Packet<'_>) -> Result<(), Refusal> {
+    pub fn receive(&mut self, packet: &Packet<'_>) -> Result<(), ClipMismatch> {
         if !matches!(packet.kind, kind::HEAD | kind::STARTS | kind::MOTION) {
             return Ok(());
         }
@@ -123,14 +123,14 @@ impl<'m, const Q: usize> Link<'m, Q> {
             _ => self.take_motion(packet.payload),
         };
         if taken.is_none() {
-            self.counts.foreign = self.counts.foreign.wrapping_add(1);
+            self.counts.rejected = self.counts.rejected.wrapping_add(1);
         }
         Ok(())
     }
 
-    fn take_head(&mut self, payload: &[u8]) -> Result<(), Refusal> {
+    fn take_head(&mut self, payload: &[u8]) -> Result<(), ClipMismatch> {
         let Some((head, now)) = Head::read(payload) else {
-            self.counts.foreign = self.counts.foreign.wrapping_add(1);
+            self.counts.rejected = self.counts.rejected.wrapping_add(1);
             return Ok(());
         };
         if self.head == Some(head) {
@@ -138,13 +138,13 @@ impl<'m, const Q: usize> Link<'m, Q> {
             return Ok(());
         }
         if head.form.rig != self.form.rig {
-            return Err(Refusal::Rig);
+            return Err(ClipMismatch::Rig);
         }
         if head.form != self.form {
-            return Err(Refusal::Form);
+            return Err(ClipMismatch::Form);
         }
         if usize::from(head.channels) > self.channels.len().min(self.pose.len()) {
-            return Err(Refusal::Channels);
+            return Err(ClipMismatch::Channels);
         }
         self.next = Some((head, now));
         if self.head.is_none() {
@@ -164,9 +164,9 @@ impl<'m, const Q: usize> Link<'m, Q> {
     fn take_starts(&mut self, payload: &[u8]) -> Option<()> {
         let head = self.head?;
         let channels = self.channels.get_mut(..usize::from(head.channels))?;
-        let show = |channel: u16, start: Start| {
+        let show = |channel: u16, kind: ChannelKind| {
             if let Some(channel) = channels.get_mut(usize::from(channel)) {
-                channel.start(start);
+                channel.set_kind(kind);
             }
         };
         read_starts(payload, head.identity(), show).then_some(())
@@ -181,9 +181,9 @@ impl<'m, const Q: usize> Link<'m, Q> {
         if before(last, now) {
             return None;
         }
-        let waiting = Waiting { last, payload: Vec::from_slice(payload).ok()? };
+        let waiting = QueuedPacket { last, payload: Vec::from_slice(payload).ok()? };
         if self.queue.push(waiting).is_err() {
-            self.counts.crowded = self.counts.crowded.wrapping_add(1);
+            self.counts.dropped = self.counts.dropped.wrapping_add(1);
         }
         Some(())
     }
@@ -191,15 +191,15 @@ impl<'m, const Q: usize> Link<'m, Q> {
     /// Takes the sender's time from a packet.
     fn set_clock(&mut self, base: u32, ahead: u8, last: u32) {
         let sender = base.wrapping_sub(u32::from(ahead));
-        let clock = self.clock.get_or_insert(Clock { now: sender, sender, told: base });
+        let clock = self.clock.get_or_insert(Clock { now: sender, sender_frame: sender, received_until: base });
         // One that comes later than its successors tells an old time, and a sender that has stalled is behind: its time is come back to slowly.
-        if before(clock.sender, sender) {
-            clock.sender = sender;
-        } else if clock.sender != sender {
-            clock.sender = clock.sender.wrapping_sub(1);
+        if before(clock.sender_frame, sender) {
+            clock.sender_frame = sender;
+        } else if clock.sender_frame != sender {
+            clock.sender_frame = clock.sender_frame.wrapping_sub(1);
         }
-        if before(clock.told, last) {
-            clock.told = last;
+        if before(clock.received_until, last) {
+            clock.received_until = last;
         }
     }
 
@@ -226,19 +226,19 @@ impl<'m, const Q: usize> Link<'m, Q> {
     fn steps(&mut self) -> u32 {
         let Some(clock) = &mut self.clock else { return 0 };
         // No sender is further than what it has told of.
-        if before(clock.sender, clock.told) {
-            clock.sender = clock.sender.wrapping_add(1);
+        if before(clock.sender_frame, clock.received_until) {
+            clock.sender_frame = clock.sender_frame.wrapping_add(1);
         }
-        let off = clock.sender.wrapping_sub(clock.now) as i32;
+        let off = clock.sender_frame.wrapping_sub(clock.now) as i32;
         let wanted = match off {
-            JUMP.. => off,
-            TWICE.. => 2,
-            WAIT.. => 1,
+            SKIP_FRAMES.. => off,
+            CATCH_UP_FRAMES.. => 2,
+            HOLD_FRAMES.. => 1,
             _ => 0,
         };
-        let told = clock.told.wrapping_sub(clock.now) as i32 - 1;
+        let told = clock.received_until.wrapping_sub(clock.now) as i32 - 1;
         let steps = wanted.min(told).max(0) as u32;
-        if steps <= FAR {
+        if steps <= FORGET_FRAMES {
             return steps;
         }
         clock.now = clock.now.wrapping_add(steps - 1);
@@ -252,19 +252,19 @@ impl<'m, const Q: usize> Link<'m, Q> {
         clock.now = clock.now.wrapping_add(1);
         let now = clock.now;
         for channel in self.channels.iter_mut() {
-            channel.add();
+            channel.advance();
         }
         for waiting in &self.queue {
             for (at, channel, message) in Messages::new(&waiting.payload) {
                 if let Some(channel) = self.channels.get_mut(usize::from(channel)).filter(|_| at == now as u16) {
-                    channel.take(at, &message);
+                    channel.apply(at, &message);
                 }
             }
         }
         self.queue.retain(|waiting| before(now, waiting.last));
         for channel in self.channels.iter_mut() {
             let lost = channel.check(now as u16);
-            self.counts.losses = self.counts.losses.wrapping_add(u32::from(lost));
+            self.counts.desyncs = self.counts.desyncs.wrapping_add(u32::from(lost));
         }
     }
 
@@ -290,14 +290,14 @@ impl<'m, const Q: usize> Link<'m, Q> {
     }
 
     /// How many of the clip's channels are exactly what the sender has of them.
-    pub fn exact(&self) -> usize {
+    pub fn exact_channels(&self) -> usize {
         let channels = self.head.map_or(0, |head| usize::from(head.channels));
         self.channels.iter().take(channels).filter(|channel| channel.is_exact()).count()
     }
 
     /// Whether every channel is.
-    pub fn synced(&self) -> bool {
-        self.clock.is_some() && self.head.is_some_and(|head| usize::from(head.channels) == self.exact())
+    pub fn is_synced(&self) -> bool {
+        self.clock.is_some() && self.head.is_some_and(|head| usize::from(head.channels) == self.exact_channels())
     }
 
     /// The states of the pose's channels.

@@ -24,10 +24,10 @@ pub mod kind {
     pub const UPDATES: RangeInclusive<u8> = 0x10..=0x1f;
 }
 
-/// Bytes of a packet beside its payload, before stuffing.
+/// Bytes of a packet beside its payload, before COBS encoding.
 pub const OVERHEAD: usize = 4;
 
-/// Bytes that are added behind the CRC, before stuffing, where both ends have agreed on it: they mend 4 wrong bytes.
+/// Bytes that are added behind the CRC, before cobs, where both ends have agreed on it: they mend 4 wrong bytes.
 pub use crate::parity::PARITY;
 
 /// Bytes that a packet takes on the line at most, both zeros included, and parity.
@@ -53,7 +53,7 @@ pub fn encode(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<
     put(&[kind, sequence], payload, sum(&[kind, sequence], payload), &[], out)
 }
 
-/// The same with parity behind the CRC, for a receiver [`Receiver::mending`]: payloads of up to 243 bytes.
+/// The same with parity behind the CRC, for a receiver [`Receiver::with_parity`]: payloads of up to 243 bytes.
 pub fn encode_with_parity(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
     let head = [kind, sequence];
     let crc = sum(&head, payload);
@@ -78,19 +78,19 @@ fn put(head: &[u8], payload: &[u8], crc: [u8; 2], parity: &[u8], out: &mut [u8])
 pub struct Receiver<const N: usize> {
     bytes: [u8; N],
     len: usize,
-    stuffing: cobs::Decoder,
+    cobs: cobs::Decoder,
     /// Bytes since the last zero.
-    since: usize,
+    run_bytes: usize,
     first: u8,
     /// 0 for none: no letter is that.
-    letter: u8,
+    key: u8,
     /// A letter, until what follows shows that it is no damaged packet's first byte; 0 for none.
-    held: u8,
+    pending_key: u8,
     /// What was last is damaged: a letter may be its last byte.
-    torn: bool,
+    after_damage: bool,
     damaged: u32,
-    /// What mends packets with parity: programs without it need not hold it.
-    mends: Option<fn(&mut [u8]) -> bool>,
+    /// Corrects packets with parity: a pointer, so that programs without parity do not link the code.
+    correct: Option<fn(&mut [u8]) -> bool>,
 }
 
 impl<const N: usize> Default for Receiver<N> {
@@ -102,13 +102,24 @@ impl<const N: usize> Default for Receiver<N> {
 impl<const N: usize> Receiver<N> {
     /// Waits for the first byte.
     pub const fn new() -> Self {
-        let stuffing = cobs::Decoder::new();
-        Receiver { bytes: [0; N], len: 0, stuffing, since: 0, first: 0, letter: 0, held: 0, torn: false, damaged: 0, mends: None }
+        let cobs = cobs::Decoder::new();
+        Receiver {
+            bytes: [0; N],
+            len: 0,
+            cobs,
+            run_bytes: 0,
+            first: 0,
+            key: 0,
+            pending_key: 0,
+            after_damage: false,
+            damaged: 0,
+            correct: None,
+        }
     }
 
     /// The same for packets with parity, which count among the `N` bytes.
-    pub const fn mending() -> Self {
-        Receiver { mends: Some(parity::mend), ..Self::new() }
+    pub const fn with_parity() -> Self {
+        Receiver { correct: Some(parity::correct), ..Self::new() }
     }
 
     /// Takes a byte from the line, and hands on the packet that it ends.
@@ -116,11 +127,11 @@ impl<const N: usize> Receiver<N> {
         if byte == 0 {
             return self.end();
         }
-        if self.since == 0 {
-            (self.len, self.stuffing, self.first) = (0, cobs::Decoder::new(), byte);
+        if self.run_bytes == 0 {
+            (self.len, self.cobs, self.first) = (0, cobs::Decoder::new(), byte);
         }
-        self.since = self.since.saturating_add(1);
-        if let Some(byte) = self.stuffing.feed(byte) {
+        self.run_bytes = self.run_bytes.saturating_add(1);
+        if let Some(byte) = self.cobs.feed(byte) {
             if let Some(place) = self.bytes.get_mut(self.len) {
                 *place = byte;
             }
@@ -130,51 +141,51 @@ impl<const N: usize> Receiver<N> {
     }
 
     fn end(&mut self) -> Option<Packet<'_>> {
-        let since = core::mem::take(&mut self.since);
+        let since = core::mem::take(&mut self.run_bytes);
         if since < 2 {
-            settle(&mut self.held, &mut self.letter);
+            confirm_key(&mut self.pending_key, &mut self.key);
             if since == 0 {
-                self.torn = false;
-            } else if !self.torn {
-                self.held = self.first;
+                self.after_damage = false;
+            } else if !self.after_damage {
+                self.pending_key = self.first;
             }
             return None;
         }
-        // A damaged stuffing puts zeros in wrong places, but none too many: parity may mend that too.
-        let whole = self.stuffing.whole() || self.mends.is_some();
+        // A damaged COBS code byte puts zeros in wrong places, but none too many: parity may mend that too.
+        let whole = self.cobs.whole() || self.correct.is_some();
         // None for one that was too long.
         let bytes = self.bytes.get_mut(..self.len).filter(|_| whole);
-        let mends = self.mends;
-        let unmended = |bytes| match mends {
-            Some(mend) => mended(bytes, mend),
+        let correct = self.correct;
+        let unmended = |bytes| match correct {
+            Some(correct) => without_parity(bytes, correct),
             None => Some(bytes),
         };
         let packet = bytes.and_then(unmended).and_then(|bytes| open(bytes));
-        self.torn = packet.is_none();
-        if self.torn {
+        self.after_damage = packet.is_none();
+        if self.after_damage {
             self.damaged = self.damaged.wrapping_add(1);
-            self.held = 0;
+            self.pending_key = 0;
         } else {
-            settle(&mut self.held, &mut self.letter);
+            confirm_key(&mut self.pending_key, &mut self.key);
         }
         packet
     }
 
     /// A byte that came alone between two zeros since the last call, once it is no piece of a packet in which a flipped bit has made a zero: what follows it is
     /// whole, another letter, or a second zero; what stands before it too.
-    pub fn letter(&mut self) -> Option<u8> {
-        Some(core::mem::take(&mut self.letter)).filter(|&letter| letter != 0)
+    pub fn take_key(&mut self) -> Option<u8> {
+        Some(core::mem::take(&mut self.key)).filter(|&key| key != 0)
     }
 
     /// The same for a byte alone behind the last zero, for when the line has been silent for a while: a packet's first byte that is
     /// taken for a letter costs that packet.
-    pub fn letter_of_silence(&mut self) -> Option<u8> {
-        if self.since == 1 {
-            self.since = 0;
+    pub fn take_key_after_timeout(&mut self) -> Option<u8> {
+        if self.run_bytes == 1 {
+            self.run_bytes = 0;
             return Some(self.first);
         }
-        settle(&mut self.held, &mut self.letter);
-        self.letter()
+        confirm_key(&mut self.pending_key, &mut self.key);
+        self.take_key()
     }
 
     /// How many packets came damaged, modulo 2^32. Pieces count: a zero that a flipped bit made gives two.
@@ -184,19 +195,19 @@ impl<const N: usize> Receiver<N> {
 }
 
 /// What follows a letter is no piece of the same packet.
-fn settle(held: &mut u8, letter: &mut u8) {
-    if *held != 0 {
-        *letter = core::mem::take(held);
+fn confirm_key(pending: &mut u8, key: &mut u8) {
+    if *pending != 0 {
+        *key = core::mem::take(pending);
     }
 }
 
 /// A packet's bytes without parity, mended if need be.
-fn mended(bytes: &mut [u8], mend: fn(&mut [u8]) -> bool) -> Option<&mut [u8]> {
+fn without_parity(bytes: &mut [u8], correct: fn(&mut [u8]) -> bool) -> Option<&mut [u8]> {
     let len = bytes.len().checked_sub(PARITY)?;
-    if mend(bytes) { bytes.get_mut(..len) } else { None }
+    if correct(bytes) { bytes.get_mut(..len) } else { None }
 }
 
-/// A packet's bytes without stuffing, if their CRC is right.
+/// The packet in COBS-decoded bytes, if their CRC is right.
 fn open(bytes: &[u8]) -> Option<Packet<'_>> {
     let (bytes, sum) = bytes.split_last_chunk()?;
     let &[kind, sequence, ref payload @ ..] = bytes else { return None };
@@ -235,16 +246,16 @@ mod tests {
     }
 
     #[test]
-    fn letters_share_the_line() {
+    fn keys_share_the_line() {
         let mut receiver = Receiver::<16>::new();
         let mut bytes = line(1, 1, b"abc");
         bytes.extend([b'q']);
         bytes.extend(line(1, 2, b"def"));
         assert_eq!(received(&mut receiver, &bytes).len(), 2);
-        assert_eq!((receiver.letter(), receiver.letter(), receiver.damaged()), (Some(b'q'), None, 0));
+        assert_eq!((receiver.take_key(), receiver.take_key(), receiver.damaged()), (Some(b'q'), None, 0));
         receiver.push(b'h');
-        assert_eq!(receiver.letter(), None);
-        assert_eq!((receiver.letter_of_silence(), receiver.letter_of_silence()), (Some(b'h'), None));
+        assert_eq!(receiver.take_key(), None);
+        assert_eq!((receiver.take_key_after_timeout(), receiver.take_key_after_timeout()), (Some(b'h'), None));
         assert_eq!(received(&mut receiver, &line(1, 3, b"ghi")).len(), 1);
     }
 
@@ -256,12 +267,12 @@ mod tests {
             let mut bad = good.clone();
             bad[torn] = 0;
             let mut receiver = Receiver::<64>::new();
-            let mut letters = vec![];
+            let mut keys = vec![];
             for byte in [&good[..], &bad, &good, &[0, 0, b'q', 0, 0], &bad[..bad.len() - 1], &[0, 0, b'w', 0, 0]].concat() {
                 receiver.push(byte);
-                letters.extend(receiver.letter());
+                keys.extend(receiver.take_key());
             }
-            assert_eq!(letters, b"qw", "byte {torn}");
+            assert_eq!(keys, b"qw", "byte {torn}");
         }
     }
 
@@ -283,7 +294,7 @@ mod tests {
         for at in 1..len - 1 {
             let mut bytes = whole.clone();
             bytes[at] ^= 0x10;
-            let mut receiver = Receiver::<128>::mending();
+            let mut receiver = Receiver::<128>::with_parity();
             missed += usize::from(received(&mut receiver, &bytes) != [(kind::MOTION, 9, payload.clone())]);
         }
         // Stuffing is mended too, unless it is damaged so that wrong runs go on and on.

@@ -100,7 +100,7 @@ fn syndromes(bytes: &[u8]) -> [u8; PARITY] {
 }
 
 /// Mends bytes that end with their parity. False if that cannot be; then they may have been changed.
-pub(crate) fn mend(bytes: &mut [u8]) -> bool {
+pub(crate) fn correct(bytes: &mut [u8]) -> bool {
     let syndromes = syndromes(bytes);
     if syndromes == [0; PARITY] {
         return true;
@@ -175,13 +175,13 @@ mod tests {
                     *byte ^= mask;
                 }
             }
-            prop_assert!(mend(&mut came));
+            prop_assert!(correct(&mut came));
             prop_assert_eq!(came, sent);
         }
 
         #[test]
         fn any_bytes_end(mut bytes in prop::collection::vec(any::<u8>(), 0..600)) {
-            mend(&mut bytes);
+            correct(&mut bytes);
         }
     }
 }

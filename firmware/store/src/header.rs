@@ -14,9 +14,9 @@
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
 /// Bytes of it.
-pub const HEADER: usize = 48;
+pub const HEADER_BYTES: usize = 48;
 /// Bytes of a name.
-pub const NAME: usize = 28;
+pub const NAME_BYTES: usize = 28;
 
 const MAGIC: [u8; 4] = *b"PTN\x01";
 
@@ -28,20 +28,20 @@ pub fn crc_32(bytes: &[u8]) -> u32 {
     CRC_32.checksum(bytes)
 }
 
-/// What a clip is called: up to [`NAME`] bytes.
+/// What a clip is called: up to [`NAME_BYTES`] bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Name([u8; NAME]);
+pub struct Name([u8; NAME_BYTES]);
 
 impl Name {
-    /// The beginning of `name`, as far as there is room.
+    /// The beginning of `name`, as far as there is capacity.
     pub fn new(name: &str) -> Name {
-        let end = (0..=NAME).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
+        let end = (0..=NAME_BYTES).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
         Name::of_bytes(name.as_bytes().get(..end).unwrap_or_default())
     }
 
     /// Bytes that may be no UTF-8 and too long.
     pub(crate) fn of_bytes(bytes: &[u8]) -> Name {
-        let mut name = [0; NAME];
+        let mut name = [0; NAME_BYTES];
         name.iter_mut().zip(bytes).for_each(|(place, &byte)| *place = byte);
         Name(name)
     }
@@ -55,14 +55,14 @@ impl Name {
         }
     }
 
-    pub(crate) fn bytes(&self) -> &[u8; NAME] {
+    pub(crate) fn bytes(&self) -> &[u8; NAME_BYTES] {
         &self.0
     }
 }
 
 /// What is claimed of a clip, by a header or by who sends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Claim {
+pub struct ClipInfo {
     /// Bytes of it.
     pub length: u32,
     /// CRC-32 of them.
@@ -71,10 +71,10 @@ pub struct Claim {
     pub name: Name,
 }
 
-impl Claim {
+impl ClipInfo {
     /// What is so of a clip. None for one of 4 GiB.
-    pub fn of(clip: &[u8], name: &str) -> Option<Claim> {
-        Some(Claim { length: u32::try_from(clip.len()).ok()?, crc: crc_32(clip), name: Name::new(name) })
+    pub fn of(clip: &[u8], name: &str) -> Option<ClipInfo> {
+        Some(ClipInfo { length: u32::try_from(clip.len()).ok()?, crc: crc_32(clip), name: Name::new(name) })
     }
 }
 
@@ -82,7 +82,7 @@ impl Claim {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
     /// Of the clip.
-    pub claim: Claim,
+    pub info: ClipInfo,
     /// Which of two clips is newer.
     pub sequence: u32,
 }
@@ -90,7 +90,7 @@ pub struct Header {
 impl Header {
     /// Reads it. None where there is none, or only a part of one.
     pub fn read(bytes: &[u8]) -> Option<Header> {
-        let (fields, crc) = bytes.get(..HEADER)?.split_last_chunk()?;
+        let (fields, crc) = bytes.get(..HEADER_BYTES)?.split_last_chunk()?;
         if crc_32(fields) != u32::from_le_bytes(*crc) {
             return None;
         }
@@ -98,13 +98,13 @@ impl Header {
         let (length, rest) = number(name)?;
         let (crc, rest) = number(rest)?;
         let (sequence, name) = number(rest)?;
-        Some(Header { claim: Claim { length, crc, name: Name::of_bytes(name) }, sequence })
+        Some(Header { info: ClipInfo { length, crc, name: Name::of_bytes(name) }, sequence })
     }
 
     /// Its bytes.
-    pub fn bytes(&self) -> [u8; HEADER] {
-        let Claim { length, crc, name } = &self.claim;
-        let mut bytes = [0; HEADER];
+    pub fn bytes(&self) -> [u8; HEADER_BYTES] {
+        let ClipInfo { length, crc, name } = &self.info;
+        let mut bytes = [0; HEADER_BYTES];
         let numbers = [*length, *crc, self.sequence].map(u32::to_le_bytes);
         let fields = MAGIC.iter().chain(numbers.as_flattened()).chain(name.bytes());
         bytes.iter_mut().zip(fields).for_each(|(place, &byte)| *place = byte);
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn the_bytes_of_a_header() {
-        let header = Header { claim: Claim::of(b"123456789", "walk").unwrap(), sequence: 0x0102 };
+        let header = Header { info: ClipInfo::of(b"123456789", "walk").unwrap(), sequence: 0x0102 };
         let bytes = header.bytes();
         assert_eq!(bytes[..20], *b"PTN\x01\x09\0\0\0\x26\x39\xf4\xcb\x02\x01\0\0walk");
         assert_eq!(bytes[20..44], [0; 24]);
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn the_newer_one_is_told_past_the_last_number() {
-        let header = |sequence| Header { claim: Claim::of(b"", "").unwrap(), sequence };
+        let header = |sequence| Header { info: ClipInfo::of(b"", "").unwrap(), sequence };
         assert!(header(0).is_newer_than(&header(u32::MAX)));
         assert!(!header(u32::MAX).is_newer_than(&header(0)));
         assert!(!header(7).is_newer_than(&header(7)));
@@ -164,8 +164,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_and_no_bit_of_it_may_flip(length: u32, crc: u32, sequence: u32, name: String, bit in 0..HEADER * 8) {
-            let header = Header { claim: Claim { length, crc, name: Name::new(&name) }, sequence };
+        fn what_is_written_is_read_and_no_bit_of_it_may_flip(length: u32, crc: u32, sequence: u32, name: String, bit in 0..HEADER_BYTES * 8) {
+            let header = Header { info: ClipInfo { length, crc, name: Name::new(&name) }, sequence };
             let mut bytes = header.bytes();
             prop_assert_eq!(Header::read(&bytes), Some(header));
             bytes[bit / 8] ^= 1 << (bit % 8);

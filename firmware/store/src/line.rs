@@ -1,70 +1,70 @@
-//! Letters and packets, which share the line.
+//! Separates the keys of a terminal from the packets of an update: both share the serial line.
 
-use crate::message::{ASK, SILENCE};
+use crate::message::{MAX_REQUEST, SILENCE_FRAMES};
 use pantin_link::packet::{Packet, Receiver};
 
-/// What bytes belong to now.
+/// What the next byte belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum At {
-    /// Letters.
-    Letters,
-    /// A packet, of which the first zero was there.
-    Begun,
-    /// A packet.
+enum State {
+    /// A byte is a key.
+    Keys,
+    /// A packet, whose first zero has arrived.
+    Start,
+    /// A packet, whose bytes are arriving.
     Packet,
-    /// Nobody knows: something was damaged.
+    /// Unknown, because something was damaged: bytes are dropped until the next zero.
     Lost,
 }
 
-/// A byte's meaning.
-pub(crate) enum Heard<'a> {
-    Letter(u8),
+/// What a byte completes.
+pub(crate) enum Input<'a> {
+    Key(u8),
     Packet(Packet<'a>),
     Nothing,
 }
 
-/// The line, as the board hears it.
+/// The board's end of the line.
 #[derive(Debug)]
 pub(crate) struct Line {
-    receiver: Receiver<ASK>,
-    at: At,
-    /// Pictures since the last byte.
-    silent: u16,
+    receiver: Receiver<MAX_REQUEST>,
+    state: State,
+    /// Frames shown since the last byte.
+    silent_frames: u16,
 }
 
 impl Line {
     pub(crate) const fn new() -> Line {
-        Line { receiver: Receiver::new(), at: At::Letters, silent: 0 }
+        Line { receiver: Receiver::new(), state: State::Keys, silent_frames: 0 }
     }
 
-    /// Takes a byte.
-    pub(crate) fn take(&mut self, byte: u8) -> Heard<'_> {
-        self.silent = 0;
-        match (self.at, byte) {
-            (At::Letters | At::Lost, 0) => {
-                // Ends whatever was before it; no packet of ours does so.
+    /// Takes one byte and returns the key or the packet that it completes.
+    pub(crate) fn push(&mut self, byte: u8) -> Input<'_> {
+        self.silent_frames = 0;
+        match (self.state, byte) {
+            (State::Keys | State::Lost, 0) => {
+                // The zero ends whatever came before it, which was not an intact packet.
                 self.receiver.push(0);
-                self.at = At::Begun;
+                self.state = State::Start;
             }
-            (At::Letters, b' '..=b'~' | b'\n' | b'\r' | b'\t') => return Heard::Letter(byte),
-            (At::Letters | At::Lost, _) => self.at = At::Lost,
-            (At::Begun, 0) => {}
-            (At::Begun | At::Packet, _) => {
-                self.at = if byte == 0 { At::Lost } else { At::Packet };
+            (State::Keys, b' '..=b'~' | b'\n' | b'\r' | b'\t') => return Input::Key(byte),
+            (State::Keys | State::Lost, _) => self.state = State::Lost,
+            (State::Start, 0) => {}
+            (State::Start | State::Packet, _) => {
+                self.state = if byte == 0 { State::Lost } else { State::Packet };
                 if let Some(packet) = self.receiver.push(byte) {
-                    self.at = At::Letters;
-                    return Heard::Packet(packet);
+                    self.state = State::Keys;
+                    return Input::Packet(packet);
                 }
             }
         }
-        Heard::Nothing
+        Input::Nothing
     }
 
-    /// A picture was shown: what was begun and does not go on was not a packet.
-    pub(crate) fn picture(&mut self) {
-        self.silent = self.silent.saturating_add(1);
-        if self.silent >= SILENCE {
-            self.at = At::Letters;
+    /// Counts a frame that was shown. After [`SILENCE_FRAMES`] without a byte, an incomplete packet is abandoned.
+    pub(crate) fn frame_shown(&mut self) {
+        self.silent_frames = self.silent_frames.saturating_add(1);
+        if self.silent_frames >= SILENCE_FRAMES {
+            self.state = State::Keys;
         }
     }
 }

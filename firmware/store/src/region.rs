@@ -7,7 +7,7 @@ pub struct Region {
     pub board: &'static str,
     /// Where the first slot begins, for who flashes it.
     pub address: u32,
-    /// Bytes of a slot: whole sectors.
+    /// Bytes of a slot: complete sectors.
     pub slot: u32,
     /// Bytes that are erased at once.
     pub sector: u32,

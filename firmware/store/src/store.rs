@@ -1,8 +1,8 @@
 //! Two slots: which of them plays.
 
-use crate::header::{Claim, Header, crc_32};
+use crate::header::{ClipInfo, Header, crc_32};
+use crate::inactive_slot::InactiveSlot;
 use crate::slot::{self, Slot};
-use crate::spare::Spare;
 use pantin::Clip;
 
 /// Two slots of flash.
@@ -13,11 +13,11 @@ pub struct Store<S> {
 
 /// A clip from flash.
 #[derive(Clone, Copy, Debug)]
-pub struct Stored<'a> {
+pub struct StoredClip<'a> {
     /// The clip's file: [`Clip::new_checked`] takes it.
     pub bytes: &'a [u8],
     /// What its header says of it.
-    pub claim: Claim,
+    pub info: ClipInfo,
 }
 
 impl<S: Slot> Store<S> {
@@ -28,16 +28,16 @@ impl<S: Slot> Store<S> {
     }
 
     /// The clip to play, if there is one, and the slot for the next.
-    pub fn open(&mut self) -> (Option<Stored<'_>>, Spare<'_, S>) {
+    pub fn open(&mut self) -> (Option<StoredClip<'_>>, InactiveSlot<'_, S>) {
         let [first, second] = &mut self.slots;
         let newest_is_second = match (read(first.bytes()), read(second.bytes())) {
             (Some((first, _)), Some((second, _))) => second.is_newer_than(&first),
             (first, _) => first.is_none(),
         };
-        let (newest, spare) = if newest_is_second { (second, first) } else { (first, second) };
+        let (newest, inactive) = if newest_is_second { (second, first) } else { (first, second) };
         match read(newest.bytes()) {
-            Some((header, stored)) => (Some(stored), Spare::new(spare, header.sequence.wrapping_add(1))),
-            None => (None, Spare::new(spare, 1)),
+            Some((header, stored)) => (Some(stored), InactiveSlot::new(inactive, header.sequence.wrapping_add(1))),
+            None => (None, InactiveSlot::new(inactive, 1)),
         }
     }
 
@@ -48,9 +48,9 @@ impl<S: Slot> Store<S> {
 }
 
 /// A slot's header and clip, if both are right.
-fn read(slot: &[u8]) -> Option<(Header, Stored<'_>)> {
+fn read(slot: &[u8]) -> Option<(Header, StoredClip<'_>)> {
     let header = Header::read(slot)?;
-    let bytes = slot::clip(slot, header.claim.length)?;
-    let right = crc_32(bytes) == header.claim.crc && Clip::new_checked(bytes).is_ok();
-    right.then_some((header, Stored { bytes, claim: header.claim }))
+    let bytes = slot::clip(slot, header.info.length)?;
+    let right = crc_32(bytes) == header.info.crc && Clip::new_checked(bytes).is_ok();
+    right.then_some((header, StoredClip { bytes, info: header.info }))
 }

@@ -39,13 +39,13 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let (clip, claim) = update::read(&arguments.input, arguments.name.as_deref())?;
+    let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
     let region = Region::of(&arguments.board).context("no board is called so")?;
     let place = || arguments.input.display().to_string();
     let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {
-        Some("bin") => image::binary(region, &clip, &claim).with_context(place)?,
-        Some("hex") => image::hex(region, &clip, &claim).with_context(place)?.into_bytes(),
-        Some("uf2") => image::uf2(region, &clip, &claim).with_context(place)?,
+        Some("bin") => image::binary(region, &clip, &info).with_context(place)?,
+        Some("hex") => image::hex(region, &clip, &info).with_context(place)?.into_bytes(),
+        Some("uf2") => image::uf2(region, &clip, &info).with_context(place)?,
         _ => bail!("{}: expected a name that ends in .bin, .hex or .uf2", arguments.output.display()),
     };
     write_whole(&arguments.output, &bytes)?;

@@ -3,7 +3,7 @@
 use crate::cmd::Files;
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
-use pantin_link::sender::{Bytes, Line, Sender, Source};
+use pantin_link::sender::{ByteCounts, Line, Sender, Source};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut line = arguments.to.open()?;
     let stop = stopped_by_signal()?;
     let mut sender = sender();
-    let (mut bytes, mut seconds) = (Bytes::default(), 0.0);
+    let (mut bytes, mut seconds) = (ByteCounts::default(), 0.0);
     let one = sources.len() == 1;
     while !stop.load(Ordering::Relaxed) {
         for ((source, fit), path) in sources.iter().zip(&lines).zip(&arguments.clips) {
@@ -82,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             if rounds.is_some() && !pace::wait(end, &stop) {
                 break;
             }
-            sender.sent(&schedule);
+            sender.end_clip(&schedule);
             bytes = bytes + schedule.bytes();
             seconds += start.elapsed().as_secs_f64();
         }
@@ -137,13 +137,13 @@ fn opening(source: &Source, fit: &Line, path: &Path) -> String {
         "{}: {} frames, {} channels; all of them refreshed within {:.0} ms; sent up to {:.0} ms ahead; at most {off:.2} of a channel's step from the clip",
         path.display(),
         source.frames(),
-        source.told(),
+        source.moving_channels(),
         milliseconds(fit.cycle),
         milliseconds(fit.ahead)
     )
 }
 
-pub(super) fn closing(bytes: Bytes, seconds: f64) -> String {
+pub(super) fn closing(bytes: ByteCounts, seconds: f64) -> String {
     let part = |part: f64| 100.0 * part / bytes.line.max(1.0);
     format!(
         "{} packets, {:.0} bytes in {seconds:.1} s: motion {:.1} %, refresh {:.1} %, heads and starts {:.1} %, framing and CRC {:.1} %, parity {:.1} %",

@@ -6,7 +6,7 @@ use crate::stream::live::Feed;
 use crate::stream::pace;
 use anyhow::{Context, Result, ensure};
 use pantin_link::Form;
-use pantin_link::sender::{Line, Live, Making, Source};
+use pantin_link::sender::{Line, Live, LiveChannel, Source};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -51,8 +51,8 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
         arguments.max_scalar_error
     );
     let raw = |place: &Place, value: f64| (value * place.scale).round() as i32;
-    let making: Vec<Making> =
-        places.iter().map(|place| Making { bound: raw(place, part).max(1), way: raw(place, 1.0).max(1) as u32 }).collect();
+    let making: Vec<LiveChannel> =
+        places.iter().map(|place| LiveChannel { bound: raw(place, part).max(1), way: raw(place, 1.0).max(1) as u32 }).collect();
     let source = Source::live(form, clip.frame_time_ns(), &making);
     let rate = arguments.to.rate();
     let cycle = REFRESH_BYTES * places.len() as f64 / (REFRESHES * rate) / source.frame_seconds();
@@ -81,16 +81,19 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
         let value = |place: &Place| place.value.and_then(|index| values.get(index)).map_or(0, |&value| raw(place, value));
         let pose: Vec<i32> = places.iter().map(value).collect();
         pace::wait(at, stop);
-        for departure in live.push(&pose) {
-            out.send(&departure.bytes)?;
+        for timed in live.push(&pose) {
+            out.send(&timed.bytes)?;
         }
         at += frame;
     }
     say(arguments, &closing(live.bytes(), start.elapsed().as_secs_f64()));
-    if live.left_out() > 0 {
+    if live.omitted_messages() > 0 {
         say(
             arguments,
-            &format!("{} segments found no room on the line: a faster one, or a larger --max-scalar-error", live.left_out()),
+            &format!(
+                "{} segments found no room on the line: a faster one, or a larger --max-scalar-error",
+                live.omitted_messages()
+            ),
         );
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! `pantin update`.
 
 use crate::update::place::Place;
-use crate::update::{self, Patience};
+use crate::update::{self, RetryPolicy};
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -45,17 +45,17 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let (clip, claim) = update::read(&arguments.input, arguments.name.as_deref())?;
+    let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
     let mut line = arguments.to.open()?;
-    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(claim.length.into()) };
+    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(info.length.into()) };
     bar.set_style(ProgressStyle::with_template("{wide_bar} {bytes} of {total_bytes} {eta}")?);
-    let patience = Patience { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };
+    let patience = RetryPolicy { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };
     let begun = Instant::now();
-    let outcome = update::send(&mut line, &clip, &claim, patience, &mut |bytes| bar.set_position(bytes.into()));
+    let outcome = update::send(&mut line, &clip, &info, patience, &mut |bytes| bar.set_position(bytes.into()));
     bar.finish_and_clear();
     let outcome = outcome.with_context(|| format!("{} to {}", arguments.input.display(), arguments.to))?;
     if !arguments.quiet {
-        let (name, seconds) = (claim.name.as_str(), begun.elapsed().as_secs_f64());
+        let (name, seconds) = (info.name.as_str(), begun.elapsed().as_secs_f64());
         match outcome.sent {
             0 => eprintln!("{name}: the board has it already"),
             sent => eprintln!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages said again", outcome.again),

@@ -2,7 +2,7 @@
 
 use super::address::Line;
 use anyhow::Result;
-use pantin_link::sender::Departure;
+use pantin_link::sender::TimedPacket;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -11,16 +11,16 @@ const GLANCE: Duration = Duration::from_millis(50);
 
 /// Sends packets, the first at once and the others as much later as they say, until there are no more or `stop` is set: how many seconds the clip
 /// had played then. Returns early where the line fails.
-pub fn send(line: &mut Line, departures: &mut dyn Iterator<Item = Departure>, stop: &AtomicBool) -> Result<f64> {
+pub fn send(line: &mut Line, timed_packets: &mut dyn Iterator<Item = TimedPacket>, stop: &AtomicBool) -> Result<f64> {
     let mut start = None;
     let mut at = 0.0;
-    for departure in departures {
-        let (began, first) = *start.get_or_insert((Instant::now(), departure.at));
-        at = departure.at;
+    for timed in timed_packets {
+        let (began, first) = *start.get_or_insert((Instant::now(), timed.at));
+        at = timed.at;
         if !wait(began + Duration::from_secs_f64((at - first).max(0.0)), stop) {
             break;
         }
-        line.send(&departure.bytes)?;
+        line.send(&timed.bytes)?;
     }
     Ok(at)
 }

@@ -1,24 +1,24 @@
 //! A clip, sent to a board: one message after the other, each again until it is answered.
 
 use pantin_link::packet::{self, Receiver};
-use pantin_store::message::ANSWER;
-use pantin_store::{Answer, Ask, BLOCK, Claim, Refusal};
+use pantin_store::message::MAX_RESPONSE;
+use pantin_store::{BLOCK_BYTES, ClipInfo, Refusal, Request, Response};
 use std::fmt;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
 /// How long, and how often.
 #[derive(Clone, Copy, Debug)]
-pub struct Patience {
+pub struct RetryPolicy {
     /// For an answer.
     pub answer: Duration,
     /// Messages without an answer, one after the other, after which the board counts as lost.
     pub tries: u32,
 }
 
-impl Default for Patience {
+impl Default for RetryPolicy {
     fn default() -> Self {
-        Patience { answer: Duration::from_secs(1), tries: 10 }
+        RetryPolicy { answer: Duration::from_secs(1), tries: 10 }
     }
 }
 
@@ -33,29 +33,31 @@ pub struct Outcome {
 
 /// Why a clip does not play.
 #[derive(Debug)]
-pub enum Failure {
+pub enum TransferError {
     /// The board will not have it.
     Refused(Refusal),
     /// It did not answer: the bytes of the clip that it had by then.
-    Silent(u32),
+    NoResponse(u32),
     /// The line failed.
     Line(io::Error),
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for TransferError {}
 
-impl fmt::Display for Failure {
+impl fmt::Display for TransferError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Failure::Refused(refusal) => write!(f, "refused, the old clip goes on playing: {refusal}"),
-            Failure::Silent(0) => f.write_str("no answer: is the firmware built with feature `update`, and is the speed right?"),
-            Failure::Silent(bytes) => {
+            TransferError::Refused(refusal) => write!(f, "refused, the old clip goes on playing: {refusal}"),
+            TransferError::NoResponse(0) => {
+                f.write_str("no answer: is the firmware built with feature `update`, and is the speed right?")
+            }
+            TransferError::NoResponse(bytes) => {
                 write!(
                     f,
                     "no more answers after {bytes} bytes; the old clip goes on playing, and the same command takes it up again"
                 )
             }
-            Failure::Line(error) => write!(f, "the line failed: {error}"),
+            TransferError::Line(error) => write!(f, "the line failed: {error}"),
         }
     }
 }
@@ -64,34 +66,34 @@ impl fmt::Display for Failure {
 pub fn send(
     line: &mut (impl Read + Write),
     clip: &[u8],
-    claim: &Claim,
-    patience: Patience,
+    info: &ClipInfo,
+    patience: RetryPolicy,
     told: &mut dyn FnMut(u32),
-) -> Result<Outcome, Failure> {
-    let mut sender = Sender { line, claim, patience, receiver: Receiver::new(), sequence: 0, at: None, missed: 0 };
+) -> Result<Outcome, TransferError> {
+    let mut sender = Sender { line, info, patience, receiver: Receiver::new(), sequence: 0, at: None, missed: 0 };
     let mut outcome = Outcome { sent: 0, again: 0 };
     loop {
-        let ask = match sender.at {
-            None => Ask::Begin(*claim),
-            Some(offset) if offset < claim.length => {
+        let request = match sender.at {
+            None => Request::Begin(*info),
+            Some(offset) if offset < info.length => {
                 let rest = &clip[offset as usize..];
-                Ask::Data { id: claim.crc, offset, bytes: &rest[..rest.len().min(BLOCK)] }
+                Request::Data { id: info.crc, offset, bytes: &rest[..rest.len().min(BLOCK_BYTES)] }
             }
-            Some(_) => Ask::End { id: claim.crc },
+            Some(_) => Request::End { id: info.crc },
         };
-        match sender.ask(&ask)? {
-            Some(Answer::Want { offset, .. }) => {
+        match sender.request(&request)? {
+            Some(Response::Next { offset, .. }) => {
                 outcome.sent += offset.saturating_sub(sender.at.unwrap_or(offset));
                 sender.at = Some(offset);
                 told(offset);
             }
-            Some(Answer::Done { .. }) => return Ok(outcome),
+            Some(Response::Done { .. }) => return Ok(outcome),
             // The board began anew in between.
-            Some(Answer::Refused { refusal: Refusal::NotBegun, .. }) => {
+            Some(Response::Refused { refusal: Refusal::NotBegun, .. }) => {
                 sender.at = None;
                 outcome.again += 1;
             }
-            Some(Answer::Refused { refusal, .. }) => return Err(Failure::Refused(refusal)),
+            Some(Response::Refused { refusal, .. }) => return Err(TransferError::Refused(refusal)),
             None => outcome.again += 1,
         }
     }
@@ -99,9 +101,9 @@ pub fn send(
 
 struct Sender<'a, L> {
     line: &'a mut L,
-    claim: &'a Claim,
-    patience: Patience,
-    receiver: Receiver<ANSWER>,
+    info: &'a ClipInfo,
+    patience: RetryPolicy,
+    receiver: Receiver<MAX_RESPONSE>,
     sequence: u8,
     /// From where the board wants bytes. None before it was asked.
     at: Option<u32>,
@@ -111,33 +113,33 @@ struct Sender<'a, L> {
 
 impl<L: Read + Write> Sender<'_, L> {
     /// Says something and waits for what helps: none if that does not come.
-    fn ask(&mut self, ask: &Ask) -> Result<Option<Answer>, Failure> {
+    fn request(&mut self, request: &Request) -> Result<Option<Response>, TransferError> {
         if self.missed >= self.patience.tries {
-            return Err(Failure::Silent(self.at.unwrap_or(0)));
+            return Err(TransferError::NoResponse(self.at.unwrap_or(0)));
         }
-        let mut out = [0; packet::line_len(8 + BLOCK)];
-        let len = ask.write(self.sequence, &mut out).unwrap_or(0);
+        let mut out = [0; packet::line_len(8 + BLOCK_BYTES)];
+        let len = request.write(self.sequence, &mut out).unwrap_or(0);
         self.sequence = self.sequence.wrapping_add(1);
-        self.line.write_all(&out[..len]).and_then(|()| self.line.flush()).map_err(Failure::Line)?;
+        self.line.write_all(&out[..len]).and_then(|()| self.line.flush()).map_err(TransferError::Line)?;
         let answer = self.answer()?;
-        let lost = matches!(answer, None | Some(Answer::Refused { refusal: Refusal::NotBegun, .. }));
+        let lost = matches!(answer, None | Some(Response::Refused { refusal: Refusal::NotBegun, .. }));
         self.missed = if lost { self.missed + 1 } else { 0 };
         Ok(answer)
     }
 
     /// What comes in time and helps. Other bytes on the line, pictures say, are passed over.
-    fn answer(&mut self) -> Result<Option<Answer>, Failure> {
+    fn answer(&mut self) -> Result<Option<Response>, TransferError> {
         let deadline = Instant::now() + self.patience.answer;
         let mut bytes = [0; 512];
         while Instant::now() < deadline {
             let len = match self.line.read(&mut bytes) {
-                Ok(0) => return Err(Failure::Line(ErrorKind::UnexpectedEof.into())),
+                Ok(0) => return Err(TransferError::Line(ErrorKind::UnexpectedEof.into())),
                 Ok(len) => len,
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => 0,
-                Err(error) => return Err(Failure::Line(error)),
+                Err(error) => return Err(TransferError::Line(error)),
             };
             for &byte in &bytes[..len] {
-                let answer = self.receiver.push(byte).and_then(|packet| Answer::read(&packet));
+                let answer = self.receiver.push(byte).and_then(|packet| Response::read(&packet));
                 if let Some(answer) = answer.filter(|answer| self.helps(answer)) {
                     return Ok(Some(answer));
                 }
@@ -147,15 +149,15 @@ impl<L: Read + Write> Sender<'_, L> {
     }
 
     /// Not what another clip's transfer was told, nor what this one was told before.
-    fn helps(&self, answer: &Answer) -> bool {
+    fn helps(&self, answer: &Response) -> bool {
         let id = match *answer {
-            Answer::Want { offset, .. } if self.at == Some(offset) => return false,
-            Answer::Want { id, offset } => {
-                return id == self.claim.crc
-                    && (offset == self.claim.length || offset < self.claim.length && offset % BLOCK as u32 == 0);
+            Response::Next { offset, .. } if self.at == Some(offset) => return false,
+            Response::Next { id, offset } => {
+                return id == self.info.crc
+                    && (offset == self.info.length || offset < self.info.length && offset % BLOCK_BYTES as u32 == 0);
             }
-            Answer::Done { id } | Answer::Refused { id, .. } => id,
+            Response::Done { id } | Response::Refused { id, .. } => id,
         };
-        id == self.claim.crc
+        id == self.info.crc
     }
 }

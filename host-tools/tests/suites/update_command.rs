@@ -5,7 +5,7 @@ mod mock;
 
 use pantin_store::header::Header;
 use pantin_store::region::REGIONS;
-use pantin_store::{Claim, Store, Update};
+use pantin_store::{ClipInfo, Store, Update};
 use std::fs;
 use std::io::{Read, Write};
 use std::net::TcpListener;
@@ -34,7 +34,7 @@ enum Manner {
     Poor,
     /// No clip is small enough for its memory.
     Small,
-    Silent,
+    NoResponse,
 }
 
 /// A board behind a port, for one connection; it ends with the clip that it plays.
@@ -51,15 +51,15 @@ fn board(manner: Manner) -> (String, JoinHandle<Option<Vec<u8>>>) {
             for &byte in &bytes[..len] {
                 zeros += u32::from(byte == 0);
                 // A message has two zeros.
-                if manner == Manner::Silent || manner == Manner::Poor && zeros % 6 >= 4 {
+                if manner == Manner::NoResponse || manner == Manner::Poor && zeros % 6 >= 4 {
                     continue;
                 }
-                update.take(byte, |answer| {
+                update.receive(byte, |answer| {
                     let picture: &[u8] = if manner == Manner::Poor { b"W\0\x07\0\0\x01\x02\0\0\x03F\x09\0\0\0" } else { b"" };
                     line.write_all(&[picture, answer, picture].concat()).unwrap();
                 });
             }
-            if update.is_whole() && update.finish(manner != Manner::Small, |answer| line.write_all(answer).unwrap()) {
+            if update.is_complete() && update.finish(manner != Manner::Small, |answer| line.write_all(answer).unwrap()) {
                 break;
             }
         }
@@ -93,7 +93,7 @@ fn what_goes_wrong_is_told_in_one_line_and_by_the_exit_code() {
     assert_eq!(code, Some(1), "{words}");
     assert!(words.contains("the old clip goes on playing: the board has not the memory"), "{words}");
     assert_eq!(board_.join().unwrap(), None);
-    let (place, board_) = board(Manner::Silent);
+    let (place, board_) = board(Manner::NoResponse);
     let (code, words) = told(&place, &["--patience", "0.05", "--tries", "2"]);
     assert_eq!(code, Some(1), "{words}");
     assert!(words.contains("no answer: is the firmware built with feature `update`"), "{words}");
@@ -117,8 +117,8 @@ fn a_flash_image_holds_the_clip_as_a_store_finds_it() {
         assert!(output.status.success(), "{}", words(&output));
         assert!(words(&output).contains(&format!("at {:#010x}", region.address)), "{}", words(&output));
         let image = fs::read(&path).unwrap();
-        let claim = Claim::of(&clip, "my walk").unwrap();
-        assert_eq!(Header::read(&image), Some(Header { claim, sequence: 1 }));
+        let info = ClipInfo::of(&clip, "my walk").unwrap();
+        assert_eq!(Header::read(&image), Some(Header { info, sequence: 1 }));
         assert_eq!(image[256..][..clip.len()], clip);
         assert!(image[256 + clip.len()..].iter().all(|&byte| byte == 0xff));
     }

@@ -2,10 +2,10 @@
 //! have, so that nothing adds up.
 
 use super::pack::pack;
-use super::plan::Told;
-use super::schedule::{Bytes, Departure, Line, Schedule};
+use super::plan::ScheduledMessage;
+use super::schedule::{ByteCounts, Line, Schedule, TimedPacket};
 use super::source::Source;
-use crate::head::{Form, Head, MAX_PACE, Start, pace};
+use crate::head::{ChannelKind, Form, Head, MAX_PACE, pace};
 use crate::message::{Message, Refresh, units};
 use pantin::layout::{LENGTHS, MAX_FRAMES, MAX_STEP};
 use pantin::{segment, step_size};
@@ -20,7 +20,7 @@ const TOGETHER: u32 = 2;
 
 /// A channel that is made while it is sent.
 #[derive(Clone, Copy, Debug)]
-pub struct Making {
+pub struct LiveChannel {
     /// What it may be off by, in raw units: at least 1.
     pub bound: i32,
     /// How far it may go, from one end to the other, in raw units.
@@ -28,7 +28,7 @@ pub struct Making {
 }
 
 #[derive(Clone, Debug)]
-struct Coding {
+struct ChannelEncoder {
     channel: u16,
     step: u8,
     bound: i64,
@@ -44,23 +44,23 @@ pub struct Live<'s> {
     schedule: Schedule<'s>,
     line: Line,
     begin: u32,
-    channels: Vec<Coding>,
+    channels: Vec<ChannelEncoder>,
     /// Frames from the one on that is coded next.
     frames: VecDeque<Vec<i32>>,
     next: u32,
-    told: Vec<Told>,
-    left_out: u32,
+    told: Vec<ScheduledMessage>,
+    omitted_messages: u32,
 }
 
 impl Source {
     /// Motion that is yet to be made: all channels of the pose.
-    pub fn live(form: Form, frame_time_ns: u32, making: &[Making]) -> Source {
+    pub fn live(form: Form, frame_time_ns: u32, making: &[LiveChannel]) -> Source {
         let frames = (500_000_000 / frame_time_ns.max(1)).max(1);
-        let start = |making: &Making| {
+        let start = |making: &LiveChannel| {
             let step = (0..=MAX_STEP).rev().find(|&step| step_size(step) <= making.bound.max(1) as u32).unwrap_or(0);
             let wanted = u64::from(making.way) * 4 / u64::from(frames);
             let pace = (0..=MAX_PACE).find(|&index| pace(index) as u64 >= wanted).unwrap_or(MAX_PACE);
-            Start::Moves { step, pace }
+            ChannelKind::Moving { step, pace }
         };
         let head = Head { form, frames: MAX_FRAMES, frame_time_ns, channels: making.len() as u16, ..Head::default() };
         Source { head, starts: making.iter().map(start).collect(), tracks: vec![] }
@@ -73,22 +73,22 @@ impl<'s> Live<'s> {
         LOOK + TOGETHER + line.ahead
     }
 
-    pub(super) fn new(source: &'s Source, head: Head, line: Line, making: &[Making], sequence: u8) -> Self {
+    pub(super) fn new(source: &'s Source, head: Head, line: Line, making: &[LiveChannel], sequence: u8) -> Self {
         let mut channels = vec![];
         for (channel, (start, making)) in source.starts.iter().zip(making).enumerate() {
-            if let &Start::Moves { step, .. } = start {
+            if let &ChannelKind::Moving { step, .. } = start {
                 let (channel, bound) = (channel as u16, i64::from(making.bound));
-                channels.push(Coding { channel, step, bound, state: [0; 4], due: 0, by: 0 });
+                channels.push(ChannelEncoder { channel, step, bound, state: [0; 4], due: 0, by: 0 });
             }
         }
         let start = -f64::from(Self::delay(&line)) * source.frame_seconds();
         let schedule = Schedule::new(source, head, line, Some(0), sequence, start);
         let (frames, begin) = (VecDeque::new(), head.begin);
-        Live { schedule, line, begin, channels, frames, next: 0, told: vec![], left_out: 0 }
+        Live { schedule, line, begin, channels, frames, next: 0, told: vec![], omitted_messages: 0 }
     }
 
     /// Takes the next frame, and hands on what is to leave now.
-    pub fn push(&mut self, pose: &[i32]) -> Vec<Departure> {
+    pub fn push(&mut self, pose: &[i32]) -> Vec<TimedPacket> {
         self.frames.push_back(pose.to_vec());
         if self.frames.len() as u32 > LOOK {
             self.code();
@@ -102,7 +102,7 @@ impl<'s> Live<'s> {
             let told = std::mem::take(&mut self.told);
             // Receivers notice, and wait for the next refresh.
             if behind > f64::from(self.line.ahead) * self.schedule.frame_seconds() {
-                self.left_out += told.len() as u32;
+                self.omitted_messages += told.len() as u32;
             } else {
                 self.schedule.add(pack(&told, self.begin));
             }
@@ -111,13 +111,13 @@ impl<'s> Live<'s> {
     }
 
     /// What the line has carried.
-    pub fn bytes(&self) -> Bytes {
+    pub fn bytes(&self) -> ByteCounts {
         self.schedule.bytes()
     }
 
     /// Messages that the line had no room for.
-    pub fn left_out(&self) -> u32 {
-        self.left_out
+    pub fn omitted_messages(&self) -> u32 {
+        self.omitted_messages
     }
 
     /// Codes the frame in front.
@@ -131,7 +131,7 @@ impl<'s> Live<'s> {
                 let message = coding.choose(&goals, self.next, self.line.cycle);
                 coding.state = message.apply(coding.state, coding.step);
                 coding.due += u32::from(message.run);
-                self.told.push(Told { frame: self.next, channel: coding.channel, message });
+                self.told.push(ScheduledMessage { frame: self.next, channel: coding.channel, message });
             }
             let [p, v, w, k] = coding.state;
             coding.state = [p.wrapping_add(v), v.wrapping_add(w), w.wrapping_add(k), k];
@@ -139,7 +139,7 @@ impl<'s> Live<'s> {
     }
 }
 
-impl Coding {
+impl ChannelEncoder {
     /// The longest segment from here on that stays within the bound; `goals` are this frame's value and those after it.
     fn choose(&mut self, goals: &[i32], frame: u32, cycle: u32) -> Message {
         let refresh = (frame == 0 || frame + u32::from(LENGTHS[LONGEST]) > self.by).then(|| {

@@ -10,9 +10,9 @@ mod tests;
 #[cfg(test)]
 mod train;
 
-pub use live::{Live, Making};
-pub use schedule::{Bytes, Departure, Line, Schedule};
-pub use source::{Source, Unfit};
+pub use live::{Live, LiveChannel};
+pub use schedule::{ByteCounts, Line, Schedule, TimedPacket};
+pub use source::{Source, SourceError};
 
 use crate::head::Head;
 
@@ -34,7 +34,7 @@ impl Sender {
     }
 
     /// The packets of the next clip, `rounds` times around, or for ever. The line begins to carry them its look-ahead before the clip's first frame.
-    /// [`Sender::sent`] has to be told what came of it.
+    /// [`Sender::end_clip`] has to be told what came of it.
     pub fn clip<'s>(&mut self, source: &'s Source, line: Line, rounds: Option<u32>) -> Schedule<'s> {
         let head = Head { session: self.session, clip: self.clip, begin: BEGIN, ..source.head };
         self.clip = self.clip.wrapping_add(1);
@@ -43,13 +43,13 @@ impl Sender {
     }
 
     /// Motion that is made while it is sent: `making` is what `source` was made with. Nothing comes after it.
-    pub fn live<'s>(self, source: &'s Source, line: Line, making: &[Making]) -> Live<'s> {
+    pub fn live<'s>(self, source: &'s Source, line: Line, making: &[LiveChannel]) -> Live<'s> {
         let head = Head { session: self.session, clip: self.clip, begin: BEGIN, ..source.head };
         Live::new(source, head, line, making, self.sequence)
     }
 
     /// Goes on after a clip.
-    pub fn sent(&mut self, schedule: &Schedule<'_>) {
+    pub fn end_clip(&mut self, schedule: &Schedule<'_>) {
         self.sequence = schedule.sequence();
     }
 }

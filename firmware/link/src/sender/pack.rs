@@ -1,8 +1,8 @@
 //! Messages put into packets, as many as fit.
 
-use super::plan::{Told, fields, pass};
+use super::plan::{ScheduledMessage, fields, pass};
 use crate::head::Head;
-use crate::link::PAYLOAD;
+use crate::link::MAX_PAYLOAD;
 use crate::message::{AHEAD_BITS, END, FRAME, FRAME_BITS};
 use crate::symbols::Coder;
 use crate::symbols::write::Writer;
@@ -10,7 +10,7 @@ use crate::tables::PLACE;
 
 /// A packet of motion that knows all but how far ahead it will be.
 #[derive(Clone, Debug)]
-pub(crate) struct Batch {
+pub(crate) struct MotionPacket {
     /// The line's frames of its first and last message.
     pub base: u32,
     pub last: u32,
@@ -22,16 +22,16 @@ pub(crate) struct Batch {
 }
 
 /// The bits that a packet may have: the coder's state takes three bytes, and each field less than a byte by rounding.
-const ROOM: f64 = 8.0 * (PAYLOAD as f64 - 3.0) - 12.0;
+const ROOM: f64 = 8.0 * (MAX_PAYLOAD as f64 - 3.0) - 12.0;
 
-impl Batch {
-    fn new(base: u32) -> Batch {
-        Batch { base, last: base, body: Writer::default(), refresh_bits: 0.0, counts: [0; 2] }
+impl MotionPacket {
+    fn new(base: u32) -> MotionPacket {
+        MotionPacket { base, last: base, body: Writer::default(), refresh_bits: 0.0, counts: [0; 2] }
     }
 
     /// One that says no more than that there is nothing up to this frame.
-    pub fn empty(base: u32) -> Batch {
-        Batch::new(base)
+    pub fn empty(base: u32) -> MotionPacket {
+        MotionPacket::new(base)
     }
 
     /// The payload.
@@ -46,10 +46,10 @@ impl Batch {
 }
 
 /// Packs a round's messages, whose first frame is the line's `begin`.
-pub(crate) fn pack(told: &[Told], begin: u32) -> Vec<Batch> {
-    let mut batches: Vec<Batch> = vec![];
+pub(crate) fn pack(told: &[ScheduledMessage], begin: u32) -> Vec<MotionPacket> {
+    let mut batches: Vec<MotionPacket> = vec![];
     let mut next_channel = 0;
-    for Told { frame, channel, message } in told {
+    for ScheduledMessage { frame, channel, message } in told {
         let (frame, body) = (begin + frame, fields(message));
         let mut place = Writer::default();
         let open = batches.last().filter(|batch| frame - batch.last <= 8);
@@ -63,7 +63,7 @@ pub(crate) fn pack(told: &[Told], begin: u32) -> Vec<Batch> {
         }
         let fits = open.is_some_and(|batch| batch.body.cost + place.cost + body.cost + f64::from(FRAME_BITS + AHEAD_BITS) < ROOM);
         if !fits {
-            batches.push(Batch::new(frame));
+            batches.push(MotionPacket::new(frame));
             place = Writer::default();
             pass(&mut place, u32::from(*channel));
         }

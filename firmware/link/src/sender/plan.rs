@@ -8,7 +8,7 @@ use pantin::layout::segment_type;
 
 /// A message and where it belongs.
 #[derive(Clone, Debug)]
-pub(crate) struct Told {
+pub(crate) struct ScheduledMessage {
     /// Frames from the clip's first.
     pub frame: u32,
     pub channel: u16,
@@ -16,7 +16,7 @@ pub(crate) struct Told {
 }
 
 /// All messages of a round of the clip, in the order in which they are sent; every channel is refreshed after `cycle` frames at most.
-pub(crate) fn round(source: &Source, cycle: u32) -> Vec<Told> {
+pub(crate) fn round(source: &Source, cycle: u32) -> Vec<ScheduledMessage> {
     let mut told = vec![];
     for (index, track) in source.tracks.iter().enumerate() {
         // The first refreshes all fall together; the second ones are spread.
@@ -30,7 +30,7 @@ pub(crate) fn round(source: &Source, cycle: u32) -> Vec<Told> {
 /// Longest run of a message.
 const LONGEST: u32 = 127;
 
-fn tell(track: &Track, frames: u32, cycle: u32, first: u32, told: &mut Vec<Told>) {
+fn tell(track: &Track, frames: u32, cycle: u32, first: u32, told: &mut Vec<ScheduledMessage>) {
     // The frame by which the next refresh must come.
     let mut by = first.min(cycle);
     let ends = track.segments.iter().skip(1).map(|segment| segment.frame).chain([frames]);
@@ -40,11 +40,15 @@ fn tell(track: &Track, frames: u32, cycle: u32, first: u32, told: &mut Vec<Told>
             let mut refresh = at == 0 || at != segment.frame;
             let mut next = end.min(at + LONGEST);
             if next > by || (refresh && at > 0) {
-                // Waiting for the next message would be too long.
+                // QueuedPacket for the next message would be too long.
                 (refresh, by) = (refresh || at > 0, if at > 0 { at + cycle } else { by });
                 next = next.min(by);
             }
-            told.push(Told { frame: at, channel: track.channel, message: message(track, segment, at, next, refresh) });
+            told.push(ScheduledMessage {
+                frame: at,
+                channel: track.channel,
+                message: message(track, segment, at, next, refresh),
+            });
             at = next;
         }
     }
@@ -87,7 +91,7 @@ pub(crate) fn pass(writer: &mut Writer, mut passed: u32) {
 }
 
 /// What every receiver in step has of the clip's channels: p, v, w, k by frame, of each channel that is told of, with its place in the pose.
-pub(crate) fn played(source: &Source, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
+pub(crate) fn expected_states(source: &Source, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
     let mut all: Vec<(u16, Vec<[i32; 4]>)> = source.tracks.iter().map(|track| (track.channel, vec![])).collect();
     let told = round(source, cycle);
     for (track, (channel, states)) in source.tracks.iter().zip(&mut all) {

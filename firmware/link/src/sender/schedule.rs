@@ -1,10 +1,10 @@
 //! When each packet leaves: no earlier than its look-ahead, no later than its frame needs, and never more than the line carries.
 
-use super::pack::{Batch, pack};
+use super::pack::{MotionPacket, pack};
 use super::plan::round;
 use super::source::Source;
 use crate::head::{Head, write_starts};
-use crate::link::{PAYLOAD, QUEUE};
+use crate::link::{MAX_PAYLOAD, QUEUE_PACKETS};
 use crate::packet::{self, kind};
 use std::collections::VecDeque;
 
@@ -28,13 +28,13 @@ const ANNOUNCED: f64 = 0.05;
 /// Frames that a packet has to be there before its first message is played.
 const MARGIN: f64 = 2.0;
 /// Packets that wait at the receiver at most: jitter of its clock may take the other places.
-const SENT: usize = QUEUE - 4;
+const SENT: usize = QUEUE_PACKETS - 4;
 /// How often heads and starts are told at first.
 const AT_FIRST: usize = 2;
 
 /// What went over the line, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Bytes {
+pub struct ByteCounts {
     /// All.
     pub line: f64,
     /// Zeros, stuffing, kind, sequence, CRC.
@@ -53,11 +53,11 @@ pub struct Bytes {
     pub messages: [u32; 2],
 }
 
-impl core::ops::Add for Bytes {
-    type Output = Bytes;
+impl core::ops::Add for ByteCounts {
+    type Output = ByteCounts;
 
-    fn add(self, other: Bytes) -> Bytes {
-        Bytes {
+    fn add(self, other: ByteCounts) -> ByteCounts {
+        ByteCounts {
             line: self.line + other.line,
             framing: self.framing + other.framing,
             parity: self.parity + other.parity,
@@ -72,7 +72,7 @@ impl core::ops::Add for Bytes {
 
 /// A packet on its way.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Departure {
+pub struct TimedPacket {
     /// When it leaves: seconds after the first frame of the session's first clip is shown; negative before.
     pub at: f64,
     /// What goes over the line.
@@ -87,7 +87,7 @@ pub struct Schedule<'s> {
     line: Line,
     /// Seconds of a frame.
     frame: f64,
-    batches: VecDeque<Batch>,
+    batches: VecDeque<MotionPacket>,
     /// The last frames of packets that may still wait at the receiver.
     waiting: VecDeque<u32>,
     rounds: u32,
@@ -101,7 +101,7 @@ pub struct Schedule<'s> {
     credit: f64,
     turn: usize,
     sequence: u8,
-    bytes: Bytes,
+    bytes: ByteCounts,
 }
 
 impl<'s> Schedule<'s> {
@@ -121,11 +121,11 @@ impl<'s> Schedule<'s> {
             credit: 0.0,
             turn: 0,
             sequence,
-            bytes: Bytes::default(),
+            bytes: ByteCounts::default(),
         };
         let mut first = 0;
         while first < source.starts.len() {
-            let (payload, count) = write_starts(first as u16, &source.starts[first..], head.identity(), PAYLOAD);
+            let (payload, count) = write_starts(first as u16, &source.starts[first..], head.identity(), MAX_PAYLOAD);
             schedule.starts.push(payload);
             first += count.max(1);
         }
@@ -143,7 +143,7 @@ impl<'s> Schedule<'s> {
         self.left = self.left.map(|left| left - 1);
         if self.left == Some(0) {
             // The last frames are told of only where something comes after them.
-            self.batches.push_back(Batch::empty(begin + self.head.frames));
+            self.batches.push_back(MotionPacket::empty(begin + self.head.frames));
         }
     }
 
@@ -169,12 +169,12 @@ impl<'s> Schedule<'s> {
     }
 
     /// Takes packets that were not planned.
-    pub(crate) fn add(&mut self, batches: Vec<Batch>) {
+    pub(crate) fn add(&mut self, batches: Vec<MotionPacket>) {
         self.batches.extend(batches);
     }
 
     /// What the line has carried so far.
-    pub fn bytes(&self) -> Bytes {
+    pub fn bytes(&self) -> ByteCounts {
         self.bytes
     }
 
@@ -183,7 +183,7 @@ impl<'s> Schedule<'s> {
         self.sequence
     }
 
-    fn leave(&mut self, at: f64, kind: u8, payload: &[u8]) -> Departure {
+    fn leave(&mut self, at: f64, kind: u8, payload: &[u8]) -> TimedPacket {
         let mut bytes = vec![0; packet::line_len(payload.len())];
         let encode = if self.line.parity { packet::encode_with_parity } else { packet::encode };
         let len = encode(kind, self.sequence, payload, &mut bytes).unwrap_or(0);
@@ -199,27 +199,27 @@ impl<'s> Schedule<'s> {
         self.bytes.framing += (bytes.len() - payload.len()) as f64 - parity;
         self.bytes.parity += parity;
         self.bytes.packets += 1;
-        Departure { at, bytes }
+        TimedPacket { at, bytes }
     }
 
-    fn announce(&mut self, at: f64) -> Departure {
+    fn announce(&mut self, at: f64) -> TimedPacket {
         let turn = self.turn % (self.starts.len() + 1);
         self.turn += 1;
         let (kind, payload) = match turn.checked_sub(1).and_then(|part| self.starts.get(part)) {
             Some(part) => (kind::STARTS, part.clone()),
             None => (kind::HEAD, self.head.write(self.frame_at(at).floor().max(0.0) as u32)),
         };
-        let departure = self.leave(at, kind, &payload);
-        self.credit -= departure.bytes.len() as f64;
+        let timed = self.leave(at, kind, &payload);
+        self.credit -= timed.bytes.len() as f64;
         self.bytes.announced += payload.len() as f64;
-        departure
+        timed
     }
 }
 
 impl Iterator for Schedule<'_> {
-    type Item = Departure;
+    type Item = TimedPacket;
 
-    fn next(&mut self) -> Option<Departure> {
+    fn next(&mut self) -> Option<TimedPacket> {
         if self.turn < AT_FIRST * (self.starts.len() + 1) {
             self.credit = 0.0;
             return Some(self.announce(self.free));
@@ -241,17 +241,17 @@ impl Iterator for Schedule<'_> {
         if self.waiting.len() > SENT {
             self.waiting.pop_front();
         }
-        let arrived = at + packet::line_len(PAYLOAD) as f64 / self.line.rate;
+        let arrived = at + packet::line_len(MAX_PAYLOAD) as f64 / self.line.rate;
         let ahead = (f64::from(base) - self.frame_at(arrived)).floor();
         let payload = batch.payload(&self.head, ahead.clamp(0.0, 255.0) as u8);
         let before = self.free;
-        let departure = self.leave(at, kind::MOTION, &payload);
+        let timed = self.leave(at, kind::MOTION, &payload);
         self.credit += (self.free - before) * self.line.rate * ANNOUNCED;
         self.bytes.refresh += batch.refresh_bits / 8.0;
         self.bytes.motion += payload.len() as f64 - batch.refresh_bits / 8.0;
         self.bytes.messages[0] += batch.counts[0];
         self.bytes.messages[1] += batch.counts[1];
-        Some(departure)
+        Some(timed)
     }
 }
 

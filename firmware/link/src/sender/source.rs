@@ -1,6 +1,6 @@
 //! A clip taken apart: what its channels are, their segments, and the states that these give frame by frame.
 
-use crate::head::{EXPONENTIAL_BYTES, Form, Head, MAX_PACE, Start, pace};
+use crate::head::{ChannelKind, EXPONENTIAL_BYTES, Form, Head, MAX_PACE, pace};
 use pantin::layout::{START_MODE, segment_type};
 use pantin::{ChannelState, Clip, Player, TooSmall, segment};
 
@@ -29,54 +29,54 @@ pub(crate) struct Track {
 pub struct Source {
     /// What the head says; session, clip and begin are the sender's.
     pub(crate) head: Head,
-    pub(crate) starts: Vec<Start>,
+    pub(crate) starts: Vec<ChannelKind>,
     pub(crate) tracks: Vec<Track>,
 }
 
 /// Why a clip cannot be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unfit {
+pub enum SourceError {
     /// More joints have a choice of how they turn than a head has bits for; `--rotations euler` makes a clip that leaves it.
     Exponentials,
     /// It does not open.
     Player(TooSmall),
 }
 
-impl core::fmt::Display for Unfit {
+impl core::fmt::Display for SourceError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Unfit::Exponentials => write!(f, "more than {} joints could be exponential maps", 8 * EXPONENTIAL_BYTES),
-            Unfit::Player(error) => write!(f, "{error}"),
+            SourceError::Exponentials => write!(f, "more than {} joints could be exponential maps", 8 * EXPONENTIAL_BYTES),
+            SourceError::Player(error) => write!(f, "{error}"),
         }
     }
 }
 
-impl std::error::Error for Unfit {}
+impl std::error::Error for SourceError {}
 
 /// Half a second: in as long what is drawn has joined the state.
 const JOIN_NS: u64 = 500_000_000;
 
 impl Source {
     /// Takes a clip apart.
-    pub fn new(clip: &Clip<'_>) -> Result<Source, Unfit> {
+    pub fn new(clip: &Clip<'_>) -> Result<Source, SourceError> {
         let channels = clip.rig().channels();
         let (mut states, mut pose) = (vec![ChannelState::default(); clip.moving()], vec![0; channels]);
-        let mut player = Player::new(*clip, &mut states, &mut pose).map_err(Unfit::Player)?;
+        let mut player = Player::new(*clip, &mut states, &mut pose).map_err(SourceError::Player)?;
         let join = (JOIN_NS / u64::from(clip.frame_time_ns())).max(1);
-        let mut starts: Vec<Start> = player.pose().iter().map(|&p| Start::Still(p)).collect();
+        let mut starts: Vec<ChannelKind> = player.pose().iter().map(|&p| ChannelKind::Constant(p)).collect();
         let mut tracks = vec![];
         for (index, state) in player.states().iter().enumerate() {
             if let Some(step) = state.step_index() {
                 let channel = state.slot() as u16;
                 tracks.push((index, Track { channel, step, segments: vec![], states: vec![] }));
             } else if let Some(leader) = state.follows().and_then(|back| player.states().get(index.checked_sub(back)?)) {
-                starts[state.slot()] = Start::Follows((state.slot() - leader.slot()) as u16);
+                starts[state.slot()] = ChannelKind::Follower((state.slot() - leader.slot()) as u16);
             }
         }
         record(&mut player, &mut tracks);
         let tracks: Vec<Track> = tracks.into_iter().map(|(_, track)| track).collect();
         for track in &tracks {
-            starts[usize::from(track.channel)] = Start::Moves { step: track.step, pace: track.pace(join) };
+            starts[usize::from(track.channel)] = ChannelKind::Moving { step: track.step, pace: track.pace(join) };
         }
         Ok(Source { head: head_of(clip)?, starts, tracks })
     }
@@ -107,8 +107,8 @@ impl Source {
     }
 
     /// What every receiver in step has of the channels that are told of, for a line of this cycle: place in the pose, and p, v, w, k by frame.
-    pub fn played(&self, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
-        super::plan::played(self, cycle)
+    pub fn expected_states(&self, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
+        super::plan::expected_states(self, cycle)
     }
 
     /// The greatest distance of what is played from the file's, in parts of the channel's step, and of which channel of the pose.
@@ -117,18 +117,18 @@ impl Source {
             let apart = track.states.iter().zip(&states).map(|(a, b)| a[0].wrapping_sub(b[0]).unsigned_abs()).max();
             (f64::from(apart.unwrap_or(0)) / f64::from(pantin::step_size(track.step)), channel)
         };
-        self.tracks.iter().zip(self.played(cycle)).map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
+        self.tracks.iter().zip(self.expected_states(cycle)).map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
     }
 
     /// Channels that are told of.
-    pub fn told(&self) -> usize {
+    pub fn moving_channels(&self) -> usize {
         self.tracks.len()
     }
 }
 
-fn head_of(clip: &Clip<'_>) -> Result<Head, Unfit> {
+fn head_of(clip: &Clip<'_>) -> Result<Head, SourceError> {
     Ok(Head {
-        form: Form::of(clip).ok_or(Unfit::Exponentials)?,
+        form: Form::of(clip).ok_or(SourceError::Exponentials)?,
         frames: clip.frames(),
         looped: clip.looped(),
         frame_time_ns: clip.frame_time_ns(),

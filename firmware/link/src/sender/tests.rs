@@ -1,6 +1,6 @@
 use super::*;
 use crate::packet::Receiver;
-use crate::{Channel, Link, PACKET};
+use crate::{Channel, Link, MAX_PACKET};
 use pantin::Clip;
 use proptest::prelude::*;
 
@@ -28,29 +28,29 @@ impl Played<'_> {
         let Some(frame) = link.frame() else { return true };
         self.states.iter().all(|(channel, states)| {
             link.channels()[usize::from(*channel)].state().is_none_or(|state| state == states[frame as usize])
-        }) && link.exact() <= self.source.starts.len()
+        }) && link.exact_channels() <= self.source.starts.len()
     }
 }
 
-/// Plays what `line` makes of the departures, a call of `each` a frame.
-fn play(departures: impl Iterator<Item = Departure>, (source, line): (&Source, Line), mut each: impl FnMut(f64, &Link<64>)) {
+/// Plays what `line` makes of the timed_packets, a call of `each` a frame.
+fn play(timed_packets: impl Iterator<Item = TimedPacket>, (source, line): (&Source, Line), mut each: impl FnMut(f64, &Link<64>)) {
     let channels = usize::from(source.head.channels);
     let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
     let mut link = Link::<64>::new(source.head.form, &mut states, &mut pose);
-    let mut receiver = Receiver::<PACKET>::new();
+    let mut receiver = Receiver::<MAX_PACKET>::new();
     let frame = f64::from(source.head.frame_time_ns) / 1e9;
     let mut clock = None;
-    for departure in departures {
-        let there = departure.at + departure.bytes.len() as f64 / line.rate;
-        let clock = clock.get_or_insert(departure.at);
+    for timed in timed_packets {
+        let there = timed.at + timed.bytes.len() as f64 / line.rate;
+        let clock = clock.get_or_insert(timed.at);
         while *clock + frame <= there {
             *clock += frame;
             link.step();
             each(*clock, &link);
         }
-        for byte in departure.bytes {
+        for byte in timed.bytes {
             if let Some(packet) = receiver.push(byte) {
-                link.take(&packet).expect("the rig is its own");
+                link.receive(&packet).expect("the rig is its own");
             }
         }
     }
@@ -73,31 +73,31 @@ fn made(frame: usize, channel: usize) -> i32 {
 
 #[test]
 fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
-    let making = [Making { bound: 1 << 25, way: 1 << 30 }; 8];
+    let making = [LiveChannel { bound: 1 << 25, way: 1 << 30 }; 8];
     let source = Source::live(crate::Form::default(), 33_333_333, &making);
     let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false };
     let mut live = Sender::new(5).live(&source, line, &making);
     let (mut states, mut pose) = ([Channel::default(); 8], [0; 8]);
     let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
-    let mut receiver = Receiver::<PACKET>::new();
+    let mut receiver = Receiver::<MAX_PACKET>::new();
     let (mut late, mut worst) = (0, 0);
     for frame in 0..600 {
         let pose: Vec<i32> = (0..8).map(|channel| made(frame, channel)).collect();
-        for byte in live.push(&pose).into_iter().flat_map(|departure| departure.bytes) {
+        for byte in live.push(&pose).into_iter().flat_map(|timed| timed.bytes) {
             if let Some(packet) = receiver.push(byte) {
-                link.take(&packet).expect("its own form");
+                link.receive(&packet).expect("its own form");
             }
         }
         link.step();
         if frame > 60 {
-            assert!(link.synced(), "frame {frame}: {} exact", link.exact());
+            assert!(link.is_synced(), "frame {frame}: {} exact", link.exact_channels());
             let shown = link.frame().expect("it plays") as usize;
             late = late.max(frame - shown);
             let off = (1..8).map(|channel| i64::from(link.pose()[channel]) - i64::from(made(shown, channel)));
             worst = worst.max(off.map(i64::abs).max().unwrap_or(0));
         }
     }
-    assert_eq!(live.left_out(), 0);
+    assert_eq!(live.omitted_messages(), 0);
     assert!(late <= Live::delay(&line) as usize + 2, "{late}");
     assert!(worst <= (1 << 25) + (1 << 22), "{worst}");
 }
@@ -107,14 +107,14 @@ fn without_loss_every_frame_is_what_was_sent() {
     for bytes in CLIPS {
         let source = source(bytes);
         let line = line(&source, 20_000.0);
-        let states = source.played(line.cycle);
+        let states = source.expected_states(line.cycle);
         let played = Played { source: &source, states };
         let mut sender = Sender::new(7);
         let mut frames = vec![0; source.frames() as usize];
         play(sender.clip(&source, line, Some(2)), (&source, line), |_, link| {
             assert!(played.agrees(link));
             if let Some(frame) = link.frame() {
-                assert!(link.synced(), "frame {frame}: {} of {}", link.exact(), link.channels().len());
+                assert!(link.is_synced(), "frame {frame}: {} of {}", link.exact_channels(), link.channels().len());
                 frames[frame as usize] += 1;
             }
         });
@@ -124,10 +124,10 @@ fn without_loss_every_frame_is_what_was_sent() {
 }
 
 /// Pushes bytes into a receiver.
-fn hear<const Q: usize>(link: &mut Link<Q>, receiver: &mut Receiver<PACKET>, bytes: &[u8]) {
+fn hear<const Q: usize>(link: &mut Link<Q>, receiver: &mut Receiver<MAX_PACKET>, bytes: &[u8]) {
     for &byte in bytes {
         if let Some(packet) = receiver.push(byte) {
-            link.take(&packet).expect("its own form");
+            link.receive(&packet).expect("its own form");
         }
     }
 }
@@ -139,24 +139,24 @@ fn a_sender_that_stalls_makes_time_stand_still_and_loses_nothing() {
     let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
     let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
     let mut receiver = Receiver::new();
-    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(1)).collect();
+    let sent: Vec<TimedPacket> = Sender::new(7).clip(&source, line, Some(1)).collect();
     let (first, rest) = sent.split_at(sent.len() / 2);
-    for departure in first {
-        hear(&mut link, &mut receiver, &departure.bytes);
+    for timed in first {
+        hear(&mut link, &mut receiver, &timed.bytes);
         (0..4).for_each(|_| link.step());
     }
     (0..200).for_each(|_| link.step());
     let (now, drawn) = (link.now(), link.pose().to_vec());
     (0..200).for_each(|_| link.step());
     assert_eq!((link.now(), link.pose()), (now, &drawn[..]), "it stands");
-    assert!(link.synced() && link.counts().losses == 0);
-    for departure in rest {
-        hear(&mut link, &mut receiver, &departure.bytes);
+    assert!(link.is_synced() && link.counts().desyncs == 0);
+    for timed in rest {
+        hear(&mut link, &mut receiver, &timed.bytes);
         (0..4).for_each(|_| link.step());
-        assert!(link.synced());
+        assert!(link.is_synced());
     }
     (0..200).for_each(|_| link.step());
-    assert_eq!((link.frame(), link.counts().losses), (Some(source.frames() - 1), 0));
+    assert_eq!((link.frame(), link.counts().desyncs), (Some(source.frames() - 1), 0));
 }
 
 #[test]
@@ -166,19 +166,19 @@ fn after_a_stall_packets_are_ahead_of_their_time_again() {
     let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
     let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
     let mut receiver = Receiver::new();
-    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(6)).collect();
+    let sent: Vec<TimedPacket> = Sender::new(7).clip(&source, line, Some(6)).collect();
     let (mut clock, mut halted) = (sent[0].at, 0);
-    for (index, departure) in sent.iter().enumerate() {
+    for (index, timed) in sent.iter().enumerate() {
         if index == sent.len() / 3 {
             (0..500).for_each(|_| link.step());
         }
-        while clock < departure.at {
+        while clock < timed.at {
             clock += source.frame_seconds();
             let before = link.now();
             link.step();
             halted += u32::from(index > sent.len() * 2 / 3 && link.now() == before);
         }
-        hear(&mut link, &mut receiver, &departure.bytes);
+        hear(&mut link, &mut receiver, &timed.bytes);
     }
     assert_eq!(halted, 0, "frames on which time stood still");
     let behind =
@@ -190,24 +190,24 @@ fn after_a_stall_packets_are_ahead_of_their_time_again() {
 fn a_flood_is_counted_and_recovered_from() {
     let source = source(CLIPS[0]);
     let line = line(&source, 20_000.0);
-    let played = Played { source: &source, states: source.played(line.cycle) };
+    let played = Played { source: &source, states: source.expected_states(line.cycle) };
     let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
     let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
     let mut receiver = Receiver::new();
-    let sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(4)).collect();
+    let sent: Vec<TimedPacket> = Sender::new(7).clip(&source, line, Some(4)).collect();
     let (flood, rest) = sent.split_at(sent.len() / 3);
     // A third of all at once, then the others in their time.
-    flood.iter().for_each(|departure| hear(&mut link, &mut receiver, &departure.bytes));
-    assert!(link.counts().crowded > 0);
+    flood.iter().for_each(|timed| hear(&mut link, &mut receiver, &timed.bytes));
+    assert!(link.counts().dropped > 0);
     let (mut clock, mut synced) = (rest[0].at, 0);
-    for departure in rest {
-        while clock < departure.at {
+    for timed in rest {
+        while clock < timed.at {
             clock += source.frame_seconds();
             link.step();
             assert!(played.agrees(&link));
-            synced += u32::from(link.synced());
+            synced += u32::from(link.is_synced());
         }
-        hear(&mut link, &mut receiver, &departure.bytes);
+        hear(&mut link, &mut receiver, &timed.bytes);
     }
     assert!(synced > source.frames(), "{synced} frames were exact");
 }
@@ -246,10 +246,10 @@ fn fate() -> impl Strategy<Value = Fate> {
 }
 
 /// The packets of two rounds, as these fates leave them, and the frame of the last one that was touched.
-fn fated(source: &Source, line: Line, fates: &[(usize, Fate)]) -> (Vec<Departure>, f64) {
-    let sent: Vec<Departure> = Sender::new(7).clip(source, line, Some(2)).collect();
-    let foreign: Vec<Departure> = Sender::new(8).clip(source, line, Some(2)).collect();
-    let mut came: Vec<(f64, Departure)> = sent.iter().enumerate().map(|(i, departure)| (i as f64, departure.clone())).collect();
+fn fated(source: &Source, line: Line, fates: &[(usize, Fate)]) -> (Vec<TimedPacket>, f64) {
+    let sent: Vec<TimedPacket> = Sender::new(7).clip(source, line, Some(2)).collect();
+    let foreign: Vec<TimedPacket> = Sender::new(8).clip(source, line, Some(2)).collect();
+    let mut came: Vec<(f64, TimedPacket)> = sent.iter().enumerate().map(|(i, timed)| (i as f64, timed.clone())).collect();
     let mut last = 0.0f64;
     for (at, fate) in fates {
         let at = at % sent.len();
@@ -272,8 +272,8 @@ fn fated(source: &Source, line: Line, fates: &[(usize, Fate)]) -> (Vec<Departure
         }
     }
     came.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let times: Vec<f64> = sent.iter().map(|departure| departure.at).collect();
-    let came = came.into_iter().zip(times).map(|((_, departure), at)| Departure { at, ..departure });
+    let times: Vec<f64> = sent.iter().map(|timed| timed.at).collect();
+    let came = came.into_iter().zip(times).map(|((_, timed), at)| TimedPacket { at, ..timed });
     (came.collect(), last)
 }
 
@@ -287,7 +287,7 @@ proptest! {
     ) {
         let source = source(CLIPS[clip]);
         let line = line(&source, 20_000.0);
-        let played = Played { source: &source, states: source.played(line.cycle) };
+        let played = Played { source: &source, states: source.expected_states(line.cycle) };
         let (came, _) = fated(&source, line, &fates);
         let mut drawn: Option<Vec<i32>> = None;
         let (mut met, mut session) = (vec![false; source.starts.len()], 7);
@@ -301,7 +301,7 @@ proptest! {
             // No joint is drawn faster than its pace.
             if let Some(before) = drawn.replace(link.pose().to_vec()) {
                 for (track, start) in source.starts.iter().enumerate() {
-                    if let crate::Start::Moves { pace, .. } = start {
+                    if let crate::ChannelKind::Moving { pace, .. } = start {
                         let moved = link.pose()[track].wrapping_sub(before[track]).unsigned_abs();
                         // One that was told anew in between, of another clip, starts anew too.
                         let keeps = link.channels()[track].keeps_pace();
@@ -321,18 +321,18 @@ proptest! {
     ) {
         let source = source(CLIPS[clip]);
         let line = line(&source, 20_000.0);
-        let mut sent: Vec<Departure> = Sender::new(7).clip(&source, line, Some(3)).collect();
+        let mut sent: Vec<TimedPacket> = Sender::new(7).clip(&source, line, Some(3)).collect();
         let begin = (sent.len() as f64 * first) as usize;
         let mut last = 0u32;
-        for (departure, lost) in sent[begin..].iter_mut().zip(lost) {
+        for (timed, lost) in sent[begin..].iter_mut().zip(lost) {
             if lost < 50 {
-                let mut receiver = Receiver::<PACKET>::new();
-                let packet = departure.bytes.iter().find_map(|&byte| receiver.push(byte).map(|packet| (packet.kind, packet.payload.to_vec())));
+                let mut receiver = Receiver::<MAX_PACKET>::new();
+                let packet = timed.bytes.iter().find_map(|&byte| receiver.push(byte).map(|packet| (packet.kind, packet.payload.to_vec())));
                 if let Some((crate::packet::kind::MOTION, payload)) = packet {
                     let mut messages = crate::Messages::new(&payload);
                     messages.by_ref().for_each(drop);
                     last = last.max(u32::from(messages.frame()));
-                    departure.bytes.clear();
+                    timed.bytes.clear();
                 }
             }
         }
@@ -340,7 +340,7 @@ proptest! {
         let end = BEGIN + 3 * source.frames();
         play(sent.into_iter(), (&source, line), |_, link| {
             let Some(now) = link.now().filter(|&now| last > 0 && now > last + line.cycle && now + 1 < end) else { return };
-            assert!(link.synced(), "{now}: {} of {}, last {last}, cycle {}", link.exact(), link.channels().len(), line.cycle);
+            assert!(link.is_synced(), "{now}: {} of {}, last {last}, cycle {}", link.exact_channels(), link.channels().len(), line.cycle);
             if now > last + line.cycle + half {
                 let apart = link.channels().iter().zip(link.pose()).position(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] != drawn));
                 assert!(apart.is_none() || (now - BEGIN) % source.frames() < half, "{now} {apart:?}");

@@ -1,6 +1,6 @@
 //! Makes `tables.rs`.
 
-use super::plan::{Told, round};
+use super::plan::{ScheduledMessage, round};
 use super::source::Source;
 use crate::symbols::{Coder, Table};
 use crate::{Message, tables};
@@ -23,9 +23,9 @@ impl Coder for Counts {
     }
 }
 
-fn count(told: &[Told], counts: &mut Counts) {
+fn count(told: &[ScheduledMessage], counts: &mut Counts) {
     let mut at = (0, 0);
-    for (index, Told { frame, channel, message }) in told.iter().enumerate() {
+    for (index, ScheduledMessage { frame, channel, message }) in told.iter().enumerate() {
         // About what a packet holds.
         if index % 24 == 0 {
             counts.symbol(&tables::PLACE, crate::message::END);

@@ -1,13 +1,13 @@
 //! Power that goes at any operation of the flash: the board plays a whole clip afterwards, and takes the next one.
 
-use crate::board::{NEW, OLD, THIRD, claim, playing, send, which};
+use crate::board::{NEW, OLD, THIRD, info, playing, send, which};
 use crate::mock::store;
-use pantin_store::{Answer, Store};
+use pantin_store::{Response, Store};
 use proptest::prelude::*;
 
 /// Cuts at every operation of a transfer (or every `step`th), cleanly and with three kinds of half-done words and sectors.
 fn survives_every_cut<const WORD: usize, const SECTOR: usize>(sectors: usize, step: usize) {
-    let done = Some(Answer::Done { id: claim(NEW).crc });
+    let done = Some(Response::Done { id: info(NEW).crc });
     let (mut fresh, power) = store::<WORD, SECTOR>(sectors);
     assert_eq!(playing(&mut fresh), None);
     send(&mut fresh, OLD);
@@ -32,7 +32,7 @@ fn survives_every_cut<const WORD: usize, const SECTOR: usize>(sectors: usize, st
                 Some("new") if cut + 12 >= operations => news += 1,
                 other => panic!("cut {cut} of {operations}, torn {torn}: plays {other:?}"),
             }
-            assert_eq!(send(&mut store, THIRD), Some(Answer::Done { id: claim(THIRD).crc }), "cut {cut} of {operations}");
+            assert_eq!(send(&mut store, THIRD), Some(Response::Done { id: info(THIRD).crc }), "cut {cut} of {operations}");
             assert_eq!(playing(&mut store), Some("third"), "cut {cut} of {operations}");
         }
         println!("words of {WORD}, sectors of {SECTOR}: {operations} cuts of kind {torn}, {news} of them with the new clip");
@@ -110,7 +110,7 @@ proptest! {
             let answer = send(&mut store, clip);
             power.restore();
             let now = playing(&mut store);
-            if answer == Some(Answer::Done { id: claim(clip).crc }) {
+            if answer == Some(Response::Done { id: info(clip).crc }) {
                 prop_assert_eq!(now, Some(which(clip)));
             } else {
                 prop_assert!(now == sealed || now == Some(which(clip)), "{:?} in place of {:?}", now, sealed);
@@ -128,9 +128,9 @@ proptest! {
         let mut chance = crate::mock::Chance(seed);
         for (slot, header) in slots.iter_mut().zip(headers) {
             if header {
-                let claim = pantin_store::Claim { length, ..claim(OLD) };
+                let info = pantin_store::ClipInfo { length, ..info(OLD) };
                 slot.flash.iter_mut().for_each(|byte| *byte = chance.byte());
-                slot.flash[..48].copy_from_slice(&pantin_store::header::Header { claim, sequence: 7 }.bytes());
+                slot.flash[..48].copy_from_slice(&pantin_store::header::Header { info, sequence: 7 }.bytes());
             }
             flips.iter().for_each(|&at| slot.flash[at] = chance.byte());
         }

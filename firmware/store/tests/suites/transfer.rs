@@ -1,11 +1,11 @@
 //! What may come over a line in place of a transfer: parts of it, damage, messages twice, late, or of others. The old clip plays on, and
 //! a whole transfer works afterwards.
 
-use crate::board::{NEW, OLD, asks, claim, line, playing, say, send};
+use crate::board::{NEW, OLD, info, line, playing, requests, say, send};
 use crate::mock::{Mock, store};
 use pantin::OpenError;
-use pantin_store::message::{IDLE, SILENCE};
-use pantin_store::{Answer, Ask, BLOCK, Claim, Refusal, Store, Update};
+use pantin_store::message::{IDLE_FRAMES, SILENCE_FRAMES};
+use pantin_store::{BLOCK_BYTES, ClipInfo, Refusal, Request, Response, Store, Update};
 use proptest::prelude::*;
 
 type Nrf51 = Mock<4, 1024>;
@@ -25,24 +25,26 @@ fn goes_on(mut store: Store<Nrf51>) {
 }
 
 fn takes_new(mut store: Store<Nrf51>) {
-    assert_eq!(send(&mut store, NEW), Some(Answer::Done { id: claim(NEW).crc }));
+    assert_eq!(send(&mut store, NEW), Some(Response::Done { id: info(NEW).crc }));
     assert_eq!(playing(&mut store), Some("new"));
 }
 
 /// All bytes of the new clip's transfer.
 fn stream() -> Vec<u8> {
-    asks(NEW, &claim(NEW)).iter().flat_map(line).collect()
+    requests(NEW, &info(NEW)).iter().flat_map(line).collect()
 }
 
 #[test]
 fn every_message_is_answered_with_what_is_wanted_next() {
     let mut store = playing_old();
-    let id = claim(NEW).crc;
+    let id = info(NEW).crc;
     let (stored, mut update) = Update::open(&mut store);
     assert_eq!(stored.unwrap().bytes, OLD);
-    let answers: Vec<Answer> = asks(NEW, &claim(NEW)).iter().flat_map(|ask| say(&mut update, &line(ask)).answers).collect();
-    let wanted = (0..NEW.len()).step_by(BLOCK).chain([NEW.len()]).map(|offset| Answer::Want { id, offset: offset as u32 });
-    assert_eq!(answers, wanted.chain([Answer::Done { id }]).collect::<Vec<_>>());
+    let answers: Vec<Response> =
+        requests(NEW, &info(NEW)).iter().flat_map(|request| say(&mut update, &line(request)).answers).collect();
+    let wanted =
+        (0..NEW.len()).step_by(BLOCK_BYTES).chain([NEW.len()]).map(|offset| Response::Next { id, offset: offset as u32 });
+    assert_eq!(answers, wanted.chain([Response::Done { id }]).collect::<Vec<_>>());
 }
 
 #[test]
@@ -60,18 +62,18 @@ fn a_transfer_that_ends_at_any_sixteenth_leaves_the_old_clip() {
 #[test]
 fn a_line_that_was_lost_at_any_sixteenth_is_taken_up_again() {
     let stream = stream();
-    let messages = asks(NEW, &claim(NEW));
+    let messages = requests(NEW, &info(NEW));
     for part in 0..16 {
         let mut store = playing_old();
         let (_, mut update) = Update::open(&mut store);
         say(&mut update, &stream[..stream.len() * part / 16]);
-        (0..SILENCE).for_each(|_| update.picture());
+        (0..SILENCE_FRAMES).for_each(|_| update.frame_shown());
         let answers = say(&mut update, &line(&messages[0])).answers;
-        let [Answer::Want { offset, .. }] = answers[..] else { panic!("{answers:?}") };
+        let [Response::Next { offset, .. }] = answers[..] else { panic!("{answers:?}") };
         let sent = (stream.len() * part / 16).saturating_sub(line(&messages[0]).len()) / line(&messages[1]).len();
-        assert_eq!(offset as usize, sent * BLOCK, "{part} of 16");
+        assert_eq!(offset as usize, sent * BLOCK_BYTES, "{part} of 16");
         let rest = &messages[1 + sent..];
-        assert!(rest.iter().any(|ask| say(&mut update, &line(ask)).sealed), "{part} of 16");
+        assert!(rest.iter().any(|request| say(&mut update, &line(request)).sealed), "{part} of 16");
         assert_eq!(playing(&mut store), Some("new"));
     }
 }
@@ -80,32 +82,33 @@ fn a_line_that_was_lost_at_any_sixteenth_is_taken_up_again() {
 fn one_that_begins_again_starts_where_it_was_and_one_that_plays_is_done() {
     let mut store = playing_old();
     let (_, mut update) = Update::open(&mut store);
-    let (old, new) = (claim(OLD), claim(NEW));
-    assert_eq!(say(&mut update, &line(&Ask::Begin(old))).answers, [Answer::Done { id: old.crc }]);
-    assert_eq!(say(&mut update, &line(&Ask::End { id: old.crc })).answers, [Answer::Done { id: old.crc }]);
-    for ask in &asks(NEW, &new)[..3] {
-        say(&mut update, &line(ask));
+    let (old, new) = (info(OLD), info(NEW));
+    assert_eq!(say(&mut update, &line(&Request::Begin(old))).answers, [Response::Done { id: old.crc }]);
+    assert_eq!(say(&mut update, &line(&Request::End { id: old.crc })).answers, [Response::Done { id: old.crc }]);
+    for request in &requests(NEW, &new)[..3] {
+        say(&mut update, &line(request));
     }
-    let at = Answer::Want { id: new.crc, offset: 2 * BLOCK as u32 };
-    assert_eq!(say(&mut update, &line(&Ask::Begin(new))).answers, [at]);
-    assert_eq!(say(&mut update, &line(&Ask::End { id: new.crc })).answers, [at], "not all is there");
-    for late in &asks(NEW, &new)[1..3] {
+    let at = Response::Next { id: new.crc, offset: 2 * BLOCK_BYTES as u32 };
+    assert_eq!(say(&mut update, &line(&Request::Begin(new))).answers, [at]);
+    assert_eq!(say(&mut update, &line(&Request::End { id: new.crc })).answers, [at], "not all is there");
+    for late in &requests(NEW, &new)[1..3] {
         assert_eq!(say(&mut update, &line(late)).answers, [at], "what it has");
     }
-    assert_eq!(say(&mut update, &line(&asks(NEW, &new)[5])).answers, [at], "what comes too early");
-    let short = Ask::Data { id: new.crc, offset: 2 * BLOCK as u32, bytes: &NEW[2 * BLOCK..][..9] };
+    assert_eq!(say(&mut update, &line(&requests(NEW, &new)[5])).answers, [at], "what comes too early");
+    let short = Request::Data { id: new.crc, offset: 2 * BLOCK_BYTES as u32, bytes: &NEW[2 * BLOCK_BYTES..][..9] };
     assert_eq!(say(&mut update, &line(&short)).answers, [at], "no whole block");
-    assert!(asks(NEW, &new)[3..].iter().any(|ask| say(&mut update, &line(ask)).sealed));
+    assert!(requests(NEW, &new)[3..].iter().any(|request| say(&mut update, &line(request)).sealed));
 }
 
 #[test]
 fn what_cannot_be_played_is_refused_with_the_reason() {
-    let refused = |clip: &[u8], claim: Claim| {
+    let refused = |clip: &[u8], info: ClipInfo| {
         let mut store = playing_old();
         let (_, mut update) = Update::open(&mut store);
-        let answers: Vec<Answer> = asks(clip, &claim).iter().flat_map(|ask| say(&mut update, &line(ask)).answers).collect();
+        let answers: Vec<Response> =
+            requests(clip, &info).iter().flat_map(|request| say(&mut update, &line(request)).answers).collect();
         let refusal = answers.iter().find_map(|answer| match answer {
-            Answer::Refused { id, refusal } if *id == claim.crc => Some(*refusal),
+            Response::Refused { id, refusal } if *id == info.crc => Some(*refusal),
             _ => None,
         });
         goes_on(store);
@@ -116,33 +119,33 @@ fn what_cannot_be_played_is_refused_with_the_reason() {
         clip[at] ^= 4;
         clip
     };
-    let of = |clip: &[u8]| refused(clip, claim(clip));
-    assert_eq!(of(&[7; 5000]), Refusal::TooLong { room: 4096 - 256 });
+    let of = |clip: &[u8]| refused(clip, info(clip));
+    assert_eq!(of(&[7; 5000]), Refusal::TooLong { capacity: 4096 - 256 });
     assert_eq!(of(&[7; 500]), Refusal::Clip(OpenError::BadMagic));
     assert_eq!(of(&[]), Refusal::Clip(OpenError::Truncated));
     assert_eq!(of(&NEW[..NEW.len() - 1]), Refusal::Clip(OpenError::Truncated));
     assert_eq!(of(&spoilt(NEW.len() - 40)), Refusal::Clip(OpenError::BadCrc));
     assert_eq!(of(&spoilt(1)), Refusal::Clip(OpenError::BadMagic));
     assert_eq!(of(&spoilt(2)), Refusal::Clip(OpenError::UnsupportedVersion(NEW[2] ^ 4)));
-    assert_eq!(refused(&spoilt(900), claim(NEW)), Refusal::BadCrc);
+    assert_eq!(refused(&spoilt(900), info(NEW)), Refusal::BadCrc);
 }
 
 #[test]
 fn what_the_board_has_no_memory_for_is_refused() {
     let mut store = playing_old();
     let (_, mut update) = Update::open(&mut store);
-    let id = claim(NEW).crc;
-    for ask in asks(NEW, &claim(NEW)) {
-        for byte in line(&ask) {
-            update.take(byte, |_| {});
+    let id = info(NEW).crc;
+    for request in requests(NEW, &info(NEW)) {
+        for byte in line(&request) {
+            update.receive(byte, |_| {});
         }
     }
-    assert!(update.is_whole());
+    assert!(update.is_complete());
     assert_eq!(update.candidate().unwrap().bytes, NEW);
     let mut said = vec![];
     assert!(!update.finish(false, |bytes| said.extend_from_slice(bytes)));
     let mut out = [0; 40];
-    let len = Answer::Refused { id, refusal: Refusal::TooBig }.write(said[3], &mut out).unwrap();
+    let len = Response::Refused { id, refusal: Refusal::TooBig }.write(said[3], &mut out).unwrap();
     assert_eq!(said[..said.len() - 4], out[..len - 4], "but for the sequence and its CRC");
     goes_on(store);
 }
@@ -152,13 +155,13 @@ fn flash_that_fails_is_told_and_the_transfer_given_up() {
     let (mut store, power) = store::<4, 1024>(4);
     send(&mut store, OLD);
     let (_, mut update) = Update::open(&mut store);
-    let messages = asks(NEW, &claim(NEW));
+    let messages = requests(NEW, &info(NEW));
     say(&mut update, &line(&messages[0]));
     power.cut(10, 1);
-    let id = claim(NEW).crc;
-    assert_eq!(say(&mut update, &line(&messages[1])).answers, [Answer::Refused { id, refusal: Refusal::Flash }]);
+    let id = info(NEW).crc;
+    assert_eq!(say(&mut update, &line(&messages[1])).answers, [Response::Refused { id, refusal: Refusal::Flash }]);
     power.restore();
-    assert_eq!(say(&mut update, &line(&messages[2])).answers, [Answer::Refused { id, refusal: Refusal::NotBegun }]);
+    assert_eq!(say(&mut update, &line(&messages[2])).answers, [Response::Refused { id, refusal: Refusal::NotBegun }]);
     goes_on(store);
 }
 
@@ -166,13 +169,13 @@ fn flash_that_fails_is_told_and_the_transfer_given_up() {
 fn a_transfer_that_stands_still_is_given_up() {
     let mut store = playing_old();
     let (_, mut update) = Update::open(&mut store);
-    let messages = asks(NEW, &claim(NEW));
-    let id = claim(NEW).crc;
+    let messages = requests(NEW, &info(NEW));
+    let id = info(NEW).crc;
     say(&mut update, &line(&messages[0]));
-    (1..IDLE).for_each(|_| update.picture());
-    assert_eq!(say(&mut update, &line(&messages[1])).answers, [Answer::Want { id, offset: BLOCK as u32 }]);
-    (0..IDLE).for_each(|_| update.picture());
-    assert_eq!(say(&mut update, &line(&messages[2])).answers, [Answer::Refused { id, refusal: Refusal::NotBegun }]);
+    (1..IDLE_FRAMES).for_each(|_| update.frame_shown());
+    assert_eq!(say(&mut update, &line(&messages[1])).answers, [Response::Next { id, offset: BLOCK_BYTES as u32 }]);
+    (0..IDLE_FRAMES).for_each(|_| update.frame_shown());
+    assert_eq!(say(&mut update, &line(&messages[2])).answers, [Response::Refused { id, refusal: Refusal::NotBegun }]);
     goes_on(store);
 }
 
@@ -180,22 +183,22 @@ fn a_transfer_that_stands_still_is_given_up() {
 fn letters_go_through_between_packets_and_nothing_of_a_packet_does() {
     let mut store = playing_old();
     let (_, mut update) = Update::open(&mut store);
-    let messages = asks(NEW, &claim(NEW));
+    let messages = requests(NEW, &info(NEW));
     let bytes = [b"r+", &line(&messages[0])[..], b"n", &line(&messages[1])[..], b"\n"].concat();
     let said = say(&mut update, &bytes);
-    assert_eq!((said.letters.as_slice(), said.answers.len()), (&b"r+n\n"[..], 2));
+    assert_eq!((said.keys.as_slice(), said.answers.len()), (&b"r+n\n"[..], 2));
     // A zero in its midst: the rest is nothing, until the next packet.
     let mut damaged = line(&messages[2]);
     damaged[100] = 0;
-    assert!(say(&mut update, &damaged).letters.is_empty());
+    assert!(say(&mut update, &damaged).keys.is_empty());
     let said = say(&mut update, &[&line(&messages[2])[..], b"v"].concat());
-    assert_eq!((said.letters.as_slice(), said.answers.len()), (&b"v"[..], 1));
+    assert_eq!((said.keys.as_slice(), said.answers.len()), (&b"v"[..], 1));
     // Its first zero is lost: its second byte is no letter.
-    assert!(say(&mut update, &line(&messages[3])[1..]).letters.is_empty());
-    // It never ends: letters come again after a silence.
+    assert!(say(&mut update, &line(&messages[3])[1..]).keys.is_empty());
+    // It never ends: keys come again after a silence.
     say(&mut update, &line(&messages[3])[..50]);
-    (0..SILENCE).for_each(|_| update.picture());
-    assert_eq!(say(&mut update, b"p").letters, b"p");
+    (0..SILENCE_FRAMES).for_each(|_| update.frame_shown());
+    assert_eq!(say(&mut update, b"p").keys, b"p");
 }
 
 proptest! {
@@ -217,9 +220,9 @@ proptest! {
 
     #[test]
     fn messages_in_any_order_twice_or_of_others(order in prop::collection::vec((0usize..14, 0u8..8), 0..60)) {
-        let messages = asks(NEW, &claim(NEW));
-        let foreign = Claim { crc: 7, ..claim(NEW) };
-        let others = asks(OLD, &foreign);
+        let messages = requests(NEW, &info(NEW));
+        let foreign = ClipInfo { crc: 7, ..info(NEW) };
+        let others = requests(OLD, &foreign);
         let mut store = playing_old();
         let (_, mut update) = Update::open(&mut store);
         let mut sealed = false;
@@ -236,29 +239,29 @@ proptest! {
         let (_, mut update) = Update::open(&mut store);
         prop_assert!(!say(&mut update, &noise).sealed);
         // The first message may be taken for the rest of what was begun.
-        let messages = asks(NEW, &claim(NEW));
+        let messages = requests(NEW, &info(NEW));
         say(&mut update, &line(&messages[0]));
-        prop_assert!(messages.iter().any(|ask| say(&mut update, &line(ask)).sealed));
+        prop_assert!(messages.iter().any(|request| say(&mut update, &line(request)).sealed));
         prop_assert!(playing(&mut store) == Some("new"));
     }
 
     #[test]
-    fn what_is_written_is_read(id: u32, number: u32, name: String, bytes in prop::collection::vec(any::<u8>(), 1..=BLOCK), which in 0usize..8) {
+    fn what_is_written_is_read(id: u32, number: u32, name: String, bytes in prop::collection::vec(any::<u8>(), 1..=BLOCK_BYTES), which in 0usize..8) {
         let name = pantin_store::Name::new(&name.replace('\0', " "));
         let mut out = vec![0; 300];
-        let refused = |refusal| Answer::Refused { id, refusal };
-        let answer = [Answer::Want { id, offset: number }, Answer::Done { id }, refused(Refusal::TooLong { room: number }),
+        let refused = |refusal| Response::Refused { id, refusal };
+        let answer = [Response::Next { id, offset: number }, Response::Done { id }, refused(Refusal::TooLong { capacity: number }),
             refused(Refusal::NotBegun), refused(Refusal::BadCrc), refused(Refusal::Clip(OpenError::UnsupportedVersion(number as u8))),
             refused(Refusal::TooBig), refused(Refusal::Flash)][which];
         let len = answer.write(3, &mut out).unwrap();
-        let mut receiver = pantin_link::packet::Receiver::<{ pantin_store::message::ANSWER }>::new();
-        let read = out[..len].iter().find_map(|&byte| receiver.push(byte).and_then(|packet| Answer::read(&packet)));
+        let mut receiver = pantin_link::packet::Receiver::<{ pantin_store::message::MAX_RESPONSE }>::new();
+        let read = out[..len].iter().find_map(|&byte| receiver.push(byte).and_then(|packet| Response::read(&packet)));
         prop_assert_eq!(read, Some(answer));
-        let begin = Ask::Begin(Claim { length: number, crc: id, name });
-        let ask = [begin, Ask::Data { id, offset: number, bytes: &bytes }, Ask::End { id }][which % 3];
-        let mut receiver = pantin_link::packet::Receiver::<{ pantin_store::message::ASK }>::new();
-        let same = line(&ask).into_iter().any(|byte| receiver.push(byte).is_some_and(|packet| Ask::read(&packet) == Some(ask)));
-        // A name of no letters is called otherwise.
+        let begin = Request::Begin(ClipInfo { length: number, crc: id, name });
+        let request = [begin, Request::Data { id, offset: number, bytes: &bytes }, Request::End { id }][which % 3];
+        let mut receiver = pantin_link::packet::Receiver::<{ pantin_store::message::MAX_REQUEST }>::new();
+        let same = line(&request).into_iter().any(|byte| receiver.push(byte).is_some_and(|packet| Request::read(&packet) == Some(request)));
+        // A name of no keys is called otherwise.
         prop_assert!(same || name.as_str() == "clip");
     }
 }

@@ -7,8 +7,8 @@ use anyhow::{Context, Result};
 use harness::lossy::{Damage, Lossy, last_frame, play};
 use harness::paths;
 use pantin::Clip;
-use pantin_link::sender::{Bytes, Line, Sender, Source};
-use pantin_link::{Link, QUEUE};
+use pantin_link::sender::{ByteCounts, Line, Sender, Source};
+use pantin_link::{Link, QUEUE_PACKETS};
 
 use super::link_board::{Board, Seen};
 use super::{Goal, Setting, table};
@@ -61,7 +61,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
     let source = Source::new(&Clip::new_checked(&bytes)?)?;
     let board = Board::new(&clip)?;
-    say(&format!("   hops-and-turn with the face angry: {} frames, {} channels told", source.frames(), source.told()));
+    say(&format!("   hops-and-turn with the face angry: {} frames, {} channels told", source.frames(), source.moving_channels()));
     let (mut goals, mut rows) = (vec![], vec![]);
     for (baud, ahead, exact) in LINES {
         let fitted = |parity: bool| {
@@ -117,7 +117,7 @@ struct Run {
 impl Run {
     fn of(source: &Source, line: Line, damage: Damage, quick: bool) -> Run {
         let mut run = Run { damage, parity: line.parity, ..Run::default() };
-        let played = source.played(line.cycle);
+        let played = source.expected_states(line.cycle);
         for pass in 0..if quick { 2 } else { PASSES } {
             run.recover(source, line, &played, pass);
         }
@@ -131,12 +131,12 @@ impl Run {
         let mut lossy = Lossy::new(seed);
         let (mut last, mut exact_at) = (None::<u16>, None::<u16>);
         let harmed = std::cell::Cell::new(None::<u16>);
-        let damaged = |departure: &pantin_link::sender::Departure| {
+        let damaged = |timed: &pantin_link::sender::TimedPacket| {
             // What channels are is known at both ends: it is told of seldom.
-            match last_frame(&departure.bytes, line).filter(|_| harms(departure.at, seed)) {
-                None => departure.bytes.clone(),
+            match last_frame(&timed.bytes, line).filter(|_| harms(timed.at, seed)) {
+                None => timed.bytes.clone(),
                 Some(frame) => {
-                    let (bytes, hurt) = lossy.pass(&departure.bytes, self.damage);
+                    let (bytes, hurt) = lossy.pass(&timed.bytes, self.damage);
                     if hurt {
                         harmed.set(Some(frame));
                     }
@@ -152,7 +152,7 @@ impl Run {
                 (last, exact_at) = (Some(frame), None);
             }
             let Some(frame) = last.filter(|&frame| now.wrapping_sub(frame) < 1 << 15) else { return };
-            if exact_at.is_none() && link.synced() {
+            if exact_at.is_none() && link.is_synced() {
                 exact.push(f64::from(now.wrapping_sub(frame)) * milliseconds);
                 exact_at = Some(now);
             }
@@ -171,13 +171,13 @@ impl Run {
         let mut lossy = Lossy::new(99);
         let (mut frames, mut exact, mut moving, mut heads, mut wrong) = (0.0, 0.0, 0.0, 0, 0);
         let mut before = (None, vec![]);
-        let damaged = |departure: &pantin_link::sender::Departure| lossy.pass(&departure.bytes, self.damage).0;
+        let damaged = |timed: &pantin_link::sender::TimedPacket| lossy.pass(&timed.bytes, self.damage).0;
         play(Sender::new(1).clip(source, line, Some(1)), source, line, damaged, |link| {
             wrong += u32::from(!agrees(link, played));
             heads += u32::from(before.0.is_some() && before.0 != link.head().copied());
             if link.frame().is_some_and(|frame| frame > 60) {
                 frames += 1.0;
-                exact += link.exact() as f64 / source.channels() as f64;
+                exact += link.exact_channels() as f64 / source.channels() as f64;
                 moving += f64::from(u8::from(before.1 != link.pose()));
             }
             before = (link.head().copied(), link.pose().to_vec());
@@ -189,14 +189,14 @@ impl Run {
 }
 
 /// Whether every channel that says so is exact.
-fn agrees(link: &Link<QUEUE>, played: &[(u16, Vec<[i32; 4]>)]) -> bool {
+fn agrees(link: &Link<QUEUE_PACKETS>, played: &[(u16, Vec<[i32; 4]>)]) -> bool {
     let Some(frame) = link.frame() else { return true };
     let state = |channel: u16| link.channels().get(usize::from(channel)).and_then(|channel| channel.state());
     played.iter().all(|(channel, states)| state(*channel).is_none_or(|state| states.get(frame as usize) == Some(&state)))
 }
 
 /// Whether all is drawn as it is.
-fn drawn(link: &Link<QUEUE>) -> bool {
+fn drawn(link: &Link<QUEUE_PACKETS>) -> bool {
     link.channels().iter().zip(link.pose()).all(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] == drawn))
 }
 
@@ -249,16 +249,16 @@ fn print(rows: &[Vec<String>]) {
 fn late_join(source: &Source, line: Line) -> f64 {
     let join = |number: u32| {
         let from = source.seconds() * f64::from(number) / f64::from(JOINS);
-        let departures = Sender::new(1).clip(source, line, Some(2)).filter(|departure| departure.at >= from);
+        let timed_packets = Sender::new(1).clip(source, line, Some(2)).filter(|timed| timed.at >= from);
         let (mut frames, mut taken) = (0.0, None);
         play(
-            departures,
+            timed_packets,
             source,
             line,
-            |departure| departure.bytes.clone(),
+            |timed| timed.bytes.clone(),
             |link| {
                 frames += 1.0;
-                if link.synced() && taken.is_none() {
+                if link.is_synced() && taken.is_none() {
                     taken = Some(frames);
                 }
             },
@@ -269,14 +269,14 @@ fn late_join(source: &Source, line: Line) -> f64 {
 }
 
 /// What a round of the clip takes.
-fn carried(source: &Source, line: Line) -> Bytes {
+fn carried(source: &Source, line: Line) -> ByteCounts {
     let mut schedule = Sender::new(1).clip(source, line, Some(1));
     schedule.by_ref().for_each(drop);
     schedule.bytes()
 }
 
 fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], runs: &[Run]) -> Vec<Goal> {
-    let Bytes { line: all, framing, announced, refresh, motion, .. } = carried(source, line);
+    let ByteCounts { line: all, framing, announced, refresh, motion, .. } = carried(source, line);
     let with = carried(source, mending);
     let rate = |bytes: f64| format!("{:.0} bytes/s ({:.1} %)", bytes / source.seconds(), 100.0 * bytes / all);
     let worst = |times: fn(&Run) -> &Vec<f64>| runs.iter().flat_map(times).copied().fold(0.0, f64::max);

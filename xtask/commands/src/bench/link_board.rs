@@ -50,7 +50,7 @@ impl Board<'_> {
         Ok(Board { clip, firmware })
     }
 
-    /// Plays a line that is damaged, as the seed has it, while `harms` says so of a departure's time.
+    /// Plays a line that is damaged, as the seed has it, while `harms` says so of a timed's time.
     pub fn plays(&self, source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Result<Seen> {
         let words: &[&str] = if line.parity { &["fec"] } else { &[] };
         let (bytes, harmed) = damaged(source, line, damage, seed, harms);
@@ -75,9 +75,9 @@ impl Board<'_> {
 
 fn damaged(source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Arrivals {
     let (mut lossy, mut harmed) = (Lossy::new(seed), vec![]);
-    let frames = arrivals(Sender::new(1).clip(source, line, Some(1)), source, line, |at, departure| {
-        let Some(frame) = last_frame(&departure.bytes, line).filter(|_| harms(departure.at)) else { return departure.bytes };
-        let (bytes, hurt) = lossy.pass(&departure.bytes, damage);
+    let frames = arrivals(Sender::new(1).clip(source, line, Some(1)), source, line, |at, timed| {
+        let Some(frame) = last_frame(&timed.bytes, line).filter(|_| harms(timed.at)) else { return timed.bytes };
+        let (bytes, hurt) = lossy.pass(&timed.bytes, damage);
         if hurt {
             harmed.push((at, u32::from(frame) - BEGIN));
         }
