@@ -4,7 +4,7 @@ use clap::{Parser, Subcommand};
 use pantin_tools::cmd;
 use std::process::ExitCode;
 
-/// Character motion for small machines: motion files to clips, and back.
+/// Character motion for small machines: converts motion files to clips and back, plays and draws them.
 #[derive(Parser)]
 #[command(name = "pantin", version, arg_required_else_help = true)]
 struct Arguments {

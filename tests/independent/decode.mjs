@@ -178,7 +178,7 @@ function readStarts(symbols, tables, rig, clipExponent, moving) { // [8]
     if (status === RESTS) return rests;
     if (status === FOLLOWS) {
       const leader = moving.length - 1 - symbols.bits(5), stands = { ...rests, v: 0, w: 0, k: 0, mode: START_MODE, ends: 0 };
-      return moves({ ...stands, ...moving[leader], turn: 0, leader });
+      return moves({ ...stands, ...moving[leader], prevSign: 0, leader });
     }
     const c = symbols.symbol(tables.step_change), itsClass = isPosition(channel.kind) ? 1 : 0;
     const told = c < STEP_CHANGES ? (lastStep[itsClass] + unzigzag(c)) & 255 : symbols.bits(6);
@@ -186,16 +186,16 @@ function readStarts(symbols, tables, rig, clipExponent, moving) { // [8]
     const p = Math.imul(symbols.magnitude(tables.position), Math.max(S >> 1, 1));
     if (status === CONSTANT) return { p };
     const v = Math.imul(symbols.magnitude(tables.velocity), Math.max(S >> 2, 1));
-    return moves({ step, p, v, w: 0, k: 0, mode: START_MODE, turn: 0, ends: 0 }); // `ends`: the frame
+    return moves({ step, p, v, w: 0, k: 0, mode: START_MODE, prevSign: 0, ends: 0 }); // `ends`: the frame
   });
 }
 
 const hasNewW = (mode) => [TYPE_W, TYPE_WK].includes(mode >> 4), hasNewK = (mode) => [TYPE_K, TYPE_WK].includes(mode >> 4);
 
-function contextOf(slope, now, turn, unit, lengthIndex) { // [9]
+function contextOf(slope, now, prevSign, unit, lengthIndex) { // [9]
   const size = Math.abs(now), half = (unit + 1) >> 1;
   const a = size < half ? 0 : size < 2 * unit ? 1 : size < 6 * unit ? 2 : 3;
-  const flipped = a === 0 ? turn < 0 : now < 0, g = flipped ? -turn : turn;
+  const flipped = a === 0 ? prevSign < 0 : now < 0, g = flipped ? -prevSign : prevSign;
   return { context: ((4 * slope + LENGTH_CLASSES[lengthIndex]) * 4 + a) * 3 + g + 1, flipped, saw: a === 0 ? 0 : Math.sign(now) };
 }
 
@@ -204,9 +204,9 @@ function readSegment(symbols, tables, channel, frame) { // [9]
   const mode = m < 32 ? m : Math.min(32 + symbols.bits(5), 62);
   const index = mode & 15, L = LENGTHS[index], W = unitW(channel.step, L), K = unitK(channel.step, L);
   if (hasNewW(mode)) {
-    const context = contextOf(0, channel.w, channel.turn, W, index);
+    const context = contextOf(0, channel.w, channel.prevSign, W, index);
     channel.w = Math.imul(symbols.number(tables, context), W);
-    channel.turn = context.saw;
+    channel.prevSign = context.saw;
   }
   channel.k = hasNewK(mode) ? Math.imul(symbols.number(tables, contextOf(1, channel.k, 0, K, index)), K) : 0;
   Object.assign(channel, { mode, ends: frame + L });
@@ -248,10 +248,10 @@ function readIndex(payload, frames, moving) { // [14]
     const at = inPayload(fields.varint()), x = (fields.u8() << 16) | (fields.u8() << 8) | fields.u8();
     need(x >= LOW, "A snapshot's x is below 2^16."); // from x = 0, a refill would never end
     const channels = Array.from({ length: moving }, () => {
-      const head = fields.u8(), mode = head & 63, turn = (head >> 6) - 1;
-      need(mode <= 62 && turn <= 1, "A snapshot's mode or turn is out of bounds.");
+      const head = fields.u8(), mode = head & 63, prevSign = (head >> 6) - 1;
+      need(mode <= 62 && prevSign <= 1, "A snapshot's mode or sign is out of bounds.");
       const ends = frame + fields.i8(), p = fields.zigzag(), v = fields.zigzag(), w = fields.zigzag();
-      return { mode, turn, ends, p, v, w, k: hasNewK(mode) ? fields.zigzag() : 0 };
+      return { mode, prevSign, ends, p, v, w, k: hasNewK(mode) ? fields.zigzag() : 0 };
     });
     return { frame, at, x, channels };
   });

@@ -8,16 +8,16 @@ use anyhow::Result;
 /// Bounds for each channel, in place of --max-error.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChannelBound {
-    /// Instead of --max-error: greatest error of each channel at every frame, in degrees for rotations and in percent for all others (of a
-    /// position's way from its least to its greatest value, of a scalar's full scale, of 2 for a quaternion's components)
+    /// Instead of --max-error: largest error of each channel at every frame, in degrees for rotations and in percent for all others (of a
+    /// position's range, of a scalar's full scale, of 2 for a quaternion's components)
     #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
     max_channel_error: Option<f64>,
-    /// Instead of --max-error: greatest error of each channel's acceleration (second difference) at every frame, in degrees a frame^2 for
-    /// rotations and in percent a frame^2 for all others. Positions and rotations drift: by how much is told
+    /// Instead of --max-error: largest error of each channel's acceleration (second difference) at every frame, in degrees per frame^2 for
+    /// rotations and in percent per frame^2 for all others. Positions and rotations drift; the command prints by how much
     #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
     max_accel_error: Option<f64>,
-    /// Instead of --max-error: channels with keys (.keys, glTF's places and weights) as they are, off by rounding alone: at most 0.006 degrees, or 2^-16 of
-    /// what --max-channel-error takes a percentage of
+    /// Instead of --max-error: code channels with keys (.keys, glTF's translations and weights) exactly except for rounding: at most 0.006 degrees, or
+    /// 2^-16 of the range that --max-channel-error refers to
     #[arg(long, group = "bound")]
     exact: bool,
 }

@@ -24,10 +24,10 @@ use std::path::{Path, PathBuf};
 
 /// Turn a motion file into a clip.
 ///
-/// The bound holds: before anything is written, the clip is played by the device's own decoder and compared, joint by joint
-/// (or channel by channel) and frame by frame, with the motion. If the bound cannot be met, nothing is written.
+/// The bound is verified: before anything is written, the device's own decoder plays the clip, and every joint (or channel) is compared
+/// with the motion at every frame. If the bound cannot be met, nothing is written.
 ///
-/// A folder is converted with all motions in it and below it into the folder of --output; files that are up to date are left alone.
+/// If the input is a folder, all motions in it and its subfolders are converted into the folder --output; clips that are up to date are skipped.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:
   pantin convert walk.bvh -o walk.ptn
@@ -46,9 +46,9 @@ use std::path::{Path, PathBuf};
   pantin convert walk.bvh -o walk.ptn --retarget display --map names.txt
   pantin convert captures -o clips --jobs 4 --max-error 0.5%")]
 pub struct Arguments {
-    /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, our key frames (.keys, see docs/KEYFRAMES.md), functions of time
-    /// (.proc, see docs/PROCEDURAL.md), a face by Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
-    /// below a row of their names (.csv, .tsv)
+    /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, key frames (.keys, see docs/KEYFRAMES.md), functions of time
+    /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
+    /// with a row of names (.csv, .tsv)
     pub(super) input: PathBuf,
     /// The clip to write, or the folder
     #[arg(short, long, required_unless_present = "list")]
@@ -56,17 +56,17 @@ pub struct Arguments {
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
     #[arg(long)]
     list: bool,
-    /// Greatest distance of any joint or End Site from where it should be: a number with cm, mm, m or in (default unit cm), or
-    /// with % for a part of the figure's height
+    /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
+    /// with % of the figure's height
     #[arg(long, group = "bound", default_value = "0.5cm", value_parser = max_error::parse)]
     max_error: MaxError,
-    /// How hard to look for few bytes
+    /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
     /// How joints with three Euler angles are coded
     #[arg(long, value_enum, default_value = "by-cost")]
     rotations: Rotations,
-    /// Greatest error of channels that move no joint, in percent of their full scale
+    /// Largest error of channels that move no joint, in percent of their full scale
     #[arg(long, value_name = "PERCENT", default_value = "2", value_parser = above_zero)]
     max_scalar_error: f64,
     #[command(flatten)]
@@ -74,16 +74,16 @@ pub struct Arguments {
     /// Length of the source's unit in cm, instead of a guess
     #[arg(long)]
     cm_per_unit: Option<f64>,
-    /// Frames a second of the clip: a file that states its rate, or has keys or times, is resampled; one that does not state any (.amc, a
-    /// table without times) has this one
+    /// Frames per second of the clip: a file that states its rate, or has keys or times, is resampled; one without a rate (.amc, a
+    /// table without times) gets this one
     #[arg(long)]
     fps: Option<f64>,
     #[command(flatten)]
     edits: Edits,
-    /// The .asf of an .amc, instead of the one found beside it
+    /// The .asf of an .amc, instead of the one found next to it
     #[arg(long)]
     skeleton: Option<PathBuf>,
-    /// Put a snapshot of the player's state into the file each so many seconds: seeking starts from the last one
+    /// Store a snapshot of the player's state every N seconds, so that seeking starts from the nearest one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
     /// Which animation of a file that holds several (glTF, FBX, VRML): its name, or its number from 0
@@ -95,10 +95,10 @@ pub struct Arguments {
     /// Print the measured errors as one JSON object
     #[arg(long)]
     pub(super) json: bool,
-    /// Say nothing but errors
+    /// Print nothing but errors
     #[arg(short, long)]
     pub(super) quiet: bool,
-    /// How many files of a folder to convert at a time; as many as there are processors without it
+    /// Number of files of a folder to convert at a time [default: the number of CPUs]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) jobs: Option<u16>,
 }

@@ -9,32 +9,32 @@ use std::path::PathBuf;
 /// Changes of the motion. They apply in this order: --fps, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Edits {
-    /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (capital letters or not). A joint that is not kept goes, or is
-    /// held as in the first frame if a kept one hangs on it
+    /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (case-insensitive). A joint that is not kept is
+    /// removed, or held as in the first frame if a kept joint depends on it
     #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
     joints: Vec<String>,
     /// Drop the joints and scalars whose names match, in the same way
     #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
     drop: Vec<String>,
-    /// First frame to take, as counted from 0 after --fps
+    /// First frame to convert, counted from 0 after --fps
     #[arg(long, value_name = "FRAME")]
     from: Option<usize>,
-    /// Last frame to take
+    /// Last frame to convert, inclusive
     #[arg(long, value_name = "FRAME")]
     to: Option<usize>,
-    /// Exchange left and right, as a mirror at x = 0 shows the motion
+    /// Mirror the motion at x = 0, with left and right exchanged
     #[arg(long)]
     mirror: bool,
-    /// Put the motion of any humanoid figure on another body
+    /// Transfer the motion of any humanoid figure to another body
     #[arg(long, value_enum, value_name = "BODY")]
     retarget: Option<Body>,
-    /// Which joints --retarget is to take where their names are unusual: a file of lines `DISPLAY-JOINT JOINT`, as in `LeftShin knee.L`
+    /// Joints for --retarget whose names are not recognized: a file of lines `DISPLAY-JOINT JOINT`, as in `LeftShin knee.L`
     #[arg(long, value_name = "FILE", requires = "retarget")]
     map: Option<PathBuf>,
-    /// Add the scalars of another file, as of a face recorded with the body; the shorter one ends the clip
+    /// Add the scalars of another file, such as a face recorded with the body; the shorter file ends the clip
     #[arg(long, value_name = "FILE")]
     with: Option<PathBuf>,
-    /// Make a loop: the last frame is to be the first again. Their difference, which must be within the bound, is spread over the clip
+    /// Make a loop: the last frame leads into the first one. Their difference, which must be within the bound, is spread over the clip
     #[arg(long = "loop", conflicts_with_all = ["exact", "max_accel_error"])]
     pub looped: bool,
 }

@@ -8,9 +8,9 @@ use std::path::PathBuf;
 
 /// Turn a clip back into per-frame motion, or into source text for firmware.
 ///
-/// The output's extension says what is written: .bvh has the same joints, channels and frames; .glb is a
-/// tree of nodes, with scalars as morph weights; .csv a row of all channels' values a frame, with the
-/// time in seconds; .h and .rs have the clip's own bytes, their length, the frame rate and the channels' names.
+/// The output's extension selects the format: .bvh has the same joints, channels and frames; .glb is a
+/// tree of nodes, with scalars as morph weights; .csv has one row per frame with the time in seconds and
+/// all channels' values; .h and .rs hold the clip's bytes, their length, the frame rate and the channels' names.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin expand walk.ptn -o walk.bvh

@@ -7,10 +7,10 @@ use clap::builder::PossibleValuesParser;
 use pantin_store::region::{REGIONS, Region};
 use std::path::PathBuf;
 
-/// Write the image of a board's clip flash, to be flashed beside the firmware, which is not built anew.
+/// Write an image of a board's clip flash; the firmware stays as it is.
 ///
-/// The output's extension says what is written: .bin the whole region, to be put at the address that is told; .hex (Intel HEX, with its
-/// addresses) the clip alone, and what removes a newer one; .uf2 the same in whole sectors, to be dragged onto the Pico's drive.
+/// The output's extension selects the format: .bin is the whole region, for the address that the command prints; .hex (Intel HEX, with
+/// addresses) is the clip and what invalidates a newer one; .uf2 is the same in whole sectors, to drag onto the Pico's drive.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin flash-image walk.ptn --board pico -o clips.uf2        hold BOOTSEL, plug it in, drag the file onto RPI-RP2
@@ -21,7 +21,7 @@ use std::path::PathBuf;
 
 The firmware must be built with feature `update`.")]
 pub struct Arguments {
-    /// The clip; it must hold its rig
+    /// The clip, which must contain its rig
     input: PathBuf,
     /// The file to write: .bin, .hex or .uf2
     #[arg(short, long)]
@@ -29,10 +29,10 @@ pub struct Arguments {
     /// The board
     #[arg(long, value_parser = PossibleValuesParser::new(REGIONS.map(|region| region.board)))]
     board: String,
-    /// What the board calls it, up to 28 bytes; else the file's name
+    /// The name that the board shows, up to 28 bytes [default: the file's name]
     #[arg(long)]
     name: Option<String>,
-    /// Say nothing but errors
+    /// Print nothing but errors
     #[arg(short, long)]
     quiet: bool,
 }

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Say what a clip holds, and where its bytes went; or which animations a glTF or FBX file or a VRML world holds.
+/// Print what a clip holds and how its bytes are used, or which animations a glTF, FBX or VRML file holds.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin info walk.ptn
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub struct Arguments {
     /// The clip, or a .glb, .gltf, .fbx, .wrl or .x3dv
     input: PathBuf,
-    /// One JSON object; `motion_bytes` is the file without its rig
+    /// Print one JSON object; `motion_bytes` is the file without its rig
     #[arg(long)]
     json: bool,
     /// The rig of a clip that was made with --rig-out

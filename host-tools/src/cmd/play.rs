@@ -24,9 +24,9 @@ use std::io::{IsTerminal, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Play clips in the terminal, by the firmware's own figure code.
+/// Play clips in the terminal, drawn by the firmware's own figure code.
 ///
-/// A clip without joints plays as a face, if its scalars bear names that docs/FACE.md has, or as bars of its channels. Keys: space pause, comma and dot step, r reverse, + and - speed, n and p next and
+/// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
 /// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, b braille or half blocks, ? help, q quit.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -35,7 +35,7 @@ use std::time::Duration;
   pantin play walk.ptn --plain --once --frames 10 --size 60x20 > frames.txt
 
 Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink).
-Colours are as many as COLORTERM and TERM say the terminal has, and none if NO_COLOR is set.")]
+COLORTERM and TERM determine the number of colours; NO_COLOR disables them.")]
 pub struct Arguments {
     /// The clips
     #[arg(required = true)]
@@ -43,10 +43,10 @@ pub struct Arguments {
     /// The rig of clips that were made with --rig-out
     #[arg(long)]
     rig: Option<PathBuf>,
-    /// How pixels become letters [default: auto, which is half blocks in a terminal of many rows and else braille]
+    /// How pixels become characters [default: auto]
     #[arg(long, default_value = "auto", hide_default_value = true)]
     dots: DotsOrAuto,
-    /// The terminal's colours [default: what the environment says]
+    /// The terminal's colours [default: from the environment]
     #[arg(long)]
     colours: Option<Colours>,
     /// The picture's colours: a name, or paper and ink [see below]
@@ -56,34 +56,34 @@ pub struct Arguments {
     /// [default: quarter; a face: front]
     #[arg(long, value_name = "SIDE", allow_hyphen_values = true)]
     view: Option<Side>,
-    /// The axis that is vertical, where the figure is no person and stands on its hands too
+    /// The vertical axis, for figures whose clip does not show which way is up
     #[arg(long, value_enum, value_name = "AXIS")]
     up: Option<Axis>,
-    /// Begin with the camera still instead of following the figure
+    /// Start with a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
-    /// End at the end of the last clip instead of beginning anew
+    /// Exit at the end of the last clip instead of repeating
     #[arg(long)]
     once: bool,
-    /// End after so many pictures
+    /// Exit after N pictures
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
-    /// Write all frames as text, one below the other and without waiting; no terminal is needed
+    /// Print all frames as text, one below the other and without waiting; needs no terminal
     #[arg(long)]
     plain: bool,
-    /// Columns and rows of letters of --plain
+    /// Columns and rows of characters for --plain
     #[arg(long, value_name = "COLUMNSxROWS", default_value = "80x24", requires = "plain")]
     size: Size,
 }
 
-/// How pixels become letters.
+/// How pixels become characters.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum DotsOrAuto {
-    /// By the terminal's size.
+    /// Half blocks in a terminal with many rows, otherwise braille.
     Auto,
-    /// Two pixels a letter, each in its colour.
+    /// Two pixels per character, each in its colour.
     Half,
-    /// Eight pixels a letter, in one colour.
+    /// Eight pixels per character, in one colour.
     Braille,
 }
 

@@ -6,10 +6,10 @@ use std::io::Write;
 use std::net::{IpAddr, TcpListener};
 use std::path::PathBuf;
 
-/// Show clips in a browser: serves the page that `cargo xtask web` builds, and nothing else.
+/// Serve the page that `cargo xtask web` builds, to show clips in a browser.
 ///
-/// It listens on this machine alone unless --bind says otherwise, opens no browser, and serves only the page and the clips named here, as they are
-/// when it starts.
+/// The server listens only on this machine unless --bind sets another address. It opens no browser, and serves only the page and the clips named
+/// here, as they are when it starts.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:
   pantin serve
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Clips to show, instead of our own
     files: Vec<PathBuf>,
-    /// The port; 0 takes a free one
+    /// The port; 0 selects a free one
     #[arg(long, default_value_t = 8000)]
     port: u16,
     /// The address to listen on

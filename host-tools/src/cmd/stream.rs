@@ -10,23 +10,23 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Send clips over a line while they play: each arrives as fast as it is shown, a little ahead of its time.
+/// Send clips over a line while they play, each frame a little ahead of its time.
 ///
-/// The other end has the rig of the clips already, as in a clip of its own: the reference board with the feature `link`, started with the
-/// word `link` (firmware/link/LINK.md 9). It joins at any time, and is exact again
-/// a cycle after any loss; `--cycle` and `--refresh` say how short that may be.
+/// The receiver must have the clips' rig already, for example in a built-in clip: the reference board with the feature `link`, started with the
+/// argument `link` (firmware/link/LINK.md 9). A receiver may join at any time, and is exact again
+/// one cycle after any loss; `--cycle` and `--refresh` limit how short a cycle may be.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Clips, sent one after the other; with --live one of the face that the other end has
+    /// Clips, sent one after the other; with --live, a clip of the face that the receiver has
     #[arg(required = true)]
     pub(super) clips: Vec<PathBuf>,
-    /// The line: serial:DEVICE, tcp:HOST:PORT or udp:HOST:PORT, with @BAUD after it if it is not 38400 (10 bits a byte, on any of them)
+    /// The line: serial:DEVICE, tcp:HOST:PORT or udp:HOST:PORT, followed by @BAUD if it is not 38400 (10 bits per byte, for all of them)
     #[arg(long, value_name = "LINE")]
     pub(super) to: Address,
-    /// Send a face while it is recorded: udp:PORT takes the datagrams of Live Link Face, - lines of its CSV on stdin, one a frame of the clip
+    /// Send a face while it is recorded: udp:PORT receives datagrams of Live Link Face, - reads lines of its CSV from stdin, one per frame of the clip
     #[arg(long, value_name = "FROM", conflicts_with_all = ["looped", "refresh", "cycle", "ahead"])]
     live: Option<String>,
-    /// Greatest error of --live, in percent of full scale
+    /// Largest error of --live, in percent of full scale
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
     pub(super) max_scalar_error: f64,
     /// The rig of clips without one (`pantin convert --rig-out`)
@@ -35,19 +35,19 @@ pub struct Arguments {
     /// Send the clips again and again
     #[arg(long = "loop")]
     looped: bool,
-    /// Part of the line that refreshes may take, in percent
+    /// Share of the line that refreshes may take, in percent
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0)]
     refresh: f64,
-    /// Shortest time in which every channel is refreshed, in seconds: longer where the line does not carry it
+    /// Shortest cycle in which every channel is refreshed, in seconds; longer if the line is too slow
     #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
     cycle: f64,
-    /// Send this much ahead at most, in seconds: the figure starts as much later, and what waits at the other end are 24 packets at most
+    /// Largest look-ahead, in seconds: the figure starts later by it, and at most 24 packets wait at the receiver
     #[arg(long, value_name = "SECONDS", default_value_t = 1.5)]
     ahead: f64,
-    /// Add 8 bytes to each packet that mend 4 wrong ones, for lines that flip bits; the other end has to know (the board's word `fec`)
+    /// Add 8 bytes of parity to each packet, which correct 4 wrong bytes; the receiver must expect them (the board's argument `fec`)
     #[arg(long)]
     pub(super) fec: bool,
-    /// Say nothing
+    /// Print nothing
     #[arg(short, long)]
     quiet: bool,
 }

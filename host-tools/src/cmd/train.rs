@@ -9,10 +9,10 @@ use crate::train::Counts;
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 
-/// Make the format's tables (decoder/src/tables.rs) from motions: for whoever changes the format.
+/// Compute the format's tables (decoder/src/tables.rs) from motions; needed only to change the format.
 ///
-/// Every motion is fitted at each bound and each frame rate with the tables of this build; its symbols are counted, a clip of few
-/// symbols as much as one of many. Build and run it again until the sizes settle.
+/// Every motion is fitted at each bound and frame rate with the tables of this build, and its symbols are counted; all clips have equal
+/// weight. Build and run it again until the sizes converge.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin train motions/*.bvh -o decoder/src/tables.rs --note 'Trained on ...'")]
@@ -23,16 +23,16 @@ pub struct Arguments {
     /// The source file to write
     #[arg(short, long)]
     output: PathBuf,
-    /// A sentence for the file that says what the tables were trained on
+    /// A sentence for the file that describes the training data
     #[arg(long)]
     note: String,
     /// Bounds in cm
     #[arg(long, value_delimiter = ',', default_value = "0.3,1,3")]
     bounds: Vec<f64>,
-    /// Take every frame, every second, every fourth, ...
+    /// Use every frame, every second, every fourth, ...
     #[arg(long, value_delimiter = ',', default_value = "1,2,4")]
     strides: Vec<usize>,
-    /// Frames a second, for sources that do not say
+    /// Frames per second, for sources that do not state them
     #[arg(long)]
     fps: Option<f64>,
 }

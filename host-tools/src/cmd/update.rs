@@ -7,10 +7,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Send a clip to a board, which plays it from then on, also after it was switched off.
+/// Send a clip to a board, which plays it from then on, also after a power cycle.
 ///
-/// The board's firmware must be built with feature `update`. The old clip goes on playing until the new one is there, checked and
-/// sealed; if anything interrupts that, it stays, and the same command takes the transfer up where it was.
+/// The board's firmware must be built with feature `update`. The old clip keeps playing until the new one is complete and verified.
+/// If the transfer is interrupted, the old clip stays, and the same command resumes the transfer.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin update walk.ptn --to serial:/dev/ttyACM0
@@ -20,21 +20,21 @@ use std::time::{Duration, Instant};
 
 Exit codes: 0 the clip plays; 1 it does not, and the old one does; 2 the command line is wrong.")]
 pub struct Arguments {
-    /// The clip; it must hold its rig
+    /// The clip, which must contain its rig
     input: PathBuf,
-    /// The board's line: serial:PORT[@BAUD] (115200 if not said), or tcp:HOST:PORT
+    /// The board's line: serial:PORT[@BAUD] (default 115200), or tcp:HOST:PORT
     #[arg(long)]
     to: Place,
-    /// What the board calls it, up to 28 bytes; else the file's name
+    /// The name that the board shows, up to 28 bytes [default: the file's name]
     #[arg(long)]
     name: Option<String>,
-    /// Seconds for an answer, before a message is said again
+    /// Seconds to wait for an answer before a message is sent again
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
     patience: f64,
-    /// Messages without an answer after which the board counts as lost
+    /// Number of unanswered messages after which the board counts as lost
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     tries: u32,
-    /// Say nothing but errors
+    /// Print nothing but errors
     #[arg(short, long)]
     quiet: bool,
 }

@@ -30,11 +30,11 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Level {
-    /// For previews: many times faster than the motion plays
+    /// For previews: many times faster than real time
     Fast,
-    /// About as fast as the motion plays
+    /// About real time
     Default,
-    /// A few percent smaller, several times slower
+    /// A few percent smaller than default, several times slower
     Best,
 }
 

@@ -8,11 +8,11 @@ use crate::motion::{Joint, Kind, Motion};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Rotations {
-    /// Each joint as seems cheaper
+    /// Choose for each joint what seems smaller
     ByCost,
-    /// As the Euler angles that the file has
+    /// Use the file's Euler angles
     Euler,
-    /// As exponential maps, where they stay inside half a turn
+    /// Use exponential maps where they stay within half a turn
     Exponential,
 }
 

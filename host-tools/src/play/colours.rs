@@ -6,12 +6,12 @@ use crossterm::style::Color;
 /// How many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Colours {
-    /// All of 24 bits.
+    /// 24-bit colours.
     All,
-    /// The 256 that most terminals have.
+    /// The 256 colours that most terminals have.
     #[value(name = "256")]
     Cube,
-    /// Its own alone.
+    /// The terminal's default colours only.
     None,
 }
 

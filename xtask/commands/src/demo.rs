@@ -26,24 +26,24 @@ const SHEET: usize = 12;
 /// Pictures in a row of it.
 const COLUMNS: usize = 3;
 
-/// Plays a motion on the display of an emulated board, and shows what it costs.
+/// Plays a motion on the display of an emulated board, and prints what it costs.
 #[derive(Args)]
 pub struct Demo {
-    /// The motion file; our own walk if none is given
+    /// The motion file [default: our own walk]
     motion: Option<PathBuf>,
     /// The machine: lm3s6965evb, microbit, mps2-an386, riscv-virt or sx1
     #[arg(long, default_value = "lm3s6965evb")]
     board: String,
-    /// Where the pictures and the clip go
+    /// The folder for the pictures and the clip
     #[arg(long, default_value = "demo")]
     out: PathBuf,
     /// Largest error at any joint, as in 0.5cm
     #[arg(long)]
     max_error: Option<String>,
-    /// Largest error of channels that move no joint, a face's for one, in percent of their full scale
+    /// Largest error of channels that move no joint, such as a face's, in percent of their full scale
     #[arg(long, value_name = "PERCENT")]
     max_scalar_error: Option<f64>,
-    /// Length of the file's unit, where the guess is wrong
+    /// Length of the file's unit in cm, if the guess is wrong
     #[arg(long)]
     cm_per_unit: Option<f64>,
     /// Frames to show

@@ -18,12 +18,12 @@ use crate::images::{self, Image};
 use xtask::packages::Package;
 use xtask::steps::say;
 
-/// Builds every board's images into target/firmware, and says how to flash them
+/// Builds every board's images into target/firmware, and prints how to flash them
 #[derive(Args)]
 pub struct Firmware {
-    /// Boards, in place of all
+    /// Boards to build [default: all]
     board: Vec<String>,
-    /// A clip for them to play, in place of our own; may be given several times
+    /// A clip to build in instead of our own; may be given several times
     #[arg(long, value_name = "FILE")]
     clip: Vec<PathBuf>,
 }

@@ -17,13 +17,13 @@ use hostile::{DOORS, Door};
 
 use xtask::steps::Steps;
 
-/// Fuzzes a target, or one after the other; needs a nightly Rust and cargo-fuzz
+/// Fuzzes one target, or all in turn; needs a nightly Rust and cargo-fuzz
 #[derive(Args)]
 pub struct Fuzz {
-    /// Which target; all of them without it
+    /// The target [default: all]
     #[arg(value_parser = PossibleValuesParser::new(DOORS.map(|door| door.name)))]
     target: Option<String>,
-    /// How long a target runs
+    /// Seconds per target
     #[arg(long, default_value_t = 60)]
     seconds: u32,
 }

@@ -26,10 +26,10 @@ const BESIDE: [&str; 1] = ["asf"];
 const PERSONS_CM: std::ops::Range<f64> = 60.0..400.0;
 const SCALAR_PERCENT: f64 = 2.0;
 
-/// Converts every captured clip and draws one contact sheet of all.
+/// Converts every captured clip and draws one contact sheet of all clips.
 #[derive(Args)]
 pub struct Gallery {
-    /// Where the sheet and the clips go
+    /// The folder for the sheet and the clips
     #[arg(long, default_value = "target/gallery")]
     out: PathBuf,
     /// Only files whose names contain this

@@ -19,14 +19,14 @@ use pantin_tools::cmd::write_whole;
 use crate::images;
 use xtask::steps::say;
 
-/// Flash, RAM and stack of every board's images; fails where one grew by more than 2 % over tests/sizes.txt
+/// Measures flash, RAM and stack of every board's images; fails if one grew by more than 2 % over tests/sizes.txt
 ///
-/// Flash: all bytes that are loaded. RAM: statics. Stack: the largest sum of frames along a way of calls, read from the machine
-/// code; a call through a pointer is taken to reach every function whose address the image holds, and functions that call each
-/// other in a circle count once. Above what a run uses, then, except that recursion and interrupts are left out.
+/// Flash is all bytes that are loaded, RAM the statics. Stack is the largest sum of stack frames along a path of calls, read from the
+/// machine code: a call through a pointer counts as a call of every function whose address the image contains, and functions that call
+/// each other recursively count once. This is an upper limit of what a run uses, except that recursion and interrupts are not included.
 #[derive(Args)]
 pub struct Sizing {
-    /// Writes tests/sizes.txt and the documents' tables: to be committed with what made the images grow
+    /// Writes tests/sizes.txt and the documents' tables; commit them with the change that made the images grow
     #[arg(long)]
     update: bool,
     /// Prints the calls that make each stack

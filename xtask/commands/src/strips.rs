@@ -33,15 +33,15 @@ const SECONDS: f64 = 1.4;
 /// The longest that a board may play.
 const LIMIT: Duration = Duration::from_secs(180);
 
-/// Shows motions on the boards' displays from the front, the side and between.
+/// Shows motions on the boards' displays from the front, the side and three quarters.
 #[derive(Args)]
 pub struct Strips {
-    /// The motion files; our own walk and run and a captured walk if none is given
+    /// The motion files [default: our own walk and run, and a captured walk]
     motions: Vec<PathBuf>,
-    /// The machine; all of them if none is given
+    /// The machine [default: all]
     #[arg(long)]
     board: Option<String>,
-    /// Where the pictures go
+    /// The folder for the pictures
     #[arg(long, default_value = "strips")]
     out: PathBuf,
 }

@@ -17,16 +17,16 @@ use harness::{clips, image, rp2040, uf2};
 pub struct Uf2 {
     /// The board
     board: Board,
-    /// A clip for it to play, in place of our own; may be given several times
+    /// A clip to build in instead of our own; may be given several times
     #[arg(long, value_name = "FILE")]
     clip: Vec<PathBuf>,
     /// Its display
     #[arg(long, default_value = "ssd1306")]
     display: Display,
-    /// With clips in flash of their own, which `pantin update` and `pantin flash-image` replace
+    /// Keep clips in a reserved part of the flash, which `pantin update` and `pantin flash-image` replace
     #[arg(long)]
     update: bool,
-    /// The file, in place of BOARD.uf2
+    /// The file [default: BOARD.uf2]
     #[arg(short, value_name = "OUT")]
     out: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask vectors`: makes the golden vectors anew.
+//! `cargo xtask vectors`: regenerates the golden vectors.
 //!
 //! Only while the format is experimental: afterwards a vector never changes, and a new one takes a new name.
 
@@ -13,7 +13,7 @@ use pantin_tools::cmd::write_whole;
 /// Versions from here on are experimental.
 const EXPERIMENTAL: u8 = 0xe0;
 
-/// Makes tests/vectors anew: clips, the CRC of each of their frames, the format's tables as JSON
+/// Regenerates tests/vectors: clips, the CRC of each of their frames, the format's tables as JSON
 #[derive(Args)]
 pub struct Vectors {}
 

@@ -8,10 +8,10 @@ use harness::web::{self, Size};
 
 use xtask::steps::say;
 
-/// Builds the web page with its player and our clips: files for any web server, `pantin serve` among them.
+/// Builds the web page with its player and our clips, as static files for any web server or `pantin serve`.
 #[derive(Args)]
 pub struct Web {
-    /// Where it goes
+    /// The output folder
     #[arg(short, long, default_value = "target/web")]
     out: PathBuf,
 }

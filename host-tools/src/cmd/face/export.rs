@@ -5,7 +5,7 @@ use crate::face::{Face, export, pose};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
-/// Write the face's mesh: .glb with a morph target a unit, or .obj.
+/// Write the face's mesh: .glb with one morph target per unit, or .obj.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin face export -o face.glb

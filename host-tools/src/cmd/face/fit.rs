@@ -11,9 +11,9 @@ use std::path::PathBuf;
 /// Weights below it are left out of what is printed.
 const LEAST: f64 = 0.005;
 
-/// Find the units whose sum comes nearest to a face, and say what is left.
+/// Find the units whose sum is closest to a face, and print the residual.
 ///
-/// The face is a pose of Pantin's own mesh, an .obj or .glb as `pantin face export` writes them, changed at will; or a frame of a clip.
+/// The face is a pose of Pantin's own mesh (an edited .obj or .glb of `pantin face export`) or a frame of a clip.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin face fit joy.obj

@@ -8,7 +8,7 @@ mod sheet;
 
 use anyhow::Result;
 
-/// Pantin's face: its units in pictures, its interpolations compared, its model written, poses taken apart.
+/// Work with Pantin's face: draw its units, compare interpolations, write its model, decompose poses into units.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(subcommand)]

@@ -12,7 +12,7 @@ use std::path::PathBuf;
   pantin face model -o face.model
   pantin face model -o cube.model cube.glb")]
 pub struct Arguments {
-    /// A .glb or .gltf whose first mesh with morph targets is taken instead of Pantin's face
+    /// A .glb or .gltf whose first mesh with morph targets is used instead of Pantin's face
     mesh: Option<PathBuf>,
     /// The file to write
     #[arg(short, long)]

@@ -18,11 +18,11 @@ use std::path::PathBuf;
 /// From so many pixels on, on the shorter side, lines are smooth unless pixels are asked for.
 const SMOOTH_FROM: usize = 240;
 
-/// Draw a clip by the firmware's own figure code: as small displays show it, or large and smooth.
+/// Draw a clip with the firmware's own figure code: as small displays show it, or large and anti-aliased.
 ///
-/// The output's name says what it is. .gif and .apng are animations at the clip's own rate (.png with --animate, too); .png and .svg are a
-/// sheet of twelve frames, or what --frame or --strip ask for. A clip without joints is a face, if its scalars bear names that docs/FACE.md has, or a
-/// chart of its channels over time (.png).
+/// The output's extension selects the kind. .gif and .apng are animations at the clip's own rate (also .png with --animate); .png and .svg are a
+/// sheet of twelve frames, or what --frame or --strip select. A clip without joints is drawn as a face if its scalars have names listed in
+/// docs/FACE.md, otherwise as a chart of its channels over time (.png).
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin render walk.ptn -o walk.gif
@@ -46,29 +46,29 @@ pub struct Arguments {
     /// Columns and rows of a picture
     #[arg(long, value_name = "COLUMNSxROWS", default_value = "128x64")]
     size: Size,
-    /// Pixels are squares of so many [default: what makes a small display's picture easy to see]
+    /// Magnify each pixel N times [default: chosen for the picture's size]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
     scale: Option<u16>,
     /// Colours: a name, or paper and ink [see below]
     #[arg(long, default_value = "grey")]
     palette: Palette,
-    /// Lines of whole pixels, as the firmware draws them [default below 240 pixels]
+    /// Draw lines of whole pixels, as the firmware does [default below 240 pixels]
     #[arg(long, conflicts_with = "smooth")]
     pixels: bool,
-    /// Smooth lines, thicker the nearer [default from 240 pixels on]
+    /// Draw anti-aliased lines, nearer ones thicker [default from 240 pixels on]
     #[arg(long)]
     smooth: bool,
-    /// Sides to see it from: front, side, left, right, back, quarter, or degrees (0 looks it in the face, 90 sees it walk to the left).
-    /// Of several, stills have a row each and animations show them side by side [default: quarter; a face: front]
+    /// Sides to see the figure from: front, side, left, right, back, quarter, or degrees (0: it faces the camera, 90: it walks to the left).
+    /// With several sides, stills have one row per side and animations show them side by side [default: quarter; a face: front]
     #[arg(long, value_name = "SIDES", value_delimiter = ',', allow_hyphen_values = true)]
     view: Vec<Side>,
     /// Degrees of the camera above the horizon [default: 12; a face: 0]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = clap::value_parser!(i16).range(-90..=90))]
     tilt: Option<i16>,
-    /// The axis that is vertical, where the figure is no person and stands on its hands too
+    /// The vertical axis, for figures whose clip does not show which way is up
     #[arg(long, value_enum, value_name = "AXIS")]
     up: Option<Axis>,
-    /// Keep the camera still instead of following the figure
+    /// Use a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
     /// First frame to show: a number, or seconds as in 1.5s
@@ -77,16 +77,16 @@ pub struct Arguments {
     /// Last frame to show
     #[arg(long, value_name = "MOMENT")]
     to: Option<Moment>,
-    /// Pictures a second of an animation [default: the clip's own, or a whole part of it if viewers cannot show it]
+    /// Pictures per second of an animation [default: the clip's rate, or an integer fraction of it if viewers cannot show it]
     #[arg(long)]
     fps: Option<f64>,
-    /// One frame alone
+    /// Draw one frame
     #[arg(long, value_name = "MOMENT", conflicts_with_all = ["strip", "from", "to"])]
     frame: Option<Moment>,
-    /// So many frames side by side: evenly spread from --from to --to, otherwise unevenly, so as not to show one phase of each stride
+    /// Draw N frames side by side: evenly spaced with --from or --to, otherwise unevenly, to show different phases of the strides
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     strip: Option<u32>,
-    /// Write a .png as an animation
+    /// Write the .png as an animation
     #[arg(long, conflicts_with_all = ["strip", "frame"])]
     animate: bool,
     /// Show no progress
@@ -97,11 +97,11 @@ pub struct Arguments {
 /// An axis of the world.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Axis {
-    /// The first.
+    /// The x axis.
     X,
-    /// The second.
+    /// The y axis.
     Y,
-    /// The third.
+    /// The z axis.
     Z,
 }
 

@@ -14,16 +14,16 @@ use clap::{Args, ValueEnum};
 use crate::bench::{self, Part, Setting};
 use xtask::steps::{Steps, say};
 
-/// Measures size, speed and memory, beside what they should be.
+/// Measures size, speed and memory, and compares them with the goals.
 #[derive(Args)]
 pub struct Bench {
-    /// What to measure; everything if none is named
+    /// What to measure [default: everything]
     #[arg(value_enum)]
     parts: Vec<Part>,
     /// Four clips of a few seconds instead of all
     #[arg(long)]
     quick: bool,
-    /// Only reference clips whose name holds this
+    /// Only reference clips whose name contains this
     #[arg(long)]
     only: Option<String>,
     /// Write docs/BENCHMARKS.md from the last full run of every part

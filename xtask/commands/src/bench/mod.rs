@@ -36,27 +36,27 @@ use harness::paths;
 /// What can be measured by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Part {
-    /// Bytes against error of the reference clips, the peers beside
+    /// Bytes against error of the reference clips, compared with other codecs
     Size,
-    /// What twice the frames a second cost in bytes
+    /// What a doubled frame rate costs in bytes
     Decimation,
-    /// The paper's walk and run, in our own motions
+    /// Our own versions of the paper's walk and run
     Paper,
-    /// Guest instructions a pose and a seek
+    /// Guest instructions per pose and per seek
     Decode,
     /// Code, tables, RAM and stack of the decoder
     Footprint,
-    /// Time a pose on this machine, and encoding speed
+    /// Time per pose on this machine, and encoding speed
     Host,
-    /// Guest instructions of a frame on every machine, the firmware's size and memory, and how many figures fit
+    /// Guest instructions per frame on every machine, the firmware's size and memory, and the number of figures that fit
     Frame,
-    /// Additions against polynomials, and a clip against a per-frame file over a link
+    /// Additions compared with polynomials, and a clip with a per-frame file over a link
     Argument,
-    /// Faces: bits a second and how smooth, bytes of our own clips, guest instructions of a frame, memory, the model's size
+    /// Faces: bits per second and smoothness, bytes of our own clips, guest instructions per frame, memory, the model's size
     Face,
-    /// The web page: bytes, time to the first frame, time a frame, time to convert
+    /// The web page: bytes, time to the first frame, time per frame, time to convert
     Web,
-    /// Motion over a line that loses packets: how soon it is exact again, and what that takes
+    /// Motion over a line that loses packets: time to recovery, and its cost
     Link,
 }
 
