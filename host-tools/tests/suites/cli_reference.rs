@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The document with the generated part.
-pub const DOCUMENT: &str = "docs/CLI.md";
 const BEGIN: &str = "<!-- help begins: written by host-tools/tests/suites/cli_reference.rs -->\n";
 const END: &str = "<!-- help ends -->";
 
@@ -47,7 +45,7 @@ fn the_reference_is_what_help_prints() {
         reference.push_str(&format!("\n## `pantin {command}`\n\n```text\n{text}\n```\n"));
     }
     reference.push('\n');
-    let path = root().join(DOCUMENT);
+    let path = root().join("docs/CLI.md");
     let document = std::fs::read_to_string(&path).unwrap();
     let begin = document.find(BEGIN).expect("docs/CLI.md has lost the line before its generated part") + BEGIN.len();
     let end = document.find(END).expect("docs/CLI.md has lost the line after its generated part");
