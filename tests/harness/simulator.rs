@@ -15,9 +15,7 @@ use crate::display::{self, Depth, Display, Picture};
 use crate::sync;
 
 /// More than any board has room for: the pictures do not depend on it.
-const CHANNELS: usize = 1024;
-const MOVING: usize = 1024;
-const JOINTS: usize = 96;
+type Capacity = pantin_app::MaxClip<1024, 1024, 96>;
 
 /// A clip's file and its name, as a firmware is built with it.
 pub struct File {
@@ -74,7 +72,7 @@ fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
     let mut simulator = Simulator::<R, L> { display, wishes, told: vec![], shown: vec![], kind: PhantomData };
     // The display's memory and the player's would be much of a test thread's stack.
     let mut frame = Box::new(Framebuffer::<L>::new());
-    let exit = pantin_app::run::<_, CHANNELS, MOVING, JOINTS>(entries, options, &mut frame, &mut simulator);
+    let exit = pantin_app::run(entries, options, &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "a clip cannot be played");
     ensure!(simulator.told.len() == 5 * simulator.shown.len(), "the program told something else than frames' numbers");
     let numbers =
@@ -96,16 +94,17 @@ struct Simulator<R, L> {
 impl<R: RotationBackend, L: Layout<Ink: Value>> Board for Simulator<R, L> {
     type Layout = L;
     type Rotation = R;
+    type Capacity = Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<L>) {
+    fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
         let Display { width, height, .. } = self.display;
-        let pixels = (0..width * height).map(|index| frame.pixel(index % width, index / width).value()).collect();
+        let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
         self.shown.push(Picture { display: self.display, pixels });
     }
 
-    fn start_timer(&mut self, _nanoseconds: u32) {}
+    fn start_timer(&mut self, _period_ns: u32) {}
 
-    fn wait_ticks(&mut self) -> u32 {
+    fn ticks(&mut self) -> u32 {
         1
     }
 

@@ -1,39 +1,49 @@
-//! What a board does for the program.
+//! The trait that a board implements.
 
+use crate::capacity::Capacity;
 use crate::commands::Command;
 use pantin_figure::rotation::RotationBackend;
 use pantin_figure::surface::{Framebuffer, Layout};
 
-/// The hardware.
+/// A board: a display, a timer and a serial line, and, where it has them, buttons. The required methods are [`present`](Board::present),
+/// [`start_timer`](Board::start_timer), [`ticks`](Board::ticks), [`send`](Board::send) and [`poll`](Board::poll).
 pub trait Board {
-    /// How the display keeps its pixels.
+    /// The pixel layout of the display's memory.
     type Layout: Layout;
 
-    /// How it turns joints: in whole numbers or in floating point.
+    /// The arithmetic that rotates joints: integers ([`Rotation`](pantin_figure::rotation::Rotation)) or floating point.
     type Rotation: RotationBackend;
 
-    /// Brings the display up to date: what [`Framebuffer::send`] names has changed.
-    fn show(&mut self, frame: &mut Framebuffer<Self::Layout>);
+    /// The largest clip that the board's RAM has buffers for: a [`MaxClip`](crate::MaxClip).
+    type Capacity: Capacity;
 
-    /// Starts a timer that ticks every `nanoseconds`, or changes its pace.
-    fn start_timer(&mut self, nanoseconds: u32);
+    /// Brings the display up to date. Only the windows that [`Framebuffer::send`] returns have changed since the last call.
+    fn present(&mut self, framebuffer: &mut Framebuffer<Self::Layout>);
 
-    /// Waits for the timer and tells how many times it ticked since the last call: at least once.
-    fn wait_ticks(&mut self) -> u32;
+    /// Starts a timer with a period in nanoseconds, or changes the period of the one that runs. Ticks count from now on.
+    fn start_timer(&mut self, period_ns: u32);
 
-    /// How many times the timer ticked since the last call, without waiting; a board that cannot tell waits, and bytes wait with it.
-    #[cfg(feature = "link")]
-    fn ticks(&mut self) -> u32 {
-        self.wait_ticks()
+    /// Returns the number of timer ticks since the last call of this or of [`wait_ticks`](Board::wait_ticks), without waiting.
+    fn ticks(&mut self) -> u32;
+
+    /// Waits until the timer has ticked and returns the number of ticks since the last call: at least 1. A board whose processor can
+    /// sleep until an interrupt overrides it.
+    fn wait_ticks(&mut self) -> u32 {
+        loop {
+            match self.ticks() {
+                0 => {}
+                ticks => return ticks,
+            }
+        }
     }
 
-    /// Sends bytes over the board's line.
+    /// Sends bytes over the serial line, and waits where its buffer is full.
     fn send(&mut self, bytes: &[u8]);
 
-    /// A byte from the line, if one is there.
+    /// Returns the next byte that the serial line has received, or `None` without waiting.
     fn poll(&mut self) -> Option<u8>;
 
-    /// Waits for a byte from the line.
+    /// Waits for a byte from the serial line.
     fn receive(&mut self) -> u8 {
         loop {
             if let Some(byte) = self.poll() {
@@ -42,16 +52,16 @@ pub trait Board {
         }
     }
 
-    /// A button that was pressed since the last call.
+    /// Returns the command of a button that was pressed since the last call.
     fn button(&mut self) -> Option<Command> {
         None
     }
 
-    /// Begins a stretch whose instructions an emulator counts. Costs one instruction that does nothing.
+    /// Begins a section whose instructions an emulator counts. An implementation costs one instruction without effect.
     #[inline(always)]
     fn mark_start(&mut self) {}
 
-    /// Ends it.
+    /// Ends the section that [`mark_start`](Board::mark_start) began.
     #[inline(always)]
     fn mark_stop(&mut self) {}
 }
@@ -59,8 +69,8 @@ pub trait Board {
 /// Why the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// It did what it was asked to.
+    /// It played what its options name, or was asked to quit.
     Done,
-    /// A clip cannot be played on this board; the log says why.
+    /// A clip cannot be played on this board; the log has the reason.
     BadClip,
 }

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod board;
+mod capacity;
 pub mod commands;
 mod content;
 pub mod frame_stream;
@@ -22,10 +23,11 @@ mod update;
 mod view_state;
 
 pub use board::{Board, Exit};
+pub use capacity::{Capacity, Figure, MaxClip, RIG};
 pub use commands::Command;
 pub use multi::{FIGURES, FigureBuffers, multi};
 pub use options::{Mode, Options};
-pub use run::{NEXT, QUIT, RIG, SHOWN, run};
+pub use run::{NEXT, QUIT, SHOWN, run};
 #[cfg(feature = "update")]
 pub use stored::run_stored;
 pub use text_screen::TextScreen;

@@ -1,55 +1,55 @@
 //! Several figures at once, each with its own clip and phase, side by side.
 
 use crate::board::{Board, Exit};
+use crate::capacity::{Capacity, Figure};
 use crate::log::error;
 use crate::options::{Mode, Options};
-use crate::run::{Effects, listen, set_up, show};
+use crate::run::{Effects, listen, show};
 use crate::update::Listener;
 use crate::view_state::{Entry, ViewState};
 use heapless::Vec;
-use pantin::{ChannelState, Clip, Player};
-use pantin_figure::rotation::RotationBackend;
+use pantin::{Clip, Player};
+use pantin_figure::Canvas;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{Canvas, FigureRenderer};
 
 /// Most figures.
 pub const FIGURES: usize = 16;
 
-/// Room for one figure: see [`crate::run`] for the numbers.
-pub struct FigureBuffers<R: RotationBackend, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> {
-    states: [ChannelState; MOVING],
-    pose: [i32; CHANNELS],
-    renderer: FigureRenderer<JOINTS, R>,
+/// The buffers of one figure.
+pub struct FigureBuffers<B: Board> {
+    states: <B::Capacity as Capacity>::States,
+    pose: <B::Capacity as Capacity>::Pose,
+    renderer: Renderer<B>,
 }
 
-impl<R: RotationBackend, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>
-    FigureBuffers<R, CHANNELS, MOVING, JOINTS>
-{
-    /// Nobody sits there.
+type Renderer<B> = <<B as Board>::Capacity as Capacity>::Figure<<B as Board>::Rotation>;
+
+impl<B: Board> FigureBuffers<B> {
+    /// Makes buffers without a clip.
     #[inline(always)]
     pub fn empty() -> Self {
-        FigureBuffers { states: [ChannelState::default(); MOVING], pose: [0; CHANNELS], renderer: FigureRenderer::empty() }
+        FigureBuffers { states: B::Capacity::states(), pose: B::Capacity::pose(), renderer: Figure::empty() }
     }
 }
 
-/// A figure on its seat.
-struct Actor<'a, R: RotationBackend, const JOINTS: usize> {
+/// A figure and its clip.
+struct Actor<'a, B: Board> {
     player: Player<'a, 'a>,
-    renderer: &'a mut FigureRenderer<JOINTS, R>,
+    renderer: &'a mut Renderer<B>,
 }
 
 /// Plays a clip a seat until the mode's end: the clips in turn, each round of them begun a little later. Time is the first clip's; of the
 /// keys, those that change how figures are drawn work.
 #[inline(never)]
-pub fn multi<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+pub fn multi<B: Board>(
     entries: &[Entry],
     options: Options,
-    buffers: &mut [FigureBuffers<B::Rotation, CHANNELS, MOVING, JOINTS>],
+    buffers: &mut [FigureBuffers<B>],
     frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
     let mut view_state = ViewState::new(&options);
-    let mut actors: Vec<Actor<B::Rotation, JOINTS>, FIGURES> = Vec::new();
+    let mut actors: Vec<Actor<B>, FIGURES> = Vec::new();
     let count = buffers.len().min(FIGURES);
     for (index, (buffers, entry)) in buffers.iter_mut().zip(entries.iter().cycle()).take(count).enumerate() {
         let clip = match Clip::new_checked(entry.bytes) {
@@ -59,7 +59,7 @@ pub fn multi<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS:
                 return Exit::BadClip;
             }
         };
-        let mut player = match Player::new(clip, &mut buffers.states, &mut buffers.pose) {
+        let mut player = match Player::new(clip, buffers.states.as_mut(), buffers.pose.as_mut()) {
             Ok(player) => player,
             Err(error) => {
                 error!("a clip is too big: {}", error);
@@ -82,8 +82,8 @@ pub fn multi<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS:
 
 /// Sets a figure up in its column: the display's height, and half as wide again as its share.
 #[inline(never)]
-fn arrange<R: RotationBackend, const JOINTS: usize>(
-    renderer: &mut FigureRenderer<JOINTS, R>,
+fn arrange<F: Figure>(
+    renderer: &mut F,
     player: &mut Player,
     view_state: &ViewState,
     [index, count]: [usize; 2],
@@ -91,14 +91,14 @@ fn arrange<R: RotationBackend, const JOINTS: usize>(
 ) -> Result<(), pantin_figure::Error> {
     let share = width / count;
     let canvas = Canvas { width: (share * 3 / 2) as u16, height: height as u16 };
-    set_up(renderer, player, canvas)?;
+    renderer.set_up(player, canvas)?;
     renderer.aim(player, view_state.view);
     renderer.shift((share * index + share / 2) as i16 - (canvas.width / 2) as i16, 0);
     Ok(())
 }
 
-fn play<B: Board, const JOINTS: usize>(
-    actors: &mut [Actor<B::Rotation, JOINTS>],
+fn play<B: Board>(
+    actors: &mut [Actor<B>],
     options: &Options,
     view_state: &mut ViewState,
     frame: &mut Framebuffer<B::Layout>,
@@ -131,7 +131,7 @@ fn play<B: Board, const JOINTS: usize>(
 }
 
 #[inline(never)]
-fn decode<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Rotation, JOINTS>], frames: u32, board: &mut B) {
+fn decode<B: Board>(actors: &mut [Actor<B>], frames: u32, board: &mut B) {
     board.mark_start();
     for actor in actors {
         (0..frames).for_each(|_| actor.player.step());
@@ -140,7 +140,7 @@ fn decode<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Rotation, JOINTS
 }
 
 #[inline(never)]
-fn place<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Rotation, JOINTS>], board: &mut B) {
+fn place<B: Board>(actors: &mut [Actor<B>], board: &mut B) {
     board.mark_start();
     for actor in actors {
         actor.renderer.set_pose(actor.player.pose());
@@ -149,16 +149,11 @@ fn place<B: Board, const JOINTS: usize>(actors: &mut [Actor<B::Rotation, JOINTS>
 }
 
 #[inline(never)]
-fn draw<B: Board, const JOINTS: usize>(
-    actors: &mut [Actor<B::Rotation, JOINTS>],
-    view_state: &ViewState,
-    frame: &mut Framebuffer<B::Layout>,
-    board: &mut B,
-) {
+fn draw<B: Board>(actors: &mut [Actor<B>], view_state: &ViewState, frame: &mut Framebuffer<B::Layout>, board: &mut B) {
     board.mark_start();
     frame.clear();
     for actor in actors {
-        actor.renderer.draw_on(frame, view_state.style);
+        actor.renderer.draw(frame, view_state.style);
     }
     board.mark_stop();
 }

@@ -1,6 +1,7 @@
 //! The program: open a clip, then decode, place, draw and show frame by frame, and take what is asked for in between.
 
 use crate::board::{Board, Exit};
+use crate::capacity::Capacity;
 use crate::commands::{Command, LETTERS};
 use crate::content::{self, Content};
 use crate::hud;
@@ -9,10 +10,8 @@ use crate::options::{Mode, Options};
 use crate::update::Listener;
 use crate::view_state::{Effect, Entry, ViewState};
 use heapless::Deque;
-use pantin::{ChannelState, Clip, Player};
-use pantin_figure::rotation::RotationBackend;
+use pantin::{Clip, Player};
 use pantin_figure::surface::Framebuffer;
-use pantin_figure::{Canvas, FigureRenderer, JointInfo};
 
 /// In [`Mode::Sync`]: asks for the next picture. Any letter of [`LETTERS`] may come before it.
 pub const NEXT: u8 = b'\n';
@@ -36,14 +35,10 @@ pub(crate) enum Outcome {
     Ready,
 }
 
-/// Plays clips until the mode's end. A clip may have up to `CHANNELS` channels, `MOVING` of them moving; its rig up to [`RIG`] joints, its figure
-/// up to `JOINTS` without fingers and the like. With no clip at all there is nothing to do.
-pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
-    entries: &[Entry],
-    options: Options,
-    frame: &mut Framebuffer<B::Layout>,
-    board: &mut B,
-) -> Exit {
+/// Plays clips until the mode's end. Without a clip it returns at once.
+///
+/// Returns [`Exit::BadClip`] for a clip that is damaged or larger than [`Board::Capacity`].
+pub fn run<B: Board>(entries: &[Entry], options: Options, frame: &mut Framebuffer<B::Layout>, board: &mut B) -> Exit {
     let mut view_state = ViewState::new(&options);
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
@@ -59,7 +54,7 @@ pub fn run<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: u
             #[cfg(feature = "update")]
             trial: false,
         };
-        match perform::<B, CHANNELS, MOVING, JOINTS>(context) {
+        match perform(context) {
             Outcome::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             Outcome::Exit(exit) => return exit,
             #[cfg(feature = "update")]
@@ -86,9 +81,7 @@ pub(crate) struct PlayContext<'a, B: Board> {
     pub trial: bool,
 }
 
-pub(crate) fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
-    context: PlayContext<B>,
-) -> Outcome {
+pub(crate) fn perform<B: Board>(context: PlayContext<B>) -> Outcome {
     let clip = match Clip::new_checked(context.entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
@@ -96,29 +89,15 @@ pub(crate) fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, cons
             return Outcome::Exit(Exit::BadClip);
         }
     };
-    let mut states = [ChannelState::default(); MOVING];
-    let mut pose = [0; CHANNELS];
-    let mut player = match Player::new(clip, &mut states, &mut pose) {
+    let (mut states, mut pose) = (B::Capacity::states(), B::Capacity::pose());
+    let mut player = match Player::new(clip, states.as_mut(), pose.as_mut()) {
         Ok(player) => player,
         Err(error) => {
             error!("the clip is too big: {}", error);
             return Outcome::Exit(Exit::BadClip);
         }
     };
-    content::build::<B, JOINTS>(&mut player, context)
-}
-
-/// Most joints of a rig, fingers and the like among them.
-pub const RIG: usize = if cfg!(feature = "large") { 192 } else { 60 };
-
-/// In a function of its own: the workspace is given back before the first frame.
-#[inline(never)]
-pub(crate) fn set_up<R: RotationBackend, const JOINTS: usize>(
-    renderer: &mut FigureRenderer<JOINTS, R>,
-    player: &mut Player,
-    canvas: Canvas,
-) -> Result<(), pantin_figure::Error> {
-    renderer.set_up(player, canvas, &mut [JointInfo::default(); RIG])
+    content::build(&mut player, context)
 }
 
 /// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
@@ -267,6 +246,6 @@ fn draw<B: Board, S: Content<B::Layout> + ?Sized>(
 #[inline(never)]
 pub(crate) fn show<B: Board>(frame: &mut Framebuffer<B::Layout>, board: &mut B) {
     board.mark_start();
-    board.show(frame);
+    board.present(frame);
     board.mark_stop();
 }

@@ -11,7 +11,7 @@ use pantin_store::{Slot, Store, StoredClip, Update};
 
 /// What [`run`](crate::run) does, with a store. A clip that came is played from its first frame; one that this board cannot play is refused,
 /// and the one before goes on where it was.
-pub fn run_stored<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+pub fn run_stored<B: Board, S: Slot>(
     store: &mut Store<S>,
     entries: &[Entry],
     options: Options,
@@ -22,7 +22,7 @@ pub fn run_stored<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize,
     loop {
         let (stored, mut update) = Update::open(store);
         let context = StoredContext { options, view_state: &mut view_state, frame, board };
-        if let Some(exit) = until_sealed::<B, S, CHANNELS, MOVING, JOINTS>(stored, &mut update, entries, context) {
+        if let Some(exit) = until_sealed(stored, &mut update, entries, context) {
             return exit;
         }
     }
@@ -49,7 +49,7 @@ fn entry<'a>(stored: &'a StoredClip) -> Entry<'a> {
 }
 
 /// Plays until the program ends, or a new clip is sealed: then none.
-fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+fn until_sealed<B: Board, S: Slot>(
     stored: Option<StoredClip>,
     update: &mut Update<S>,
     entries: &[Entry],
@@ -59,13 +59,13 @@ fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, c
     let (mut at, mut start) = (0, 0);
     while let Some(entry) = own.as_ref().into_iter().chain(entries).nth(at) {
         let context = stored_context.context(entry, start, Listener { over: Some(update) });
-        match perform::<B, CHANNELS, MOVING, JOINTS>(context) {
+        match perform(context) {
             Outcome::Clip(steps) => {
                 let count = (entries.len() + usize::from(own.is_some())) as i32;
                 (at, start) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
             }
             Outcome::Whole(frame) => {
-                let playable = try_out::<B, S, CHANNELS, MOVING, JOINTS>(update, &mut stored_context);
+                let playable = try_out(update, &mut stored_context);
                 if update.finish(playable, |bytes| stored_context.board.send(bytes)) {
                     info!("a new clip");
                     return None;
@@ -84,12 +84,9 @@ fn until_sealed<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, c
 
 /// Whether the board can play the clip that came: it is set up as if it were to be played.
 #[inline(never)]
-fn try_out<B: Board, S: Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
-    update: &Update<S>,
-    stored_context: &mut StoredContext<B>,
-) -> bool {
+fn try_out<B: Board, S: Slot>(update: &Update<S>, stored_context: &mut StoredContext<B>) -> bool {
     let Some(candidate) = update.candidate() else { return false };
     let entry = entry(&candidate);
     let context = PlayContext { trial: true, ..stored_context.context(&entry, 0, Listener::default()) };
-    matches!(perform::<B, CHANNELS, MOVING, JOINTS>(context), Outcome::Ready)
+    matches!(perform(context), Outcome::Ready)
 }

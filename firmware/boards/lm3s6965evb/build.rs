@@ -7,5 +7,5 @@ fn main() {
     let most = if board_build::feature("large") { [400, 256, 64] } else { board_build::LITTLE };
     // Any clip may come over a line.
     let any = board_build::feature("link") || board_build::feature("ethernet");
-    board_build::rooms(if any { most } else { clips }, most);
+    board_build::capacity(if any { most } else { clips }, most);
 }

@@ -10,5 +10,5 @@ fn main() {
     let clips = board_build::clips();
     let most = board_build::LITTLE;
     // Any clip may come over the line.
-    board_build::rooms(if update { most } else { clips }, most);
+    board_build::capacity(if update { most } else { clips }, most);
 }

@@ -2,39 +2,39 @@
 
 use super::{Content, display};
 use crate::board::{Board, Exit};
+use crate::capacity::{Capacity, Figure};
 use crate::log::{error, info};
-use crate::run::{Outcome, PlayContext, play, set_up};
+use crate::run::{Outcome, PlayContext, play};
 use pantin::Player;
-use pantin_figure::rotation::RotationBackend;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{DrawStyle, FigureRenderer, View};
+use pantin_figure::{DrawStyle, View};
 
-impl<L: Layout, const N: usize, R: RotationBackend> Content<L> for FigureRenderer<N, R> {
+impl<L: Layout, F: Figure> Content<L> for F {
     #[inline(always)]
     fn set_pose(&mut self, pose: &[i32]) {
-        FigureRenderer::set_pose(self, pose);
+        Figure::set_pose(self, pose);
     }
 
     #[inline(always)]
     fn draw(&mut self, frame: &mut Framebuffer<L>, style: DrawStyle) {
-        self.draw_on(frame, style);
+        Figure::draw(self, frame, style);
     }
 
     #[inline(always)]
     fn aim(&mut self, player: &mut Player, view: View) {
-        FigureRenderer::aim(self, player, view);
+        Figure::aim(self, player, view);
     }
 }
 
 /// Plays it on the whole display.
 #[cfg_attr(feature = "face", inline(never))]
-pub(super) fn perform<B: Board, const JOINTS: usize>(player: &mut Player, context: PlayContext<B>) -> Outcome {
-    let mut renderer = FigureRenderer::<JOINTS, B::Rotation>::empty();
-    if let Err(error) = set_up(&mut renderer, player, display::<B::Layout>()) {
+pub(super) fn perform<B: Board>(player: &mut Player, context: PlayContext<B>) -> Outcome {
+    let mut renderer = <B::Capacity as Capacity>::Figure::<B::Rotation>::empty();
+    if let Err(error) = renderer.set_up(player, display::<B::Layout>()) {
         error!("the rig is too big: {}", error);
         return Outcome::Exit(Exit::BadClip);
     }
-    renderer.aim(player, context.view_state.view);
+    Figure::aim(&mut renderer, player, context.view_state.view);
     info!(
         "{}: {} frames of {} ns, {} channels, {} of them moving; {} joints drawn",
         context.entry.name,
@@ -42,7 +42,7 @@ pub(super) fn perform<B: Board, const JOINTS: usize>(player: &mut Player, contex
         player.clip().frame_time_ns(),
         player.clip().rig().channels(),
         player.clip().moving(),
-        renderer.skeleton().bones.len()
+        renderer.bones()
     );
     #[cfg(feature = "face")]
     let renderer: &mut dyn Content<B::Layout> = &mut renderer;

@@ -3,12 +3,12 @@
 use super::face::{self, Face};
 use super::{Content, display};
 use crate::board::{Board, Exit};
+use crate::capacity::{Capacity, Figure};
 use crate::log::{error, info};
-use crate::run::{Outcome, PlayContext, play, set_up};
+use crate::run::{Outcome, PlayContext, play};
 use pantin::Player;
-use pantin_figure::rotation::RotationBackend;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{Canvas, DrawStyle, FigureRenderer, View};
+use pantin_figure::{Canvas, DrawStyle, View};
 
 /// The parts of the display: the body's, and the face's square at the top right.
 struct Parts {
@@ -29,46 +29,46 @@ impl Parts {
 }
 
 /// Both.
-struct Both<'a, const N: usize, R: RotationBackend> {
-    renderer: &'a mut FigureRenderer<N, R>,
+struct Both<'a, F> {
+    renderer: &'a mut F,
     face: Face<'a>,
 }
 
-impl<L: Layout, const N: usize, R: RotationBackend> Content<L> for Both<'_, N, R> {
+impl<L: Layout, F: Figure> Content<L> for Both<'_, F> {
     fn set_pose(&mut self, pose: &[i32]) {
-        self.renderer.set_pose(pose);
+        Figure::set_pose(self.renderer, pose);
         self.face.set_pose(pose);
     }
 
     fn draw(&mut self, frame: &mut Framebuffer<L>, style: DrawStyle) {
-        self.renderer.draw_on(frame, style);
+        Figure::draw(self.renderer, frame, style);
         self.face.draw(frame);
     }
 
     fn aim(&mut self, player: &mut Player, view: View) {
-        self.renderer.aim(player, view);
+        Figure::aim(self.renderer, player, view);
         self.face.aim(view);
     }
 }
 
 /// Plays them.
 #[inline(never)]
-pub(super) fn perform<B: Board, const JOINTS: usize>(player: &mut Player, context: PlayContext<B>) -> Outcome {
+pub(super) fn perform<B: Board>(player: &mut Player, context: PlayContext<B>) -> Outcome {
     let parts = Parts::of::<B::Layout>();
-    let mut renderer = FigureRenderer::<JOINTS, B::Rotation>::empty();
-    if let Err(error) = set_up(&mut renderer, player, parts.body) {
+    let mut renderer = <B::Capacity as Capacity>::Figure::<B::Rotation>::empty();
+    if let Err(error) = renderer.set_up(player, parts.body) {
         error!("the rig is too big: {}", error);
         return Outcome::Exit(Exit::BadClip);
     }
-    renderer.aim(player, context.view_state.view);
+    Figure::aim(&mut renderer, player, context.view_state.view);
     beside(player, &mut renderer, parts, context)
 }
 
 /// Makes room for the face once the body is set up, which takes room of its own.
 #[inline(never)]
-fn beside<B: Board, const JOINTS: usize>(
+fn beside<B: Board>(
     player: &mut Player,
-    renderer: &mut FigureRenderer<JOINTS, B::Rotation>,
+    renderer: &mut <B::Capacity as Capacity>::Figure<B::Rotation>,
     parts: Parts,
     context: PlayContext<B>,
 ) -> Outcome {
@@ -82,7 +82,7 @@ fn beside<B: Board, const JOINTS: usize>(
             player.clip().frame_time_ns(),
             player.clip().rig().channels(),
             player.clip().moving(),
-            renderer.skeleton().bones.len(),
+            renderer.bones(),
             face.names()
         );
         let both: &mut dyn Content<B::Layout> = &mut Both { renderer, face };

@@ -25,15 +25,15 @@ pub(crate) trait Content<L: Layout> {
 }
 
 /// Plays the clip as what it is. Each kind has its room in a function of its own: the largest counts, not their sum.
-pub(crate) fn build<B: Board, const JOINTS: usize>(player: &mut Player, context: PlayContext<B>) -> Outcome {
+pub(crate) fn build<B: Board>(player: &mut Player, context: PlayContext<B>) -> Outcome {
     #[cfg(feature = "face")]
     if face::is_in(player.clip()) {
         return match player.clip().rig().joint_count() {
             0 => face::perform(player, context),
-            _ => both::perform::<B, JOINTS>(player, context),
+            _ => both::perform(player, context),
         };
     }
-    body::perform::<B, JOINTS>(player, context)
+    body::perform(player, context)
 }
 
 /// All of a board's display.

@@ -63,24 +63,25 @@ impl<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog> Board for MyBo
     type Layout = Pages;
     // YOUR BOARD: in whole numbers; `FloatRotation` (feature `micromath` of `pantin-figure`) takes longer even on a Cortex-M4F.
     type Rotation = Rotation;
+    type Capacity = board_common::Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
+    fn present(&mut self, framebuffer: &mut Framebuffer<Pages>) {
         // A display that does not answer is asked again with the next picture.
-        let _ = self.display.show(frame);
+        let _ = self.display.show(framebuffer);
         self.watchdog.feed();
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.pace.start(nanoseconds, self.clock.now());
+    fn start_timer(&mut self, period_ns: u32) {
+        self.pace.start(period_ns, self.clock.now());
     }
 
-    fn wait_ticks(&mut self) -> u32 {
-        let ticks = self.pace.wait(|| {
-            self.watchdog.feed();
-            self.clock.now()
-        });
-        let held = self.pins.iter_mut().rev().fold(0, |held, pin| held << 1 | u32::from(matches!(pin.is_low(), Ok(true))));
-        self.buttons.look(held);
+    fn ticks(&mut self) -> u32 {
+        self.feed();
+        let ticks = self.pace.ticks(self.clock.now());
+        if ticks > 0 {
+            let held = self.pins.iter_mut().rev().fold(0, |held, pin| held << 1 | u32::from(matches!(pin.is_low(), Ok(true))));
+            self.buttons.look(held);
+        }
         ticks
     }
 

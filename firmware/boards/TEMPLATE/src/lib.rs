@@ -6,7 +6,6 @@ mod board;
 
 pub use board::{Clock, MyBoard, Watchdog};
 
-use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use embedded_hal::digital::InputPin;
 use embedded_hal::i2c::I2c;
@@ -21,5 +20,5 @@ pub fn main<B: I2c, L: Read + Write, P: InputPin, C: Clock, W: Watchdog>(
     mut board: MyBoard<B, L, P, C, W>,
 ) -> ! {
     let mut frame = Framebuffer::<Pages>::new();
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(clips, &mut frame, &mut board)
+    board_common::perform(clips, &mut frame, &mut board)
 }

@@ -82,14 +82,24 @@ impl BlackPill {
 impl Board for BlackPill {
     type Layout = Lit;
     type Rotation = Rotation;
+    type Capacity = board_common::Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Lit>) {
-        self.display.show(frame);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Lit>) {
+        self.display.show(framebuffer);
         self.feed();
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.ticks.start(nanoseconds);
+    fn start_timer(&mut self, period_ns: u32) {
+        self.ticks.start(period_ns);
+    }
+
+    fn ticks(&mut self) -> u32 {
+        let ticks = self.ticks.ticks();
+        if ticks > 0 {
+            let held = self.held();
+            self.buttons.look(held);
+        }
+        ticks
     }
 
     fn wait_ticks(&mut self) -> u32 {

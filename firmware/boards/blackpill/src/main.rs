@@ -12,7 +12,6 @@ mod panic;
 mod received;
 
 use board::BlackPill;
-use board_common::{CHANNELS, JOINTS, MOVING};
 use display::Lit;
 use pantin_figure::surface::Framebuffer;
 use stm32f4xx_hal::pac::Peripherals;
@@ -29,7 +28,7 @@ fn main() -> ! {
     let mut board = BlackPill::new(parts);
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Sectors>() {
-        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+        board_common::perform_stored(&mut store, CLIPS, &mut frame, &mut board)
     }
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
+    board_common::perform(CLIPS, &mut frame, &mut board)
 }

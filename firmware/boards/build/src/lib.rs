@@ -69,15 +69,15 @@ pub fn clips() -> [usize; 3] {
 /// Channels, moving channels and joints that 16 KiB of RAM leave room for.
 pub const LITTLE: [usize; 3] = [144, 96, 36];
 
-/// Writes `rooms.rs`: `CHANNELS`, `MOVING` and `JOINTS`, room for what `clips` take, but no more than the board has. A clip that takes more is refused
-/// when it is opened.
-pub fn rooms(clips: [usize; 3], most: [usize; 3]) {
+/// Writes `capacity.rs`: the type `Capacity`, which has buffers for `clips`, but no more than `most`. The program refuses a clip that needs
+/// more when it opens it.
+pub fn capacity(clips: [usize; 3], most: [usize; 3]) {
     let [channels, moving, joints] = std::array::from_fn(|kind| clips[kind].min(most[kind]));
-    let rooms = format!(
-        "/// Most channels of a clip, most of them that move, and most joints of a figure without fingers and the like.\n\
-         const CHANNELS: usize = {channels};\nconst MOVING: usize = {moving};\nconst JOINTS: usize = {joints};\n"
+    let capacity = format!(
+        "/// The largest clip: its channels, those of them that move, and the joints of its figure.\n\
+         pub type Capacity = pantin_app::MaxClip<{channels}, {moving}, {joints}>;\n"
     );
-    fs::write(out().join("rooms.rs"), rooms).expect("OUT_DIR is writable");
+    fs::write(out().join("capacity.rs"), capacity).expect("OUT_DIR is writable");
 }
 
 /// Whether a feature of the board's package is on.

@@ -2,6 +2,7 @@
 #![no_std]
 
 mod buttons;
+mod capacity;
 #[cfg(feature = "cortex-m")]
 pub mod cortex_m;
 #[cfg(feature = "emulated")]
@@ -18,11 +19,11 @@ mod perform;
 #[cfg(feature = "emulated")]
 mod play;
 mod register;
-mod rooms;
 #[cfg(feature = "update")]
 mod slots;
 
 pub use buttons::Buttons;
+pub use capacity::Capacity;
 #[cfg(feature = "update")]
 pub use embedded_storage::nor_flash;
 #[cfg(feature = "emulated")]
@@ -41,7 +42,6 @@ pub use play::play;
 #[cfg(all(feature = "emulated", feature = "update"))]
 pub use play::play_stored;
 pub use register::Register;
-pub use rooms::{CHANNELS, JOINTS, MOVING};
 #[cfg(feature = "update")]
 pub use slots::{Area, Chip, store};
 

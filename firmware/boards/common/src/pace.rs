@@ -24,18 +24,8 @@ impl Pace {
         self.last = now;
     }
 
-    /// Waits, by looking where the counter is, and tells the ticks since the last call: at least one.
-    pub fn wait(&mut self, mut now: impl FnMut() -> u32) -> u32 {
-        loop {
-            match self.ticks(now()) {
-                0 => {}
-                ticks => return ticks,
-            }
-        }
-    }
-
-    /// Ticks since the last call.
-    fn ticks(&mut self, now: u32) -> u32 {
+    /// Returns the ticks since the last call, without waiting.
+    pub fn ticks(&mut self, now: u32) -> u32 {
         let elapsed = now.wrapping_sub(self.last);
         if elapsed < self.period {
             return 0;

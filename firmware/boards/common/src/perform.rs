@@ -12,16 +12,12 @@ pub const IN_STEP: u8 = 0x16;
 /// How often a clip that does not play is shown again, and letters and buttons looked at.
 const PAUSE_NS: u32 = 100_000_000;
 
-/// Plays the clips at their own pace, for ever. The numbers are those of [`run`]. Where a clip does not play, the display says so until
+/// Plays the clips at their own pace, for ever. Where a clip does not play, the display says so until
 /// there is a letter or a button; then it all begins anew.
-pub fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
-    clips: &[Entry],
-    frame: &mut Framebuffer<B::Layout>,
-    board: &mut B,
-) -> ! {
+pub fn perform<B: Board>(clips: &[Entry], frame: &mut Framebuffer<B::Layout>, board: &mut B) -> ! {
     loop {
         let options = options(board);
-        if clips.is_empty() || run::<B, CHANNELS, MOVING, JOINTS>(clips, options, frame, board) == Exit::BadClip {
+        if clips.is_empty() || run(clips, options, frame, board) == Exit::BadClip {
             complain(clips, frame, board);
         }
     }
@@ -29,7 +25,7 @@ pub fn perform<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINT
 
 /// The same with a store, whose clip comes first.
 #[cfg(feature = "update")]
-pub fn perform_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+pub fn perform_stored<B: Board, S: pantin_store::Slot>(
     store: &mut pantin_store::Store<S>,
     clips: &[Entry],
     frame: &mut Framebuffer<B::Layout>,
@@ -37,7 +33,7 @@ pub fn perform_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, co
 ) -> ! {
     loop {
         let options = options(board);
-        if pantin_app::run_stored::<B, S, CHANNELS, MOVING, JOINTS>(store, clips, options, frame, board) == Exit::BadClip {
+        if pantin_app::run_stored(store, clips, options, frame, board) == Exit::BadClip {
             complain(clips, frame, board);
         }
     }
@@ -60,7 +56,7 @@ fn complain<B: Board>(clips: &[Entry], frame: &mut Framebuffer<B::Layout>, board
     };
     board.start_timer(PAUSE_NS);
     while board.poll().is_none() && board.button().is_none() {
-        board.show(frame);
+        board.present(frame);
         board.wait_ticks();
     }
 }

@@ -13,41 +13,37 @@ use semihosting::sys::arm_compat::{CommandLine, sys_get_cmdline};
 /// Letters of a command line: an emulator without arguments gives the program's own path, and a longer one counts as none.
 const ROOM: usize = 512;
 
-/// Plays the clips, and ends the emulator. The numbers are those of [`run`], and the most figures side by side.
-pub fn play<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize, const SEATS: usize>(
-    clips: &[Entry],
-    frame: &mut Framebuffer<B::Layout>,
-    board: &mut B,
-) -> ! {
+/// Plays the clips, and ends the emulator. `SEATS` is the most figures side by side.
+pub fn play<B: Board, const SEATS: usize>(clips: &[Entry], frame: &mut Framebuffer<B::Layout>, board: &mut B) -> ! {
     let options = options();
     #[cfg(feature = "several")]
     if options.figures > 1 {
-        exit(several::<B, CHANNELS, MOVING, JOINTS, SEATS>(clips, options, frame, board).into())
+        exit(several::<B, SEATS>(clips, options, frame, board).into())
     }
-    exit(run::<B, CHANNELS, MOVING, JOINTS>(clips, options, frame, board).into())
+    exit(run(clips, options, frame, board).into())
 }
 
 /// The same with a store, whose clip comes first.
 #[cfg(feature = "update")]
-pub fn play_stored<B: Board, S: pantin_store::Slot, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>(
+pub fn play_stored<B: Board, S: pantin_store::Slot>(
     store: &mut pantin_store::Store<S>,
     clips: &[Entry],
     frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> ! {
-    exit(pantin_app::run_stored::<B, S, CHANNELS, MOVING, JOINTS>(store, clips, options(), frame, board).into())
+    exit(pantin_app::run_stored(store, clips, options(), frame, board).into())
 }
 
 /// In a function of its own: the seats take memory only where several figures are asked for.
 #[cfg(feature = "several")]
 #[inline(never)]
-fn several<B: Board, const CHANNELS: usize, const MOVING: usize, const JOINTS: usize, const SEATS: usize>(
+fn several<B: Board, const SEATS: usize>(
     clips: &[Entry],
     options: Options,
     frame: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
-    let mut seats = Vec::<FigureBuffers<B::Rotation, CHANNELS, MOVING, JOINTS>, SEATS>::new();
+    let mut seats = Vec::<FigureBuffers<B>, SEATS>::new();
     while seats.len() < options.figures && !seats.is_full() {
         let _ = seats.push(FigureBuffers::empty());
     }

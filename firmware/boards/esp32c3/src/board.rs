@@ -89,24 +89,25 @@ impl Esp32C3 {
 impl Board for Esp32C3 {
     type Layout = Pages;
     type Rotation = Rotation;
+    type Capacity = board_common::Capacity;
 
     /// A display that does not answer is asked again with the next picture.
-    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
-        let _ = self.display.show(frame);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Pages>) {
+        let _ = self.display.show(framebuffer);
         self.feed();
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.pace.start(nanoseconds, now());
+    fn start_timer(&mut self, period_ns: u32) {
+        self.pace.start(period_ns, now());
     }
 
-    fn wait_ticks(&mut self) -> u32 {
-        let ticks = self.pace.wait(|| {
-            self.watchdog.feed();
-            now()
-        });
-        let held = self.held();
-        self.buttons.look(held);
+    fn ticks(&mut self) -> u32 {
+        self.feed();
+        let ticks = self.pace.ticks(now());
+        if ticks > 0 {
+            let held = self.held();
+            self.buttons.look(held);
+        }
         ticks
     }
 

@@ -10,7 +10,6 @@ mod panic;
 mod received;
 
 use board::Esp32C3;
-use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use esp_hal::clock::CpuClock;
 use pantin_figure::surface::Framebuffer;
@@ -39,7 +38,7 @@ fn main() -> ! {
     flash::map();
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Rom>() {
-        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+        board_common::perform_stored(&mut store, CLIPS, &mut frame, &mut board)
     }
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
+    board_common::perform(CLIPS, &mut frame, &mut board)
 }

@@ -24,6 +24,8 @@ const FIFO: u32 = 1 << 4;
 /// The display: 128x64 pixels of 16 greys.
 pub type Oled = Gray4Rows<128, 64, 1024>;
 
+include!(concat!(env!("OUT_DIR"), "/capacity.rs"));
+
 /// The board.
 pub struct Lm3s {
     timer: SysTick<RATE>,
@@ -49,22 +51,22 @@ impl Lm3s {
 impl Board for Lm3s {
     type Layout = Oled;
     type Rotation = Rotation;
+    type Capacity = Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Oled>) {
-        display::show(frame);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Oled>) {
+        display::show(framebuffer);
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.timer.start(nanoseconds);
+    fn start_timer(&mut self, period_ns: u32) {
+        self.timer.start(period_ns);
+    }
+
+    fn ticks(&mut self) -> u32 {
+        self.timer.ticks()
     }
 
     fn wait_ticks(&mut self) -> u32 {
         self.timer.wait(|| {})
-    }
-
-    #[cfg(feature = "link")]
-    fn ticks(&mut self) -> u32 {
-        self.timer.ticks()
     }
 
     fn send(&mut self, bytes: &[u8]) {

@@ -14,7 +14,6 @@ use cortex_m_rt::entry;
 use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
-include!(concat!(env!("OUT_DIR"), "/rooms.rs"));
 
 /// Most figures side by side.
 const SEATS: usize = 4;
@@ -23,5 +22,5 @@ const SEATS: usize = 4;
 fn main() -> ! {
     board_common::cortex_m::guard_stack();
     let mut frame = Framebuffer::<Oled>::new();
-    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Lm3s::new())
+    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Lm3s::new())
 }

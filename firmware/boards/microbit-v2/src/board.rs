@@ -88,24 +88,25 @@ fn feed(watchdog: &mut Option<WatchdogHandle<Hdl0>>) {
 impl Board for Microbit {
     type Layout = Pages;
     type Rotation = Rotation;
+    type Capacity = board_common::Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
-        leds::set(&tiny(frame));
-        self.oled.show(frame);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Pages>) {
+        leds::set(&tiny(framebuffer));
+        self.oled.show(framebuffer);
         self.feed();
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.pace.start(nanoseconds, self.timer.read());
+    fn start_timer(&mut self, period_ns: u32) {
+        self.pace.start(period_ns, self.timer.read());
     }
 
-    fn wait_ticks(&mut self) -> u32 {
-        let ticks = self.pace.wait(|| {
-            feed(&mut self.watchdog);
-            self.timer.read()
-        });
-        let held = self.held();
-        self.buttons.look(held);
+    fn ticks(&mut self) -> u32 {
+        self.feed();
+        let ticks = self.pace.ticks(self.timer.read());
+        if ticks > 0 {
+            let held = self.held();
+            self.buttons.look(held);
+        }
         ticks
     }
 

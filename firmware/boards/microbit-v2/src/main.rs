@@ -14,7 +14,6 @@ mod panic;
 mod received;
 
 use board::Microbit;
-use board_common::{CHANNELS, JOINTS, MOVING};
 use board_parts::ssd1306::Pages;
 use nrf52833_hal::pac::Peripherals;
 use pantin_figure::surface::Framebuffer;
@@ -31,7 +30,7 @@ fn main() -> ! {
     let mut board = Microbit::new(parts);
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Pages>() {
-        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+        board_common::perform_stored(&mut store, CLIPS, &mut frame, &mut board)
     }
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
+    board_common::perform(CLIPS, &mut frame, &mut board)
 }

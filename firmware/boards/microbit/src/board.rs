@@ -12,6 +12,8 @@ pub type Pages = MonoPages<128, 64, 1024>;
 /// Counts of the timer a microsecond.
 const RATE: u32 = 16;
 
+include!(concat!(env!("OUT_DIR"), "/capacity.rs"));
+
 /// The board.
 pub struct Microbit {
     pace: Pace,
@@ -49,17 +51,18 @@ fn send(bytes: &[u8]) {
 impl Board for Microbit {
     type Layout = Pages;
     type Rotation = Rotation;
+    type Capacity = Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
-        frame_stream::send(frame, send);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Pages>) {
+        frame_stream::send(framebuffer, send);
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.pace.start(nanoseconds, now());
+    fn start_timer(&mut self, period_ns: u32) {
+        self.pace.start(period_ns, now());
     }
 
-    fn wait_ticks(&mut self) -> u32 {
-        self.pace.wait(now)
+    fn ticks(&mut self) -> u32 {
+        self.pace.ticks(now())
     }
 
     fn send(&mut self, bytes: &[u8]) {

@@ -14,7 +14,6 @@ use cortex_m_rt::entry;
 use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
-include!(concat!(env!("OUT_DIR"), "/rooms.rs"));
 
 /// Most figures side by side.
 const SEATS: usize = 1;
@@ -24,7 +23,7 @@ fn main() -> ! {
     let mut frame = Framebuffer::<Pages>::new();
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<flash::Nvmc>() {
-        board_common::play_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut Microbit::new())
+        board_common::play_stored(&mut store, CLIPS, &mut frame, &mut Microbit::new())
     }
-    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Microbit::new())
+    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Microbit::new())
 }

@@ -44,13 +44,18 @@ impl Board for Mps2 {
     type Rotation = pantin_figure::rotation::Rotation;
     #[cfg(feature = "micromath")]
     type Rotation = pantin_figure::rotation_float::FloatRotation;
+    type Capacity = board_common::Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Oled>) {
-        frame_stream::send(frame, send);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Oled>) {
+        frame_stream::send(framebuffer, send);
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.timer.start(nanoseconds);
+    fn start_timer(&mut self, period_ns: u32) {
+        self.timer.start(period_ns);
+    }
+
+    fn ticks(&mut self) -> u32 {
+        self.timer.ticks()
     }
 
     fn wait_ticks(&mut self) -> u32 {

@@ -6,7 +6,6 @@ mod board;
 mod registers;
 
 use board::{Mps2, Oled};
-use board_common::{CHANNELS, JOINTS, MOVING};
 use cortex_m_rt::entry;
 use pantin_figure::surface::Framebuffer;
 
@@ -19,5 +18,5 @@ const SEATS: usize = 16;
 fn main() -> ! {
     board_common::cortex_m::guard_stack();
     let mut frame = Framebuffer::<Oled>::new();
-    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Mps2::new())
+    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Mps2::new())
 }

@@ -2,7 +2,6 @@
 #![no_std]
 #![no_main]
 
-use board_common::{CHANNELS, JOINTS, MOVING};
 use pantin_figure::surface::Framebuffer;
 use pico::{Lit, Pico};
 use rp2040_hal::pac::Peripherals;
@@ -16,7 +15,7 @@ fn main() -> ! {
     let mut board = Pico::new(parts);
     #[cfg(feature = "update")]
     if let Some(mut store) = board_common::store::<pico::Rom>() {
-        board_common::perform_stored::<_, _, CHANNELS, MOVING, JOINTS>(&mut store, CLIPS, &mut frame, &mut board)
+        board_common::perform_stored(&mut store, CLIPS, &mut frame, &mut board)
     }
-    board_common::perform::<_, CHANNELS, MOVING, JOINTS>(CLIPS, &mut frame, &mut board)
+    board_common::perform(CLIPS, &mut frame, &mut board)
 }

@@ -36,17 +36,18 @@ fn send(bytes: &[u8]) {
 impl Board for Virt {
     type Layout = Pages;
     type Rotation = Rotation;
+    type Capacity = board_common::Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Pages>) {
-        frame_stream::send(frame, send);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Pages>) {
+        frame_stream::send(framebuffer, send);
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.pace.start(nanoseconds, MTIME.read());
+    fn start_timer(&mut self, period_ns: u32) {
+        self.pace.start(period_ns, MTIME.read());
     }
 
-    fn wait_ticks(&mut self) -> u32 {
-        self.pace.wait(|| MTIME.read())
+    fn ticks(&mut self) -> u32 {
+        self.pace.ticks(MTIME.read())
     }
 
     fn send(&mut self, bytes: &[u8]) {

@@ -7,7 +7,6 @@ mod registers;
 mod trap;
 
 use board::{Pages, Virt};
-use board_common::{CHANNELS, JOINTS, MOVING};
 use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
@@ -20,5 +19,5 @@ const SEATS: usize = 1;
 fn main() -> ! {
     trap::guard_stack();
     let mut frame = Framebuffer::<Pages>::new();
-    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Virt::new())
+    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Virt::new())
 }

@@ -39,17 +39,18 @@ fn now() -> u32 {
 impl Board for Sx1 {
     type Layout = Lcd;
     type Rotation = Rotation;
+    type Capacity = board_common::Capacity;
 
-    fn show(&mut self, frame: &mut Framebuffer<Lcd>) {
-        display::show(frame);
+    fn present(&mut self, framebuffer: &mut Framebuffer<Lcd>) {
+        display::show(framebuffer);
     }
 
-    fn start_timer(&mut self, nanoseconds: u32) {
-        self.pace.start(nanoseconds, now());
+    fn start_timer(&mut self, period_ns: u32) {
+        self.pace.start(period_ns, now());
     }
 
-    fn wait_ticks(&mut self) -> u32 {
-        self.pace.wait(now)
+    fn ticks(&mut self) -> u32 {
+        self.pace.ticks(now())
     }
 
     fn send(&mut self, bytes: &[u8]) {

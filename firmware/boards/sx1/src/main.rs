@@ -9,7 +9,6 @@ mod registers;
 mod start;
 
 use board::{Lcd, Sx1};
-use board_common::{CHANNELS, JOINTS, MOVING};
 use pantin_figure::surface::Framebuffer;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
@@ -19,5 +18,5 @@ const SEATS: usize = 8;
 
 fn main() -> ! {
     let mut frame = Framebuffer::<Lcd>::new();
-    board_common::play::<_, CHANNELS, MOVING, JOINTS, SEATS>(CLIPS, &mut frame, &mut Sx1::new())
+    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Sx1::new())
 }

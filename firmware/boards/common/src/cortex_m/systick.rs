@@ -52,8 +52,7 @@ impl<const KILOHERTZ: u32> SysTick<KILOHERTZ> {
         }
     }
 
-    /// Ticks since the last call.
-    #[cfg(feature = "link")]
+    /// Returns the ticks since the last call, without waiting.
     pub fn ticks(&mut self) -> u32 {
         let ticks = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.told).checked_div(self.periods).unwrap_or(1);
         self.told = self.told.wrapping_add(ticks * self.periods);

@@ -2,11 +2,12 @@
 #![no_std]
 #![no_main]
 
+use board_common::Capacity;
 use board_common::cortex_m::SysTick;
-use board_common::{CHANNELS, MOVING};
 use board_parts::servo::{Law, Servo, channel, slew};
 use embedded_hal::pwm::SetDutyCycle;
-use pantin::{ChannelState, Clip, Kind, Player};
+use pantin::{Clip, Kind, Player};
+use pantin_app::Capacity as _;
 use rp2040_hal::fugit::ExtU32;
 use rp2040_hal::pac::Peripherals;
 use rp2040_hal::pwm::{FreeRunning, Slice, SliceId, Slices};
@@ -59,7 +60,7 @@ fn every_period<S: SliceId>(mut slice: Slice<S, FreeRunning>) -> Slice<S, FreeRu
 fn perform(mut set: impl FnMut([u16; 4])) -> ! {
     let clip = CLIPS.first().map(|entry| Clip::new_checked(entry.bytes));
     let Some(Ok(clip)) = clip else { panic!("there is no clip, or it cannot be opened") };
-    let (mut states, mut pose) = ([ChannelState::default(); MOVING], [0; CHANNELS]);
+    let (mut states, mut pose) = (Capacity::states(), Capacity::pose());
     let Ok(mut player) = Player::new(clip, &mut states, &mut pose) else { panic!("the clip is too big for this board") };
     let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: slew(SPEED, clip.frame_time_ns()) };
     // The right side's servos are mounted the other way round.

@@ -1,0 +1,121 @@
+//! The largest clip that a program can play, and the buffers that follow from it.
+
+use pantin::{ChannelState, Player};
+use pantin_figure::rotation::RotationBackend;
+use pantin_figure::surface::{Framebuffer, Layout};
+use pantin_figure::{Canvas, DrawStyle, FigureRenderer, JointInfo, View};
+
+/// Most joints of a rig, fingers and toes included: the workspace for setting a figure up. Boards with the feature `large` have room for
+/// large rigs.
+pub const RIG: usize = if cfg!(feature = "large") { 192 } else { 60 };
+
+/// The largest clip that a program has buffers for. The only implementation is [`MaxClip`].
+pub trait Capacity {
+    /// Most channels of a clip.
+    const CHANNELS: usize;
+    /// Most moving channels of a clip.
+    const MOVING: usize;
+    /// Most joints of a figure, fingers and toes left out; those of the rig are at most [`RIG`].
+    const JOINTS: usize;
+
+    /// The decoder's state: one for each moving channel.
+    type States: AsMut<[ChannelState]>;
+    /// The values of a pose.
+    type Pose: AsMut<[i32]>;
+    /// The renderer of a figure.
+    type Figure<R: RotationBackend>: Figure;
+
+    /// Makes decoder states for [`MOVING`](Capacity::MOVING) channels.
+    fn states() -> Self::States;
+    /// Makes a pose of [`CHANNELS`](Capacity::CHANNELS) values.
+    fn pose() -> Self::Pose;
+}
+
+/// A clip of at most `CHANNELS` channels, `MOVING` of them moving, whose figure has at most `JOINTS` joints.
+#[derive(Clone, Copy, Debug)]
+pub struct MaxClip<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize>;
+
+impl<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Capacity for MaxClip<CHANNELS, MOVING, JOINTS> {
+    const CHANNELS: usize = CHANNELS;
+    const MOVING: usize = MOVING;
+    const JOINTS: usize = JOINTS;
+
+    type States = [ChannelState; MOVING];
+    type Pose = [i32; CHANNELS];
+    type Figure<R: RotationBackend> = FigureRenderer<JOINTS, R>;
+
+    #[inline(always)]
+    fn states() -> Self::States {
+        [ChannelState::default(); MOVING]
+    }
+
+    #[inline(always)]
+    fn pose() -> Self::Pose {
+        [0; CHANNELS]
+    }
+}
+
+/// A [`FigureRenderer`] of any number of joints.
+pub trait Figure {
+    /// Makes one that is not set up.
+    fn empty() -> Self;
+
+    /// Sets the figure of a player's clip up for a canvas.
+    ///
+    /// # Errors
+    /// The rig has more joints than [`RIG`], or the figure more than the renderer.
+    fn set_up(&mut self, player: &mut Player, canvas: Canvas) -> Result<(), pantin_figure::Error>;
+
+    /// Sets the camera up for a view. The player stays at its frame.
+    fn aim(&mut self, player: &mut Player, view: View);
+
+    /// Moves the picture on the display by columns and rows.
+    fn shift(&mut self, columns: i16, rows: i16);
+
+    /// Takes the pose to draw.
+    fn set_pose(&mut self, pose: &[i32]);
+
+    /// Draws the figure on a framebuffer.
+    fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle);
+
+    /// Returns the number of bones that are drawn.
+    fn bones(&self) -> usize;
+}
+
+impl<const N: usize, R: RotationBackend> Figure for FigureRenderer<N, R> {
+    #[inline(always)]
+    fn empty() -> Self {
+        FigureRenderer::empty()
+    }
+
+    // Not inlined: the workspace is on the stack only while a figure is set up.
+    #[inline(never)]
+    fn set_up(&mut self, player: &mut Player, canvas: Canvas) -> Result<(), pantin_figure::Error> {
+        FigureRenderer::set_up(self, player, canvas, &mut [JointInfo::default(); RIG])
+    }
+
+    #[inline(always)]
+    fn aim(&mut self, player: &mut Player, view: View) {
+        FigureRenderer::aim(self, player, view);
+    }
+
+    #[inline(always)]
+    fn shift(&mut self, columns: i16, rows: i16) {
+        FigureRenderer::shift(self, columns, rows);
+    }
+
+    #[inline(always)]
+    fn set_pose(&mut self, pose: &[i32]) {
+        FigureRenderer::set_pose(self, pose);
+    }
+
+    #[inline(always)]
+    fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle) {
+        self.draw_on(framebuffer, style);
+    }
+
+    #[inline(always)]
+    fn bones(&self) -> usize {
+        self.skeleton().bones.len()
+    }
+}
