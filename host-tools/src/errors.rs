@@ -1,4 +1,4 @@
-//! How a conversion's errors are told: in cm and in percent of the figure's height, in words and as JSON.
+//! How a conversion's errors are printed: in cm and in percent of the figure's height, in words and as JSON.
 
 use crate::import::units::figure_height_cm;
 use crate::motion::Motion;

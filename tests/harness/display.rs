@@ -16,7 +16,7 @@ pub enum Depth {
 /// How its pictures come to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// QEMU shows it in a window, each pixel as a square of so many.
+    /// QEMU shows it in a window, each pixel magnified by this factor.
     Window(usize),
     /// The firmware sends what changed over the serial port, as `pantin_app::frame_stream` says.
     Wire,

@@ -147,7 +147,7 @@ impl Request {
         self
     }
 
-    /// Plays so many pictures at its own pace.
+    /// Plays a number of pictures at its own pace.
     pub fn pictures(mut self, count: usize) -> Request {
         self.pictures = count;
         self
@@ -159,7 +159,7 @@ impl Request {
         self
     }
 
-    /// Sends messages while it plays at its own pace, then waits for so many pictures.
+    /// Sends messages while it plays at its own pace, then waits for a number of pictures.
     pub fn messages(mut self, messages: Vec<Vec<u8>>, pictures: usize) -> Request {
         (self.messages, self.pictures) = (Some(messages), pictures);
         self
@@ -177,13 +177,13 @@ impl Request {
         self
     }
 
-    /// Waits for so many pulse widths.
+    /// Waits for a number of pulse widths.
     pub fn servos(mut self, count: usize) -> Request {
         self.servos = count;
         self
     }
 
-    /// Ends it after so many seconds of the chip's time.
+    /// Ends it after a number of seconds of the chip's time.
     pub fn seconds(mut self, seconds: f64) -> Request {
         self.seconds = seconds;
         self

@@ -77,7 +77,7 @@ impl Session {
         }
     }
 
-    /// Writes so many bytes of the machine's memory to a file.
+    /// Writes `length` bytes of the machine's memory to a file.
     pub fn memory(&mut self, start: u32, length: usize, path: &Path) -> Result<()> {
         self.save("pmemsave", start, length, path)
     }
@@ -124,7 +124,7 @@ impl Session {
         self.qemu.control()?.execute("stop", json!({})).map(drop)
     }
 
-    /// Starts the machine anew, as if it had been switched off and on: what its flash holds stays. The firmware must be waiting.
+    /// Restarts the machine, like a power cycle: the contents of its flash stay. The firmware must be waiting.
     pub fn reset(&mut self) -> Result<()> {
         self.qemu.control()?.execute("system_reset", json!({}))?;
         self.memory = self.qemu.machine().display.filter(|display| display.way == Way::Wire).map(Memory::new);

@@ -51,7 +51,7 @@ export class Chip {
     return this.chip.clock.nanos;
   }
 
-  // Runs until `end` was called, or for so many seconds of the chip's own time.
+  // Runs until `end` was called, or for a number of seconds of the chip's own time.
   run(seconds) {
     const { chip } = this;
     const { core, clock, flash16 } = chip;
@@ -79,7 +79,7 @@ export class Chip {
     return this.ended;
   }
 
-  // Harm that comes after so many seconds: a fault of the processor, or it hangs.
+  // A failure after a number of seconds: a fault of the processor, or a hang.
   harm(kind, seconds) {
     const { chip } = this;
     const strike = () => {

@@ -1,7 +1,7 @@
 // The functions of the chip's boot ROM that erase and write the flash (RP2040 data sheet, 2.8.3.1.3), of which the emulator has none: where the
 // ROM's table says that one is, there is a breakpoint, which does here what the function does.
 //
-// From leaving the mapped flash to the second stage of the boot, which maps it anew, the flash is no memory: who reads it, and whom an interrupt may
+// From leaving the mapped flash to the second stage of the boot, which maps it again, the flash is no memory: who reads it, and whom an interrupt may
 // disturb, is in error. Written bits only become 0, whole pages at a time; erased sectors are all ones.
 
 const [TABLE, LOOKUP] = [0x14, 0x18];
@@ -85,7 +85,7 @@ export class Rom {
     this.flushed = true;
   }
 
-  // A change of so many bytes, or of a sixteenth of them where power goes: not all of a header.
+  // Changes this number of bytes, or a sixteenth of them where power is cut: not all of a header.
   change(nanos, bytes, make) {
     this.alone();
     if (!this.left) throw new Error('the flash is changed while it is mapped');

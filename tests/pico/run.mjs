@@ -6,7 +6,7 @@
 //   keys      where the program is to play in step: letters before each picture but the first, as arrays of bytes; else null
 //   pictures  where it plays at its own pace: as many are waited for
 //   messages  or such that go over the line while it plays, arrays of bytes at the line's speed: the first after a picture, each other one when
-//             the one before was answered; after the last answer so many pictures are waited for
+//             the one before was answered; after the last answer it waits for this number of pictures
 //   servos    how many writes of pulse widths are waited for
 //   harm      "fault", "hang" or null: what strikes after a tenth of a second
 //   cut       the change of the flash, counted from 0, amid which power goes; else null

@@ -1,4 +1,4 @@
-//! Laws of the decoder, on the golden vectors: the same poses by every route, through both doors, and no damaged byte that passes.
+//! Laws of the decoder, on the golden vectors: the same poses whether stepping, seeking, reversing or streaming, for both ways to open a clip, and no damaged byte that passes.
 
 use std::ops::ControlFlow;
 
@@ -30,7 +30,7 @@ fn all() -> Vec<Vector> {
     vectors::load(&vectors::folder()).unwrap()
 }
 
-/// A walk of a player through a clip by all its ways on, with so many records of history and snapshots lent.
+/// Moves a player through a clip in every way it offers, with the given numbers of history records and snapshots lent.
 fn wander(clip: Clip<'_>, undo: usize, marks: usize, noise: &mut Noise) {
     let poses = poses(clip);
     let last = poses.len() - 1;

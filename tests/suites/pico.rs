@@ -71,7 +71,7 @@ fn measures(what: &str, outcome: &Outcome) -> f64 {
     worst
 }
 
-/// No letters after a picture, but those for the next clip after so many of each.
+/// Sends no keys between pictures except the one for the next clip after N pictures of each.
 fn through_all_clips(pictures: usize) -> Vec<&'static [u8]> {
     let through = |_| std::iter::repeat_n(&b""[..], pictures - 1).chain([&b"n"[..]]);
     (0..CLIPS.1.len()).flat_map(through).collect()
@@ -199,7 +199,7 @@ fn a_fault_is_told_on_the_display() {
     }
     let (_folder, image) = image("");
     let outcome = Request::new(&image, OLED).pictures(usize::MAX).seconds(0.2).harm("fault").run().unwrap();
-    // Fed, the watchdog does not end what is told.
+    // The watchdog is fed meanwhile, so that it does not end the message.
     assert_eq!(outcome.ended, "limit");
     let file = "boards/common/src/cortex_m/faults.rs";
     let source = std::fs::read_to_string(paths::firmware().join(file)).unwrap();

@@ -19,7 +19,7 @@ use pantin_store::{ClipInfo, Response};
 use pantin_tools::update::{self, image};
 use tempfile::TempDir;
 
-/// Pictures by which a clip is told.
+/// Pictures that identify a clip.
 const PICTURES: usize = 12;
 /// Bytes of a sector and of a page.
 const SECTOR: usize = 4096;

@@ -26,7 +26,7 @@ use pantin_store::{ClipInfo, Refusal, Request, Response};
 use pantin_tools::update::{self, RetryPolicy, image};
 use tempfile::TempDir;
 
-/// Pictures by which clips are told apart.
+/// Pictures that distinguish clips.
 const PICTURES: usize = 4;
 
 /// The board with the run built in, and clips for it: the walk as the old one, and a captured walk as the new one, or a wave where there is none.
@@ -412,7 +412,7 @@ fn one_connection_after_another_takes_a_transfer_up() {
     assert_eq!(outcome.sent, bench.new.bytes.len() as u32 - told[0]);
 }
 
-/// A line that loses what is written after so many bytes.
+/// A line that loses everything after a given number of bytes.
 struct Breaking<'a, L> {
     line: &'a mut L,
     left: usize,

@@ -36,7 +36,7 @@ fn seeking_finds_the_poses_that_stepping_makes() {
 #[test]
 fn the_tables_as_json_are_those_of_the_decoder() {
     let committed = fs::read_to_string(vectors::folder().join("tables.json")).unwrap();
-    assert_eq!(committed, constants::text(), "`cargo xtask vectors` writes them anew");
+    assert_eq!(committed, constants::text(), "`cargo xtask vectors` regenerates them");
 }
 
 #[test]

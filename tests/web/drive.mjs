@@ -67,7 +67,7 @@ const cases = {
     };
     assert.equal((await key("ArrowLeft", "ArrowLeft")).frame, 39);
     assert.equal((await key("End")).frame, frames - 1);
-    assert.equal((await key("ArrowRight")).frame, 0, "a step from the last frame goes round");
+    assert.equal((await key("ArrowRight")).frame, 0, "a step from the last frame leads to the first");
     assert.equal((await key("ArrowLeft")).frame, frames - 1);
     assert.equal((await key("Shift+ArrowRight")).orbit, -35);
     // Backwards: the frames that are shown fall.
@@ -90,7 +90,7 @@ const cases = {
     await page.locator("#player button").click();
     await page.waitForFunction(() => window.shown.some((frame, index) => index && frame < window.shown[index - 1]));
     await page.locator("#player button").click();
-    // Dragging goes round the figure.
+    // Dragging orbits the figure.
     const before = await page.evaluate(() => [player.orbit, window.seen(player).hash]);
     const box = await stage.boundingBox();
     await page.mouse.move(box.x + 300, box.y + 100);

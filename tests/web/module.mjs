@@ -58,20 +58,20 @@ for (const clip of clips) {
   const whole = fed(bytes, bytes.length).wasm;
   assert.equal(whole.finish(), 0);
   const [frames] = facts(whole);
-  // Before the last byte's word, by streams that step and start anew; after it, by a player that seeks and goes back.
+  // Before the last byte's word, by streams that step and restart; after it, by a player that seeks and goes back.
   for (const piece of [1, 7, 300, bytes.length]) {
     const { wasm, trouble } = fed(bytes, piece);
     assert.equal(trouble, 0);
-    assert.equal(facts(wasm)[PLAYABLE], frames, "all frames are playable before the end is told");
+    assert.equal(facts(wasm)[PLAYABLE], frames, "all frames are playable before the end is announced");
     wasm.aim(...OLED);
     for (const frame of [0, 5, 4, 3, frames - 1, frames >> 1, frames + 9, 1]) assert.equal(grey(wasm, frame), grey(whole, frame), `${clip} ${piece} ${frame}`);
   }
   for (let frame = frames - 1; frame >= 0; frame--) {
     const back = grey(whole, frame);
     if (frame % 16 === 0) {
-      const anew = fed(bytes, bytes.length).wasm;
-      anew.finish();
-      assert.equal(back, grey(anew, frame), `${clip} back to ${frame}`);
+      const again = fed(bytes, bytes.length).wasm;
+      again.finish();
+      assert.equal(back, grey(again, frame), `${clip} back to ${frame}`);
     }
   }
   const play = (damaged, piece) => {

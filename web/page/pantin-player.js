@@ -149,7 +149,7 @@ export class PantinPlayer extends HTMLElement {
     const wasm = this.#wasm;
     const start = Math.ceil(rig.length / 4) * 4;
     const place = wasm.room(start + poses.byteLength);
-    if (!place) throw new Error("there is no room for so many poses");
+    if (!place) throw new Error("there is not enough memory for the poses");
     bytes(wasm, place).set(rig);
     new Int32Array(wasm.memory.buffer, place + start).set(poses);
     this.#check(wasm.poses(rig.length, frames, frameTime, lengthExponent));
@@ -157,7 +157,7 @@ export class PantinPlayer extends HTMLElement {
     this.#shown();
   }
 
-  // The face of a clip that may drive one: it is loaded only then. Until it is there nothing is told of the clip.
+  // The face of a clip that may drive one: it is loaded only then. Until it has loaded, no event reports the clip.
   async #meet() {
     const wasm = this.#wasm;
     const { channels, scalars, scalarsAt, scalarsLength } = this.#known();
@@ -228,7 +228,7 @@ export class PantinPlayer extends HTMLElement {
     this.#shown();
   }
 
-  // Goes round the figure, and up and down, by degrees.
+  // Orbits and tilts the camera, in degrees.
   turn(orbit, tilt) {
     this.orbit = ((this.orbit + orbit + 540) % 360) - 180;
     this.tilt = Math.max(-30, Math.min(85, this.tilt + tilt));

@@ -12,7 +12,7 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Runs a step; a failure is told at once and remembered, and the next step may run.
+    /// Runs a step; a failure is printed at once and remembered, and the next step may run.
     pub fn run(&mut self, name: &str, step: impl FnOnce() -> Result<()>) {
         say(&format!("== {name}"));
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Closed-loop descent (METHOD 5): each channel is coded anew inside the tube that the true error of everything below it
+//! Closed-loop descent (METHOD 5): each channel is coded again inside the tube that the true error of everything below it
 //! still leaves, pass after pass, while the price of an error falls.
 
 use super::figure::{Figure, Poses, lever};
@@ -136,7 +136,7 @@ impl<'m> Descent<'m> {
         Ok(self.codes.into_iter().flatten().collect())
     }
 
-    /// Codes one channel anew if that is better.
+    /// Codes one channel again if that is better.
     fn improve(&mut self, channel: usize, price: f64, pass: usize) -> Result<()> {
         let moved = self.figure.moved(channel);
         let bound = self.plan.bound_cm * USED;

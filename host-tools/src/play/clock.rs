@@ -61,7 +61,7 @@ impl Clock {
         self.paused = !self.paused;
     }
 
-    /// Pauses so many frames on.
+    /// Pauses, and moves by a number of frames.
     pub fn step(&mut self, frames: i64, now: Duration) {
         // In the frame's middle, so that going on shows it for a while in either direction.
         let time = (i128::from(self.frame(now) + frames) * 2 + 1) * self.frame_time / 2;
@@ -75,7 +75,7 @@ impl Clock {
         self.reversed = !self.reversed;
     }
 
-    /// Twice as fast so many times; negative is slower.
+    /// Doubles the speed N times; negative halves it.
     pub fn change_speed(&mut self, doublings: i32, now: Duration) {
         self.hold(now);
         self.speed = (self.speed + doublings).clamp(*SPEEDS.start(), *SPEEDS.end());

@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use pantin::Clip;
 use pantin_figure::{Canvas, View};
 
-/// A clip's face, its camera set up anew when the terminal or the view changes.
+/// A clip's face, its camera set up again when the terminal or the view changes.
 pub struct Face<'a, 'm> {
     clip: Clip<'a>,
     playback: Playback<'a, 'm>,

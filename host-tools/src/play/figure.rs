@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use pantin::Player;
 use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
 
-/// A clip's figure, its camera set up anew when the terminal or the view changes.
+/// A clip's figure, its camera set up again when the terminal or the view changes.
 pub struct Figure<'a, 'm> {
     playback: Playback<'a, 'm>,
     /// Looks through the clip for the camera, so that the playback keeps its place.

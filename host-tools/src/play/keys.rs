@@ -7,13 +7,13 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 pub enum Action {
     /// Stop, or go on.
     Pause,
-    /// So many frames on, and stop there.
+    /// Moves by a number of frames, and pauses.
     Step(i64),
     /// Play the other way.
     Reverse,
-    /// So many clips on.
+    /// Moves by a number of clips.
     Clip(isize),
-    /// Twice as fast so many times.
+    /// Doubles the speed N times.
     Speed(i32),
     /// The camera about the figure, degrees.
     Orbit(i16),

@@ -11,7 +11,7 @@ use pantin_figure::ink::BodyPart;
 /// Letters of a channel's name and of its value.
 const NAME: usize = 22;
 const VALUE: usize = 9;
-/// A cell filled by so many eighths from its left.
+/// A cell filled by a number of eighths from its left.
 const EIGHTHS: [char; 9] = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉', '█'];
 
 /// A channel that moves.

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use pantin::{ChannelState, Clip, Player, SeekCache, SnapshotPos, Undo};
 
-/// Frames of lively motion that steps back reach without playing anew, and snapshots of the clip.
+/// Frames of lively motion that steps back reach without playing again, and snapshots of the clip.
 const FRAMES_BACK: usize = 8;
 const SNAPSHOTS: usize = 64;
 

@@ -20,7 +20,7 @@ const BRIEFLY: Duration = Duration::from_millis(1);
 /// Why a clip ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is to go on so many clips further.
+    /// Moves by a number of clips.
     Clip(isize),
     /// Its last frame was shown, with `once`.
     Over,
@@ -75,7 +75,7 @@ impl Session {
         }
     }
 
-    /// Waits for the next frame or a key; whether the picture is to be drawn anew, or the clip ends.
+    /// Waits for the next frame or a key; whether the picture must be drawn again, or the clip ends.
     fn wait(&mut self, drawn: Duration) -> Result<(bool, Option<Outcome>)> {
         let now = self.begun.elapsed();
         let next = self.clock.until_next(now).unwrap_or(PATIENCE).max((drawn + LEAST).saturating_sub(now)).max(BRIEFLY);

@@ -25,12 +25,12 @@ pub struct Settings {
     pub colours: Colours,
     /// The picture's.
     pub palette: Palette,
-    /// Whether the keys are told.
+    /// Whether the keys are listed.
     pub help: bool,
 }
 
 impl Settings {
-    /// How pixels become letters in a picture of so many rows.
+    /// How pixels become letters in a picture with this number of rows.
     pub fn dots(&self, rows: usize) -> Dots {
         self.dots.unwrap_or(if rows < ROWS_FOR_HALF { Dots::Braille } else { Dots::Half })
     }

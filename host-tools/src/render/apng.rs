@@ -21,7 +21,7 @@ pub struct Apng<W: Write> {
 }
 
 impl<W: Write> Apng<W> {
-    /// For so many `pictures`, `seconds` apart.
+    /// For a number of `pictures`, `seconds` apart.
     pub fn new(out: W, pictures: u32, seconds: f64) -> Apng<W> {
         Apng { out: Some(out), writer: None, pictures, shown: None, beat: Beat::new(seconds, f64::from(TICKS)) }
     }

@@ -95,7 +95,7 @@ impl Palette {
         if self.scale == Scale::Hues { &[BodyPart::Middle, BodyPart::Left, BodyPart::Right] } else { &[BodyPart::Middle] }
     }
 
-    /// At most 256 colours in which a smooth picture is told as well as by all of them: those of the figure, each in 16 parts to
+    /// At most 256 colours that represent a smooth picture as well as all of them do: those of the figure, each in 16 parts to
     /// the paper, and the ground's and the margins'.
     pub fn smooth_colours(&self) -> Vec<Rgb> {
         let steps = 14 / self.tones().len() as u16;

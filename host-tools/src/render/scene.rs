@@ -13,7 +13,7 @@ const GROUND_WIDTH: f32 = 0.005;
 
 /// A bone is set off from those behind it by so much paper on each side, in parts of its width.
 const CLEARANCE: f32 = 0.35;
-/// Where it joins others it is not: from its ends so many of its widths are left out. What is then less than a half has none.
+/// Where it joins others it is not: this number of its widths is left out at its ends. What is then less than a half has none.
 const JOINT: f32 = 2.0;
 
 /// A line.

@@ -88,7 +88,7 @@ pub fn send(
                 told(offset);
             }
             Some(Response::Done { .. }) => return Ok(outcome),
-            // The board began anew in between.
+            // The board restarted in between.
             Some(Response::Refused { refusal: Refusal::NotBegun, .. }) => {
                 sender.at = None;
                 outcome.again += 1;

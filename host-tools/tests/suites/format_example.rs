@@ -1,6 +1,6 @@
 //! The worked example of decoder/FORMAT.md is what the encoder writes and what the decoder plays.
 //!
-//! After a change of the format or its tables, `PANTIN_UPDATE=1 cargo test -p pantin-tools format_example::` writes it anew.
+//! After a change of the format or its tables, `PANTIN_UPDATE=1 cargo test -p pantin-tools format_example::` regenerates it.
 
 use pantin::layout::*;
 use pantin::{ChannelState, Clip, Player};

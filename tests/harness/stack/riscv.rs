@@ -111,7 +111,7 @@ impl Reader {
     }
 }
 
-/// Puts bits of a code (lowest, count) to places, and extends the sign of a number of so many bits.
+/// Puts bits of a code (lowest, count) to places, and extends the sign of a number with that many bits.
 fn gathered(code: u32, parts: &[(u32, u32, u32)], bits: u32) -> i32 {
     signed(parts.iter().fold(0, |value, (from, count, to)| value | (code >> from & ((1 << count) - 1)) << to), bits)
 }

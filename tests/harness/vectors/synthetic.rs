@@ -255,7 +255,7 @@ fn rests_and_choices() -> Made {
     made
 }
 
-/// A loop with so many events that the fields before the first symbol cross from one block into the next.
+/// A loop with enough events that the fields before the first symbol cross from one block into the next.
 fn events() -> Made {
     let mut coded = motion(120);
     coded.looped = true;

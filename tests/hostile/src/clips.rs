@@ -1,4 +1,4 @@
-//! Clips and rigs: an error or poses, in bounded time, the same by every route.
+//! Clips and rigs: an error or poses, in bounded time, the same whether stepping, seeking, reversing or streaming.
 
 use pantin::{ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 

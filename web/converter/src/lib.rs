@@ -1,7 +1,7 @@
 //! Converts one motion in a worker of a web page. An instance of this module is for one motion: its memory goes with it.
 //!
 //! ```text
-//! room(bytes)                    -> where the page writes so many bytes
+//! room(bytes)                    -> where the page writes that number of bytes
 //! give(name, its len, bytes, ..) one of the motion's files; the first is the motion
 //! convert(options, their len)    -> 1 if it became a clip; the options are JSON
 //! output(which)                  -> where a result lies, and its length in the upper half
@@ -28,7 +28,7 @@ thread_local! {
     static OUTPUTS: RefCell<Converted> = RefCell::default();
 }
 
-/// Room for so many bytes, which stays.
+/// Reserves a number of bytes, permanently.
 // SAFETY: nothing else is named so; this holds for every export below.
 #[unsafe(no_mangle)]
 extern "C" fn room(bytes: usize) -> *mut u8 {

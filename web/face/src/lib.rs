@@ -42,7 +42,7 @@ fn face() -> &'static mut Face {
     unsafe { FACE.get() }
 }
 
-/// Makes room for so many bytes, and tells where they begin; 0 if that is more than there may be.
+/// Reserves a number of bytes and returns their address; 0 if that exceeds the limit.
 // SAFETY: nothing else is named so; this holds for every export below.
 #[unsafe(no_mangle)]
 extern "C" fn room(bytes: usize) -> *mut u8 {
@@ -70,7 +70,7 @@ extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
     renderer.shift(right as i16, 0);
 }
 
-/// Takes a pose of so many values, gathers what it is drawn with, and counts that.
+/// Takes a pose with a number of values, gathers what it is drawn with, and counts that.
 #[unsafe(no_mangle)]
 extern "C" fn place(channels: usize) -> usize {
     let Face { model: Some(model), binding, morph, renderer, strokes } = face() else { return 0 };

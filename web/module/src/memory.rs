@@ -49,7 +49,7 @@ fn space() -> usize {
     wasm32::memory_size(0) * PAGE - start()
 }
 
-/// Makes room for so many bytes, and tells where they begin, at a multiple of 16; null if there is none.
+/// Reserves a number of bytes and returns their address, a multiple of 16; null if there is not enough memory.
 pub fn room(bytes: usize) -> *mut u8 {
     let missing = bytes.saturating_sub(space()).div_ceil(PAGE);
     if bytes > MOST_BYTES || (missing > 0 && wasm32::memory_grow(0, missing) == usize::MAX) {

@@ -41,7 +41,7 @@ fn code(outcome: Result<(), Trouble>) -> u32 {
     outcome.err().map_or(0, |trouble| trouble as u32)
 }
 
-/// Makes room for a file of so many bytes, and tells where it begins; 0 if that is more than there may be. What lies there already stays.
+/// Reserves memory for a file of a number of bytes and returns its address; 0 if that exceeds the limit. Bytes that are there already stay.
 // SAFETY: nothing else is named so; this holds for every export below.
 #[unsafe(no_mangle)]
 extern "C" fn room(bytes: usize) -> *mut u8 {
@@ -99,7 +99,7 @@ extern "C" fn picture() -> *const Stroke {
     unsafe { memory::picture() }.strokes.as_ptr()
 }
 
-/// The first so many strokes on a display of 128x64 pixels and 16 greys, a byte a pixel: 17 times the grey. The camera must be set up for that
+/// Draws the first `strokes` strokes on a display of 128x64 pixels and 16 greys, a byte a pixel: 17 times the grey. The camera must be set up for that
 /// size.
 #[unsafe(no_mangle)]
 extern "C" fn grey(strokes: usize) -> *const u8 {

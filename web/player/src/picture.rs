@@ -31,7 +31,7 @@ impl Picture {
         }
     }
 
-    /// Draws the first so many strokes as the firmware does.
+    /// Draws the first `count` strokes as the firmware does.
     pub fn draw(&mut self, count: usize) -> &[u8] {
         self.grey.fill(0);
         for stroke in self.strokes.iter().take(count) {

@@ -35,7 +35,7 @@ impl World {
         finished: false,
     };
 
-    /// The file's front is there. Camera and scale are those of the frames that are playable: they are set up anew whenever these have doubled.
+    /// The file's front is there. Camera and scale are those of the frames that are playable: they are computed again whenever these have doubled.
     pub fn arrived(&mut self, file: &'static [u8]) -> Result<(), Trouble> {
         if self.finished {
             return Ok(());

@@ -25,7 +25,7 @@ pub fn animation(pictures: &[Picture], rate: f64) -> Result<Vec<u8>> {
     Ok(file)
 }
 
-/// A PNG of pictures with their labels, so many in a row.
+/// A PNG of pictures with their labels, in rows of `columns`.
 pub fn sheet(pictures: &[(String, &Picture)], columns: usize) -> Result<Vec<u8>> {
     let scale = scale(pictures.first().context("no pictures")?.1, ON_SHEET);
     let cells: Vec<_> = pictures.iter().map(|(label, picture)| (label.clone(), picture.image(scale))).collect();

@@ -7,7 +7,7 @@ use core::hint::black_box;
 
 use testsuite::markers;
 
-/// Channels a region: so many that the loop's own start and end do not show.
+/// Channels per region: enough that the loop's own start and end are negligible.
 const CHANNELS: usize = 64;
 
 #[derive(Clone, Copy)]

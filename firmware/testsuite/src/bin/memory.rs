@@ -31,7 +31,7 @@ fn main() -> ! {
         player.seek(0);
         player.seek(last);
     });
-    // What holds the result is the caller's: a player's own bytes are told above.
+    // What holds the result is the caller's: a player's own bytes are printed above.
     defmt::info!("open {=usize}", opening - size_of::<Result<Clip, OpenError>>());
     defmt::info!("start {=usize}", starting - size_of::<Result<Player, TooSmall>>());
     defmt::info!("step {=usize}", stepping);

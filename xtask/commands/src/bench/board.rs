@@ -11,7 +11,7 @@ use harness::sync::Session;
 /// Pictures of a run.
 pub const PICTURES: usize = 60;
 
-/// Plays clips in step, one after the other, so many pictures of each; of each the counts of each kind of region, without the first
+/// Plays clips in step, one after the other, a number of pictures of each; of each the counts of each kind of region, without the first
 /// picture's.
 pub fn played(machine: Machine, features: &str, clips: &[(&Path, usize)], words: &[String]) -> Result<Vec<Vec<Stats>>> {
     let files: Vec<&Path> = clips.iter().map(|(file, _)| *file).collect();

@@ -104,7 +104,7 @@ struct Run {
     /// Milliseconds from the last frame that was damaged until all channels were exact, and from then until all was drawn so.
     exact: Vec<f64>,
     joined: Vec<f64>,
-    /// Frames on which a channel said that it was exact and was not; times that the receiver began anew.
+    /// Frames on which a channel was wrongly reported as exact, and clock resets of the receiver.
     wrong: u32,
     resets: u32,
     /// Parts of the channels that are exact, and of frames on which the figure moves, while the line damages all the time.
@@ -132,7 +132,7 @@ impl Run {
         let (mut last, mut exact_at) = (None::<u16>, None::<u16>);
         let harmed = std::cell::Cell::new(None::<u16>);
         let damaged = |timed: &pantin_link::sender::TimedPacket| {
-            // What channels are is known at both ends: it is told of seldom.
+            // Both ends know what the channels are, so STARTS packets are rare.
             match last_frame(&timed.bytes, line).filter(|_| harms(timed.at, seed)) {
                 None => timed.bytes.clone(),
                 Some(frame) => {
