@@ -1,4 +1,4 @@
-//! From files to a clip and what there is to say about it.
+//! Converts files to a clip and a report.
 
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
@@ -13,17 +13,17 @@ use pantin_tools::{errors, verify};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Greatest error of channels that move no joint, as a part of their full scale: the host tool's own.
+/// Largest error of channels that move no joint, as a fraction of their full scale: the host tool's default.
 const SCALAR_PART: f64 = 0.02;
 
-/// What a conversion leaves: the report, the clip, its C header, its rig, and the motion's own poses.
+/// The results of a conversion: the report, the clip, its C header, its rig, and the motion's own poses.
 #[derive(Default)]
 pub struct Converted {
     pub parts: [Vec<u8>; 5],
 }
 
 impl Converted {
-    /// Of one that failed: a report of why.
+    /// The results of a failed conversion: a report with the reason.
     pub fn failed(error: &anyhow::Error) -> Converted {
         let mut converted = Converted::default();
         converted.parts[0] = json!({ "error": format!("{error:#}") }).to_string().into_bytes();
@@ -31,7 +31,7 @@ impl Converted {
     }
 }
 
-/// Converts the first of `files`, with the others beside it. The bound is checked by the device's decoder.
+/// Converts the first of `files`; the others are files that it refers to. The device's decoder verifies the bound.
 pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dyn FnMut(f64)) -> Result<Converted> {
     let options: Value = serde_json::from_slice(options).context("options")?;
     let cm = options["max_error_cm"].as_f64().filter(|cm| *cm > 0.0).context("greatest error: expected a length above 0")?;
@@ -69,7 +69,7 @@ pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dy
     Ok(Converted { parts: [Value::from(fields).to_string().into_bytes(), bytes, header.into_bytes(), rig, poses] })
 }
 
-/// The motion as raw values, frame by frame, the least byte first: what an exact clip would play.
+/// Returns the motion as raw values, frame by frame, little-endian: what an exact clip would play.
 fn poses(motion: &Motion, length_exponent: i8) -> Result<Vec<u8>> {
     let channels = motion.rig.channel_kinds().into_iter().zip(raw::scales(&motion.rig, length_exponent));
     let targets: Vec<Vec<f64>> =

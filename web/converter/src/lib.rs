@@ -1,10 +1,10 @@
-//! Converts one motion in a worker of a web page. An instance of this module is for one motion: its memory goes with it.
+//! Converts one motion in a worker of a web page. An instance of this module converts one motion, and is then dropped with its memory.
 //!
 //! ```text
 //! room(bytes)                    -> where the page writes that number of bytes
 //! give(name, its len, bytes, ..) one of the motion's files; the first is the motion
-//! convert(options, their len)    -> 1 if it became a clip; the options are JSON
-//! output(which)                  -> where a result lies, and its length in the upper half
+//! convert(options, their len)    -> 1 if there is a clip; the options are JSON
+//! output(which)                  -> the address of a result, and its length in the upper half
 //! ```
 //! The page provides `env.progress(part)`, part from 0 to 1, and `env.panicked(text, len)`.
 // The page calls these functions, and finds and writes memory by plain addresses.
@@ -17,9 +17,9 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 
 unsafe extern "C" {
-    /// Tells the page how much is done, 0 to 1.
+    /// Reports the progress to the page, 0 to 1.
     safe fn progress(part: f64);
-    /// Tells the page why the module stops: `len` bytes of text.
+    /// Reports to the page why the module stops: `len` bytes of text.
     safe fn panicked(text: *const u8, len: usize);
 }
 
@@ -35,16 +35,16 @@ extern "C" fn room(bytes: usize) -> *mut u8 {
     vec![0; bytes].leak().as_mut_ptr()
 }
 
-/// Takes back what [`room`] gave.
+/// Frees memory of [`room`].
 ///
 /// # Safety
-/// `place` and `len` are of a call of [`room`], and this is the first time that they are given back.
+/// `place` and `len` must come from a call of [`room`], and must not have been freed before.
 unsafe fn taken(place: *mut u8, len: usize) -> Vec<u8> {
     // SAFETY: the caller's promise; `room` made a vector of this length that has no more capacity.
     unsafe { Vec::from_raw_parts(place, len, len) }
 }
 
-/// Takes one of the motion's files, name and content, each as [`room`] gave it; the motion itself comes first.
+/// Adds one of the motion's files, name and content, both in memory of [`room`]. The motion itself comes first.
 #[unsafe(no_mangle)]
 extern "C" fn give(name: *mut u8, name_len: usize, bytes: *mut u8, len: usize) {
     // SAFETY: the page hands over each place once.
@@ -52,7 +52,7 @@ extern "C" fn give(name: *mut u8, name_len: usize, bytes: *mut u8, len: usize) {
     FILES.with_borrow_mut(|files| files.push((String::from_utf8_lossy(&name).into_owned().into(), bytes)));
 }
 
-/// Converts what was given; 1 if there is a clip, 0 if the report says why there is none.
+/// Converts the added files. Returns 1 if there is a clip, 0 if there is none; the report has the reason.
 #[unsafe(no_mangle)]
 extern "C" fn convert(options: *mut u8, len: usize) -> u32 {
     std::panic::set_hook(Box::new(|info| {
@@ -67,7 +67,7 @@ extern "C" fn convert(options: *mut u8, len: usize) -> u32 {
     good.into()
 }
 
-/// A result: 0 the report as JSON, 1 the clip, 2 the same as a C header, 3 its rig, 4 the motion's own poses, a raw value a channel a frame.
+/// Returns a result: 0 the report as JSON, 1 the clip, 2 the clip as a C header, 3 its rig, 4 the motion's own poses, one raw value per channel and frame.
 #[unsafe(no_mangle)]
 extern "C" fn output(which: usize) -> u64 {
     OUTPUTS.with_borrow(|outputs| {

@@ -1,11 +1,11 @@
-//! The face of one clip, beside the player's module: a page loads it once a clip may drive one. An instance is for one clip.
+//! Draws the face of one clip, next to the player's module: a page loads this module when a clip may drive a face. An instance is for one clip.
 //!
 //! ```text
-//! room(bytes)              -> where the page writes a rig's scalars, and later poses
+//! room(bytes)              -> address where the page writes a rig's scalars, and later poses
 //! bind(bytes, count, first) -> whether these scalars drive a face
-//! aim(w, h, shift, o, t)   -> picture in pixels, how far right it lies, view in degrees
-//! place(channels)          -> how many strokes the pose that stands there is drawn with
-//! picture()                -> where they stand
+//! aim(w, h, shift, o, t)   sets the picture in pixels, its shift to the right, the view in degrees
+//! place(channels)          -> number of strokes of the pose that the page wrote
+//! picture()                -> address of the strokes
 //! ```
 #![no_std]
 // The page calls these functions, and finds and writes memory by plain addresses.
@@ -17,7 +17,7 @@ use pantin_figure::Canvas;
 use pantin_web_module::memory::{room as make_room, written};
 use pantin_web_module::{Only, Stroke};
 
-/// Lines of a face at most, with its mesh.
+/// Maximum number of lines of a face, including its mesh.
 const STROKES: usize = 3072;
 
 struct Face {
@@ -28,7 +28,7 @@ struct Face {
     strokes: [Stroke; STROKES],
 }
 
-/// As good as zeros in the file.
+/// Zeros, so that the module's file does not store them.
 static FACE: Only<Face> = Only::new(Face {
     model: None,
     binding: Binding::EMPTY,
@@ -49,8 +49,8 @@ extern "C" fn room(bytes: usize) -> *mut u8 {
     make_room(bytes)
 }
 
-/// Whether `count` scalars, of which the first is channel `first`, drive a face: those of a rig whose bytes from there on were written there. To be
-/// called once.
+/// Returns whether `count` scalars, the first of which is channel `first`, drive a face. The page has written the rig's bytes from these scalars on.
+/// Must be called once.
 #[unsafe(no_mangle)]
 extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
     let face = face();
@@ -61,7 +61,7 @@ extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
 }
 
 /// Sets the camera up for a part of the picture of `width` x `height` pixels (at most 2047), `right` of the picture's left edge, seen from `orbit`
-/// degrees about the face and `tilt` above the horizon.
+/// degrees around the face and `tilt` degrees above the horizon.
 #[unsafe(no_mangle)]
 extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
     let Face { model: Some(model), renderer, .. } = face() else { return };
@@ -70,7 +70,7 @@ extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
     renderer.shift(right as i16, 0);
 }
 
-/// Takes a pose with a number of values, gathers what it is drawn with, and counts that.
+/// Reads a pose with this number of values, collects its strokes, and returns their number.
 #[unsafe(no_mangle)]
 extern "C" fn place(channels: usize) -> usize {
     let Face { model: Some(model), binding, morph, renderer, strokes } = face() else { return 0 };
@@ -90,7 +90,7 @@ extern "C" fn place(channels: usize) -> usize {
     count
 }
 
-/// Where strokes stand.
+/// Returns the address of the strokes.
 #[unsafe(no_mangle)]
 extern "C" fn picture() -> *const Stroke {
     face().strokes.as_ptr()

@@ -1,4 +1,4 @@
-//! What the player's modules have in common: memory that the page writes, statics that one at a time changes, and strokes.
+//! Shared parts of the player's modules: memory that the page writes, mutable statics, and strokes.
 #![no_std]
 // The page finds and writes memory by plain addresses.
 #![allow(unsafe_code)]

@@ -1,29 +1,29 @@
-//! A module's memory: what has a fixed size is static, and above it lies what the page writes, which may grow.
+//! A module's memory: statics of fixed size, and above them what the page writes, which may grow.
 
 use core::arch::wasm32;
 use core::cell::UnsafeCell;
 
-/// Bytes that the page may write at most.
+/// Maximum number of bytes that the page may write.
 pub const MOST_BYTES: usize = 64 << 20;
 
 const PAGE: usize = 1 << 16;
 
-/// A static that is changed by one at a time.
+/// A static that only one user at a time changes.
 pub struct Only<T>(UnsafeCell<T>);
 
 // SAFETY: a module's memory is not shared, so there is one thread.
 unsafe impl<T> Sync for Only<T> {}
 
 impl<T> Only<T> {
-    /// Holds a value.
+    /// Wraps a value.
     pub const fn new(value: T) -> Self {
         Only(UnsafeCell::new(value))
     }
 
-    /// The value.
+    /// Returns the value.
     ///
     /// # Safety
-    /// No other reference to it may be in use.
+    /// No other reference to the value may be in use.
     #[allow(clippy::mut_from_ref)]
     pub unsafe fn get(&self) -> &mut T {
         // SAFETY: the caller's promise.
@@ -32,7 +32,7 @@ impl<T> Only<T> {
 }
 
 unsafe extern "C" {
-    /// The linker's: memory above it is nobody's.
+    /// A symbol of the linker; the memory above it is free.
     static __heap_base: u8;
 }
 
@@ -44,7 +44,7 @@ fn start() -> usize {
     (base() as usize).next_multiple_of(16)
 }
 
-/// Bytes above the statics.
+/// The bytes above the statics.
 fn space() -> usize {
     wasm32::memory_size(0) * PAGE - start()
 }
@@ -58,7 +58,7 @@ pub fn room(bytes: usize) -> *mut u8 {
     base().wrapping_add(start() - base() as usize)
 }
 
-/// What the page wrote there, `bytes` of it. It writes behind that only as long as this is in use.
+/// Returns the `bytes` bytes that the page wrote. While they are in use, the page writes only behind them.
 pub fn written(bytes: usize) -> &'static [u8] {
     let bytes = bytes.min(space());
     // SAFETY: it lies above the statics and below the memory's end; the page writes behind what it has said to be there only.

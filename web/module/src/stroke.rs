@@ -1,8 +1,8 @@
-//! What the page draws, in the form in which it reads it.
+//! What the page draws, in the layout that it reads.
 
 use pantin_figure::lines::{Dot, Head, Line};
 
-/// Something to draw, as the page reads it: a line, a dot (both ends in one place), or a circle whose radius stands in place of `to`'s x; lengths in
+/// A line, a dot (both ends are equal), or a circle (its radius is stored as the x of `to`), in the layout that the page reads; lengths are in
 /// sixteenths of a pixel.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -13,9 +13,9 @@ pub struct Stroke {
     pub to: [i16; 2],
     /// Brightness: 255 is nearest.
     pub shade: u8,
-    /// What it is: 0 ground, 1 middle, 2 left, 3 right, [`HEAD`] or [`DOT`].
+    /// Body part: 0 ground, 1 middle, 2 left, 3 right, [`HEAD`] or [`DOT`].
     pub what: u8,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u8,
     padding: u8,
 }
@@ -25,7 +25,7 @@ pub const HEAD: u8 = 4;
 const DOT: u8 = 5;
 
 impl Stroke {
-    /// Nothing, in zeros.
+    /// No stroke: all zeros.
     pub const NONE: Stroke = Stroke { from: [0; 2], to: [0; 2], shade: 0, what: 0, width: 0, padding: 0 };
 }
 

@@ -1,4 +1,4 @@
-//! What a clip is drawn as, and from where it is seen: a body, or bars.
+//! What a clip is drawn as (a body or bars), and the camera.
 
 use crate::facts::Trouble;
 use crate::picture::Picture;
@@ -9,14 +9,14 @@ use pantin_figure::lines::Line;
 use pantin_figure::skeleton::Detail;
 use pantin_figure::{Canvas, FigureRenderer, JointInfo, RIG_JOINTS, View};
 
-/// Joints of a figure: those of the rig, and a crown.
+/// Maximum number of joints of a figure: those of the rig, and the top of the head.
 const JOINTS: usize = RIG_JOINTS + 1;
-/// Poses in which a clip is looked at before it plays, as [`FigureRenderer::aim`] does.
+/// Number of poses that the camera setup visits, as [`FigureRenderer::aim`] does.
 const SAMPLES: u32 = 48;
-/// Pixels that a bar is across at most.
+/// Maximum width of a bar in pixels.
 const THICKEST: i32 = 24;
 
-/// What stands before the camera.
+/// What the camera shows.
 pub struct Actor {
     renderer: FigureRenderer<JOINTS>,
     /// Whether a figure stands on the stage.
@@ -24,17 +24,17 @@ pub struct Actor {
     bars: Option<Bars>,
 }
 
-/// Channels of a rig without joints: from the middle, as far as each is of its full scale.
+/// Bars for the channels of a rig without joints: each extends from the middle by its fraction of full scale.
 struct Bars {
     canvas: Canvas,
     first: usize,
 }
 
 impl Actor {
-    /// Nobody.
+    /// Nothing to draw.
     pub const NOBODY: Actor = Actor { renderer: FigureRenderer::empty(), body: false, bars: None };
 
-    /// Sets everything up for a picture; leaves the source at the frame that it shows.
+    /// Sets up figure and camera for a picture; the source stays at its frame.
     #[inline(never)]
     pub fn aim(&mut self, source: &mut Source, canvas: Canvas, view: View) -> Result<(), Trouble> {
         let rig = source.rig().ok_or(Trouble::Nothing)?;
@@ -56,14 +56,14 @@ impl Actor {
         Ok(())
     }
 
-    /// Takes a pose.
+    /// Sets the pose.
     pub fn place(&mut self, pose: &[i32]) {
         if self.body {
             self.renderer.set_pose(pose);
         }
     }
 
-    /// Shows everything of the pose that was placed last, from far to near.
+    /// Adds every stroke of a pose to `picture`, from far to near.
     pub fn each(&mut self, pose: &[i32], picture: &mut Picture) {
         let renderer = &mut self.renderer;
         if self.body {
@@ -102,7 +102,7 @@ impl Bars {
     }
 }
 
-/// Shows a clip in about [`SAMPLES`] poses.
+/// Visits about [`SAMPLES`] poses of a clip.
 fn sample(source: &mut Source, visit: &mut dyn FnMut(&[i32])) {
     let frames = source.playable();
     let mut frame = 0;

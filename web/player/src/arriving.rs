@@ -1,22 +1,22 @@
-//! A clip that plays while it comes.
+//! A clip that plays while it is received.
 
 use crate::facts::Trouble;
 use crate::memory::{past, seat};
 use pantin::{Clip, PartialClip, Player, SeekCache};
 
-/// The front of a file, and what plays it.
+/// The received beginning of a file, and its player.
 pub struct Arriving {
     front: PartialClip<'static>,
     player: Player<'static, 'static>,
     memory: SeekCache<'static>,
-    /// Frames that can be shown.
+    /// Number of playable frames.
     pub playable: u32,
-    /// All of it is there, and good.
+    /// Whether the file is complete and valid.
     pub whole: bool,
 }
 
 impl Arriving {
-    /// Of what has come of a file; `None` while frame 0 has not. Not to be called once there is one.
+    /// Opens the received beginning of a file; `None` while frame 0 has not arrived. Must not be called again after it succeeded.
     #[inline(never)]
     pub fn new(file: &'static [u8]) -> Result<Option<Arriving>, Trouble> {
         let front = match PartialClip::new(file) {
@@ -30,7 +30,7 @@ impl Arriving {
         Ok(Some(Arriving { front, player, memory, playable: 1, whole: false }))
     }
 
-    /// Takes a longer front of the file, and runs ahead to see how far it can be played.
+    /// Takes a longer beginning of the file, and runs ahead to find how far it can be played.
     pub fn extend(&mut self, file: &'static [u8]) -> Result<(), Trouble> {
         let outcome = self.front.extend(file);
         let shown = self.player.frame();
@@ -48,18 +48,18 @@ impl Arriving {
         Ok(())
     }
 
-    /// Shows a frame that is playable. Steps are seeks of one frame, and those back start from a snapshot near by: without records of each step.
+    /// Moves to a playable frame. Steps are seeks of one frame, and steps back start from a nearby snapshot, so no history of steps is needed.
     pub fn go(&mut self, frame: u32) -> &[i32] {
         self.front.seek(&mut self.player, frame, &mut self.memory);
         self.player.pose()
     }
 
-    /// What is known of the clip.
+    /// Fills in the facts about the clip.
     pub fn clip(&self) -> &Clip<'static> {
         self.front.clip()
     }
 
-    /// Who shows the frame.
+    /// Returns the player at the current frame.
     pub fn player(&self) -> &Player<'static, 'static> {
         &self.player
     }

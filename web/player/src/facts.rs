@@ -1,38 +1,38 @@
-//! What the page may ask for, and why something went wrong.
+//! Facts that the page reads, and error codes.
 
 use pantin::{OpenError, TooSmall};
 
-/// What is known of the clip and of the frame, as 32-bit words in this order.
+/// Facts about the clip and the current frame, as 32-bit words in this order.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Facts {
-    /// Frames of the clip; 0 before its head has come.
+    /// Number of frames of the clip; 0 before its header has arrived.
     pub frames: u32,
-    /// Frames that can be shown.
+    /// Number of playable frames.
     pub playable: u32,
-    /// The frame that is shown.
+    /// The current frame.
     pub frame: u32,
-    /// Nanoseconds from a frame to the next.
+    /// Frame time in nanoseconds.
     pub frame_time_ns: u32,
     /// Whether frame 0 follows the last one.
     pub looped: u32,
-    /// Channels of a pose, and how many of them the clip codes as moving; 0 while it is not there as a whole.
+    /// Number of channels of a pose, and of moving channels; 0 while the clip is incomplete.
     pub channels: u32,
     pub moving: u32,
-    /// Of the file: bytes of the rig, and of the motion.
+    /// Sizes in the file, in bytes: the rig and the motion.
     pub rig_bytes: u32,
     pub motion_bytes: u32,
-    /// Joints of the rig, and channels that move none.
+    /// Number of joints of the rig, and of channels that move no joint.
     pub joints: u32,
     pub scalars: u32,
-    /// Where the rig's scalars and the pose that is shown stand, and how many bytes these scalars have.
+    /// Addresses of the rig's scalars and of the current pose, and the scalars' length in bytes.
     pub scalars_at: usize,
     pub scalars_len: usize,
     pub pose: usize,
 }
 
 impl Facts {
-    /// Of no clip.
+    /// Facts without a clip.
     pub const NONE: Facts = Facts {
         frames: 0,
         playable: 0,
@@ -51,25 +51,25 @@ impl Facts {
     };
 }
 
-/// Why there is nothing to see.
+/// Why a clip cannot be shown.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Trouble {
-    /// No clip.
+    /// The bytes are not a clip.
     Magic = 1,
-    /// One of another version.
+    /// The clip has another version.
     Version,
-    /// It ends early.
+    /// The file ends early.
     Truncated,
     /// A CRC does not match.
     Damaged,
-    /// It contradicts itself.
+    /// The file contradicts itself.
     Malformed,
-    /// Its rig stands in another file.
+    /// The rig is in another file.
     Rig,
-    /// More joints or channels than there is room for.
+    /// The clip has more joints or channels than the module's memory holds.
     TooBig,
-    /// Nothing to show has come yet.
+    /// No frame has arrived yet.
     Nothing,
 }
 

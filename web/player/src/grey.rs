@@ -1,4 +1,4 @@
-//! The display of 128x64 pixels and 16 greys: pixel by pixel what the firmware's rasterizer draws there, by less code and in more time.
+//! The display of 128x64 pixels and 16 greys: the same pixels as the firmware's rasterizer, with less code and in more time.
 
 use pantin_figure::Canvas;
 use pantin_figure::lines::pixel;
@@ -8,7 +8,7 @@ use pantin_web_module::{HEAD, Stroke};
 pub const DISPLAY: Canvas = Canvas { width: 128, height: 64 };
 pub const PIXELS: usize = 128 * 64;
 
-/// A grey is a byte, 17 times 0 to 15.
+/// A grey is one byte: 17 times a level from 0 to 15.
 type Greys = [u8; PIXELS];
 
 fn put(greys: &mut Greys, [x, y]: [i32; 2], grey: u8) {
@@ -29,7 +29,7 @@ pub fn draw(stroke: &Stroke, greys: &mut Greys) {
 }
 
 /// Bresenham's lines side by side, across the longer way: step i of one lies i pixels along and floor((2 short i + long) / (2 long)) across,
-/// from the end where the coordinate along is least.
+/// from the end where the coordinate along is smallest.
 fn thick(greys: &mut Greys, from: [i32; 2], to: [i32; 2], width: i32, grey: u8) {
     let steep = (to[1] - from[1]).abs() > (to[0] - from[0]).abs();
     let turned = |[x, y]: [i32; 2]| if steep { [y, x] } else { [x, y] };

@@ -6,13 +6,13 @@ use pantin::layout::MAX_CHANNELS;
 use pantin::{ChannelState, SnapshotPos};
 use pantin_web_module::Only;
 
-/// What a player needs for any clip.
+/// Memory of a player for any clip.
 pub struct FigureBuffers {
     pub states: [ChannelState; MAX_CHANNELS],
     pub pose: [i32; MAX_CHANNELS],
 }
 
-/// What going back and seeking use: for 22 channels, a snapshot each frame of 512.
+/// Memory for stepping back and seeking: for 22 channels, a snapshot at each of 512 frames.
 pub struct Past {
     pub marks: [SnapshotPos; 512],
     pub states: [ChannelState; 32768],
@@ -29,14 +29,14 @@ zeroed!(PAST: Past);
 zeroed!(PICTURE: Picture);
 
 /// # Safety
-/// Nobody may sit there any more.
+/// No other user may hold it.
 pub unsafe fn seat() -> &'static mut FigureBuffers {
     // SAFETY: the caller's promise; a seat is made of integers, for which zeros are values.
     unsafe { SEAT.get().assume_init_mut() }
 }
 
 /// # Safety
-/// Nobody may use it any more.
+/// No other user may hold it.
 pub unsafe fn past() -> &'static mut Past {
     // SAFETY: the caller's promise; it is made of integers, for which zeros are values.
     unsafe { PAST.get().assume_init_mut() }

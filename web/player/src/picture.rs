@@ -1,13 +1,13 @@
-//! A frame as the page draws it: lines for its canvas, or the greys of a display.
+//! A frame in both forms that the page draws: strokes for its canvas, or the greys of a display.
 
 use crate::actor::Actor;
 use crate::grey::{PIXELS, draw};
 use pantin_web_module::Stroke;
 
-/// Lines of a frame at most: a face takes 900 of them.
+/// Maximum number of strokes of a frame: a face takes 900.
 pub const STROKES: usize = 4096;
 
-/// Both forms of the frame.
+/// A frame in both forms.
 pub struct Picture {
     pub strokes: [Stroke; STROKES],
     count: usize,
@@ -15,7 +15,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Gathers what the pose that was placed last is drawn with, and counts it.
+    /// Collects the strokes of the last pose and returns their number.
     pub fn gather(&mut self, actor: &mut Actor, pose: &[i32]) -> usize {
         self.count = 0;
         actor.each(pose, self);

@@ -1,10 +1,10 @@
-//! Where poses come from: a clip that arrives, or a table.
+//! Sources of poses: a clip that is being received, or a table.
 
 use crate::arriving::Arriving;
 use crate::facts::{Facts, Trouble};
 use pantin::Rig;
 
-/// Poses as they are, a raw value a channel a frame.
+/// A table of poses, one raw value per channel and frame.
 pub struct Table {
     pub rig: Rig<'static>,
     values: &'static [i32],
@@ -15,7 +15,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of a file that holds a rig and, from the next multiple of 4 on, the values.
+    /// Opens a file that holds a rig and, from the next multiple of 4 on, the values.
     pub fn new(
         file: &'static [u8],
         rig: usize,
@@ -41,7 +41,7 @@ impl Table {
     }
 }
 
-/// One of them.
+/// A source of poses.
 #[allow(clippy::large_enum_variant)]
 pub enum Source {
     Nothing,
@@ -58,7 +58,7 @@ impl Source {
         }
     }
 
-    /// Frames that can be shown.
+    /// Returns the number of playable frames.
     pub fn playable(&self) -> u32 {
         match self {
             Source::Nothing => 0,
@@ -67,7 +67,7 @@ impl Source {
         }
     }
 
-    /// Shows a frame, or the last one that is playable.
+    /// Moves to a frame, or to the last playable one.
     pub fn go(&mut self, frame: u32) -> &[i32] {
         let frame = frame.min(self.playable().saturating_sub(1));
         match self {
@@ -80,7 +80,7 @@ impl Source {
         }
     }
 
-    /// The pose that is shown.
+    /// Returns the current pose.
     pub fn pose(&self) -> &[i32] {
         match self {
             Source::Nothing => &[],
@@ -104,7 +104,7 @@ impl Source {
         }
     }
 
-    /// The frame that is shown.
+    /// Returns the current frame.
     pub fn frame(&self) -> u32 {
         match self {
             Source::Nothing => 0,
@@ -113,7 +113,7 @@ impl Source {
         }
     }
 
-    /// Tells what there is to know.
+    /// Fills in the facts.
     pub fn tell(&self, facts: &mut Facts) {
         facts.playable = self.playable();
         facts.frame = self.frame();

@@ -1,4 +1,4 @@
-//! The clip, what it is drawn as, and its picture.
+//! The clip, its figure and its picture.
 
 use crate::actor::Actor;
 use crate::arriving::Arriving;
@@ -9,21 +9,21 @@ use crate::source::{Source, Table};
 use pantin_figure::{Canvas, View};
 use pantin_web_module::memory;
 
-/// Everything that an instance holds.
+/// The whole state of an instance.
 pub struct World {
     source: Source,
     actor: Actor,
     file: &'static [u8],
     canvas: Canvas,
     view: Option<View>,
-    /// Frames that were playable when the camera was set up.
+    /// Number of playable frames when the camera was set up.
     surveyed: u32,
     facts: Facts,
     finished: bool,
 }
 
 impl World {
-    /// Nothing yet.
+    /// The state without a clip.
     pub const NEW: World = World {
         source: Source::Nothing,
         actor: Actor::NOBODY,
@@ -35,7 +35,7 @@ impl World {
         finished: false,
     };
 
-    /// The file's front is there. Camera and scale are those of the frames that are playable: they are computed again whenever these have doubled.
+    /// Handles a longer beginning of the file. Camera and scale are those of the frames that are playable: they are computed again whenever these have doubled.
     pub fn arrived(&mut self, file: &'static [u8]) -> Result<(), Trouble> {
         if self.finished {
             return Ok(());
@@ -54,7 +54,7 @@ impl World {
         outcome
     }
 
-    /// Checks the whole file. What was playable stays so if it is no good.
+    /// Checks the whole file. If it is damaged, the playable frames stay playable.
     pub fn finish(&mut self) -> Result<(), Trouble> {
         if self.finished {
             return Ok(());
@@ -68,7 +68,7 @@ impl World {
         self.look()
     }
 
-    /// Takes a table in place of a clip.
+    /// Plays a table instead of a clip.
     pub fn poses(&mut self, rig: usize, frames: usize, frame_time_ns: u32, length_exponent: i8) -> Result<(), Trouble> {
         self.finished = true;
         self.source = Source::Table(Table::new(memory::written(usize::MAX), rig, frames, frame_time_ns, length_exponent)?);
