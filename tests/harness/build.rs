@@ -1,4 +1,4 @@
-//! Programs built by cargo: firmware for a target, the host tool, the plugin.
+//! Builds programs with cargo: firmware for a target, the host tool, the plugin.
 
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, IsTerminal};
@@ -16,13 +16,13 @@ use crate::{paths, setup};
 
 /// One call of `cargo build`.
 pub struct Build {
-    /// Where it runs: each workspace finds its own configuration there.
+    /// The folder to run in: each workspace finds its own configuration there.
     pub workspace: PathBuf,
     /// What to build.
     pub arguments: Vec<OsString>,
-    /// Variables that the build reads.
+    /// Environment variables of the build.
     pub environment: Vec<(OsString, OsString)>,
-    /// Name of the target whose file is wanted.
+    /// Name of the cargo target whose file is returned.
     pub product: String,
 }
 
@@ -48,19 +48,19 @@ pub fn cargo(build: &Build) -> Result<PathBuf> {
     product.with_context(|| format!("cargo built no {}", build.product))
 }
 
-/// A firmware program, as an ELF file of its own: a later build of the same program does not change it.
+/// A firmware program, as a copy of its ELF file that a later build of the same program does not change.
 pub struct Firmware {
     _directory: TempDir,
     elf: PathBuf,
 }
 
 impl Firmware {
-    /// Builds a program of the firmware workspace for a Rust target, with clips embedded where it plays any; its own where none are named.
+    /// Builds a program of the firmware workspace for a Rust target with these clips embedded, or with its own clips if `clips` is empty.
     pub fn build(package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         Self::featuring("", package, program, target, clips)
     }
 
-    /// Builds it with features of its package, apart by commas.
+    /// Builds a program with features of its package, separated by commas.
     pub fn featuring(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
@@ -85,14 +85,14 @@ impl Firmware {
         Ok(Self { _directory: directory, elf })
     }
 
-    /// The ELF file; it goes with this value.
+    /// Returns the ELF file's path. The file is deleted with this value.
     pub fn elf(&self) -> &Path {
         &self.elf
     }
 }
 
-/// Builds the host tool and returns its program: in the profile of the tests, which is optimized, so that a fresh clone
-/// compiles it once.
+/// Builds the host tool and returns its path. It uses the tests' profile, which is optimized, so that a fresh clone
+/// compiles the tool once.
 pub fn host_tool() -> Result<PathBuf> {
     cargo(&Build {
         workspace: paths::root(),

@@ -11,7 +11,7 @@ use pantin_face::{Binding, Model};
 use crate::build;
 use crate::qemu::{LM3S6965EVB, Machine};
 
-/// The feature of the boards' packages that draws faces, where any of the clips drives one; else none.
+/// Returns the boards' feature that draws faces if any of the clips drives one, otherwise none.
 pub fn feature(clips: &[&Path]) -> Result<&'static str> {
     let model = Model::new_checked(MODEL).map_err(|error| anyhow::anyhow!("{error}"))?;
     for path in clips {
@@ -24,14 +24,14 @@ pub fn feature(clips: &[&Path]) -> Result<&'static str> {
     Ok("")
 }
 
-/// Features with which a board plays any clips: with faces where one drives a face, and on the reference board with room for
-/// rigs that its small memory is not meant for.
+/// Returns the features with which a board plays these clips: `face` if one drives a face, and on the reference board the feature
+/// for large rigs.
 pub fn features(machine: Machine, clips: &[&Path]) -> Result<String> {
     let large = if machine.name == LM3S6965EVB.name { "large" } else { "" };
     Ok([large, feature(clips)?].into_iter().filter(|feature| !feature.is_empty()).collect::<Vec<_>>().join(","))
 }
 
-/// Converts a motion with the tool's own defaults into a clip in `folder`.
+/// Converts a motion with the tool's defaults to a clip in `folder`.
 pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {
     let name = motion.file_stem().unwrap_or(motion.as_os_str());
     let clip = folder.join(name).with_extension("ptn");

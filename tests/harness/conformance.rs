@@ -1,4 +1,4 @@
-//! Every golden vector on every core: one image a core, whose CRCs must be those that the records name.
+//! Plays every golden vector on every core: one image per core, whose CRCs must equal those of the records.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,12 +14,12 @@ use crate::vectors::record::{self, Crcs};
 use crate::vectors::{self, Vector};
 use crate::{paths, setup};
 
-/// What plays the vectors.
+/// A way to play the vectors.
 #[derive(Clone, Copy, Debug)]
 pub enum Place {
     /// This process.
     Host,
-    /// A machine under QEMU.
+    /// A machine in QEMU.
     Emulated(Machine),
     /// The Raspberry Pi Pico in rp2040js.
     Pico,
@@ -27,7 +27,7 @@ pub enum Place {
     Node,
 }
 
-/// Name of a core, and where it is.
+/// Name of each core, and how it plays.
 pub const CORES: [(&str, Place); 8] = [
     ("this host", Place::Host),
     ("Cortex-M0", Place::Emulated(MICROBIT)),
@@ -42,28 +42,28 @@ pub const CORES: [(&str, Place); 8] = [
 /// The Rust target of WebAssembly.
 const WASM: &str = "wasm32-unknown-unknown";
 
-/// Longest run of an image.
+/// Time limit of an image's run.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// A core that agrees.
+/// The results of a core that agrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Agreed {
-    /// Vectors played.
+    /// Number of vectors played.
     pub vectors: usize,
-    /// Poses compared, by stepping and by seeking.
+    /// Number of poses compared, by stepping and by seeking.
     pub poses: usize,
-    /// Time that playing took, with the emulator's start.
+    /// Duration, including the emulator's start.
     pub time: Duration,
 }
 
-/// What every core must find.
+/// The expected results.
 pub struct Expected {
     vectors: Vec<Vector>,
     crcs: BTreeMap<String, Crcs>,
 }
 
 impl Expected {
-    /// From the records in the repository.
+    /// Reads the records in the repository.
     pub fn load() -> Result<Expected> {
         let folder = vectors::folder();
         let vectors = vectors::load(&folder)?;
@@ -71,7 +71,7 @@ impl Expected {
         Ok(Expected { crcs: crcs.collect::<Result<_>>()?, vectors })
     }
 
-    /// Plays all vectors there, and compares every pose.
+    /// Plays all vectors on a core, and compares every pose.
     pub fn check(&self, place: Place) -> Result<Agreed> {
         let (time, found) = match place {
             Place::Host => self.here()?,
@@ -134,7 +134,7 @@ fn script() -> PathBuf {
     paths::root().join("tests/harness/conformance.mjs")
 }
 
-/// Reads what an image printed.
+/// Parses an image's output.
 fn parse(text: &[u8]) -> Result<BTreeMap<String, Crcs>> {
     let mut found = BTreeMap::new();
     let mut last: Option<&mut Crcs> = None;

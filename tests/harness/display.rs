@@ -2,7 +2,7 @@
 
 use pantin_tools::render::image::Image;
 
-/// What a pixel's value means.
+/// The meaning of a pixel's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     /// 0 dark, 1 lit.
@@ -13,14 +13,14 @@ pub enum Depth {
     Rgb565,
 }
 
-/// How its pictures come to the host.
+/// How a display's pictures reach the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// QEMU shows it in a window, each pixel magnified by this factor.
     Window(usize),
-    /// The firmware sends what changed over the serial port, as `pantin_app::frame_stream` says.
+    /// The firmware sends the changes over the serial port in the format of `pantin_app::frame_stream`.
     Wire,
-    /// A model of this display under an emulated bus.
+    /// A model of this display on an emulated bus.
     Bus(&'static str),
 }
 
@@ -31,42 +31,42 @@ pub struct Display {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// What its pixels are.
+    /// The pixels' format.
     pub depth: Depth,
-    /// How they are read.
+    /// How pictures are read.
     pub way: Way,
 }
 
-/// The reference machine's: an SSD0323.
+/// The reference machine's display, an SSD0323.
 pub const OLED: Display = Display { width: 128, height: 64, depth: Depth::Gray4, way: Way::Window(4) };
 /// The same layout without the display.
 pub const GREYS: Display = Display { way: Way::Wire, ..OLED };
 /// The layout of an SSD1306, without the display.
 pub const PAGES: Display = Display { width: 128, height: 64, depth: Depth::Mono, way: Way::Wire };
-/// The Siemens SX1's.
+/// The display of the Siemens SX1.
 pub const LCD: Display = Display { width: 176, height: 220, depth: Depth::Rgb565, way: Way::Window(1) };
 
 /// One picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// What shows it.
+    /// The display that shows it.
     pub display: Display,
     /// The pixels' values as [`Depth`] says, row by row.
     pub pixels: Vec<u16>,
 }
 
 impl Picture {
-    /// All dark.
+    /// Makes a dark picture.
     pub fn dark(display: Display) -> Self {
         Picture { display, pixels: vec![0; display.width * display.height] }
     }
 
-    /// Whether nothing is lit.
+    /// Returns whether no pixel is lit.
     pub fn is_dark(&self) -> bool {
         self.pixels.iter().all(|&value| value == 0)
     }
 
-    /// In colours, each pixel a square of `scale`.
+    /// Returns the picture in colours, each pixel magnified by `scale`.
     pub fn image(&self, scale: usize) -> Image {
         let colours = self.pixels.iter().map(|&value| self.display.depth.rgb(value)).collect();
         Image::of(self.display.width, colours).enlarged(scale)

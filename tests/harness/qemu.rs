@@ -1,4 +1,4 @@
-//! QEMU as a child process: it never outlives its time limit or the value that stands for it.
+//! QEMU as a child process: it never outlives its time limit or its value in the program.
 
 use std::io::Read;
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -14,7 +14,7 @@ use crate::display::{self, Display, Picture, Way};
 use crate::qmp::Qmp;
 use crate::{screen, setup};
 
-/// Time between looks at a process or socket that is not ready.
+/// Interval between checks of a process or socket that is not ready.
 const POLL: Duration = Duration::from_millis(2);
 
 /// A machine that QEMU emulates.
@@ -22,15 +22,15 @@ const POLL: Duration = Duration::from_millis(2);
 pub struct Machine {
     /// The program that emulates it.
     pub emulator: &'static str,
-    /// Its name here: that of the package of its firmware.
+    /// Its name in this project: the name of its firmware's package.
     pub name: &'static str,
     /// QEMU's name for it.
     pub model: &'static str,
     /// The Rust target of its programs.
     pub target: &'static str,
-    /// What else QEMU must be told.
+    /// Further arguments for QEMU.
     pub options: &'static [&'static str],
-    /// What its firmware shows pictures on.
+    /// The display of its firmware.
     pub display: Option<Display>,
 }
 
@@ -49,7 +49,7 @@ pub const SX1: Machine = arm("sx1", "armv4t-none-eabi", display::LCD);
 /// The machines that play clips on a display.
 pub const BOARDS: [Machine; 5] = [LM3S6965EVB, MICROBIT, MPS2_AN386, RISCV_VIRT, SX1];
 
-/// The machine of [`BOARDS`] of this name.
+/// Returns the machine of [`BOARDS`] with this name.
 pub fn board(name: &str) -> Result<Machine> {
     BOARDS.into_iter().find(|board| board.name == name).with_context(|| {
         let names: Vec<&str> = BOARDS.iter().map(|board| board.name).collect();
@@ -75,7 +75,7 @@ pub const VIRT: Machine = Machine {
 pub const RISCV_VIRT: Machine =
     Machine { name: "riscv-virt", target: "riscv32imc-unknown-none-elf", display: Some(display::PAGES), ..VIRT };
 
-/// What to start, and with what attached.
+/// What to start, and the devices to attach.
 #[derive(Clone, Debug)]
 pub struct Launch {
     machine: Machine,
@@ -96,7 +96,7 @@ impl Launch {
         self.machine
     }
 
-    /// A run of `elf`, for 60 s at most, with semihosting and nothing else.
+    /// Makes a run of `elf` with a limit of 60 s, semihosting, and no other devices.
     pub fn new(machine: Machine, elf: &Path) -> Self {
         let limit = Duration::from_secs(60);
         Self {
@@ -155,13 +155,13 @@ impl Launch {
         self
     }
 
-    /// Ends the run when it takes longer.
+    /// Sets the time limit.
     pub fn limit(mut self, limit: Duration) -> Self {
         self.limit = limit;
         self
     }
 
-    /// Starts QEMU, and waits until it has connected what was asked.
+    /// Starts QEMU, and waits until the requested devices are connected.
     pub fn start(self) -> Result<Qemu> {
         let emulator = setup::emulator(self.machine.emulator)?;
         let directory = tempfile::Builder::new().prefix("pantin-qemu-").tempdir().context("cannot make a temporary folder")?;
@@ -216,14 +216,14 @@ impl Launch {
     }
 }
 
-/// What a finished run left.
+/// The results of a finished run.
 #[derive(Debug)]
 pub struct Outcome {
     /// The exit code; a signal's number negated where one ended QEMU.
     pub code: i32,
     /// Everything on stdout: what the program wrote by semihosting.
     pub stdout: Vec<u8>,
-    /// Everything on stderr: QEMU's own words.
+    /// Everything on stderr: QEMU's messages.
     pub stderr: String,
 }
 
@@ -265,7 +265,7 @@ impl Qemu {
         self.machine
     }
 
-    /// What the display in QEMU's window shows now.
+    /// Returns the current picture of the display in QEMU's window.
     pub fn picture(&mut self) -> Result<Picture> {
         let Some(display @ Display { way: Way::Window(scale), .. }) = self.machine.display else {
             bail!("QEMU shows no display of {}", self.machine.name);
@@ -276,7 +276,10 @@ impl Qemu {
         screen::from_window(&dump, display, scale)
     }
 
-    /// Waits for the end and says how it went; an error if the time limit comes first.
+    /// Waits for the end and returns the results.
+    ///
+    /// # Errors
+    /// The time limit was reached first.
     pub fn wait(mut self) -> Result<Outcome> {
         // Closed connections would hold QEMU up no longer than the program's end, and a full socket not at all.
         let status = self.ended()?;
@@ -285,7 +288,7 @@ impl Qemu {
         Ok(Outcome { code: code(status), stdout, stderr })
     }
 
-    /// Adds to an error of a connection what QEMU said and how it ended, if it did: that is the cause.
+    /// Adds QEMU's messages and its exit code, if it ended, to the error of a connection: they are the cause.
     pub fn explain(&mut self, error: anyhow::Error) -> anyhow::Error {
         thread::sleep(POLL * 10);
         match self.child.try_wait() {

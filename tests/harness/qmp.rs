@@ -26,7 +26,7 @@ impl Qmp {
         Ok(qmp)
     }
 
-    /// Executes a command and returns what it returns; events in between are passed over.
+    /// Executes a command and returns its result; events in between are skipped.
     pub fn execute(&mut self, command: &str, arguments: Value) -> Result<Value> {
         let request = json!({ "execute": command, "arguments": arguments });
         self.stream.get_mut().write_all(format!("{request}\n").as_bytes()).with_context(|| format!("QMP {command}"))?;
@@ -41,7 +41,7 @@ impl Qmp {
         }
     }
 
-    /// Writes what the display shows now to `path`, as a portable pixmap (every QEMU writes this format, not all PNG).
+    /// Writes the display's current picture to `path`, as a portable pixmap (every QEMU writes this format, not all PNG).
     pub fn screendump(&mut self, path: &Path) -> Result<()> {
         let path = path.to_str().context("QMP names files in UTF-8")?;
         self.execute("screendump", json!({ "filename": path })).map(drop)

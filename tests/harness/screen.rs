@@ -38,7 +38,7 @@ fn value(depth: Depth, rgb: [u8; 3]) -> Option<u16> {
     (shown == [red, green, blue]).then_some(value)
 }
 
-/// Where and how a picture differs from what was expected; `None` where every pixel is equal.
+/// Returns how a picture differs from the expected one; `None` if all pixels are equal.
 pub fn difference(seen: &Picture, expected: &Picture) -> Option<Difference> {
     let size = |picture: &Picture| (picture.display.width, picture.display.height, picture.display.depth);
     assert_eq!(size(seen), size(expected), "pictures of displays that cannot be compared");

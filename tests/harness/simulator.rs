@@ -1,4 +1,4 @@
-//! The firmware's program on the host, before a display of the host's memory: what every machine's pictures must equal.
+//! Runs the firmware's program on the host, with a display in memory: every machine's pictures must equal its pictures.
 
 use std::collections::VecDeque;
 use std::marker::PhantomData;
@@ -14,7 +14,7 @@ use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Ro
 use crate::display::{self, Depth, Display, Picture};
 use crate::sync;
 
-/// More than any board has room for: the pictures do not depend on it.
+/// Larger than any board's capacity; the pictures do not depend on it.
 type Capacity = pantin_app::MaxClip<1024, 1024, 96>;
 
 /// A clip's file and its name, as a firmware is built with it.

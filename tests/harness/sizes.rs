@@ -1,17 +1,17 @@
-//! What images take, as kept in `tests/sizes.txt`, and what of it grew.
+//! The sizes of images, as stored in `tests/sizes.txt`, and their growth.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use anyhow::{Context, Result, ensure};
 
-/// Growth that needs no commit of its own, in percent.
+/// Growth that the check allows, in percent.
 pub const FREE: u64 = 2;
 
-/// What each column counts, in bytes.
+/// Names of the columns, all in bytes.
 pub const COLUMNS: [&str; 3] = ["flash", "RAM", "stack"];
 
-/// What an image takes.
+/// The sizes of an image, by column.
 pub type Size = [u64; COLUMNS.len()];
 
 /// The sizes of all images, by name.
@@ -19,7 +19,7 @@ pub type Size = [u64; COLUMNS.len()];
 pub struct Sizes {
     /// The compiler that made them.
     pub compiler: String,
-    /// Each image's.
+    /// The sizes of each image.
     pub images: BTreeMap<String, Size>,
 }
 
@@ -63,7 +63,7 @@ impl Sizes {
         text
     }
 
-    /// What of `self` the file does not allow: growth by more than [`FREE`] percent, an image that is not in it, one that is gone.
+    /// Lists how `self` violates the file: growth by more than [`FREE`] percent, an image that is not in the file, one that no longer exists.
     pub fn against(&self, kept: &Sizes) -> Vec<String> {
         let mut complaints = vec![];
         for (name, size) in &self.images {

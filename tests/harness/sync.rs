@@ -1,8 +1,8 @@
-//! The firmware's `sync` mode: it shows a frame, tells its number on the serial port, and waits for a byte.
+//! The firmware's `sync` mode: it shows a frame, sends its number over the serial port, and waits for a byte.
 //!
-//! Firmware to host: `F` and the frame's number, 4 bytes, the least first; before it, on a machine without a display of its own, the
+//! Firmware to host: `F` and the frame's number, 4 bytes, little-endian; before it, on a machine without a display of its own, the
 //! windows that changed. Host to firmware: a line feed for the next frame, `q` to end with code 0; before either, letters of the
-//! app's keys. Time plays no part, so every picture is of a known frame.
+//! app's keys. The mode does not depend on time, so every picture is of a known frame.
 
 use std::io::{BufReader, Read, Write};
 use std::os::unix::net::UnixStream;
@@ -15,7 +15,7 @@ use crate::display::{Picture, Way};
 use crate::qemu::{Launch, Outcome, Qemu};
 use crate::wire::{self, Memory};
 
-/// The word that asks for this mode on the semihosting command line.
+/// The argument that selects this mode on the semihosting command line.
 pub const ARGUMENT: &str = "sync";
 
 /// A letter as it shares the line with packets, damaged ones too.

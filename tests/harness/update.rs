@@ -26,7 +26,7 @@ pub fn line(request: &Request) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// A packet that says nothing: after it, letters are letters again.
+/// A packet without meaning: after it, single bytes are keys again.
 pub fn nothing() -> Result<Vec<u8>> {
     let mut out = vec![0; packet::line_len(0)];
     let len = packet::encode(*packet::kind::UPDATES.end(), 0, &[], &mut out).context("a packet that does not fit")?;
@@ -34,7 +34,7 @@ pub fn nothing() -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Says something to a board that waits for the next picture to be asked for, and returns what it answers.
+/// Sends a message to a board that waits for the request of the next picture, and returns its answer.
 pub fn request(session: &mut Session, request: &Request) -> Result<Response> {
     session.send(&line(request)?)?;
     let mut receiver = Receiver::<MAX_RESPONSE>::new();

@@ -28,7 +28,7 @@ impl Memory {
         Self { display, bytes: vec![0; display.width / across * (display.height / down) * bytes] }
     }
 
-    /// Takes a window, whose letter was read already.
+    /// Reads a window, after its first byte.
     pub fn take(&mut self, mut line: impl Read) -> Result<()> {
         let mut ends = [0; 4];
         line.read_exact(&mut ends).context("a window without its ends")?;
@@ -46,7 +46,7 @@ impl Memory {
         Ok(())
     }
 
-    /// What it shows.
+    /// Returns the picture.
     pub fn picture(&self) -> Picture {
         let Display { width, height, depth, .. } = self.display;
         let bytes = &self.bytes;
