@@ -52,11 +52,6 @@ impl Sizing {
     }
 }
 
-/// What `cargo xtask test` runs.
-pub fn check() -> Result<()> {
-    Sizing { update: false, calls: false }.run()
-}
-
 fn file() -> PathBuf {
     paths::root().join("tests/sizes.txt")
 }
