@@ -20,7 +20,7 @@ pub mod line;
 pub mod motion;
 #[cfg(feature = "cli")]
 pub mod play;
-#[cfg(feature = "cli")]
+#[cfg(feature = "pictures")]
 pub mod render;
 #[cfg(feature = "cli")]
 pub mod serve;

@@ -34,6 +34,7 @@ pub struct Grid {
 }
 
 /// The frames for tracks with keys at these `times`, of which there is at least one.
+#[cfg(any(feature = "fbx", feature = "gltf"))]
 pub fn grid(tracks: &[&[f64]], fps: Option<f64>) -> Result<Grid> {
     paced(tracks, fps, common(tracks))
 }

@@ -2,8 +2,27 @@
 
 use super::{fbx, gltf, vrml};
 use anyhow::Result;
-pub use gltf::Entry;
 use std::path::Path;
+
+/// One animation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// Frames, as a conversion would make them.
+    pub frames: usize,
+    /// Frames a second.
+    pub fps: f64,
+    /// Tracks of nodes and weights.
+    pub tracks: usize,
+}
+
+impl Entry {
+    /// From the first frame to the last.
+    pub fn seconds(&self) -> f64 {
+        if self.frames == 0 { 0.0 } else { (self.frames - 1) as f64 / self.fps }
+    }
+}
 
 /// Whether files of this extension hold animations to choose from.
 pub fn chooses(path: &Path) -> bool {

@@ -14,6 +14,10 @@ pub mod fbx;
 #[path = "fbx_absent.rs"]
 pub mod fbx;
 mod files;
+#[cfg(feature = "gltf")]
+pub mod gltf;
+#[cfg(not(feature = "gltf"))]
+#[path = "gltf_absent.rs"]
 pub mod gltf;
 mod grid;
 pub mod keyframes;

@@ -5,7 +5,7 @@
 
 mod nodes;
 
-use super::gltf::Entry;
+use super::list::Entry;
 use super::grid::{self, Grid};
 use super::posed::{self, Affine, Node};
 use super::{Options, Source, one_line, read_bytes};

@@ -3,29 +3,10 @@
 use super::file::File;
 use super::tracks;
 use crate::import::grid;
+use crate::import::list::Entry;
 use crate::import::{Files, read_bytes};
 use anyhow::Result;
 use std::path::Path;
-
-/// One animation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
-    /// Its name, if it has one.
-    pub name: Option<String>,
-    /// Frames, as a conversion would make them.
-    pub frames: usize,
-    /// Frames a second.
-    pub fps: f64,
-    /// Tracks of nodes and weights.
-    pub tracks: usize,
-}
-
-impl Entry {
-    /// From the first frame to the last.
-    pub fn seconds(&self) -> f64 {
-        if self.frames == 0 { 0.0 } else { (self.frames - 1) as f64 / self.fps }
-    }
-}
 
 /// All animations of the glTF file `path`, those included that nothing can be read from: they have no frames.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {

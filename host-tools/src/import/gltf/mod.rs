@@ -23,7 +23,7 @@ use file::{File, one_line};
 use gltf::json::Root;
 use gltf::json::animation::Property;
 use gltf::json::validation::Checked;
-pub use list::{Entry, list};
+pub use list::list;
 use std::collections::BTreeMap;
 use std::path::Path;
 use track::Track;

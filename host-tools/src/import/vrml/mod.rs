@@ -9,7 +9,7 @@ mod parse;
 mod track;
 mod world;
 
-use super::gltf::Entry;
+use super::list::Entry;
 use super::grid::{self, Grid};
 use super::posed::{self, Node};
 use super::{Options, Source, one_line, read_bytes};

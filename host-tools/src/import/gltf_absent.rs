@@ -1,0 +1,21 @@
+//! Stands in for the glTF importer where it is not built in.
+
+use super::list::Entry;
+use super::{Options, Source};
+use anyhow::{Result, bail};
+use std::path::Path;
+
+/// Whether `head` begins a glTF file in its binary form.
+pub fn begins(head: &[u8]) -> bool {
+    head.starts_with(b"glTF")
+}
+
+/// Returns an error that says how to build with glTF.
+pub fn read(path: &Path, _: &Options) -> Result<Source> {
+    bail!("{}: this pantin is built without glTF; build it with `--features gltf`", path.display())
+}
+
+/// Returns an error that says how to build with glTF.
+pub fn list(path: &Path, _: Option<f64>) -> Result<Vec<Entry>> {
+    read(path, &Options::default()).map(|_| Vec::new())
+}
