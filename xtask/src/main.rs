@@ -1,6 +1,7 @@
 //! `cargo xtask`: the commands of the repository. Those that need the harness are programs of their own, which are built when they
 //! are asked for.
 
+mod demo;
 mod test;
 
 use std::process::{Command, ExitCode};
@@ -20,7 +21,7 @@ const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
 const LIST: [(&str, Place, &str); 13] = [
-    ("demo", COMMANDS, "Plays a motion on the display of an emulated board, and shows what it costs"),
+    ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     ("test", Place::Here(test::run), "Runs every check and test; --host-only leaves out QEMU and Chromium"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
@@ -71,15 +72,15 @@ fn help() -> String {
 
 /// Builds the program of a package and runs it; returns its exit code.
 fn program(package: &str, arguments: &[String]) -> Result<ExitCode> {
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo
-        .arg("run")
-        .arg("--manifest-path")
-        .arg(paths::root().join("Cargo.toml"))
-        .args(["--package", package, "--"])
-        .args(arguments);
-    let status = cargo.status().context("cannot start cargo")?;
+    let status = cargo_run(&["--package", package]).args(arguments).status().context("cannot start cargo")?;
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// `cargo run` for a program of the repository, to which its arguments are added.
+fn cargo_run(program: &[&str]) -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.arg("run").arg("--manifest-path").arg(paths::root().join("Cargo.toml")).args(program).arg("--");
+    cargo
 }
 
 fn shape(arguments: &[String]) -> Result<()> {

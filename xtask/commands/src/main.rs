@@ -2,12 +2,11 @@
 
 mod bench;
 mod conformance;
-mod demo;
 mod firmware;
 mod fuzz;
 mod gallery;
 mod images;
-mod pictures;
+mod log;
 mod sizes;
 mod strips;
 mod uf2;
@@ -24,10 +23,11 @@ use clap::Parser;
 enum Command {
     Conformance(conformance::Conformance),
     Bench(bench::command::Bench),
-    Demo(demo::Demo),
     Firmware(firmware::Firmware),
     Fuzz(fuzz::Fuzz),
     Gallery(gallery::Gallery),
+    #[command(hide = true)]
+    Log(log::Log),
     Sizes(sizes::Sizing),
     Strips(strips::Strips),
     Uf2(uf2::Uf2),
@@ -39,10 +39,10 @@ fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Conformance(conformance) => conformance.run(),
         Command::Bench(bench) => bench.run(),
-        Command::Demo(demo) => demo.run(),
         Command::Firmware(firmware) => firmware.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Gallery(gallery) => gallery.run(),
+        Command::Log(log) => log.run(),
         Command::Sizes(sizes) => sizes.run(),
         Command::Strips(strips) => strips.run(),
         Command::Uf2(uf2) => uf2.run(),

@@ -19,7 +19,7 @@ use harness::{clips, paths, setup};
 use pantin::Clip;
 use pantin_tools::cmd::write_whole;
 
-use crate::pictures;
+use harness::pictures;
 use xtask::steps::say;
 
 /// Degrees about the figure, and their names.

@@ -5,8 +5,8 @@
 
 mod nodes;
 
-use super::list::Entry;
 use super::grid::{self, Grid};
+use super::list::Entry;
 use super::posed::{self, Affine, Node};
 use super::{Options, Source, one_line, read_bytes};
 use crate::motion::Scalar;

@@ -9,8 +9,8 @@ mod parse;
 mod track;
 mod world;
 
-use super::list::Entry;
 use super::grid::{self, Grid};
+use super::list::Entry;
 use super::posed::{self, Node};
 use super::{Options, Source, one_line, read_bytes};
 use crate::motion::{Motion, Scalar};

@@ -1,7 +1,7 @@
 //! Pictures of displays as files.
 
+use crate::display::Picture;
 use anyhow::{Context, Result};
-use harness::display::Picture;
 use pantin_tools::render::animation::{Animation, stride};
 use pantin_tools::render::gif::{Gif, MOST_A_SECOND};
 use pantin_tools::render::palette::{Palette, Rgb};

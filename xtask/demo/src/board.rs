@@ -1,16 +1,16 @@
 //! The clip on a board: built into its firmware, booted, played frame by frame.
 
 use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, bail, ensure};
 use harness::build::Firmware;
 use harness::display::Picture;
 use harness::icount::{self, Stats};
 use harness::qemu::{Launch, Machine};
-use harness::{clips, defmt_log, setup, simulator, sync};
-use pantin_figure::rotation::Rotation;
-
+use harness::{clips, paths, setup, sync};
+use xtask::clip::firmware_copy;
 use xtask::steps::{progress, say};
 
 /// The longest that a demo may play.
@@ -27,6 +27,7 @@ pub struct Play {
 /// Plays the first `frames` frames of a clip.
 pub fn play(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
     say("building the firmware");
+    let clip: &Path = &firmware_copy(clip)?;
     let firmware = Firmware::featuring(&clips::features(machine, &[clip])?, machine.name, machine.name, machine.target, &[clip])?;
     let folder = tempfile::tempdir()?;
     let counts = folder.path().join("counts");
@@ -45,16 +46,31 @@ pub fn play(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
         progress("frame", pictures.len(), frames);
         Ok(())
     })?;
-    let log = defmt_log::decode(firmware.elf(), &outcome.stdout)?;
-    log.iter().for_each(|line| say(&format!("   board: {line}")));
-    ensure!(outcome.code == 0, "the board ended with code {}: {}", outcome.code, outcome.stderr.trim());
+    if outcome.code != 0 {
+        log(firmware.elf(), &outcome.stdout).unwrap_or_else(|error| say(&format!("the board's log cannot be read: {error:#}")));
+        bail!("the board ended with code {}: {}", outcome.code, outcome.stderr.trim());
+    }
     let counts = counting.then(|| icount::by_kind(&icount::read(&counts)?, icount::FRAME_REGIONS.len())).transpose()?;
     Ok(Play { pictures, counts })
 }
 
 /// The same by the board's program on this machine.
+#[cfg(feature = "simulator")]
 pub fn simulate(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
-    let display = machine.display.context("this machine shows no pictures")?;
-    let shown = simulator::play::<Rotation>(display, &[clip.into()], &[], &vec![&b""[..]; frames - 1])?;
+    let display = anyhow::Context::context(machine.display, "this machine shows no pictures")?;
+    let shown =
+        harness::simulator::play::<pantin_figure::rotation::Rotation>(display, &[clip.into()], &[], &vec![&b""[..]; frames - 1])?;
     Ok(Play { pictures: shown.into_iter().map(|(_, picture)| picture).collect(), counts: None })
+}
+
+/// Prints the board's log, by a program of its own: what decodes it takes long to compile, and is needed only for failures.
+fn log(elf: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("log");
+    std::fs::write(&file, bytes)?;
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    cargo.arg("run").arg("--quiet").arg("--manifest-path").arg(paths::root().join("Cargo.toml"));
+    let status = cargo.args(["--package", "xtask-commands", "--", "log"]).arg(elf).arg(file).status()?;
+    ensure!(status.success(), "the decoder failed");
+    Ok(())
 }

@@ -15,31 +15,31 @@ pub struct Clip {
     pub frames: usize,
     /// Frames a second.
     pub rate: f64,
-    channels: f64,
-    moving: f64,
-    bytes: f64,
-    motion_bytes: f64,
-    per_frame_bytes: f64,
+    channels: usize,
+    moving: usize,
+    bytes: usize,
+    motion_bytes: usize,
+    per_frame_bytes: usize,
     /// What the conversion's errors are called, and how great they are.
     errors: Vec<(&'static str, String)>,
 }
 
 impl Clip {
-    /// From the JSON that `pantin convert` and `pantin info` print.
-    pub fn new(path: PathBuf, converted: &[u8], info: &[u8]) -> Result<Self> {
-        let converted: Value = serde_json::from_slice(converted).context("`pantin convert --json` prints no JSON")?;
-        let info: Value = serde_json::from_slice(info).context("`pantin info --json` prints no JSON")?;
-        let number = |from: &Value, key: &str| from[key].as_f64().with_context(|| format!("pantin's JSON has no number {key}"));
+    /// Reads the clip's file; `errors` are those that `pantin convert --json` prints.
+    pub fn new(path: PathBuf, errors: &Value) -> Result<Self> {
+        let bytes = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let clip = pantin::Clip::new_checked(&bytes)?;
+        let channels = clip.rig().channels();
         Ok(Self {
             path,
-            frames: number(&info, "frames")? as usize,
-            rate: number(&info, "fps")?,
-            channels: number(&info, "channels")?,
-            moving: number(&info, "moving_channels")?,
-            bytes: number(&info, "file_bytes")?,
-            motion_bytes: number(&info, "motion_bytes")?,
-            per_frame_bytes: number(&info, "per_frame_bytes")?,
-            errors: errors(&converted),
+            frames: clip.frames() as usize,
+            rate: 1e9 / f64::from(clip.frame_time_ns()),
+            channels,
+            moving: clip.moving(),
+            bytes: bytes.len(),
+            motion_bytes: bytes.len() - clip.rig_len(),
+            per_frame_bytes: clip.frames() as usize * channels * 2,
+            errors: self::errors(errors),
         })
     }
 }
@@ -73,7 +73,7 @@ impl fmt::Display for Report<'_> {
             ("bytes per-frame, 16 bits a value", clip.per_frame_bytes.to_string()),
             ("bytes of the clip's motion", clip.motion_bytes.to_string()),
             ("bytes of the clip with its rig", clip.bytes.to_string()),
-            ("saving of the motion", format!("{:.1} %", 100.0 * (1.0 - clip.motion_bytes / clip.per_frame_bytes))),
+            ("saving of the motion", format!("{:.1} %", 100.0 * (1.0 - clip.motion_bytes as f64 / clip.per_frame_bytes as f64))),
         ];
         for (name, value) in rows.iter().chain(&clip.errors) {
             writeln!(formatter, "{name:<34} {value}")?;
