@@ -42,6 +42,6 @@ pub mod wire;
 pub use xtask::{paths, setup};
 
 /// The README's examples, compiled with the documentation tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "full"))]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
