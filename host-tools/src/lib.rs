@@ -1,5 +1,7 @@
 //! The host side of pantin: motion files in, clips out, and pictures of both.
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod channel_error;
 #[cfg(feature = "cli")]
 pub mod cmd;
@@ -18,6 +20,8 @@ pub mod keys;
 #[cfg(feature = "cli")]
 pub mod line;
 pub mod motion;
+#[cfg(feature = "cli")]
+pub mod output;
 #[cfg(feature = "cli")]
 pub mod play;
 #[cfg(feature = "pictures")]

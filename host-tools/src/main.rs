@@ -1,8 +1,11 @@
 //! `pantin`: the host tool. One file a command in `cmd`; this file only dispatches.
 
 use clap::{Parser, Subcommand};
-use pantin_tools::cmd;
+use pantin_tools::{cmd, output};
 use std::process::ExitCode;
+
+/// What shells report of a program that a closed pipe ended, as in `pantin info walk.ptn | head -1`.
+const READER_GONE: u8 = 141;
 
 /// Character motion for small machines: converts motion files to clips and back, plays and draws them.
 #[derive(Parser)]
@@ -43,8 +46,9 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        Err(_) if output::reader_gone() => ExitCode::from(READER_GONE),
         Err(error) => {
-            eprintln!("pantin: {error:#}");
+            output::print_note(format_args!("pantin: {error:#}"));
             ExitCode::FAILURE
         }
     }

@@ -5,11 +5,12 @@
 
 use super::convert::{Arguments, convert};
 use crate::import;
+use crate::output::{self, note, outln};
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde_json::json;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -31,7 +32,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut found = Found::default();
     found.look(from, to)?;
     ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", from.display(), found.others);
-    let tasks = tasks(arguments, &found.motions);
+    let tasks = tasks(arguments, &found.motions)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(tasks.len() as u64) };
     bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} files {eta}")?);
@@ -45,14 +46,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     bar.finish_and_clear();
     let refused = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Refused(_))).count();
     if arguments.json {
-        println!("{}", json!(tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect::<Vec<_>>()));
+        output::print_json(&json!(tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect::<Vec<_>>()))?;
     } else if !arguments.quiet {
-        print!("{}", table(from, &tasks, &outcomes));
+        table(from, &tasks, &outcomes).iter().try_for_each(|line| outln!("{line}"))?;
     }
     let fresh = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::UpToDate)).count();
     if !arguments.quiet {
         let done = outcomes.len() - refused - fresh;
-        eprintln!("{done} converted, {fresh} up to date, {refused} refused, {} other files passed over", found.others);
+        note!("{done} converted, {fresh} up to date, {refused} refused, {} other files passed over", found.others);
     }
     ensure!(refused == 0, "{refused} of {} files could not be converted", outcomes.len());
     Ok(())
@@ -77,7 +78,7 @@ impl Found {
                 if !link && path.canonicalize().ok() != skip.canonicalize().ok() {
                     self.look(&path, skip)?;
                 }
-            } else if import::is_motion(&path) {
+            } else if path.is_file() && import::is_motion(&path) {
                 self.motions.push(path);
             } else {
                 self.others += 1;
@@ -87,36 +88,75 @@ impl Found {
     }
 }
 
-/// The arguments for each file. Clips are called as their sources; of sources with one name, each clip has its whole name.
-fn tasks(arguments: &Arguments, motions: &[PathBuf]) -> Vec<Arguments> {
-    let mut names: HashMap<PathBuf, usize> = HashMap::new();
-    motions.iter().for_each(|path| *names.entry(path.with_extension("")).or_default() += 1);
-    let task = |path: &PathBuf| {
-        let below = path.strip_prefix(&arguments.input).unwrap_or(path);
-        let clip = if names[&path.with_extension("")] == 1 {
-            below.with_extension("ptn")
-        } else {
-            let mut name = below.as_os_str().to_owned();
+/// The arguments for each file. Clips are called as their sources; where that gives several files one name, each of them keeps its
+/// whole name in front of `.ptn`.
+fn tasks(arguments: &Arguments, motions: &[PathBuf]) -> Result<Vec<Arguments>> {
+    let below = |path: &'_ PathBuf| path.strip_prefix(&arguments.input).unwrap_or(path).to_path_buf();
+    let mut whole = vec![false; motions.len()];
+    let clip = |path: &PathBuf, whole: bool| match whole {
+        true => {
+            let mut name = below(path).into_os_string();
             name.push(".ptn");
-            name.into()
-        };
-        arguments.for_file(path.clone(), arguments.output().join(clip))
+            arguments.output().join(name)
+        }
+        false => arguments.output().join(below(path).with_extension("ptn")),
     };
-    motions.iter().map(task).collect()
+    // Ends, for whole names are as different as the sources'.
+    let clips = loop {
+        let clips: Vec<PathBuf> = motions.iter().zip(&whole).map(|(path, &whole)| clip(path, whole)).collect();
+        let shared = shared(&clips);
+        if shared.iter().zip(&whole).all(|(&shared, &whole)| !shared || whole) {
+            break clips;
+        }
+        whole.iter_mut().zip(shared).for_each(|(whole, shared)| *whole |= shared);
+    };
+    different_files(&clips)?;
+    Ok(motions.iter().zip(clips).map(|(path, clip)| arguments.for_file(path.clone(), clip)).collect())
+}
+
+/// Whether another has the same name, on systems where `A.ptn` and `a.ptn` are one file by them.
+fn shared(clips: &[PathBuf]) -> Vec<bool> {
+    let key = |path: &PathBuf| match cfg!(any(windows, target_os = "macos")) {
+        true => PathBuf::from(path.to_string_lossy().to_lowercase()),
+        false => path.clone(),
+    };
+    let mut names: HashMap<PathBuf, usize> = HashMap::new();
+    clips.iter().for_each(|path| *names.entry(key(path)).or_default() += 1);
+    clips.iter().map(|path| names[&key(path)] > 1).collect()
+}
+
+/// Refuses links that lead two clips to one file.
+fn different_files(clips: &[PathBuf]) -> Result<()> {
+    let mut files: HashMap<PathBuf, &Path> = HashMap::new();
+    for clip in clips {
+        if let (true, Ok(file)) = (clip.is_symlink(), clip.canonicalize()) {
+            let other = files.insert(file, clip);
+            ensure!(other.is_none(), "{} and {}: both outputs are one file", other.unwrap_or(clip).display(), clip.display());
+        }
+    }
+    for clip in clips.iter().filter(|clip| !clip.is_symlink()) {
+        let other = clip.canonicalize().ok().and_then(|file| files.get(&file).copied());
+        ensure!(other.is_none(), "{} and {}: both outputs are one file", other.unwrap_or(clip).display(), clip.display());
+    }
+    Ok(())
 }
 
 fn outcome(task: &Arguments) -> Outcome {
     let begun = std::time::Instant::now();
     let convert = || -> Result<Outcome> {
-        let stamp = stamp(task)?;
-        if fs::metadata(task.output()).and_then(|clip| clip.modified()).is_ok_and(|time| time == stamp) {
+        let (stamp, taken) = stamp(task)?;
+        if fs::metadata(task.output()).and_then(|clip| clip.modified()).is_ok_and(|time| time == stamp) && is_whole(task.output())
+        {
             return Ok(Outcome::UpToDate);
         }
         if let Some(folder) = task.output().parent() {
             fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
         }
         let made = convert(task)?;
-        File::options().write(true).open(task.output())?.set_modified(stamp).context("cannot set the clip's time")?;
+        // A file that the fingerprint does not cover may change unseen: then the clip is made again each time.
+        if made.read.iter().all(|path| taken.contains(path)) {
+            File::options().write(true).open(task.output())?.set_modified(stamp).context("cannot set the clip's time")?;
+        }
         let seconds = begun.elapsed().as_secs_f64();
         Ok(Outcome::Converted { frames: made.frames, bytes: made.bytes.len(), error: made.cell, seconds })
     };
@@ -127,8 +167,13 @@ fn outcome(task: &Arguments) -> Outcome {
     }
 }
 
-/// The time that a clip carries if it was made of this source, by these options and this program.
-fn stamp(task: &Arguments) -> Result<SystemTime> {
+/// Whether the clip opens, its checksum included.
+fn is_whole(path: &Path) -> bool {
+    fs::read(path).is_ok_and(|bytes| pantin::Clip::new_checked(&bytes).is_ok())
+}
+
+/// The time that a clip carries if it was made of these sources, by these options and this program; and the sources.
+fn stamp(task: &Arguments) -> Result<(SystemTime, BTreeSet<PathBuf>)> {
     let mut hasher = DefaultHasher::new();
     let mut take = |path: &Path| -> Result<Duration> {
         let file = fs::metadata(path).with_context(|| path.display().to_string())?;
@@ -138,18 +183,17 @@ fn stamp(task: &Arguments) -> Result<SystemTime> {
     };
     take(&std::env::current_exe()?)?;
     let time = take(&task.input)?;
-    // Skeletons and buffers that lie beside some sources are part of them.
-    let folder = task.input.parent().unwrap_or(Path::new("."));
-    let mut beside: Vec<PathBuf> = fs::read_dir(folder)?.flatten().map(|entry| entry.path()).collect();
-    beside.retain(|path| {
-        path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("asf") || ending.eq_ignore_ascii_case("bin"))
-    });
-    beside.sort();
-    beside.iter().try_for_each(|path| take(path).map(|_| ()))?;
+    let inputs = task.inputs();
+    let companions = inputs.iter().flat_map(|path| import::companions(path));
+    let sources: BTreeSet<PathBuf> = inputs.iter().map(|path| path.to_path_buf()).chain(companions).collect();
+    for path in &sources {
+        // One that is missing fails the conversion, if it is needed.
+        let _ = take(path);
+    }
     format!("{task:?}").hash(&mut hasher);
     let micros = hasher.finish() % 1_000_000;
     match SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs(time.as_secs()) + Duration::from_micros(micros)) {
-        Some(stamp) => Ok(stamp),
+        Some(stamp) => Ok((stamp, sources)),
         None => bail!("{}: its modification time is out of range", task.input.display()),
     }
 }
@@ -168,19 +212,19 @@ impl Outcome {
 }
 
 /// A line a file.
-fn table(root: &Path, tasks: &[Arguments], outcomes: &[Outcome]) -> String {
+fn table(root: &Path, tasks: &[Arguments], outcomes: &[Outcome]) -> Vec<String> {
     let names: Vec<String> =
         tasks.iter().map(|task| task.input.strip_prefix(root).unwrap_or(&task.input).display().to_string()).collect();
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
-    let mut out = format!("{:wide$} {:>7} {:>9}  {:26} {:>7}\n", "file", "frames", "bytes", "greatest error", "s");
+    let mut out = vec![format!("{:wide$} {:>7} {:>9}  {:26} {:>7}", "file", "frames", "bytes", "greatest error", "s")];
     for (name, outcome) in names.iter().zip(outcomes) {
-        out += &match outcome {
+        out.push(match outcome {
             Outcome::Converted { frames, bytes, error, seconds } => {
-                format!("{name:wide$} {frames:7} {bytes:9}  {error:26} {seconds:7.1}\n")
+                format!("{name:wide$} {frames:7} {bytes:9}  {error:26} {seconds:7.1}")
             }
-            Outcome::UpToDate => format!("{name:wide$} up to date\n"),
-            Outcome::Refused(why) => format!("{name:wide$} REFUSED: {why}\n"),
-        };
+            Outcome::UpToDate => format!("{name:wide$} up to date"),
+            Outcome::Refused(why) => format!("{name:wide$} REFUSED: {why}"),
+        });
     }
     out
 }

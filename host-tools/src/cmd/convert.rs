@@ -1,9 +1,9 @@
 //! `pantin convert`.
 
+use super::batch;
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::max_error::{self, MaxError};
-use super::{batch, write_whole};
 use crate::channel_error;
 use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
@@ -15,6 +15,7 @@ use crate::fit::parametrize::Rotations;
 use crate::fit::{channelwise, fit};
 use crate::import;
 use crate::motion::Motion;
+use crate::output::{self, Wanted, note, refuse_foreign};
 use crate::verify::verify;
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -108,6 +109,21 @@ impl Arguments {
         self.output.as_deref().unwrap_or(Path::new(""))
     }
 
+    /// Every file that the conversion is known to read before it begins.
+    pub(super) fn inputs(&self) -> Vec<&Path> {
+        [self.input.as_path()].into_iter().chain(self.skeleton.as_deref()).chain(self.edits.inputs()).collect()
+    }
+
+    /// Refuses outputs that cannot be written, that would overwrite an input or one of the files `read`, or that have the name of
+    /// another kind of file.
+    fn check_outputs(&self, read: &[PathBuf]) -> Result<()> {
+        let inputs: Vec<&Path> = self.inputs().into_iter().chain(read.iter().map(PathBuf::as_path)).collect();
+        let outputs: Vec<&Path> = [self.output()].into_iter().chain(self.rig_out.as_deref()).collect();
+        output::check(&inputs, &outputs)?;
+        self.rig_out.iter().try_for_each(|path| refuse_foreign(path, Wanted::Rig))?;
+        refuse_foreign(self.output(), Wanted::Clip)
+    }
+
     /// The same for one file of a folder, without a word.
     pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
         Arguments { input, output: Some(output), json: false, quiet: true, jobs: None, ..self.clone() }
@@ -122,13 +138,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.input.is_dir() {
         return batch::run(arguments);
     }
+    arguments.check_outputs(&[])?;
     let made = convert(arguments)?;
     if arguments.json {
-        println!("{}", made.json);
+        output::print_json(&made.json)?;
     }
     if !arguments.quiet {
         let raw = made.frames * made.channels * 2;
-        eprintln!(
+        note!(
             "{}: {} frames, {} channels; {} bytes ({raw} per frame at 16 bits, {:.1} % saved); {}",
             arguments.output().display(),
             made.frames,
@@ -151,6 +168,8 @@ pub(super) struct Made {
     pub cell: String,
     pub frames: usize,
     channels: usize,
+    /// Every file that was read for it.
+    pub read: Vec<PathBuf>,
 }
 
 /// Converts one file and writes the clip.
@@ -160,18 +179,20 @@ pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
         fps: arguments.fps,
         skeleton: arguments.skeleton.clone(),
         animation: arguments.animation.clone(),
-        files: import::Files::OnDisk,
+        files: import::Files::default(),
     };
     let imported = import::load(&arguments.input, &options)?;
     let say = |sentence: &str| {
         if !arguments.quiet {
-            eprintln!("{sentence}")
+            note!("{sentence}");
         }
     };
     imported.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
     say(&imported.units);
     let place = || arguments.input.display().to_string();
-    let edited = arguments.edits.apply(imported.motion, arguments.fps).with_context(place)?;
+    let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
+    let read = options.files.read_so_far();
+    arguments.check_outputs(&read)?;
     edited.said.iter().for_each(|sentence| say(sentence));
     let mut motion = edited.motion;
     let mut bound = match arguments.channels.bounds(&motion)? {
@@ -191,10 +212,11 @@ pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
     if let (Some(cm), Some(fields)) = (edited.retarget_max_cm, made.json.as_object_mut()) {
         fields.insert("retarget_max_cm".into(), json!(cm));
     }
-    if let Some(path) = &arguments.rig_out {
-        write_whole(path, &rig).context("rig")?;
-    }
-    write_whole(arguments.output(), &made.bytes)?;
+    made.read = read;
+    // A clip opens with its own rig alone: a new one beside an old one would be lost.
+    let rig = arguments.rig_out.as_deref().map(|path| (path, rig.as_slice()));
+    let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
+    output::write_together(&outputs)?;
     Ok(made)
 }
 
@@ -269,7 +291,7 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8
     if !arguments.quiet {
         let cost = bytes.len() - plain.len();
         let part = 100.0 * cost as f64 / plain.len() as f64;
-        eprintln!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)");
+        note!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)");
     }
     Ok(bytes)
 }
@@ -284,7 +306,7 @@ fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8], cm: f64, part
     let report = verify(&bytes, rig, motion, cm, part).with_context(not_written)?;
     let (json, errors, cell) =
         (errors::to_json(&report, motion).into(), errors::to_text(&report, motion), errors::to_cell(&report, motion));
-    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels() })
+    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels(), read: Vec::new() })
 }
 
 fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bounds) -> Result<Made> {
@@ -310,5 +332,5 @@ fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bound
         }
     };
     let cell = worst.sentence(motion);
-    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels() })
+    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels(), read: Vec::new() })
 }

@@ -4,7 +4,7 @@ use crate::edit::{cut::cut, join::join, mirror::mirror, pick::pick, resample::re
 use crate::import;
 use crate::motion::Motion;
 use anyhow::{Context, Result};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Changes of the motion. They apply in this order: --fps, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop.
 #[derive(clap::Args, Clone, Debug)]
@@ -57,8 +57,13 @@ pub struct Edited {
 }
 
 impl Edits {
-    /// All but the loop, which depends on the bound. `fps` is the rate to have.
-    pub fn apply(&self, motion: Motion, fps: Option<f64>) -> Result<Edited> {
+    /// The files that the edits read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        self.map.iter().chain(&self.with).map(PathBuf::as_path)
+    }
+
+    /// All but the loop, which depends on the bound. `fps` is the rate to have; other motions and names are read from `files`.
+    pub fn apply(&self, motion: Motion, fps: Option<f64>, files: &import::Files) -> Result<Edited> {
         let mut said = Vec::new();
         let mut motion = motion;
         if let Some(fps) = fps {
@@ -79,8 +84,9 @@ impl Edits {
         }
         let mut retarget_max_cm = None;
         if let Some(Body::Display) = self.retarget {
-            let read =
-                |path: &PathBuf| std::fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()));
+            let read = |path: &PathBuf| {
+                String::from_utf8(files.read(path)?).with_context(|| format!("{}: expected UTF-8 text", path.display()))
+            };
             let map = self.map.as_ref().map(read).transpose()?.unwrap_or_default();
             let done = retarget::display(&motion, &map)?;
             let pairs: Vec<String> = done.sources.iter().map(|(display, source)| format!("{display} {source}")).collect();
@@ -91,7 +97,7 @@ impl Edits {
             motion = done.motion;
         }
         if let Some(path) = &self.with {
-            let other = import::load(path, &import::Options::default())?.motion;
+            let other = import::load(path, &import::Options { files: files.clone(), ..Default::default() })?.motion;
             motion = join(&motion, &other).with_context(|| format!("--with {}", path.display()))?;
             said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));
         }

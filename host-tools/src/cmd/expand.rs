@@ -1,10 +1,11 @@
 //! `pantin expand`.
 
-use super::{Files, write_whole};
+use super::Files;
 use crate::expand::expand;
 use crate::export;
+use crate::output::{self, Wanted, refuse_foreign};
 use anyhow::{Context, Result, bail};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Turn a clip back into per-frame motion, or into source text for firmware.
 ///
@@ -32,6 +33,10 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    let output = &arguments.output;
+    let inputs: Vec<&Path> = [arguments.input.as_path()].into_iter().chain(arguments.rig.as_deref()).collect();
+    output::check(&inputs, &[output])?;
+    refuse_foreign(output, Wanted::Motion)?;
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let place = || arguments.input.display().to_string();
     let clip = files.open().with_context(place)?;
@@ -45,5 +50,5 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Some("rs") => out = export::source::rust_module(&clip, files.clip(), &stem).into_bytes(),
         _ => bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs", arguments.output.display()),
     }
-    write_whole(&arguments.output, &out)
+    output::write_whole(output, &out)
 }

@@ -1,6 +1,6 @@
 //! `pantin flash-image`.
 
-use super::write_whole;
+use crate::output::{check, note, write_whole};
 use crate::update::{self, image};
 use anyhow::{Context, Result, bail};
 use clap::builder::PossibleValuesParser;
@@ -39,6 +39,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    check(&[&arguments.input], &[&arguments.output])?;
     let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
     let region = Region::of(&arguments.board).context("no board is called so")?;
     let place = || arguments.input.display().to_string();
@@ -51,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     write_whole(&arguments.output, &bytes)?;
     if !arguments.quiet {
         let Region { board, address, slot, sector, word, .. } = region;
-        eprintln!(
+        note!(
             "{board}: {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}",
             clip.len()
         );

@@ -2,6 +2,7 @@
 
 use super::Files;
 use crate::import::list;
+use crate::output::{outln, print_json};
 use anyhow::{Context, Result};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -53,9 +54,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.json {
         let object: serde_json::Map<String, serde_json::Value> =
             fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
-        println!("{}", serde_json::Value::Object(object));
+        print_json(&serde_json::Value::Object(object))?;
     } else {
-        fields.iter().for_each(|(name, value)| println!("{:20} {value}", name.replace('_', " ")));
+        fields.iter().try_for_each(|(name, value)| outln!("{:20} {value}", name.replace('_', " ")))?;
     }
     Ok(())
 }
@@ -65,13 +66,12 @@ pub fn animations(path: &Path, as_json: bool) -> Result<()> {
     let entries = list::list(path, None)?;
     if as_json {
         let object = |entry: &list::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
-        println!("{}", json!(entries.iter().map(object).collect::<Vec<_>>()));
-        return Ok(());
+        return print_json(&json!(entries.iter().map(object).collect::<Vec<_>>()));
     }
     for (number, entry) in entries.iter().enumerate() {
         let name = entry.name.as_deref().unwrap_or("without a name");
         let (frames, fps, tracks) = (entry.frames, (entry.fps * 1000.0).round() / 1000.0, entry.tracks);
-        println!("{number:3} {name}: {frames} frames at {fps} a second, {:.3} s, {tracks} tracks", entry.seconds());
+        outln!("{number:3} {name}: {frames} frames at {fps} a second, {:.3} s, {tracks} tracks", entry.seconds())?;
     }
     Ok(())
 }

@@ -17,22 +17,9 @@ mod stream_live;
 pub mod train;
 pub mod update;
 
-use anyhow::{Context, Result};
-use std::fs;
+use crate::import;
+use anyhow::Result;
 use std::path::Path;
-
-/// Writes a whole file or none: beside it first, then in its place.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = Path::new(&beside);
-    let written = fs::write(beside, bytes).and_then(|()| fs::rename(beside, path));
-    if written.is_err() {
-        // What is left of it is of no use to anyone; that it may not exist is no further error.
-        let _ = fs::remove_file(beside);
-    }
-    written.with_context(|| format!("{}: cannot be written", path.display()))
-}
 
 /// A clip and, if it was made without one, its rig.
 pub struct Files {
@@ -41,9 +28,10 @@ pub struct Files {
 }
 
 impl Files {
-    /// Reads both.
+    /// Reads both; `-` is standard input.
     pub fn read(clip: &Path, rig: Option<&Path>) -> Result<Files> {
-        let read = |path: &Path| fs::read(path).with_context(|| format!("{}: cannot be read", path.display()));
+        let files = import::Files::default();
+        let read = |path: &Path| files.read(path);
         Ok(Files { clip: read(clip)?, rig: rig.map(read).transpose()?.unwrap_or_default() })
     }
 

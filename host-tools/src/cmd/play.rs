@@ -4,6 +4,7 @@ use super::Files;
 use super::render::{Axis, Side, Size};
 use crate::expand::expand;
 use crate::face::cast::is_face;
+use crate::output::noticed;
 use crate::play::cells::Dots;
 use crate::play::clock::Clock;
 use crate::play::colours::Colours;
@@ -176,7 +177,7 @@ impl Arguments {
                 for frame in 0..frames {
                     let clock = Clock::new(clip.frame_time_ns(), Duration::ZERO);
                     let grid = draw(show, &title, frame % clip.frames(), &clock, &settings, self.size.0)?;
-                    out.write_all(grid.text().as_bytes()).context("the text cannot be written")?;
+                    noticed(out.write_all(grid.text().as_bytes())).context("the text cannot be written")?;
                 }
                 Ok(())
             })

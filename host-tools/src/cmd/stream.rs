@@ -1,6 +1,7 @@
 //! `pantin stream`: clips over a line, while they play.
 
 use crate::cmd::Files;
+use crate::output::note;
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
 use pantin_link::sender::{ByteCounts, Line, Sender, Source};
@@ -101,7 +102,7 @@ pub(super) fn sender() -> Sender {
 
 pub(super) fn say(arguments: &Arguments, sentence: &str) {
     if !arguments.quiet {
-        eprintln!("{sentence}");
+        note!("{sentence}");
     }
 }
 

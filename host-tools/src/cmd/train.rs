@@ -1,13 +1,13 @@
 //! `pantin train`.
 
-use super::write_whole;
 use crate::encode::rig;
 use crate::fit::{descent::Level, fit};
 use crate::import;
 use crate::motion::Motion;
+use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
 use crate::train::Counts;
 use anyhow::{Context, Result};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Compute the format's tables (decoder/src/tables.rs) from motions; needed only to change the format.
 ///
@@ -55,6 +55,9 @@ fn decimated(motion: &Motion, stride: usize) -> Motion {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    refuse_foreign(&arguments.output, Wanted::Source)?;
+    let inputs: Vec<&Path> = arguments.inputs.iter().map(PathBuf::as_path).collect();
+    check(&inputs, &[&arguments.output])?;
     let mut counts = Counts::default();
     for path in &arguments.inputs {
         let motion = import::load(path, &import::Options { fps: arguments.fps, ..Default::default() })?.motion;
@@ -66,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
                 let coded =
                     fit(&motion, TRAINING.plan(bound_cm), 0.02, &mut |_| ()).with_context(|| path.display().to_string())?;
                 let segments: usize = coded.channels.iter().map(|channel| channel.segments.len()).sum();
-                eprintln!("{} every {stride}: {bound_cm} cm, {segments} segments", path.display());
+                note!("{} every {stride}: {bound_cm} cm, {segments} segments", path.display());
                 counts.add(&coded, &rig, (2000.0 / segments.max(200) as f64).min(1.0));
             }
         }

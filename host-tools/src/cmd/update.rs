@@ -1,5 +1,6 @@
 //! `pantin update`.
 
+use crate::output::note;
 use crate::update::place::Place;
 use crate::update::{self, RetryPolicy};
 use anyhow::{Context, Result};
@@ -57,8 +58,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if !arguments.quiet {
         let (name, seconds) = (info.name.as_str(), begun.elapsed().as_secs_f64());
         match outcome.sent {
-            0 => eprintln!("{name}: the board has it already"),
-            sent => eprintln!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages said again", outcome.again),
+            0 => note!("{name}: the board has it already"),
+            sent => note!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages said again", outcome.again),
         }
     }
     Ok(())

@@ -3,27 +3,20 @@
 use crate::motion::{Kind, Motion, Rig};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::io::Write;
+#[cfg(feature = "cli")]
+use {
+    crate::output::{Staged, commit},
+    std::path::Path,
+};
 
-/// Writes `motion` to `path`: all of it, or the file stays as it was.
+/// Writes `motion` to the output `path`: all of it, or the file stays as it was.
+#[cfg(feature = "cli")]
 pub fn save(motion: &Motion, path: &Path) -> Result<()> {
     let place = || path.display().to_string();
-    let mut name = path.file_name().with_context(|| format!("{}: not a file name", place()))?.to_os_string();
-    name.push(".part");
-    let part = path.with_file_name(name);
-    let written = File::create(&part).map_err(anyhow::Error::from).and_then(|file| {
-        let mut out = BufWriter::new(file);
-        write(motion, &mut out)?;
-        Ok(out.flush()?)
-    });
-    let done = written.and_then(|()| Ok(fs::rename(&part, path)?));
-    if done.is_err() {
-        // The first error is the one to tell.
-        let _ = fs::remove_file(&part);
-    }
-    done.with_context(place)
+    let mut file = Staged::create(path)?;
+    write(motion, &mut file).with_context(place)?;
+    commit(vec![file])
 }
 
 /// Writes `motion` as BVH. Values carry seven decimals, so they come back within 5e-8 of their unit.

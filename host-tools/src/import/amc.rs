@@ -47,13 +47,19 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     Ok(Source { motion, unit_known: skeleton.cm_per_unit.is_some(), warnings })
 }
 
-fn find_skeleton(path: &Path, bytes: &[u8], files: &Files) -> Result<PathBuf> {
-    let lower = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+/// The skeletons in the folder of the motion `path`.
+pub(super) fn skeletons(path: &Path, files: &Files) -> Result<Vec<PathBuf>> {
     let is_asf = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("asf"));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut beside = files.beside(folder)?;
     beside.retain(|path| is_asf(path));
     beside.sort();
+    Ok(beside)
+}
+
+fn find_skeleton(path: &Path, bytes: &[u8], files: &Files) -> Result<PathBuf> {
+    let lower = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    let beside = skeletons(path, files)?;
     let stem = lower(path);
     // The same name is the longest that the motion's begins with.
     let by_name = beside.iter().filter(|skeleton| stem.starts_with(&lower(skeleton)));

@@ -1,49 +1,127 @@
 //! Where importers read from: the machine's folders, or files handed over with their names.
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
+use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Standard input's name.
+const STDIN: &str = "-";
+/// A motion file is not larger: five hours of a whole figure as text.
+pub const MOST_BYTES: u64 = 1 << 30;
 
 /// Where a motion's files are.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub enum Files {
     /// In folders.
-    #[default]
-    OnDisk,
+    OnDisk(Disk),
     /// All that there are: a web page has no folders.
     Given(Arc<[(PathBuf, Vec<u8>)]>),
 }
 
+impl Default for Files {
+    fn default() -> Self {
+        Files::OnDisk(Disk::default())
+    }
+}
+
+/// The machine's folders, and what has been read from them.
+#[derive(Clone, Debug, Default)]
+pub struct Disk(Arc<Mutex<State>>);
+
+#[derive(Debug, Default)]
+struct State {
+    read: BTreeSet<PathBuf>,
+    /// Contents of what can be read only once: pipes, and standard input.
+    streams: HashMap<PathBuf, Arc<[u8]>>,
+}
+
+impl Disk {
+    /// Every file that has been read.
+    pub fn read(&self) -> Vec<PathBuf> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).read.iter().cloned().collect()
+    }
+
+    fn whole(&self, path: &Path) -> Result<Vec<u8>> {
+        if let Some(bytes) = self.stream(path)? {
+            return Ok(bytes.to_vec());
+        }
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).read.insert(path.to_path_buf());
+        let file = File::open(path)?;
+        limited(file)
+    }
+
+    fn head(&self, path: &Path, most: u64) -> Result<Vec<u8>> {
+        if let Some(bytes) = self.stream(path)? {
+            return Ok(bytes[..bytes.len().min(most as usize)].to_vec());
+        }
+        let mut head = Vec::new();
+        File::open(path)?.take(most).read_to_end(&mut head)?;
+        Ok(head)
+    }
+
+    /// The content of a pipe, a device or standard input, which is read at its first use and kept; `None` for a regular file.
+    fn stream(&self, path: &Path) -> Result<Option<Arc<[u8]>>> {
+        let stdin = path.as_os_str() == STDIN;
+        if !stdin && fs::metadata(path)?.is_file() {
+            return Ok(None);
+        }
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(bytes) = state.streams.get(path) {
+            return Ok(Some(bytes.clone()));
+        }
+        let bytes: Arc<[u8]> = if stdin { limited(io::stdin().lock())? } else { limited(File::open(path)?)? }.into();
+        state.streams.insert(path.to_path_buf(), bytes.clone());
+        Ok(Some(bytes))
+    }
+}
+
+fn limited(file: impl Read) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
+    ensure!(bytes.len() as u64 <= MOST_BYTES, "more than {} MB", MOST_BYTES >> 20);
+    Ok(bytes)
+}
+
 impl Files {
     /// The whole content of `path`.
-    pub(super) fn read(&self, path: &Path) -> Result<Vec<u8>> {
+    pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>> {
         match self {
-            Files::OnDisk => fs::read(path).map_err(|error| anyhow!("{}: {error}", path.display())),
+            Files::OnDisk(disk) => disk.whole(path).map_err(|error| anyhow!("{}: {error}", path.display())),
             Files::Given(_) => Ok(self.given(path)?.to_vec()),
         }
     }
 
     /// Its first bytes, `most` at most.
     pub(super) fn head(&self, path: &Path, most: u64) -> Result<Vec<u8>> {
-        let mut head = Vec::new();
         match self {
-            Files::OnDisk => File::open(path).and_then(|file| file.take(most).read_to_end(&mut head)).map(drop),
-            Files::Given(_) => self.given(path)?.take(most).read_to_end(&mut head).map(drop),
+            Files::OnDisk(disk) => disk.head(path, most).with_context(|| path.display().to_string()),
+            Files::Given(_) => {
+                let mut head = Vec::new();
+                self.given(path)?.take(most).read_to_end(&mut head)?;
+                Ok(head)
+            }
         }
-        .with_context(|| path.display().to_string())?;
-        Ok(head)
     }
 
     /// The files in a folder.
     pub(super) fn beside(&self, folder: &Path) -> Result<Vec<PathBuf>> {
         match self {
-            Files::OnDisk => {
+            Files::OnDisk(_) => {
                 let entries = fs::read_dir(folder).map_err(|error| anyhow!("{}: {error}", folder.display()))?;
                 Ok(entries.flatten().map(|entry| entry.path()).collect())
             }
             Files::Given(files) => Ok(files.iter().map(|(path, _)| path.clone()).collect()),
+        }
+    }
+
+    /// Every file that has been read from the machine's folders.
+    pub fn read_so_far(&self) -> Vec<PathBuf> {
+        match self {
+            Files::OnDisk(disk) => disk.read(),
+            Files::Given(_) => Vec::new(),
         }
     }
 

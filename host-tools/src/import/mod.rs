@@ -144,9 +144,19 @@ pub(crate) fn one_line(text: &str) -> String {
     text.chars().take(200).map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
+/// The files that `path` is read with, as far as can be told without importing it: skeletons that lie beside an .amc, and a glTF's buffers.
+pub fn companions(path: &Path) -> Vec<PathBuf> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    match extension.as_str() {
+        "amc" => amc::skeletons(path, &Files::default()).unwrap_or_default(),
+        "glb" | "gltf" => gltf::buffers(path).unwrap_or_default(),
+        _ => Vec::new(),
+    }
+}
+
 /// The whole content of the machine's file `path`.
 fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    Files::OnDisk.read(path)
+    Files::default().read(path)
 }
 
 /// Adds whole turns so that no Euler angle moves by more than half a turn from one frame to the next (docs/METHOD.md 5).

@@ -1,5 +1,6 @@
 //! What a terminal shows: cells of one letter in two colours, and pixels as such letters.
 
+use crate::output::is_hostile;
 use crate::render::palette::{Palette, Rgb};
 use crate::render::shades::{Mark, Shades};
 use pantin_figure::ink::BodyPart;
@@ -61,6 +62,7 @@ impl Grid {
         let start = row * self.columns + column;
         for (offset, letter) in text.chars().take(room).enumerate() {
             if let Some(cell) = self.cells.get_mut(start + offset) {
+                let letter = if is_hostile(letter) { char::REPLACEMENT_CHARACTER } else { letter };
                 *cell = Cell { letter, ink, paper };
             }
         }

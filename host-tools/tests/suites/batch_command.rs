@@ -29,6 +29,14 @@ impl Folder {
     fn clip(&self, name: &str) -> PathBuf {
         self.0.join("out").join(name)
     }
+
+    /// Names of all clips, in order.
+    fn clips(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.join("out")).unwrap();
+        let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
 }
 
 impl Drop for Folder {
@@ -120,4 +128,111 @@ fn edits_work_together_in_one_command() {
     assert!(!refused.status.success());
     let refused = run(&["--map", "names.txt"]);
     assert!(!refused.status.success());
+}
+
+const LIGHT: &str = "time,a\n0,0\n0.1,1\n0.2,0.5\n";
+
+#[test]
+fn names_that_meet_are_told_apart_before_anything_is_written() {
+    let folder = Folder::new("meet");
+    // `a.bvh` and `a.keys` have one stem, and `a.bvh.keys` is called as the clip of `a.bvh` would be.
+    for name in ["a.tsv", "a.csv", "a.tsv.csv"] {
+        folder.put(name, &LIGHT.replace(',', if name.ends_with(".tsv") { "\t" } else { "," }));
+    }
+    let done = folder.convert(&[]);
+    assert!(done.status.success(), "{}", text(&done.stderr));
+    assert_eq!(folder.clips(), ["a.csv.ptn", "a.tsv.csv.ptn", "a.tsv.ptn"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn clips_that_links_lead_to_one_file_are_refused() {
+    let folder = Folder::new("links");
+    folder.put("a.csv", LIGHT);
+    folder.put("b.csv", LIGHT);
+    std::fs::create_dir(folder.0.join("out")).unwrap();
+    std::os::unix::fs::symlink("a.ptn", folder.clip("b.ptn")).unwrap();
+    std::fs::write(folder.clip("a.ptn"), "old").unwrap();
+    let done = folder.convert(&[]);
+    assert!(!done.status.success() && text(&done.stderr).contains("one file"), "{}", text(&done.stderr));
+    assert_eq!(std::fs::read(folder.clip("a.ptn")).unwrap(), b"old");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_clip_that_leads_to_its_own_source_is_refused() {
+    let folder = Folder::new("own");
+    folder.put("a.csv", LIGHT);
+    std::fs::create_dir(folder.0.join("out")).unwrap();
+    std::os::unix::fs::symlink("../in/a.csv", folder.clip("a.ptn")).unwrap();
+    let done = folder.convert(&[]);
+    assert!(!done.status.success() && text(&done.stdout).contains("is the input"), "{}", text(&done.stdout));
+    assert_eq!(std::fs::read_to_string(folder.0.join("in/a.csv")).unwrap(), LIGHT);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_the_folder_is_passed_over() {
+    let folder = Folder::new("pipe");
+    folder.put("a.csv", LIGHT);
+    if !Command::new("mkfifo").arg(folder.0.join("in/pipe.bvh")).status().is_ok_and(|status| status.success()) {
+        eprintln!("skipped: no mkfifo");
+        return;
+    }
+    let done = folder.convert(&[]);
+    assert!(done.status.success() && text(&done.stderr).contains("1 other files"), "{}", text(&done.stderr));
+}
+
+#[test]
+fn a_change_of_any_file_that_was_read_converts_again() {
+    let folder = Folder::new("changes");
+    folder.put("run.keys", &run_keys());
+    let with = folder.0.join("face.csv");
+    std::fs::write(&with, LIGHT).unwrap();
+    let run = || folder.convert(&["--with", "face.csv", "--effort", "fast"]);
+    assert!(run().status.success());
+    assert!(text(&run().stderr).contains("1 up to date"));
+    std::fs::write(&with, LIGHT.replace("0.5", "0.25")).unwrap();
+    assert!(text(&run().stderr).contains("1 converted"), "{}", text(&run().stderr));
+    assert!(text(&run().stderr).contains("1 up to date"));
+}
+
+#[test]
+fn a_change_of_a_buffer_beside_a_gltf_converts_again() {
+    let folder = Folder::new("buffer");
+    let run = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pantin"));
+        command.args(arguments).current_dir(&folder.0).output().unwrap()
+    };
+    folder.put("light.csv", LIGHT);
+    assert!(run(&["convert", "in/light.csv", "-o", "light.ptn"]).status.success());
+    assert!(run(&["expand", "light.ptn", "-o", "light.glb"]).status.success());
+    std::fs::remove_file(folder.0.join("in/light.csv")).unwrap();
+    let glb = gltf::Glb::from_slice(&std::fs::read(folder.0.join("light.glb")).unwrap()).unwrap().json.into_owned();
+    let bytes = std::fs::read(folder.0.join("light.glb")).unwrap();
+    let mut buffer = gltf::Glb::from_slice(&bytes).unwrap().bin.unwrap().into_owned();
+    let mut json: serde_json::Value = serde_json::from_slice(&glb).unwrap();
+    json["buffers"][0]["uri"] = "numbers.of light".into();
+    json["buffers"][0]["byteLength"] = buffer.len().into();
+    folder.put("light.gltf", &json.to_string());
+    let numbers = folder.0.join("in/numbers.of light");
+    std::fs::write(&numbers, &buffer).unwrap();
+    assert!(folder.convert(&[]).status.success());
+    assert!(text(&folder.convert(&[]).stderr).contains("1 up to date"));
+    buffer.extend([0; 4]);
+    std::fs::write(&numbers, &buffer).unwrap();
+    assert!(text(&folder.convert(&[]).stderr).contains("1 converted"));
+}
+
+#[test]
+fn a_cut_clip_with_the_right_time_is_converted_again() {
+    let folder = Folder::new("cut");
+    folder.put("a.csv", LIGHT);
+    assert!(folder.convert(&[]).status.success());
+    let clip = folder.clip("a.ptn");
+    let (whole, time) = (std::fs::read(&clip).unwrap(), std::fs::metadata(&clip).unwrap().modified().unwrap());
+    std::fs::write(&clip, &whole[..whole.len() - 3]).unwrap();
+    std::fs::File::options().write(true).open(&clip).unwrap().set_modified(time).unwrap();
+    let again = folder.convert(&[]);
+    assert!(text(&again.stderr).contains("1 converted") && std::fs::read(&clip).unwrap() == whole, "{}", text(&again.stderr));
 }

@@ -27,6 +27,7 @@ mod import_hostile;
 mod keyframes_input;
 mod livelink_input;
 mod optimum;
+mod outputs;
 mod own_clips;
 mod own_motions;
 #[cfg(unix)]
@@ -37,6 +38,7 @@ mod render_command;
 mod scalars_command;
 mod serve;
 mod table_input;
+mod terminal;
 mod update_command;
 mod vrml_input;
 mod vrml_real_files;

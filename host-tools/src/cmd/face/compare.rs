@@ -1,8 +1,9 @@
 //! `pantin face compare`
 
-use crate::cmd::write_whole;
+use super::face_picture;
 use crate::face::compare::{ACTIONS, METHODS, deviation, jaw, write};
 use crate::face::{Face, paper};
+use crate::output::{check, outln, write_whole};
 use anyhow::Result;
 use std::path::PathBuf;
 
@@ -17,22 +18,23 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    if let Some(output) = &arguments.output {
+        face_picture(output, "face compare")?;
+        check(&[], &[output])?;
+    }
     let face = Face::new()?;
-    println!(
-        "the mouth opens by {:.1} degrees; length of the jaw on the way, of that at rest:",
-        paper::opening_angle(&face.head)
-    );
+    outln!("the mouth opens by {:.1} degrees; length of the jaw on the way, of that at rest:", paper::opening_angle(&face.head))?;
     for (method, name) in METHODS {
         let jaw = jaw(&face, method)?;
-        println!("  {name:10} {:6.2} to {:6.2} %", jaw.shortest * 100.0, jaw.longest * 100.0);
+        outln!("  {name:10} {:6.2} to {:6.2} %", jaw.shortest * 100.0, jaw.longest * 100.0)?;
     }
-    println!("greatest distance of a point between two interpolations, mm (at the weight):");
-    println!("  {:10} {:>18} {:>18} {:>18}", "action", "linear-cosine", "linear-spherical", "cosine-spherical");
+    outln!("greatest distance of a point between two interpolations, mm (at the weight):")?;
+    outln!("  {:10} {:>18} {:>18} {:>18}", "action", "linear-cosine", "linear-spherical", "cosine-spherical")?;
     for (label, action) in ACTIONS {
         let pairs = [[0, 1], [0, 2], [1, 2]].map(|pair| pair.map(|index| METHODS[index].0));
         let cells = pairs.into_iter().map(|pair| deviation(&face, action, pair)).collect::<Result<Vec<_>>>()?;
         let cells: Vec<String> = cells.iter().map(|(most, weight)| format!("{most:11.2} ({weight:.2})")).collect();
-        println!("  {label:10} {}", cells.join(" "));
+        outln!("  {label:10} {}", cells.join(" "))?;
     }
     let Some(output) = &arguments.output else { return Ok(()) };
     let mut out = Vec::new();

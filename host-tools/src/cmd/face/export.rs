@@ -1,7 +1,7 @@
 //! `pantin face export`
 
-use crate::cmd::write_whole;
 use crate::face::{Face, export, pose};
+use crate::output::{check, write_whole};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
@@ -21,6 +21,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    check(&[], &[&arguments.output])?;
     let face = Face::new()?;
     let pairs = pose::parse(&face.blueprint, &arguments.pose)?;
     let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {

@@ -2,6 +2,7 @@
 
 use crate::cmd::Files;
 use crate::face::{Face, fit, outside};
+use crate::output::outln;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{ChannelState, Player};
 use pantin_face::{Binding, Morph, VERTICES, Weights};
@@ -43,16 +44,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let fit = fit::fit(&face.blueprint, &target).with_context(place)?;
     for (shape, pair) in face.blueprint.shapes.iter().zip(&fit.pairs) {
         match *pair {
-            [left, right] if left == right && left.abs() >= LEAST => println!("{:24} {left:6.3}", shape.name),
+            [left, right] if left == right && left.abs() >= LEAST => outln!("{:24} {left:6.3}", shape.name)?,
             _ => {
                 for (side, weight) in ["left", "right"].iter().zip(pair).filter(|(_, weight)| weight.abs() >= LEAST) {
-                    println!("{:24} {weight:6.3}", format!("{}_{side}", shape.name));
+                    outln!("{:24} {weight:6.3}", format!("{}_{side}", shape.name))?;
                 }
             }
         }
     }
-    println!("residual {:.3} mm (root mean square; {:.3} mm from the neutral face)", fit.residual, fit.before);
-    println!("worst {:.3} mm at {}", fit.worst.0, face.head.label(fit.worst.1));
+    outln!("residual {:.3} mm (root mean square; {:.3} mm from the neutral face)", fit.residual, fit.before)?;
+    outln!("worst {:.3} mm at {}", fit.worst.0, face.head.label(fit.worst.1))?;
     Ok(())
 }
 

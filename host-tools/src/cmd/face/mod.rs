@@ -34,3 +34,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Command::Sheet(arguments) => sheet::run(arguments),
     }
 }
+
+/// Refuses an output that is no PNG: `pantin face sheet` and `compare` write nothing else.
+fn face_picture(output: &std::path::Path, command: &str) -> Result<()> {
+    let png = output.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("png"));
+    anyhow::ensure!(png, "{}: `pantin {command}` writes a PNG; expected a name that ends in .png", output.display());
+    Ok(())
+}

@@ -1,10 +1,10 @@
 //! `pantin face model`
 
-use crate::cmd::write_whole;
 use crate::face::blueprint::Blueprint;
 use crate::face::{Face, compact, error, outside};
+use crate::output::{Wanted, check, outln, refuse_foreign, write_whole};
 use anyhow::Result;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Write the model that devices play: of Pantin's own face, or of a glTF's mesh and its morph targets.
 #[derive(clap::Args)]
@@ -21,6 +21,9 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    refuse_foreign(&arguments.output, Wanted::Model)?;
+    let inputs: Vec<&Path> = arguments.mesh.iter().map(PathBuf::as_path).collect();
+    check(&inputs, &[&arguments.output])?;
     let blueprint: Blueprint = match &arguments.mesh {
         Some(path) => outside::model(path)?,
         None => Face::new()?.blueprint,
@@ -28,15 +31,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let bytes = compact::encode(&blueprint)?;
     let moved: usize = blueprint.shapes.iter().map(|shape| shape.deltas.len()).sum();
     let whole = blueprint.shapes.len() * (blueprint.middles + blueprint.pairs);
-    println!(
+    outln!(
         "{} bytes: {} vertices, {} units, {} names",
         bytes.len(),
         blueprint.vertices(),
         blueprint.shapes.len(),
         blueprint.names.len()
-    );
-    println!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12);
+    )?;
+    outln!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12)?;
     let error = error::greatest(&blueprint, &bytes)?;
-    println!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0);
+    outln!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0)?;
     write_whole(&arguments.output, &bytes)
 }

@@ -1,7 +1,8 @@
 //! `pantin face sheet`
 
-use crate::cmd::write_whole;
+use super::face_picture;
 use crate::face::{Face, sheet};
+use crate::output::{check, write_whole};
 use anyhow::Result;
 use std::path::PathBuf;
 
@@ -16,6 +17,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    face_picture(&arguments.output, "face sheet")?;
+    check(&[], &[&arguments.output])?;
     let mut out = Vec::new();
     sheet::units(&mut out, &Face::new()?)?;
     write_whole(&arguments.output, &out)

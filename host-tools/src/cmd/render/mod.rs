@@ -3,9 +3,10 @@
 mod options;
 mod output;
 
-use super::{Files, write_whole};
+use super::Files;
 use crate::expand::expand;
 use crate::face::cast::is_face;
+use crate::output::{Staged, Wanted, check, commit, refuse_foreign};
 use crate::render::chart;
 use crate::render::figure::{Figure, Look, MOST_PIXELS, Memory};
 use crate::render::palette::Palette;
@@ -13,7 +14,7 @@ use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
 use pantin_figure::{Track, View};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// From so many pixels on, on the shorter side, lines are smooth unless pixels are asked for.
 const SMOOTH_FROM: usize = 240;
@@ -107,29 +108,31 @@ pub enum Axis {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    let inputs: Vec<&Path> = [arguments.input.as_path()].into_iter().chain(arguments.rig.as_deref()).collect();
+    check(&inputs, &[&arguments.output])?;
+    refuse_foreign(&arguments.output, Wanted::Picture)?;
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let kind = arguments.kind()?;
     let face = is_face(&clip)?;
-    let bytes = if clip.rig().joint_count() == 0 && !face {
+    let mut file = Staged::create(&arguments.output)?;
+    if clip.rig().joint_count() == 0 && !face {
         if kind != Kind::Png {
             bail!(
                 "{}: a clip without joints has no figure to draw; a name that ends in .png gives a chart",
                 arguments.output.display()
             );
         }
-        let mut out = Vec::new();
-        chart::write(&mut out, &expand(&clip)?)?;
-        out
+        chart::write(&mut file, &expand(&clip)?)?;
     } else {
         let look = arguments.look(kind)?;
         let mut memory = Memory::of(&clip);
         let sides = arguments.sides(face);
         let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views(&sides, face))?;
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
-        Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.bytes()?
-    };
-    write_whole(&arguments.output, &bytes)
+        Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.write(&mut file)?;
+    }
+    commit(vec![file])
 }
 
 impl Arguments {

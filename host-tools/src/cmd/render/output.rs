@@ -10,6 +10,7 @@ use crate::render::sheet::{Layout, arrange};
 use crate::render::svg;
 use anyhow::{Result, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 
 /// Pictures of a contact sheet of one view, and how many of them are in a row.
 const SHEET: u32 = 12;
@@ -50,16 +51,16 @@ pub struct Output<'a, 'm> {
 }
 
 impl Output<'_, '_> {
-    /// The file's bytes.
-    pub fn bytes(mut self) -> Result<Vec<u8>> {
+    /// Writes the file's bytes to `out`.
+    pub fn write(mut self, out: &mut impl Write) -> Result<()> {
         if matches!(self.kind, Kind::Gif | Kind::Apng) {
-            return self.animation();
+            return self.animation(out);
         }
         if let Some(moment) = self.arguments.frame {
             let frame = moment.frame(self.frames, self.frame_time)?;
-            return self.frame(frame);
+            return self.frame(frame, out);
         }
-        self.sheet()
+        self.sheet(out)
     }
 
     /// The frames `from..to` that are asked for.
@@ -85,7 +86,7 @@ impl Output<'_, '_> {
         if scale == 1 { image } else { image.enlarged(scale) }
     }
 
-    fn animation(&mut self) -> Result<Vec<u8>> {
+    fn animation(&mut self, mut out: &mut impl Write) -> Result<()> {
         let (from, to) = self.stretch()?;
         let most = if self.kind == Kind::Gif { gif::MOST_A_SECOND } else { apng::MOST_A_SECOND };
         let timing = match self.arguments.fps {
@@ -97,7 +98,6 @@ impl Output<'_, '_> {
         let [width, height] = self.arguments.size.0.map(|side| side * scale);
         let whole = [width * self.views(), height];
         ensure_size(whole)?;
-        let mut out = Vec::new();
         let palette = &self.arguments.palette;
         let mut animation: Box<dyn Animation + '_> = match (self.kind, self.look) {
             (Kind::Gif, Look::Pixels) => Box::new(Gif::new(&mut out, &palette.pixel_colours(), timing.seconds)),
@@ -114,24 +114,22 @@ impl Output<'_, '_> {
             bar.inc(1);
         }
         bar.finish_and_clear();
-        drop(animation);
-        Ok(out)
+        Ok(())
     }
 
-    fn frame(&mut self, frame: u32) -> Result<Vec<u8>> {
+    fn frame(&mut self, frame: u32, out: &mut impl Write) -> Result<()> {
         ensure!(self.views() == 1, "--frame shows one view; --strip 1 shows several");
         self.figure.seek(frame);
         if self.kind == Kind::Svg {
-            return Ok(svg::picture(&self.figure.scene(0), self.arguments.size.0, &self.arguments.palette).into_bytes());
+            let text = svg::picture(&self.figure.scene(0), self.arguments.size.0, &self.arguments.palette);
+            return Ok(out.write_all(text.as_bytes())?);
         }
         let scale = self.scale(EASY_TO_SEE);
         ensure_size(self.arguments.size.0.map(|side| side * scale))?;
-        let mut out = Vec::new();
-        self.image(0, scale).write_png(&mut out)?;
-        Ok(out)
+        self.image(0, scale).write_png(out)
     }
 
-    fn sheet(&mut self) -> Result<Vec<u8>> {
+    fn sheet(&mut self, out: &mut impl Write) -> Result<()> {
         let (from, to) = self.stretch()?;
         let frames = match self.arguments.strip {
             Some(count) if self.arguments.from.or(self.arguments.to).is_some() => evenly(from, to, count),
@@ -148,15 +146,13 @@ impl Output<'_, '_> {
         let layout = Layout { picture, columns, rows, gap };
         ensure_size(layout.size())?;
         let palette = &self.arguments.palette;
-        let mut out = Vec::new();
         if self.kind == Kind::Svg {
             let cells = self.cells(&frames, |output, view| output.figure.scene(view));
-            out = svg::sheet(layout, &cells, palette).into_bytes();
+            Ok(out.write_all(svg::sheet(layout, &cells, palette).as_bytes())?)
         } else {
             let cells = self.cells(&frames, |output, view| output.image(view, scale));
-            arrange(layout, &cells, palette).write_png(&mut out)?;
+            arrange(layout, &cells, palette).write_png(out)
         }
-        Ok(out)
     }
 
     /// A row of the frames for each view, with their labels.

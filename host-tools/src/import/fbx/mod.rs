@@ -8,7 +8,7 @@ mod nodes;
 use super::grid::{self, Grid};
 use super::list::Entry;
 use super::posed::{self, Affine, Node};
-use super::{Options, Source, one_line, read_bytes};
+use super::{Files, Options, Source, one_line};
 use crate::motion::Scalar;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use nodes::Moves;
@@ -34,7 +34,7 @@ pub fn begins(head: &[u8]) -> bool {
 /// Reads an animation stack of the FBX file `path`.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let place = || path.display().to_string();
-    let scene = open(path)?;
+    let scene = open(path, &options.files)?;
     let stack = chosen(&scene, options.animation.as_deref()).with_context(place)?;
     let moves = Moves::of(&scene, stack);
     let grid = grid(&scene, stack, options.fps).with_context(place)?;
@@ -49,7 +49,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
 
 /// All stacks of the FBX file `path`.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    let scene = open(path)?;
+    let scene = open(path, &Files::default())?;
     let entry = |stack: &AnimStack| {
         let grid = grid(&scene, stack, fps).with_context(|| path.display().to_string())?;
         let name = Some(one_line(&stack.element.name)).filter(|name| !name.is_empty());
@@ -58,8 +58,8 @@ pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
     scene.anim_stacks.iter().map(|stack| entry(stack)).collect()
 }
 
-fn open(path: &Path) -> Result<SceneRoot> {
-    let bytes = read_bytes(path)?;
+fn open(path: &Path, files: &Files) -> Result<SceneRoot> {
+    let bytes = files.read(path)?;
     let limit = || ufbx::AllocatorOpts { memory_limit: MOST_BYTES, ..Default::default() };
     let options = ufbx::LoadOpts {
         temp_allocator: limit(),

@@ -91,14 +91,24 @@ impl File {
             let Some((_, data)) = data.split_once(";base64,") else { bail!("expected base64 in the data URI") };
             return STANDARD.decode(data.trim_end()).map_err(|error| anyhow!("the data URI is no base64: {error}"));
         }
+        let Some(beside) = self.beside(uri) else {
+            bail!("uri `{}`: expected a data URI or the name of a file beside this one", one_line(uri));
+        };
+        self.files.read(&beside)
+    }
+
+    /// The file that a URI names, if it lies beside this one.
+    fn beside(&self, uri: &str) -> Option<PathBuf> {
         let name = percent_decoded(uri);
         let relative = Path::new(&name);
         let inside = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        if uri.contains("://") || !inside {
-            bail!("uri `{}`: expected a data URI or the name of a file beside this one", one_line(uri));
-        }
-        let beside = self.path.with_file_name("").join(relative);
-        self.files.read(&beside)
+        (inside && !uri.contains("://")).then(|| self.path.with_file_name("").join(relative))
+    }
+
+    /// The files beside this one that hold its buffers.
+    pub fn external_buffers(&self) -> Vec<PathBuf> {
+        let uris = self.root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+        uris.filter(|uri| !uri.starts_with("data:")).filter_map(|uri| self.beside(uri)).collect()
     }
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// All animations of the glTF file `path`, those included that nothing can be read from: they have no frames.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    let file = File::open(path, &read_bytes(path)?, &Files::OnDisk)?;
+    let file = File::open(path, &read_bytes(path)?, &Files::default())?;
     let entry = |number: usize| {
         let name = file.root.animations[number].name.as_deref().map(super::one_line);
         let tracks = tracks(&file, number, &mut Vec::new())?;

@@ -25,7 +25,7 @@ pub struct Mesh {
 /// Reads it. Parts of the mesh follow each other.
 pub fn read(path: &Path) -> Result<Mesh> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-    let file = File::open(path, &bytes, &Files::OnDisk)?;
+    let file = File::open(path, &bytes, &Files::default())?;
     let with_targets = |mesh: &&gltf::json::Mesh| {
         mesh.primitives.iter().any(|part| part.targets.as_ref().is_some_and(|targets| !targets.is_empty()))
     };

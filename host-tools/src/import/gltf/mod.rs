@@ -16,7 +16,7 @@ mod tree;
 pub(crate) use place::quaternion;
 
 use super::grid::{self, Grid};
-use super::{Options, Source, units};
+use super::{Files, Options, Source, units};
 use crate::motion::{Keys, Kind, Motion, Rig};
 use anyhow::{Result, anyhow, bail, ensure};
 use file::{File, one_line};
@@ -25,7 +25,7 @@ use gltf::json::animation::Property;
 use gltf::json::validation::Checked;
 pub use list::list;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use track::Track;
 
 /// glTF's unit of length is the metre.
@@ -41,6 +41,12 @@ pub fn begins(head: &[u8]) -> bool {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start();
     let asset = b"\"asset\"";
     head.starts_with(b"glTF") || (text.starts_with(b"{") && text.windows(asset.len()).any(|word| word == asset))
+}
+
+/// The files beside the glTF file `path` that hold its buffers.
+pub(super) fn buffers(path: &Path) -> Result<Vec<PathBuf>> {
+    let files = Files::default();
+    Ok(File::open(path, &files.read(path)?, &files)?.external_buffers())
 }
 
 /// Reads an animation of the glTF file `path`.

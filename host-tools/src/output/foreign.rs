@@ -1,0 +1,70 @@
+//! Names that belong to another kind of file: `-o walk.bvh` for a clip would destroy a capture, or fool whoever opens it.
+
+use anyhow::{Result, bail};
+use std::path::Path;
+
+/// What a command writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// A clip.
+    Clip,
+    /// A rig that is kept apart from its clips.
+    Rig,
+    /// A motion, or source text.
+    Motion,
+    /// A picture.
+    Picture,
+    /// A face's model.
+    Model,
+    /// A Rust source file.
+    Source,
+    /// Anything else that a command checks by itself.
+    Other,
+}
+
+/// Kinds of file, their extensions, and which command writes them.
+const KINDS: &[(Wanted, &[&str], &str)] = &[
+    (Wanted::Clip, &["ptn"], "`pantin convert` writes clips"),
+    (Wanted::Rig, &["rig"], "`pantin convert --rig-out` writes rigs"),
+    (Wanted::Motion, &["bvh", "glb", "csv", "h"], "to write a motion or source text use `pantin expand`"),
+    (
+        Wanted::Other,
+        &["gltf", "fbx", "amc", "asf", "wrl", "vrml", "x3dv", "keys", "proc", "fap", "tsv"],
+        "Pantin reads these files and does not write them; `pantin expand` writes .bvh, .glb and .csv",
+    ),
+    (Wanted::Picture, &["png", "apng", "gif", "svg"], "to draw a clip use `pantin render`"),
+    (
+        Wanted::Other,
+        &["jpg", "jpeg", "webp", "bmp", "tif", "tiff", "pdf", "mp4", "webm", "mov", "avi", "mkv"],
+        "`pantin render` writes .png, .apng, .gif and .svg",
+    ),
+    (Wanted::Model, &["model"], "`pantin face model` writes models"),
+    (Wanted::Source, &["rs"], "`pantin expand` writes Rust modules"),
+    (Wanted::Other, &["uf2", "hex", "bin", "elf"], "to write an image for a board use `pantin flash-image`"),
+    (Wanted::Other, &["obj"], "`pantin face export` writes .obj"),
+    (
+        Wanted::Other,
+        &["txt", "md", "json", "html", "htm", "js", "py", "c", "cpp", "toml", "yaml", "yml", "xml", "log", "zip", "gz"],
+        "that is another kind of file",
+    ),
+];
+
+/// Refuses an output whose extension belongs to another kind of file than the one `wanted`, and says which command writes that kind.
+pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let found = KINDS.iter().find(|(_, extensions, _)| extensions.contains(&extension.as_str()));
+    let Some((kind, _, hint)) = found.filter(|(kind, ..)| *kind != wanted) else { return Ok(()) };
+    let expected = match wanted {
+        Wanted::Clip => "a clip's name ends in .ptn",
+        Wanted::Rig => "a rig's name ends in .rig",
+        Wanted::Motion => "expected a name that ends in .bvh, .glb, .csv, .h or .rs",
+        Wanted::Picture => "expected a name that ends in .gif, .apng, .png or .svg",
+        Wanted::Model => "a model's name ends in .model",
+        Wanted::Source => "expected a name that ends in .rs",
+        Wanted::Other => "expected another name",
+    };
+    if wanted == Wanted::Motion && *kind == Wanted::Source {
+        return Ok(());
+    }
+    bail!("{}: {expected}; {hint}", path.display())
+}

@@ -1,0 +1,181 @@
+//! Bytes on their way to an output: beside it until they are whole, then in its place.
+
+use super::place::{Place, folder};
+use super::terminal::noticed;
+use anyhow::{Context, Result};
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Stdout, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, Once, PoisonError};
+use tempfile::{Builder, NamedTempFile, TempPath};
+
+/// An output that is being written. Dropped before [`commit`], it leaves the file that was there as it was.
+pub struct Staged {
+    /// As the user gave it.
+    path: PathBuf,
+    to: To,
+}
+
+enum To {
+    Replace { bytes: BufWriter<NamedTempFile>, file: PathBuf, _name: Registered },
+    Through(BufWriter<File>),
+    Stdout(BufWriter<Stdout>),
+}
+
+impl Staged {
+    /// Begins an output at `path`.
+    pub fn create(path: &Path) -> Result<Staged> {
+        let to = Place::of(path).and_then(|place| match place {
+            Place::Stdout => Ok(To::Stdout(BufWriter::new(io::stdout()))),
+            Place::Through(path) => Ok(To::Through(BufWriter::new(
+                File::options().write(true).truncate(true).open(path).context("cannot be opened")?,
+            ))),
+            Place::File(file) => {
+                remove_on_signals();
+                let bytes = temporary().tempfile_in(folder(&file)).context("cannot be written")?;
+                let name = Registered::new(bytes.path());
+                Ok(To::Replace { bytes: BufWriter::new(bytes), file, _name: name })
+            }
+        });
+        Ok(Staged { path: path.to_path_buf(), to: to.with_context(|| path.display().to_string())? })
+    }
+}
+
+impl Write for Staged {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.to {
+            To::Replace { bytes: file, .. } => file.write(bytes),
+            To::Through(file) => noticed(file.write(bytes)),
+            To::Stdout(out) => noticed(out.write(bytes)),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.to {
+            To::Replace { bytes, .. } => bytes.flush(),
+            To::Through(file) => noticed(file.flush()),
+            To::Stdout(out) => noticed(out.flush()),
+        }
+    }
+}
+
+/// A temporary name that no other program uses. The file gets the rights that any new file gets.
+fn temporary() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(".pantin-").suffix(".part");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
+}
+
+/// Puts all outputs in their places. If one cannot be put there, the files that were there come back.
+pub fn commit(staged: Vec<Staged>) -> Result<()> {
+    let several = staged.len() > 1;
+    let mut whole = Vec::new();
+    for mut output in staged {
+        let path = output.path.clone();
+        let failed = || format!("{}: cannot be written", path.display());
+        output.flush().with_context(failed)?;
+        let To::Replace { bytes, file, _name } = output.to else { continue };
+        let bytes = bytes.into_inner().map_err(io::IntoInnerError::into_error).with_context(failed)?;
+        // A full disk may be reported no earlier.
+        bytes.as_file().sync_data().with_context(failed)?;
+        if let Ok(found) = fs::metadata(&file) {
+            bytes.as_file().set_permissions(found.permissions()).with_context(failed)?;
+        }
+        whole.push((path, bytes, file, _name));
+    }
+    let mut done: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
+    for (path, bytes, file, _name) in whole {
+        let replaced = (|| {
+            let before = if several { backup(&file)? } else { None };
+            bytes.persist(&file).map_err(|error| error.error)?;
+            Ok(before)
+        })();
+        match replaced {
+            Ok(before) => done.push((file, before)),
+            Err(error) => {
+                let error: io::Error = error;
+                roll_back(done);
+                return Err(error).with_context(|| format!("{}: cannot be written", path.display()));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A second name of the file `path`, so that it can come back.
+fn backup(path: &Path) -> io::Result<Option<TempPath>> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    let link = |name: &Path| match fs::hard_link(path, name) {
+        // Some file systems have no links.
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
+            io::copy(&mut File::open(path)?, &mut File::create_new(name)?).map(drop)
+        }
+        linked => linked,
+    };
+    Ok(Some(temporary().make_in(folder(path), link)?.into_temp_path()))
+}
+
+/// What cannot be undone is not reported: the error that led here is.
+fn roll_back(done: Vec<(PathBuf, Option<TempPath>)>) {
+    for (path, before) in done {
+        let _ = match before {
+            Some(before) => before.persist(&path).map_err(io::Error::from),
+            None => fs::remove_file(&path),
+        };
+    }
+}
+
+/// Temporary names that exist now.
+static NAMES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// A temporary name that a signal removes.
+struct Registered(PathBuf);
+
+impl Registered {
+    fn new(path: &Path) -> Registered {
+        NAMES.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_path_buf());
+        Registered(path.to_path_buf())
+    }
+}
+
+impl Drop for Registered {
+    fn drop(&mut self) {
+        NAMES.lock().unwrap_or_else(PoisonError::into_inner).remove(&self.0);
+    }
+}
+
+/// Signals that end the program remove temporary files first. A signal that the program was started to ignore stays ignored.
+fn remove_on_signals() {
+    #[cfg(unix)]
+    {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        static ONCE: Once = Once::new();
+        ONCE.call_once(|| {
+            let ignored = ignored_signals();
+            let signals = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+            let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) else { return };
+            std::thread::spawn(move || {
+                for signal in signals.forever() {
+                    for name in NAMES.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+                        // Nobody is left to be told.
+                        let _ = fs::remove_file(name);
+                    }
+                    let _ = signal_hook::low_level::emulate_default_handler(signal);
+                }
+            });
+        });
+    }
+}
+
+/// A bit a signal, from 1 on, as Linux reports them (`nohup`, and shells that start programs in the background); else none.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
