@@ -3,7 +3,7 @@
 use super::list::Entry;
 use super::{Options, Source};
 use anyhow::{Result, bail};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Whether `head` begins a glTF file in its binary form.
 pub fn begins(head: &[u8]) -> bool {
@@ -18,4 +18,9 @@ pub fn read(path: &Path, _: &Options) -> Result<Source> {
 /// Returns an error that says how to build with glTF.
 pub fn list(path: &Path, _: Option<f64>) -> Result<Vec<Entry>> {
     read(path, &Options::default()).map(|_| Vec::new())
+}
+
+/// None.
+pub(super) fn buffers(_path: &Path) -> Result<Vec<PathBuf>> {
+    Ok(Vec::new())
 }
