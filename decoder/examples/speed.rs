@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = Instant::now();
         for _ in 1..frames {
             player.step();
-            black_box(player.pose());
+            black_box(player.pose().values);
         }
         start.elapsed().as_secs_f64() / f64::from(frames.max(2) - 1)
     });
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = Instant::now();
         for &target in &targets {
             player.seek(target);
-            black_box(player.pose());
+            black_box(player.pose().values);
         }
         start.elapsed().as_secs_f64() / targets.len() as f64
     });

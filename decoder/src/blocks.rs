@@ -1,5 +1,6 @@
 //! The motion's bytes: blocks with a CRC each, read as if the CRCs were not there.
 
+use crate::bytes::{Varint, unzigzag};
 use crate::layout::{BLOCK_BYTES, CRC_BYTES};
 use crate::{OpenError, crc};
 
@@ -44,33 +45,32 @@ impl Reader<'_, '_> {
         u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()])
     }
 
-    /// As `Bytes::varint` reads it; what does not fit is lost.
+    /// A [`Varint`]; bits that do not fit are lost.
     #[inline(never)]
     pub(crate) fn varint(&mut self) -> u32 {
-        let (mut value, mut shift) = (0, 0);
-        while shift < 35 {
-            let byte = self.byte();
-            value |= u32::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                break;
-            }
-            shift += 7;
-        }
-        value
+        let mut varint = Varint::default();
+        while !varint.push(self.byte()) {}
+        varint.value
     }
 
     pub(crate) fn zigzag(&mut self) -> i32 {
-        let n = self.varint();
-        (n >> 1) as i32 ^ -((n & 1) as i32)
+        unzigzag(self.varint())
     }
+}
+
+/// Whether a block's CRC is right. `seed` is what it continues: [`crc::INITIAL`] but for a motion's or an index's first block.
+pub(crate) fn is_intact(block: &[u8], seed: u16) -> bool {
+    block.split_last_chunk::<CRC_BYTES>().is_some_and(|(body, stored)| crc::update(seed, body) == u16::from_le_bytes(*stored))
 }
 
 /// Checks the CRC of every block, and returns all but the last CRC, and that. `crc` is that of what must not change unseen before them.
 #[inline(never)]
 pub(crate) fn check(bytes: &[u8], mut crc: u16) -> Result<(&[u8], u16), OpenError> {
     for block in bytes.chunks(STRIDE) {
-        let (body, stored) = block.split_last_chunk::<CRC_BYTES>().ok_or(OpenError::Truncated)?;
-        if crc::update(crc, body) != u16::from_le_bytes(*stored) {
+        if block.len() < CRC_BYTES {
+            return Err(OpenError::Truncated);
+        }
+        if !is_intact(block, crc) {
             return Err(OpenError::BadCrc);
         }
         crc = crc::INITIAL;

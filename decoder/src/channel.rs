@@ -23,11 +23,14 @@ pub struct ChannelState {
 
 impl Default for ChannelState {
     fn default() -> Self {
-        ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, prev_sign: 0 }
+        ChannelState::NEW
     }
 }
 
 impl ChannelState {
+    /// What fills memory before a player takes it: `static STATES: ... = [ChannelState::NEW; N]`.
+    pub const NEW: ChannelState = ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, prev_sign: 0 };
+
     /// Becomes `other`, field by field: as a whole it would drag the library's memory move into small images.
     pub(crate) fn become_as(&mut self, other: &ChannelState) {
         (self.v, self.w, self.k) = (other.v, other.w, other.k);

@@ -3,8 +3,12 @@
 use crate::blocks::{self, Input, Reader, STRIDE};
 use crate::bytes::Bytes;
 use crate::entropy::{Cursor, Symbols};
+use crate::form::{CodedKinds, Form};
+use crate::joint::{JointRef, has_choice};
 use crate::layout::*;
-use crate::rig::{Joint, Rig};
+use crate::prefix::Prefix;
+use crate::rig::Rig;
+use crate::scalar::ScalarRef;
 use crate::start::ChannelStarts;
 use crate::{OpenError, crc};
 
@@ -33,6 +37,7 @@ pub(crate) struct Head {
     /// Where the events begin: at 148 at most. Exponential-map bits stand before them.
     pub(crate) events: u8,
     exponentials: u8,
+    exponential_bytes: u8,
 }
 
 /// The parts of a file.
@@ -49,30 +54,22 @@ pub(crate) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
+    /// Reads the fields in front of the motion.
     pub(crate) fn split(bytes: &'a [u8]) -> Result<Parts<'a>, OpenError> {
         let mut reader = Bytes(bytes);
-        if reader.take(2)? != MAGIC {
-            return Err(OpenError::BadMagic);
+        let (mut prefix, mut rig, mut rig_len) = (Prefix::default(), None, 0);
+        loop {
+            if let Some(motion_len) = prefix.push(reader.byte()?, None)? {
+                let seed = prefix.seed(motion_len);
+                return Ok(Parts { flags: prefix.flags, rig, rig_len, seed, rest: reader.0, motion_len: motion_len as usize });
+            }
+            if let Some(len) = prefix.rig_len() {
+                rig = Some(reader.take(len as usize)?);
+                prefix.skip_rig();
+                // Behind magic, version and flags.
+                rig_len = bytes.len() - reader.0.len() - 4;
+            }
         }
-        let version = reader.byte()?;
-        if version != VERSION {
-            return Err(OpenError::UnsupportedVersion(version));
-        }
-        let flags = reader.byte()?;
-        if flags & !KNOWN_FLAGS != 0 {
-            return Err(OpenError::Malformed);
-        }
-        let before = reader.0.len();
-        let rig = if flags & HAS_RIG != 0 {
-            let len = reader.varint()? as usize;
-            Some(reader.take(len)?)
-        } else {
-            None
-        };
-        let rig_len = before - reader.0.len();
-        let motion_len = reader.varint()? as usize;
-        let seed = crc::of_prefix(flags, motion_len as u32);
-        Ok(Parts { flags, rig, rig_len, seed, rest: reader.0, motion_len })
     }
 }
 
@@ -87,11 +84,6 @@ impl<'a> Parts<'a> {
         }
         if reader.0.is_empty() { Ok(index) } else { Err(OpenError::Malformed) }
     }
-}
-
-/// Whether a clip may code the joint's rotation as an exponential map in place of its three Euler angles.
-pub fn has_choice(joint: &Joint<'_>) -> bool {
-    joint.kinds.filter(|kind| kind.is_rotation()).count() == 3
 }
 
 impl Head {
@@ -115,30 +107,19 @@ impl Head {
             return Err(OpenError::WrongRig);
         }
         let exponentials = reader.position as u8;
-        if flags & HAS_EXPONENTIALS != 0 {
-            let choices = rig.joints().filter(has_choice).count();
-            for _ in 0..choices.div_ceil(8) {
-                reader.byte();
-            }
-        }
+        // A joint with a choice has three channels: 43 bytes at most.
+        let choices = if flags & HAS_EXPONENTIALS != 0 { rig.joints().filter(has_choice).count() } else { 0 };
+        let exponential_bytes = choices.div_ceil(8) as u8;
+        (0..exponential_bytes).for_each(|_| _ = reader.byte());
         let event_count = if flags & HAS_EVENTS != 0 { reader.varint() } else { 0 };
         let events = reader.position as u8;
-        Ok(Head { flags, length_exponent, frames, frame_time_ns, event_count, events, exponentials })
+        Ok(Head { flags, length_exponent, frames, frame_time_ns, event_count, events, exponentials, exponential_bytes })
     }
 
-    /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map. `input` holds the
-    /// motion's first block.
-    pub(crate) fn is_exponential(&self, input: &Input<'_>, rig: &Rig<'_>, joint: usize) -> bool {
-        if self.flags & HAS_EXPONENTIALS == 0 || !rig.joint(joint).is_some_and(|joint| has_choice(&joint)) {
-            return false;
-        }
-        let choice = rig.joints().take(joint).filter(has_choice).count();
+    /// What the values of the clip's poses mean. `input` holds the motion's first block.
+    pub(crate) fn form(&self, input: &Input<'_>, rig_id: u32) -> Form {
         let mut reader = Reader { input, position: u32::from(self.exponentials) };
-        let mut byte = 0;
-        for _ in 0..=choice / 8 {
-            byte = reader.byte();
-        }
-        byte >> (choice % 8) & 1 != 0
+        Form::new(rig_id, self.length_exponent, (0..self.exponential_bytes).map(|_| reader.byte()))
     }
 }
 
@@ -201,6 +182,31 @@ impl<'a> Clip<'a> {
         Ok(Clip { rig, motion, rig_len: parts.rig_len, head, symbols, index: &[] })
     }
 
+    /// All but the bytes.
+    pub(crate) fn without_bytes(&self) -> Clip<'static> {
+        Clip {
+            rig: self.rig.with_bytes(&[]),
+            motion: &[],
+            rig_len: self.rig_len,
+            head: self.head,
+            symbols: self.symbols,
+            index: &[],
+        }
+    }
+
+    /// The same clip in other bytes, of which those of the motion and an index are not there yet.
+    pub(crate) fn with_bytes<'b>(&self, rig: &'b [u8]) -> Clip<'b> {
+        let body = rig.split_last_chunk::<CRC_BYTES>().map_or(&[][..], |(body, _)| body);
+        Clip {
+            rig: self.rig.with_bytes(body),
+            motion: &[],
+            rig_len: self.rig_len,
+            head: self.head,
+            symbols: self.symbols,
+            index: &[],
+        }
+    }
+
     /// The figure.
     pub fn rig(&self) -> Rig<'a> {
         self.rig
@@ -246,9 +252,46 @@ impl<'a> Clip<'a> {
         self.symbols as usize
     }
 
+    /// What the raw values of the clip's poses mean. Clips of one rig can have different forms.
+    #[inline(never)]
+    pub fn form(&self) -> Form {
+        self.head.form(&self.input(), self.rig.id())
+    }
+
     /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map.
     pub fn is_exponential(&self, joint: usize) -> bool {
-        self.head.is_exponential(&self.input(), &self.rig, joint)
+        self.form().is_exponential(&self.rig, joint)
+    }
+
+    /// The kinds of a joint's channels as the clip codes them; none for a joint that the rig lacks. They differ from the rig's
+    /// where three Euler angles are coded as an exponential map.
+    pub fn kinds(&self, joint: usize) -> CodedKinds<'a> {
+        let kinds = self.rig.joint(joint).map_or(crate::Kinds::NONE, |joint| joint.kinds);
+        CodedKinds { kinds, exponential: self.is_exponential(joint), turned: 0 }
+    }
+
+    /// Finds a joint by its name: [`Rig::find`].
+    pub fn find(&self, joint: &str) -> Option<JointRef<'a>> {
+        self.rig.find(joint)
+    }
+
+    /// Finds a scalar by its name: [`Rig::find_scalar`].
+    pub fn find_scalar(&self, scalar: &str) -> Option<ScalarRef> {
+        self.rig.find_scalar(scalar)
+    }
+
+    /// Time from frame 0 to the end: of a loop until frame 0 comes again, else until the last frame.
+    pub fn duration_ns(&self) -> u64 {
+        let steps = if self.looped() { self.frames() } else { self.frames() - 1 };
+        u64::from(steps) * u64::from(self.frame_time_ns())
+    }
+
+    /// The frame that is shown at a time after frame 0. A loop goes on for ever; another clip stays at its last frame.
+    pub fn frame_at(&self, elapsed_us: u64) -> u32 {
+        let frame = elapsed_us.saturating_mul(1000).checked_div(self.frame_time_ns().into()).unwrap_or(0);
+        let frames = u64::from(self.frames());
+        let shown = if self.looped() { frame.checked_rem(frames).unwrap_or(0) } else { frame.min(frames - 1) };
+        shown as u32
     }
 
     /// Number of event markers.

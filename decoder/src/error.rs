@@ -23,8 +23,26 @@ pub enum OpenError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TooSmall {
-    /// What the clip needs, in elements of the slice that was too small.
+    /// Which slice is too small.
+    pub memory: Memory,
+    /// The elements that the clip needs.
     pub needed: usize,
+    /// The elements that were given.
+    pub given: usize,
+}
+
+/// The memory that a caller lends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Memory {
+    /// Channel states: [`Clip::moving`](crate::Clip::moving) of them.
+    States,
+    /// Values of a pose: [`Rig::channels`](crate::Rig::channels) of them.
+    Values,
+    /// The buffer of a stream, in bytes: [`Stream::BUFFER`](crate::Stream::BUFFER).
+    Buffer,
+    /// The bytes of a rig that arrives with its clip.
+    Rig,
 }
 
 impl core::fmt::Display for OpenError {
@@ -42,11 +60,16 @@ impl core::fmt::Display for OpenError {
 
 impl core::fmt::Display for TooSmall {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(f, "the player needs memory for {} elements", self.needed)
+        let memory = match self.memory {
+            Memory::States => "channel states",
+            Memory::Values => "values of a pose",
+            Memory::Buffer => "bytes of buffer",
+            Memory::Rig => "bytes for the rig",
+        };
+        write!(f, "the clip needs {} {memory}; {} were given", self.needed, self.given)
     }
 }
 
-#[cfg(feature = "std")]
-impl std::error::Error for OpenError {}
-#[cfg(feature = "std")]
-impl std::error::Error for TooSmall {}
+impl core::error::Error for OpenError {}
+
+impl core::error::Error for TooSmall {}

@@ -1,38 +1,54 @@
 //! Plays recorded character motion on small machines: three integer additions a channel a frame.
-#![cfg_attr(not(any(test, feature = "std")), no_std)]
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 mod blocks;
 mod bytes;
 mod channel;
 mod clip;
-pub mod crc;
-pub mod entropy;
+mod clock;
+pub mod codec;
 mod error;
+mod form;
 #[doc = include_str!("../FORMAT.md")]
 pub mod format {}
 mod history;
 mod index;
-pub mod layout;
+mod joint;
+mod kind;
 pub mod names;
 mod partial;
 mod play_state;
 mod player;
 mod prefix;
 mod rig;
-pub mod segment;
+mod rig_collector;
+mod room;
+mod scalar;
 mod snapshots;
 mod start;
 mod stream;
-pub mod tables;
+mod trig;
+mod turn;
 pub mod units;
 
-pub use channel::{ChannelState, segment_frames, step_size};
-pub use clip::{Clip, Event, has_choice, index_seed};
-pub use error::{OpenError, TooSmall};
+use codec::{crc, entropy, layout, segment, tables};
+
+pub use channel::ChannelState;
+pub use clip::{Clip, Event};
+pub use clock::Clock;
+pub use error::{Memory, OpenError, TooSmall};
+pub use form::{CodedKinds, Form, Pose, WrongForm};
 pub use history::Undo;
-pub use partial::PartialClip;
+pub use joint::{Joint, JointRef, Joints};
+pub use kind::{Kind, Kinds};
+pub use partial::{PartialClip, PausedClip};
 pub use player::{Player, SeekCache};
-pub use rig::{Joint, Joints, Kind, Kinds, Rig, Scalar, Scalars};
+pub use rig::Rig;
+pub use rig_collector::{CollectError, RigCollector};
+pub use room::Room;
+pub use scalar::{Scalar, ScalarRef, Scalars};
 pub use snapshots::SnapshotPos;
 pub use stream::{Progress, Stream};
+pub use turn::{Axis, EulerOrder, Turn};
+pub use units::{Angle, Component, Fraction};

@@ -1,9 +1,10 @@
 //! A file that is still coming, kept as a whole: its blocks are checked as they come, and played where they lie.
 
-use crate::blocks::STRIDE;
+use crate::blocks::{STRIDE, is_intact};
 use crate::channel::ChannelState;
 use crate::clip::{Clip, Parts};
 use crate::layout::CRC_BYTES;
+use crate::play_state::PlayState;
 use crate::player::{Player, SeekCache};
 use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
@@ -90,9 +91,7 @@ fn check(parts: &Parts<'_>, mut checked: usize) -> (usize, Result<(), OpenError>
             break;
         }
         let seed = if checked == 0 { parts.seed } else { crc::INITIAL };
-        let good =
-            block.split_last_chunk::<CRC_BYTES>().is_some_and(|(body, crc)| crc::update(seed, body) == u16::from_le_bytes(*crc));
-        if !good {
+        if !is_intact(block, seed) {
             return (checked, Err(OpenError::BadCrc));
         }
         checked += block.len();
@@ -107,4 +106,59 @@ fn without_last_crc<'a>(parts: &Parts<'a>, checked: usize) -> Option<&'a [u8]> {
 
 fn dry_at(parts: &Parts<'_>, checked: usize) -> u32 {
     if checked < parts.motion_len { (checked as u32).saturating_sub(MAX_SEGMENT_BYTES) } else { u32::MAX }
+}
+
+/// A [`PartialClip`] and its player without the bytes: while the buffer that holds them grows, nothing borrows it.
+///
+/// ```
+/// # fn read(_: &mut Vec<u8>) -> bool { false }
+/// # fn play(mut file: Vec<u8>) -> Result<(), Box<dyn std::error::Error>> {
+/// use pantin::{ChannelState, PartialClip};
+/// let (mut states, mut values) = ([ChannelState::NEW; 144], [0; 144]);
+/// let partial = PartialClip::new(&file)?;
+/// let Some(player) = partial.player(&mut states, &mut values)? else { return Ok(()) };
+/// let mut paused = partial.pause(player);
+/// while read(&mut file) {
+///     let (partial, mut player) = paused.resume(&file, &mut states, &mut values)?;
+///     while partial.step(&mut player) {
+///         let _pose = player.pose();
+///     }
+///     paused = partial.pause(player);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct PausedClip {
+    clip: Clip<'static>,
+    checked: usize,
+    moving: usize,
+    position: PlayState,
+}
+
+impl PartialClip<'_> {
+    /// Gives the borrowed bytes and memory back, which must stay as they are until [`PausedClip::resume`].
+    pub fn pause(self, player: Player<'_, '_>) -> PausedClip {
+        let (moving, position) = player.pause();
+        PausedClip { clip: self.clip.without_bytes(), checked: self.checked, moving, position }
+    }
+}
+
+impl PausedClip {
+    /// Continues with `file`, which begins with the bytes that were there before: they are not checked again. `states` and `values`
+    /// are those of the player. A damaged block among the new bytes is an error each time; what stands before it stays playable
+    /// with the shorter front.
+    pub fn resume<'a, 'm>(
+        &self,
+        file: &'a [u8],
+        states: &'m mut [ChannelState],
+        values: &'m mut [i32],
+    ) -> Result<(PartialClip<'a>, Player<'a, 'm>), OpenError> {
+        let parts = Parts::split(file)?;
+        let clip = self.clip.with_bytes(parts.rig.ok_or(OpenError::WrongRig)?);
+        let mut partial = PartialClip { clip, checked: self.checked, dry_at: 0 };
+        partial.extend(file)?;
+        let player = Player::resume(partial.clip, self.moving, self.position, states, values).ok_or(OpenError::Truncated)?;
+        Ok((partial, player))
+    }
 }

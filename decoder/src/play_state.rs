@@ -92,6 +92,23 @@ impl PlayState {
         true
     }
 
+    /// One frame on, if it is not the last and its segments begin at `dry_at` at the latest; keeps in `history` what undoes it.
+    /// Otherwise false, and some of the segments are perhaps read.
+    pub(crate) fn try_step(
+        &mut self,
+        channels: &mut Channels<'_>,
+        input: &Input<'_>,
+        frames: u32,
+        dry_at: u32,
+        history: Option<&mut History<'_>>,
+    ) -> bool {
+        if self.frame + 1 >= frames || reads(self.frame, frames) && !self.read_due(channels, input, dry_at, history) {
+            return false;
+        }
+        self.advance(channels);
+        true
+    }
+
     /// The three additions, for every channel.
     #[inline]
     pub(crate) fn advance(&mut self, channels: &mut Channels<'_>) {

@@ -1,35 +1,51 @@
-//! Plays a clip: step, seek to any frame, step back. Bit for bit the same poses by every route.
+//! Plays a clip: step, seek to any frame, step back, whichever way to bit for bit the same poses.
 
 use crate::channel::ChannelState;
 use crate::clip::Clip;
+use crate::clock::Clock;
 use crate::entropy::{Cursor, Symbols};
+use crate::error::Memory;
+use crate::form::{Form, Pose, WrongForm};
 use crate::history::{History, Undo};
+use crate::joint::JointRef;
 use crate::play_state::{Channels, PlayState, reads};
+use crate::scalar::ScalarRef;
 use crate::snapshots::{SnapshotPos, Snapshots};
 use crate::start::{ChannelStarts, Opened};
+use crate::turn::Turn;
+use crate::units::Fraction;
 use crate::{TooSmall, index};
+use fixed::types::U0F16;
 
-/// Plays a [`Clip`] in memory of the caller's: a [`ChannelState`] for each of the clip's moving channels, and a pose of
-/// one raw value for each of the rig's channels.
+/// Plays a [`Clip`] in memory of the caller's: a [`ChannelState`] for each of the clip's moving channels, and one raw value for
+/// each of the rig's channels. [`crate::Room`] holds both.
 ///
 /// ```
-/// # fn play(clip: pantin::Clip) -> Result<(), pantin::TooSmall> {
-/// let (mut states, mut pose) = ([pantin::ChannelState::default(); 80], [0; 100]);
-/// let mut player = pantin::Player::new(clip, &mut states, &mut pose)?;
-/// while !player.ended() {
+/// # fn play(clip: pantin::Clip) -> Result<(), Box<dyn std::error::Error>> {
+/// let (mut states, mut values) = ([pantin::ChannelState::NEW; 80], [0; 100]);
+/// let mut player = pantin::Player::new(clip, &mut states, &mut values)?;
+/// let knee = clip.find("LeftKnee").ok_or("no knee")?;
+/// for _ in 0..clip.frames() {
+///     let [x, y, z] = player.turn(&knee)?.euler(pantin::EulerOrder::XYZ).map(|angle| angle.centidegrees());
+///     println!("frame {}: {x} {y} {z} hundredths of a degree", player.frame());
 ///     player.step();
-///     let knee = pantin::units::angle(player.pose()[7]);
 /// }
 /// # Ok(())
 /// # }
 /// ```
+///
+/// [`Player::step`] plays frame by frame, [`Player::advance`] by time. Several players can play at once, each in memory of its own.
 #[derive(Debug)]
 pub struct Player<'a, 'm> {
     clip: Clip<'a>,
+    form: Form,
     states: &'m mut [ChannelState],
     pose: &'m mut [i32],
     position: PlayState,
 }
+
+/// Most frames that [`Player::go_to`] steps; farther ones it seeks.
+const NEAR: u32 = 8;
 
 /// Memory lent to a [`Player`] that steps back or seeks much. What is kept in it is of that player's clip alone.
 #[derive(Debug)]
@@ -54,6 +70,12 @@ impl<'m> SeekCache<'m> {
     }
 }
 
+/// The part of `values` that a pose takes.
+pub(crate) fn values(values: &mut [i32], needed: usize) -> Result<&mut [i32], TooSmall> {
+    let given = values.len();
+    values.get_mut(..needed).ok_or(TooSmall { memory: Memory::Values, needed, given })
+}
+
 /// Reads how channels start, up to the last position at which a start is sure to be whole: where the segments begin, and how many channels
 /// move; as many as `usize` holds if there are more than `states`, or if not all of them are there.
 #[inline(never)]
@@ -68,10 +90,12 @@ fn open(clip: &Clip<'_>, dry_at: u32, states: &mut [ChannelState], pose: &mut [i
 impl<'a, 'm> Player<'a, 'm> {
     /// Starts at frame 0. `states` needs [`Clip::moving`] elements, `pose` needs [`crate::Rig::channels`].
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, TooSmall> {
-        let pose = pose.get_mut(..clip.rig().channels()).ok_or(TooSmall { needed: clip.rig().channels() })?;
+        let pose = values(pose, clip.rig().channels())?;
         let (cursor, moving) = open(&clip, u32::MAX, states, pose);
-        let states = states.get_mut(..moving).ok_or_else(|| TooSmall { needed: clip.moving() })?;
-        Ok(Player { clip, states, pose, position: PlayState { cursor, frame: 0, next: 0 } })
+        let given = states.len();
+        let too_small = || TooSmall { memory: Memory::States, needed: clip.moving(), given };
+        let states = states.get_mut(..moving).ok_or_else(too_small)?;
+        Ok(Player { clip, form: clip.form(), states, pose, position: PlayState { cursor, frame: 0, next: 0 } })
     }
 
     /// [`Player::new`], for a clip of which the front alone may be there; `None` while its channels' starts have not come. `states` needs
@@ -83,27 +107,37 @@ impl<'a, 'm> Player<'a, 'm> {
         pose: &'m mut [i32],
     ) -> Result<Option<Self>, TooSmall> {
         let needed = clip.rig().channels();
-        let (Some(states), Some(pose)) = (states.get_mut(..needed), pose.get_mut(..needed)) else {
-            return Err(TooSmall { needed });
-        };
+        let pose = values(pose, needed)?;
+        let given = states.len();
+        let states = states.get_mut(..needed).ok_or(TooSmall { memory: Memory::States, needed, given })?;
         let (cursor, moving) = open(&clip, dry_at, states, pose);
         let Some(states) = states.get_mut(..moving) else { return Ok(None) };
-        Ok(Some(Player { clip, states, pose, position: PlayState { cursor, frame: 0, next: 0 } }))
+        Ok(Some(Player { clip, form: clip.form(), states, pose, position: PlayState { cursor, frame: 0, next: 0 } }))
     }
 
-    /// Goes on by one frame if its segments have come: those that begin at `dry_at` at the latest.
+    /// What a player is without the memory that it was lent: the number of moving channels, and where it is.
+    pub(crate) fn pause(self) -> (usize, PlayState) {
+        (self.states.len(), self.position)
+    }
+
+    /// Continues with the states and values that [`Player::pause`] left.
+    pub(crate) fn resume(
+        clip: Clip<'a>,
+        moving: usize,
+        position: PlayState,
+        states: &'m mut [ChannelState],
+        pose: &'m mut [i32],
+    ) -> Option<Self> {
+        let (states, pose) = (states.get_mut(..moving)?, pose.get_mut(..clip.rig().channels())?);
+        Some(Player { clip, form: clip.form(), states, pose, position })
+    }
+
+    /// Goes on by one frame if its segments are there: those that begin at `dry_at` at the latest.
     pub(crate) fn step_partial(&mut self, clip: &Clip<'a>, dry_at: u32) -> bool {
         self.clip.motion = clip.motion;
-        if self.ended() {
-            return false;
-        }
         let (input, frames) = (self.clip.input(), self.clip.frames());
         let (position, mut channels) = self.parts();
-        if reads(position.frame, frames) && !position.read_due(&mut channels, &input, dry_at, None) {
-            return false;
-        }
-        position.advance(&mut channels);
-        true
+        position.try_step(&mut channels, &input, frames, dry_at, None)
     }
 
     /// Seeks in `clip`, which is the same one: more of it may have come.
@@ -127,11 +161,55 @@ impl<'a, 'm> Player<'a, 'm> {
         self.position.frame + 1 >= self.clip.frames()
     }
 
-    /// One raw value a channel of the rig. The channel's kind says what it is (see [`crate::units`]): an angle in 2^-32
-    /// turns, a position in 2^[`Clip::length_exponent`] units of the source, a quaternion's component in 2^-30, a scalar in
-    /// 2^([`crate::Scalar::exponent`] - 31).
-    pub fn pose(&self) -> &[i32] {
-        self.pose
+    /// The pose of this frame, with its form.
+    pub fn pose(&self) -> Pose<'_> {
+        Pose { values: self.pose, form: &self.form }
+    }
+
+    /// The rotation of a joint at this frame, however the clip codes it: [`Pose::turn`].
+    pub fn turn(&self, joint: &JointRef<'_>) -> Result<Turn, WrongForm> {
+        self.pose().turn(joint)
+    }
+
+    /// A scalar at this frame as a fraction of its range: [`Pose::scalar`].
+    pub fn scalar(&self, scalar: &ScalarRef) -> Result<Fraction, WrongForm> {
+        self.pose().scalar(scalar)
+    }
+
+    /// Writes the pose between this frame and the next to `out`, which needs [`crate::Rig::channels`] elements: `part` of the way
+    /// from one to the other, on a straight line a channel. 0 gives this frame's pose exactly.
+    ///
+    /// The frame after the last one is not looked at: there the motion goes on as it did.
+    pub fn interpolate<'o>(&'o self, part: U0F16, out: &'o mut [i32]) -> Result<Pose<'o>, TooSmall> {
+        let out = values(out, self.pose.len())?;
+        for (out, value) in out.iter_mut().zip(self.pose.iter()) {
+            *out = *value;
+        }
+        for state in self.states.iter() {
+            // A segment that begins at this frame changes the velocity from the next one on: p + v is the next frame's p.
+            if let Some(value) = out.get_mut(usize::from(state.slot)) {
+                *value = value.wrapping_add(((i64::from(state.v) * i64::from(part.to_bits())) >> 16) as i32);
+            }
+        }
+        Ok(Pose { values: out, form: &self.form })
+    }
+
+    /// Lets a time pass on `clock` and goes to the frame that is due. Returns whether that is another frame than before.
+    pub fn advance(&mut self, clock: &mut Clock, elapsed_us: u32) -> bool {
+        clock.advance(elapsed_us);
+        let (before, due) = (self.frame(), clock.frame());
+        self.go_to(due);
+        before != due
+    }
+
+    /// Goes to `frame`, or to the last one if there are fewer: by steps if it is at most 8 frames ahead, else by [`Player::seek`].
+    pub fn go_to(&mut self, frame: u32) {
+        let ahead = frame.min(self.clip.frames() - 1).wrapping_sub(self.frame());
+        if ahead > NEAR {
+            self.seek(frame);
+        } else {
+            (0..ahead).for_each(|_| self.step());
+        }
     }
 
     /// The moving channels, in the order of the pose; before the segments that begin at this frame are read.
@@ -184,10 +262,7 @@ impl<'a, 'm> Player<'a, 'm> {
         let (input, frames) = (self.clip.input(), self.clip.frames());
         let (position, mut channels) = self.parts();
         memory.history.begin(position.frame);
-        if reads(position.frame, frames) {
-            position.read_due(&mut channels, &input, u32::MAX, Some(&mut memory.history));
-        }
-        position.advance(&mut channels);
+        position.try_step(&mut channels, &input, frames, u32::MAX, Some(&mut memory.history));
         memory.snapshots.keep(position, &channels);
     }
 
@@ -239,9 +314,9 @@ impl<'a, 'm> Player<'a, 'm> {
             self.step_with(memory);
         }
     }
+}
 
-    /// Writes a snapshot of this frame, as `pantin convert --index` puts it into a file.
-    pub fn write_snapshot(&self, put: &mut dyn FnMut(u8)) {
-        index::write(&self.position, self.states, self.pose, put);
-    }
+/// Writes a snapshot of the player's frame, as `pantin convert --index` puts it into a file.
+pub fn write_snapshot(player: &Player<'_, '_>, put: &mut dyn FnMut(u8)) {
+    index::write(&player.position, player.states, player.pose, put);
 }

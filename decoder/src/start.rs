@@ -1,10 +1,12 @@
 //! How channels begin: at rest, with a constant, or with a position and a velocity.
 
+use crate::bytes::unzigzag;
 use crate::channel::{ChannelState, step_size};
 use crate::entropy::{Symbols, Table};
+use crate::kind::Kind;
 use crate::layout::{FIRST_STEP, FOLLOW_BITS, MAX_STEP, STEP_BITS, STEP_CHANGES, status};
 use crate::play_state::{self, Channels};
-use crate::rig::{ChannelIter, Kind, Rig};
+use crate::rig::{ChannelIter, Rig};
 use crate::tables;
 
 /// What the channels read so far tell about the next one.
@@ -52,11 +54,6 @@ impl ChannelStart {
         let v = magnitude(symbols, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
         (Some(p), Some((v, step)))
     }
-}
-
-/// 0, 1, 2, 3, ... as 0, -1, 1, -2, ...
-const fn unzigzag(n: u32) -> i32 {
-    (n >> 1) as i32 ^ -((n & 1) as i32)
 }
 
 /// A signed number: the symbol is its length in bits, then come the bits below the highest, then the sign.

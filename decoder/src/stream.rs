@@ -1,17 +1,21 @@
 //! Plays bytes that are still coming: each block is checked before it is used, and running dry is no error.
 
-use crate::blocks::{Input, Reader, STRIDE};
+use crate::blocks::{Input, Reader, STRIDE, is_intact};
 use crate::channel::ChannelState;
 use crate::clip::{Event, Head, event};
 use crate::crc;
 use crate::entropy::{Cursor, Symbols};
+use crate::error::{Memory, OpenError, TooSmall};
+use crate::form::{Form, Pose, WrongForm};
+use crate::joint::JointRef;
 use crate::layout::*;
-use crate::play_state::{Channels, PlayState, reads};
+use crate::play_state::{Channels, PlayState};
+use crate::player::values;
 use crate::prefix::Prefix;
 use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
 use crate::start::{ChannelStarts, Opened};
-use crate::{OpenError, TooSmall};
+use crate::turn::Turn;
 
 /// What a step of a [`Stream`] came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +42,7 @@ enum Phase<'a> {
     Prefix(Prefix),
     Head,
     Events { left: u32, position: u32, frame: u32 },
-    ChannelStarts(ChannelStarts<'a>),
+    Starts(ChannelStarts<'a>),
     Frames,
     Failed(Progress),
 }
@@ -60,13 +64,25 @@ struct Window<'m> {
 }
 
 impl Window<'_> {
-    /// Takes what fits, checks the blocks that are whole, and returns how much it took.
+    /// The part of the buffer that bytes can be written to.
+    fn space(&mut self) -> &mut [u8] {
+        let room = self.buffer.len().saturating_sub(self.len).min(self.left as usize);
+        self.buffer.get_mut(self.len..self.len + room).unwrap_or(&mut [])
+    }
+
+    /// Copies what fits, and returns how much.
     fn fill(&mut self, bytes: &[u8]) -> usize {
-        let free = self.buffer.get_mut(self.len..).unwrap_or(&mut []);
-        let count = bytes.len().min(free.len()).min(self.left as usize);
-        for (place, byte) in free.iter_mut().zip(bytes).take(count) {
+        let mut count = 0;
+        for (place, byte) in self.space().iter_mut().zip(bytes) {
             *place = *byte;
+            count += 1;
         }
+        self.filled(count);
+        count
+    }
+
+    /// Takes bytes that stand in [`Window::space`], and checks the blocks that are whole.
+    fn filled(&mut self, count: usize) {
         self.len += count;
         self.left -= count as u32;
         while !self.damaged && self.checked < self.len {
@@ -75,14 +91,12 @@ impl Window<'_> {
             if block.len() < STRIDE && self.left > 0 {
                 break;
             }
-            let sum = block.split_last_chunk::<CRC_BYTES>().map(|(body, stored)| (crc::update(self.seed, body), *stored));
-            self.damaged = sum.is_none_or(|(sum, stored)| sum != u16::from_le_bytes(stored));
+            self.damaged = !is_intact(block, self.seed);
             if !self.damaged {
                 self.checked += block.len();
                 self.seed = crc::INITIAL;
             }
         }
-        count
     }
 
     /// Drops the blocks before the one that holds `position`.
@@ -129,6 +143,7 @@ pub struct Stream<'a, 'm> {
     window: Window<'m>,
     phase: Phase<'a>,
     head: Head,
+    form: Form,
     position: PlayState,
 }
 
@@ -144,22 +159,76 @@ impl<'a, 'm> Stream<'a, 'm> {
         states: &'m mut [ChannelState],
         pose: &'m mut [i32],
     ) -> Result<Self, TooSmall> {
-        let pose = pose.get_mut(..rig.channels()).ok_or(TooSmall { needed: rig.channels() })?;
-        if buffer.len() < Self::BUFFER {
-            return Err(TooSmall { needed: Self::BUFFER });
-        }
-        let window = Window { buffer, len: 0, checked: 0, base: 0, left: 0, seed: 0, damaged: false };
-        let phase = Phase::Prefix(Prefix::default());
-        Ok(Stream { rig, states, pose, window, phase, head: Head::default(), position: PlayState::default() })
+        Self::behind(Prefix::default(), rig, buffer, states, pose)
     }
 
-    /// Takes bytes and returns how many: fewer than all if the buffer is full (then step) or the motion is complete.
+    /// A stream that continues behind the fields that `prefix` has seen.
+    pub(crate) fn behind(
+        prefix: Prefix,
+        rig: Rig<'a>,
+        buffer: &'m mut [u8],
+        states: &'m mut [ChannelState],
+        pose: &'m mut [i32],
+    ) -> Result<Self, TooSmall> {
+        let pose = values(pose, rig.channels())?;
+        if buffer.len() < Self::BUFFER {
+            return Err(TooSmall { memory: Memory::Buffer, needed: Self::BUFFER, given: buffer.len() });
+        }
+        let window = Window { buffer, len: 0, checked: 0, base: 0, left: 0, seed: 0, damaged: false };
+        let phase = Phase::Prefix(prefix);
+        Ok(Stream {
+            rig,
+            states,
+            pose,
+            window,
+            phase,
+            head: Head::default(),
+            form: Form::default(),
+            position: PlayState::default(),
+        })
+    }
+
+    /// Takes bytes and returns how many: fewer than all if the buffer is full (then step, and feed the rest) or the motion is
+    /// complete (what follows is not the stream's).
+    #[must_use = "the bytes that were not taken must be fed again"]
     pub fn feed(&mut self, bytes: &[u8]) -> usize {
+        let taken = self.take_prefix(bytes);
+        self.make_space();
+        taken + self.window.fill(bytes.get(taken..).unwrap_or(&[]))
+    }
+
+    /// The free part of the buffer, for a UART or DMA that writes to memory itself: write to its front, then call
+    /// [`Stream::filled`]. It is empty if the buffer is full (then step) or the motion is complete.
+    pub fn space(&mut self) -> &mut [u8] {
+        if let Phase::Prefix(_) = self.phase {
+            return self.window.buffer;
+        }
+        self.make_space();
+        self.window.space()
+    }
+
+    /// Takes the first `count` bytes of [`Stream::space`]. Bytes behind the motion are dropped.
+    pub fn filled(&mut self, count: usize) {
+        let Phase::Prefix(_) = self.phase else {
+            let count = count.min(self.window.space().len());
+            return self.window.filled(count);
+        };
+        // The motion begins behind the prefix: it moves to the buffer's front.
+        let buffer = core::mem::take(&mut self.window.buffer);
+        let taken = self.take_prefix(buffer.get(..count).unwrap_or(buffer));
+        buffer.copy_within(taken..count.min(buffer.len()).max(taken), 0);
+        self.window.buffer = buffer;
+        let count = count.saturating_sub(taken).min(self.window.space().len());
+        self.window.filled(count);
+    }
+
+    /// Goes on through the fields before the motion, and returns how many bytes they took.
+    fn take_prefix(&mut self, bytes: &[u8]) -> usize {
         let mut taken = 0;
         while let Phase::Prefix(prefix) = &mut self.phase {
             let Some(&byte) = bytes.get(taken) else { return taken };
             taken += 1;
-            match prefix.push(byte, &self.rig) {
+            match prefix.push(byte, Some(self.rig.id())) {
                 Ok(None) => {}
                 Ok(Some(motion_len)) => {
                     (self.window.left, self.window.seed) = (motion_len, prefix.seed(motion_len));
@@ -169,13 +238,17 @@ impl<'a, 'm> Stream<'a, 'm> {
                 Err(error) => self.phase = Phase::Failed(Progress::Damaged(error)),
             }
         }
+        taken
+    }
+
+    /// Drops the blocks that have been played.
+    fn make_space(&mut self) {
         let reading = match &self.phase {
             Phase::Events { position, .. } => *position,
-            Phase::ChannelStarts(_) | Phase::Frames => self.position.cursor.position,
+            Phase::Starts(_) | Phase::Frames => self.position.cursor.position,
             Phase::Prefix(_) | Phase::Head | Phase::Failed(_) => 0,
         };
         self.window.drop_before(reading.max(self.window.base));
-        taken + self.window.fill(bytes.get(taken..).unwrap_or(&[]))
     }
 
     /// Goes on as far as one answer.
@@ -184,7 +257,7 @@ impl<'a, 'm> Stream<'a, 'm> {
             Phase::Prefix(_) => Progress::NeedMore,
             Phase::Head => self.head(),
             Phase::Events { left, position, frame } => self.event(left, position, frame),
-            Phase::ChannelStarts(_) => self.starts(),
+            Phase::Starts(_) => self.starts(),
             Phase::Frames => self.frame_on(),
             Phase::Failed(step) => step,
         }
@@ -211,6 +284,7 @@ impl<'a, 'm> Stream<'a, 'm> {
             Err(error) => self.fail(Progress::Damaged(error)),
             Ok(head) => {
                 self.head = head;
+                self.form = head.form(&self.window.input(), self.rig.id());
                 self.phase = Phase::Events { left: head.event_count, position: u32::from(head.events), frame: 0 };
                 Progress::Opened
             }
@@ -224,7 +298,7 @@ impl<'a, 'm> Stream<'a, 'm> {
         let input = self.window.input();
         if left == 0 {
             self.position = PlayState { cursor: Cursor::start(&input, position), ..PlayState::default() };
-            self.phase = Phase::ChannelStarts(ChannelStarts::new(&self.rig, self.head.length_exponent));
+            self.phase = Phase::Starts(ChannelStarts::new(&self.rig, self.head.length_exponent));
             return self.starts();
         }
         if position as usize > self.window.base as usize + input.bytes.len() {
@@ -237,7 +311,7 @@ impl<'a, 'm> Stream<'a, 'm> {
     }
 
     fn starts(&mut self) -> Progress {
-        let Phase::ChannelStarts(starts) = &mut self.phase else { return Progress::NeedMore };
+        let Phase::Starts(starts) = &mut self.phase else { return Progress::NeedMore };
         let (input, dry_at) = (self.window.input(), self.window.dry_at());
         let mut symbols = Symbols { at: self.position.cursor, input };
         let opened = starts.read(&mut symbols, dry_at, self.states, self.pose);
@@ -261,11 +335,7 @@ impl<'a, 'm> Stream<'a, 'm> {
         }
         let (input, dry_at) = (self.window.input(), self.window.dry_at());
         let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
-        if reads(frame, self.head.frames) && !self.position.read_due(&mut channels, &input, dry_at, None) {
-            return self.dry();
-        }
-        self.position.advance(&mut channels);
-        Progress::Frame
+        if self.position.try_step(&mut channels, &input, self.head.frames, dry_at, None) { Progress::Frame } else { self.dry() }
     }
 
     /// The frame that the pose shows.
@@ -273,9 +343,14 @@ impl<'a, 'm> Stream<'a, 'm> {
         self.position.frame
     }
 
-    /// One raw value a channel of the rig, as [`crate::Player::pose`]. It is of one frame also while bytes are missing.
-    pub fn pose(&self) -> &[i32] {
-        self.pose
+    /// The pose, with its form. It is of one frame also while bytes are missing; before [`Progress::Opened`] it is of no rig's form.
+    pub fn pose(&self) -> Pose<'_> {
+        Pose { values: self.pose, form: &self.form }
+    }
+
+    /// The rotation of a joint, however the clip codes it: [`Pose::turn`].
+    pub fn turn(&self, joint: &JointRef<'_>) -> Result<Turn, WrongForm> {
+        self.pose().turn(joint)
     }
 
     /// Number of frames; 0 before [`Progress::Opened`].
@@ -291,16 +366,5 @@ impl<'a, 'm> Stream<'a, 'm> {
     /// Whether frame 0 follows the last frame.
     pub fn looped(&self) -> bool {
         self.head.flags & LOOPED != 0
-    }
-
-    /// The raw value of a position channel times 2^`length_exponent` is in units of the source.
-    pub fn length_exponent(&self) -> i8 {
-        self.head.length_exponent
-    }
-
-    /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map. `None` unless
-    /// asked between [`Progress::Opened`] and the next call of `feed` or `step`: later the bytes that tell may be gone.
-    pub fn is_exponential(&self, joint: usize) -> Option<bool> {
-        (self.window.base == 0 && self.head.frames > 0).then(|| self.head.is_exponential(&self.window.input(), &self.rig, joint))
     }
 }

@@ -1,20 +1,94 @@
-//! What the numbers of a pose mean. A pose holds raw 32-bit integers; the kind of a channel says which of these it is.
+//! Units of a pose's values, in types of the `fixed` crate: angles, quaternion components, fractions of a range.
 
-use fixed::types::{I0F32, I2F30};
-
-/// An angle in turns, -1/2 to 1/2 (exclusive). It wraps as angles do: adding half a turn twice gives the angle back.
-/// Euler angles and the components of an exponential map are angles.
-pub type Angle = I0F32;
+use core::ops::{Add, Neg, Sub};
+use fixed::types::{I0F32, I2F30, I16F16};
 
 /// A component of a quaternion, -2 to 2 (exclusive).
 pub type Component = I2F30;
 
-/// The angle that a raw value of a pose stands for.
-pub const fn angle(raw: i32) -> Angle {
-    Angle::from_bits(raw)
+/// A fraction of a scalar's range, -1 to 1 (exclusive).
+pub type Fraction = fixed::types::I1F31;
+
+/// An angle of -1/2 to 1/2 turn (exclusive). Sums and differences wrap as angles do.
+///
+/// Euler angles and the components of an exponential map are angles. The raw value counts 2^-32 turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Angle(i32);
+
+impl Angle {
+    /// No rotation.
+    pub const ZERO: Angle = Angle(0);
+
+    /// The angle of a raw value in 2^-32 turns.
+    pub const fn from_bits(raw: i32) -> Angle {
+        Angle(raw)
+    }
+
+    /// The raw value, in 2^-32 turns.
+    pub const fn to_bits(self) -> i32 {
+        self.0
+    }
+
+    /// The angle of a number of degrees, rounded to the nearest; whole turns are dropped.
+    pub const fn from_degrees(degrees: I16F16) -> Angle {
+        // 2^32 turns / 360 / 2^16: at most 2^31 times 2^16, then divided by a constant.
+        let scaled = degrees.to_bits() as i64 * (1 << 16);
+        Angle(((scaled + if scaled < 0 { -180 } else { 180 }) / 360) as i32)
+    }
+
+    /// In turns: -0.5 to 0.5.
+    pub const fn turns(self) -> I0F32 {
+        I0F32::from_bits(self.0)
+    }
+
+    /// In degrees: -180 to 180, rounded to 2^-16 degrees.
+    pub const fn degrees(self) -> I16F16 {
+        I16F16::from_bits(((self.0 as i64 * 360 + (1 << 15)) >> 16) as i32)
+    }
+
+    /// In hundredths of a degree: -18000 to 18000, rounded to the nearest.
+    pub const fn centidegrees(self) -> i32 {
+        ((self.0 as i64 * 36_000 + (1 << 31)) >> 32) as i32
+    }
 }
 
-/// The quaternion component that a raw value of a pose stands for.
-pub const fn component(raw: i32) -> Component {
-    Component::from_bits(raw)
+impl Add for Angle {
+    type Output = Angle;
+
+    fn add(self, other: Angle) -> Angle {
+        Angle(self.0.wrapping_add(other.0))
+    }
+}
+
+impl Sub for Angle {
+    type Output = Angle;
+
+    fn sub(self, other: Angle) -> Angle {
+        Angle(self.0.wrapping_sub(other.0))
+    }
+}
+
+impl Neg for Angle {
+    type Output = Angle;
+
+    fn neg(self) -> Angle {
+        Angle(self.0.wrapping_neg())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_come_and_go() {
+        for degrees in [-179.5, -90.0, -0.25, 0.0, 1.0 / 3.0, 46.44, 90.0, 179.99] {
+            let angle = Angle::from_degrees(I16F16::from_num(degrees));
+            assert!((angle.degrees().to_num::<f64>() - degrees).abs() < 2e-5, "{degrees}: {angle:?}");
+            assert!((f64::from(angle.centidegrees()) - degrees * 100.0).abs() <= 0.51, "{degrees}");
+        }
+        assert_eq!(Angle::from_bits(i32::MIN).centidegrees(), -18_000);
+        assert_eq!(Angle::from_degrees(I16F16::from_num(450)).centidegrees(), 9_000);
+        assert_eq!(Angle::from_bits(i32::MIN) + Angle::from_bits(i32::MIN), Angle::ZERO);
+    }
 }

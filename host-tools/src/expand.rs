@@ -19,7 +19,7 @@ pub fn expand(clip: &Clip<'_>) -> Result<Motion> {
     let mut pose = vec![0; motion_rig.channels()];
     let mut player = Player::new(*clip, &mut states, &mut pose)?;
     for frame in 0..frames {
-        for ((out, raw), scale) in values.iter_mut().zip(player.pose()).zip(&scales) {
+        for ((out, raw), scale) in values.iter_mut().zip(player.pose().values).zip(&scales) {
             out.push(f64::from(*raw) * scale);
         }
         if frame + 1 < frames {

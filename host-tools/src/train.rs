@@ -2,9 +2,9 @@
 
 use crate::encode::clip::{Coded, symbols};
 use crate::encode::entropy::{Alphabet, Sink, sizes};
-use pantin::entropy::{SCALE_BITS, SIXTEENTH};
-use pantin::layout::{STATUSES, status};
-use pantin::segment::{CONTEXTS, DIRECT_MODES};
+use pantin::codec::entropy::{SCALE_BITS, SIXTEENTH};
+use pantin::codec::layout::{STATUSES, status};
+use pantin::codec::segment::{CONTEXTS, DIRECT_MODES};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

@@ -15,7 +15,7 @@ use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
 use pantin_link::packet::Receiver;
 use pantin_link::sender::{Line, Sender, Source};
-use pantin_link::{Channel, Form, Link, MAX_PACKET, QUEUE_PACKETS};
+use pantin_link::{Channel, Link, MAX_PACKET, QUEUE_PACKETS};
 use tempfile::TempDir;
 
 /// Our greeting: a body and its face.
@@ -123,7 +123,7 @@ fn pantin_stream_plays_on_a_board_by_ethernet() {
 fn heard(stream: &mut Command, socket: &UdpSocket, clip: &Clip, mut each: impl FnMut(&Link<QUEUE_PACKETS>)) -> String {
     let channels = clip.rig().channels();
     let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
-    let mut link = Link::<QUEUE_PACKETS>::new(Form::of(clip).unwrap(), &mut states, &mut pose);
+    let mut link = Link::<QUEUE_PACKETS>::new(clip.form(), &mut states, &mut pose);
     let (mut receiver, mut room) = (Receiver::<MAX_PACKET>::new(), [0; 2048]);
     socket.set_read_timeout(Some(Duration::from_secs(3))).unwrap();
     let mut stream = stream.stderr(Stdio::piped()).spawn().unwrap();

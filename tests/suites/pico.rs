@@ -167,7 +167,7 @@ fn servos_get_the_pulses_that_the_host_computes() {
     let mut swing = [u16::MAX, 0];
     for (index, (nanos, pulses)) in frames.iter().take(FRAMES).enumerate() {
         let expected: Vec<u16> =
-            servos.iter_mut().zip(channels).map(|(servo, channel)| servo.follow(player.pose()[channel])).collect();
+            servos.iter_mut().zip(channels).map(|(servo, channel)| servo.follow(player.pose().values[channel])).collect();
         assert_eq!(pulses[..], expected, "frame {index}");
         swing = [swing[0].min(pulses[0]), swing[1].max(pulses[0])];
         // From the first tick on: the emulator's timer begins with one.

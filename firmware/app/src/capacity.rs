@@ -1,6 +1,6 @@
 //! The largest clip that a program can play, and the buffers that follow from it.
 
-use pantin::{ChannelState, Player};
+use pantin::{ChannelState, Player, Pose};
 use pantin_figure::rotation::RotationBackend;
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, FigureRenderer, JointInfo, View};
@@ -73,7 +73,7 @@ pub trait Figure {
     fn shift(&mut self, columns: i16, rows: i16);
 
     /// Takes the pose to draw.
-    fn set_pose(&mut self, pose: &[i32]);
+    fn set_pose(&mut self, pose: Pose<'_>);
 
     /// Draws the figure on a framebuffer.
     fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle);
@@ -105,8 +105,9 @@ impl<const N: usize, R: RotationBackend> Figure for FigureRenderer<N, R> {
     }
 
     #[inline(always)]
-    fn set_pose(&mut self, pose: &[i32]) {
-        FigureRenderer::set_pose(self, pose);
+    fn set_pose(&mut self, pose: Pose<'_>) {
+        // The pose is of the clip that the renderer was set up for.
+        let _ = FigureRenderer::set_pose(self, pose);
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ use crate::run::{NEXT, Outcome, PlayContext, QUIT, SHOWN, show};
 use crate::view_state::{Effect, ViewState};
 use pantin::Player;
 use pantin_link::packet::Receiver;
-use pantin_link::{Channel, ClipMismatch, Counts, Form, Link, MAX_PACKET, QUEUE_PACKETS};
+use pantin_link::{Channel, ClipMismatch, Counts, Link, MAX_PACKET, QUEUE_PACKETS, fits};
 
 /// Most channels of the rig.
 const CHANNELS: usize = 144;
@@ -58,11 +58,12 @@ pub(crate) fn play<B: Board, S: Content<B::Layout> + ?Sized>(
 ) -> Outcome {
     let PlayContext { entry, mode, view_state, frame, board, .. } = context;
     let (mut channels, mut pose) = ([Channel::default(); CHANNELS], [0; CHANNELS]);
-    let Some(form) = Form::of(player.clip()).filter(|_| player.pose().len() <= CHANNELS) else {
+    let form = player.clip().form();
+    if !fits(&form) || player.pose().values.len() > CHANNELS {
         error!("the rig is too big for the line");
         return Outcome::Exit(Exit::BadClip);
     };
-    pose.iter_mut().zip(player.pose()).for_each(|(value, own)| *value = *own);
+    pose.iter_mut().zip(player.pose().values).for_each(|(value, own)| *value = *own);
     let link = Link::new(form, &mut channels, &mut pose);
     let receiver = if view_state.fec { Receiver::with_parity() } else { Receiver::new() };
     let mut end = End { receiver, link, refusal: None };

@@ -143,7 +143,8 @@ fn decode<B: Board>(actors: &mut [Actor<B>], frames: u32, board: &mut B) {
 fn place<B: Board>(actors: &mut [Actor<B>], board: &mut B) {
     board.mark_start();
     for actor in actors {
-        actor.renderer.set_pose(actor.player.pose());
+        // It is of the clip that the renderer was set up for.
+        let _ = actor.renderer.set_pose(actor.player.pose());
     }
     board.mark_stop();
 }

@@ -1,7 +1,8 @@
 //! Plays a clip, step by step and by seeking, and tells the CRC of every pose: what all machines must agree on.
 #![cfg_attr(not(test), no_std)]
 
-use pantin::{ChannelState, Clip, Player, TooSmall, crc};
+use pantin::codec::crc;
+use pantin::{ChannelState, Clip, Player, TooSmall};
 
 /// How a pose was come by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,14 +37,14 @@ pub fn play(
 ) -> Result<(), TooSmall> {
     let frames = clip.frames();
     let mut player = Player::new(clip, states, pose)?;
-    tell(Play::Progress, crc_of(player.pose()));
+    tell(Play::Progress, crc_of(player.pose().values));
     for _ in 1..frames {
         player.step();
-        tell(Play::Progress, crc_of(player.pose()));
+        tell(Play::Progress, crc_of(player.pose().values));
     }
     for frame in sought(frames) {
         player.seek(frame);
-        tell(Play::Seek, crc_of(player.pose()));
+        tell(Play::Seek, crc_of(player.pose().values));
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ use crate::renderer::FigureRenderer;
 use crate::rotation::RotationBackend;
 use crate::surface::{OnTarget, Surface};
 use embedded_graphics::draw_target::DrawTarget;
+use pantin::{Pose, WrongForm};
 
 /// How lines are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +17,26 @@ pub struct DrawStyle {
     /// Edges between the pixels' greys.
     pub smooth: bool,
 }
+
+/// Why a figure was not drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawError<E> {
+    /// The pose has another form than the clip for which the renderer was set up.
+    WrongForm(WrongForm),
+    /// The display's own error.
+    Target(E),
+}
+
+impl<E: core::fmt::Debug> core::fmt::Display for DrawError<E> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            DrawError::WrongForm(error) => error.fmt(f),
+            DrawError::Target(error) => write!(f, "the display failed: {error:?}"),
+        }
+    }
+}
+
+impl<E: core::fmt::Debug> core::error::Error for DrawError<E> {}
 
 impl Default for DrawStyle {
     fn default() -> Self {
@@ -43,16 +64,25 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     }
 
     /// Clears the target and draws the figure in a pose.
-    pub fn draw<D>(&mut self, pose: &[i32], target: &mut D) -> Result<(), D::Error>
+    pub fn draw<D>(&mut self, pose: Pose<'_>, target: &mut D) -> Result<(), DrawError<D::Error>>
     where
         D: DrawTarget,
         D::Color: Ink,
     {
-        target.clear(D::Color::DARK)?;
-        self.set_pose(pose);
+        target.clear(D::Color::DARK).map_err(DrawError::Target)?;
+        self.draw_over(pose, target)
+    }
+
+    /// Draws the figure in a pose over what the target shows: beside other figures ([`FigureRenderer::shift`]), or on a background.
+    pub fn draw_over<D>(&mut self, pose: Pose<'_>, target: &mut D) -> Result<(), DrawError<D::Error>>
+    where
+        D: DrawTarget,
+        D::Color: Ink,
+    {
+        self.set_pose(pose).map_err(DrawError::WrongForm)?;
         let mut surface = OnTarget::new(target);
         self.draw_on(&mut surface, DrawStyle::default());
-        surface.outcome()
+        surface.outcome().map_err(DrawError::Target)
     }
 }
 

@@ -88,12 +88,12 @@ const BONE_BITS: i32 = 14;
 const NO_SIZE: i32 = 1 << 14;
 
 impl<'w> JointTable<'w> {
-    /// Reads the rig; where a joint's bone is a matter of position channels, as `pose` has them. `room` is for a limb a joint.
+    /// Reads the rig; where a joint's bone is a matter of position channels, as `pose` has them. `scratch` has an element a joint.
     #[inline(never)]
-    pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8, room: &'w mut [JointInfo]) -> Result<Self, Error> {
-        let most = room.len().min(usize::from(NO_PARENT));
-        let table = room.get_mut(..rig.joint_count()).filter(|table| table.len() <= most);
-        let table = table.ok_or(Error::TooManyJoints { most })?;
+    pub fn new(rig: &Rig, pose: &[i32], position_exponent: i8, scratch: &'w mut [JointInfo]) -> Result<Self, Error> {
+        let (needed, given) = (rig.joint_count(), scratch.len().min(usize::from(NO_PARENT)));
+        let table = scratch.get_mut(..needed).filter(|_| needed <= given);
+        let table = table.ok_or(Error::TooManyJoints { needed, given })?;
         let hips = placement_end(rig);
         let exponent_of = |moved| i32::from(if moved { position_exponent } else { rig.length_exponent() });
         let mut longest = None;

@@ -24,7 +24,7 @@ pub mod surface;
 pub mod trig;
 
 pub use camera::{Canvas, Track, View};
-pub use draw::DrawStyle;
+pub use draw::{DrawError, DrawStyle};
 pub use ink::Ink;
 pub use joint_info::JointInfo;
 pub use renderer::FigureRenderer;
@@ -37,23 +37,32 @@ pub const RIG_JOINTS: usize = 192;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
-    /// More joints than there is room for.
+    /// There are more joints than memory for them: the scratch elements that a rig needs, or the joints of the figure, of
+    /// which at least this many are needed.
     TooManyJoints {
-        /// The room.
-        most: usize,
+        /// What is needed.
+        needed: usize,
+        /// What was given.
+        given: usize,
     },
-    /// More channels drive the figure than there is room for.
+    /// More channels drive the figure than there is memory for: four a joint.
     TooManyChannels {
-        /// The room.
-        most: usize,
+        /// What is needed at least.
+        needed: usize,
+        /// What was given.
+        given: usize,
     },
 }
 
 impl core::fmt::Display for Error {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Error::TooManyJoints { most } => write!(f, "the figure has more than {most} joints"),
-            Error::TooManyChannels { most } => write!(f, "more than {most} channels drive the figure"),
+            Error::TooManyJoints { needed, given } => {
+                write!(f, "the figure needs memory for {needed} joints or more; {given} were given")
+            }
+            Error::TooManyChannels { needed, given } => {
+                write!(f, "the figure needs memory for {needed} channels or more; {given} were given")
+            }
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::rotation::{Rotation, RotationBackend, Vector};
 use crate::skeleton::{Detail, Part, Skeleton};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
-use pantin::Player;
+use pantin::{Player, Pose, WrongForm};
 
 /// A figure of at most `N` joints before its camera.
 #[derive(Clone, Debug)]
@@ -53,6 +53,9 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     }
 
     /// A figure and a camera for a clip of up to 192 joints; leaves the player at frame 0.
+    ///
+    /// It takes 192 scratch elements of 16 bytes and a copy of the renderer on the stack. On a small machine use
+    /// [`FigureRenderer::empty`], [`FigureRenderer::set_up`] with scratch for the rig's own joints, and [`FigureRenderer::aim`].
     pub fn of_clip(player: &mut Player, canvas: Canvas, view: View) -> Result<Self, Error> {
         let mut renderer = Self::empty();
         renderer.set_up(player, canvas, &mut [JointInfo::default(); RIG_JOINTS])?;
@@ -60,14 +63,12 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         Ok(renderer)
     }
 
-    /// The first half of [`FigureRenderer::of_clip`] in place, for a rig of as many joints as `room` has elements. [`FigureRenderer::aim`] is the other
-    /// half: the room is given back before it.
+    /// The first half of [`FigureRenderer::of_clip`] in place; `scratch` needs an element of 16 bytes for each joint of the rig, End
+    /// Sites included. [`FigureRenderer::aim`] is the other half: the scratch memory is free again before it.
     #[inline(never)]
-    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, room: &mut [JointInfo]) -> Result<(), Error> {
+    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, scratch: &mut [JointInfo]) -> Result<(), Error> {
         player.rewind();
-        let clip = *player.clip();
-        let pose = (player.pose(), clip.length_exponent());
-        self.skeleton.set_up(&clip.rig(), Detail::Body, pose, |joint| clip.is_exponential(joint), room)?;
+        self.skeleton.set_up(&player.clip().rig(), Detail::Body, player.pose(), scratch)?;
         self.canvas = canvas;
         self.choose();
         Ok(())
@@ -82,15 +83,15 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
             let mut frame = 0;
             while frame < frames {
                 player.seek(frame);
-                visit(player.pose());
+                visit(player.pose().values);
                 frame += stride;
             }
         });
         player.seek(now);
     }
 
-    /// Sets up the camera so that the figure fills the canvas over the clip. `poses` shows some of the clip's poses to its
-    /// argument; it is called twice and must show the same ones.
+    /// Sets up the camera so that the figure fills the canvas over the clip. `poses` passes the values of some of the clip's poses,
+    /// all of the skeleton's form, to its argument; it is called twice and must pass the same ones.
     pub fn new(skeleton: Skeleton<N>, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) -> Self {
         let mut renderer = FigureRenderer { skeleton, ..Self::empty() };
         renderer.look_at(canvas, view, poses);
@@ -123,7 +124,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         set_camera(self, TRIAL_SCALE);
         let mut frame = Extent::default();
         poses(&mut |pose| {
-            self.set_pose(pose);
+            self.set_values(pose);
             frame.include(self);
         });
         let scale = frame.scale(self.canvas);
@@ -132,9 +133,15 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         self.camera.set_center(columns / 2, rows / 2 - (frame.top + frame.bottom) / 2 * scale / TRIAL_SCALE);
     }
 
-    /// Forward kinematics of a pose, and where the camera sees the joints.
+    /// Takes a pose: forward kinematics, and where the camera sees the joints. A pose of another form than the clip's is refused.
+    pub fn set_pose(&mut self, pose: Pose<'_>) -> Result<(), WrongForm> {
+        self.skeleton.form().check(pose.form)?;
+        self.set_values(pose.values);
+        Ok(())
+    }
+
     #[inline(never)]
-    pub fn set_pose(&mut self, pose: &[i32]) {
+    fn set_values(&mut self, pose: &[i32]) {
         let hips = self.skeleton.hips;
         self.target = self.camera.target(self.joints.place_one(&self.skeleton, pose, hips));
         self.joints.place_in(&self.skeleton, pose, &self.view, self.target, self.skeleton.bones.len());
@@ -220,9 +227,9 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         }
     }
 
-    /// The frame of a pose, gathered.
-    pub fn lines(&mut self, pose: &[i32]) -> Lines<N> {
-        self.set_pose(pose);
+    /// The lines and dots of a pose, gathered.
+    pub fn lines(&mut self, pose: Pose<'_>) -> Result<Lines<N>, WrongForm> {
+        self.set_pose(pose)?;
         self.sort();
         let mut lines = Lines::default();
         // There is room for all of them.
@@ -239,7 +246,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
             let _ = lines.bones.push(line);
         });
         lines.head = self.head();
-        lines
+        Ok(lines)
     }
 
     /// The ground.

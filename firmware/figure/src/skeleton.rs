@@ -6,7 +6,7 @@ use crate::names::{contains, is_left_of};
 use crate::rotation::{Vector, shift_right};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
-use pantin::{Joint, Kind, Rig};
+use pantin::{Form, Joint, Kind, Pose, Rig};
 
 /// One channel, or group of channels, at work on a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,6 +128,8 @@ pub const SLOTS: usize = 9;
 /// 2^13 .. 2^14. A person is some 2^16 high.
 #[derive(Clone, Debug)]
 pub struct Skeleton<const N: usize> {
+    /// The form of the poses that it takes.
+    form: Form,
     /// Parents before children, in an order in which few rotations wait at a time.
     pub bones: Vec<Bone, N>,
     /// The channels at work, joint by joint, in the order in which they apply; in fours, the last padded.
@@ -170,6 +172,7 @@ impl<const N: usize> Skeleton<N> {
     #[inline(always)]
     pub const fn empty() -> Self {
         Skeleton {
+            form: Form::NONE,
             bones: Vec::new(),
             drives: Vec::new(),
             driven: 0,
@@ -183,32 +186,24 @@ impl<const N: usize> Skeleton<N> {
         }
     }
 
-    /// The figure of a rig of up to 192 joints. `pose` is any pose of the clip, `position_exponent` its step of positions (2^e source
-    /// units), and `is_exponential` tells of a joint whether the clip codes its Euler angles as an exponential map.
-    pub fn new(
-        rig: &Rig,
-        detail: Detail,
-        pose: &[i32],
-        position_exponent: i8,
-        is_exponential: impl Fn(usize) -> bool,
-    ) -> Result<Self, Error> {
+    /// The form of the poses that it takes.
+    pub fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// The skeleton of a rig of up to 192 joints, for poses of the form of `pose`, which is any pose of the clip.
+    pub fn new(rig: &Rig, detail: Detail, pose: Pose<'_>) -> Result<Self, Error> {
         let mut skeleton = Skeleton::empty();
-        let mut room = [JointInfo::default(); RIG_JOINTS];
-        skeleton.set_up(rig, detail, (pose, position_exponent), is_exponential, &mut room)?;
+        skeleton.set_up(rig, detail, pose, &mut [JointInfo::default(); RIG_JOINTS])?;
         Ok(skeleton)
     }
 
-    /// [`Skeleton::new`] in place, for a rig of as many joints as `room` has elements.
+    /// [`Skeleton::new`] in place. `scratch` needs an element for each joint of the rig, End Sites included.
     #[inline(never)]
-    pub fn set_up(
-        &mut self,
-        rig: &Rig,
-        detail: Detail,
-        (pose, position_exponent): (&[i32], i8),
-        is_exponential: impl Fn(usize) -> bool,
-        room: &mut [JointInfo],
-    ) -> Result<(), Error> {
-        let mut table = JointTable::new(rig, pose, position_exponent, room)?;
+    pub fn set_up(&mut self, rig: &Rig, detail: Detail, pose: Pose<'_>, scratch: &mut [JointInfo]) -> Result<(), Error> {
+        let position_exponent = pose.form.length_exponent();
+        let mut table = JointTable::new(rig, pose.values, position_exponent, scratch)?;
+        self.form = *pose.form;
         match detail {
             Detail::Body => table.prune(),
             Detail::Full => table.settle(0),
@@ -216,7 +211,7 @@ impl<const N: usize> Skeleton<N> {
         self.clear(&table, table.exponent - i32::from(position_exponent));
         let mut before = None;
         while let Some(index) = table.after(before) {
-            self.add(rig, detail, &mut table, index, is_exponential(index))?;
+            self.add(rig, detail, &mut table, index, pose.form.is_exponential(rig, index))?;
             before = Some(index);
         }
         self.hips = table.table.get(self.hips).map_or(0, |hips| usize::from(hips.link));
@@ -270,7 +265,7 @@ impl<const N: usize> Skeleton<N> {
     }
 
     fn push(&mut self, bone: Bone) -> Result<u8, Error> {
-        self.bones.push(bone).map_err(|_| Error::TooManyJoints { most: N })?;
+        self.bones.push(bone).map_err(|_| Error::TooManyJoints { needed: N + 1, given: N })?;
         Ok(self.bones.len() as u8 - 1)
     }
 
@@ -317,7 +312,7 @@ impl<const N: usize> Skeleton<N> {
     }
 
     fn push_drive(&mut self, drive: Option<Drive>) -> Result<(), Error> {
-        let full = Error::TooManyChannels { most: DRIVES * N };
+        let full = Error::TooManyChannels { needed: DRIVES * N + 1, given: DRIVES * N };
         if self.driven.is_multiple_of(DRIVES) {
             self.drives.push([Drive::NOTHING; DRIVES]).map_err(|_| full)?;
         }

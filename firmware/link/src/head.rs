@@ -1,40 +1,25 @@
 //! What is played, and what its channels are: packets of kind HEAD and STARTS.
 
 use crate::symbols::{Coder, Reader};
-use pantin::layout::MAX_STEP;
-use pantin::{Clip, crc, has_choice};
+use pantin::Form;
+use pantin::codec::crc;
+use pantin::codec::layout::MAX_STEP;
 
 /// Version of all payloads; it is the first thing that an identity counts.
 const VERSION: u8 = 1;
-/// Bytes for the exponential bits of FORMAT.md 4: of so many times 8 joints with a choice.
+/// Most bytes of exponential bits (FORMAT.md 4) that a HEAD packet carries: those of 8 joints with a choice each.
 pub const EXPONENTIAL_BYTES: usize = 16;
 
-/// What the values of a pose mean: a receiver that has a clip of the same form can draw another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Form {
-    /// The rig's id: FORMAT.md 2.
-    pub rig: u32,
-    /// Positions are in 2^exponent units of the source.
-    pub length_exponent: i8,
-    /// Which joints are exponential maps: FORMAT.md 4.
-    pub exponentials: [u8; EXPONENTIAL_BYTES],
+/// Whether a HEAD packet can carry this form: whether no joint past the first 128 with a choice is coded as an exponential map.
+pub fn fits(form: &Form) -> bool {
+    form.exponentials().skip(EXPONENTIAL_BYTES).all(|byte| byte == 0)
 }
 
-impl Form {
-    /// The form of a clip; none where more joints have a choice than there are bits for.
-    pub fn of(clip: &Clip<'_>) -> Option<Form> {
-        let mut exponentials = [0; EXPONENTIAL_BYTES];
-        let mut choice = 0;
-        for (joint, own) in clip.rig().joints().enumerate() {
-            if has_choice(&own) {
-                if clip.is_exponential(joint) {
-                    *exponentials.get_mut(choice / 8)? |= 1 << (choice % 8);
-                }
-                choice += 1;
-            }
-        }
-        Some(Form { rig: clip.rig().id(), length_exponent: clip.length_exponent(), exponentials })
-    }
+/// The exponential bits as they go over the line.
+fn exponentials(form: &Form) -> [u8; EXPONENTIAL_BYTES] {
+    let mut bytes = [0; EXPONENTIAL_BYTES];
+    bytes.iter_mut().zip(form.exponentials()).for_each(|(byte, own)| *byte = own);
+    bytes
 }
 
 /// A clip on its way over the line. `Default` is no clip.
@@ -65,22 +50,22 @@ impl Head {
         let mut head = Head {
             session: coder.bits(16, u32::from(self.session)) as u16,
             clip: coder.bits(8, u32::from(self.clip)) as u8,
-            form: Form {
-                rig: coder.bits(32, form.rig),
-                length_exponent: coder.bits(8, u32::from(form.length_exponent as u8)) as u8 as i8,
-                exponentials: [0; EXPONENTIAL_BYTES],
-            },
+            form: Form::new(
+                coder.bits(32, form.rig_id()),
+                coder.bits(8, u32::from(form.length_exponent() as u8)) as u8 as i8,
+                [],
+            ),
             frames: coder.bits(25, self.frames),
             looped: coder.bits(1, u32::from(self.looped)) != 0,
             frame_time_ns: coder.bits(32, self.frame_time_ns),
             channels: coder.bits(10, u32::from(self.channels)) as u16,
             begin: coder.bits(32, self.begin),
         };
-        let used = form.exponentials.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+        let own = exponentials(&form);
+        let used = own.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
         let used = coder.bits(5, used as u32) as usize;
-        for (byte, own) in head.form.exponentials.iter_mut().zip(form.exponentials).take(used) {
-            *byte = coder.bits(8, u32::from(own)) as u8;
-        }
+        let bytes = own.iter().take(used).map(|&own| coder.bits(8, u32::from(own)) as u8);
+        head.form = Form::new(head.form.rig_id(), head.form.length_exponent(), bytes);
         (head, coder.bits(32, now))
     }
 
@@ -102,13 +87,13 @@ impl Head {
 
     /// What all other packets of the clip are checked by.
     pub fn identity(&self) -> u16 {
-        let mut sum = crc::of(&[VERSION, self.clip, u8::from(self.looped), self.form.length_exponent as u8]);
+        let mut sum = crc::of(&[VERSION, self.clip, u8::from(self.looped), self.form.length_exponent() as u8]);
         for part in
-            [self.form.rig, self.frames, self.frame_time_ns, self.begin, u32::from(self.session), u32::from(self.channels)]
+            [self.form.rig_id(), self.frames, self.frame_time_ns, self.begin, u32::from(self.session), u32::from(self.channels)]
         {
             sum = crc::update(sum, &part.to_le_bytes());
         }
-        crc::update(sum, &self.form.exponentials)
+        crc::update(sum, &exponentials(&self.form))
     }
 
     /// What a motion's packet is checked by, whose first frame is this.

@@ -17,6 +17,6 @@ mod tables;
 pub use channel::Channel;
 #[cfg(any(test, feature = "std"))]
 pub use head::write_starts;
-pub use head::{ChannelKind, EXPONENTIAL_BYTES, Form, Head, MAX_PACE, pace, read_starts};
+pub use head::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace, read_starts};
 pub use link::{ClipMismatch, Counts, Link, MAX_PACKET, MAX_PAYLOAD, QUEUE_PACKETS};
 pub use message::{Message, Messages, Refresh, units};

@@ -1,10 +1,11 @@
 //! The receiver: packets in, a pose a frame out. Nothing that comes can make it fail; what it says of itself is true.
 
 use crate::channel::Channel;
-use crate::head::{ChannelKind, Form, Head, read_starts};
+use crate::head::{ChannelKind, Head, read_starts};
 use crate::message::Messages;
 use crate::packet::{Packet, kind};
 use heapless::Vec;
+use pantin::{Form, Pose};
 
 /// Bytes of a motion's payload that a sender makes at most.
 pub const MAX_PAYLOAD: usize = 96;
@@ -137,7 +138,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
             self.heard = now;
             return Ok(());
         }
-        if head.form.rig != self.form.rig {
+        if head.form.rig_id() != self.form.rig_id() {
             return Err(ClipMismatch::Rig);
         }
         if head.form != self.form {
@@ -269,8 +270,8 @@ impl<'m, const Q: usize> Link<'m, Q> {
     }
 
     /// One raw value a channel, as it is to be drawn.
-    pub fn pose(&self) -> &[i32] {
-        self.pose
+    pub fn pose(&self) -> Pose<'_> {
+        Pose { values: self.pose, form: &self.form }
     }
 
     /// The clip that plays.

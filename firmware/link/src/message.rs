@@ -2,8 +2,8 @@
 
 use crate::symbols::{Coder, Reader};
 use crate::tables;
-use pantin::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
-use pantin::{segment, segment_frames, step_size};
+use pantin::codec::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
+use pantin::codec::{segment, segment_frames, step_size};
 
 /// A segment from a frame on, and perhaps the state that it starts from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -8,7 +8,7 @@
 //! is enough. A byte alone between zeros is no packet but a **letter**: a terminal's keys share the line.
 
 use crate::{cobs, parity};
-use pantin::crc;
+use pantin::codec::crc;
 
 /// What a packet is for: its first byte.
 pub mod kind {
@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn a_packet_on_the_line() {
         let bytes = line(kind::MOTION, 7, &[0, 0x55]);
-        let crc = pantin::crc::of(&[kind::MOTION, 7, 0, 0x55]).to_le_bytes();
+        let crc = pantin::codec::crc::of(&[kind::MOTION, 7, 0, 0x55]).to_le_bytes();
         assert_eq!(bytes, [0, 3, kind::MOTION, 7, 4, 0x55, crc[0], crc[1], 0]);
     }
 

@@ -19,7 +19,7 @@ use crate::output::{self, Wanted, note, refuse_foreign};
 use crate::verify::verify;
 use anyhow::{Context, Result, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
-use pantin::layout::MAX_FRAMES;
+use pantin::codec::layout::MAX_FRAMES;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

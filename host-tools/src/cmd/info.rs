@@ -42,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("exponential_joints", json!((0..rig.joint_count()).filter(|&joint| clip.is_exponential(joint)).count())),
         ("looped", json!(clip.looped())),
         ("events", json!(clip.event_count())),
-        ("cm_per_unit", json!(f64::from(rig.micro_cm_per_unit()) * 1e-6)),
+        ("cm_per_unit", json!(f64::from(rig.unit_micro_cm()) * 1e-6)),
         ("file_bytes", json!(file)),
         ("rig_bytes", json!(clip.rig_len())),
         ("motion_bytes", json!(file - clip.rig_len())),

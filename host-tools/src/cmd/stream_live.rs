@@ -5,7 +5,6 @@ use crate::cmd::Files;
 use crate::stream::live::Feed;
 use crate::stream::pace;
 use anyhow::{Context, Result, ensure};
-use pantin_link::Form;
 use pantin_link::sender::{Line, Live, LiveChannel, Source};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -28,7 +27,7 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let files = Files::read(path, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| path.display().to_string())?;
     ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; --live sends faces alone", path.display());
-    let form = Form::of(&clip).context("a face has no joints")?;
+    let form = clip.form();
     let mut feed = Feed::open(from)?;
     let names = feed.names();
     let places: Vec<Place> = clip

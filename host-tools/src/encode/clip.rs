@@ -4,8 +4,9 @@ use super::entropy::{Alphabet, Sink, Symbols};
 use super::segment::{Running, Segment};
 use super::{index, varint};
 use anyhow::{Context, Result, bail, ensure};
-use pantin::layout::*;
-use pantin::{Event, crc, step_size};
+use pantin::Event;
+use pantin::codec::layout::*;
+use pantin::codec::{crc, step_size};
 
 /// How a channel begins, in multiples of its grids, which need not divide the range of raw values: those may wrap, these not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +64,7 @@ pub struct Coded {
     pub frame_time_ns: u32,
     /// A position's raw value times 2^exponent is in source units.
     pub length_exponent: i8,
-    /// For each joint that may choose (`pantin::has_choice`): whether its rotation is an exponential map.
+    /// For each joint that may choose (`pantin::codec::has_choice`): whether its rotation is an exponential map.
     pub exponentials: Vec<bool>,
     /// The channels.
     pub channels: Vec<Channel>,
@@ -135,7 +136,7 @@ fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<
     if let Some(index) = index {
         let len = blocks_len(index.len()) as u32;
         varint::put(&mut out, len);
-        put_blocks(&mut out, index, pantin::index_seed(last, len));
+        put_blocks(&mut out, index, pantin::codec::index_seed(last, len));
     }
     Ok(out)
 }

@@ -1,7 +1,7 @@
-//! Writes what `pantin::entropy` reads. rANS is last in, first out: symbols are gathered, then coded from the last to the first.
+//! Writes what `pantin::codec::entropy` reads. rANS is last in, first out: symbols are gathered, then coded from the last to the first.
 
-use pantin::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table, start};
-use pantin::tables;
+use pantin::codec::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table, start};
+use pantin::codec::tables;
 
 /// What a symbol is of: the format's tables by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,7 +75,7 @@ pub fn sizes(table: &Table) -> impl Iterator<Item = u32> + '_ {
 /// Start and size of a symbol's stretch of 4096.
 pub fn stretch(table: &Table, symbol: u32) -> (u32, u32) {
     let start = start(table[symbol as usize]);
-    let end = table.get(symbol as usize + 1).map_or(1 << SCALE_BITS, |&next| pantin::entropy::start(next));
+    let end = table.get(symbol as usize + 1).map_or(1 << SCALE_BITS, |&next| pantin::codec::entropy::start(next));
     (start, end - start)
 }
 
@@ -144,13 +144,13 @@ pub fn magnitude_cost(table: &Table, value: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pantin::entropy::SIXTEENTH;
-    use pantin::segment::CONTEXTS;
+    use pantin::codec::entropy::SIXTEENTH;
+    use pantin::codec::segment::CONTEXTS;
 
     #[test]
     fn tables_are_probabilities_and_their_hints_never_lead_past_the_symbol() {
         let few = [Alphabet::StepChange, Alphabet::Position, Alphabet::Velocity];
-        let contexts = (0..pantin::layout::STATUSES as u8).map(Alphabet::Status).chain((0..64).map(Alphabet::Mode));
+        let contexts = (0..pantin::codec::layout::STATUSES as u8).map(Alphabet::Status).chain((0..64).map(Alphabet::Mode));
         let contexts = contexts.chain((0..CONTEXTS as u8).map(Alphabet::Number)).chain(few);
         for alphabet in contexts {
             let table = alphabet.table();

@@ -17,7 +17,7 @@ pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
         player.step();
         if player.frame().is_multiple_of(spacing) {
             let mut snapshot = Vec::new();
-            player.write_snapshot(&mut |byte| snapshot.push(byte));
+            pantin::codec::write_snapshot(&player, &mut |byte| snapshot.push(byte));
             snapshots.push(snapshot);
         }
     }
@@ -50,7 +50,7 @@ fn table(spacing: u32, snapshots: &[Vec<u8>]) -> Vec<u8> {
 
 /// Where byte `index` of a payload stands among the blocks with their CRCs.
 fn place(index: usize) -> u32 {
-    (blocks_len(index + 1) - pantin::layout::CRC_BYTES - 1) as u32
+    (blocks_len(index + 1) - pantin::codec::layout::CRC_BYTES - 1) as u32
 }
 
 /// Plays the clip from its index: every frame after a snapshot must be what stepping gives.
@@ -64,7 +64,7 @@ pub fn check(bytes: &[u8], rig: &[u8]) -> Result<()> {
         stepped.step();
         sought.rewind();
         sought.seek(stepped.frame());
-        ensure!(sought.pose() == stepped.pose(), "frame {} differs when it is sought", stepped.frame());
+        ensure!(sought.pose().values == stepped.pose().values, "frame {} differs when it is sought", stepped.frame());
     }
     Ok(())
 }

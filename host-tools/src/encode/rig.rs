@@ -3,7 +3,7 @@
 use super::varint;
 use crate::motion::{Joint, Kind, Rig, Scalar};
 use anyhow::{Result, bail, ensure};
-use pantin::{crc, layout};
+use pantin::codec::{crc, layout};
 
 /// Bits of the longest offset: an error of 2^-22 of it a joint is far below what a figure shows.
 const OFFSET_BITS: i32 = 21;
@@ -116,7 +116,7 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
                 Scalar { name: scalar.name().to_string(), full_scale }
             })
             .collect(),
-        cm_per_unit: f64::from(rig.micro_cm_per_unit()) * 1e-6,
+        cm_per_unit: f64::from(rig.unit_micro_cm()) * 1e-6,
     }
 }
 

@@ -1,8 +1,8 @@
-//! A segment's symbols: the mirror of `pantin::segment`.
+//! A segment's symbols: the mirror of `pantin::codec::segment`.
 
 use super::entropy::{Alphabet, Sink};
-use pantin::layout::{DIRECT, FAR, FAR_BITS, GROUPS, group, segment_type};
-use pantin::segment::{Context, DIRECT_MODES, MODE_BITS, SLOPE, step};
+use pantin::codec::layout::{DIRECT, FAR, FAR_BITS, GROUPS, group, segment_type};
+use pantin::codec::segment::{Context, DIRECT_MODES, MODE_BITS, SLOPE, step};
 
 /// A segment: its mode, and how many steps its new acceleration and slope have (0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct Segment {
 impl Segment {
     /// Its length in frames.
     pub fn length(&self) -> usize {
-        usize::from(pantin::segment_frames(self.mode))
+        usize::from(pantin::codec::segment_frames(self.mode))
     }
 
     /// Its type.

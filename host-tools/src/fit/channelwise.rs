@@ -10,7 +10,7 @@ use super::{raw, time};
 use crate::encode::clip::{Channel, Coded, Start, position_grid, velocity_grid};
 use crate::motion::Motion;
 use anyhow::{Result, bail};
-use pantin::layout::MAX_STEP;
+use pantin::codec::layout::MAX_STEP;
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 

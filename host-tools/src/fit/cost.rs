@@ -2,9 +2,9 @@
 
 use crate::encode::entropy::{cost, magnitude_cost};
 use crate::encode::segment::{mode_symbol, number_symbol};
-use pantin::layout::{GROUPS, group};
-use pantin::segment::{CONTEXTS, MODE_BITS};
-use pantin::tables;
+use pantin::codec::layout::{GROUPS, group};
+use pantin::codec::segment::{CONTEXTS, MODE_BITS};
+use pantin::codec::tables;
 use std::sync::OnceLock;
 
 /// Numbers of at most this size have their cost at hand.

@@ -7,7 +7,7 @@ use super::refusal::refusal;
 use super::search::{Effort, Fitted, Tube, search};
 use crate::encode::clip::Start;
 use anyhow::{Result, bail};
-use pantin::layout::{FIRST_STEP, MAX_STEP};
+use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
 
 /// What may not be exceeded, and how hard to try.
 #[derive(Clone, Copy, Debug)]

@@ -18,7 +18,7 @@ use crate::motion::Motion;
 use anyhow::{Result, anyhow, ensure};
 use descent::{Descent, Plan};
 use figure::Figure;
-use pantin::layout::MAX_FRAMES;
+use pantin::codec::layout::MAX_FRAMES;
 use scalars::Aim;
 
 /// Parts of the bound that first codes may fill, until all channels find one: those that come late need room.
@@ -85,7 +85,7 @@ fn time(motion: &Motion) -> Result<u32> {
         motion.frames
     );
     let seconds = motion.frame_time;
-    let usual = pantin::layout::FRAME_RATES.iter().skip(1).map(|&rate| 1.0 / f64::from(rate));
+    let usual = pantin::codec::layout::FRAME_RATES.iter().skip(1).map(|&rate| 1.0 / f64::from(rate));
     let exact = usual.into_iter().find(|usual| (usual / seconds - 1.0).abs() < SAME_RATE).unwrap_or(seconds);
     let ns = (exact * 1e9).round();
     ensure!(

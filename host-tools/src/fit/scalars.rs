@@ -6,7 +6,7 @@ use super::search::{Effort, Fitted, Tube, search};
 use crate::encode::clip::Start;
 use crate::motion::Rig;
 use anyhow::{Result, anyhow};
-use pantin::layout::{FOLLOW_BITS, MAX_STEP};
+use pantin::codec::layout::{FOLLOW_BITS, MAX_STEP};
 use rayon::prelude::*;
 use std::ops::RangeInclusive;
 

@@ -6,9 +6,9 @@
 use super::cost::Costs;
 use crate::encode::clip::{Start, position_grid, velocity_grid};
 use crate::encode::segment::Segment;
-use pantin::layout::{LENGTHS, START_MODE, segment_type};
-use pantin::segment::{Context, SLOPE, step as number_step};
-use pantin::step_size;
+use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
+use pantin::codec::segment::{Context, SLOPE, step as number_step};
+use pantin::codec::step_size;
 
 /// What a channel may do: at each frame within `lo..=hi`, at the price of `a e^2 + 2 b e` bits for the error e = p - x.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@
 //! then there are [`PLAIN_FPS`]. The last frame is the first one at or after the last key.
 
 use anyhow::{Result, ensure};
-use pantin::layout::MAX_FRAMES;
+use pantin::codec::layout::MAX_FRAMES;
 
 /// Seconds above which the distance of keys says nothing about frames.
 const LONGEST: f64 = 0.11;

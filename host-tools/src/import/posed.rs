@@ -8,7 +8,7 @@ use super::grid::Grid;
 use crate::fk::{IDENTITY, Matrix, apply, product};
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar};
 use anyhow::{Result, ensure};
-use pantin::layout::MAX_JOINTS;
+use pantin::codec::layout::MAX_JOINTS;
 
 /// Three rows; the last column is the place.
 pub type Affine = [[f64; 4]; 3];

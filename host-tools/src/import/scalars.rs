@@ -2,7 +2,7 @@
 
 use crate::motion::{Motion, Rig, Scalar};
 use anyhow::{Result, ensure};
-use pantin::layout::MAX_CHANNELS;
+use pantin::codec::layout::MAX_CHANNELS;
 
 /// Frames times channels: 128 MB of samples.
 pub const MOST_VALUES: usize = 1 << 24;

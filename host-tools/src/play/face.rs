@@ -43,7 +43,7 @@ impl Show for Face<'_, '_> {
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
         if let Some((_, _, cast)) = &mut self.cast {
-            shades.draw_lines(&cast.lines(pose, 0), settings.in_bits());
+            shades.draw_lines(&cast.lines(pose.values, 0), settings.in_bits());
         }
         grid.show(&shades, rows, dots, &settings.palette, settings.coloured());
         Ok(())

@@ -1,7 +1,7 @@
 //! A player with the memory that it needs to go back.
 
 use anyhow::Result;
-use pantin::{ChannelState, Clip, Player, SeekCache, SnapshotPos, Undo};
+use pantin::{ChannelState, Clip, Player, Pose, SeekCache, SnapshotPos, Undo};
 
 /// Frames of lively motion that steps back reach without playing again, and snapshots of the clip.
 const FRAMES_BACK: usize = 8;
@@ -48,7 +48,7 @@ impl<'a, 'm> Playback<'a, 'm> {
     }
 
     /// The pose of a frame.
-    pub fn pose(&mut self, frame: u32) -> &[i32] {
+    pub fn pose(&mut self, frame: u32) -> Pose<'_> {
         let now = self.player.frame();
         if frame == now + 1 {
             self.player.step_with(&mut self.memory);

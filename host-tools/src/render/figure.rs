@@ -81,7 +81,9 @@ impl<'a, 'm> Figure<'a, 'm> {
         let [width, height] = self.size.map(|pixels| pixels as f32);
         match &mut self.shown {
             Shown::Body(stages) => Scene::of(&mut stages[view], self.player.pose(), self.factor as f32),
-            Shown::Face(cast) => Scene::of_face(&cast.lines(self.player.pose(), view), self.factor as f32, width.min(height)),
+            Shown::Face(cast) => {
+                Scene::of_face(&cast.lines(self.player.pose().values, view), self.factor as f32, width.min(height))
+            }
         }
     }
 
@@ -94,7 +96,7 @@ impl<'a, 'm> Figure<'a, 'm> {
                 let mut shades = Shades::new(width, height);
                 match &mut self.shown {
                     Shown::Body(stages) => shades.draw(&mut stages[view], self.player.pose(), true, palette.is_mono()),
-                    Shown::Face(cast) => shades.draw_lines(&cast.lines(self.player.pose(), view), palette.is_mono()),
+                    Shown::Face(cast) => shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono()),
                 }
                 shades.image(palette)
             }

@@ -1,6 +1,7 @@
 //! A frame of the figure as strokes in pixels, thicker the nearer they are: for what draws more finely than a display does.
 
 use super::palette::{FARTHEST, NEAREST};
+use pantin::Pose;
 use pantin_figure::FigureRenderer;
 use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::ink::BodyPart;
@@ -71,10 +72,10 @@ pub struct Scene {
 
 impl Scene {
     /// The frame of a pose, `factor` times as big as the stage has it.
-    pub fn of<const N: usize>(renderer: &mut FigureRenderer<N>, pose: &[i32], factor: f32) -> Scene {
+    pub fn of<const N: usize>(renderer: &mut FigureRenderer<N>, pose: Pose<'_>, factor: f32) -> Scene {
         let unit = factor / f32::from(1u8 << PIXEL_BITS);
         let height = renderer.camera().length(renderer.skeleton().size) as f32 * unit;
-        let lines = renderer.lines(pose);
+        let lines = renderer.lines(pose).expect("the renderer was set up for this clip");
         let place = |[x, y]: [i16; 2]| [f32::from(x) * unit, f32::from(y) * unit];
         let stroke = |line: &Line, width: f32| Stroke {
             from: place(line.from),

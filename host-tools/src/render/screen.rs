@@ -52,7 +52,7 @@ pub fn pictures(clip: &Clip, view: View, frames: impl IntoIterator<Item = u32>) 
     let draw = |number| {
         player.seek(number);
         frame.clear();
-        renderer.set_pose(player.pose());
+        renderer.set_pose(player.pose()).expect("the renderer was set up for this clip");
         renderer.draw_on(&mut frame, DrawStyle::default());
         Picture::of(&frame)
     };

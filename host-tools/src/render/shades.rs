@@ -6,6 +6,7 @@ use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::{BinaryColor, PixelColor};
+use pantin::Pose;
 use pantin_figure::FigureRenderer;
 use pantin_figure::draw::stroke;
 use pantin_figure::ink::{BodyPart, Ink};
@@ -58,8 +59,8 @@ impl Shades {
     }
 
     /// Draws a pose as the firmware does: on a display of two colours, or of more.
-    pub fn draw<const N: usize>(&mut self, renderer: &mut FigureRenderer<N>, pose: &[i32], ground: bool, mono: bool) {
-        renderer.set_pose(pose);
+    pub fn draw<const N: usize>(&mut self, renderer: &mut FigureRenderer<N>, pose: Pose<'_>, ground: bool, mono: bool) {
+        renderer.set_pose(pose).expect("the renderer was set up for this clip");
         self.marks.fill(Mark::DARK);
         let look = pantin_figure::DrawStyle { ground, smooth: false };
         if mono {

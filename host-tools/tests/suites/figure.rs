@@ -5,7 +5,8 @@ use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::mock_display::MockDisplay;
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::primitives::Rectangle;
-use pantin::{Kind, layout::MAX_JOINTS};
+use pantin::codec::layout::MAX_JOINTS;
+use pantin::{Form, Kind, Pose};
 use pantin_figure::camera::DISTANCE;
 use pantin_figure::kinematics::Kinematics;
 use pantin_figure::surface::OnTarget;
@@ -56,8 +57,12 @@ impl Case {
     }
 
     fn skeleton(&self, detail: Detail) -> Skeleton<JOINTS> {
-        let exponent = self.rig().length_exponent();
-        Skeleton::new(&self.rig(), detail, &self.pose(0), exponent, |_| false).unwrap()
+        Skeleton::new(&self.rig(), detail, Pose { values: &self.pose(0), form: &self.form() }).unwrap()
+    }
+
+    /// Every joint as the rig has it, positions in the unit of its offsets.
+    fn form(&self) -> Form {
+        Form::new(self.rig().id(), self.rig().length_exponent(), [])
     }
 
     /// True positions of a frame in figure units.
@@ -95,7 +100,7 @@ impl Case {
         let mut renderer = self.renderer(view);
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
-            renderer.set_pose(&self.pose(frame));
+            renderer.set_pose(Pose { values: &self.pose(frame), form: &self.form() }).unwrap();
             let hips = renderer.skeleton().hips;
             let target = renderer.target();
             let truth = self.truth(renderer.skeleton(), frame);
@@ -221,8 +226,9 @@ fn euler_slots_that_hold_an_exponential_map_turn_as_one() {
     };
     let truth = with(&[Kind::Xexponential, Kind::Yexponential, Kind::Zexponential]);
     let slots = with(&[Kind::Zrotation, Kind::Xrotation, Kind::Yrotation]);
-    let exponent = slots.rig().length_exponent();
-    let skeleton = Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, &slots.pose(0), exponent, |joint| joint == 0).unwrap();
+    // The root is the only joint with a choice.
+    let form = Form::new(slots.rig().id(), slots.rig().length_exponent(), [1]);
+    let skeleton = Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, Pose { values: &slots.pose(0), form: &form }).unwrap();
     let mut joints: Kinematics<JOINTS> = Kinematics::new();
     joints.set_pose(&skeleton, &slots.pose(0));
     let error = distance(joints.position(1).map(f64::from), truth.truth(&skeleton, 0)[1]);
@@ -274,7 +280,7 @@ fn a_person_is_drawn_as_a_person() {
     let mut display = MockDisplay::<BinaryColor>::new();
     display.set_allow_overdraw(true);
     display.set_allow_out_of_bounds_drawing(true);
-    renderer.set_pose(&case.pose(0));
+    renderer.set_pose(Pose { values: &case.pose(0), form: &case.form() }).unwrap();
     let mut inside = display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)));
     inside.clear(BinaryColor::Off).unwrap();
     let mut surface = OnTarget::new(&mut inside);

@@ -2,7 +2,7 @@
 //!
 //! After a change of the format or its tables, `PANTIN_UPDATE=1 cargo test -p pantin-tools format_example::` regenerates it.
 
-use pantin::layout::*;
+use pantin::codec::layout::*;
 use pantin::{ChannelState, Clip, Player};
 use pantin_tools::encode::clip::{self, Channel, Coded, Start, position_grid, velocity_grid};
 use pantin_tools::encode::entropy::{Alphabet, Sink, stretch};
@@ -45,7 +45,7 @@ fn coded() -> Coded {
 }
 
 fn unit(segment: &Segment) -> u32 {
-    pantin::segment::step(segment.mode, STEP)
+    pantin::codec::segment::step(segment.mode, STEP)
 }
 
 /// What the example's symbols and bits mean, in the order in which they are read.
@@ -53,7 +53,7 @@ fn meanings() -> [String; 13] {
     let [first, second] = SEGMENTS;
     [
         "it moves".into(),
-        format!("from {FIRST_STEP} by -1 to {STEP}: {} raw", pantin::step_size(STEP)),
+        format!("from {FIRST_STEP} by -1 to {STEP}: {} raw", pantin::codec::step_size(STEP)),
         "length in bits".into(),
         "below the highest: 16 + 4 = 20".into(),
         format!("positive: p = 20 * {}", position_grid(STEP)),
@@ -181,7 +181,7 @@ fn frames(clip: Clip<'_>) -> String {
             3 => k = SEGMENTS[1].k * unit(&SEGMENTS[1]) as i32,
             _ => {}
         }
-        assert_eq!((player.frame(), player.pose()), (frame, &[p][..]));
+        assert_eq!((player.frame(), player.pose().values), (frame, &[p][..]));
         let degrees = f64::from(p) * 360.0 / 4294967296.0;
         let _ = writeln!(out, "{frame:5} {p:10} {v:9} {w:9} {k:8} {degrees:9.4}");
         (p, v, w) = (p + v, v + w, w + k);

@@ -1,6 +1,6 @@
 //! The search against brute force: on tubes of 12 frames, every segmentation into W and K segments with every number that matters.
 
-use pantin::layout::{LENGTHS, START_MODE, segment_type};
+use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
 use pantin_tools::encode::clip::{Start, position_grid, velocity_grid};
 use pantin_tools::encode::entropy::{Alphabet, Sink, cost};
 use pantin_tools::encode::segment::{Running, Segment};
@@ -38,7 +38,7 @@ fn noise(state: &mut u64) -> f64 {
 /// A curve whose acceleration wanders, and a tube around it about as wide as a channel step; errors are free or cost up to a bit.
 fn tube(case: u64, frames: usize) -> Tube {
     let mut state = case.wrapping_mul(977) + 1;
-    let size = f64::from(pantin::step_size(STEP));
+    let size = f64::from(pantin::codec::step_size(STEP));
     let (mut p, mut v, mut w) = (20.0 * noise(&mut state), 2.0 * noise(&mut state), 0.5 * noise(&mut state));
     let mut x = Vec::new();
     for _ in 0..frames {

@@ -190,7 +190,7 @@ fn drawn_bones(clip: &pantin::Clip) -> usize {
     let mut player = memory.player(*clip).unwrap();
     let canvas = pantin_figure::Canvas { width: 300, height: 400 };
     let mut renderer = pantin_figure::FigureRenderer::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
-    renderer.lines(player.pose()).bones.len()
+    renderer.lines(player.pose()).unwrap().bones.len()
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn the_phones_picture_is_the_firmwares_own() {
     let mut renderer = pantin_figure::FigureRenderer::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
     let mut frame = Phone::new();
     player.seek(30);
-    renderer.set_pose(player.pose());
+    renderer.set_pose(player.pose()).unwrap();
     renderer.draw_on(&mut frame, pantin_figure::DrawStyle::default());
     let shown = |index: usize| Rgb888::from(frame.pixel(index % 176, index / 176));
     assert!((0..176 * 220).all(|index| pixels[index] == [shown(index).r(), shown(index).g(), shown(index).b()]));

@@ -2,8 +2,9 @@
 //!
 //! A table lists the probabilities of its symbols in 1/4096. Contexts that share a table share its index.
 
-use pantin::segment::{CONTEXTS, DIRECT_MODES};
-use pantin::{Kind, entropy, layout};
+use pantin::Kind;
+use pantin::codec::segment::{CONTEXTS, DIRECT_MODES};
+use pantin::codec::{entropy, layout};
 use pantin_tools::encode::entropy::{Alphabet, sizes};
 use serde_json::json;
 

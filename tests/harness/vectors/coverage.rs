@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use anyhow::Result;
-use pantin::layout::{FAR, FAR_BITS, FOLLOW_BITS, LENGTHS, START_MODE, STATUSES, STEP_CHANGES, status};
+use pantin::codec::layout::{FAR, FAR_BITS, FOLLOW_BITS, LENGTHS, START_MODE, STATUSES, STEP_CHANGES, status};
 use pantin_tools::encode::clip::symbols;
 use pantin_tools::encode::entropy::{Alphabet, Sink};
 use pantin_tools::encode::rig;

@@ -79,7 +79,7 @@ fn poses(clip: &Clip<'_>) -> Result<Map<String, Value>> {
     for frame in 0..=last {
         let left = POSE_VALUES.saturating_sub(poses.len() * clip.rig().channels());
         if [0, last / 2, last].contains(&frame) && clip.rig().channels() <= left {
-            poses.insert(frame.to_string(), player.pose().into());
+            poses.insert(frame.to_string(), player.pose().values.into());
         }
         player.step();
     }

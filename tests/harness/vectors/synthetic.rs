@@ -1,7 +1,7 @@
 //! Vectors made of noise and of edges: together they hold every feature of the format, which [`super::coverage`] counts.
 
 use anyhow::Result;
-use pantin::layout::{FIRST_STEP, GROUPS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
+use pantin::codec::layout::{FIRST_STEP, GROUPS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
 use pantin::{Event, Kind};
 use pantin_tools::encode::clip::{self, Channel, Coded, Start};
 use pantin_tools::encode::rig;

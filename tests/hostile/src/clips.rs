@@ -70,7 +70,7 @@ fn play(clip: Clip<'_>, bytes: &[u8]) {
     let mut player = Player::new(clip, &mut states, &mut pose).expect("memory as asked for");
     for frame in 0..frames {
         assert_eq!(player.frame() as usize, frame);
-        stepped.extend_from_slice(player.pose());
+        stepped.extend_from_slice(player.pose().values);
         player.step();
     }
     // With its CRC mended, an index may say what it likes: nothing but the poses sought by it may suffer.
@@ -80,7 +80,7 @@ fn play(clip: Clip<'_>, bytes: &[u8]) {
         let frame = noise.below(frames);
         player.seek(frame as u32);
         assert_eq!(player.frame() as usize, frame);
-        assert!(lies || player.pose() == &stepped[frame * channels..][..channels], "frame {frame} by seeking is another");
+        assert!(lies || player.pose().values == &stepped[frame * channels..][..channels], "frame {frame} by seeking is another");
     }
     // Seeking far costs a look at every frame on the way.
     if u64::from(clip.frames()) * (1 + moving as u64) <= VALUES {
@@ -88,7 +88,7 @@ fn play(clip: Clip<'_>, bytes: &[u8]) {
         assert_eq!(player.frame(), clip.frames() - 1);
     }
     player.rewind();
-    assert!(player.pose() == &stepped[..channels]);
+    assert!(player.pose().values == &stepped[..channels]);
     let mut lent =
         ([Undo::default(); 9], [SnapshotPos::default(); 3], vec![ChannelState::default(); 3 * moving], vec![0; 3 * moving]);
     let mut memory = SeekCache::new(&player, &mut lent.0, &mut lent.1, &mut lent.2, &mut lent.3);
@@ -96,7 +96,10 @@ fn play(clip: Clip<'_>, bytes: &[u8]) {
     for _ in 0..BACK.min(player.frame()) {
         player.step_back(&mut memory);
         let frame = player.frame() as usize;
-        assert!(lies || player.pose() == &stepped[frame * channels..][..channels], "frame {frame} by going back is another");
+        assert!(
+            lies || player.pose().values == &stepped[frame * channels..][..channels],
+            "frame {frame} by going back is another"
+        );
     }
     stream(clip, bytes, &stepped);
 }
@@ -119,7 +122,7 @@ fn stream(clip: Clip<'_>, bytes: &[u8], stepped: &[i32]) {
             Progress::Frame => {
                 let begin = stream.frame() as usize * channels;
                 let Some(pose) = stepped.get(begin..begin + channels).filter(|_| begin < stepped.len()) else { return };
-                assert!(stream.pose() == pose, "frame {} by streaming is another", stream.frame());
+                assert!(stream.pose().values == pose, "frame {} by streaming is another", stream.frame());
             }
             Progress::End => return,
             Progress::Opened | Progress::Event(_) => {}

@@ -1,7 +1,7 @@
 //! Mends what a check at the door would refuse, and nothing else.
 
-use pantin::crc;
-use pantin::layout::{BLOCK_BYTES, CRC_BYTES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
+use pantin::codec::crc;
+use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
 
 /// Makes the CRC of a rig right, if it is long enough to have one.
 pub fn rig(bytes: &mut [u8]) {
@@ -32,7 +32,7 @@ pub fn clip(bytes: &mut Vec<u8>) {
     let last = put_part(bytes, &motion, seed);
     if flags & HAS_INDEX != 0 {
         let index = &index[varint(&index).map_or(index.len(), |(_, digits)| digits)..];
-        put_part(bytes, index, pantin::index_seed(last, index.len() as u32));
+        put_part(bytes, index, pantin::codec::index_seed(last, index.len() as u32));
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::facts::Trouble;
 use crate::picture::Picture;
 use crate::source::Source;
+use pantin::Pose;
 use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::ink::BodyPart;
 use pantin_figure::lines::Line;
@@ -45,10 +46,9 @@ impl Actor {
         let now = source.frame();
         if !self.body {
             source.go(0);
-            let pose = (source.pose(), source.length_exponent());
             let mut room = [JointInfo::default(); RIG_JOINTS];
             let skeleton = self.renderer.skeleton_mut();
-            skeleton.set_up(&rig, Detail::Body, pose, |joint| source.is_exponential(joint), &mut room)?;
+            skeleton.set_up(&rig, Detail::Body, source.pose(), &mut room)?;
             self.body = true;
         }
         self.renderer.look_at(canvas, view, |visit| sample(source, visit));
@@ -57,9 +57,10 @@ impl Actor {
     }
 
     /// Sets the pose.
-    pub fn place(&mut self, pose: &[i32]) {
+    pub fn place(&mut self, pose: Pose<'_>) {
         if self.body {
-            self.renderer.set_pose(pose);
+            // It is of the source that the renderer was set up for.
+            let _ = self.renderer.set_pose(pose);
         }
     }
 
@@ -107,7 +108,7 @@ fn sample(source: &mut Source, visit: &mut dyn FnMut(&[i32])) {
     let frames = source.playable();
     let mut frame = 0;
     while frame < frames {
-        visit(source.go(frame));
+        visit(source.go(frame).values);
         frame += frames.div_ceil(SAMPLES).max(1);
     }
 }

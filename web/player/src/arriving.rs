@@ -2,7 +2,7 @@
 
 use crate::facts::Trouble;
 use crate::memory::{past, seat};
-use pantin::{Clip, PartialClip, Player, SeekCache};
+use pantin::{Clip, PartialClip, Player, Pose, SeekCache};
 
 /// The received beginning of a file, and its player.
 pub struct Arriving {
@@ -49,7 +49,7 @@ impl Arriving {
     }
 
     /// Moves to a playable frame. Steps are seeks of one frame, and steps back start from a nearby snapshot, so no history of steps is needed.
-    pub fn go(&mut self, frame: u32) -> &[i32] {
+    pub fn go(&mut self, frame: u32) -> Pose<'_> {
         self.front.seek(&mut self.player, frame, &mut self.memory);
         self.player.pose()
     }

@@ -2,7 +2,7 @@
 
 use crate::picture::Picture;
 use core::mem::MaybeUninit;
-use pantin::layout::MAX_CHANNELS;
+use pantin::codec::layout::MAX_CHANNELS;
 use pantin::{ChannelState, SnapshotPos};
 use pantin_web_module::Only;
 

@@ -2,7 +2,7 @@
 
 use crate::arriving::Arriving;
 use crate::facts::{Facts, Trouble};
-use pantin::Rig;
+use pantin::{Form, Pose, Rig};
 
 /// A table of poses, one raw value per channel and frame.
 pub struct Table {
@@ -11,7 +11,7 @@ pub struct Table {
     frames: u32,
     frame: u32,
     frame_time_ns: u32,
-    length_exponent: i8,
+    form: Form,
 }
 
 impl Table {
@@ -31,13 +31,13 @@ impl Table {
         if frames == 0 {
             return Err(Trouble::Malformed);
         }
-        Ok(Table { rig, values, frames: frames as u32, frame: 0, frame_time_ns, length_exponent })
+        Ok(Table { rig, values, frames: frames as u32, frame: 0, frame_time_ns, form: Form::new(rig.id(), length_exponent, []) })
     }
 
-    fn pose(&self) -> &[i32] {
+    fn pose(&self) -> Pose<'_> {
         let channels = self.rig.channels();
         let first = self.frame as usize * channels;
-        self.values.get(first..first + channels).unwrap_or(&[])
+        Pose { values: self.values.get(first..first + channels).unwrap_or(&[]), form: &self.form }
     }
 }
 
@@ -68,10 +68,10 @@ impl Source {
     }
 
     /// Moves to a frame, or to the last playable one.
-    pub fn go(&mut self, frame: u32) -> &[i32] {
+    pub fn go(&mut self, frame: u32) -> Pose<'_> {
         let frame = frame.min(self.playable().saturating_sub(1));
         match self {
-            Source::Nothing => &[],
+            Source::Nothing => Pose { values: &[], form: &Form::NONE },
             Source::Clip(clip) => clip.go(frame),
             Source::Table(table) => {
                 table.frame = frame;
@@ -81,26 +81,11 @@ impl Source {
     }
 
     /// Returns the current pose.
-    pub fn pose(&self) -> &[i32] {
+    pub fn pose(&self) -> Pose<'_> {
         match self {
-            Source::Nothing => &[],
+            Source::Nothing => Pose { values: &[], form: &Form::NONE },
             Source::Clip(clip) => clip.player().pose(),
             Source::Table(table) => table.pose(),
-        }
-    }
-
-    pub fn length_exponent(&self) -> i8 {
-        match self {
-            Source::Nothing => 0,
-            Source::Clip(clip) => clip.clip().length_exponent(),
-            Source::Table(table) => table.length_exponent,
-        }
-    }
-
-    pub fn is_exponential(&self, joint: usize) -> bool {
-        match self {
-            Source::Clip(clip) => clip.clip().is_exponential(joint),
-            Source::Nothing | Source::Table(_) => false,
         }
     }
 
@@ -117,7 +102,7 @@ impl Source {
     pub fn tell(&self, facts: &mut Facts) {
         facts.playable = self.playable();
         facts.frame = self.frame();
-        facts.pose = self.pose().as_ptr() as usize;
+        facts.pose = self.pose().values.as_ptr() as usize;
         if let Some(rig) = self.rig() {
             facts.channels = rig.channels() as u32;
             facts.joints = rig.joint_count() as u32;

@@ -104,7 +104,7 @@ impl World {
     }
 
     pub fn strokes(&mut self, picture: &mut Picture) -> usize {
-        let pose = self.source.pose();
+        let pose = self.source.pose().values;
         picture.gather(&mut self.actor, pose)
     }
 }

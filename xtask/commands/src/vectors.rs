@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use harness::vectors::{self, Vector, constants, coverage, own, record, synthetic};
-use pantin::layout::VERSION;
+use pantin::codec::layout::VERSION;
 use pantin_tools::cmd::write_whole;
 
 /// Versions from here on are experimental.

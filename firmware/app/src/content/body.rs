@@ -5,13 +5,13 @@ use crate::board::{Board, Exit};
 use crate::capacity::{Capacity, Figure};
 use crate::log::{error, info};
 use crate::run::{Outcome, PlayContext, play};
-use pantin::Player;
+use pantin::{Player, Pose};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{DrawStyle, View};
 
 impl<L: Layout, F: Figure> Content<L> for F {
     #[inline(always)]
-    fn set_pose(&mut self, pose: &[i32]) {
+    fn set_pose(&mut self, pose: Pose<'_>) {
         Figure::set_pose(self, pose);
     }
 

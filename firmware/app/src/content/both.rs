@@ -6,7 +6,7 @@ use crate::board::{Board, Exit};
 use crate::capacity::{Capacity, Figure};
 use crate::log::{error, info};
 use crate::run::{Outcome, PlayContext, play};
-use pantin::Player;
+use pantin::{Player, Pose};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, View};
 
@@ -35,7 +35,7 @@ struct Both<'a, F> {
 }
 
 impl<L: Layout, F: Figure> Content<L> for Both<'_, F> {
-    fn set_pose(&mut self, pose: &[i32]) {
+    fn set_pose(&mut self, pose: Pose<'_>) {
         Figure::set_pose(self.renderer, pose);
         self.face.set_pose(pose);
     }

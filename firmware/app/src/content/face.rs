@@ -4,7 +4,7 @@ use super::{Content, display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::run::{Outcome, PlayContext, play};
-use pantin::{Clip, Player, Rig};
+use pantin::{Clip, Player, Pose, Rig};
 use pantin_face::{Binding, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, View};
@@ -53,8 +53,8 @@ impl Face<'_> {
         self.binding.names()
     }
 
-    pub(super) fn set_pose(&mut self, pose: &[i32]) {
-        self.shape(pose);
+    pub(super) fn set_pose(&mut self, pose: Pose<'_>) {
+        self.shape(pose.values);
         self.renderer.project(self.model, self.morph);
     }
 
@@ -81,7 +81,7 @@ fn from(view: View, ahead: View) -> pantin_face::View {
 }
 
 impl<L: Layout> Content<L> for Face<'_> {
-    fn set_pose(&mut self, pose: &[i32]) {
+    fn set_pose(&mut self, pose: Pose<'_>) {
         Face::set_pose(self, pose);
     }
 

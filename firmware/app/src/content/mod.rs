@@ -8,14 +8,14 @@ mod face;
 
 use crate::board::Board;
 use crate::run::{Outcome, PlayContext};
-use pantin::Player;
+use pantin::{Player, Pose};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, View};
 
 /// What is before the camera.
 pub(crate) trait Content<L: Layout> {
     /// Puts it where a pose has it.
-    fn set_pose(&mut self, pose: &[i32]);
+    fn set_pose(&mut self, pose: Pose<'_>);
 
     /// Draws that on a clear display.
     fn draw(&mut self, frame: &mut Framebuffer<L>, style: DrawStyle);

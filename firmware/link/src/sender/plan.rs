@@ -4,7 +4,7 @@ use super::source::{Segment, Source, Track};
 use crate::message::{Message, Refresh, units};
 use crate::symbols::Coder;
 use crate::symbols::write::Writer;
-use pantin::layout::segment_type;
+use pantin::codec::layout::segment_type;
 
 /// A message and where it belongs.
 #[derive(Clone, Debug)]

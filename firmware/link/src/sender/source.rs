@@ -1,8 +1,10 @@
 //! A clip taken apart: what its channels are, their segments, and the states that these give frame by frame.
 
-use crate::head::{ChannelKind, EXPONENTIAL_BYTES, Form, Head, MAX_PACE, pace};
-use pantin::layout::{START_MODE, segment_type};
-use pantin::{ChannelState, Clip, Player, TooSmall, segment};
+use crate::head::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace};
+use pantin::Form;
+use pantin::codec::layout::{START_MODE, segment_type};
+use pantin::codec::segment;
+use pantin::{ChannelState, Clip, Player, TooSmall};
 
 /// A segment of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +65,7 @@ impl Source {
         let (mut states, mut pose) = (vec![ChannelState::default(); clip.moving()], vec![0; channels]);
         let mut player = Player::new(*clip, &mut states, &mut pose).map_err(SourceError::Player)?;
         let join = (JOIN_NS / u64::from(clip.frame_time_ns())).max(1);
-        let mut starts: Vec<ChannelKind> = player.pose().iter().map(|&p| ChannelKind::Constant(p)).collect();
+        let mut starts: Vec<ChannelKind> = player.pose().values.iter().map(|&p| ChannelKind::Constant(p)).collect();
         let mut tracks = vec![];
         for (index, state) in player.states().iter().enumerate() {
             if let Some(step) = state.step_index() {
@@ -115,7 +117,7 @@ impl Source {
     pub fn deviation(&self, cycle: u32) -> (f64, u16) {
         let off = |(track, (channel, states)): (&Track, (u16, Vec<[i32; 4]>))| {
             let apart = track.states.iter().zip(&states).map(|(a, b)| a[0].wrapping_sub(b[0]).unsigned_abs()).max();
-            (f64::from(apart.unwrap_or(0)) / f64::from(pantin::step_size(track.step)), channel)
+            (f64::from(apart.unwrap_or(0)) / f64::from(pantin::codec::step_size(track.step)), channel)
         };
         self.tracks.iter().zip(self.expected_states(cycle)).map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
     }
@@ -128,7 +130,7 @@ impl Source {
 
 fn head_of(clip: &Clip<'_>) -> Result<Head, SourceError> {
     Ok(Head {
-        form: Form::of(clip).ok_or(SourceError::Exponentials)?,
+        form: Some(clip.form()).filter(fits).ok_or(SourceError::Exponentials)?,
         frames: clip.frames(),
         looped: clip.looped(),
         frame_time_ns: clip.frame_time_ns(),
@@ -142,7 +144,7 @@ fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, Track)]) {
     let frames = player.clip().frames();
     for frame in 0..frames {
         let before: Vec<(i32, ChannelState)> =
-            player.states().iter().map(|state| (player.pose()[state.slot()], *state)).collect();
+            player.states().iter().map(|state| (player.pose().values[state.slot()], *state)).collect();
         let last = frame + 1 == frames;
         if !last {
             player.step();

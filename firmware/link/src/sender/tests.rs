@@ -74,7 +74,7 @@ fn made(frame: usize, channel: usize) -> i32 {
 #[test]
 fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
     let making = [LiveChannel { bound: 1 << 25, way: 1 << 30 }; 8];
-    let source = Source::live(crate::Form::default(), 33_333_333, &making);
+    let source = Source::live(pantin::Form::default(), 33_333_333, &making);
     let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false };
     let mut live = Sender::new(5).live(&source, line, &making);
     let (mut states, mut pose) = ([Channel::default(); 8], [0; 8]);
@@ -93,7 +93,7 @@ fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
             assert!(link.is_synced(), "frame {frame}: {} exact", link.exact_channels());
             let shown = link.frame().expect("it plays") as usize;
             late = late.max(frame - shown);
-            let off = (1..8).map(|channel| i64::from(link.pose()[channel]) - i64::from(made(shown, channel)));
+            let off = (1..8).map(|channel| i64::from(link.pose().values[channel]) - i64::from(made(shown, channel)));
             worst = worst.max(off.map(i64::abs).max().unwrap_or(0));
         }
     }
@@ -146,9 +146,9 @@ fn a_sender_that_stalls_makes_time_stand_still_and_loses_nothing() {
         (0..4).for_each(|_| link.step());
     }
     (0..200).for_each(|_| link.step());
-    let (now, drawn) = (link.now(), link.pose().to_vec());
+    let (now, drawn) = (link.now(), link.pose().values.to_vec());
     (0..200).for_each(|_| link.step());
-    assert_eq!((link.now(), link.pose()), (now, &drawn[..]), "it stands");
+    assert_eq!((link.now(), link.pose().values), (now, &drawn[..]), "it stands");
     assert!(link.is_synced() && link.counts().desyncs == 0);
     for timed in rest {
         hear(&mut link, &mut receiver, &timed.bytes);
@@ -299,10 +299,10 @@ proptest! {
             }
             assert!(played.agrees(link));
             // No joint is drawn faster than its pace.
-            if let Some(before) = drawn.replace(link.pose().to_vec()) {
+            if let Some(before) = drawn.replace(link.pose().values.to_vec()) {
                 for (track, start) in source.starts.iter().enumerate() {
                     if let crate::ChannelKind::Moving { pace, .. } = start {
-                        let moved = link.pose()[track].wrapping_sub(before[track]).unsigned_abs();
+                        let moved = link.pose().values[track].wrapping_sub(before[track]).unsigned_abs();
                         // One that was told anew in between, of another clip, starts anew too.
                         let keeps = link.channels()[track].keeps_pace();
                         assert!(!(met[track] && keeps) || moved <= crate::pace(*pace).unsigned_abs(), "channel {track}: {moved}");
@@ -342,7 +342,7 @@ proptest! {
             let Some(now) = link.now().filter(|&now| last > 0 && now > last + line.cycle && now + 1 < end) else { return };
             assert!(link.is_synced(), "{now}: {} of {}, last {last}, cycle {}", link.exact_channels(), link.channels().len(), line.cycle);
             if now > last + line.cycle + half {
-                let apart = link.channels().iter().zip(link.pose()).position(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] != drawn));
+                let apart = link.channels().iter().zip(link.pose().values).position(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] != drawn));
                 assert!(apart.is_none() || (now - BEGIN) % source.frames() < half, "{now} {apart:?}");
             }
         });

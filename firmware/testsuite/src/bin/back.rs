@@ -30,11 +30,11 @@ fn main() -> ! {
     let mut memory = SeekCache::new(&player, &mut undo, &mut marks, &mut kept, &mut values);
     let last = player.clip().frames() - 1;
     forth(&mut player, &mut memory, last);
-    let there = sum(player.pose());
+    let there = sum(player.pose().values);
     back(&mut player, &mut memory);
     assert!(player.frame() == 0);
     seek(&mut player, &mut memory, last);
-    assert!(sum(player.pose()) == there);
+    assert!(sum(player.pose().values) == there);
     // The last snapshot alone, without the segments behind it: kept are the frames that are multiples of a power of two.
     let room = (MARKS * KEPT).checked_div(player.clip().moving()).map_or(MARKS, |room| room.min(MARKS)) as u32;
     let spacing = (0..).map(|shift| 1 << shift).find(|spacing| (last + 1) / spacing <= room).unwrap_or(1);

@@ -25,7 +25,7 @@ fn play(bytes: &[u8], states: &mut [ChannelState], pose: &mut [i32]) {
     player.seek(black_box(7));
     player.step_with(&mut memory);
     player.step_back(&mut memory);
-    black_box(player.pose());
+    black_box(player.pose().values);
 }
 
 #[inline(never)]
@@ -33,9 +33,9 @@ fn stream(bytes: &[u8], buffer: &mut [u8], states: &mut [ChannelState], pose: &m
     let Ok(rig) = Rig::new_checked(bytes) else { return };
     let Ok(mut stream) = Stream::new(rig, buffer, states, pose) else { return };
     while stream.step() != Progress::End {
-        stream.feed(bytes);
+        black_box(stream.feed(bytes));
     }
-    black_box(stream.pose());
+    black_box(stream.pose().values);
 }
 
 #[panic_handler]

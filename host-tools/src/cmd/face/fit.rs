@@ -71,7 +71,7 @@ fn frame(arguments: &Arguments, face: &Face) -> Result<Vec<[f64; 3]>> {
     let mut player = Player::new(clip, &mut states, &mut pose)?;
     player.seek(arguments.frame);
     let mut weights = Weights::new();
-    binding.weigh(player.pose(), &mut weights);
+    binding.weigh(player.pose().values, &mut weights);
     let mut morph = Morph::<VERTICES>::new(&model)?;
     morph.place_open(&model, &weights);
     let step = f64::from(model.step_exponent()).exp2();

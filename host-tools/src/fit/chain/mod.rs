@@ -14,8 +14,8 @@ use super::search::{Fitted, Tube, in_grids};
 use crate::encode::clip::Start;
 use crate::encode::segment::Segment;
 use numbers::{LARGEST, Range, Room, Sums};
-use pantin::layout::{LENGTHS, START_MODE, segment_type};
-use pantin::segment::{Context, SLOPE, step as number_step};
+use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
+use pantin::codec::segment::{Context, SLOPE, step as number_step};
 use std::collections::HashSet;
 
 /// A place from which segments go on.

@@ -9,7 +9,7 @@ use super::file::File;
 use anyhow::{Result, bail};
 use gltf::json::animation::Property;
 use gltf::json::validation::Checked;
-use pantin::layout::MAX_JOINTS;
+use pantin::codec::layout::MAX_JOINTS;
 use std::collections::HashSet;
 
 /// The joints: parents before children.

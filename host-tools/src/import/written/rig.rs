@@ -2,7 +2,7 @@
 
 use super::{Read, number, positive, wrong};
 use crate::motion::{Joint, Kind, Rig, Scalar};
-use pantin::layout::{MAX_CHANNELS, MAX_JOINTS};
+use pantin::codec::layout::{MAX_CHANNELS, MAX_JOINTS};
 
 /// `joint NAME [parent NAME] offset X Y Z [channels KIND...]`: adds the joint that the words after `joint` describe.
 pub fn joint(rig: &mut Rig, words: &[&str]) -> Read<()> {

@@ -178,9 +178,9 @@ impl Run {
             if link.frame().is_some_and(|frame| frame > 60) {
                 frames += 1.0;
                 exact += link.exact_channels() as f64 / source.channels() as f64;
-                moving += f64::from(u8::from(before.1 != link.pose()));
+                moving += f64::from(u8::from(before.1 != link.pose().values));
             }
-            before = (link.head().copied(), link.pose().to_vec());
+            before = (link.head().copied(), link.pose().values.to_vec());
         });
         self.resets += heads;
         self.wrong += wrong;
@@ -197,7 +197,7 @@ fn agrees(link: &Link<QUEUE_PACKETS>, played: &[(u16, Vec<[i32; 4]>)]) -> bool {
 
 /// Whether all is drawn as it is.
 fn drawn(link: &Link<QUEUE_PACKETS>) -> bool {
-    link.channels().iter().zip(link.pose()).all(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] == drawn))
+    link.channels().iter().zip(link.pose().values).all(|(channel, &drawn)| channel.state().is_some_and(|state| state[0] == drawn))
 }
 
 fn median_and_worst(times: &[f64]) -> [f64; 2] {

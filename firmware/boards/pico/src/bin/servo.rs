@@ -72,7 +72,7 @@ fn perform(mut set: impl FnMut([u16; 4])) -> ! {
         let mut pulses = [0; 4];
         for ((pulse, servo), channel) in pulses.iter_mut().zip(&mut servos).zip(channels) {
             // A joint that the clip lacks stays where it is.
-            let angle = channel.and_then(|channel| player.pose().get(channel));
+            let angle = channel.and_then(|channel| player.pose().values.get(channel));
             *pulse = angle.map_or(servo.pulse(), |angle| servo.follow(*angle));
         }
         set(pulses);

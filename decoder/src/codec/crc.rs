@@ -26,12 +26,16 @@ const fn nibble_table() -> [u16; 16] {
     table
 }
 
+/// Continues `crc` over one byte.
+#[inline(always)]
+pub(crate) fn push(crc: u16, byte: u8) -> u16 {
+    let high = (crc << 4) ^ NIBBLE[usize::from((crc >> 12) as u8 & 0xf) ^ usize::from(byte >> 4)];
+    (high << 4) ^ NIBBLE[usize::from((high >> 12) as u8 & 0xf) ^ usize::from(byte & 0xf)]
+}
+
 /// Continues `crc` over `bytes`.
 pub fn update(crc: u16, bytes: &[u8]) -> u16 {
-    bytes.iter().fold(crc, |crc, &byte| {
-        let high = (crc << 4) ^ NIBBLE[usize::from((crc >> 12) as u8 & 0xf) ^ usize::from(byte >> 4)];
-        (high << 4) ^ NIBBLE[usize::from((high >> 12) as u8 & 0xf) ^ usize::from(byte & 0xf)]
-    })
+    bytes.iter().fold(crc, |crc, &byte| push(crc, byte))
 }
 
 /// The CRC of `bytes` alone.

@@ -1,0 +1,275 @@
+//! What the values of a pose mean, and a pose that says so.
+
+use crate::joint::JointRef;
+use crate::joint::has_choice;
+use crate::kind::Kind;
+use crate::layout::MAX_CHANNELS;
+use crate::rig::Rig;
+use crate::scalar::ScalarRef;
+use crate::turn::{EulerOrder, NO_ROTATION, Turn, about, normalized, of_exponential, product};
+use crate::units::{Angle, Component, Fraction};
+
+/// Words for a bit a joint with a choice: such a joint has three channels at least.
+const WORDS: usize = (MAX_CHANNELS / 3).div_ceil(32);
+
+/// What the raw values of a pose mean: which rig's they are, the unit of positions, and which joints are coded as exponential maps.
+///
+/// An encoder chooses the unit and the maps clip by clip, so that two clips of one rig can differ in form. Values of one form mean
+/// nothing in another: what draws or mixes poses compares forms first ([`Form::check`]). `pantin convert --same-form` gives a set of
+/// clips one form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Form {
+    /// [`Rig::id`].
+    rig_id: u32,
+    length_exponent: i8,
+    /// Bit i % 32 of word i / 32: whether the i-th joint that [`has_choice`] is coded as an exponential map.
+    exponentials: [u32; WORDS],
+}
+
+impl Form {
+    /// The form of no rig: what stands in memory before a clip is set up.
+    pub const NONE: Form = Form { rig_id: 0, length_exponent: 0, exponentials: [0; WORDS] };
+
+    /// Bytes that hold a bit for each joint with a choice, in any rig.
+    pub const EXPONENTIAL_BYTES: usize = 4 * WORDS;
+
+    /// The form of a rig's id, the exponent of its positions' unit, and the exponential bits of FORMAT.md 4, byte by byte; bytes
+    /// past [`Form::EXPONENTIAL_BYTES`] are ignored.
+    pub fn new(rig_id: u32, length_exponent: i8, exponentials: impl IntoIterator<Item = u8>) -> Form {
+        let mut words = [0; WORDS];
+        for (index, byte) in exponentials.into_iter().enumerate() {
+            if let Some(word) = words.get_mut(index / 4) {
+                *word |= u32::from(byte) << (8 * (index % 4));
+            }
+        }
+        Form { rig_id, length_exponent, exponentials: words }
+    }
+
+    /// The id of the rig: [`Rig::id`].
+    pub fn rig_id(&self) -> u32 {
+        self.rig_id
+    }
+
+    /// The raw value of a position channel times 2^`length_exponent` is in units of the source: -63 to 31.
+    pub fn length_exponent(&self) -> i8 {
+        self.length_exponent
+    }
+
+    /// The exponential bits of FORMAT.md 4, byte by byte.
+    pub fn exponentials(&self) -> impl Iterator<Item = u8> + '_ {
+        self.exponentials.iter().flat_map(|word| word.to_le_bytes())
+    }
+
+    /// Whether the joint that stands after `choice` other joints with a choice is coded as an exponential map.
+    pub(crate) fn is_exponential_choice(&self, choice: usize) -> bool {
+        self.exponentials.get(choice / 32).is_some_and(|word| word >> (choice % 32) & 1 != 0)
+    }
+
+    /// Whether the three rotation channels of this joint of the form's rig hold the x, y and z of an exponential map.
+    pub fn is_exponential(&self, rig: &Rig<'_>, joint: usize) -> bool {
+        rig.joint(joint).is_some_and(|joint| has_choice(&joint))
+            && self.is_exponential_choice(rig.joints().take(joint).filter(has_choice).count())
+    }
+
+    /// Compares two forms; the error names the first difference.
+    pub fn check(&self, other: &Form) -> Result<(), WrongForm> {
+        if self.rig_id != other.rig_id {
+            return Err(WrongForm::Rig);
+        }
+        if self.length_exponent != other.length_exponent {
+            return Err(WrongForm::LengthExponent);
+        }
+        // Word by word: the library's comparison of bytes is slower on small cores.
+        let equal = self.exponentials.iter().zip(&other.exponentials).all(|(own, other)| own == other);
+        if equal { Ok(()) } else { Err(WrongForm::Exponentials) }
+    }
+}
+
+/// Why a pose cannot be used here: it has another form than the clip for which this was set up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum WrongForm {
+    /// The pose is of another rig.
+    Rig,
+    /// Positions are in another unit.
+    LengthExponent,
+    /// Other joints are coded as exponential maps.
+    Exponentials,
+}
+
+impl core::fmt::Display for WrongForm {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            WrongForm::Rig => "the pose is of another rig",
+            WrongForm::LengthExponent => "the pose has positions in another unit: convert the clips with --same-form",
+            WrongForm::Exponentials => "the pose codes other joints as exponential maps: convert the clips with --same-form",
+        })
+    }
+}
+
+impl core::error::Error for WrongForm {}
+
+/// The pose of one frame: a raw value for each channel of the rig, and what they mean.
+///
+/// ```
+/// # fn knee(player: &pantin::Player) -> Option<i32> {
+/// let knee = player.clip().find("LeftKnee")?;
+/// let [_, _, x] = player.turn(&knee).ok()?.euler(pantin::EulerOrder::ZYX);
+/// Some(x.centidegrees())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Pose<'p> {
+    /// One value a channel of the rig: angles in 2^-32 turns, positions in 2^[`Form::length_exponent`] units of the source,
+    /// quaternion components in 2^-30, scalars in 2^([`crate::Scalar::exponent`] - 31).
+    pub values: &'p [i32],
+    /// What the values mean.
+    pub form: &'p Form,
+}
+
+impl Pose<'_> {
+    /// The rotation of a joint, however the clip codes it. A joint without rotation channels has no rotation.
+    pub fn turn(&self, joint: &JointRef<'_>) -> Result<Turn, WrongForm> {
+        if joint.rig_id() != self.form.rig_id {
+            return Err(WrongForm::Rig);
+        }
+        let exponential = joint.choice().is_some_and(|choice| self.form.is_exponential_choice(choice));
+        let channels = (joint.first_channel()..).zip(joint.kinds());
+        let value = |channel: usize| self.values.get(channel).copied().unwrap_or(0);
+        // Euler angles in the joint's order, x, y, z of a map, and w, x, y, z of a quaternion.
+        let (mut axes, mut angles, mut count) = ([0; 3], [Angle::ZERO; 3], 0usize);
+        let (mut map, mut quaternion, mut chained) = (None, None, false);
+        for (channel, kind) in channels {
+            let raw = value(channel);
+            if kind.is_rotation() {
+                if let (Some(axis), Some(angle)) = (axes.get_mut(count), angles.get_mut(count)) {
+                    (*axis, *angle) = (kind.axis().unwrap_or(0), Angle::from_bits(raw));
+                } else {
+                    chained = true;
+                }
+                count += 1;
+            } else if kind.is_exponential() {
+                put(map.get_or_insert([0; 3]), kind.axis().unwrap_or(0), raw);
+            } else if kind.is_quaternion() {
+                put(quaternion.get_or_insert([0; 4]), kind.axis().map_or(0, |axis| axis + 1), raw);
+            }
+        }
+        let (parts, order) =
+            (usize::from(count > 0) + usize::from(map.is_some()) + usize::from(quaternion.is_some()), order(axes, count));
+        Ok(match (order, map, quaternion) {
+            _ if exponential && parts == 1 => Turn::Exponential(angles),
+            (_, Some(map), None) if parts == 1 => Turn::Exponential(map.map(Angle::from_bits)),
+            (_, None, Some(q)) if parts == 1 => Turn::Quaternion(q.map(Component::from_bits)),
+            (Some(order), None, None) if !chained => Turn::Euler { order, angles },
+            _ => Turn::Quaternion(self.chain(joint, exponential, map, quaternion).map(Component::from_bits)),
+        })
+    }
+
+    /// The product of everything that turns a joint of more parts than a [`Turn`] has forms for: FORMAT.md 11.
+    #[inline(never)]
+    fn chain(&self, joint: &JointRef<'_>, exponential: bool, map: Option<[i32; 3]>, quaternion: Option<[i32; 4]>) -> [i32; 4] {
+        let mut unit = NO_ROTATION;
+        let (mut coded, mut at) = ([0; 3], 0);
+        for (channel, kind) in (joint.first_channel()..).zip(joint.kinds()).filter(|(_, kind)| kind.is_rotation()) {
+            let raw = self.values.get(channel).copied().unwrap_or(0);
+            if exponential {
+                put(&mut coded, at, raw);
+                at += 1;
+            } else {
+                unit = product(unit, about(kind.axis().unwrap_or(0), Angle::from_bits(raw)));
+            }
+        }
+        if exponential {
+            unit = product(unit, of_exponential(coded));
+        }
+        if let Some(q) = quaternion {
+            unit = product(unit, normalized(q));
+        }
+        map.map_or(unit, |map| product(unit, of_exponential(map)))
+    }
+
+    /// A scalar as a fraction of its range: a morph weight of 0 to 1 with the exponent 0 is its own fraction. Times
+    /// 2^[`crate::Scalar::exponent`] it is the scalar's value.
+    pub fn scalar(&self, scalar: &ScalarRef) -> Result<Fraction, WrongForm> {
+        if scalar.rig_id() != self.form.rig_id {
+            return Err(WrongForm::Rig);
+        }
+        Ok(Fraction::from_bits(self.values.get(scalar.channel()).copied().unwrap_or(0)))
+    }
+
+    /// Where a joint stands in its parent: raw values in units of 2^[`Form::length_exponent`] of the source, `None` on axes where
+    /// the rig's offset stands.
+    pub fn position(&self, joint: &JointRef<'_>) -> Result<[Option<i32>; 3], WrongForm> {
+        if joint.rig_id() != self.form.rig_id {
+            return Err(WrongForm::Rig);
+        }
+        let mut position = [None; 3];
+        for (channel, kind) in (joint.first_channel()..).zip(joint.kinds()).filter(|(_, kind)| kind.is_position()) {
+            put(&mut position, kind.axis().unwrap_or(0), self.values.get(channel).copied());
+        }
+        Ok(position)
+    }
+}
+
+fn put<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
+    if let Some(place) = array.get_mut(index) {
+        *place = value;
+    }
+}
+
+/// The order that begins with the first `count` axes; `None` if they are not different or more than three.
+fn order(axes: [usize; 3], count: usize) -> Option<EulerOrder> {
+    use crate::turn::Axis;
+    let [first, second, third] = axes;
+    match count {
+        0 => Some(EulerOrder::XYZ),
+        1 => EulerOrder::of(Axis::of_index(first), Axis::of_index((first + 1) % 3)),
+        2 => EulerOrder::of(Axis::of_index(first), Axis::of_index(second)),
+        3 => EulerOrder::of(Axis::of_index(first), Axis::of_index(second)).filter(|_| third != first && third != second),
+        _ => None,
+    }
+}
+
+/// The Euler order of a joint of the rig.
+pub(crate) fn order_of(kinds: crate::Kinds<'_>) -> Option<EulerOrder> {
+    let (mut axes, mut count) = ([0; 3], 0);
+    for kind in kinds {
+        if kind.is_quaternion() || kind.is_exponential() {
+            return None;
+        }
+        if kind.is_rotation() {
+            put(&mut axes, count, kind.axis().unwrap_or(0));
+            count += 1;
+        }
+    }
+    order(axes, count).filter(|_| count > 0)
+}
+
+/// The kinds of a joint's channels as a clip codes them.
+#[derive(Clone, Debug)]
+pub struct CodedKinds<'a> {
+    pub(crate) kinds: crate::Kinds<'a>,
+    pub(crate) exponential: bool,
+    /// Rotations so far.
+    pub(crate) turned: usize,
+}
+
+impl Iterator for CodedKinds<'_> {
+    type Item = Kind;
+
+    fn next(&mut self) -> Option<Kind> {
+        let kind = self.kinds.next()?;
+        if !self.exponential || !kind.is_rotation() {
+            return Some(kind);
+        }
+        let coded = [Kind::Xexponential, Kind::Yexponential, Kind::Zexponential].get(self.turned).copied();
+        self.turned += 1;
+        coded.or(Some(kind))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.kinds.size_hint()
+    }
+}
+
+impl ExactSizeIterator for CodedKinds<'_> {}

@@ -1,0 +1,156 @@
+//! The joints of a rig, and the iterator that reads them.
+
+use crate::OpenError;
+use crate::bytes::Bytes;
+use crate::kind::{Kind, Kinds};
+use crate::layout::MAX_JOINTS;
+use crate::rig::Rig;
+
+/// One joint, or an End Site (a joint without channels that only gives a bone its length).
+#[derive(Clone, Copy, Debug)]
+pub struct Joint<'a> {
+    name: &'a [u8],
+    /// Index of the parent, always smaller than the joint's own; `None` for the root.
+    pub parent: Option<u16>,
+    /// Where it stands in its parent, in steps of [`Rig::length_exponent`].
+    pub offset: [i32; 3],
+    /// Whether this is an End Site.
+    pub end_site: bool,
+    /// Index of its first channel in a pose.
+    pub first_channel: u16,
+    /// Its channels.
+    pub kinds: Kinds<'a>,
+}
+
+impl<'a> Joint<'a> {
+    /// Its name; empty for an End Site, and for a name that is not UTF-8 (opening a rig does not look into names).
+    pub fn name(&self) -> &'a str {
+        core::str::from_utf8(self.name).unwrap_or("")
+    }
+
+    /// Its name's bytes as they stand.
+    pub fn name_bytes(&self) -> &'a [u8] {
+        self.name
+    }
+}
+
+/// A joint of a rig, found once ([`Rig::find`]) and then asked for frame by frame ([`crate::Pose::turn`]).
+#[derive(Clone, Copy, Debug)]
+pub struct JointRef<'a> {
+    rig_id: u32,
+    index: u16,
+    first_channel: u16,
+    /// How many joints with a choice stand before this one, if it has a choice itself.
+    choice: Option<u16>,
+    kinds: Kinds<'a>,
+}
+
+impl<'a> JointRef<'a> {
+    /// The joint of this index in the rig.
+    pub(crate) fn new(rig: &Rig<'a>, index: usize) -> Option<JointRef<'a>> {
+        let mut choices = 0;
+        for (at, joint) in rig.joints().enumerate() {
+            let choice = has_choice(&joint);
+            if at == index {
+                let Joint { first_channel, kinds, .. } = joint;
+                let choice = choice.then_some(choices);
+                return Some(JointRef { rig_id: rig.id(), index: index as u16, first_channel, choice, kinds });
+            }
+            choices += u16::from(choice);
+        }
+        None
+    }
+
+    /// Its index in the rig.
+    pub fn index(&self) -> usize {
+        usize::from(self.index)
+    }
+
+    /// The index of its first channel in a pose.
+    pub fn first_channel(&self) -> usize {
+        usize::from(self.first_channel)
+    }
+
+    /// The kinds of its channels as the rig has them, which a clip can code otherwise: [`crate::Clip::kinds`].
+    pub fn kinds(&self) -> Kinds<'a> {
+        self.kinds
+    }
+
+    /// The order of its Euler angles in the rig; `None` for a joint whose rotation channels are not one to three Euler angles about
+    /// different axes.
+    pub fn euler_order(&self) -> Option<crate::EulerOrder> {
+        crate::form::order_of(self.kinds)
+    }
+
+    pub(crate) fn rig_id(&self) -> u32 {
+        self.rig_id
+    }
+
+    pub(crate) fn choice(&self) -> Option<usize> {
+        self.choice.map(usize::from)
+    }
+}
+
+/// Whether a clip may code the joint's rotation as an exponential map in place of its three Euler angles.
+pub fn has_choice(joint: &Joint<'_>) -> bool {
+    joint.kinds.filter(|kind: &Kind| kind.is_rotation()).count() == 3
+}
+
+/// Iterates over the joints of a rig.
+#[derive(Clone, Debug)]
+pub struct Joints<'a> {
+    pub(crate) bytes: Bytes<'a>,
+    pub(crate) left: u16,
+    pub(crate) first_channel: u16,
+}
+
+impl<'a> Joints<'a> {
+    pub(crate) fn new(bytes: Bytes<'a>, left: u16) -> Joints<'a> {
+        Joints { bytes, left, first_channel: 0 }
+    }
+
+    fn parse(&mut self) -> Result<Joint<'a>, OpenError> {
+        let first_channel = self.first_channel;
+        let (mut kinds, mut offset) = (Kinds::NONE, [0; 3]);
+        let (name, parent, end_site) = self.fields(&mut kinds, &mut offset)?;
+        Ok(Joint { name, parent, offset, end_site, first_channel, kinds })
+    }
+
+    /// Reads a joint: its kinds and offset to where they belong, for stacks on which a whole joint is much; returns name, parent and
+    /// whether it is an End Site.
+    #[inline(never)]
+    pub(crate) fn fields(
+        &mut self,
+        kinds: &mut Kinds<'a>,
+        offset: &mut [i32; 3],
+    ) -> Result<(&'a [u8], Option<u16>, bool), OpenError> {
+        let head = self.bytes.byte()?;
+        let len = head & 0xf;
+        let end_site = head & 0x10 != 0;
+        if head & 0xe0 != 0 || (end_site && len != 0) {
+            return Err(OpenError::Malformed);
+        }
+        let parent = self.bytes.varint()?;
+        if parent > MAX_JOINTS as u32 {
+            return Err(OpenError::Malformed);
+        }
+        let parent = (parent as u16).checked_sub(1);
+        *kinds = Kinds::new(self.bytes.take(usize::from(len).div_ceil(2))?, len);
+        for along in offset {
+            *along = self.bytes.zigzag()?;
+        }
+        let name = if end_site { &[][..] } else { self.bytes.name()? };
+        // At most MAX_JOINTS joints of 15 channels: fits 16 bits.
+        self.first_channel = self.first_channel.wrapping_add(u16::from(len));
+        self.left = self.left.saturating_sub(1);
+        Ok((name, parent, end_site))
+    }
+}
+
+impl<'a> Iterator for Joints<'a> {
+    type Item = Joint<'a>;
+
+    fn next(&mut self) -> Option<Joint<'a>> {
+        if self.left == 0 { None } else { self.parse().ok() }
+    }
+}

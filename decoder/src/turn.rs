@@ -1,0 +1,339 @@
+//! A joint's rotation as a clip codes it, and as Euler angles: in integers, to a hundredth of a degree.
+
+use crate::trig::{atan2, sin_cos};
+use crate::units::{Angle, Component};
+
+/// An axis of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The x axis.
+    X,
+    /// The y axis.
+    Y,
+    /// The z axis.
+    Z,
+}
+
+impl Axis {
+    pub(crate) const fn of_index(index: usize) -> Axis {
+        match index {
+            0 => Axis::X,
+            1 => Axis::Y,
+            _ => Axis::Z,
+        }
+    }
+
+    const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The axis that is neither.
+    const fn third(self, other: Axis) -> Axis {
+        Axis::of_index((3 - self.index() - other.index()) % 3)
+    }
+}
+
+/// The order of three Euler angles: each turns about the axis as rotated by those before it, as a BVH file lists them.
+///
+/// `EulerOrder::ZYX` is the rotation matrix Rz Ry Rx.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum EulerOrder {
+    XYZ,
+    XZY,
+    YXZ,
+    YZX,
+    ZXY,
+    ZYX,
+}
+
+impl EulerOrder {
+    /// The order that begins with these two axes; `None` if they are one.
+    pub const fn of(first: Axis, second: Axis) -> Option<EulerOrder> {
+        match (first, second) {
+            (Axis::X, Axis::Y) => Some(EulerOrder::XYZ),
+            (Axis::X, Axis::Z) => Some(EulerOrder::XZY),
+            (Axis::Y, Axis::X) => Some(EulerOrder::YXZ),
+            (Axis::Y, Axis::Z) => Some(EulerOrder::YZX),
+            (Axis::Z, Axis::X) => Some(EulerOrder::ZXY),
+            (Axis::Z, Axis::Y) => Some(EulerOrder::ZYX),
+            _ => None,
+        }
+    }
+
+    /// The three axes, first to last.
+    pub const fn axes(self) -> [Axis; 3] {
+        let (first, second) = match self {
+            EulerOrder::XYZ => (Axis::X, Axis::Y),
+            EulerOrder::XZY => (Axis::X, Axis::Z),
+            EulerOrder::YXZ => (Axis::Y, Axis::X),
+            EulerOrder::YZX => (Axis::Y, Axis::Z),
+            EulerOrder::ZXY => (Axis::Z, Axis::X),
+            EulerOrder::ZYX => (Axis::Z, Axis::Y),
+        };
+        [first, second, first.third(second)]
+    }
+}
+
+/// The rotation of a joint at one frame, in the form in which the clip codes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Up to three Euler angles about different axes; axes that the joint lacks have the angle 0.
+    Euler {
+        /// The joint's own order.
+        order: EulerOrder,
+        /// One angle for each axis of the order.
+        angles: [Angle; 3],
+    },
+    /// An exponential map: x, y and z of the axis times the angle.
+    Exponential([Angle; 3]),
+    /// A quaternion w, x, y, z of any length but 0, which stands for no rotation.
+    Quaternion([Component; 4]),
+}
+
+/// One in Q30.
+const ONE: i32 = 1 << 30;
+
+/// A unit quaternion w, x, y, z in Q30.
+pub(crate) type Unit = [i32; 4];
+
+pub(crate) const NO_ROTATION: Unit = [ONE, 0, 0, 0];
+
+impl Turn {
+    /// The Euler angles in another order, within 0.01 degree.
+    ///
+    /// Angles of the joint's own order come back as they are. Otherwise the second angle lies within -90 to 90 degrees; where it
+    /// is within 0.1 degree of either end, the first and the third turn about the same axis, and only their sum is determined.
+    pub fn euler(self, order: EulerOrder) -> [Angle; 3] {
+        match self {
+            Turn::Euler { order: own, angles } if own == order => angles,
+            _ => euler_of(&self.matrix(), order),
+        }
+    }
+
+    /// The rotation as a unit quaternion w, x, y, z, within 1e-7 a component. Of the two that are the same rotation it may be either.
+    pub fn quaternion(self) -> [Component; 4] {
+        self.unit().map(Component::from_bits)
+    }
+
+    /// The rotation matrix, row by row: elements of -1 to 1, within 4e-7.
+    pub fn matrix(self) -> [[Component; 3]; 3] {
+        matrix_of(self.unit())
+    }
+
+    pub(crate) fn unit(self) -> Unit {
+        match self {
+            Turn::Euler { order, angles } => order
+                .axes()
+                .into_iter()
+                .zip(angles)
+                .fold(NO_ROTATION, |unit, (axis, angle)| product(unit, about(axis.index(), angle))),
+            Turn::Exponential(map) => of_exponential(map.map(Angle::to_bits)),
+            Turn::Quaternion(q) => normalized(q.map(Component::to_bits)),
+        }
+    }
+}
+
+/// The product of two values in Q30.
+fn times(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
+}
+
+/// A value in Q60 as Q30.
+fn narrow(q60: i64) -> i32 {
+    ((q60 + (1 << 29)) >> 30) as i32
+}
+
+/// The rotation by `a`, then by `b` about the axes that `a` has turned.
+pub(crate) fn product([aw, ax, ay, az]: Unit, [bw, bx, by, bz]: Unit) -> Unit {
+    // The sum of four products of components of unit quaternions is at most 2^60.
+    [
+        narrow(times(aw, bw) - times(ax, bx) - times(ay, by) - times(az, bz)),
+        narrow(times(aw, bx) + times(ax, bw) + times(ay, bz) - times(az, by)),
+        narrow(times(aw, by) - times(ax, bz) + times(ay, bw) + times(az, bx)),
+        narrow(times(aw, bz) + times(ax, by) - times(ay, bx) + times(az, bw)),
+    ]
+}
+
+/// The rotation about an axis.
+pub(crate) fn about(axis: usize, angle: Angle) -> Unit {
+    // An arithmetic shift halves the angle of -1/2 to 1/2 turn.
+    let (sin, cos) = sin_cos(angle.to_bits() >> 1);
+    let mut unit = [cos, 0, 0, 0];
+    if let Some(component) = unit.get_mut(axis + 1) {
+        *component = sin;
+    }
+    unit
+}
+
+/// The rotation of an exponential map in 2^-32 turns.
+pub(crate) fn of_exponential(map: [i32; 3]) -> Unit {
+    // Three squares of at most 2^62 each: below 2^64. The root is below 2^32, half of it below 2^31.
+    let length = map.iter().fold(0u64, |sum, &x| sum + u64::from(x.unsigned_abs()).pow(2)).isqrt();
+    let (sin, cos) = sin_cos((length >> 1) as i32);
+    let component = |x: i32| times(x, sin).checked_div(length as i64).unwrap_or(0) as i32;
+    let [x, y, z] = map.map(component);
+    normalized([cos, x, y, z])
+}
+
+/// The quaternion of length 1; no rotation for a length of 0.
+pub(crate) fn normalized(q: [i32; 4]) -> Unit {
+    let largest = q.iter().fold(0, |largest, x| largest | x.unsigned_abs());
+    if largest == 0 {
+        return NO_ROTATION;
+    }
+    // The largest component goes to 2^29 .. 2^30: four squares stay below 2^62.
+    let up = largest.leading_zeros() as i32 - 2;
+    let q = q.map(|x| i64::from(if up >= 0 { x << up } else { x >> -up }));
+    let length = q.iter().fold(0u64, |sum, x| sum + (x * x) as u64).isqrt() as i64;
+    q.map(|x| (x << 30).checked_div(length).unwrap_or(0) as i32)
+}
+
+fn matrix_of([w, x, y, z]: Unit) -> [[Component; 3]; 3] {
+    // Twice the sum of two products of components of a unit quaternion is at most 1: Q60 to Q30 times two.
+    let twice = |q60: i64| ((q60 + (1 << 28)) >> 29) as i32;
+    let element = |diagonal: i32, q60: i64| Component::from_bits(diagonal.wrapping_add(twice(q60)));
+    [
+        [element(ONE, -times(y, y) - times(z, z)), element(0, times(x, y) - times(w, z)), element(0, times(x, z) + times(w, y))],
+        [element(0, times(x, y) + times(w, z)), element(ONE, -times(x, x) - times(z, z)), element(0, times(y, z) - times(w, x))],
+        [element(0, times(x, z) - times(w, y)), element(0, times(y, z) + times(w, x)), element(ONE, -times(x, x) - times(y, y))],
+    ]
+}
+
+/// The Euler angles of a rotation matrix: Ri(a) Rj(b) Rk(c).
+fn euler_of(matrix: &[[Component; 3]; 3], order: EulerOrder) -> [Angle; 3] {
+    let [i, j, k] = order.axes().map(Axis::index);
+    let at = |row: usize, column: usize| matrix.get(row).and_then(|row| row.get(column)).map_or(0, |element| element.to_bits());
+    // 1 where i, j, k is an even permutation of x, y, z, else -1.
+    let sign = if (i + 1) % 3 == j { 1 } else { -1 };
+    let c = atan2(-sign * at(i, j), at(i, i));
+    let (sin, cos) = sin_cos(c);
+    let cos_b = narrow(times(at(i, i), cos) - times(sign * at(i, j), sin));
+    let b = atan2(sign * at(i, k), cos_b);
+    // Without the third angle the image of axis j shows the first alone, also where the second is a quarter turn.
+    let image = |row: usize| narrow(times(sign * at(row, i), sin) + times(at(row, j), cos));
+    let a = atan2(sign * image(k), image(j));
+    [a, b, c].map(Angle::from_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Matrix = [[f64; 3]; 3];
+
+    fn multiply(a: Matrix, b: Matrix) -> Matrix {
+        core::array::from_fn(|row| core::array::from_fn(|column| (0..3).map(|k| a[row][k] * b[k][column]).sum()))
+    }
+
+    fn about_axis(axis: Axis, angle: f64) -> Matrix {
+        let (sin, cos) = angle.sin_cos();
+        match axis {
+            Axis::X => [[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]],
+            Axis::Y => [[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]],
+            Axis::Z => [[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]],
+        }
+    }
+
+    fn radians(angle: Angle) -> f64 {
+        f64::from(angle.to_bits()) / 4_294_967_296.0 * std::f64::consts::TAU
+    }
+
+    fn of_angles(order: EulerOrder, angles: [Angle; 3]) -> Matrix {
+        let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        order.axes().into_iter().zip(angles).fold(identity, |m, (axis, angle)| multiply(m, about_axis(axis, radians(angle))))
+    }
+
+    /// Rodrigues' formula.
+    fn of_map(map: [Angle; 3]) -> Matrix {
+        let v = map.map(radians);
+        let angle = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if angle == 0.0 {
+            return of_angles(EulerOrder::XYZ, [Angle::ZERO; 3]);
+        }
+        let [x, y, z] = v.map(|x| x / angle);
+        let (sin, cos) = angle.sin_cos();
+        let t = 1.0 - cos;
+        [
+            [t * x * x + cos, t * x * y - sin * z, t * x * z + sin * y],
+            [t * x * y + sin * z, t * y * y + cos, t * y * z - sin * x],
+            [t * x * z - sin * y, t * y * z + sin * x, t * z * z + cos],
+        ]
+    }
+
+    fn difference(a: Matrix, b: Matrix) -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
+    }
+
+    const ORDERS: [EulerOrder; 6] =
+        [EulerOrder::XYZ, EulerOrder::XZY, EulerOrder::YXZ, EulerOrder::YZX, EulerOrder::ZXY, EulerOrder::ZYX];
+
+    fn random() -> impl FnMut() -> i32 {
+        let mut state = 1u64;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 32) as i32
+        }
+    }
+
+    fn of_fixed(matrix: [[Component; 3]; 3]) -> Matrix {
+        matrix.map(|row| row.map(|x| x.to_num::<f64>()))
+    }
+
+    #[test]
+    fn any_rotation_in_any_order_is_the_same_rotation() {
+        let mut next = random();
+        let (mut worst, mut worst_matrix) = (0.0f64, 0.0f64);
+        for round in 0..20_000 {
+            // Small, large and greatest maps and angles.
+            let shift = round % 24;
+            let angles = [next() >> shift, next() >> shift, next() >> shift].map(Angle::from_bits);
+            let own = ORDERS[round % 6];
+            for (turn, truth) in
+                [(Turn::Euler { order: own, angles }, of_angles(own, angles)), (Turn::Exponential(angles), of_map(angles))]
+            {
+                worst_matrix = worst_matrix.max(difference(of_fixed(turn.matrix()), truth));
+                for order in ORDERS {
+                    worst = worst.max(difference(of_angles(order, turn.euler(order)), truth));
+                }
+                let again = Turn::Quaternion(turn.quaternion());
+                worst = worst.max(difference(of_fixed(again.matrix()), truth));
+            }
+        }
+        assert!(worst_matrix < 4e-7, "{worst_matrix}");
+        // 0.01 degree is 1.7e-4.
+        assert!(worst < 2e-6, "{worst}");
+    }
+
+    #[test]
+    fn at_a_quarter_turn_the_other_two_still_make_the_rotation() {
+        for quarter in [1 << 30, -(1 << 30), (1 << 30) - 1, (1 << 30) + 40] {
+            for (a, c) in [(0, 0), (1 << 28, 3 << 27), (-7 << 26, 1 << 30)] {
+                let angles = [a, quarter, c].map(Angle::from_bits);
+                for own in ORDERS {
+                    let still = Turn::Exponential([Angle::ZERO; 3]).euler(own);
+                    assert!(still.iter().all(|angle| angle.to_bits().unsigned_abs() < 16), "{still:?}");
+                    let quaternion = Turn::Quaternion(Turn::Euler { order: own, angles }.quaternion());
+                    let error = difference(of_angles(own, quaternion.euler(own)), of_angles(own, angles));
+                    assert!(error < 2e-6, "{own:?} {angles:?}: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn quaternions_of_any_length_are_normalized() {
+        let mut next = random();
+        for round in 0..20_000 {
+            let q = [next(), next(), next(), next()].map(|x| x >> (round % 27));
+            let length = q.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+            let unit = normalized(q);
+            for (raw, unit) in q.iter().zip(unit) {
+                let error = (f64::from(*raw) / length - f64::from(unit) / f64::from(1 << 30)).abs();
+                assert!(length < 1.0 || error < 1e-8, "{q:?} {unit:?} {error}");
+            }
+        }
+        assert_eq!(normalized([0; 4]), NO_ROTATION);
+        assert_eq!(normalized([i32::MIN; 4]), [-(1 << 29); 4]);
+    }
+}
