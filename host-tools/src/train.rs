@@ -52,7 +52,7 @@ impl Counts {
         row
     }
 
-    /// The text of `decoder/src/tables.rs`.
+    /// The text of `decoder/src/codec/tables.rs`.
     pub fn tables(&self, trained_on: &str) -> String {
         let modes = (0..64).map(|after| self.row(Alphabet::Mode(after))).collect();
         let numbers = (0..CONTEXTS as u8).map(|context| self.row(Alphabet::Number(context))).collect();

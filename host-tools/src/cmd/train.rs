@@ -9,13 +9,13 @@ use crate::train::Counts;
 use anyhow::{Context, Result};
 use std::path::{Path, PathBuf};
 
-/// Compute the format's tables (decoder/src/tables.rs) from motions; needed only to change the format.
+/// Compute the format's tables (decoder/src/codec/tables.rs) from motions; needed only to change the format.
 ///
 /// Every motion is fitted at each bound and frame rate with the tables of this build, and its symbols are counted; all clips have equal
 /// weight. Build and run it again until the sizes converge.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
-  pantin train motions/*.bvh -o decoder/src/tables.rs --note 'Trained on ...'")]
+  pantin train motions/*.bvh -o decoder/src/codec/tables.rs --note 'Trained on ...'")]
 pub struct Arguments {
     /// Motion files
     #[arg(required = true)]
