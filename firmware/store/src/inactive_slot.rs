@@ -1,4 +1,4 @@
-//! The slot that does not play: where the next clip comes.
+//! The slot that does not play, to which the next clip is written.
 
 use crate::BLOCK_BYTES;
 use crate::header::{ClipInfo, Header, crc_32};
@@ -6,10 +6,11 @@ use crate::message::Refusal;
 use crate::slot::{self, Slot};
 use pantin::Clip;
 
-/// The slot that does not play. Once [`seal`](InactiveSlot::seal) went well, its clip is the newest of the store.
+/// The slot that does not play. Once [`seal`](InactiveSlot::seal) has succeeded, its clip is the newest of the store.
 #[derive(Debug)]
 pub struct InactiveSlot<'a, S> {
     slot: &'a mut S,
+    /// The sequence number for the next header.
     sequence: u32,
 }
 
@@ -18,31 +19,35 @@ impl<'a, S: Slot> InactiveSlot<'a, S> {
         InactiveSlot { slot, sequence }
     }
 
-    /// Most bytes of a clip.
+    /// Returns the size in bytes of the longest clip that fits.
     pub fn capacity(&self) -> u32 {
         u32::try_from(self.slot.bytes().len().saturating_sub(BLOCK_BYTES)).unwrap_or(u32::MAX)
     }
 
-    /// Makes ready for a clip: from now on the slot holds none.
-    pub fn begin(&mut self, info: &ClipInfo) -> Result<(), Refusal> {
-        if info.length > self.capacity() {
-            return Err(Refusal::TooLong { capacity: self.capacity() });
-        }
-        // The header's sector first: none of the old clip's bytes may go before it.
-        self.slot.erase(0, S::ERASE_SIZE as u32).or(Err(Refusal::Flash))
+    /// Returns [`Refusal::TooLong`] if the clip does not fit. Changes nothing in the flash.
+    pub fn begin(&self, info: &ClipInfo) -> Result<(), Refusal> {
+        let capacity = self.capacity();
+        if info.length > capacity { Err(Refusal::TooLong { capacity }) } else { Ok(()) }
     }
 
-    /// Writes bytes of the clip: up to [`BLOCK_BYTES`] from an offset into the clip that is a multiple of it, in order. A sector is erased
-    /// when the first of its blocks is written.
+    /// Writes bytes of the clip: at most [`BLOCK_BYTES`], from an `offset` into the clip that is a multiple of it, in ascending order. A sector is
+    /// erased when its first block is written; the first write also erases the header, and from then on the slot holds no clip.
+    ///
+    /// Returns [`Refusal::Flash`] if the flash fails.
     pub fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Refusal> {
+        let sector = S::ERASE_SIZE as u32;
+        if offset == 0 {
+            // The header goes first: it must not outlive a byte of its clip.
+            self.slot.erase(0, sector).or(Err(Refusal::Flash))?;
+        }
         let at = offset.checked_add(BLOCK_BYTES as u32).ok_or(Refusal::Flash)?;
-        if at % S::ERASE_SIZE as u32 == 0 {
-            self.slot.erase(at, at.saturating_add(S::ERASE_SIZE as u32)).or(Err(Refusal::Flash))?;
+        if at % sector == 0 {
+            self.slot.erase(at, at.saturating_add(sector)).or(Err(Refusal::Flash))?;
         }
         self.write_words(at, bytes)
     }
 
-    /// Writes complete words, the last filled up as if erased.
+    /// Writes `bytes`, and fills the last word with ones.
     fn write_words(&mut self, at: u32, bytes: &[u8]) -> Result<(), Refusal> {
         let mut block = [0xff; BLOCK_BYTES];
         let len = bytes.len().next_multiple_of(S::WRITE_SIZE);
@@ -51,7 +56,8 @@ impl<'a, S: Slot> InactiveSlot<'a, S> {
         self.slot.write(at, block).or(Err(Refusal::Flash))
     }
 
-    /// The clip as it stands in the flash, if it is what was claimed and can be opened.
+    /// Returns the clip as it is in the flash. Returns [`Refusal::BadCrc`] if its bytes are not those of `info`, and [`Refusal::Clip`] if the decoder
+    /// cannot open it.
     pub fn check(&self, info: &ClipInfo) -> Result<&[u8], Refusal> {
         let bytes = slot::clip(self.slot.bytes(), info.length).ok_or(Refusal::BadCrc)?;
         if crc_32(bytes) != info.crc {
@@ -60,7 +66,9 @@ impl<'a, S: Slot> InactiveSlot<'a, S> {
         Clip::new_checked(bytes).map(|_| bytes).map_err(Refusal::Clip)
     }
 
-    /// Checks the clip and writes its header: it is the newest from the moment that the header's last word is written.
+    /// Checks the clip and writes its header: the clip is the newest from the moment that the header's last word is written.
+    ///
+    /// Returns the errors of [`check`](InactiveSlot::check), or [`Refusal::Flash`] if the header cannot be read back.
     pub fn seal(&mut self, info: &ClipInfo) -> Result<(), Refusal> {
         self.check(info)?;
         let header = Header { info: *info, sequence: self.sequence };

@@ -31,6 +31,9 @@ pub const IDLE_FRAMES: u16 = 1024;
 /// Pictures without a byte after which a packet that was begun is.
 pub const SILENCE_FRAMES: u16 = 16;
 
+/// Transfers that may bring data before one is sealed or the board restarts: a sender that begins again and again must not wear out the flash.
+pub const MAX_STARTS: u8 = 32;
+
 /// Most bytes of a message to the board, as a receiver counts them.
 pub const MAX_REQUEST: usize = 8 + BLOCK_BYTES + packet::OVERHEAD;
 /// Most bytes of an answer, as a receiver counts them.
@@ -109,6 +112,8 @@ pub enum Refusal {
     TooBig,
     /// The flash cannot be erased or written.
     Flash,
+    /// [`MAX_STARTS`] transfers have brought data since the board last started or took a clip. Each erases a sector.
+    TooManyStarts,
 }
 
 /// Writes a message of up to `N` bytes as a packet; none if `out` has not the capacity.
@@ -193,6 +198,7 @@ impl Refusal {
             Refusal::BadCrc => (3, 0),
             Refusal::TooBig => (4, 0),
             Refusal::Flash => (5, 0),
+            Refusal::TooManyStarts => (6, 0),
             Refusal::Clip(OpenError::BadMagic) => (16, 0),
             Refusal::Clip(OpenError::UnsupportedVersion(version)) => (17, version.into()),
             Refusal::Clip(OpenError::Truncated) => (18, 0),
@@ -210,6 +216,7 @@ impl Refusal {
             3 => Refusal::BadCrc,
             4 => Refusal::TooBig,
             5 => Refusal::Flash,
+            6 => Refusal::TooManyStarts,
             16 => Refusal::Clip(OpenError::BadMagic),
             17 => Refusal::Clip(OpenError::UnsupportedVersion(detail as u8)),
             18 => Refusal::Clip(OpenError::Truncated),
@@ -230,6 +237,9 @@ impl core::fmt::Display for Refusal {
             Refusal::Clip(error) => write!(f, "the board's decoder cannot open it: {error}"),
             Refusal::TooBig => f.write_str("the board has not the memory to play it (its channels or joints are too many)"),
             Refusal::Flash => f.write_str("the board's flash cannot be written"),
+            Refusal::TooManyStarts => {
+                write!(f, "{MAX_STARTS} transfers were begun and not completed; restart the board to allow more")
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::BLOCK_BYTES;
 use crate::header::ClipInfo;
 use crate::inactive_slot::InactiveSlot;
 use crate::line::{Input, Line};
-use crate::message::{IDLE_FRAMES, MAX_RESPONSE, Refusal, Request, Response};
+use crate::message::{IDLE_FRAMES, MAX_RESPONSE, MAX_STARTS, Refusal, Request, Response};
 use crate::slot::Slot;
 use crate::store::{Store, StoredClip};
 use pantin_link::packet;
@@ -31,6 +31,8 @@ struct Transfer<'a, S> {
     complete: bool,
     /// Pictures since the last message.
     idle: u16,
+    /// Transfers that have brought data.
+    starts: u8,
 }
 
 impl<'a, S: Slot> Update<'a, S> {
@@ -38,7 +40,7 @@ impl<'a, S: Slot> Update<'a, S> {
     pub fn open(store: &'a mut Store<S>) -> (Option<StoredClip<'a>>, Self) {
         let (stored, inactive) = store.open();
         let current = stored.map(|stored| stored.info);
-        let transfer = Transfer { inactive, current, incoming: None, next: 0, complete: false, idle: 0 };
+        let transfer = Transfer { inactive, current, incoming: None, next: 0, complete: false, idle: 0, starts: 0 };
         (stored, Update { line: Line::new(), sequence: 0, transfer })
     }
 
@@ -142,6 +144,9 @@ impl<S: Slot> Transfer<'_, S> {
         let info = self.incoming.filter(|info| info.crc == id).ok_or(Refusal::NotBegun)?;
         let left = info.length.saturating_sub(self.next);
         if offset == self.next && bytes.len() == left.min(BLOCK_BYTES as u32) as usize {
+            if offset == 0 {
+                self.starts = self.starts.checked_add(1).filter(|&starts| starts <= MAX_STARTS).ok_or(Refusal::TooManyStarts)?;
+            }
             self.inactive.write(offset, bytes)?;
             self.next += bytes.len() as u32;
         }

@@ -4,7 +4,7 @@
 use crate::board::{NEW, OLD, info, line, playing, requests, say, send};
 use crate::mock::{Mock, store};
 use pantin::OpenError;
-use pantin_store::message::{IDLE_FRAMES, SILENCE_FRAMES};
+use pantin_store::message::{IDLE_FRAMES, MAX_STARTS, SILENCE_FRAMES};
 use pantin_store::{BLOCK_BYTES, ClipInfo, Refusal, Request, Response, Store, Update};
 use proptest::prelude::*;
 
@@ -179,6 +179,42 @@ fn a_transfer_that_stands_still_is_given_up() {
     goes_on(store);
 }
 
+/// Sectors of both slots that were erased so far.
+fn erases(store: Store<Nrf51>) -> (Store<Nrf51>, u32) {
+    let slots = store.into_slots();
+    let sum = slots.iter().flat_map(|slot| &slot.erases).sum();
+    (Store::new(slots), sum)
+}
+
+#[test]
+fn transfers_that_begin_and_bring_nothing_wear_no_flash() {
+    let (mut store, before) = erases(playing_old());
+    let (_, mut update) = Update::open(&mut store);
+    for crc in 0..1000 {
+        let info = ClipInfo { crc, ..info(NEW) };
+        assert_eq!(say(&mut update, &line(&Request::Begin(info))).answers, [Response::Next { id: crc, offset: 0 }]);
+    }
+    let (store, after) = erases(store);
+    assert_eq!(after, before);
+    goes_on(store);
+}
+
+#[test]
+fn transfers_that_never_end_wear_a_bounded_number_of_sectors() {
+    let (mut store, before) = erases(playing_old());
+    let (_, mut update) = Update::open(&mut store);
+    let mut refused = 0;
+    for crc in 0..1000 {
+        say(&mut update, &line(&Request::Begin(ClipInfo { crc, ..info(NEW) })));
+        let data = Request::Data { id: crc, offset: 0, bytes: &NEW[..BLOCK_BYTES] };
+        let answers = say(&mut update, &line(&data)).answers;
+        refused += u32::from(answers == [Response::Refused { id: crc, refusal: Refusal::TooManyStarts }]);
+    }
+    let (store, after) = erases(store);
+    assert_eq!((after - before, refused), (u32::from(MAX_STARTS), 1000 - u32::from(MAX_STARTS)));
+    goes_on(store);
+}
+
 #[test]
 fn letters_go_through_between_packets_and_nothing_of_a_packet_does() {
     let mut store = playing_old();
@@ -246,13 +282,13 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_is_read(id: u32, number: u32, name: String, bytes in prop::collection::vec(any::<u8>(), 1..=BLOCK_BYTES), which in 0usize..8) {
+    fn what_is_written_is_read(id: u32, number: u32, name: String, bytes in prop::collection::vec(any::<u8>(), 1..=BLOCK_BYTES), which in 0usize..9) {
         let name = pantin_store::Name::new(&name.replace('\0', " "));
         let mut out = vec![0; 300];
         let refused = |refusal| Response::Refused { id, refusal };
         let answer = [Response::Next { id, offset: number }, Response::Done { id }, refused(Refusal::TooLong { capacity: number }),
             refused(Refusal::NotBegun), refused(Refusal::BadCrc), refused(Refusal::Clip(OpenError::UnsupportedVersion(number as u8))),
-            refused(Refusal::TooBig), refused(Refusal::Flash)][which];
+            refused(Refusal::TooBig), refused(Refusal::Flash), refused(Refusal::TooManyStarts)][which];
         let len = answer.write(3, &mut out).unwrap();
         let mut receiver = pantin_link::packet::Receiver::<{ pantin_store::message::MAX_RESPONSE }>::new();
         let read = out[..len].iter().find_map(|&byte| receiver.push(byte).and_then(|packet| Response::read(&packet)));
