@@ -26,6 +26,8 @@ pub mod output;
 pub mod play;
 #[cfg(feature = "pictures")]
 pub mod render;
+#[cfg(feature = "sender")]
+pub mod sender;
 #[cfg(feature = "cli")]
 pub mod serve;
 #[cfg(feature = "cli")]

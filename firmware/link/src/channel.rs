@@ -79,9 +79,8 @@ impl Channel {
         (self.state, self.pace, self.sync) = (leader.state, leader.pace, leader.sync);
     }
 
-    /// Whether what is drawn keeps to the pace: it has once been the state.
-    #[cfg(test)]
-    pub(crate) fn keeps_pace(&self) -> bool {
+    /// Returns whether the drawn value has reached the state once since the clip began: from then on it moves by at most its pace per frame.
+    pub fn has_joined(&self) -> bool {
         self.joined
     }
 

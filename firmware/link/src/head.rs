@@ -7,6 +7,8 @@ use pantin::codec::layout::MAX_STEP;
 
 /// Version of all payloads; it is the first thing that an identity counts.
 const VERSION: u8 = 1;
+/// The check of a HEAD.
+pub const HEAD_CHECK: u16 = VERSION as u16;
 /// Most bytes of exponential bits (FORMAT.md 4) that a HEAD packet carries: those of 8 joints with a choice each.
 pub const EXPONENTIAL_BYTES: usize = 16;
 
@@ -45,7 +47,7 @@ pub struct Head {
 
 impl Head {
     /// Reads or writes one, and the line's frame that the sender is at.
-    fn code<C: Coder>(&self, coder: &mut C, now: u32) -> (Head, u32) {
+    pub fn code<C: Coder>(&self, coder: &mut C, now: u32) -> (Head, u32) {
         let form = self.form;
         let mut head = Head {
             session: coder.bits(16, u32::from(self.session)) as u16,
@@ -74,15 +76,7 @@ impl Head {
         let mut reader = Reader::new(payload);
         let read = Head::default().code(&mut reader, 0);
         let sound = read.0.frames > 0 && read.0.frame_time_ns > 0;
-        (sound && reader.ends_with(u16::from(VERSION))).then_some(read)
-    }
-
-    /// The payload.
-    #[cfg(any(test, feature = "std"))]
-    pub fn write(&self, now: u32) -> Vec<u8> {
-        let mut writer = crate::symbols::write::Writer::default();
-        self.code(&mut writer, now);
-        writer.finish(u16::from(VERSION))
+        (sound && reader.ends_with(HEAD_CHECK)).then_some(read)
     }
 
     /// What all other packets of the clip are checked by.
@@ -138,7 +132,8 @@ const FOLLOWER: u32 = 2;
 const ZERO: u32 = 3;
 
 impl ChannelKind {
-    fn code<C: Coder>(&self, coder: &mut C) -> ChannelKind {
+    /// Reads a description, or writes this one.
+    pub fn code<C: Coder>(&self, coder: &mut C) -> ChannelKind {
         let (kind, constant, moves, back) = match *self {
             ChannelKind::Constant(0) => (ZERO, 0, (0, 0), 0),
             ChannelKind::Constant(p) => (CONSTANT, p, (0, 0), 0),
@@ -164,8 +159,10 @@ impl ChannelKind {
     }
 }
 
-const FIRST_BITS: u32 = 10;
-const COUNT_BITS: u32 = 8;
+/// Bits of the first channel in a STARTS.
+pub const FIRST_BITS: u32 = 10;
+/// Bits of the number of channels in a STARTS.
+pub const COUNT_BITS: u32 = 8;
 
 /// Reads the payload of a packet of kind STARTS, checked by the clip's [`Head::identity`], and shows each channel of the pose with what it is.
 /// Nothing is shown of one that is not whole.
@@ -179,23 +176,4 @@ pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, Chan
         reader.ends_with(identity)
     };
     go(&mut |_, _| {}) && go(&mut show)
-}
-
-/// Writes a payload of the starts from channel `first` on, of up to `room` bytes: with how many.
-#[cfg(any(test, feature = "std"))]
-pub fn write_starts(first: u16, starts: &[ChannelKind], identity: u16, room: usize) -> (Vec<u8>, usize) {
-    let payload = |count: usize| {
-        let mut writer = crate::symbols::write::Writer::default();
-        writer.bits(FIRST_BITS, u32::from(first));
-        writer.bits(COUNT_BITS, count as u32);
-        for start in &starts[..count] {
-            start.code(&mut writer);
-        }
-        writer.finish(identity)
-    };
-    let mut count = 0;
-    while count < starts.len().min(255) && payload(count + 1).len() <= room {
-        count += 1;
-    }
-    (payload(count), count)
 }

@@ -62,8 +62,28 @@ struct Clock {
     now: u32,
     /// Where the sender is.
     sender_frame: u32,
-    /// All that is told of frames before this has been sent.
+    /// Everything about frames before this one has been received, or is lost.
     received_until: u32,
+    /// The sender's frame as the last packet had it whose time was not believed.
+    rival_frame: u32,
+    /// Packets that agree on the rival, less those that were believed.
+    rival_votes: u8,
+}
+
+/// Frames by which a packet may set the clock forward at once. A packet that is further ahead, or late, is only a vote for another clock: one packet
+/// of a stranger, or one that is replayed, moves time no further than this.
+const MAX_LEAD: i32 = 32;
+/// Votes that replace the clock: believed packets take votes back, so it takes a majority.
+const VOTES: u8 = 4;
+
+impl Clock {
+    /// Counts a packet's time as a vote for another clock; returns whether that clock now has [`VOTES`].
+    fn vote(&mut self, sender_frame: u32) -> bool {
+        let apart = sender_frame.wrapping_sub(self.rival_frame) as i32;
+        self.rival_votes = if apart.unsigned_abs() <= MAX_LEAD as u32 { self.rival_votes.saturating_add(1) } else { 1 };
+        self.rival_frame = sender_frame;
+        self.rival_votes >= VOTES
+    }
 }
 
 /// Frames that the clock may be behind the sender's before it takes two at once, and ahead (negative) before it waits: the jitter of packets.
@@ -177,9 +197,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
         let head = self.head?;
         let about = self.clock.map_or(self.heard, |clock| clock.now);
         let (base, last, ahead) = motion_of(payload, &head, about)?;
-        self.set_clock(base, ahead, last);
-        let now = self.clock?.now;
-        if before(last, now) {
+        if !self.set_clock(base, ahead, last) {
             return None;
         }
         let waiting = QueuedPacket { last, payload: Vec::from_slice(payload).ok()? };
@@ -189,19 +207,32 @@ impl<'m, const Q: usize> Link<'m, Q> {
         Some(())
     }
 
-    /// Takes the sender's time from a packet.
-    fn set_clock(&mut self, base: u32, ahead: u8, last: u32) {
-        let sender = base.wrapping_sub(u32::from(ahead));
-        let clock = self.clock.get_or_insert(Clock { now: sender, sender_frame: sender, received_until: base });
-        // One that comes later than its successors tells an old time, and a sender that has stalled is behind: its time is come back to slowly.
-        if before(clock.sender_frame, sender) {
-            clock.sender_frame = sender;
-        } else if clock.sender_frame != sender {
+    /// Takes the sender's time from a packet whose messages are at the line frames `base` to `last`. Returns whether the packet can be played: it is not
+    /// late, and its time is believed.
+    fn set_clock(&mut self, base: u32, ahead: u8, last: u32) -> bool {
+        let sender_frame = base.wrapping_sub(u32::from(ahead));
+        let fresh = Clock { now: sender_frame, sender_frame, received_until: base, rival_frame: sender_frame, rival_votes: 0 };
+        let clock = self.clock.get_or_insert(fresh);
+        let lead = sender_frame.wrapping_sub(clock.sender_frame) as i32;
+        if lead > MAX_LEAD || before(last, clock.now) {
+            if !clock.vote(sender_frame) {
+                return false;
+            }
+            *clock = fresh;
+            self.queue.clear();
+            self.channels.iter_mut().for_each(Channel::lose);
+        }
+        clock.rival_votes = clock.rival_votes.saturating_sub(1);
+        // A packet that was overtaken carries an old time, and a sender that has stalled is behind: the clock returns to its time slowly.
+        if lead > 0 {
+            clock.sender_frame = sender_frame;
+        } else if lead < 0 {
             clock.sender_frame = clock.sender_frame.wrapping_sub(1);
         }
         if before(clock.received_until, last) {
             clock.received_until = last;
         }
+        true
     }
 
     /// Goes on by the time of a frame: [`Link::pose`] is what to draw then. Time stands still while nothing is told of the frames to come.

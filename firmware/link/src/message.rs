@@ -48,13 +48,13 @@ const CUT: u32 = 2;
 
 impl Message {
     /// Whether the type has a new w, and whether it has a new k.
-    pub(crate) fn is_new(&self) -> [bool; 2] {
+    pub fn is_new(&self) -> [bool; 2] {
         let kind = self.mode >> 4;
         [kind & 1 == 0, kind == segment_type::K || kind == segment_type::WK]
     }
 
     /// Reads or writes one.
-    pub(crate) fn code<C: Coder>(&self, coder: &mut C) -> Message {
+    pub fn code<C: Coder>(&self, coder: &mut C) -> Message {
         let cut = self.run != segment_frames(self.mode);
         let flags = (u32::from(self.refresh.is_some()) * REFRESH) | (u32::from(cut) * CUT);
         let flags = coder.symbol(&tables::FLAGS, flags);
@@ -131,16 +131,17 @@ const fn far(more: u32) -> u32 {
     group(GROUPS + 1) + more
 }
 
-/// Bits in front of a packet's messages: frame and how far ahead.
-pub(crate) const FRAME_BITS: u32 = 16;
-pub(crate) const AHEAD_BITS: u32 = 8;
+/// Bits of a MOTION's first frame.
+pub const FRAME_BITS: u32 = 16;
+/// Bits of how many frames ahead of the sender's clock that was.
+pub const AHEAD_BITS: u32 = 8;
 
 /// Symbols of a place: so many channels passed over; then, instead of a channel,
-pub(crate) const PASS: u32 = 30;
+pub const PASS: u32 = 30;
 /// a frame on, and
-pub(crate) const FRAME: u32 = 31;
+pub const FRAME: u32 = 31;
 /// the end.
-pub(crate) const END: u32 = 32;
+pub const END: u32 = 32;
 
 /// The messages of a packet, one after the other.
 #[derive(Clone, Copy, Debug)]

@@ -5,14 +5,14 @@
 //! ties a packet to its session, at no cost, and is a second line behind the CRC.
 
 /// Sizes in 2^-12 of an alphabet's symbols: all at least 1, together 4096.
-pub(crate) type Table = [u16];
+pub type Table = [u16];
 
 const SCALE_BITS: u32 = 12;
 /// The state lies in `LOW..LOW << 8` between symbols.
 const LOW: u32 = 1 << 16;
 
 /// Reads fields, or writes them.
-pub(crate) trait Coder {
+pub trait Coder {
     /// A symbol of an alphabet.
     fn symbol(&mut self, table: &Table, symbol: u32) -> u32;
 
@@ -111,76 +111,5 @@ impl Coder for Reader<'_> {
         self.state >>= count;
         self.refill();
         value
-    }
-}
-
-#[cfg(any(test, feature = "std"))]
-pub(crate) mod write {
-    use super::{Coder, LOW, SCALE_BITS, Table};
-
-    /// A stretch of the state's low digits.
-    #[derive(Clone, Copy, Debug)]
-    enum Digit {
-        Symbol { start: u32, size: u32 },
-        Bits { value: u32, count: u32 },
-    }
-
-    /// Gathers fields, and what they take.
-    #[derive(Clone, Debug, Default)]
-    pub(crate) struct Writer {
-        digits: Vec<Digit>,
-        /// Bits so far, without the state.
-        pub(crate) cost: f64,
-    }
-
-    impl Coder for Writer {
-        fn symbol(&mut self, table: &Table, symbol: u32) -> u32 {
-            let start = table.iter().take(symbol as usize).map(|&size| u32::from(size)).sum();
-            let size = u32::from(table[symbol as usize]);
-            self.cost += f64::from(SCALE_BITS) - f64::from(size).log2();
-            self.digits.push(Digit::Symbol { start, size });
-            symbol
-        }
-
-        fn few_bits(&mut self, count: u32, value: u32) -> u32 {
-            self.cost += f64::from(count);
-            self.digits.push(Digit::Bits { value, count });
-            value
-        }
-    }
-
-    impl Writer {
-        /// Adds what another has gathered.
-        pub(crate) fn append(&mut self, other: &Writer) {
-            self.digits.extend_from_slice(&other.digits);
-            self.cost += other.cost;
-        }
-
-        /// The payload.
-        pub(crate) fn finish(&self, check: u16) -> Vec<u8> {
-            let mut state = LOW | u32::from(check);
-            let mut bytes = vec![];
-            let mut shrink = |state: &mut u32, limit: u32| {
-                while *state >= limit {
-                    bytes.push(*state as u8);
-                    *state >>= 8;
-                }
-            };
-            for digit in self.digits.iter().rev() {
-                match *digit {
-                    Digit::Symbol { start, size } => {
-                        shrink(&mut state, (LOW >> SCALE_BITS << 8) * size);
-                        state = (state / size) << SCALE_BITS | (state % size + start);
-                    }
-                    Digit::Bits { value, count } => {
-                        shrink(&mut state, (LOW << 8) >> count);
-                        state = state << count | value;
-                    }
-                }
-            }
-            bytes.extend(state.to_le_bytes().iter().take(3));
-            bytes.reverse();
-            bytes
-        }
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::cmd::Files;
 use crate::output::note;
+use crate::sender::{ByteCounts, Line, Sender, Source};
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
-use pantin_link::sender::{ByteCounts, Line, Sender, Source};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

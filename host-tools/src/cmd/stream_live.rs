@@ -2,10 +2,10 @@
 
 use super::stream::{Arguments, closing, say, sender};
 use crate::cmd::Files;
+use crate::sender::{Line, Live, LiveChannel, Source};
 use crate::stream::live::Feed;
 use crate::stream::pace;
 use anyhow::{Context, Result, ensure};
-use pantin_link::sender::{Line, Live, LiveChannel, Source};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 

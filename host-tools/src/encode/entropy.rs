@@ -1,6 +1,7 @@
 //! Writes what `pantin::codec::entropy` reads. rANS is last in, first out: symbols are gathered, then coded from the last to the first.
 
-use pantin::codec::entropy::{LOW, SCALE_BITS, STATE_BYTES, Table, start};
+use super::rans::{self, Digit};
+use pantin::codec::entropy::{LOW, SCALE_BITS, Table, start};
 use pantin::codec::tables;
 
 /// What a symbol is of: the format's tables by name.
@@ -54,13 +55,6 @@ pub trait Sink {
     }
 }
 
-/// A stretch of the state's low digits: a symbol's probability and where it starts, or bits that are all equally probable.
-#[derive(Clone, Copy, Debug)]
-enum Digit {
-    Symbol { start: u32, size: u32 },
-    Bits { value: u32, count: u32 },
-}
-
 /// Symbols in the order in which a decoder reads them.
 #[derive(Clone, Debug, Default)]
 pub struct Symbols {
@@ -87,31 +81,7 @@ pub fn cost(table: &Table, symbol: u32) -> f64 {
 impl Symbols {
     /// The bytes. A decoder reads zeros past the end, so those that it would read there are left out.
     pub fn finish(&self) -> Vec<u8> {
-        let mut state = LOW;
-        let mut bytes = Vec::new();
-        let mut shrink = |state: &mut u32, limit: u32| {
-            while *state >= limit {
-                bytes.push(*state as u8);
-                *state >>= 8;
-            }
-        };
-        for digit in self.digits.iter().rev() {
-            match *digit {
-                Digit::Symbol { start, size } => {
-                    shrink(&mut state, (LOW >> SCALE_BITS << 8) * size);
-                    state = (state / size) << SCALE_BITS | (state % size + start);
-                }
-                Digit::Bits { value, count } => {
-                    shrink(&mut state, (LOW << 8) >> count);
-                    state = state << count | value;
-                }
-            }
-        }
-        for _ in 0..STATE_BYTES {
-            bytes.push(state as u8);
-            state >>= 8;
-        }
-        bytes.reverse();
+        let mut bytes = rans::encode(&self.digits, LOW);
         while bytes.last() == Some(&0) {
             bytes.pop();
         }

@@ -3,6 +3,7 @@
 pub mod clip;
 pub mod entropy;
 pub mod index;
+pub mod rans;
 pub mod rig;
 pub mod segment;
 pub mod varint;

@@ -5,11 +5,11 @@ use super::pack::pack;
 use super::plan::ScheduledMessage;
 use super::schedule::{ByteCounts, Line, Schedule, TimedPacket};
 use super::source::Source;
-use crate::head::{ChannelKind, Head, MAX_PACE, pace};
-use crate::message::{Message, Refresh, units};
 use pantin::Form;
 use pantin::codec::layout::{LENGTHS, MAX_FRAMES, MAX_STEP};
 use pantin::codec::{segment, step_size};
+use pantin_link::{ChannelKind, Head, MAX_PACE, pace};
+use pantin_link::{Message, Refresh, units};
 use std::collections::VecDeque;
 
 /// Index of the longest segment's length: 8 frames.

@@ -1,5 +1,6 @@
 //! What turns a clip into packets and says when each has to leave.
 
+mod announce;
 mod live;
 mod pack;
 mod plan;
@@ -9,12 +10,13 @@ mod source;
 mod tests;
 #[cfg(test)]
 mod train;
+mod writer;
 
 pub use live::{Live, LiveChannel};
 pub use schedule::{ByteCounts, Line, Schedule, TimedPacket};
 pub use source::{Source, SourceError};
 
-use crate::head::Head;
+use pantin_link::Head;
 
 /// Sends clips one after the other over a line.
 #[derive(Clone, Debug)]

@@ -1,12 +1,11 @@
 //! Messages put into packets, as many as fit.
 
 use super::plan::{ScheduledMessage, fields, pass};
-use crate::head::Head;
-use crate::link::MAX_PAYLOAD;
-use crate::message::{AHEAD_BITS, END, FRAME, FRAME_BITS};
-use crate::symbols::Coder;
-use crate::symbols::write::Writer;
-use crate::tables::PLACE;
+use super::writer::Writer;
+use pantin_link::Head;
+use pantin_link::MAX_PAYLOAD;
+use pantin_link::tables::PLACE;
+use pantin_link::wire::{AHEAD_BITS, Coder, END, FRAME, FRAME_BITS};
 
 /// A packet of motion that knows all but how far ahead it will be.
 #[derive(Clone, Debug)]
@@ -61,7 +60,9 @@ pub(crate) fn pack(told: &[ScheduledMessage], begin: u32) -> Vec<MotionPacket> {
         if open.is_some() {
             pass(&mut place, u32::from(channel - from));
         }
-        let fits = open.is_some_and(|batch| batch.body.cost + place.cost + body.cost + f64::from(FRAME_BITS + AHEAD_BITS) < ROOM);
+        let fits = open.is_some_and(|batch| {
+            batch.body.cost_bits + place.cost_bits + body.cost_bits + f64::from(FRAME_BITS + AHEAD_BITS) < ROOM
+        });
         if !fits {
             batches.push(MotionPacket::new(frame));
             place = Writer::default();
@@ -73,8 +74,8 @@ pub(crate) fn pack(told: &[ScheduledMessage], begin: u32) -> Vec<MotionPacket> {
         batch.body.append(&body);
         batch.counts[0] += 1;
         if message.refresh.is_some() {
-            let plain = crate::Message { refresh: None, ..*message };
-            batch.refresh_bits += body.cost - fields(&plain).cost;
+            let plain = pantin_link::Message { refresh: None, ..*message };
+            batch.refresh_bits += body.cost_bits - fields(&plain).cost_bits;
             batch.counts[1] += 1;
         }
         next_channel = channel + 1;

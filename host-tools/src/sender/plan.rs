@@ -1,10 +1,10 @@
 //! What is told of each channel, and when: its segments, cut so that none outlasts the refresh it needs.
 
 use super::source::{Segment, Source, Track};
-use crate::message::{Message, Refresh, units};
-use crate::symbols::Coder;
-use crate::symbols::write::Writer;
+use super::writer::Writer;
 use pantin::codec::layout::segment_type;
+use pantin_link::wire::Coder;
+use pantin_link::{Message, Refresh, units};
 
 /// A message and where it belongs.
 #[derive(Clone, Debug)]
@@ -82,12 +82,12 @@ pub(crate) fn fields(message: &Message) -> Writer {
 
 /// Writes a place `passed` channels on.
 pub(crate) fn pass(writer: &mut Writer, mut passed: u32) {
-    use crate::message::PASS;
+    use pantin_link::wire::PASS;
     while passed >= PASS {
-        writer.symbol(&crate::tables::PLACE, PASS);
+        writer.symbol(&pantin_link::tables::PLACE, PASS);
         passed -= PASS;
     }
-    writer.symbol(&crate::tables::PLACE, passed);
+    writer.symbol(&pantin_link::tables::PLACE, passed);
 }
 
 /// What every receiver in step has of the clip's channels: p, v, w, k by frame, of each channel that is told of, with its place in the pose.

@@ -1,11 +1,12 @@
 //! When each packet leaves: no earlier than its look-ahead, no later than its frame needs, and never more than the line carries.
 
+use super::announce::{write_head, write_starts};
 use super::pack::{MotionPacket, pack};
 use super::plan::round;
 use super::source::Source;
-use crate::head::{Head, write_starts};
-use crate::link::{MAX_PAYLOAD, QUEUE_PACKETS};
-use crate::packet::{self, kind};
+use pantin_link::Head;
+use pantin_link::packet::{self, kind};
+use pantin_link::{MAX_PAYLOAD, QUEUE_PACKETS};
 use std::collections::VecDeque;
 
 /// What the sender may do with the line.
@@ -207,7 +208,7 @@ impl<'s> Schedule<'s> {
         self.turn += 1;
         let (kind, payload) = match turn.checked_sub(1).and_then(|part| self.starts.get(part)) {
             Some(part) => (kind::STARTS, part.clone()),
-            None => (kind::HEAD, self.head.write(self.frame_at(at).floor().max(0.0) as u32)),
+            None => (kind::HEAD, write_head(&self.head, self.frame_at(at).floor().max(0.0) as u32)),
         };
         let timed = self.leave(at, kind, &payload);
         self.credit -= timed.bytes.len() as f64;

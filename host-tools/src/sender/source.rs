@@ -1,10 +1,10 @@
 //! A clip taken apart: what its channels are, their segments, and the states that these give frame by frame.
 
-use crate::head::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace};
 use pantin::Form;
 use pantin::codec::layout::{START_MODE, segment_type};
 use pantin::codec::segment;
 use pantin::{ChannelState, Clip, Player, TooSmall};
+use pantin_link::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace};
 
 /// A segment of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,7 +168,7 @@ fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, Track)]) {
 
 impl Track {
     fn segment(&self, frame: u32, mode: u8, w: i32, k: i32) -> Segment {
-        let new = crate::Message { mode: mode.min(START_MODE - 1), ..Default::default() }.is_new();
+        let new = pantin_link::Message { mode: mode.min(START_MODE - 1), ..Default::default() }.is_new();
         // Both are multiples: no well-formed clip's wrap.
         let steps = |new: bool, value: i32, which: u8| if new { value / segment::step(which, self.step) as i32 } else { 0 };
         let which = mode & 15;

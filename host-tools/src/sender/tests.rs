@@ -1,15 +1,15 @@
 use super::*;
-use crate::packet::Receiver;
-use crate::{Channel, Link, MAX_PACKET};
 use pantin::Clip;
+use pantin_link::packet::Receiver;
+use pantin_link::{Channel, Link, MAX_PACKET};
 use proptest::prelude::*;
 
 const CLIPS: [&[u8]; 5] = [
-    include_bytes!("../../../../tests/vectors/walk.ptn"),
-    include_bytes!("../../../../tests/vectors/followers.ptn"),
-    include_bytes!("../../../../tests/vectors/run-fine.ptn"),
-    include_bytes!("../../../../tests/vectors/quaternion.ptn"),
-    include_bytes!("../../../../motions/greet.ptn"),
+    include_bytes!("../../../tests/vectors/walk.ptn"),
+    include_bytes!("../../../tests/vectors/followers.ptn"),
+    include_bytes!("../../../tests/vectors/run-fine.ptn"),
+    include_bytes!("../../../tests/vectors/quaternion.ptn"),
+    include_bytes!("../../../motions/greet.ptn"),
 ];
 
 fn source(bytes: &[u8]) -> Source {
@@ -301,11 +301,11 @@ proptest! {
             // No joint is drawn faster than its pace.
             if let Some(before) = drawn.replace(link.pose().values.to_vec()) {
                 for (track, start) in source.starts.iter().enumerate() {
-                    if let crate::ChannelKind::Moving { pace, .. } = start {
+                    if let pantin_link::ChannelKind::Moving { pace, .. } = start {
                         let moved = link.pose().values[track].wrapping_sub(before[track]).unsigned_abs();
                         // One that was told anew in between, of another clip, starts anew too.
-                        let keeps = link.channels()[track].keeps_pace();
-                        assert!(!(met[track] && keeps) || moved <= crate::pace(*pace).unsigned_abs(), "channel {track}: {moved}");
+                        let keeps = link.channels()[track].has_joined();
+                        assert!(!(met[track] && keeps) || moved <= pantin_link::pace(*pace).unsigned_abs(), "channel {track}: {moved}");
                         met[track] = keeps;
                     }
                 }
@@ -328,8 +328,8 @@ proptest! {
             if lost < 50 {
                 let mut receiver = Receiver::<MAX_PACKET>::new();
                 let packet = timed.bytes.iter().find_map(|&byte| receiver.push(byte).map(|packet| (packet.kind, packet.payload.to_vec())));
-                if let Some((crate::packet::kind::MOTION, payload)) = packet {
-                    let mut messages = crate::Messages::new(&payload);
+                if let Some((pantin_link::packet::kind::MOTION, payload)) = packet {
+                    let mut messages = pantin_link::Messages::new(&payload);
                     messages.by_ref().for_each(drop);
                     last = last.max(u32::from(messages.frame()));
                     timed.bytes.clear();
@@ -347,4 +347,75 @@ proptest! {
             }
         });
     }
+}
+
+#[test]
+fn the_bytes_on_the_line_stay_the_same() {
+    for (bytes, parity, expected) in
+        [(CLIPS[0], false, (14810, 41075)), (CLIPS[0], true, (15798, 43903)), (CLIPS[4], false, (17369, 43231))]
+    {
+        let source = source(bytes);
+        let line = Line { parity, ..line(&source, 20_000.0) };
+        let sent: Vec<u8> = Sender::new(7).clip(&source, line, Some(2)).flat_map(|timed| timed.bytes).collect();
+        assert_eq!((sent.len(), pantin::crc::of(&sent)), expected);
+    }
+}
+
+/// Plays nine rounds in real time, with the packets that `forge` puts before a genuine one; returns the longest time without a new frame, and the last
+/// frame at which a channel was not exact, both in frames after the first forged packet.
+fn disturbed(forge: impl Fn(usize, &[TimedPacket]) -> Vec<TimedPacket>) -> (u32, u32) {
+    let source = source(CLIPS[0]);
+    let line = line(&source, 20_000.0);
+    let expected = Played { source: &source, states: source.expected_states(line.cycle) };
+    let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+    let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
+    let mut receiver = Receiver::new();
+    let sent: Vec<TimedPacket> = Sender::new(7).clip(&source, line, Some(9)).collect();
+    let (mut clock, mut frames, mut held, mut longest, mut last) = (sent[0].at, 0, 0, 0, 0);
+    for (index, timed) in sent.iter().enumerate() {
+        while clock < timed.at {
+            clock += source.frame_seconds();
+            let before = link.now();
+            link.step();
+            assert!(expected.agrees(&link));
+            if index > sent.len() / 4 {
+                frames += 1;
+                held = if link.now() == before { held + 1 } else { 0 };
+                longest = longest.max(held);
+                last = if link.is_synced() { last } else { frames };
+            }
+        }
+        forge(index, &sent).iter().for_each(|forged| hear(&mut link, &mut receiver, &forged.bytes));
+        hear(&mut link, &mut receiver, &timed.bytes);
+    }
+    println!("time stood still for {longest} frames, exact again after {last} of {frames}");
+    (longest, last)
+}
+
+#[test]
+fn a_packet_from_far_ahead_neither_stops_time_nor_costs_a_state() {
+    for ahead in [60, 200, 300] {
+        let one = |index: usize, sent: &[TimedPacket]| {
+            if index == sent.len() / 4 + 1 { sent[index + ahead..=index + ahead].to_vec() } else { vec![] }
+        };
+        assert_eq!(disturbed(one), (0, 0), "{ahead} packets ahead");
+    }
+}
+
+#[test]
+fn packets_from_elsewhere_that_are_fewer_than_the_genuine_ones_change_nothing() {
+    let every_third = |index: usize, sent: &[TimedPacket]| {
+        let from = sent.len() / 4..sent.len() / 2;
+        if from.contains(&index) && index % 3 == 0 { sent[index + 300..=index + 300].to_vec() } else { vec![] }
+    };
+    assert_eq!(disturbed(every_third), (0, 0));
+}
+
+#[test]
+fn a_receiver_that_was_led_astray_comes_back_to_the_genuine_clock() {
+    let many = |index: usize, sent: &[TimedPacket]| {
+        if index == sent.len() / 4 + 1 { sent[index + 300..index + 320].to_vec() } else { vec![] }
+    };
+    let (held, last) = disturbed(many);
+    assert!(held <= 8 && last < 100, "{held} {last}");
 }

@@ -2,9 +2,10 @@
 
 use super::plan::{ScheduledMessage, round};
 use super::source::Source;
-use crate::symbols::{Coder, Table};
-use crate::{Message, tables};
 use pantin::Clip;
+use pantin_link::Message;
+use pantin_link::tables;
+use pantin_link::wire::{Coder, Table};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -28,16 +29,16 @@ fn count(told: &[ScheduledMessage], counts: &mut Counts) {
     for (index, ScheduledMessage { frame, channel, message }) in told.iter().enumerate() {
         // About what a packet holds.
         if index % 24 == 0 {
-            counts.symbol(&tables::PLACE, crate::message::END);
+            counts.symbol(&tables::PLACE, pantin_link::wire::END);
             at = (*frame, 0);
         }
         for _ in at.0..*frame {
-            counts.symbol(&tables::PLACE, crate::message::FRAME);
+            counts.symbol(&tables::PLACE, pantin_link::wire::FRAME);
             at.1 = 0;
         }
         let passed = u32::from(channel - at.1);
         (0..passed / 30).for_each(|_| {
-            counts.symbol(&tables::PLACE, crate::message::PASS);
+            counts.symbol(&tables::PLACE, pantin_link::wire::PASS);
         });
         counts.symbol(&tables::PLACE, passed % 30);
         at = (*frame, channel + 1);

@@ -1,8 +1,8 @@
 //! Packets that leave when it is time.
 
 use super::address::Line;
+use crate::sender::TimedPacket;
 use anyhow::Result;
-use pantin_link::sender::TimedPacket;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 

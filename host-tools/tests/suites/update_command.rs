@@ -34,7 +34,7 @@ enum Manner {
     Poor,
     /// No clip is small enough for its memory.
     Small,
-    NoResponse,
+    Silent,
 }
 
 /// A board behind a port, for one connection; it ends with the clip that it plays.
@@ -51,7 +51,7 @@ fn board(manner: Manner) -> (String, JoinHandle<Option<Vec<u8>>>) {
             for &byte in &bytes[..len] {
                 zeros += u32::from(byte == 0);
                 // A message has two zeros.
-                if manner == Manner::NoResponse || manner == Manner::Poor && zeros % 6 >= 4 {
+                if manner == Manner::Silent || manner == Manner::Poor && zeros % 6 >= 4 {
                     continue;
                 }
                 update.receive(byte, |answer| {
@@ -93,7 +93,7 @@ fn what_goes_wrong_is_told_in_one_line_and_by_the_exit_code() {
     assert_eq!(code, Some(1), "{words}");
     assert!(words.contains("the old clip goes on playing: the board has not the memory"), "{words}");
     assert_eq!(board_.join().unwrap(), None);
-    let (place, board_) = board(Manner::NoResponse);
+    let (place, board_) = board(Manner::Silent);
     let (code, words) = told(&place, &["--patience", "0.05", "--tries", "2"]);
     assert_eq!(code, Some(1), "{words}");
     assert!(words.contains("no answer: is the firmware built with feature `update`"), "{words}");
