@@ -122,5 +122,5 @@ fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    pantin_tools::cmd::write_whole(path, bytes)
+    pantin_tools::output::write_whole(path, bytes)
 }
