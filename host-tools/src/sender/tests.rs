@@ -357,7 +357,7 @@ fn the_bytes_on_the_line_stay_the_same() {
         let source = source(bytes);
         let line = Line { parity, ..line(&source, 20_000.0) };
         let sent: Vec<u8> = Sender::new(7).clip(&source, line, Some(2)).flat_map(|timed| timed.bytes).collect();
-        assert_eq!((sent.len(), pantin::crc::of(&sent)), expected);
+        assert_eq!((sent.len(), pantin::codec::crc::of(&sent)), expected);
     }
 }
 

@@ -9,7 +9,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use harness::{build, paths};
-use pantin_tools::cmd::write_whole;
+use pantin_tools::output::write_whole;
 use pantin_tools::expand::expand;
 use pantin_tools::import::{self, units};
 use pantin_tools::render::gallery::{self, Cell};

@@ -14,7 +14,7 @@ use clap::Args;
 use harness::size_tables::{DOCUMENTS, filled};
 use harness::sizes::{FREE, Sizes};
 use harness::{paths, stack};
-use pantin_tools::cmd::write_whole;
+use pantin_tools::output::write_whole;
 
 use crate::images;
 use xtask::steps::say;

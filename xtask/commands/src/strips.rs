@@ -17,7 +17,7 @@ use harness::qemu::{self, BOARDS, Launch, Machine};
 use harness::sync::Session;
 use harness::{clips, paths, setup};
 use pantin::Clip;
-use pantin_tools::cmd::write_whole;
+use pantin_tools::output::write_whole;
 
 use harness::pictures;
 use xtask::steps::say;

@@ -8,7 +8,7 @@ use anyhow::{Result, bail, ensure};
 use clap::Args;
 use harness::vectors::{self, Vector, constants, coverage, own, record, synthetic};
 use pantin::codec::layout::VERSION;
-use pantin_tools::cmd::write_whole;
+use pantin_tools::output::write_whole;
 
 /// Versions from here on are experimental.
 const EXPERIMENTAL: u8 = 0xe0;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use clap::ValueEnum;
 use harness::paths;
-use pantin_tools::cmd::write_whole;
+use pantin_tools::output::write_whole;
 
 use super::{Goal, Part, goals};
 
