@@ -30,7 +30,7 @@ pub(crate) struct History<'m> {
     span: u32,
 }
 
-/// Frames that are played anew at least when the history leads back no more.
+/// Minimum number of frames that are replayed when the history is exhausted.
 const REFILL: u32 = 16;
 
 impl<'m> History<'m> {
@@ -47,8 +47,8 @@ impl<'m> History<'m> {
         self.span = self.span.max(frame.saturating_sub(self.floor));
     }
 
-    /// How many frames are to be played anew once it leads back no more: twice what it held at its fullest of late, so that
-    /// the half that is played in vain is no more than that.
+    /// Returns the number of frames to replay when the history is exhausted: twice its largest recent span, so that at most that
+    /// span is replayed in vain.
     pub(crate) fn refill(&mut self) -> u32 {
         let frames = (2 * self.span).max(REFILL);
         self.span = 0;

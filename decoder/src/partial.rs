@@ -41,7 +41,7 @@ impl<'a> PartialClip<'a> {
         Ok(PartialClip { clip, checked, dry_at })
     }
 
-    /// Takes a longer front of the same file. A damaged block is told each time, and what stands before it stays playable.
+    /// Takes a longer beginning of the same file. A damaged block is reported by every call, and the frames before it stay playable.
     pub fn extend(&mut self, file: &'a [u8]) -> Result<(), OpenError> {
         let parts = Parts::split(file)?;
         let (checked, outcome) = check(&parts, self.checked);

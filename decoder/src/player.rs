@@ -55,8 +55,8 @@ pub struct SeekCache<'m> {
 }
 
 impl<'m> SeekCache<'m> {
-    /// `undo` holds a record for each segment read of late: with one a moving channel it reaches back about 8 frames of lively
-    /// motion, and everything beyond is played anew. Each snapshot takes one of `marks` and as many of `states` and `values` as
+    /// `undo` holds a record for each recently read segment: with one record per moving channel it reaches back about 8 frames of lively
+    /// motion, and earlier frames are replayed. Each snapshot takes one of `marks` and as many of `states` and `values` as
     /// the clip has moving channels. Any of them may be empty.
     pub fn new(
         player: &Player<'_, '_>,
@@ -301,7 +301,7 @@ impl<'a, 'm> Player<'a, 'm> {
     }
 
     /// Goes back by one frame; from frame 0 to the last one. Takes back the additions and the segments in `memory`; where that
-    /// does not reach, it plays some frames before anew.
+    /// does not reach, it replays some earlier frames.
     pub fn step_back(&mut self, memory: &mut SeekCache<'_>) {
         let Some(target) = self.position.frame.checked_sub(1) else { return self.seek_with(u32::MAX, memory) };
         let (position, mut channels) = self.parts();

@@ -94,7 +94,7 @@ pub const FAR: u32 = DIRECT + GROUPS + 1;
 /// Bits of a far number's count of bits.
 pub const FAR_BITS: u32 = 5;
 
-/// The first magnitude of the group whose members are told by `bits` more bits.
+/// Returns the first magnitude of the group whose members have `bits` more bits.
 pub const fn group(bits: u32) -> u32 {
     DIRECT - 1 + (1 << bits)
 }
@@ -120,7 +120,7 @@ pub const LISTED: i8 = 127;
 
 /// Largest index of a channel's step: 1, 1, 2, 3, 4, 6, 8, 12, ... raw units.
 pub const MAX_STEP: u8 = 59;
-/// The channel's step that the first channel's is told against.
+/// The step index from which the first channel's change is counted.
 pub const FIRST_STEP: u8 = 44;
 /// Changes of the channel's step with a symbol of their own; the symbol after them says that the step follows in bits.
 pub const STEP_CHANGES: u32 = 24;

@@ -274,7 +274,7 @@ impl<const N: usize> Skeleton<N> {
         use Kind::*;
         let before = self.driven;
         let (mut moved, mut grouped) = (false, !turns);
-        // The first channels of so many kinds in a row.
+        // The first channels of `count` consecutive kinds.
         let of = |first: Kind, count: usize, act| {
             let mut members = [None; 4];
             for (kind, channel) in joint.kinds.zip(joint.first_channel..) {

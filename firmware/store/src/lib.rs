@@ -1,15 +1,15 @@
-//! The clip that a board plays, in flash of its own, replaced without building the firmware anew: written beside the firmware by
-//! `pantin flash-image`, or over the serial line by `pantin update`.
+//! Stores the clip that a board plays in a reserved part of its flash, so that it can be replaced without rebuilding the firmware: by
+//! an image of `pantin flash-image`, or over the serial line by `pantin update`.
 //!
-//! The flash is two [slots](Slot). The [newest](Store::open) whose header and bytes are right plays; the other is where the next clip
-//! comes, whose header is [written last](InactiveSlot::seal): whatever interrupts that, the old clip goes on playing. Where neither slot is
-//! right, the board plays the clips that it was built with. How a clip comes over the line is told in [`message`].
+//! The flash has two [slots](Slot). The board plays the [newest](Store::open) one whose header and bytes are valid. The next clip is written
+//! to the other one, and its header is [written last](InactiveSlot::seal): an interruption leaves the old clip intact. If neither slot is
+//! valid, the board plays its built-in clips. [`message`] specifies the transfer over the line.
 //!
-//! A slot begins with a [header](header) in a block of [`BLOCK_BYTES`] bytes, and the clip follows. Flash that is written in words of 1 to
-//! 256 bytes and erased in sectors of any multiple of 256 bytes will do: the nRF51's (4 and 1,024), the nRF52833's (4 and 4,096), the
-//! RP2040's (256 and 4,096), the STM32F411's large sectors (1 to 4, and 131,072). A slot is complete sectors.
+//! A slot starts with a [header](header) in a block of [`BLOCK_BYTES`] bytes; the clip follows. A slot is a whole number of sectors. The flash
+//! may have words of 1 to 256 bytes and sectors of any multiple of 256 bytes, for example those of the nRF51 (4 and 1,024), the nRF52833
+//! (4 and 4,096), the RP2040 (256 and 4,096) and the large sectors of the STM32F411 (1 to 4, and 131,072).
 //!
-//! What it cannot do: a word whose writing was cut off may read one way now and another way later. Such a word in the header may show
+//! Limitation: a word whose writing was interrupted may read differently each time. Such a word in the header may show
 //! the new clip until it shows the old one again; a transfer in between leaves the built-in clips.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]

@@ -97,7 +97,7 @@ pub enum Response {
 /// Why a clip is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// There is capacity for so many bytes.
+    /// The clip is longer than the slot's capacity.
     TooLong {
         /// Of the slot.
         capacity: u32,

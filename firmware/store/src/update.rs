@@ -79,7 +79,7 @@ impl<'a, S: Slot> Update<'a, S> {
         Some(StoredClip { bytes, info })
     }
 
-    /// Seals the clip if the board can play it, and tells the other end. Whether it is sealed: then the store is to be opened anew.
+    /// Seals the clip if the board can play it, and answers the host. Returns whether it is sealed; then the store must be opened again.
     pub fn finish(&mut self, playable: bool, send: impl FnMut(&[u8])) -> bool {
         self.transfer.complete = false;
         let Some(info) = self.transfer.incoming.take() else { return false };

@@ -89,7 +89,7 @@ pub struct Blueprint {
     pub normals: Vec<Vector>,
     /// Triangles of the left half.
     pub triangles: Vec<[usize; 3]>,
-    /// So many of them make the outline.
+    /// Number of triangles that make the outline.
     pub outline: usize,
     /// Points that stay when the head turns.
     pub fixed: Vec<usize>,

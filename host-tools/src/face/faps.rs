@@ -6,7 +6,7 @@ use super::head::Head;
 use anyhow::{Context, Result, bail};
 
 const TABLE: &str = include_str!("faps.txt");
-/// A value of so many is the whole of a length.
+/// The value that stands for a whole distance unit.
 const PARTS: f64 = 1024.0;
 /// Radians of an angle of 1.
 const ANGLE: f64 = 1e-5;

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use pantin_face::shape::Interpolation;
 use std::path::Path;
 
-/// The device's vertices are at most so many steps away.
+/// Maximum coordinate of the device's vertices, in steps.
 const MOST_STEPS: f64 = i16::MAX as f64;
 
 /// The points of an .obj.

@@ -18,7 +18,7 @@ pub enum Unit {
     Mw,
     /// Angle unit: 10^-5 radians.
     Au,
-    /// A choice among so many, or a part of so many.
+    /// A choice among N values, or a fraction of N.
     Of(u8),
 }
 

@@ -88,7 +88,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Of a whole line that goes so many pixels along, and as many or fewer aside.
+    /// Makes the pace of a whole line that covers `along` pixels in its longer direction and `aside` pixels, at most as many, in the other.
     #[inline(always)]
     pub fn new(steep: bool, back: bool, along: i32, aside: i32) -> Pace {
         Pace { steep, back, rise: 2 * aside, fall: 2 * along, rest: -along }

@@ -47,7 +47,7 @@ impl Power {
         self.left.set(None);
     }
 
-    /// Off at the operation after so many.
+    /// Cuts power at the operation after `after` more.
     pub fn cut(&self, after: u32, torn: u64) {
         self.left.set(Some(after + 1));
         self.torn.set(torn);
@@ -75,7 +75,7 @@ impl Chance {
     }
 }
 
-/// Two slots of so many sectors, full of what was there before.
+/// Makes two slots of `sectors` sectors, filled with old bytes.
 pub fn store<const WORD: usize, const SECTOR: usize>(sectors: usize) -> (Store<Mock<WORD, SECTOR>>, Rc<Power>) {
     let power = Rc::new(Power::default());
     let slot = || Mock { flash: vec![0; sectors * SECTOR], erases: vec![0; sectors], power: power.clone() };

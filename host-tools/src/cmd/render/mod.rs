@@ -16,7 +16,7 @@ use output::{Kind, Output};
 use pantin_figure::{Track, View};
 use std::path::{Path, PathBuf};
 
-/// From so many pixels on, on the shorter side, lines are smooth unless pixels are asked for.
+/// Pixels on the shorter side from which lines are smooth by default.
 const SMOOTH_FROM: usize = 240;
 
 /// Draw a clip with the firmware's own figure code: as small displays show it, or large and anti-aliased.

@@ -74,7 +74,7 @@ impl FromStr for Moment {
 }
 
 impl Moment {
-    /// The frame of a clip of so many frames.
+    /// Returns the frame of a clip with `frames` frames.
     pub fn frame(self, frames: u32, frame_time: f64) -> Result<u32> {
         let frame = match self {
             Moment::Frame(frame) => frame,
