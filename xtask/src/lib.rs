@@ -8,3 +8,4 @@ pub mod paths;
 pub mod setup;
 pub mod shape;
 pub mod steps;
+pub mod test_programs;

@@ -2,6 +2,7 @@
 //! are asked for.
 
 mod demo;
+mod publish;
 mod test;
 
 use std::process::{Command, ExitCode};
@@ -20,14 +21,18 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 13] = [
+const LIST: [(&str, Place, &str); 17] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     ("test", Place::Here(test::run), "Runs every check and test; --host-only leaves out QEMU and Chromium"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
     ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),
+    ("docs", Place::Here(publish::docs), "Builds the documentation of the published crates, with warnings as errors"),
     ("fuzz", COMMANDS, "Fuzzes the entry points for untrusted input; needs a nightly Rust and cargo-fuzz"),
     ("gallery", COMMANDS, "Converts every captured clip and draws one contact sheet of all"),
+    ("msrv", Place::Here(publish::msrv), "Checks the published crates with the oldest Rust that they state"),
+    ("package", Place::Here(publish::package), "Packs the published crates; --verify compiles each from its package"),
+    ("semver", Place::Here(publish::semver), "Compares the public items of the published crates with the last tag's"),
     ("shape", Place::Here(shape), "Counts equal lines among the boards, and circles of imports"),
     ("sizes", COMMANDS, "Measures flash, RAM and stack of every image, and compares them with tests/sizes.txt"),
     ("strips", COMMANDS, "Plays motions on every emulated board and draws a contact sheet of each"),

@@ -25,6 +25,10 @@ pub struct Package {
     pub features: Vec<String>,
     /// Its folder.
     pub folder: PathBuf,
+    /// Its version.
+    pub version: String,
+    /// The oldest Rust that it states to compile with.
+    pub rust_version: String,
 }
 
 impl Package {
@@ -54,27 +58,40 @@ pub fn web() -> Result<Vec<Package>> {
     of(&paths::root().join("web"))
 }
 
+/// The packages of the root's workspace that are published.
+pub fn published() -> Result<Vec<Package>> {
+    let packages = listed(&paths::root())?;
+    // An empty list of registries is `publish = false`.
+    Ok(packages.iter().filter(|package| package["publish"].is_null()).map(package).collect())
+}
+
 fn of(workspace: &Path) -> Result<Vec<Package>> {
+    Ok(listed(workspace)?.iter().map(package).collect())
+}
+
+fn listed(workspace: &Path) -> Result<Vec<Value>> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     let output = cargo.args(["metadata", "--no-deps", "--format-version=1"]).current_dir(workspace).output();
     let output = output.context("cannot start cargo")?;
     ensure!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr).trim());
     let metadata: Value = serde_json::from_slice(&output.stdout).context("cargo metadata")?;
-    let packages = metadata["packages"].as_array().context("cargo metadata names no packages")?;
-    Ok(packages.iter().map(package).collect())
+    metadata["packages"].as_array().cloned().context("cargo metadata names no packages")
 }
 
 fn package(package: &Value) -> Package {
     let programs = package["targets"].as_array().into_iter().flatten();
     let programs = programs.filter(|target| strings(&target["kind"]).any(|kind| kind == "bin"));
+    let text = |key: &str| package[key].as_str().unwrap_or_default().to_owned();
     let has = |feature: &&str| package["features"].get(feature).is_some();
     let manifest = PathBuf::from(package["manifest_path"].as_str().unwrap_or_default());
     Package {
-        name: package["name"].as_str().unwrap_or_default().to_owned(),
+        name: text("name"),
         targets: strings(&package["metadata"]["firmware"]["targets"]).map(String::from).collect(),
         programs: programs.filter_map(|target| target["name"].as_str()).map(String::from).collect(),
         features: MEANT.iter().filter(|feature| has(feature)).map(|feature| (*feature).to_owned()).collect(),
         folder: manifest.parent().map(PathBuf::from).unwrap_or_default(),
+        version: text("version"),
+        rust_version: text("rust_version"),
     }
 }
 

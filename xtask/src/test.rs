@@ -12,13 +12,18 @@
 //! ```
 
 use std::process::Command;
+use std::sync::mpsc::channel;
+use std::thread;
 
 use anyhow::{Context, Result, bail, ensure};
 use xtask::browser::Browser;
 use xtask::core_library::Core;
 use xtask::packages::{self, Package};
 use xtask::steps::Steps;
+use xtask::test_programs::{self, TestProgram};
 use xtask::{paths, setup};
+
+use crate::publish;
 
 const USAGE: &str = "Usage: cargo xtask test [--host-only]
 
@@ -44,46 +49,106 @@ pub fn run(arguments: &[String]) -> Result<()> {
 }
 
 fn all(host_only: bool) -> Result<()> {
-    let packages = packages::firmware()?;
-    let (boards, libraries): (Vec<_>, Vec<_>) = packages.into_iter().partition(|package| !package.targets.is_empty());
-    let mut steps = Steps::default();
+    let (boards, libraries): (Vec<_>, Vec<_>) =
+        packages::firmware()?.into_iter().partition(|package| !package.targets.is_empty());
+    let modules = packages::web()?;
+    let steps = Steps::default();
     steps.run("tools", || tools(&boards, host_only));
-    steps.run("format", || cargo(Workspace::Host, "fmt --all --check", false));
-    steps.run("format of the firmware", || cargo(Workspace::Firmware, "fmt --all --check", false));
-    steps.run("format of the web modules", || cargo(Workspace::Web, "fmt --all --check", false));
-    steps.run("lints", || cargo(Workspace::Host, "clippy --workspace --all-targets -- -D warnings", false));
-    steps.run("host tests", || cargo(Workspace::Host, "test --workspace --exclude harness --no-fail-fast", false));
+    steps.run("format", || shown(Workspace::Host, "fmt --all --check"));
+    steps.run("format of the firmware", || shown(Workspace::Firmware, "fmt --all --check"));
+    steps.run("format of the web modules", || shown(Workspace::Web, "fmt --all --check"));
+    // Two lanes: an image is linked by one thread, and emulators wait often. One prints as it goes, the other after each step.
+    let (built, programs) = channel();
+    thread::scope(|scope| {
+        let (steps, boards, libraries, modules) = (&steps, &boards, &libraries, &modules);
+        scope.spawn(move || {
+            firmware_lints(steps, boards, libraries);
+            web_lints(steps, modules);
+            // None where they could not be built.
+            let programs: Vec<TestProgram> = programs.recv().unwrap_or_default();
+            for program in &programs {
+                steps.run(&format!("tests of {}: {}", program.package, program.name), || emulated(program, host_only));
+            }
+        });
+        let mut here = vec![];
+        steps.run("build of the test programs", || {
+            let (there, rest) = test_programs::build()?.into_iter().partition(in_second_lane);
+            here = rest;
+            built.send(there).context("the second lane is gone")
+        });
+        drop(built);
+        for program in &here {
+            steps.run(&format!("tests of {}: {}", program.package, program.name), || {
+                finish(tests(program, host_only), &program.name)
+            });
+        }
+        steps.run("documentation tests", || shown(Workspace::Host, "test --workspace --doc"));
+        steps.run("lints", || shown(Workspace::Host, "clippy --workspace --all-targets -- -D warnings"));
+        steps.run("documentation", || publish::docs(&[]));
+        steps.run("packages", || publish::package(&[]));
+        steps.run("oldest Rust", || publish::msrv(&[]));
+        steps.run("public items against the last tag", || publish::semver(&[]));
+    });
+    steps.finish()
+}
+
+/// Whether a program builds firmware.
+fn in_second_lane(program: &TestProgram) -> bool {
+    [("harness", "suites"), ("xtask-commands", "sizes")].contains(&(program.package.as_str(), program.name.as_str()))
+}
+
+fn firmware_lints(steps: &Steps, boards: &[Package], libraries: &[Package]) {
     let named: String = libraries.iter().map(|library| format!(" -p {}", library.name)).collect();
     if !named.is_empty() {
-        let lints = format!("clippy{named} --all-targets -- -D warnings");
-        steps.run("lints of the firmware's libraries", || cargo(Workspace::Firmware, &lints, false));
+        steps.run("lints of the firmware's libraries", || {
+            captured(Workspace::Firmware, &format!("clippy{named} --all-targets -- -D warnings"))
+        });
         steps.run("host tests of the firmware's libraries", || {
-            cargo(Workspace::Firmware, &format!("test{named} --no-fail-fast"), false)
+            captured(Workspace::Firmware, &format!("test{named} --no-fail-fast"))
         });
     }
-    for Package { name, targets, features, .. } in &boards {
-        for target in targets {
+    for package in boards {
+        let name = &package.name;
+        for target in &package.targets {
             let build = format!("--release -p {name} --target {target}");
             steps.run(&format!("{name} for {target}"), || {
                 board(&format!("clippy {build}"), "-- -D warnings", target)?;
-                board(&format!("build {build}"), "", target)
+                // The sizes of a board's images are compared: that builds them.
+                if package.is_board() { Ok(()) } else { board(&format!("build {build}"), "", target) }
             });
-            for feature in features {
+            for feature in &package.features {
                 steps.run(&format!("lints of {name} with {feature} for {target}"), || {
                     board(&format!("clippy {build} --features {feature}"), "-- -D warnings", target)
                 });
             }
         }
     }
-    // One by one: together, the player's libraries would get the converter's standard library.
-    for Package { name, .. } in packages::web()? {
+}
+
+/// One by one: together, the player's libraries would get the converter's standard library.
+fn web_lints(steps: &Steps, modules: &[Package]) {
+    for Package { name, .. } in modules {
         let lints = format!("clippy -p {name} --target {WEB_TARGET} -- -D warnings");
-        steps.run(&format!("lints of {name}"), || cargo(Workspace::Web, &lints, false));
+        steps.run(&format!("lints of {name}"), || captured(Workspace::Web, &lints));
     }
-    steps.run("sizes of the images", || cargo(Workspace::Host, "run --package xtask-commands -- sizes", false));
-    let name = if host_only { "harness tests (QEMU and Chromium left out)" } else { "tests in QEMU and Chromium" };
-    steps.run(name, || cargo(Workspace::Host, "test -p harness --no-fail-fast", host_only));
-    steps.finish()
+}
+
+/// A test program as cargo would run it.
+fn tests(program: &TestProgram, host_only: bool) -> Command {
+    let mut command = Command::new(&program.file);
+    command.current_dir(&program.folder);
+    if host_only {
+        command.env(setup::HOST_ONLY, "1");
+    }
+    command
+}
+
+/// Runs tests that build firmware, and prints all that they print when they are done.
+fn emulated(program: &TestProgram, host_only: bool) -> Result<()> {
+    let output = tests(program, host_only).output().with_context(|| format!("cannot start {}", program.file.display()))?;
+    print!("{}{}", String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
+    ensure!(output.status.success(), "{}", program.name);
+    Ok(())
 }
 
 #[derive(Clone, Copy)]
@@ -110,13 +175,18 @@ fn tools(boards: &[Package], host_only: bool) -> Result<()> {
     Ok(())
 }
 
-fn cargo(workspace: Workspace, arguments: &str, host_only: bool) -> Result<()> {
+/// Cargo, whose messages appear at once.
+fn shown(workspace: Workspace, arguments: &str) -> Result<()> {
     let mut command = command(workspace);
     command.args(arguments.split(' '));
-    if host_only {
-        command.env(setup::HOST_ONLY, "1");
-    }
     finish(command, arguments)
+}
+
+/// Cargo, whose messages appear if it fails.
+fn captured(workspace: Workspace, arguments: &str) -> Result<()> {
+    let mut command = command(workspace);
+    command.args(arguments.split(' '));
+    finish_captured(command, arguments)
 }
 
 /// Cargo on a board's package; `last` follows what the target's core library asks for.
@@ -124,7 +194,7 @@ fn board(arguments: &str, last: &str, target: &str) -> Result<()> {
     let core = Core::of(target);
     let mut command = command(Workspace::Firmware);
     command.args(arguments.split(' ')).args(core.arguments).args(last.split_whitespace()).envs(core.environment);
-    finish(command, arguments)
+    finish_captured(command, arguments)
 }
 
 fn command(workspace: Workspace) -> Command {
@@ -138,8 +208,17 @@ fn command(workspace: Workspace) -> Command {
     command
 }
 
-fn finish(mut command: Command, arguments: &str) -> Result<()> {
-    let status = command.status().context("cannot start cargo")?;
-    ensure!(status.success(), "cargo {arguments}");
+fn finish(mut command: Command, what: &str) -> Result<()> {
+    let status = command.status().with_context(|| format!("cannot start {what}"))?;
+    ensure!(status.success(), "{what}");
+    Ok(())
+}
+
+fn finish_captured(mut command: Command, what: &str) -> Result<()> {
+    let output = command.output().with_context(|| format!("cannot start {what}"))?;
+    if !output.status.success() {
+        print!("{}{}", String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
+    }
+    ensure!(output.status.success(), "{what}");
     Ok(())
 }

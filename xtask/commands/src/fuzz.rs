@@ -32,7 +32,7 @@ impl Fuzz {
     /// Runs them; an error if one broke.
     pub fn run(self) -> Result<()> {
         tools()?;
-        let mut steps = Steps::default();
+        let steps = Steps::default();
         for door in DOORS.into_iter().filter(|door| self.target.as_ref().is_none_or(|target| target == door.name)) {
             steps.run(door.name, || run(door, self.seconds));
         }

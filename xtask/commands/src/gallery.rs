@@ -9,9 +9,9 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use harness::{build, paths};
-use pantin_tools::output::write_whole;
 use pantin_tools::expand::expand;
 use pantin_tools::import::{self, units};
+use pantin_tools::output::write_whole;
 use pantin_tools::render::gallery::{self, Cell};
 use pantin_tools::verify::compare;
 

@@ -82,6 +82,8 @@ mod tests {
             programs: strings(&["pico", "servo"]),
             features: strings(&["face"]),
             folder: "firmware/boards/pico".into(),
+            version: "0.1.0".into(),
+            rust_version: "1.90".into(),
         };
         assert!(board.is_board());
         let images = of(&board);

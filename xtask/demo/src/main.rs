@@ -10,7 +10,7 @@ mod conversion;
 mod report;
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -18,6 +18,7 @@ use conversion::Bounds;
 use harness::display::Picture;
 use harness::{paths, pictures, qemu, setup};
 use lexopt::{Arg, ValueExt};
+use pantin_tools::output::write_whole;
 use report::Report;
 use xtask::steps::say;
 
@@ -127,11 +128,11 @@ impl Demo {
     }
 
     fn write_pictures(&self, shown: &[Picture], rate: f64) -> Result<()> {
-        write(&self.out.join("demo.gif"), &pictures::animation(shown, rate)?)?;
+        write_whole(&self.out.join("demo.gif"), &pictures::animation(shown, rate)?)?;
         let chosen = SHEET.min(shown.len());
         let frames = (0..chosen).map(|index| index * shown.len() / chosen);
         let labelled: Vec<_> = frames.map(|frame| (format!("frame {frame}"), &shown[frame])).collect();
-        write(&self.out.join("demo-sheet.png"), &pictures::sheet(&labelled, COLUMNS)?)
+        write_whole(&self.out.join("demo-sheet.png"), &pictures::sheet(&labelled, COLUMNS)?)
     }
 }
 
@@ -143,8 +144,4 @@ fn simulating(arguments: &[OsString]) -> Result<()> {
     cargo.args(["--profile", "demo", "--package", "xtask-demo", "--features", "simulator", "--"]).args(arguments);
     ensure!(cargo.status().context("cannot start cargo")?.success(), "the simulator failed, see above");
     Ok(())
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }

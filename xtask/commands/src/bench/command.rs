@@ -38,7 +38,7 @@ impl Bench {
         let full = !self.quick && self.only.is_none();
         say("building the host tool");
         let setting = Setting::new(self.quick, self.only)?;
-        let (mut steps, mut all) = (Steps::default(), vec![]);
+        let (steps, mut all) = (Steps::default(), vec![]);
         for part in parts {
             steps.run(&part.name(), || {
                 let goals = part.run(&setting)?;
