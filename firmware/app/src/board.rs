@@ -66,6 +66,9 @@ pub trait Board {
     fn mark_stop(&mut self) {}
 }
 
+/// The renderer of a board's figures.
+pub(crate) type BoardRenderer<B> = <<B as Board>::Capacity as Capacity>::Renderer<<B as Board>::Rotation>;
+
 /// Why the program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {

@@ -23,12 +23,18 @@ pub trait Capacity {
     /// The values of a pose.
     type Pose: AsMut<[i32]>;
     /// The renderer of a figure.
-    type Figure<R: RotationBackend>: Figure;
+    type Renderer<R: RotationBackend>: Renderer;
+    /// The state of a link's channels.
+    #[cfg(feature = "link")]
+    type LinkChannels: AsMut<[pantin_link::Channel]>;
 
     /// Makes decoder states for [`MOVING`](Capacity::MOVING) channels.
     fn states() -> Self::States;
     /// Makes a pose of [`CHANNELS`](Capacity::CHANNELS) values.
     fn pose() -> Self::Pose;
+    /// Makes link states for [`CHANNELS`](Capacity::CHANNELS) channels.
+    #[cfg(feature = "link")]
+    fn link_channels() -> Self::LinkChannels;
 }
 
 /// A clip of at most `CHANNELS` channels, `MOVING` of them moving, whose figure has at most `JOINTS` joints.
@@ -42,7 +48,9 @@ impl<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Capacity f
 
     type States = [ChannelState; MOVING];
     type Pose = [i32; CHANNELS];
-    type Figure<R: RotationBackend> = FigureRenderer<JOINTS, R>;
+    type Renderer<R: RotationBackend> = FigureRenderer<JOINTS, R>;
+    #[cfg(feature = "link")]
+    type LinkChannels = [pantin_link::Channel; CHANNELS];
 
     #[inline(always)]
     fn states() -> Self::States {
@@ -53,10 +61,16 @@ impl<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Capacity f
     fn pose() -> Self::Pose {
         [0; CHANNELS]
     }
+
+    #[cfg(feature = "link")]
+    #[inline(always)]
+    fn link_channels() -> Self::LinkChannels {
+        [pantin_link::Channel::default(); CHANNELS]
+    }
 }
 
-/// A [`FigureRenderer`] of any number of joints.
-pub trait Figure {
+/// A [`FigureRenderer`] for any number of joints.
+pub trait Renderer {
     /// Makes one that is not set up.
     fn empty() -> Self;
 
@@ -82,7 +96,7 @@ pub trait Figure {
     fn bones(&self) -> usize;
 }
 
-impl<const N: usize, R: RotationBackend> Figure for FigureRenderer<N, R> {
+impl<const N: usize, R: RotationBackend> Renderer for FigureRenderer<N, R> {
     #[inline(always)]
     fn empty() -> Self {
         FigureRenderer::empty()

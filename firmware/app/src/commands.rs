@@ -1,47 +1,47 @@
-//! What the one before the display can ask for, by a button or a letter over the line.
+//! User commands, given by a button or by a letter over the serial line.
 
-/// A wish.
+/// A user's command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Stop where it is, or go on.
+    /// Pause, or play on.
     Pause,
-    /// A frame forward; pauses.
+    /// Pause, and move one frame forward.
     Step,
-    /// A frame back; pauses.
+    /// Pause, and move one frame back.
     Back,
-    /// Play the other way round.
+    /// Change the direction of play.
     Reverse,
-    /// The next clip.
+    /// Play the next clip.
     NextClip,
-    /// The clip before.
+    /// Play the previous clip.
     PreviousClip,
-    /// Twice as fast.
+    /// Double the speed.
     Faster,
-    /// Half as fast.
+    /// Halve the speed.
     Slower,
-    /// Go round the figure: 15 degrees.
+    /// Orbit the figure by 15 degrees.
     OrbitLeft,
-    /// The other way round.
+    /// Orbit the figure by 15 degrees in the other direction.
     OrbitRight,
-    /// Look from higher up: 5 degrees.
+    /// Raise the camera by 5 degrees.
     TiltUp,
-    /// From lower down.
+    /// Lower the camera by 5 degrees.
     TiltDown,
-    /// From the front, the side, or between.
+    /// Go to the next of four views: three quarters, front, side, behind.
     View,
-    /// Follow the figure, or see all that the clip covers.
+    /// Follow the figure, or show the whole area that the clip covers.
     Track,
-    /// The ground, shown or not.
+    /// Show the ground, or hide it.
     Ground,
-    /// Lines with smooth edges, or fast ones.
+    /// Draw lines with smooth edges, or faster ones without.
     Smooth,
-    /// Name, frame and speed, shown or not.
+    /// Show name, frame and speed, or hide them.
     Hud,
-    /// The list of letters, over the line.
+    /// Send the list of letters over the serial line.
     Help,
 }
 
-/// Letters and their keys, with what they do in a few words.
+/// The letters of the commands, each with a short description.
 pub const LETTERS: [(u8, Command, &str); 18] = [
     (b' ', Command::Pause, "pause"),
     (b'.', Command::Step, "step"),
@@ -64,8 +64,8 @@ pub const LETTERS: [(u8, Command, &str); 18] = [
 ];
 
 impl Command {
-    /// The key of a letter.
+    /// Returns the command of a letter.
     pub fn from_letter(letter: u8) -> Option<Command> {
-        LETTERS.iter().find(|(own, ..)| *own == letter).map(|(_, key, _)| *key)
+        LETTERS.iter().find(|(own, ..)| *own == letter).map(|(_, command, _)| *command)
     }
 }

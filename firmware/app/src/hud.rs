@@ -1,6 +1,7 @@
-//! Name, frame and speed in a corner of the display, by `embedded-graphics`.
+//! Two lines of text over the picture: the clip's name, and the state of its source.
 
-use crate::view_state::{Entry, ViewState};
+use crate::source::Status;
+use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
@@ -9,71 +10,72 @@ use heapless::String;
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::surface::{Framebuffer, Layout};
 
-/// Rows from which a display takes the larger letters.
-const LARGE: usize = 160;
+/// Displays with this many rows or more take the larger font.
+const LARGE_ROWS: usize = 160;
 /// Brightness of the letters.
 const SHADE: u8 = 200;
 
-/// Draws it.
+/// A line of text. What is longer than the line is cut off.
+type Line = String<32>;
+
+/// Draws the name at the top, and at the bottom frame and speed of a clip, or packets and exact channels of a link.
 #[inline(never)]
-pub(crate) fn draw<L: Layout>(view_state: &ViewState, entry: &Entry, frame: [u32; 2], target: &mut Framebuffer<L>) {
-    let font: &MonoFont = const { if L::HEIGHT >= LARGE { &FONT_6X10 } else { &FONT_4X6 } };
+pub(crate) fn draw<L: Layout>(view_state: &ViewState, name: &str, status: &Status, target: &mut Framebuffer<L>) {
+    let font: &MonoFont = const { if L::HEIGHT >= LARGE_ROWS { &FONT_6X10 } else { &FONT_4X6 } };
     let style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
-    let mut first: String<32> = String::new();
-    let mut second: String<32> = String::new();
-    // What does not fit the line is left out.
-    let _ = first.push_str(entry.name.get(..24).unwrap_or(entry.name));
-    number(&mut second, frame[0] + 1);
-    let _ = second.push('/');
-    number(&mut second, frame[1]);
-    let _ = second.push(' ');
-    match (view_state.paused, view_state.pace) {
-        (true, _) => {
-            let _ = second.push_str("paused");
+    let (mut top, mut bottom) = (Line::new(), Line::new());
+    let name = name.get(..24).unwrap_or(name);
+    match status {
+        Status::Clip { frame, frames } => {
+            let _ = top.push_str(name);
+            clip(&mut bottom, view_state, *frame, *frames);
         }
-        (false, pace) => {
-            let _ = second.push_str(if pace < 0 { "x1/" } else { "x" });
-            number(&mut second, 1 << pace.unsigned_abs());
-        }
+        #[cfg(feature = "link")]
+        Status::Link(status) => link(&mut top, &mut bottom, name, status),
     }
-    if view_state.backwards {
-        let _ = second.push_str(" back");
-    }
-    let bottom = L::HEIGHT as i32 - font.character_size.height as i32;
-    for (line, y) in [(&first, 0), (&second, bottom)] {
-        // A display that fails shows no letters; the figure's drawing tells of it.
+    let last_row = L::HEIGHT as i32 - font.character_size.height as i32;
+    for (line, y) in [(&top, 0), (&bottom, last_row)] {
+        // Drawing on a framebuffer cannot fail.
         let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);
     }
 }
 
-/// Draws what came over a line: packets, those that did not arrive or not whole, and how many channels are exact.
+/// Writes the frame, counted from 1, the speed and the direction.
+fn clip(line: &mut Line, view_state: &ViewState, frame: u32, frames: u32) {
+    number(line, frame + 1);
+    let _ = line.push('/');
+    number(line, frames);
+    let _ = line.push(' ');
+    if view_state.paused {
+        let _ = line.push_str("paused");
+    } else {
+        let _ = line.push_str(if view_state.rate_log2 < 0 { "x1/" } else { "x" });
+        number(line, 1 << view_state.rate_log2.unsigned_abs());
+    }
+    if view_state.backwards {
+        let _ = line.push_str(" back");
+    }
+}
+
+/// Writes the name, or why the clip cannot be played; then packets, those lost or damaged, and how many channels are exact.
 #[cfg(feature = "link")]
-#[inline(never)]
-pub(crate) fn draw_line<L: Layout>(entry: &Entry, status: &crate::link::LinkStatus, target: &mut Framebuffer<L>) {
-    let font: &MonoFont = const { if L::HEIGHT >= LARGE { &FONT_6X10 } else { &FONT_4X6 } };
-    let style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
-    let (mut first, mut second): (String<32>, String<32>) = (String::new(), String::new());
-    let words = match status.refusal {
+fn link(top: &mut Line, bottom: &mut Line, name: &str, status: &crate::source::LinkStatus) {
+    let _ = top.push_str(match status.refusal {
         Some(pantin_link::ClipMismatch::Rig) => "another rig",
         Some(pantin_link::ClipMismatch::Form) => "another coding",
         Some(pantin_link::ClipMismatch::Channels) => "too many channels",
-        None => entry.name.get(..24).unwrap_or(entry.name),
-    };
-    let _ = first.push_str(words);
+        None => name,
+    });
     let lost = status.counts.missing.wrapping_add(status.damaged);
-    for (number_of, words) in [(status.counts.packets, " packets "), (lost, " lost "), (status.exact[0].into(), "/")] {
-        number(&mut second, number_of);
-        let _ = second.push_str(words);
+    for (count, words) in [(status.counts.packets, " packets "), (lost, " lost "), (status.exact.into(), "/")] {
+        number(bottom, count);
+        let _ = bottom.push_str(words);
     }
-    number(&mut second, status.exact[1].into());
-    let bottom = L::HEIGHT as i32 - font.character_size.height as i32;
-    for (line, y) in [(&first, 0), (&second, bottom)] {
-        let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);
-    }
+    number(bottom, status.channels.into());
 }
 
-/// The digits of a number: without the library's formatting, which is larger than all of this.
-fn number(line: &mut String<32>, value: u32) {
+/// Writes a number's digits. The formatting of the standard library is larger than all of this file.
+fn number(line: &mut Line, value: u32) {
     if value >= 10 {
         number(line, value / 10);
     }

@@ -1,6 +1,6 @@
-//! The log, where the board has one.
+//! The log, with the feature `defmt`; without it these macros do nothing.
 
-/// A line of the log.
+/// Writes a line to the log.
 macro_rules! info {
     ($($words:tt)*) => {{
         #[cfg(feature = "defmt")]
@@ -8,7 +8,7 @@ macro_rules! info {
     }};
 }
 
-/// A line of the log about what went wrong.
+/// Writes a line about an error to the log.
 macro_rules! error {
     ($text:literal) => {{
         #[cfg(feature = "defmt")]

@@ -1,40 +1,40 @@
-//! What the program is asked to do, as words of a command line.
+//! The program's options, parsed from the words of a command line.
 
-/// When it goes on to the next frame.
+/// When the next frame is shown, and when the program ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// At the clip's own rate, for ever.
+    /// Frames follow at the clip's rate, without end. A board that is too slow skips frames.
     Play,
-    /// At the clip's own rate, for so many pictures.
+    /// Frames follow at the clip's rate, or later on a board that is too slow. The program ends after this number of pictures.
     Frames(u32),
-    /// When the other end of the line says so.
+    /// The host asks for each frame over the serial line with [`NEXT`](crate::NEXT), and ends the program with [`QUIT`](crate::QUIT).
     Sync,
 }
 
 /// How the program runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// When it goes on.
+    /// When the next frame is shown.
     pub mode: Mode,
-    /// Degrees of the camera about the figure, instead of the usual view.
+    /// The camera's orbit about the figure in degrees, instead of the default view's.
     pub orbit: Option<i16>,
-    /// Lines with smooth edges from the start.
+    /// Whether lines have smooth edges at first.
     pub smooth: bool,
-    /// Name, frame and speed on the display from the start.
+    /// Whether name, frame and speed are shown at first.
     pub hud: bool,
-    /// Figures side by side.
+    /// Number of figures side by side.
     pub figures: usize,
-    /// What is played comes over the line.
+    /// Whether poses arrive over the serial line.
     #[cfg(feature = "link")]
     pub link: bool,
-    /// Its packets have parity.
+    /// Whether the link's packets have parity.
     #[cfg(feature = "link")]
     pub fec: bool,
 }
 
 impl Options {
-    /// Reads the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`, and with the feature `link` that word and `fec`. Others are passed over: an emulator without arguments
-    /// gives the program's own path.
+    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`, and with the feature `link` also `link` and
+    /// `fec`. Other words are ignored: an emulator without arguments passes the program's path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
         let mut options = Options {
             mode: Mode::Play,

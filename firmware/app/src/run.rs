@@ -1,88 +1,63 @@
-//! The program: open a clip, then decode, place, draw and show frame by frame, and take what is asked for in between.
+//! The program: plays clips one after the other, in the only loop over frames.
 
 use crate::board::{Board, Exit};
 use crate::capacity::Capacity;
 use crate::commands::{Command, LETTERS};
-use crate::content::{self, Content};
+use crate::content::build::build;
+use crate::content::{AnyContent, Content};
 use crate::hud;
 use crate::log::{error, info};
 use crate::options::{Mode, Options};
+use crate::session::{Outcome, PlayContext};
+use crate::source::Source;
 use crate::update::Listener;
 use crate::view_state::{Effect, Entry, ViewState};
 use heapless::Deque;
 use pantin::{Clip, Player};
 use pantin_figure::surface::Framebuffer;
 
-/// In [`Mode::Sync`]: asks for the next picture. Any letter of [`LETTERS`] may come before it.
+/// In [`Mode::Sync`]: asks for the next picture. Letters of commands may come before it.
 pub const NEXT: u8 = b'\n';
-/// Ends the program.
+/// In [`Mode::Sync`]: ends the program.
 pub const QUIT: u8 = b'q';
-/// In [`Mode::Sync`]: a picture is on the display; its frame's number follows, in 4 bytes, the least first.
+/// In [`Mode::Sync`]: reports that a picture is on the display. The number of its frame follows in 4 bytes, the least significant first.
 pub const SHOWN: u8 = b'F';
 
-/// Wishes that wait to be granted.
-pub(crate) type Effects = Deque<Effect, 8>;
+/// Effects of commands that were received since the last picture. A user who gives more between two pictures loses them.
+type Effects = Deque<Effect, 8>;
 
-/// Where to go when a clip is left.
-pub(crate) enum Outcome {
-    Clip(i32),
-    Exit(Exit),
-    /// A clip came over the line, at this frame.
-    #[cfg(feature = "update")]
-    Whole(u32),
-    /// It can be played.
-    #[cfg(feature = "update")]
-    Ready,
-}
-
-/// Plays clips until the mode's end. Without a clip it returns at once.
+/// Plays clips until the mode ends. Without a clip it returns at once.
 ///
 /// Returns [`Exit::BadClip`] for a clip that is damaged or larger than [`Board::Capacity`].
-pub fn run<B: Board>(entries: &[Entry], options: Options, frame: &mut Framebuffer<B::Layout>, board: &mut B) -> Exit {
+pub fn run<B: Board>(entries: &[Entry], options: Options, framebuffer: &mut Framebuffer<B::Layout>, board: &mut B) -> Exit {
     let mut view_state = ViewState::new(&options);
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
-        let context = PlayContext {
-            entry,
-            mode: options.mode,
-            view_state: &mut view_state,
-            frame,
-            board,
-            listener: Listener::default(),
-            #[cfg(feature = "update")]
-            start: 0,
-            #[cfg(feature = "update")]
-            trial: false,
-        };
-        match perform(context) {
+        let listener = Listener::default();
+        let context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
+        match open(entry, Task::Play { from: 0 }, context) {
             Outcome::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             Outcome::Exit(exit) => return exit,
             #[cfg(feature = "update")]
-            Outcome::Whole(_) | Outcome::Ready => {}
+            Outcome::Received(_) | Outcome::Playable => {}
         }
     }
     Exit::Done
 }
 
-/// What a clip is played with.
-pub(crate) struct PlayContext<'a, B: Board> {
-    pub entry: &'a Entry<'a>,
-    pub mode: Mode,
-    pub view_state: &'a mut ViewState,
-    pub frame: &'a mut Framebuffer<B::Layout>,
-    pub board: &'a mut B,
-    /// Who listens for a clip that is to replace this one.
-    pub listener: Listener<'a>,
-    /// The frame to begin with.
+/// What to do with a clip that is set up.
+#[derive(Clone, Copy)]
+pub(crate) enum Task {
+    /// Play it from a frame.
+    Play { from: u32 },
+    /// Report that it can be played.
     #[cfg(feature = "update")]
-    pub start: u32,
-    /// Only whether it can be played is asked.
-    #[cfg(feature = "update")]
-    pub trial: bool,
+    Check,
 }
 
-pub(crate) fn perform<B: Board>(context: PlayContext<B>) -> Outcome {
-    let clip = match Clip::new_checked(context.entry.bytes) {
+/// Opens a clip, builds its content and plays it.
+pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: PlayContext<B>) -> Outcome {
+    let clip = match Clip::new_checked(entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
             error!("the clip cannot be opened: {}", error);
@@ -97,110 +72,172 @@ pub(crate) fn perform<B: Board>(context: PlayContext<B>) -> Outcome {
             return Outcome::Exit(Exit::BadClip);
         }
     };
-    content::build(&mut player, context)
+    info!(
+        "{}: {} frames of {} ns, {} channels, {} of them moving",
+        entry.name,
+        clip.frames(),
+        clip.frame_time_ns(),
+        clip.rig().channels(),
+        clip.moving()
+    );
+    build(&mut player, context, |player, content, context| match task {
+        Task::Play { from } => start(entry.name, player, from, content, context),
+        #[cfg(feature = "update")]
+        Task::Check => Outcome::Playable,
+    })
 }
 
-/// Plays what is set up; with faces `S` is any, and this is compiled once for all of them.
-#[inline(never)]
-pub(crate) fn play<B: Board, S: Content<B::Layout> + ?Sized>(
-    player: &mut Player,
-    renderer: &mut S,
-    context: PlayContext<B>,
-) -> Outcome {
-    #[cfg(feature = "update")]
-    {
-        if context.trial {
-            return Outcome::Ready;
-        }
-        player.seek(context.start);
+/// Plays a clip's content from a frame, with poses of the clip or of the link.
+fn start<B: Board>(name: &str, player: &mut Player, from: u32, content: &mut AnyContent<B>, context: PlayContext<B>) -> Outcome {
+    if from > 0 {
+        player.seek(from);
     }
     #[cfg(feature = "link")]
     if context.view_state.link {
-        return crate::link::play(player, renderer, context);
+        let parity = context.view_state.fec;
+        return crate::source::link::open::<B>(player, parity, |source| play(&mut [Actor { name, source, content }], context));
     }
-    let PlayContext { entry, mode, view_state, frame, board, mut listener, .. } = context;
-    let (mut due, mut shown, mut late) = (0, 0u32, 0u32);
+    play(&mut [Actor { name, source: player, content }], context)
+}
+
+/// A figure on the display: what gives its poses, and what draws them.
+pub(crate) struct Actor<'a, B: Board, S> {
+    /// The clip's name.
+    pub name: &'a str,
+    pub source: &'a mut S,
+    pub content: &'a mut AnyContent<'a, B>,
+}
+
+/// Plays figures side by side until the mode ends or a command chooses another clip: the loop over frames. Frame time and frame number are
+/// those of the first figure; commands apply to all.
+#[inline(never)]
+pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: PlayContext<B>) -> Outcome {
+    let PlayContext { mode, view_state, framebuffer, board, mut listener } = context;
+    let mut frame_ns = actors.first().map_or(0, |first| first.source.frame_time_ns());
+    let (mut frames, mut shown, mut late) = (0, 0u32, 0u32);
     let mut effects = Effects::new();
     if mode != Mode::Sync {
-        board.start_timer(view_state.tick_ns(player.clip().frame_time_ns()));
+        board.start_timer(view_state.tick_ns(frame_ns));
     }
     loop {
-        decode(player, due, board);
-        place(player, renderer, board);
-        draw(renderer, view_state, frame, board);
+        advance(actors, frames, board);
+        set_poses(actors, board);
+        draw(actors, view_state, framebuffer, board);
+        let Some(first) = actors.first_mut() else { break };
+        if S::LIVE && mode != Mode::Sync && first.source.frame_time_ns() != frame_ns {
+            frame_ns = first.source.frame_time_ns();
+            board.start_timer(frame_ns);
+        }
         if view_state.hud {
-            hud::draw(view_state, entry, [player.frame(), player.clip().frames()], frame);
+            hud::draw(view_state, first.name, &first.source.status(), framebuffer);
         }
-        show(frame, board);
+        present(framebuffer, board);
         shown = shown.wrapping_add(1);
-        listener.picture();
-        due = match mode {
-            Mode::Sync => match listen(player.frame(), view_state, &mut effects, &mut listener, board) {
-                true => view_state.frames(1),
-                false => break,
-            },
-            Mode::Frames(count) if shown >= count => break,
-            Mode::Frames(_) | Mode::Play => {
-                // The clip keeps its time on a board that is too slow for every frame.
-                let ticks = board.wait_ticks();
-                late = late.wrapping_add(ticks - 1);
-                while let Some(key) = board.button().or_else(|| Command::from_letter(listener.poll(board)?)) {
-                    // More keys than fit between two pictures are a mistake of theirs.
-                    let _ = effects.push_back(view_state.take(key));
-                }
-                view_state.frames(if mode == Mode::Play { ticks } else { 1 })
-            }
+        listener.frame_shown();
+        let ticks = match mode {
+            Mode::Sync => wait_for_request(first.source, view_state, &mut effects, &mut listener, board),
+            Mode::Frames(count) if shown >= count => None,
+            Mode::Frames(_) | Mode::Play => Some(wait_for_tick(first.source, view_state, &mut effects, &mut listener, board)),
         };
+        let Some(ticks) = ticks else { break };
+        late = late.wrapping_add(ticks.saturating_sub(1));
         #[cfg(feature = "update")]
-        if listener.is_whole() {
-            return Outcome::Whole(player.frame());
+        if listener.is_complete() {
+            return Outcome::Received(first.source.frame());
         }
+        // In real time a board that is too slow for every frame skips some.
+        frames = view_state.frames(if mode == Mode::Play { ticks } else { 1 });
         while let Some(effect) = effects.pop_front() {
             match effect {
                 Effect::Nothing => {}
-                Effect::Aim => {
-                    renderer.aim(player, view_state.view);
-                }
-                Effect::Pace if mode == Mode::Sync => {}
-                Effect::Pace => board.start_timer(view_state.tick_ns(player.clip().frame_time_ns())),
-                Effect::Move(frames) => due = frames,
+                Effect::Aim => aim(actors, view_state),
+                _ if S::LIVE => {}
+                Effect::Rate if mode == Mode::Sync => {}
+                Effect::Rate => board.start_timer(view_state.tick_ns(frame_ns)),
+                Effect::Move(by) => frames = by,
                 Effect::Clip(steps) => return Outcome::Clip(steps),
                 Effect::Help => help(board),
             }
         }
+        if S::LIVE {
+            frames = 1;
+        }
     }
     info!("{} pictures, {} ticks late", shown, late);
+    if let Some(first) = actors.first() {
+        first.source.log();
+    }
     Outcome::Exit(Exit::Done)
 }
 
-/// Tells the other end of the line which frame is on the display, and takes its keys; whether it wants another picture, or a clip came whole.
+/// Reports the frame that is on the display and takes commands until the next picture is asked for. Returns 1, or `None` if the program is
+/// to end.
 #[inline(never)]
-pub(crate) fn listen<B: Board>(
-    frame: u32,
+fn wait_for_request<B: Board>(
+    source: &mut impl Source,
     view_state: &mut ViewState,
     effects: &mut Effects,
     listener: &mut Listener,
     board: &mut B,
-) -> bool {
+) -> Option<u32> {
     board.send(&[SHOWN]);
-    board.send(&frame.to_le_bytes());
-    while !listener.is_whole() {
+    board.send(&source.frame().to_le_bytes());
+    while !listener.is_complete() {
         let byte = board.receive();
-        match listener.letter(byte, board) {
-            Some(NEXT) => return true,
-            Some(QUIT) => return false,
-            Some(letter) => {
-                if let Some(key) = Command::from_letter(letter) {
-                    let _ = effects.push_back(view_state.take(key));
-                }
-            }
-            None => {}
+        match listener.receive(byte, board).and_then(|byte| source.receive(byte)) {
+            Some(NEXT) => break,
+            Some(QUIT) => return None,
+            letter => queue(letter.and_then(Command::from_letter), view_state, effects),
         }
     }
-    true
+    Some(1)
 }
 
-/// The letters and what they do, a line each.
+/// Waits until the timer ticks and takes the commands that arrived meanwhile. Returns the number of ticks: at least 1.
+///
+/// With a clip the processor may sleep meanwhile; a live source reads the line all the time, because a serial port holds few bytes.
+fn wait_for_tick<B: Board, S: Source>(
+    source: &mut S,
+    view_state: &mut ViewState,
+    effects: &mut Effects,
+    listener: &mut Listener,
+    board: &mut B,
+) -> u32 {
+    let mut ticks = if S::LIVE { 0 } else { board.wait_ticks() };
+    let mut silent = true;
+    while !listener.is_complete() {
+        match board.poll() {
+            Some(byte) => {
+                silent = false;
+                let letter = listener.receive(byte, board).and_then(|byte| source.receive(byte));
+                queue(letter.and_then(Command::from_letter), view_state, effects);
+            }
+            None if ticks > 0 => break,
+            None => ticks = board.ticks(),
+        }
+    }
+    if S::LIVE && silent {
+        queue(source.receive_nothing().and_then(Command::from_letter), view_state, effects);
+    }
+    while let Some(command) = board.button() {
+        queue(Some(command), view_state, effects);
+    }
+    ticks
+}
+
+fn queue(command: Option<Command>, view_state: &mut ViewState, effects: &mut Effects) {
+    if let Some(command) = command {
+        let _ = effects.push_back(view_state.apply(command));
+    }
+}
+
+fn aim<B: Board, S: Source>(actors: &mut [Actor<B, S>], view_state: &ViewState) {
+    for Actor { source, content, .. } in actors {
+        source.with_player(|player| Content::<B::Layout>::aim(*content, player, view_state.view));
+    }
+}
+
+/// Sends the list of letters and their commands, one per line.
 #[inline(never)]
 fn help<B: Board>(board: &mut B) {
     for (letter, _, words) in LETTERS {
@@ -210,42 +247,44 @@ fn help<B: Board>(board: &mut B) {
     }
 }
 
+// The four sections of a frame whose instructions an emulator counts. They are not inlined, so that a profile names them.
+
 #[inline(never)]
-fn decode<B: Board>(player: &mut Player, frames: i32, board: &mut B) {
+fn advance<B: Board, S: Source>(actors: &mut [Actor<B, S>], frames: i32, board: &mut B) {
     board.mark_start();
-    for _ in 0..frames {
-        player.step();
-    }
-    for _ in frames..0 {
-        let last = player.clip().frames() - 1;
-        player.seek(player.frame().checked_sub(1).unwrap_or(last));
+    for actor in actors {
+        actor.source.advance(frames);
     }
     board.mark_stop();
 }
 
 #[inline(never)]
-fn place<B: Board, S: Content<B::Layout> + ?Sized>(player: &Player, renderer: &mut S, board: &mut B) {
+fn set_poses<B: Board, S: Source>(actors: &mut [Actor<B, S>], board: &mut B) {
     board.mark_start();
-    renderer.set_pose(player.pose());
+    for Actor { source, content, .. } in actors {
+        Content::<B::Layout>::set_pose(*content, source.pose());
+    }
     board.mark_stop();
 }
 
 #[inline(never)]
-fn draw<B: Board, S: Content<B::Layout> + ?Sized>(
-    renderer: &mut S,
+fn draw<B: Board, S: Source>(
+    actors: &mut [Actor<B, S>],
     view_state: &ViewState,
-    frame: &mut Framebuffer<B::Layout>,
+    framebuffer: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) {
     board.mark_start();
-    frame.clear();
-    renderer.draw(frame, view_state.style);
+    framebuffer.clear();
+    for actor in actors {
+        actor.content.draw(framebuffer, view_state.style);
+    }
     board.mark_stop();
 }
 
 #[inline(never)]
-pub(crate) fn show<B: Board>(frame: &mut Framebuffer<B::Layout>, board: &mut B) {
+fn present<B: Board>(framebuffer: &mut Framebuffer<B::Layout>, board: &mut B) {
     board.mark_start();
-    board.present(frame);
+    board.present(framebuffer);
     board.mark_stop();
 }

@@ -1,46 +1,47 @@
-//! The program of a board with a store: the clip in it comes before those that the board was built with, and may be replaced over the line.
+//! The program of a board with a store: the stored clip comes before the built-in ones, and can be replaced over the serial line.
 
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::options::Options;
-use crate::run::{Outcome, PlayContext, perform};
+use crate::run::{Task, open};
+use crate::session::{Outcome, PlayContext};
 use crate::update::Listener;
 use crate::view_state::{Entry, ViewState};
 use pantin_figure::surface::Framebuffer;
 use pantin_store::{Slot, Store, StoredClip, Update};
 
-/// What [`run`](crate::run) does, with a store. A clip that came is played from its first frame; one that this board cannot play is refused,
-/// and the one before goes on where it was.
+/// Plays the stored clip, then the built-in ones, as [`run`](crate::run()) does. A clip that arrives over the serial line is stored and played
+/// from its first frame. One that this board cannot play is refused, and the current clip plays on.
 pub fn run_stored<B: Board, S: Slot>(
     store: &mut Store<S>,
     entries: &[Entry],
     options: Options,
-    frame: &mut Framebuffer<B::Layout>,
+    framebuffer: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
     let mut view_state = ViewState::new(&options);
     loop {
         let (stored, mut update) = Update::open(store);
-        let context = StoredContext { options, view_state: &mut view_state, frame, board };
-        if let Some(exit) = until_sealed(stored, &mut update, entries, context) {
+        let context = StoredContext { options, view_state: &mut view_state, framebuffer, board };
+        if let Some(exit) = until_replaced(stored, &mut update, entries, context) {
             return exit;
         }
     }
 }
 
-/// What clips are played on.
+/// What all clips are played with.
 struct StoredContext<'a, B: Board> {
     options: Options,
     view_state: &'a mut ViewState,
-    frame: &'a mut Framebuffer<B::Layout>,
+    framebuffer: &'a mut Framebuffer<B::Layout>,
     board: &'a mut B,
 }
 
 impl<B: Board> StoredContext<'_, B> {
-    /// One clip on it.
-    fn context<'s>(&'s mut self, entry: &'s Entry<'s>, start: u32, listener: Listener<'s>) -> PlayContext<'s, B> {
-        let StoredContext { options, view_state, frame, board } = self;
-        PlayContext { entry, mode: options.mode, view_state, frame, board, start, listener, trial: false }
+    /// Lends it to one clip.
+    fn lend<'s>(&'s mut self, listener: Listener<'s>) -> PlayContext<'s, B> {
+        let StoredContext { options, view_state, framebuffer, board } = self;
+        PlayContext { mode: options.mode, view_state, framebuffer, board, listener }
     }
 }
 
@@ -48,45 +49,43 @@ fn entry<'a>(stored: &'a StoredClip) -> Entry<'a> {
     Entry { name: stored.info.name.as_str(), bytes: stored.bytes }
 }
 
-/// Plays until the program ends, or a new clip is sealed: then none.
-fn until_sealed<B: Board, S: Slot>(
+/// Plays until the program ends. Returns `None` if a new clip was stored.
+fn until_replaced<B: Board, S: Slot>(
     stored: Option<StoredClip>,
     update: &mut Update<S>,
     entries: &[Entry],
     mut stored_context: StoredContext<B>,
 ) -> Option<Exit> {
     let mut own = stored.as_ref().map(entry);
-    let (mut at, mut start) = (0, 0);
+    let (mut at, mut from) = (0, 0);
     while let Some(entry) = own.as_ref().into_iter().chain(entries).nth(at) {
-        let context = stored_context.context(entry, start, Listener { over: Some(update) });
-        match perform(context) {
+        let context = stored_context.lend(Listener { update: Some(update) });
+        match open(entry, Task::Play { from }, context) {
             Outcome::Clip(steps) => {
                 let count = (entries.len() + usize::from(own.is_some())) as i32;
-                (at, start) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
+                (at, from) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
             }
-            Outcome::Whole(frame) => {
-                let playable = try_out(update, &mut stored_context);
+            Outcome::Received(frame) => {
+                let playable = is_playable(update, &mut stored_context);
                 if update.finish(playable, |bytes| stored_context.board.send(bytes)) {
-                    info!("a new clip");
+                    info!("a new clip is stored");
                     return None;
                 }
-                error!("a clip came and is refused");
-                start = frame;
+                error!("the clip that arrived is refused");
+                from = frame;
             }
-            // Flashed with a clip that is too much for it, a board plays its own.
+            // Flash may have been written with a clip that is too big for the board, which then plays its own.
             Outcome::Exit(Exit::BadClip) if at == 0 && own.is_some() => own = None,
             Outcome::Exit(exit) => return Some(exit),
-            Outcome::Ready => {}
+            Outcome::Playable => {}
         }
     }
     Some(Exit::Done)
 }
 
-/// Whether the board can play the clip that came: it is set up as if it were to be played.
+/// Returns whether the board can play the clip that arrived, by setting it up.
 #[inline(never)]
-fn try_out<B: Board, S: Slot>(update: &Update<S>, stored_context: &mut StoredContext<B>) -> bool {
+fn is_playable<B: Board, S: Slot>(update: &Update<S>, stored_context: &mut StoredContext<B>) -> bool {
     let Some(candidate) = update.candidate() else { return false };
-    let entry = entry(&candidate);
-    let context = PlayContext { trial: true, ..stored_context.context(&entry, 0, Listener::default()) };
-    matches!(perform(context), Outcome::Ready)
+    matches!(open(&entry(&candidate), Task::Check, stored_context.lend(Listener::default())), Outcome::Playable)
 }

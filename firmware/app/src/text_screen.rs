@@ -1,4 +1,4 @@
-//! Words on a display that shows nothing else: why a clip does not play, or where the program came to harm.
+//! Text on the whole display: why a clip does not play, or where the program panicked.
 
 use core::fmt;
 use embedded_graphics::Drawable;
@@ -10,20 +10,20 @@ use pantin_figure::surface::{Framebuffer, Layout};
 
 const FONT: &MonoFont = &FONT_6X10;
 
-/// A page of text, written with [`write!`]. Lines go on below where they are too long; what is below the display is lost.
+/// A screen of text, written with [`write!`]. Long lines wrap; text below the display is lost.
 pub struct TextScreen<'a, L: Layout> {
-    frame: &'a mut Framebuffer<L>,
+    framebuffer: &'a mut Framebuffer<L>,
     at: Point,
 }
 
 impl<'a, L: Layout> TextScreen<'a, L> {
-    /// An empty one.
-    pub fn new(frame: &'a mut Framebuffer<L>) -> Self {
-        frame.clear();
-        TextScreen { frame, at: Point::zero() }
+    /// Clears a framebuffer to write on it.
+    pub fn new(framebuffer: &'a mut Framebuffer<L>) -> Self {
+        framebuffer.clear();
+        TextScreen { framebuffer, at: Point::zero() }
     }
 
-    fn line_end(&mut self) {
+    fn new_line(&mut self) {
         self.at = Point::new(0, self.at.y + FONT.character_size.height as i32);
     }
 }
@@ -33,13 +33,13 @@ impl<L: Layout> fmt::Write for TextScreen<'_, L> {
         let style = MonoTextStyle::new(FONT, L::Ink::of(BodyPart::Middle, u8::MAX));
         for letter in text.chars() {
             if letter == '\n' {
-                self.line_end();
+                self.new_line();
                 continue;
             }
             if self.at.x + FONT.character_size.width as i32 > L::WIDTH as i32 {
-                self.line_end();
+                self.new_line();
             }
-            let text = Text::with_baseline(letter.encode_utf8(&mut [0; 4]), self.at, style, Baseline::Top).draw(self.frame);
+            let text = Text::with_baseline(letter.encode_utf8(&mut [0; 4]), self.at, style, Baseline::Top).draw(self.framebuffer);
             self.at = text.unwrap_or(self.at);
         }
         Ok(())
@@ -54,14 +54,14 @@ mod tests {
 
     type Pages = MonoPages<128, 64, 1024>;
 
-    /// Rows of letters and columns of them in which anything is lit.
+    /// Returns the rows and columns of letters in which a pixel is lit.
     fn written(frame: &Framebuffer<Pages>) -> Vec<(usize, usize)> {
         let lit = |&(row, column): &(usize, usize)| (0..60).any(|at| frame.pixel(column * 6 + at % 6, row * 10 + at / 6).is_on());
         (0..6).flat_map(|row| (0..21).map(move |column| (row, column))).filter(lit).collect()
     }
 
     #[test]
-    fn long_lines_go_on_below_and_the_rest_is_lost() {
+    fn long_lines_wrap_and_the_rest_is_lost() {
         let mut frame = Framebuffer::<Pages>::new();
         write!(TextScreen::new(&mut frame), "{}\n\n{}", "a".repeat(22), 7).unwrap();
         let first = (0..21).map(|column| (0, column));

@@ -1,94 +1,77 @@
-//! A clip's replacement over the line, while another one plays.
+//! Receives a clip over the serial line while another one plays.
 
 use crate::board::Board;
 
-/// Who listens for a clip, whatever flash it goes to.
+/// A [`pantin_store::Update`], whatever flash it writes.
 #[cfg(feature = "update")]
-pub(crate) trait Listen {
-    /// Takes a byte from the line, and hands it on if it is a letter.
-    fn take(&mut self, byte: u8, send: &mut dyn FnMut(&[u8])) -> Option<u8>;
-    /// Whether a clip came whole.
-    fn is_whole(&self) -> bool;
-    /// A picture was shown.
-    fn picture(&mut self);
+pub(crate) trait Receive {
+    /// Takes a byte from the serial line, and returns it if it is no packet's.
+    fn receive(&mut self, byte: u8, send: &mut dyn FnMut(&[u8])) -> Option<u8>;
+    /// Returns whether a whole clip has arrived.
+    fn is_complete(&self) -> bool;
+    /// Takes note of a picture on the display.
+    fn frame_shown(&mut self);
 }
 
 #[cfg(feature = "update")]
-impl<S: pantin_store::Slot> Listen for pantin_store::Update<'_, S> {
-    fn take(&mut self, byte: u8, send: &mut dyn FnMut(&[u8])) -> Option<u8> {
+impl<S: pantin_store::Slot> Receive for pantin_store::Update<'_, S> {
+    fn receive(&mut self, byte: u8, send: &mut dyn FnMut(&[u8])) -> Option<u8> {
         pantin_store::Update::receive(self, byte, send)
     }
 
-    fn is_whole(&self) -> bool {
+    fn is_complete(&self) -> bool {
         pantin_store::Update::is_complete(self)
     }
 
-    fn picture(&mut self) {
+    fn frame_shown(&mut self) {
         pantin_store::Update::frame_shown(self);
     }
 }
 
-/// Who listens, if anyone does. Without the feature `update` nobody does, and this is nothing.
+/// Takes the packets of an update out of what the serial line receives. Without the feature `update`, or without an update, it does nothing.
 #[derive(Default)]
 pub(crate) struct Listener<'a> {
     #[cfg(feature = "update")]
-    pub over: Option<&'a mut dyn Listen>,
+    pub update: Option<&'a mut dyn Receive>,
     #[cfg(not(feature = "update"))]
-    over: core::marker::PhantomData<&'a ()>,
+    update: core::marker::PhantomData<&'a ()>,
 }
 
 #[cfg(not(feature = "update"))]
 impl Listener<'_> {
-    /// Letters are all that comes.
     #[inline(always)]
-    pub fn letter<B: Board>(&mut self, byte: u8, _board: &mut B) -> Option<u8> {
+    pub fn receive<B: Board>(&mut self, byte: u8, _board: &mut B) -> Option<u8> {
         Some(byte)
     }
 
     #[inline(always)]
-    pub fn poll<B: Board>(&mut self, board: &mut B) -> Option<u8> {
-        board.poll()
-    }
-
-    #[inline(always)]
-    pub fn is_whole(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         false
     }
 
     #[inline(always)]
-    pub fn picture(&mut self) {}
+    pub fn frame_shown(&mut self) {}
 }
 
 #[cfg(feature = "update")]
 impl Listener<'_> {
-    /// The letter that a byte is, if it is no packet's.
-    pub fn letter<B: Board>(&mut self, byte: u8, board: &mut B) -> Option<u8> {
-        match &mut self.over {
-            Some(update) => update.take(byte, &mut |bytes| board.send(bytes)),
+    /// Takes a byte from the serial line, and returns it if it is no packet's.
+    pub fn receive<B: Board>(&mut self, byte: u8, board: &mut B) -> Option<u8> {
+        match &mut self.update {
+            Some(update) => update.receive(byte, &mut |bytes| board.send(bytes)),
             None => Some(byte),
         }
     }
 
-    /// A letter, if one is there; what is there of packets before it is taken.
-    pub fn poll<B: Board>(&mut self, board: &mut B) -> Option<u8> {
-        while !self.is_whole() {
-            let byte = board.poll()?;
-            if let Some(letter) = self.letter(byte, board) {
-                return Some(letter);
-            }
-        }
-        None
+    /// Returns whether a whole clip has arrived.
+    pub fn is_complete(&self) -> bool {
+        self.update.as_ref().is_some_and(|update| update.is_complete())
     }
 
-    /// Whether a clip came whole.
-    pub fn is_whole(&self) -> bool {
-        self.over.as_ref().is_some_and(|update| update.is_whole())
-    }
-
-    /// A picture was shown.
-    pub fn picture(&mut self) {
-        if let Some(update) = &mut self.over {
-            update.picture();
+    /// Takes note of a picture on the display.
+    pub fn frame_shown(&mut self) {
+        if let Some(update) = &mut self.update {
+            update.frame_shown();
         }
     }
 }

@@ -1,61 +1,60 @@
-//! What is on: which clip, from where it is seen, how fast it plays.
+//! The view, the speed and the options that commands change, and that outlive a clip.
 
 use crate::commands::Command;
 use crate::options::Options;
 use pantin_figure::{DrawStyle, Track, View};
 
-/// A clip and what it is called.
+/// A clip with its name.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry<'a> {
-    /// Shown on the display.
+    /// The name that the display shows.
     pub name: &'a str,
     /// The clip's file.
     pub bytes: &'a [u8],
 }
 
-/// The state that keys change and that outlives a clip.
+/// What commands change.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ViewState {
     pub view: View,
-    /// The view from which a face is seen straight ahead: the usual one, but where degrees were asked for, those of the face are meant.
+    /// The view that shows a face from straight ahead. It is the default view, so that a face looks at the user; with [`Options::orbit`] the
+    /// degrees are those of the face.
     #[cfg(feature = "face")]
     pub ahead: View,
     pub style: DrawStyle,
     pub paused: bool,
     /// Frames run backwards.
     pub backwards: bool,
-    /// 2^pace times the clip's own speed.
-    pub pace: i8,
+    /// Speed, as the power of two of the clip's own.
+    pub rate_log2: i8,
     pub hud: bool,
-    /// What is played comes over the line.
+    /// Poses arrive over the serial line.
     #[cfg(feature = "link")]
     pub link: bool,
-    /// Its packets have parity.
+    /// The link's packets have parity.
     #[cfg(feature = "link")]
     pub fec: bool,
 }
 
-/// What a key asks of the player.
+/// What is to be done for a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effect {
-    /// Nothing: the scene has changed.
+    /// Nothing: the next picture shows it.
     Nothing,
-    /// The camera must be set up anew.
+    /// Set the camera up.
     Aim,
-    /// The timer must.
-    Pace,
-    /// So many frames on, or back.
+    /// Change the timer's period.
+    Rate,
+    /// Move by a number of frames.
     Move(i32),
-    /// So many clips on, or back.
+    /// Play another clip: this many places further in the list.
     Clip(i32),
-    /// The list of letters.
+    /// Send the list of letters.
     Help,
 }
 
-/// Greatest and least pace.
-const PACES: core::ops::RangeInclusive<i8> = -3..=3;
-/// Degrees about the figure that the view key goes through: three quarters, front, side, from behind.
-const VIEWS: [i16; 4] = [-50, 0, -90, 140];
+/// Lowest and highest speed.
+const RATES_LOG2: core::ops::RangeInclusive<i8> = -3..=3;
 
 impl ViewState {
     pub fn new(options: &Options) -> ViewState {
@@ -68,7 +67,7 @@ impl ViewState {
             style,
             paused: false,
             backwards: false,
-            pace: 0,
+            rate_log2: 0,
             hud: options.hud,
             #[cfg(feature = "link")]
             link: options.link,
@@ -77,35 +76,34 @@ impl ViewState {
         }
     }
 
-    /// Takes a key.
-    pub fn take(&mut self, key: Command) -> Effect {
-        match key {
+    /// Applies a command. Returns what else is to be done for it.
+    pub fn apply(&mut self, command: Command) -> Effect {
+        match command {
             Command::Pause => self.paused = !self.paused,
             Command::Step | Command::Back => {
                 self.paused = true;
-                return Effect::Move(if key == Command::Step { 1 } else { -1 });
+                return Effect::Move(if command == Command::Step { 1 } else { -1 });
             }
             Command::Reverse => self.backwards = !self.backwards,
             Command::NextClip => return Effect::Clip(1),
             Command::PreviousClip => return Effect::Clip(-1),
             Command::Faster | Command::Slower => {
-                let change = if key == Command::Faster { 1 } else { -1 };
-                self.pace = (self.pace + change).clamp(*PACES.start(), *PACES.end());
-                return Effect::Pace;
+                let change = if command == Command::Faster { 1 } else { -1 };
+                self.rate_log2 = (self.rate_log2 + change).clamp(*RATES_LOG2.start(), *RATES_LOG2.end());
+                return Effect::Rate;
             }
             Command::OrbitLeft | Command::OrbitRight => {
-                let change = if key == Command::OrbitRight { 15 } else { -15 };
-                self.view.orbit = turned(self.view.orbit + change);
+                let change = if command == Command::OrbitRight { 15 } else { -15 };
+                self.view.orbit = wrap_degrees(self.view.orbit + change);
                 return Effect::Aim;
             }
             Command::TiltUp | Command::TiltDown => {
-                let change = if key == Command::TiltUp { 5 } else { -5 };
+                let change = if command == Command::TiltUp { 5 } else { -5 };
                 self.view.tilt = (self.view.tilt + change).clamp(-30, 85);
                 return Effect::Aim;
             }
             Command::View => {
-                let at = VIEWS.iter().position(|orbit| *orbit == self.view.orbit);
-                self.view.orbit = VIEWS[at.map_or(0, |at| (at + 1) % VIEWS.len())];
+                self.view.orbit = self.view.next_orbit();
                 return Effect::Aim;
             }
             Command::Track => {
@@ -120,7 +118,7 @@ impl ViewState {
         Effect::Nothing
     }
 
-    /// Frames on for so many ticks of the timer.
+    /// Returns the frames to move by after a number of timer ticks.
     pub fn frames(&self, ticks: u32) -> i32 {
         match (self.paused, self.backwards) {
             (true, _) => 0,
@@ -129,17 +127,17 @@ impl ViewState {
         }
     }
 
-    /// The timer's pace for a clip's.
+    /// Returns the timer's period for a clip's frame time.
     pub fn tick_ns(&self, frame_ns: u32) -> u32 {
-        match u32::try_from(self.pace) {
+        match u32::try_from(self.rate_log2) {
             Ok(faster) => (frame_ns >> faster).max(1),
-            Err(_) => frame_ns.saturating_mul(1 << -self.pace),
+            Err(_) => frame_ns.saturating_mul(1 << -self.rate_log2),
         }
     }
 }
 
-/// Degrees from -180 to 179.
-fn turned(degrees: i16) -> i16 {
+/// Returns the same angle from -180 to 179 degrees.
+fn wrap_degrees(degrees: i16) -> i16 {
     (degrees + 540) % 360 - 180
 }
 
@@ -148,25 +146,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_go_round_and_stop_at_the_ends() {
+    fn the_orbit_wraps_and_the_speed_stops_at_its_limits() {
         let mut view_state = ViewState::new(&Options::parse([]));
         let start = view_state.view.orbit;
         for _ in 0..24 {
-            assert_eq!(view_state.take(Command::OrbitLeft), Effect::Aim);
+            assert_eq!(view_state.apply(Command::OrbitLeft), Effect::Aim);
             assert!((-180..180).contains(&view_state.view.orbit));
         }
         assert_eq!(view_state.view.orbit, start);
-        for _ in 0..VIEWS.len() {
-            view_state.take(Command::View);
+        for _ in View::ORBITS {
+            view_state.apply(Command::View);
         }
         assert_eq!(view_state.view.orbit, start);
-        (0..9).for_each(|_| assert_eq!(view_state.take(Command::Slower), Effect::Pace));
+        (0..9).for_each(|_| assert_eq!(view_state.apply(Command::Slower), Effect::Rate));
         assert_eq!(view_state.tick_ns(1000), 8000);
-        (0..9).for_each(|_| assert_eq!(view_state.take(Command::Faster), Effect::Pace));
+        (0..9).for_each(|_| assert_eq!(view_state.apply(Command::Faster), Effect::Rate));
         assert_eq!(view_state.tick_ns(1000), 125);
-        view_state.take(Command::Reverse);
+        view_state.apply(Command::Reverse);
         assert_eq!(view_state.frames(3), -3);
-        assert_eq!(view_state.take(Command::Back), Effect::Move(-1));
+        assert_eq!(view_state.apply(Command::Back), Effect::Move(-1));
         assert_eq!(view_state.frames(3), 0);
     }
 }

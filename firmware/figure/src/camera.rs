@@ -39,6 +39,17 @@ pub struct View {
     pub up: Option<u8>,
 }
 
+impl View {
+    /// The orbits, in degrees, through which the user command "view" goes: three quarters, front, side, behind.
+    pub const ORBITS: [i16; 4] = [-50, 0, -90, 140];
+
+    /// Returns the orbit after this view's in [`View::ORBITS`], or the first if this one is none of them.
+    pub fn next_orbit(&self) -> i16 {
+        let mut orbits = Self::ORBITS.iter().copied();
+        orbits.find(|orbit| *orbit == self.orbit).and_then(|_| orbits.next()).unwrap_or(Self::ORBITS[0])
+    }
+}
+
 impl Default for View {
     fn default() -> Self {
         View { orbit: -50, tilt: 12, track: Track::Follow, up: None }

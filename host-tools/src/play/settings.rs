@@ -9,9 +9,6 @@ use pantin_figure::{Track, View};
 /// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
 const ROWS_FOR_HALF: usize = 48;
 
-/// Degrees about the figure that a key goes through: three quarters, front, side, from behind, as on the board.
-const VIEWS: [i16; 4] = [-50, 0, -90, 140];
-
 /// All of it.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -51,8 +48,7 @@ impl Settings {
             Action::Orbit(degrees) => self.view.orbit = (self.view.orbit + degrees + 180).rem_euclid(360) - 180,
             Action::Tilt(degrees) => self.view.tilt = (self.view.tilt + degrees).clamp(-30, 85),
             Action::View => {
-                let at = VIEWS.iter().position(|orbit| *orbit == self.view.orbit);
-                self.view.orbit = VIEWS[at.map_or(0, |at| (at + 1) % VIEWS.len())];
+                self.view.orbit = self.view.next_orbit();
             }
             Action::Follow => {
                 self.view.track = if self.view.track == Track::Follow { Track::Fixed } else { Track::Follow };

@@ -1,32 +1,32 @@
 //! A face.
 
-use super::{Content, display};
+use super::{AnyContent, Content, whole_display};
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
-use crate::run::{Outcome, PlayContext, play};
+use crate::session::{Outcome, PlayContext};
 use pantin::{Clip, Player, Pose, Rig};
-use pantin_face::{Binding, MODEL, Model, Morph, VERTICES, Weights};
+use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, View};
 
-/// Whether a clip drives a face. In a function of its own: what the names are bound to is given back.
+/// Returns whether a clip drives a face. Not inlined: the binding is on the stack only meanwhile.
 #[inline(never)]
 pub(super) fn is_in(clip: &Clip) -> bool {
     Model::new_checked(MODEL).is_ok_and(|model| Binding::of(&clip.rig(), &model).is_face())
 }
 
-/// A face before its camera.
+/// A face and its camera.
 pub(super) struct Face<'a> {
     model: &'a Model<'static>,
     binding: &'a Binding,
     morph: &'a mut Morph<VERTICES>,
-    renderer: &'a mut pantin_face::FaceRenderer<VERTICES>,
-    /// From where it is seen straight ahead.
+    renderer: &'a mut FaceRenderer<VERTICES>,
+    /// The view that shows the face from straight ahead.
     ahead: View,
 }
 
-/// Shows the face that a clip drives on a part of the display, given with its first column; none where the model is no use. What a face
-/// needs stays where it was made, in the caller: it is too large to be handed on.
+/// Builds the face that a clip drives for an area of the display, given with its first column, and hands it to `then`; returns `None` if
+/// the model's bytes are damaged. Inlined: the face's buffers are too large to be moved out of the caller's stack frame.
 #[inline(always)]
 pub(super) fn with<T>(
     rig: &Rig,
@@ -40,25 +40,20 @@ pub(super) fn with<T>(
     binding.set_up(rig, &model);
     let mut morph = Morph::EMPTY;
     morph.set_up(&model).ok()?;
-    let mut renderer = pantin_face::FaceRenderer::EMPTY;
-    renderer.set_up(&model, canvas, from(view, ahead));
+    let mut renderer = FaceRenderer::EMPTY;
+    renderer.set_up(&model, canvas, face_view(view, ahead));
     renderer.shift(column, 0);
+    info!("{} scalars drive the face", binding.names());
     Some(then(Face { model: &model, binding: &binding, morph: &mut morph, renderer: &mut renderer, ahead }))
 }
 
 impl Face<'_> {
-    /// Number of the clip's scalars that drive it.
-    #[cfg(feature = "defmt")]
-    pub(super) fn names(&self) -> usize {
-        self.binding.names()
-    }
-
     pub(super) fn set_pose(&mut self, pose: Pose<'_>) {
         self.shape(pose.values);
         self.renderer.project(self.model, self.morph);
     }
 
-    /// In a function of its own: the weights are given back.
+    /// Moves the vertices. Not inlined: the weights are on the stack only meanwhile.
     #[inline(never)]
     fn shape(&mut self, pose: &[i32]) {
         let mut weights = Weights::new();
@@ -66,17 +61,17 @@ impl Face<'_> {
         self.morph.place(self.model, &weights);
     }
 
-    pub(super) fn draw<L: Layout>(&mut self, frame: &mut Framebuffer<L>) {
-        self.renderer.draw_on(self.model, frame);
+    pub(super) fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>) {
+        self.renderer.draw_on(self.model, framebuffer);
     }
 
     pub(super) fn aim(&mut self, view: View) {
-        self.renderer.aim(from(view, self.ahead));
+        self.renderer.aim(face_view(view, self.ahead));
     }
 }
 
-/// A face is turned by as much as the view is away from where that is straight ahead.
-fn from(view: View, ahead: View) -> pantin_face::View {
+/// Returns the view of a face: it is turned by the difference to the view that is straight ahead.
+fn face_view(view: View, ahead: View) -> pantin_face::View {
     pantin_face::View { orbit: view.orbit - ahead.orbit, tilt: view.tilt - ahead.tilt }
 }
 
@@ -85,8 +80,8 @@ impl<L: Layout> Content<L> for Face<'_> {
         Face::set_pose(self, pose);
     }
 
-    fn draw(&mut self, frame: &mut Framebuffer<L>, _style: DrawStyle) {
-        Face::draw(self, frame);
+    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, _style: DrawStyle) {
+        Face::draw(self, framebuffer);
     }
 
     fn aim(&mut self, _player: &mut Player, view: View) {
@@ -94,29 +89,21 @@ impl<L: Layout> Content<L> for Face<'_> {
     }
 }
 
-/// Plays it on the whole display.
+/// Builds it for the whole display.
 #[inline(never)]
-pub(super) fn perform<B: Board>(player: &mut Player, context: PlayContext<B>) -> Outcome {
+pub(super) fn build<B: Board>(
+    player: &mut Player,
+    context: PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+) -> Outcome {
     let rig = player.clip().rig();
     let views = [context.view_state.view, context.view_state.ahead];
-    let after = with(&rig, display::<B::Layout>(), 0, views, |mut face| {
-        info!(
-            "{}: {} frames of {} ns, {} channels, {} of them moving; {} drive the face",
-            context.entry.name,
-            player.clip().frames(),
-            player.clip().frame_time_ns(),
-            player.clip().rig().channels(),
-            player.clip().moving(),
-            face.names()
-        );
-        let face: &mut dyn Content<B::Layout> = &mut face;
-        play(player, face, context)
-    });
-    after.unwrap_or_else(no_model)
+    let outcome = with(&rig, whole_display::<B::Layout>(), 0, views, |mut face| then(player, &mut face, context));
+    outcome.unwrap_or_else(bad_model)
 }
 
-/// The model is the program's own; its bytes may have been damaged.
-pub(super) fn no_model() -> Outcome {
-    error!("the face's model is no use");
+/// Ends the program: the model is part of it, so its bytes are damaged.
+pub(super) fn bad_model() -> Outcome {
+    error!("the face's model is damaged");
     Outcome::Exit(Exit::BadClip)
 }

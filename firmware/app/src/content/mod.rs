@@ -1,42 +1,38 @@
 //! What a clip is drawn as: a body, and with the feature `face` a face, or both.
+//!
+//! Content is built on the stack of its `build` function, which then hands it to `then`: the program needs stack for the largest content,
+//! not for the sum of all.
 
 mod body;
 #[cfg(feature = "face")]
 mod both;
+pub(crate) mod build;
 #[cfg(feature = "face")]
 mod face;
 
-use crate::board::Board;
-use crate::run::{Outcome, PlayContext};
 use pantin::{Player, Pose};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, View};
 
-/// What is before the camera.
+/// What is drawn.
 pub(crate) trait Content<L: Layout> {
-    /// Puts it where a pose has it.
+    /// Takes the pose to draw.
     fn set_pose(&mut self, pose: Pose<'_>);
 
-    /// Draws that on a clear display.
-    fn draw(&mut self, frame: &mut Framebuffer<L>, style: DrawStyle);
+    /// Draws it on a clear framebuffer.
+    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle);
 
-    /// Sets the camera up for another view; leaves the player where it is.
+    /// Sets the camera up for a view. The player stays at its frame.
     fn aim(&mut self, player: &mut Player, view: View);
 }
 
-/// Plays the clip as what it is. Each kind has its room in a function of its own: the largest counts, not their sum.
-pub(crate) fn build<B: Board>(player: &mut Player, context: PlayContext<B>) -> Outcome {
-    #[cfg(feature = "face")]
-    if face::is_in(player.clip()) {
-        return match player.clip().rig().joint_count() {
-            0 => face::perform(player, context),
-            _ => both::perform(player, context),
-        };
-    }
-    body::perform(player, context)
-}
+/// The content of any clip: with the feature `face` a trait object, so that the loop is compiled once; else always a body.
+#[cfg(feature = "face")]
+pub(crate) type AnyContent<'a, B> = dyn Content<<B as crate::board::Board>::Layout> + 'a;
+#[cfg(not(feature = "face"))]
+pub(crate) type AnyContent<'a, B> = crate::board::BoardRenderer<B>;
 
-/// All of a board's display.
-fn display<L: Layout>() -> Canvas {
+/// Returns the area of a board's whole display.
+fn whole_display<L: Layout>() -> Canvas {
     Canvas { width: L::WIDTH as u16, height: L::HEIGHT as u16 }
 }

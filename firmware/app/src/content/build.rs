@@ -1,0 +1,24 @@
+//! Chooses what a clip is drawn as.
+
+use super::{AnyContent, body};
+#[cfg(feature = "face")]
+use super::{both, face};
+use crate::board::Board;
+use crate::session::{Outcome, PlayContext};
+use pantin::Player;
+
+/// Builds the content of a player's clip and hands it to `then`.
+pub(crate) fn build<B: Board>(
+    player: &mut Player,
+    context: PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+) -> Outcome {
+    #[cfg(feature = "face")]
+    if face::is_in(player.clip()) {
+        return match player.clip().rig().joint_count() {
+            0 => face::build(player, context, then),
+            _ => both::build(player, context, then),
+        };
+    }
+    body::build(player, context, then)
+}

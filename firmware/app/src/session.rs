@@ -1,0 +1,31 @@
+//! What a clip is played with, and why it ends.
+
+use crate::board::{Board, Exit};
+use crate::options::Mode;
+use crate::update::Listener;
+use crate::view_state::ViewState;
+use pantin_figure::surface::Framebuffer;
+
+/// What a clip is played with.
+pub(crate) struct PlayContext<'a, B: Board> {
+    pub mode: Mode,
+    pub view_state: &'a mut ViewState,
+    pub framebuffer: &'a mut Framebuffer<B::Layout>,
+    pub board: &'a mut B,
+    /// Receives a clip that replaces the stored one.
+    pub listener: Listener<'a>,
+}
+
+/// Why a clip is left.
+pub(crate) enum Outcome {
+    /// A command chose another clip: this many places further in the list.
+    Clip(i32),
+    /// The program ends.
+    Exit(Exit),
+    /// A clip arrived over the serial line, at this frame.
+    #[cfg(feature = "update")]
+    Received(u32),
+    /// The clip was only checked, and can be played.
+    #[cfg(feature = "update")]
+    Playable,
+}

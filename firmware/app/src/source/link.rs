@@ -1,0 +1,106 @@
+//! Poses that arrive over the serial line in packets. The clip that the program was built with gives the rig and the camera.
+//!
+//! In [`Mode::Sync`](crate::Mode::Sync) the sender asks for a frame with [`NEXT`](crate::NEXT) between two zero bytes; the letters of
+//! commands arrive in the same way.
+
+use super::{LinkStatus, Source, Status};
+use crate::board::{Board, Exit};
+use crate::capacity::Capacity;
+use crate::log::{error, info};
+use crate::session::Outcome;
+use pantin::{Player, Pose};
+use pantin_link::packet::Receiver;
+use pantin_link::{ClipMismatch, Link, MAX_PACKET, QUEUE_PACKETS, fits};
+
+/// The receiving end of a link.
+pub(crate) struct LinkSource<'m, 'p, 'c, 'b> {
+    player: &'p mut Player<'c, 'b>,
+    receiver: Receiver<MAX_PACKET>,
+    link: Link<'m, QUEUE_PACKETS>,
+    refusal: Option<ClipMismatch>,
+}
+
+/// Opens a link and hands it to `then`. The buffers are here, so that only a program that plays a link has them on its stack.
+#[inline(never)]
+pub(crate) fn open<B: Board>(player: &mut Player, parity: bool, then: impl FnOnce(&mut LinkSource) -> Outcome) -> Outcome {
+    let (mut channels, mut pose) = (B::Capacity::link_channels(), B::Capacity::pose());
+    let form = player.clip().form();
+    if !fits(&form) {
+        error!("the rig is too big for the link");
+        return Outcome::Exit(Exit::BadClip);
+    }
+    pose.as_mut().iter_mut().zip(player.pose().values).for_each(|(value, own)| *value = *own);
+    let link = Link::new(form, channels.as_mut(), pose.as_mut());
+    let receiver = if parity { Receiver::with_parity() } else { Receiver::new() };
+    then(&mut LinkSource { player, receiver, link, refusal: None })
+}
+
+impl LinkSource<'_, '_, '_, '_> {
+    fn link_status(&self) -> LinkStatus {
+        LinkStatus {
+            counts: self.link.counts(),
+            damaged: self.receiver.damaged(),
+            exact: self.link.exact_channels() as u16,
+            channels: self.link.head().map_or(0, |head| head.channels),
+            refusal: self.refusal,
+        }
+    }
+}
+
+impl Source for LinkSource<'_, '_, '_, '_> {
+    const LIVE: bool = true;
+
+    fn advance(&mut self, frames: i32) {
+        if frames == 0 {
+            return;
+        }
+        let exact = self.link.exact_channels();
+        self.link.step();
+        if exact != self.link.exact_channels() {
+            self.log();
+        }
+    }
+
+    fn pose(&self) -> Pose<'_> {
+        self.link.pose()
+    }
+
+    fn frame(&self) -> u32 {
+        self.link.frame().unwrap_or(0)
+    }
+
+    fn frame_time_ns(&self) -> u32 {
+        self.link.head().map_or(self.player.clip().frame_time_ns(), |head| head.frame_time_ns)
+    }
+
+    fn status(&self) -> Status {
+        Status::Link(self.link_status())
+    }
+
+    fn with_player<T>(&mut self, then: impl FnOnce(&mut Player) -> T) -> T {
+        then(self.player)
+    }
+
+    fn receive(&mut self, byte: u8) -> Option<u8> {
+        if let Some(packet) = self.receiver.push(byte) {
+            self.refusal = self.link.receive(&packet).err();
+        }
+        self.receiver.take_key()
+    }
+
+    fn receive_nothing(&mut self) -> Option<u8> {
+        self.receiver.take_key_after_timeout()
+    }
+
+    fn log(&self) {
+        let LinkStatus { counts, damaged, exact, channels, refusal } = self.link_status();
+        info!(
+            "{} packets, {} missing, {} damaged, {} foreign, {} crowded; {} states lost; {} of {} channels exact",
+            counts.packets, counts.missing, damaged, counts.rejected, counts.dropped, counts.desyncs, exact, channels
+        );
+        if let Some(refusal) = refusal {
+            error!("the line's clip cannot be played: {}", refusal);
+        }
+        let _ = (counts, damaged, exact, channels);
+    }
+}

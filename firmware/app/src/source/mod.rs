@@ -1,0 +1,68 @@
+//! Where poses come from: a clip's decoder, or with the feature `link` the serial line.
+
+mod clip;
+#[cfg(feature = "link")]
+pub(crate) mod link;
+
+use pantin::{Player, Pose};
+
+/// A source of poses.
+pub(crate) trait Source {
+    /// Whether poses arrive over the serial line. The sender then chooses clip, frame and rate; commands only change the view.
+    const LIVE: bool;
+
+    /// Moves on by a number of frames, or back. A live source moves on by one unless the number is 0.
+    fn advance(&mut self, frames: i32);
+
+    /// Returns the pose of the current frame.
+    fn pose(&self) -> Pose<'_>;
+
+    /// Returns the number of the current frame.
+    fn frame(&self) -> u32;
+
+    /// Returns the time of a frame in nanoseconds. It changes only if the source is live.
+    fn frame_time_ns(&self) -> u32;
+
+    /// Returns what the display reports.
+    fn status(&self) -> Status;
+
+    /// Passes on the player of the clip from which rig and camera are set up.
+    fn with_player<T>(&mut self, then: impl FnOnce(&mut Player) -> T) -> T;
+
+    /// Takes a byte from the serial line, and returns the letter of a command that it completes.
+    fn receive(&mut self, byte: u8) -> Option<u8> {
+        Some(byte)
+    }
+
+    /// Returns the letter of a command that waits for more bytes, after none came for a frame's time.
+    fn receive_nothing(&mut self) -> Option<u8> {
+        None
+    }
+
+    /// Writes to the log when playing ends.
+    fn log(&self) {}
+}
+
+/// What the display reports of a source.
+pub(crate) enum Status {
+    /// A clip: its current frame, and the number of its frames.
+    Clip { frame: u32, frames: u32 },
+    /// The serial line.
+    #[cfg(feature = "link")]
+    Link(LinkStatus),
+}
+
+/// The state of a link.
+#[cfg(feature = "link")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct LinkStatus {
+    pub counts: pantin_link::Counts,
+    /// Packets that arrived damaged.
+    pub damaged: u32,
+    /// Channels whose values are exact.
+    pub exact: u16,
+    /// All channels.
+    pub channels: u16,
+    /// Why the sender's clip cannot be played.
+    pub refusal: Option<pantin_link::ClipMismatch>,
+}
