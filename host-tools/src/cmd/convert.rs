@@ -1,6 +1,6 @@
 //! `pantin convert`.
 
-use super::batch;
+use super::{batch, same_form};
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::max_error::{self, MaxError};
@@ -10,9 +10,9 @@ use crate::encode::{clip, rig};
 use crate::errors;
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Held;
-use crate::fit::descent::{Level, Plan};
-use crate::fit::parametrize::Rotations;
-use crate::fit::{channelwise, fit};
+use crate::fit::descent::Level;
+use crate::fit::parametrize::{Coding, Rotations};
+use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
 use crate::output::{self, Wanted, note, refuse_foreign};
@@ -45,12 +45,20 @@ use std::path::{Path, PathBuf};
   pantin convert walk.bvh -o legs.ptn --joints '*Leg,*Foot'
   pantin convert walk.bvh -o walk.ptn --drop '*Thumb*,*Finger*' --mirror
   pantin convert walk.bvh -o walk.ptn --retarget display --map names.txt
-  pantin convert captures -o clips --jobs 4 --max-error 0.5%")]
+  pantin convert captures -o clips --jobs 4 --max-error 0.5%
+  pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips")]
 pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
     /// with a row of names (.csv, .tsv)
     pub(super) input: PathBuf,
+    /// More motions of the same rig, for --same-form
+    #[arg(value_name = "MOTION", requires = "same_form", conflicts_with = "list")]
+    pub(super) more: Vec<PathBuf>,
+    /// Give the clips of all motions one form: the same length exponent, and the same joints coded as exponential maps, chosen by
+    /// what all clips together cost. One figure renderer then plays any of them. All motions need the same rig; --output is a folder
+    #[arg(long, conflicts_with_all = ["list", "jobs"])]
+    pub(super) same_form: bool,
     /// The clip to write, or the folder
     #[arg(short, long, required_unless_present = "list")]
     pub(super) output: Option<PathBuf>,
@@ -124,9 +132,14 @@ impl Arguments {
         refuse_foreign(self.output(), Wanted::Clip)
     }
 
-    /// The same for one file of a folder, without a word.
+    /// The same for one of several motions.
+    pub(super) fn for_motion(&self, input: PathBuf, output: PathBuf) -> Arguments {
+        Arguments { input, more: Vec::new(), output: Some(output), json: false, ..self.clone() }
+    }
+
+    /// The same for one file of a folder, without messages.
     pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
-        Arguments { input, output: Some(output), json: false, quiet: true, jobs: None, ..self.clone() }
+        Arguments { quiet: true, jobs: None, ..self.for_motion(input, output) }
     }
 }
 
@@ -134,6 +147,9 @@ impl Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.list {
         return super::info::animations(&arguments.input, arguments.json);
+    }
+    if arguments.same_form {
+        return same_form::run(arguments);
     }
     if arguments.input.is_dir() {
         return batch::run(arguments);
@@ -144,16 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         output::print_json(&made.json)?;
     }
     if !arguments.quiet {
-        let raw = made.frames * made.channels * 2;
-        note!(
-            "{}: {} frames, {} channels; {} bytes ({raw} per frame at 16 bits, {:.1} % saved); {}",
-            arguments.output().display(),
-            made.frames,
-            made.channels,
-            made.bytes.len(),
-            100.0 - 100.0 * made.bytes.len() as f64 / raw as f64,
-            made.errors
-        );
+        note!("{}", made.sentence(arguments.output()));
     }
     Ok(())
 }
@@ -161,7 +168,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// A clip that keeps its bound.
 pub(super) struct Made {
     pub bytes: Vec<u8>,
-    json: serde_json::Value,
+    pub json: serde_json::Value,
     /// The errors as a clause for the user.
     errors: String,
     /// The same for a table's column.
@@ -172,8 +179,48 @@ pub(super) struct Made {
     pub read: Vec<PathBuf>,
 }
 
+impl Made {
+    /// Sizes and errors, for the user.
+    pub fn sentence(&self, output: &Path) -> String {
+        let raw = self.frames * self.channels * 2;
+        format!(
+            "{}: {} frames, {} channels; {} bytes ({raw} per frame at 16 bits, {:.1} % saved); {}",
+            output.display(),
+            self.frames,
+            self.channels,
+            self.bytes.len(),
+            100.0 - 100.0 * self.bytes.len() as f64 / raw as f64,
+            self.errors
+        )
+    }
+}
+
 /// Converts one file and writes the clip.
 pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
+    let prepared = prepare(arguments)?;
+    arguments.check_outputs(&prepared.read)?;
+    let mut made = prepared.code(arguments, &prepared.coding(arguments))?;
+    made.read.clone_from(&prepared.read);
+    // A clip opens with its own rig alone: a new one beside an old one would be lost.
+    let rig = arguments.rig_out.as_deref().map(|path| (path, prepared.rig.as_slice()));
+    let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
+    output::write_together(&outputs)?;
+    Ok(made)
+}
+
+/// A motion after all edits, and what its clip must keep.
+pub(super) struct Prepared {
+    pub motion: Motion,
+    /// The bytes of the motion's rig.
+    pub rig: Vec<u8>,
+    /// Every file that was read for it.
+    pub read: Vec<PathBuf>,
+    bound: Bound,
+    retarget_max_cm: Option<f64>,
+}
+
+/// Imports one file and applies the edits.
+pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     let options = import::Options {
         cm_per_unit: arguments.cm_per_unit,
         fps: arguments.fps,
@@ -192,7 +239,6 @@ pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
     let place = || arguments.input.display().to_string();
     let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
     let read = options.files.read_so_far();
-    arguments.check_outputs(&read)?;
     edited.said.iter().for_each(|sentence| say(sentence));
     let mut motion = edited.motion;
     let mut bound = match arguments.channels.bounds(&motion)? {
@@ -205,19 +251,38 @@ pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
         motion = closed.motion;
     }
     let rig = rig::encode(&motion.rig)?;
-    let mut made = match &bound {
-        Bound::Channels(bounds) => by_channel(arguments, &motion, &rig, bounds)?,
-        &Bound::Distance(cm, part) => by_distance(arguments, &motion, &rig, cm, part)?,
-    };
-    if let (Some(cm), Some(fields)) = (edited.retarget_max_cm, made.json.as_object_mut()) {
-        fields.insert("retarget_max_cm".into(), json!(cm));
+    Ok(Prepared { motion, rig, read, bound, retarget_max_cm: edited.retarget_max_cm })
+}
+
+impl Prepared {
+    /// The cheapest coding for this motion alone.
+    fn coding(&self, arguments: &Arguments) -> Coding {
+        shared_coding(std::slice::from_ref(self), arguments)
     }
-    made.read = read;
-    // A clip opens with its own rig alone: a new one beside an old one would be lost.
-    let rig = arguments.rig_out.as_deref().map(|path| (path, rig.as_slice()));
-    let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
-    output::write_together(&outputs)?;
-    Ok(made)
+
+    /// The clip in a coding; its errors are those of the device's decoder.
+    pub fn code(&self, arguments: &Arguments, coding: &Coding) -> Result<Made> {
+        let mut made = match &self.bound {
+            Bound::Channels(bounds) => by_channel(arguments, self, bounds, coding)?,
+            &Bound::Distance(cm, part) => by_distance(arguments, self, cm, part, coding)?,
+        };
+        if let (Some(cm), Some(fields)) = (self.retarget_max_cm, made.json.as_object_mut()) {
+            fields.insert("retarget_max_cm".into(), json!(cm));
+        }
+        Ok(made)
+    }
+}
+
+/// The cheapest coding for motions of one rig together.
+pub(super) fn shared_coding(prepared: &[Prepared], arguments: &Arguments) -> Coding {
+    let motion = |prepared: &Prepared| match prepared.bound {
+        Bound::Distance(cm, _) => (cm, arguments.rotations),
+        // Bounds of channels are bounds of the file's own angles.
+        Bound::Channels(_) => (f64::INFINITY, Rotations::Euler),
+    };
+    let rotations = prepared.first().map_or(Rotations::Euler, |first| motion(first).1);
+    let motions: Vec<_> = prepared.iter().map(|prepared| (&prepared.motion, motion(prepared).0)).collect();
+    Coding::of(&motions, rotations)
 }
 
 /// What a conversion keeps to.
@@ -296,10 +361,11 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8], cm: f64, part: f64) -> Result<Made> {
-    let plan = Plan { rotations: arguments.rotations, ..arguments.effort.plan(cm) };
+fn by_distance(arguments: &Arguments, prepared: &Prepared, cm: f64, part: f64, coding: &Coding) -> Result<Made> {
+    let Prepared { motion, rig, .. } = prepared;
+    let plan = arguments.effort.plan(cm);
     let bar = bar(arguments, 1000)?;
-    let coded = fit(motion, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
+    let coded = fit_coding(motion, coding, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
     bar.finish_and_clear();
     let bytes = file(arguments, &coded, rig)?;
     let not_written = || format!("{}: not written", arguments.output().display());
@@ -309,10 +375,14 @@ fn by_distance(arguments: &Arguments, motion: &Motion, rig: &[u8], cm: f64, part
     Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels(), read: Vec::new() })
 }
 
-fn by_channel(arguments: &Arguments, motion: &Motion, rig: &[u8], bounds: &Bounds) -> Result<Made> {
+fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, coding: &Coding) -> Result<Made> {
+    let Prepared { motion, rig, .. } = prepared;
+    let mut bounds = bounds.clone();
+    bounds.at_least_steps(motion, coding.length_exponent);
+    let bounds = &bounds;
     let bar = bar(arguments, motion.rig.channels() as u64)?;
     let not_written = || format!("{}: not written", arguments.output().display());
-    let coded = channelwise::fit(motion, bounds, &|| bar.inc(1)).with_context(not_written)?;
+    let coded = channelwise::fit_exponent(motion, bounds, coding.length_exponent, &|| bar.inc(1)).with_context(not_written)?;
     bar.finish_and_clear();
     let bytes = file(arguments, &coded, rig)?;
     let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;

@@ -11,6 +11,7 @@ pub mod info;
 mod max_error;
 pub mod play;
 pub mod render;
+mod same_form;
 pub mod serve;
 pub mod stream;
 mod stream_live;

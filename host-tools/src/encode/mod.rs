@@ -5,5 +5,6 @@ pub mod entropy;
 pub mod index;
 pub mod rans;
 pub mod rig;
+pub mod same_rig;
 pub mod segment;
 pub mod varint;

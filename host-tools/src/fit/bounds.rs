@@ -40,6 +40,16 @@ impl Bounds {
         }
         Ok(Bounds { held: Held::Positions, exact: true, greatest: greatest(motion, EXACT_DEGREES, EXACT_PART) })
     }
+
+    /// Raises bounds of positions below the step of a clip with this length exponent to that step.
+    pub fn at_least_steps(&mut self, motion: &Motion, length_exponent: i8) {
+        let steps = raw::scales(&motion.rig, length_exponent);
+        for ((greatest, (_, kind)), step) in self.greatest.iter_mut().zip(motion.rig.channel_kinds()).zip(steps) {
+            if kind.is_position() {
+                *greatest = greatest.max(step);
+            }
+        }
+    }
 }
 
 fn greatest(motion: &Motion, degrees: f64, part: f64) -> Vec<f64> {

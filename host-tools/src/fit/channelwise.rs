@@ -44,9 +44,13 @@ struct Aim<'a> {
     exact: bool,
 }
 
-/// Codes `motion` with every channel within its bound. `progress` is called once a channel.
+/// Codes `motion` with every channel within its bound. `progress` is called once per channel.
 pub fn fit(motion: &Motion, bounds: &Bounds, progress: &(dyn Fn() + Sync)) -> Result<Coded> {
-    let length_exponent = raw::clip_length_exponent(&motion.rig, &motion.values);
+    fit_exponent(motion, bounds, raw::clip_length_exponent(&motion.rig, &motion.values), progress)
+}
+
+/// Codes `motion` with positions as multiples of 2^length_exponent units, which clips of its rig can share.
+pub fn fit_exponent(motion: &Motion, bounds: &Bounds, length_exponent: i8, progress: &(dyn Fn() + Sync)) -> Result<Coded> {
     let scales = raw::scales(&motion.rig, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);
     let kinds = motion.rig.channel_kinds();

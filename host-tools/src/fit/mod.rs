@@ -19,16 +19,29 @@ use anyhow::{Result, anyhow, ensure};
 use descent::{Descent, Plan};
 use figure::Figure;
 use pantin::codec::layout::MAX_FRAMES;
+use parametrize::Coding;
 use scalars::Aim;
 
 /// Parts of the bound that first codes may fill, until all channels find one: those that come late need room.
 const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 
-/// Codes `motion` within the plan's bound. `progress` hears the part that is done, 0 to 1.
+/// Codes `motion` within the plan's bound, in the coding that is cheapest for it. `progress` receives the fraction that is
+/// done, 0 to 1.
 pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnMut(f64)) -> Result<Coded> {
+    fit_coding(motion, &Coding::of(&[(motion, plan.bound_cm)], plan.rotations), plan, scalar_part, progress)
+}
+
+/// Codes `motion` in a given coding, which clips of its rig can share.
+pub fn fit_coding(
+    motion: &Motion,
+    coding: &Coding,
+    plan: Plan,
+    scalar_part: f64,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Coded> {
     let frame_time_ns = time(motion)?;
-    let (chosen, exponentials) = parametrize::parametrize(motion, plan.bound_cm, plan.rotations);
-    let length_exponent = raw::clip_length_exponent(&motion.rig, &motion.values);
+    let chosen = coding.apply(motion);
+    let length_exponent = coding.length_exponent;
     let scales = raw::scales(&chosen.rig, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);
     let kinds = chosen.rig.channel_kinds();
@@ -67,7 +80,7 @@ pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnM
         frames: motion.frames as u32,
         frame_time_ns,
         length_exponent,
-        exponentials,
+        exponentials: coding.exponentials.clone(),
         channels: codes.into_iter().map(|code| Channel { start: code.start, segments: code.segments }).collect(),
         events: Vec::new(),
         looped: motion.looped,

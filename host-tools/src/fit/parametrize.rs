@@ -1,8 +1,9 @@
-//! Euler angles or exponential map, joint by joint, by what they cost (docs/METHOD.md 5).
+//! Chooses Euler angles or an exponential map for each joint, by what they cost (docs/METHOD.md 5).
 
 use super::figure::exponential_near;
+use super::raw;
 use crate::fk::local;
-use crate::motion::{Joint, Kind, Motion};
+use crate::motion::{Joint, Kind, Motion, Rig};
 
 /// How joints with three Euler angles about three axes are coded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,55 +22,122 @@ const WORTHWHILE: f64 = 0.9;
 /// Their components stay inside half a turn, which an angle holds without wrapping.
 const LARGEST_DEGREES: f64 = 179.0;
 
-/// The motion with some joints' Euler angles replaced by exponential maps, and which of those that may choose were.
-pub fn parametrize(motion: &Motion, bound_cm: f64, rotations: Rotations) -> (Motion, Vec<bool>) {
-    let mut out = motion.clone();
-    let reach = reach_cm(motion);
-    let first = motion.rig.first_channels();
-    let mut chosen = Vec::new();
-    for (index, joint) in motion.rig.joints.iter().enumerate() {
-        if joint.kinds.iter().filter(|kind| kind.is_rotation()).count() != 3 {
-            continue;
+/// How a clip codes the values of its rig. One figure renderer plays all clips whose rigs and codings are equal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coding {
+    /// Positions are multiples of 2^length_exponent units.
+    pub length_exponent: i8,
+    /// Whether each joint with three rotation channels, in the rig's order, is coded as an exponential map.
+    pub exponentials: Vec<bool>,
+}
+
+impl Coding {
+    /// The coding that the clips of `motions` share: motions of one rig, each with its bound in cm. A joint is coded as an
+    /// exponential map if all motions together cost less that way and each of them allows it.
+    pub fn of(motions: &[(&Motion, f64)], rotations: Rotations) -> Coding {
+        let mut costs: Vec<Costs> = Vec::new();
+        for &(motion, bound_cm) in motions {
+            let of_motion = costs_of(motion, bound_cm);
+            costs.resize(of_motion.len(), Costs { euler: 0.0, exponential: 0.0, possible: true });
+            costs.iter_mut().zip(of_motion).for_each(|(total, cost)| total.add(&cost));
         }
-        let slots: Vec<usize> =
-            (0..joint.kinds.len()).filter(|&i| joint.kinds[i].is_rotation()).map(|i| first[index] + i).collect();
-        let exponential = exponentials(joint, motion, first[index]);
-        let scale = 1f64.to_radians() * reach[index] / (0.5 * bound_cm);
-        let stride = ((5.0 / 30.0 / motion.frame_time).round() as usize).max(1);
-        let euler: f64 = slots.iter().map(|&slot| roughness(&motion.values[slot], stride, scale)).sum();
-        let other: f64 = exponential.iter().map(|values| roughness(values, stride, scale)).sum();
-        let fits = exponential.iter().flatten().all(|x| x.abs() < LARGEST_DEGREES);
-        let axes = joint.kinds.iter().filter(|kind| kind.is_rotation()).filter_map(|kind| kind.axis());
-        let distinct = axes.fold(0, |seen, axis| seen | 1 << axis) == 7;
+        let exponents = motions.iter().map(|(motion, _)| raw::clip_length_exponent(&motion.rig, &motion.values));
+        Coding {
+            length_exponent: exponents.max().unwrap_or(0),
+            exponentials: costs.iter().map(|costs| costs.choose(rotations)).collect(),
+        }
+    }
+
+    /// `motion` with exponential maps instead of Euler angles at the joints that are coded so.
+    pub fn apply(&self, motion: &Motion) -> Motion {
+        let mut out = motion.clone();
+        for (turning, _) in turning(&motion.rig).iter().zip(&self.exponentials).filter(|(_, exponential)| **exponential) {
+            let components = [Kind::Xexponential, Kind::Yexponential, Kind::Zexponential];
+            for ((&slot, values), kind) in turning.slots.iter().zip(turning.exponentials(motion)).zip(components) {
+                out.values[turning.first + slot] = values;
+                out.rig.joints[turning.joint].kinds[slot] = kind;
+            }
+        }
+        out
+    }
+}
+
+/// About how many bits a joint's rotations take in all motions, in both codings.
+#[derive(Clone)]
+struct Costs {
+    euler: f64,
+    exponential: f64,
+    /// Whether an exponential map can hold the rotations.
+    possible: bool,
+}
+
+impl Costs {
+    fn add(&mut self, other: &Costs) {
+        self.euler += other.euler;
+        self.exponential += other.exponential;
+        self.possible &= other.possible;
+    }
+
+    fn choose(&self, rotations: Rotations) -> bool {
         let wanted = match rotations {
-            Rotations::ByCost => other < WORTHWHILE * euler,
+            Rotations::ByCost => self.exponential < WORTHWHILE * self.euler,
             Rotations::Euler => false,
             Rotations::Exponential => true,
         };
-        let better = distinct && fits && wanted;
-        chosen.push(better);
-        if better {
-            for ((slot, values), kind) in
-                slots.iter().zip(exponential).zip([Kind::Xexponential, Kind::Yexponential, Kind::Zexponential])
-            {
-                out.values[*slot] = values;
-                out.rig.joints[index].kinds[slot - first[index]] = kind;
-            }
-        }
+        wanted && self.possible
     }
-    (out, chosen)
 }
 
-/// The joint's rotation at every frame as an exponential map in degrees.
-fn exponentials(joint: &Joint, motion: &Motion, first: usize) -> [Vec<f64>; 3] {
-    let mut before = [0.0; 3];
-    let mut out: [Vec<f64>; 3] = Default::default();
-    for frame in 0..motion.frames {
-        let (turn, _) = local(joint, |channel| motion.values[first + channel][frame]);
-        before = exponential_near(&turn, before);
-        (0..3).for_each(|axis| out[axis].push(before[axis]));
+/// The costs of each joint of [`turning`].
+fn costs_of(motion: &Motion, bound_cm: f64) -> Vec<Costs> {
+    let reach = reach_cm(motion);
+    let stride = ((5.0 / 30.0 / motion.frame_time).round() as usize).max(1);
+    let of = |turning: &Turning| {
+        let kinds = &motion.rig.joints[turning.joint].kinds;
+        let scale = 1f64.to_radians() * reach[turning.joint] / (0.5 * bound_cm);
+        let exponential = turning.exponentials(motion);
+        let axes = turning.slots.iter().filter_map(|&slot| kinds[slot].axis());
+        let distinct = axes.fold(0, |seen, axis| seen | 1 << axis) == 7;
+        Costs {
+            euler: turning.slots.iter().map(|&slot| roughness(&motion.values[turning.first + slot], stride, scale)).sum(),
+            exponential: exponential.iter().map(|values| roughness(values, stride, scale)).sum(),
+            possible: distinct && exponential.iter().flatten().all(|x| x.abs() < LARGEST_DEGREES),
+        }
+    };
+    turning(&motion.rig).iter().map(of).collect()
+}
+
+/// A joint with three rotation channels.
+struct Turning {
+    joint: usize,
+    /// The joint's first channel.
+    first: usize,
+    /// Which of the joint's channels rotate it.
+    slots: Vec<usize>,
+}
+
+fn turning(rig: &Rig) -> Vec<Turning> {
+    let first = rig.first_channels();
+    let of = |(joint, entry): (usize, &Joint)| {
+        let slots: Vec<usize> = (0..entry.kinds.len()).filter(|&slot| entry.kinds[slot].is_rotation()).collect();
+        (slots.len() == 3).then(|| Turning { joint, first: first[joint], slots })
+    };
+    rig.joints.iter().enumerate().filter_map(of).collect()
+}
+
+impl Turning {
+    /// The joint's rotation at every frame as an exponential map in degrees.
+    fn exponentials(&self, motion: &Motion) -> [Vec<f64>; 3] {
+        let joint = &motion.rig.joints[self.joint];
+        let mut before = [0.0; 3];
+        let mut out: [Vec<f64>; 3] = Default::default();
+        for frame in 0..motion.frames {
+            let (turn, _) = local(joint, |channel| motion.values[self.first + channel][frame]);
+            before = exponential_near(&turn, before);
+            (0..3).for_each(|axis| out[axis].push(before[axis]));
+        }
+        out
     }
-    out
 }
 
 /// Length of the longest chain below each joint: what its rotations can move.

@@ -35,6 +35,7 @@ mod play_command;
 mod procedural_input;
 mod real;
 mod render_command;
+mod same_form;
 mod scalars_command;
 mod serve;
 mod table_input;

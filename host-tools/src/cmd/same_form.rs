@@ -1,0 +1,78 @@
+//! `pantin convert A B C --same-form -o FOLDER`: clips of one rig which one figure renderer plays in turn.
+
+use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
+use crate::encode::same_rig::difference;
+use crate::output::{self, Wanted, note, refuse_foreign};
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Converts all motions in one coding and writes their clips into the folder `arguments.output`. Writes nothing if any of
+/// them cannot be converted.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let folder = arguments.output();
+    ensure!(!folder.is_file(), "{}: a file; --same-form needs a folder", folder.display());
+    arguments.rig_out.iter().try_for_each(|path| refuse_foreign(path, Wanted::Rig))?;
+    let tasks = tasks(arguments)?;
+    let prepared = tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?;
+    for (task, other) in tasks.iter().zip(&prepared).skip(1) {
+        let place = || task.input.display().to_string();
+        if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(place)? {
+            bail!("{}: another rig than {}: {difference}; --same-form needs one rig", place(), tasks[0].input.display());
+        }
+    }
+    let coding = shared_coding(&prepared, arguments);
+    let code = |(task, prepared): (&Arguments, &Prepared)| prepared.code(task, &coding);
+    let made = tasks.iter().zip(&prepared).map(code).collect::<Result<Vec<_>>>()?;
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let clips = tasks.iter().zip(&made).map(|(task, made)| (task.output(), made.bytes.as_slice()));
+    let rig = arguments.rig_out.as_deref().map(|path| (path, prepared[0].rig.as_slice()));
+    let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain(clips).collect();
+    let read = prepared.iter().flat_map(|prepared| prepared.read.iter().map(PathBuf::as_path));
+    let inputs: Vec<&Path> = tasks.iter().flat_map(Arguments::inputs).chain(read).collect();
+    output::check(&inputs, &outputs.iter().map(|(path, _)| *path).collect::<Vec<_>>())?;
+    output::write_together(&outputs)?;
+    if arguments.json {
+        let object = |(task, made): (&Arguments, &Made)| {
+            let mut object = json!({"file": task.input.display().to_string(), "bytes": made.bytes.len()});
+            if let (Value::Object(all), Value::Object(errors)) = (&mut object, &made.json) {
+                all.extend(errors.clone());
+            }
+            object
+        };
+        output::print_json(&json!(tasks.iter().zip(&made).map(object).collect::<Vec<_>>()))?;
+    }
+    if !arguments.quiet {
+        for (task, made) in tasks.iter().zip(&made) {
+            note!("{}", made.sentence(task.output()));
+        }
+        let count = coding.exponentials.iter().filter(|exponential| **exponential).count();
+        note!(
+            "{} clips of one form: length exponent {}, {count} joints as exponential maps",
+            made.len(),
+            coding.length_exponent
+        );
+    }
+    Ok(())
+}
+
+/// The arguments for each motion. Its clip has its name.
+fn tasks(arguments: &Arguments) -> Result<Vec<Arguments>> {
+    let mut named: HashMap<PathBuf, &Path> = HashMap::new();
+    let mut tasks = Vec::new();
+    for input in std::iter::once(&arguments.input).chain(&arguments.more) {
+        ensure!(!input.is_dir(), "{}: a folder; --same-form needs motion files", input.display());
+        let name = input.file_stem().with_context(|| format!("{}: no file name", input.display()))?;
+        // Appended, because a name may have a dot of its own.
+        let mut file = name.to_owned();
+        file.push(".ptn");
+        let output = arguments.output().join(file);
+        if let Some(other) = named.insert(output.clone(), input) {
+            bail!("{} and {}: both would be written to {}", other.display(), input.display(), output.display());
+        }
+        tasks.push(arguments.for_motion(input.clone(), output));
+    }
+    Ok(tasks)
+}
