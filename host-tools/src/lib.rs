@@ -13,6 +13,7 @@ pub mod expand;
 pub mod export;
 #[cfg(feature = "cli")]
 pub mod face;
+pub mod facts;
 pub mod fit;
 pub mod fk;
 pub mod import;

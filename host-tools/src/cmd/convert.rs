@@ -1,9 +1,9 @@
 //! `pantin convert`.
 
-use super::{batch, same_form};
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::max_error::{self, MaxError};
+use super::{batch, same_form};
 use crate::channel_error;
 use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};

@@ -46,8 +46,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Some("bvh") => export::bvh::write(&expand(&clip)?, &mut out).with_context(place)?,
         Some("csv") => export::table::write(&expand(&clip)?, &mut out)?,
         Some("glb") => out = export::gltf::write(&expand(&clip)?).with_context(place)?,
-        Some("h") => out = export::source::c_header(&clip, files.clip(), &stem).into_bytes(),
-        Some("rs") => out = export::source::rust_module(&clip, files.clip(), &stem).into_bytes(),
+        Some("h") => out = export::source::c_header(&clip, files.clip(), &stem)?.into_bytes(),
+        Some("rs") => out = export::source::rust_module(&clip, files.clip(), &stem)?.into_bytes(),
         _ => bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs", arguments.output.display()),
     }
     output::write_whole(output, &out)

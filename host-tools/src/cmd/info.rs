@@ -1,10 +1,12 @@
 //! `pantin info`.
 
 use super::Files;
+use crate::facts::{self, Channel, MemoryNeeds, Track};
 use crate::import::list;
-use crate::output::{outln, print_json};
+use crate::output::{clean, outln, print_json};
 use anyhow::{Context, Result};
-use serde_json::json;
+use pantin::{Clip, Joint};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Print what a clip holds and how its bytes are used, or which animations a glTF, FBX or VRML file holds.
@@ -33,16 +35,21 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let rig = clip.rig();
     let file = files.clip_len();
+    let memory = MemoryNeeds::of(&clip)?;
     let fields = [
         ("frames", json!(clip.frames())),
         ("fps", json!((1e11 / f64::from(clip.frame_time_ns())).round() / 100.0)),
+        ("seconds", json!((clip.duration_ns() as f64 / 1e6).round() / 1000.0)),
+        ("looped", json!(clip.looped())),
         ("joints", json!(rig.joints().filter(|joint| !joint.end_site).count())),
+        ("end_sites", json!(rig.joints().filter(|joint| joint.end_site).count())),
         ("channels", json!(rig.channels())),
+        ("scalar_channels", json!(rig.channels() - rig.joint_channels())),
         ("moving_channels", json!(clip.moving())),
         ("exponential_joints", json!((0..rig.joint_count()).filter(|&joint| clip.is_exponential(joint)).count())),
-        ("looped", json!(clip.looped())),
         ("events", json!(clip.event_count())),
         ("cm_per_unit", json!(f64::from(rig.unit_micro_cm()) * 1e-6)),
+        ("length_exponent", json!(clip.length_exponent())),
         ("file_bytes", json!(file)),
         ("rig_bytes", json!(clip.rig_len())),
         ("motion_bytes", json!(file - clip.rig_len())),
@@ -50,15 +57,107 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("crc_bytes", json!(clip.crc_len())),
         ("index_bytes", json!(clip.index_len())),
         ("per_frame_bytes", json!(clip.frames() as usize * rig.channels() * 2)),
+        ("player_channel_states", json!(memory.moving)),
+        ("player_pose_values", json!(memory.channels)),
+        ("player_bytes", json!(memory.player_bytes())),
+        ("figure_joints", json!(memory.figure_joints)),
+        ("figure_workspace", json!(memory.workspace)),
+        ("figure_workspace_bytes", json!(memory.workspace_bytes())),
     ];
+    let channels = facts::channels(&clip)?;
     if arguments.json {
-        let object: serde_json::Map<String, serde_json::Value> =
-            fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
-        print_json(&serde_json::Value::Object(object))?;
+        let mut object: serde_json::Map<String, Value> = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
+        object.insert("rig".into(), rig_json(&clip, &channels));
+        print_json(&Value::Object(object))?;
     } else {
-        fields.iter().try_for_each(|(name, value)| outln!("{:20} {value}", name.replace('_', " ")))?;
+        fields.iter().try_for_each(|(name, value)| outln!("{:22} {value}", name.replace('_', " ")))?;
+        table(&clip, &channels).iter().try_for_each(|line| outln!("{line}"))?;
     }
     Ok(())
+}
+
+/// Joints and scalars with how they are coded; `channels` are the pose's.
+fn rig_json(clip: &Clip, channels: &[Channel]) -> Value {
+    let channel = |(index, channel): (usize, &Channel)| {
+        let mut object = json!({"channel": index, "kind": format!("{:?}", channel.kind), "track": word(channel.track)});
+        if let (Track::Follows(leader), Some(object)) = (channel.track, object.as_object_mut()) {
+            object.insert("leader".into(), json!(leader));
+        }
+        object
+    };
+    let of_joint = |(index, joint): (usize, Joint)| {
+        let kinds: Vec<_> = clip.kinds(index).collect();
+        let first = usize::from(joint.first_channel);
+        let mine = channels.iter().enumerate().skip(first).take(kinds.len());
+        json!({
+            "name": joint.name(),
+            "parent": joint.parent,
+            "end_site": joint.end_site,
+            "rotation": facts::rotation(&kinds),
+            "channels": mine.map(channel).collect::<Vec<_>>(),
+        })
+    };
+    let rig = clip.rig();
+    let joints: Vec<Value> = rig.joints().enumerate().map(of_joint).collect();
+    let scalars = channels.iter().enumerate().skip(rig.joint_channels());
+    let scalars: Vec<Value> = rig
+        .scalars()
+        .zip(scalars)
+        .map(|(scalar, entry)| {
+            let mut object = channel(entry);
+            if let Some(object) = object.as_object_mut() {
+                object.insert("name".into(), json!(scalar.name()));
+            }
+            object
+        })
+        .collect();
+    json!({"joints": joints, "scalars": scalars})
+}
+
+fn word(track: Track) -> &'static str {
+    match track {
+        Track::Constant => "constant",
+        Track::Moving => "moving",
+        Track::Follows(_) => "follows",
+    }
+}
+
+/// One line for each joint with channels, and for each scalar: its first channel and how it is coded.
+fn table(clip: &Clip, channels: &[Channel]) -> Vec<String> {
+    let rig = clip.rig();
+    let joints = rig.joints().enumerate().map(|(index, joint)| {
+        let kinds: Vec<_> = clip.kinds(index).collect();
+        let positions = facts::positions(&kinds);
+        let positions = if positions.is_empty() { positions } else { format!("position {positions}") };
+        let coded = [positions, facts::rotation(&kinds)].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
+        (clean(joint.name()), usize::from(joint.first_channel), kinds.len(), coded.join("; "))
+    });
+    let scalars = rig.scalars().enumerate();
+    let scalars = scalars.map(|(index, scalar)| (clean(scalar.name()), rig.joint_channels() + index, 1, "scalar".to_string()));
+    let rows: Vec<_> = joints.chain(scalars).filter(|(_, _, count, _)| *count > 0).collect();
+    let wide = rows.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0).max(5);
+    let mut lines = vec![String::new(), format!("{:wide$} {:>9}  {:28} tracks", "joint", "channels", "coded as")];
+    for (name, first, count, coded) in rows {
+        let span = if count == 1 { first.to_string() } else { format!("{first}-{}", first + count - 1) };
+        lines.push(format!("{name:wide$} {span:>9}  {coded:28} {}", tracks(&channels[first..first + count])));
+    }
+    lines
+}
+
+/// `2 moving, 1 constant`, and which channels are followed.
+fn tracks(channels: &[Channel]) -> String {
+    let count = |track: Track| channels.iter().filter(|channel| channel.track == track).count();
+    let mut parts = Vec::new();
+    for track in [Track::Moving, Track::Constant] {
+        if count(track) > 0 {
+            parts.push(format!("{} {}", count(track), word(track)));
+        }
+    }
+    parts.extend(channels.iter().filter_map(|channel| match channel.track {
+        Track::Follows(leader) => Some(format!("1 follows channel {leader}")),
+        _ => None,
+    }));
+    parts.join(", ")
 }
 
 /// The animations of a file, one a line; `pantin convert --animation` takes their numbers or names.

@@ -49,11 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             note!("{}", made.sentence(task.output()));
         }
         let count = coding.exponentials.iter().filter(|exponential| **exponential).count();
-        note!(
-            "{} clips of one form: length exponent {}, {count} joints as exponential maps",
-            made.len(),
-            coding.length_exponent
-        );
+        note!("{} clips of one form: length exponent {}, {count} joints as exponential maps", made.len(), coding.length_exponent);
     }
     Ok(())
 }

@@ -24,6 +24,7 @@ mod format_example;
 mod gltf_input;
 mod gltf_real_files;
 mod import_hostile;
+mod info_command;
 mod keyframes_input;
 mod livelink_input;
 mod optimum;

@@ -64,7 +64,7 @@ pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dy
     });
     fields.extend(facts.as_object().cloned().unwrap_or_default());
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let header = c_header(&Clip::new_checked(&bytes)?, &bytes, &stem);
+    let header = c_header(&Clip::new_checked(&bytes)?, &bytes, &stem)?;
     let poses = poses(&motion, coded.length_exponent)?;
     Ok(Converted { parts: [Value::from(fields).to_string().into_bytes(), bytes, header.into_bytes(), rig, poses] })
 }

@@ -1,0 +1,108 @@
+//! Describes how a clip codes each joint and what memory it takes to play and draw it: for `pantin info` and exported source text.
+
+use anyhow::Result;
+use pantin::{ChannelState, Clip, Kind, Player};
+use pantin_figure::{Canvas, FigureRenderer, JointInfo};
+
+/// Memory that playing and drawing a clip takes, in elements of the arrays that a program reserves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryNeeds {
+    /// Channel states of a player.
+    pub moving: usize,
+    /// Values of a pose.
+    pub channels: usize,
+    /// Joints of the figure that is drawn, End Sites of drawn bones included and fingers and toes left out; 0 if the clip has no figure.
+    pub figure_joints: usize,
+    /// Elements of the workspace that sets the figure up: one for each joint of the rig, End Sites included.
+    pub workspace: usize,
+}
+
+impl MemoryNeeds {
+    /// The memory that `clip` takes.
+    pub fn of(clip: &Clip<'_>) -> Result<MemoryNeeds> {
+        let (moving, channels, workspace) = (clip.moving(), clip.rig().channels(), clip.rig().joint_count());
+        let mut states = vec![ChannelState::default(); moving];
+        let mut pose = vec![0; channels];
+        let mut player = Player::new(*clip, &mut states, &mut pose)?;
+        let mut renderer = Box::new(FigureRenderer::<{ pantin::codec::layout::MAX_JOINTS }>::empty());
+        let canvas = Canvas { width: 128, height: 64 };
+        // A clip of scalars alone has no figure, and none can be set up for it.
+        let set_up = renderer.set_up(&mut player, canvas, &mut vec![JointInfo::default(); workspace]);
+        let figure_joints = if set_up.is_ok() { renderer.skeleton().bones.len() } else { 0 };
+        Ok(MemoryNeeds { moving, channels, figure_joints, workspace })
+    }
+
+    /// Bytes of a player's channel states and pose on any machine.
+    pub fn player_bytes(&self) -> usize {
+        self.moving * size_of::<ChannelState>() + self.channels * size_of::<i32>()
+    }
+
+    /// Bytes of the workspace.
+    pub fn workspace_bytes(&self) -> usize {
+        self.workspace * size_of::<JointInfo>()
+    }
+}
+
+/// What a channel of a pose is and does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Channel {
+    /// The kind as the clip codes it: not the rig's where Euler angles are coded as an exponential map.
+    pub kind: Kind,
+    /// What the channel does over the clip.
+    pub track: Track,
+}
+
+/// What a channel does over a clip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Track {
+    /// It keeps its value.
+    Constant,
+    /// It has segments of its own.
+    Moving,
+    /// It has the values of the channel of this index.
+    Follows(usize),
+}
+
+/// The channels of a clip's pose, in its order.
+pub fn channels(clip: &Clip<'_>) -> Result<Vec<Channel>> {
+    let rig = clip.rig();
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; rig.channels()];
+    let player = Player::new(*clip, &mut states, &mut pose)?;
+    let kinds = (0..rig.joint_count()).flat_map(|joint| clip.kinds(joint));
+    let kinds = kinds.chain(rig.scalars().map(|_| Kind::Scalar));
+    let mut channels: Vec<Channel> = kinds.map(|kind| Channel { kind, track: Track::Constant }).collect();
+    let states = player.states();
+    for (index, state) in states.iter().enumerate() {
+        let leader = state.follows().and_then(|back| states.get(index.checked_sub(back)?));
+        if let Some(channel) = channels.get_mut(state.slot()) {
+            channel.track = leader.map_or(Track::Moving, |leader| Track::Follows(leader.slot()));
+        }
+    }
+    Ok(channels)
+}
+
+/// How kinds rotate a joint, as words: `Euler angles ZXY`, `exponential map`, `quaternion`; empty if they do not.
+pub fn rotation(kinds: &[Kind]) -> String {
+    let order: String = kinds.iter().filter(|kind| kind.is_rotation()).filter_map(|kind| axis(*kind)).collect();
+    let mut parts = Vec::new();
+    if !order.is_empty() {
+        parts.push(format!("Euler angles {order}"));
+    }
+    if kinds.iter().any(|kind| kind.is_exponential()) {
+        parts.push("exponential map".into());
+    }
+    if kinds.iter().any(|kind| kind.is_quaternion()) {
+        parts.push("quaternion".into());
+    }
+    parts.join(", ")
+}
+
+/// Which of the position channels kinds have: `XYZ`.
+pub fn positions(kinds: &[Kind]) -> String {
+    kinds.iter().filter(|kind| kind.is_position()).filter_map(|kind| axis(*kind)).collect()
+}
+
+fn axis(kind: Kind) -> Option<char> {
+    ['X', 'Y', 'Z'].get(kind.axis()?).copied()
+}
