@@ -117,7 +117,7 @@ impl Camera {
     };
 
     /// A camera for what `bounds` saw of a figure of `size`, with a size `scale` sixteenths of a pixel (at most 2^14) big and
-    /// the target in the top left corner: [`Camera::show`] moves it to its place.
+    /// the target in the top left corner: [`Camera::set_center`] moves it to its place.
     pub fn new(bounds: &Bounds, orientation: Orientation, size: i32, view: View, scale: i32) -> Self {
         let middle = bounds.middle();
         let climbs = bounds.half_extent(orientation.axis) > size;

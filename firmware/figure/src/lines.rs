@@ -43,7 +43,7 @@ pub struct Dot {
     pub shade: u8,
 }
 
-/// Everything that is drawn for a frame, gathered: for who draws it otherwise than [`FigureRenderer::draw_on`](crate::Stage::draw_on).
+/// Everything that is drawn for a frame, gathered: for who draws it otherwise than [`FigureRenderer::draw_on`](crate::FigureRenderer::draw_on).
 #[derive(Clone, Debug, Default)]
 pub struct Lines<const N: usize> {
     /// The ground as a grid of lines, on a large display.

@@ -5,7 +5,7 @@
 //! to the other one, and its header is [written last](InactiveSlot::seal): an interruption leaves the old clip intact. If neither slot is
 //! valid, the board plays its built-in clips. [`message`] specifies the transfer over the line.
 //!
-//! A slot starts with a [header](header) in a block of [`BLOCK_BYTES`] bytes; the clip follows. A slot is a whole number of sectors. The flash
+//! A slot starts with a [header] in a block of [`BLOCK_BYTES`] bytes; the clip follows. A slot is a whole number of sectors. The flash
 //! may have words of 1 to 256 bytes and sectors of any multiple of 256 bytes, for example those of the nRF51 (4 and 1,024), the nRF52833
 //! (4 and 4,096), the RP2040 (256 and 4,096) and the large sectors of the STM32F411 (1 to 4, and 131,072).
 //!

@@ -13,7 +13,7 @@
 //! | 0x19 | [`Response::Done`] | CRC-32 | |
 //! | 0x1a | [`Response::Refused`] | CRC-32, reason (a byte), number | |
 //!
-//! Data are [`BLOCK_BYTES`](crate::BLOCK_BYTES) bytes from a multiple of that, only the last ones fewer. `want` says from where the board wants
+//! Data are [`BLOCK_BYTES`] bytes from a multiple of that, only the last ones fewer. `want` says from where the board wants
 //! them next: the clip's length when it has them all. Beginning again what is under way answers `want` with how far it came; so a
 //! transfer goes on after the line was lost. `done` means that the clip stands in flash, sealed, and plays.
 //!

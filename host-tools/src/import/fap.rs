@@ -1,6 +1,6 @@
 //! MPEG-4 facial animation parameters as text, version 2.1 (ISO/IEC 14496-2, Annex C): a mask of 68 parameters and their values, frame by frame.
 //!
-//! Values are in the parameter's unit ([`Unit`]). The standard fixes units, not ranges: full scale is the greatest value that the file has in
+//! Values are in the parameter's unit (`Unit`). The standard fixes units, not ranges: full scale is the greatest value that the file has in
 //! the same unit. A parameter that a frame does not give keeps its value; before it is given first it is 0, the neutral face.
 
 use super::fap_names::{EXPRESSION, PARAMETERS, SHORT, Unit, VISEME, values};

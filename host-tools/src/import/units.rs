@@ -1,6 +1,6 @@
 //! The unit of length of a source that does not state one.
 //!
-//! Rule: of the usual units, the one that makes the figure's rest height come nearest, as a ratio, to [`ADULT_CM`].
+//! Rule: of the usual units, the one that makes the figure's rest height come nearest, as a ratio, to `ADULT_CM`.
 
 use crate::motion::{Joint, Motion};
 use anyhow::{Result, ensure};

@@ -1,4 +1,4 @@
-//! Files that one drags onto a board's drive: UF2 (https://github.com/microsoft/uf2).
+//! Files that one drags onto a board's drive: UF2 (<https://github.com/microsoft/uf2>).
 //!
 //! Written here, since the crates that do it (`elf2uf2-rs`) are programs, not libraries.
 
