@@ -95,7 +95,7 @@ pub use commands::Command;
 pub use multi::{FIGURES, FigureBuffers, multi};
 pub use options::{Mode, Options};
 pub use run::{NEXT, QUIT, SHOWN, run};
+pub use session::Entry;
 #[cfg(feature = "update")]
 pub use stored::run_stored;
 pub use text_screen::TextScreen;
-pub use view_state::Entry;

@@ -14,7 +14,7 @@ pub enum Mode {
 /// How the program runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// When the next frame is shown.
+    /// When the next frame is shown, and when the program ends.
     pub mode: Mode,
     /// The camera's orbit about the figure in degrees, instead of the default view's.
     pub orbit: Option<i16>,

@@ -1,10 +1,19 @@
-//! What a clip is played with, and why it ends.
+//! A clip to play, what it is played with, and why it is left.
 
 use crate::board::{Board, Exit};
 use crate::options::Mode;
 use crate::update::Listener;
 use crate::view_state::ViewState;
 use pantin_figure::surface::Framebuffer;
+
+/// A clip with its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry<'a> {
+    /// The name that the display shows.
+    pub name: &'a str,
+    /// The clip's file.
+    pub bytes: &'a [u8],
+}
 
 /// What a clip is played with.
 pub(crate) struct PlayContext<'a, B: Board> {

@@ -4,9 +4,9 @@ use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::options::Options;
 use crate::run::{Task, open};
-use crate::session::{Outcome, PlayContext};
+use crate::session::{Entry, Outcome, PlayContext};
 use crate::update::Listener;
-use crate::view_state::{Entry, ViewState};
+use crate::view_state::ViewState;
 use pantin_figure::surface::Framebuffer;
 use pantin_store::{Slot, Store, StoredClip, Update};
 

@@ -1,24 +1,15 @@
-//! The view, the speed and the options that commands change, and that outlive a clip.
+//! What commands change, and what outlives a clip: view, drawing style and speed.
 
 use crate::commands::Command;
 use crate::options::Options;
 use pantin_figure::{DrawStyle, Track, View};
 
-/// A clip with its name.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry<'a> {
-    /// The name that the display shows.
-    pub name: &'a str,
-    /// The clip's file.
-    pub bytes: &'a [u8],
-}
-
 /// What commands change.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ViewState {
     pub view: View,
-    /// The view that shows a face from straight ahead. It is the default view, so that a face looks at the user; with [`Options::orbit`] the
-    /// degrees are those of the face.
+    /// The view that shows a face from straight ahead: the default view, so that a face looks at the user at first. With
+    /// [`Options::orbit`] it is 0 degrees, so that those degrees are about the face.
     #[cfg(feature = "face")]
     pub ahead: View,
     pub style: DrawStyle,
@@ -27,6 +18,7 @@ pub(crate) struct ViewState {
     pub backwards: bool,
     /// Speed, as the power of two of the clip's own.
     pub rate_log2: i8,
+    /// Name, frame and speed are on the display.
     pub hud: bool,
     /// Poses arrive over the serial line.
     #[cfg(feature = "link")]
@@ -39,7 +31,7 @@ pub(crate) struct ViewState {
 /// What is to be done for a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effect {
-    /// Nothing: the next picture shows it.
+    /// Nothing: the next picture shows the change.
     Nothing,
     /// Set the camera up.
     Aim,
@@ -53,7 +45,7 @@ pub(crate) enum Effect {
     Help,
 }
 
-/// Lowest and highest speed.
+/// Lowest and highest speed: an eighth and eight times the clip's own.
 const RATES_LOG2: core::ops::RangeInclusive<i8> = -3..=3;
 
 impl ViewState {
