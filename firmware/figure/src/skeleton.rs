@@ -203,7 +203,7 @@ impl<const N: usize> Skeleton<N> {
     pub fn set_up(&mut self, rig: &Rig, detail: Detail, pose: Pose<'_>, scratch: &mut [JointInfo]) -> Result<(), Error> {
         let position_exponent = pose.form.length_exponent();
         let mut table = JointTable::new(rig, pose.values, position_exponent, scratch)?;
-        self.form = *pose.form;
+        copy(pose.form, &mut self.form);
         match detail {
             Detail::Body => table.prune(),
             Detail::Full => table.settle(0),
@@ -407,4 +407,10 @@ fn crown(table: &JointTable, index: usize, head: &JointInfo) -> [i16; 3] {
         Some(end) => end.bone,
         None => head.bone.map(|x| (i32::from(x) * 64 / (i32::from(head.length) / 64).max(1) * (tenth / 64) / 64) as i16),
     }
+}
+
+/// Copies a form. In a function of its own the compiler knows that the two do not overlap, and does not link `memmove` for it: 1.6 KB.
+#[inline(never)]
+fn copy(from: &Form, to: &mut Form) {
+    *to = *from;
 }
