@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use board_parts::servo::{self, Law, Servo};
+use board_drivers::servo::{self, JointAngle, Law, Servo};
 use harness::build::Firmware;
 use harness::display::{Display, Picture};
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request};
 use harness::{clips, paths, screen, setup, simulator};
-use pantin::{ChannelState, Clip, Kind, Player};
+use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::TextScreen;
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Framebuffer, MonoPages};
@@ -144,30 +144,34 @@ fn servos_get_the_pulses_that_the_host_computes() {
     if setup::host_only("servos on the Pico") {
         return;
     }
-    let walk = std::fs::read(&CLIPS.1[0]).unwrap();
-    let clip = Clip::new_checked(&walk).unwrap();
+    follows(&CLIPS.1[0], 160);
+    // Thighs coded as exponential maps.
+    follows(&paths::root().join("motions/kneebend.ptn"), 100);
+}
+
+fn follows(path: &Path, count: usize) {
+    let bytes = std::fs::read(path).unwrap();
+    let clip = Clip::new_checked(&bytes).unwrap();
     let (mut states, mut pose) = (vec![ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]);
     let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
     let joints = ["left-thigh", "right-thigh", "left-upper-arm", "right-upper-arm"];
-    let channels = joints.map(|joint| servo::channel(&clip, joint, Kind::Xrotation).unwrap());
+    let angles = joints.map(|joint| JointAngle::find(&clip, joint, Axis::X).unwrap());
     let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: servo::slew(5500, clip.frame_time_ns()) };
     let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
 
-    const FRAMES: usize = 160;
-    let (_folder, image) = program("servo", "", &CLIPS.1[..1]);
+    let (_folder, image) = program("servo", "", &[path.to_owned()]);
     // Four outputs a frame, and what sets them up before.
-    let outcome = Request::new(&image, None).servos(4 * (FRAMES + 1) + 16).run().unwrap();
+    let outcome = Request::new(&image, None).servos(4 * (count + 1) + 16).run().unwrap();
     assert_eq!(outcome.ended, "done");
     for pair in [3, 4] {
         // A count is a microsecond, a period 20 milliseconds.
         assert_eq!((outcome.slices[pair].div, outcome.slices[pair].top), (125 << 4, 20_000 - 1));
     }
     let frames = rp2040::pulses(&outcome.pulses, [3, 4]);
-    assert!(frames.len() >= FRAMES, "{} frames", frames.len());
+    assert!(frames.len() >= count, "{} frames", frames.len());
     let mut swing = [u16::MAX, 0];
-    for (index, (nanos, pulses)) in frames.iter().take(FRAMES).enumerate() {
-        let expected: Vec<u16> =
-            servos.iter_mut().zip(channels).map(|(servo, channel)| servo.follow(player.pose().values[channel])).collect();
+    for (index, (nanos, pulses)) in frames.iter().take(count).enumerate() {
+        let expected: Vec<u16> = servos.iter_mut().zip(&angles).map(|(servo, angle)| servo.follow(angle.at(&player))).collect();
         assert_eq!(pulses[..], expected, "frame {index}");
         swing = [swing[0].min(pulses[0]), swing[1].max(pulses[0])];
         // From the first tick on: the emulator's timer begins with one.
@@ -176,6 +180,19 @@ fn servos_get_the_pulses_that_the_host_computes() {
         player.step();
     }
     assert!(swing[1] - swing[0] > 300, "the thigh moves: {swing:?}");
+}
+
+#[test]
+fn a_joint_that_the_clip_lacks_is_named_on_the_display() {
+    if setup::host_only("a puppet's missing joint on the Pico") {
+        return;
+    }
+    let (_folder, image) = program("servo", "", &CLIPS.1[1..2]);
+    let outcome = Request::new(&image, OLED).pictures(usize::MAX).seconds(0.2).run().unwrap();
+    assert_eq!(outcome.ended, "limit");
+    let file = "boards/pico/src/bin/servo.rs";
+    let (line, column) = place(file, "panic!(\"the clip has no joint");
+    says(&outcome, &format!("panicked at {file}:{line}:{column}:\nthe clip has no joint left-thigh"));
 }
 
 /// What a display shows that shows nothing but these words.
@@ -192,6 +209,12 @@ fn says(outcome: &Outcome, text: &str) {
     }
 }
 
+/// Line and column of a text in a file of the firmware, from 1.
+fn place(file: &str, text: &str) -> (usize, usize) {
+    let source = std::fs::read_to_string(paths::firmware().join(file)).unwrap();
+    (1..).zip(source.lines()).find_map(|(number, line)| Some((number, line.find(text)? + 1))).unwrap()
+}
+
 #[test]
 fn a_fault_is_told_on_the_display() {
     if setup::host_only("a fault of the Pico") {
@@ -202,11 +225,9 @@ fn a_fault_is_told_on_the_display() {
     // The watchdog is fed meanwhile, so that it does not end the message.
     assert_eq!(outcome.ended, "limit");
     let file = "boards/common/src/cortex_m/faults.rs";
-    let source = std::fs::read_to_string(paths::firmware().join(file)).unwrap();
-    let fault = "a fault of the processor: a bad access, or the stack ran out";
-    let (line, column) =
-        (1..).zip(source.lines()).find_map(|(number, line)| Some((number, line.find(&format!("panic!(\"{fault}"))?))).unwrap();
-    says(&outcome, &format!("panicked at {file}:{line}:{}:\n{fault}", column + 1));
+    let fault = "processor fault: an invalid access, or a stack overflow";
+    let (line, column) = place(file, &format!("panic!(\"{fault}"));
+    says(&outcome, &format!("panicked at {file}:{line}:{column}:\n{fault}"));
 }
 
 #[test]

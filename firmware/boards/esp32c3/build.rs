@@ -2,7 +2,7 @@
 
 fn main() {
     board_build::link(&["-Tlinkall.x"]);
-    // Where src/flash.rs maps the slots: programs are linked below.
+    // The addresses to which src/flash.rs maps the slots: programs are linked below them.
     board_build::link(&["--defsym=_clips_start=0x3c400000", "--defsym=_clips_end=0x3c420000"]);
     board_build::clips();
 }

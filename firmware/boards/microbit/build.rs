@@ -8,7 +8,7 @@ fn main() {
         board_build::interrupts("device.x");
     }
     let clips = board_build::clips();
-    let most = board_build::LITTLE;
+    let most = board_build::SMALL;
     // Any clip may come over the line.
     board_build::capacity(if update { most } else { clips }, most);
 }

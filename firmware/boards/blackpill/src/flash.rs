@@ -1,38 +1,37 @@
-//! The flash's last two sectors. The program, which lies in the flash too, stands still while one is erased: two seconds, and at most four
-//! (STM32F411 data sheet, 6.3.13, bytes at once), or written: a page in four milliseconds.
+//! The flash. The program lies in it too, and stands still while a sector is erased (2 s, at most 4 s: STM32F411 data sheet, 6.3.13, byte
+//! accesses) or a page written (4 ms).
 #![allow(unsafe_code)]
 
-use board_common::Chip;
 use board_common::nor_flash::{NorFlash, NorFlashError, NorFlashErrorKind};
 use stm32f4xx_hal::flash::{FlashExt, UnlockedFlash};
 use stm32f4xx_hal::pac::FLASH;
 
 /// The flash.
-pub struct Sectors;
+pub struct Flash;
 
-/// Does something to what lies at an address, whose offset it gets.
+/// Runs an operation on the unlocked flash, with the offset of an address in it.
 fn unlocked(
     address: usize,
-    act: impl FnOnce(UnlockedFlash, u32) -> Result<(), stm32f4xx_hal::flash::Error>,
+    operation: impl FnOnce(UnlockedFlash, u32) -> Result<(), stm32f4xx_hal::flash::Error>,
 ) -> Result<(), NorFlashErrorKind> {
     // Safety: nothing else uses the controller.
     let mut flash = unsafe { FLASH::steal() };
     let offset = (address - flash.address()) as u32;
-    let done = act(flash.unlocked(), offset);
-    // Erased flash does not reach what the cache holds of it (RM0383, 3.4.2); only one that is off can be emptied.
+    let result = operation(flash.unlocked(), offset);
+    // The data cache keeps bytes from before the erasure (RM0383, 3.4.2). It can be emptied only while it is off.
     flash.acr().modify(|_, w| w.dcen().clear_bit());
     flash.acr().modify(|_, w| w.dcrst().set_bit());
     flash.acr().modify(|_, w| w.dcrst().clear_bit());
     flash.acr().modify(|_, w| w.dcen().set_bit());
-    done.map_err(|error| error.kind())
+    result.map_err(|error| error.kind())
 }
 
-impl Chip for Sectors {
-    const SECTOR: usize = UnlockedFlash::ERASE_SIZE;
-    const WORD: usize = UnlockedFlash::WRITE_SIZE;
+impl board_common::Flash for Flash {
+    const ERASE_BYTES: usize = UnlockedFlash::ERASE_SIZE;
+    const WRITE_BYTES: usize = UnlockedFlash::WRITE_SIZE;
 
     unsafe fn erase(address: usize) -> Result<(), NorFlashErrorKind> {
-        unlocked(address, |mut flash, offset| NorFlash::erase(&mut flash, offset, offset + Self::SECTOR as u32))
+        unlocked(address, |mut flash, offset| NorFlash::erase(&mut flash, offset, offset + Self::ERASE_BYTES as u32))
     }
 
     unsafe fn write(address: usize, words: &[u8]) -> Result<(), NorFlashErrorKind> {

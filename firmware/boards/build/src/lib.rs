@@ -1,22 +1,33 @@
-//! What the build scripts of all boards do: bring memory map and clips to where the linker and the program find them.
+//! The build script of all boards: it brings memory map and clips to where the linker and the program find them.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// The repository, from a board's folder.
+/// The repository's root, from a board's folder.
 const ROOT: &str = "../../..";
-/// What a board plays that was told nothing else.
-const OWN: [&str; 2] = ["walk", "run"];
-/// What it plays beside them where it draws faces.
+/// The clips that a board plays by default.
+const DEFAULT: [&str; 2] = ["walk", "run"];
+/// The clips that it also plays by default if it draws faces.
 const FACES: [&str; 5] = ["greet", "face/hello", "face/joy", "face/surprise", "face/wink"];
 
-/// Puts a memory map (its path from the board's folder) where the linker looks for `memory.x`.
+/// The whole script of most boards: the memory map `memory.x` of the board's folder, arguments for the linker, the linker script of `defmt` if
+/// the board's feature of that name is on, and the clips.
+pub fn board(link_arguments: &[&str]) {
+    memory_map("memory.x");
+    link(link_arguments);
+    if feature("defmt") {
+        link(&["-Tdefmt.x"]);
+    }
+    clips();
+}
+
+/// Copies a memory map (its path from the board's folder) to where the linker looks for `memory.x`.
 pub fn memory_map(path: &str) {
     script(path, "memory.x", "the board's memory map");
 }
 
-/// Puts the names of a board's interrupts where the linker looks for `device.x`.
+/// Copies the names of a board's interrupts to where the linker looks for `device.x`.
 pub fn interrupts(path: &str) {
     script(path, "device.x", "the board's interrupts");
 }
@@ -34,17 +45,16 @@ pub fn link(arguments: &[&str]) {
     arguments.iter().for_each(|argument| println!("cargo::rustc-link-arg-bins={argument}"));
 }
 
-/// Writes `clips.rs`: `CLIPS`, the clips that `PANTIN_CLIP` names (their whole paths, apart as in PATH), or our own:
-/// walk and run, and with the feature `face` of the board's package a greeting and expressions. Returns what the largest takes:
-/// channels, moving channels, and joints of the figure.
+/// Writes `clips.rs`, which defines `CLIPS`: the clips that `PANTIN_CLIP` lists (absolute paths, separated as in PATH), or the default ones.
+/// Returns the largest number of channels, of moving channels, and of joints of the figure.
 pub fn clips() -> [usize; 3] {
     println!("cargo::rerun-if-env-changed=PANTIN_CLIP");
     let paths: Vec<PathBuf> = match env::var_os("PANTIN_CLIP") {
         Some(paths) => env::split_paths(&paths).collect(),
         None => {
             let faces: &[&str] = if feature("face") { &FACES } else { &[] };
-            let own = OWN.iter().chain(faces);
-            own.map(|own| Path::new(ROOT).join("motions").join(own).with_extension("ptn")).collect()
+            let names = DEFAULT.iter().chain(faces);
+            names.map(|name| Path::new(ROOT).join("motions").join(name).with_extension("ptn")).collect()
         }
     };
     let mut list = String::new();
@@ -53,11 +63,11 @@ pub fn clips() -> [usize; 3] {
         println!("cargo::rerun-if-changed={}", path.display());
         let copy = out().join(format!("clip-{index}.ptn"));
         if let Err(error) = fs::copy(path, &copy) {
-            let advice = "set PANTIN_CLIP to whole paths of clips; `cargo pantin convert IN -o OUT.ptn` makes one";
+            let advice = "set PANTIN_CLIP to absolute paths of clips; `cargo pantin convert IN -o OUT.ptn` makes one";
             println!("cargo::error={}: {error}: {advice}", path.display());
         }
-        let taken = fs::read(&copy).ok().and_then(|bytes| taken(&bytes)).unwrap_or_default();
-        largest = std::array::from_fn(|kind| taken[kind].max(largest[kind]));
+        let size = fs::read(&copy).ok().and_then(|bytes| size(&bytes)).unwrap_or_default();
+        largest = std::array::from_fn(|kind| size[kind].max(largest[kind]));
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}) }},");
     }
@@ -66,8 +76,8 @@ pub fn clips() -> [usize; 3] {
     largest
 }
 
-/// Channels, moving channels and joints that 16 KiB of RAM leave room for.
-pub const LITTLE: [usize; 3] = [144, 96, 36];
+/// Channels, moving channels and joints for which 16 KiB of RAM have room.
+pub const SMALL: [usize; 3] = [144, 96, 36];
 
 /// Writes `capacity.rs`: the type `Capacity`, which has buffers for `clips`, but no more than `most`. The program refuses a clip that needs
 /// more when it opens it.
@@ -80,13 +90,14 @@ pub fn capacity(clips: [usize; 3], most: [usize; 3]) {
     fs::write(out().join("capacity.rs"), capacity).expect("OUT_DIR is writable");
 }
 
-/// Whether a feature of the board's package is on.
+/// Returns whether a feature of the board's package is on.
 pub fn feature(name: &str) -> bool {
     env::var_os(format!("CARGO_FEATURE_{}", name.to_uppercase())).is_some()
 }
 
-/// Channels, moving channels, and joints of the figure with the crown that it may get; of what is no clip the program tells by itself.
-fn taken(bytes: &[u8]) -> Option<[usize; 3]> {
+/// Returns a clip's channels, moving channels, and joints of the figure with the crown that it may get. The program itself reports what is
+/// no clip.
+fn size(bytes: &[u8]) -> Option<[usize; 3]> {
     let clip = pantin::Clip::new_checked(bytes).ok()?;
     Some([clip.rig().channels(), clip.moving(), clip.rig().joint_count() + 1])
 }

@@ -1,50 +1,48 @@
-//! What boards have in common.
+//! What boards share. [`SharedBoard`] is the board itself, over a display, a serial port, buttons, a timer and a watchdog; [`run_forever`]
+//! and `run_emulated` are the program. A board's own crate has its pins, clocks, memory map and interrupt handlers.
 #![no_std]
 
 mod buttons;
 mod capacity;
 #[cfg(feature = "cortex-m")]
 pub mod cortex_m;
-#[cfg(feature = "emulated")]
-mod end;
-#[cfg(feature = "update")]
-mod inbox;
-// The emulated boards' panics end the emulator; one of them has no atomic memory access.
-#[cfg(not(feature = "emulated"))]
-mod last_words;
-mod pace;
 #[cfg(feature = "emulated-log")]
-mod panics;
-mod perform;
+mod emulated_panic;
 #[cfg(feature = "emulated")]
-mod play;
+mod exit;
+mod flash;
+// Panics of emulated boards end the emulator; one of these boards has no atomic memory access.
+#[cfg(not(feature = "emulated"))]
+mod panic_screen;
 mod register;
+#[cfg(feature = "emulated")]
+mod run_emulated;
+mod run_forever;
+mod serial;
+mod shared_board;
+mod ticks;
 #[cfg(feature = "update")]
-mod slots;
+pub mod uart_rx;
 
-pub use buttons::Buttons;
+pub use board_drivers::Mono128x64;
+pub use buttons::{ButtonSource, Buttons, NoButtons, five_buttons, two_buttons};
 pub use capacity::Capacity;
-#[cfg(feature = "update")]
 pub use embedded_storage::nor_flash;
 #[cfg(feature = "emulated")]
-pub use end::{Code, exit};
-#[cfg(feature = "update")]
-pub use inbox::Inbox;
+pub use exit::{Code, exit};
+pub use flash::{Flash, NoFlash};
 #[cfg(not(feature = "emulated"))]
-pub use last_words::last_words;
-pub use markers;
-pub use pace::Pace;
-#[cfg(feature = "update")]
-pub use perform::perform_stored;
-pub use perform::{IN_STEP, perform};
-#[cfg(feature = "emulated")]
-pub use play::play;
-#[cfg(all(feature = "emulated", feature = "update"))]
-pub use play::play_stored;
+pub use panic_screen::{PanicBoard, panic_screen};
 pub use register::Register;
-#[cfg(feature = "update")]
-pub use slots::{Area, Chip, store};
+#[cfg(feature = "emulated")]
+pub use run_emulated::run_emulated;
+pub use run_forever::{IN_STEP, run_forever};
+pub use serial::{FnSerial, NbSerial, SerialPort};
+pub use shared_board::SharedBoard;
+pub use ticks::{TickSource, TickTimer};
 
-// Linked for what it provides: the log's way out.
+// Linked for what they provide: the log's transport.
+#[cfg(all(feature = "defmt", not(feature = "emulated")))]
+use defmt_rtt as _;
 #[cfg(feature = "emulated-log")]
 use defmt_semihosting as _;

@@ -1,4 +1,4 @@
-//! Registers of a machine.
+//! Memory-mapped registers.
 #![allow(unsafe_code)]
 
 use core::marker::PhantomData;
@@ -9,23 +9,23 @@ use core::ptr;
 pub struct Register<T = u32>(usize, PhantomData<T>);
 
 impl<T: Copy> Register<T> {
-    /// The register at an address.
+    /// Names the register at an address.
     ///
     /// # Safety
-    /// The address is aligned for `T` and that of a register, or of memory that is no Rust value's: it may be read and written
+    /// The address is aligned for `T` and is that of a register, or of memory that belongs to no Rust value: it may be read and written
     /// at any time.
     pub const unsafe fn at(address: usize) -> Self {
         Register(address, PhantomData)
     }
 
-    /// Reads it.
+    /// Reads the register.
     #[inline(always)]
     pub fn read(&self) -> T {
-        // Safety: promised to `at`.
+        // Safety: the caller of `at` guarantees it.
         unsafe { ptr::read_volatile(ptr::with_exposed_provenance(self.0)) }
     }
 
-    /// Writes it.
+    /// Writes the register.
     #[inline(always)]
     pub fn write(&self, value: T) {
         // Safety: as above.

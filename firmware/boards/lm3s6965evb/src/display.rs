@@ -1,19 +1,19 @@
 //! The SSD0323 on synchronous serial port 0: 128x64 pixels of 16 greys, two a byte.
 //!
-//! Its chip select is pin 0 of port D, which the board pulls the right way by itself: port D is never touched here.
+//! Its chip select is pin 0 of port D, which is active after reset: this module does not use port D.
 
 use crate::board::Oled;
 use crate::registers::{gpio_c, ssi0, system};
 use pantin_figure::surface::{Cell, Framebuffer};
 
 const PIN_7: u32 = 1 << 7;
-/// The port is still shifting bits out.
+/// The port is still sending.
 const BUSY: u32 = 1 << 4;
 const RECEIVE_NOT_EMPTY: u32 = 1 << 2;
 
-/// Sets up the port and the display's window: all of it.
+/// Sets up the port and the display.
 pub fn start() {
-    // Clocks of port C and of the serial port.
+    // Clocks of port C and of the serial port on.
     system::RCGC1.write(system::RCGC1.read() | 1 << 4);
     system::RCGC2.write(system::RCGC2.read() | 1 << 2 | 1 << 0);
     gpio_c::DIR.write(gpio_c::DIR.read() | PIN_7);
@@ -23,15 +23,15 @@ pub fn start() {
     // Frames of 8 bits.
     ssi0::CR0.write(7);
     ssi0::CR1.write(2);
-    // Row by row.
+    // Memory row by row.
     command(&[0xa0, 0]);
 }
 
-/// Writes what changed of a picture.
+/// Sends what changed since the last call.
 pub fn show(frame: &mut Framebuffer<Oled>) {
     for window in frame.send() {
         let cells = window.cells::<Oled>();
-        // Columns are bytes of two pixels, of which a cell has four.
+        // The display counts columns in bytes of two pixels; a cell has four bytes.
         let [left, right] = cells.columns.map(|column| column as u8 * 4);
         let [top, bottom] = cells.rows.map(|row| row as u8);
         command(&[0x15, left, right + 3, 0x75, top, bottom]);
@@ -50,13 +50,13 @@ fn command(bytes: &[u8]) {
 fn send(bytes: &[u8]) {
     for &byte in bytes {
         ssi0::DR.write(u32::from(byte));
-        // Every byte out brings one in; were it not fetched, the port would stall after eight.
+        // Each byte sent receives one; unless it is read, the port stalls after eight.
         while ssi0::SR.read() & RECEIVE_NOT_EMPTY == 0 {}
         ssi0::DR.read();
     }
 }
 
-/// Until the last bit is out: pin 7 may change then.
+/// Waits until the last bit is sent. Only then may pin 7 change.
 fn wait() {
     while ssi0::SR.read() & BUSY != 0 {}
 }

@@ -1,6 +1,6 @@
-//! The board's Ethernet, as a line that brings bytes: what UDP datagrams to port [`PORT`] hold, one after the other (`smoltcp`).
+//! The board's Ethernet as a source of bytes: the payloads of UDP datagrams to port [`PORT`], in order (`smoltcp`).
 //!
-//! Its address is fixed, as QEMU's user network has it: 10.0.2.15. Nothing is sent but answers to those who ask whose that is.
+//! Its address is the fixed one of QEMU's user network, 10.0.2.15. It sends nothing but answers to address requests.
 
 use crate::registers::{mac, system};
 use heapless::Vec;
@@ -11,20 +11,20 @@ use smoltcp::time::Instant;
 use smoltcp::wire::{EthernetAddress, IpAddress, IpCidr, Ipv4Address};
 use static_cell::StaticCell;
 
-/// The port that motion is sent to.
+/// The UDP port that receives motion.
 pub const PORT: u16 = 4000;
 const ADDRESS: Ipv4Address = Ipv4Address::new(10, 0, 2, 15);
 const NETWORK_BITS: u8 = 24;
 const HARDWARE: EthernetAddress = EthernetAddress([0x02, 0, 0, 0x50, 0x61, 0x6e]);
 
-/// Longest frame on the wire without its check sum.
+/// The longest Ethernet frame without its checksum.
 const FRAME: usize = 1514;
-/// Bytes that the controller puts around a frame: its length in front, the check sum behind.
+/// Bytes that the controller adds to a frame: its length before it, the checksum after it.
 const LENGTH_BYTES: usize = 2;
 const CHECK_BYTES: usize = 4;
-/// The header is not counted where a frame's length is told.
+/// The controller's length of a frame to send leaves the header out.
 const HEADER_BYTES: usize = 14;
-/// Datagrams that wait, and their bytes.
+/// Most datagrams that wait, and their bytes.
 const DATAGRAMS: usize = 8;
 const WAITING: usize = 1024;
 
@@ -35,50 +35,50 @@ const PAD: u32 = 1 << 1;
 const SUM: u32 = 1 << 2;
 const SEND_NOW: u32 = 1;
 
-/// Room for what the network needs as long as the program runs.
+/// Buffers of the network, which it needs as long as the program runs.
 static SOCKETS: StaticCell<[SocketStorage<'static>; 1]> = StaticCell::new();
 static HEADERS: StaticCell<[udp::PacketMetadata; DATAGRAMS]> = StaticCell::new();
 static BYTES: StaticCell<[u8; WAITING]> = StaticCell::new();
 
-/// The line.
+/// The source of bytes.
 pub struct Ethernet {
     controller: Controller,
     interface: Interface,
     sockets: SocketSet<'static>,
     socket: SocketHandle,
-    /// A datagram, and how much of it has been handed on.
+    /// A datagram, and how much of it has been returned.
     datagram: Vec<u8, WAITING>,
     next: usize,
 }
 
 impl Ethernet {
-    /// Starts it. There is one.
+    /// Starts the controller, once.
     pub fn new() -> Self {
         let mut controller = Controller::new();
-        // Time ages what is known of neighbours, to whom nothing is sent here: it may stand still.
+        // Time only ages neighbour addresses. This program sends nothing to neighbours, so time may stand still.
         let mut interface = Interface::new(Config::new(HARDWARE.into()), &mut controller, Instant::ZERO);
         interface.update_ip_addrs(|addresses| {
-            // There is room for one.
+            // There is room for one address.
             let _ = addresses.push(IpCidr::new(IpAddress::Ipv4(ADDRESS), NETWORK_BITS));
         });
         let headers = HEADERS.init([udp::PacketMetadata::EMPTY; DATAGRAMS]);
         let received = udp::PacketBuffer::new(&mut headers[..], &mut BYTES.init([0; WAITING])[..]);
         let mut socket = udp::Socket::new(received, udp::PacketBuffer::new(&mut [][..], &mut [][..]));
-        // A port other than 0, at a socket that is not bound yet.
+        // This fails only for port 0 or a bound socket.
         let _ = socket.bind(PORT);
         let mut sockets = SocketSet::new(&mut SOCKETS.init([SocketStorage::EMPTY])[..]);
         let socket = sockets.add(socket);
         Ethernet { controller, interface, sockets, socket, datagram: Vec::new(), next: 0 }
     }
 
-    /// A byte, if one has come.
+    /// Returns the next byte, if one was received.
     pub fn poll(&mut self) -> Option<u8> {
         if self.next >= self.datagram.len() {
             self.interface.poll(Instant::ZERO, &mut self.controller, &mut self.sockets);
             let socket = self.sockets.get_mut::<udp::Socket>(self.socket);
             let (bytes, _) = socket.recv().ok()?;
             self.datagram.clear();
-            // None is longer than the room that it waited in.
+            // A datagram is no longer than the buffer that it waited in.
             let _ = self.datagram.extend_from_slice(bytes);
             self.next = 0;
         }
@@ -88,7 +88,7 @@ impl Ethernet {
     }
 }
 
-/// The controller (data sheet, chapter 17): whole frames through two queues of words.
+/// The controller (data sheet, chapter 17). Whole frames pass through two queues of words.
 struct Controller {
     frame: [u8; FRAME],
 }
@@ -104,7 +104,7 @@ impl Controller {
         Controller { frame: [0; FRAME] }
     }
 
-    /// Takes the frame that has waited longest out of the queue; how long it is.
+    /// Takes the oldest frame out of the queue and returns its length.
     fn take(&mut self) -> Option<usize> {
         if mac::NP.read() == 0 {
             return None;
@@ -114,7 +114,7 @@ impl Controller {
         let len = length.saturating_sub(LENGTH_BYTES + CHECK_BYTES);
         let words = length.div_ceil(4).saturating_sub(1);
         let rest = (0..words).flat_map(|_| mac::DATA.read().to_le_bytes());
-        // All words have to be read, those of a frame that is too long and the check sum too.
+        // All words must be read, even those of a frame that is too long, and the checksum.
         for (at, byte) in [first, second].into_iter().chain(rest).enumerate() {
             if let Some(place) = self.frame.get_mut(at) {
                 *place = byte;
@@ -123,7 +123,7 @@ impl Controller {
         Some(len.min(FRAME))
     }
 
-    /// Puts a frame into the queue, and sends it.
+    /// Sends a frame.
     fn put(frame: &[u8]) {
         while mac::TR.read() & SEND_NOW != 0 {}
         let [low, high] = (frame.len().saturating_sub(HEADER_BYTES) as u16).to_le_bytes();
@@ -166,7 +166,7 @@ impl Device for Controller {
     }
 }
 
-/// A frame that has come.
+/// A received frame.
 struct Received<'a>(&'a [u8]);
 
 impl phy::RxToken for Received<'_> {
@@ -175,16 +175,16 @@ impl phy::RxToken for Received<'_> {
     }
 }
 
-/// Leave to send a frame.
+/// A permission to send one frame.
 struct Sending;
 
-/// Longest frame that is sent: an answer to who has an address, or that a port is closed.
+/// The longest frame that is sent: an answer to an address request, or a port-unreachable message.
 const ANSWER: usize = 600;
 
 impl phy::TxToken for Sending {
     fn consume<R, F: FnOnce(&mut [u8]) -> R>(self, len: usize, fill: F) -> R {
         let mut frame = [0; ANSWER];
-        // The longest answer quotes 576 bytes of what it answers (RFC 1812).
+        // The longest answer has 576 bytes of IP (RFC 1812).
         let frame = frame.get_mut(..len.min(ANSWER)).unwrap_or_default();
         let filled = fill(frame);
         Controller::put(frame);

@@ -1,4 +1,4 @@
-//! Pantin on QEMU's lm3s6965evb: plays the clip that it was built with.
+//! Pantin on QEMU's lm3s6965evb: plays the clips that it was built with.
 #![no_std]
 #![no_main]
 
@@ -9,18 +9,15 @@ mod display;
 mod ethernet;
 mod registers;
 
-use board::{Lm3s, Oled};
-use cortex_m_rt::entry;
-use pantin_figure::surface::Framebuffer;
+use board_common::{NoFlash, run_emulated};
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// Most figures side by side.
-const SEATS: usize = 4;
+const FIGURES: usize = 4;
 
-#[entry]
+#[cortex_m_rt::entry]
 fn main() -> ! {
     board_common::cortex_m::guard_stack();
-    let mut frame = Framebuffer::<Oled>::new();
-    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Lm3s::new())
+    run_emulated::<NoFlash, _, FIGURES>(CLIPS, board::new())
 }

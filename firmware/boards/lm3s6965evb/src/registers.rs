@@ -3,7 +3,7 @@
 
 use board_common::Register;
 
-/// The register at an address below.
+/// Names a register by its address.
 const fn at(address: usize) -> Register {
     // Safety: every address below is a register of the machine that this program is linked for, aligned to 4 bytes.
     unsafe { Register::at(address) }
@@ -19,10 +19,10 @@ pub mod ssi0 {
     pub const CPSR: Register = at(0x4000_8010);
 }
 
-/// Port C; pin 7 tells the display commands from data.
+/// Port C; pin 7 is low for the display's commands and high for data.
 pub mod gpio_c {
     use super::{Register, at};
-    /// Data of pin 7 alone: the address masks the others.
+    /// Data of pin 7 alone: the address masks the other pins.
     pub const PIN_7: Register = at(0x4000_6200);
     pub const DIR: Register = at(0x4000_6400);
     pub const DEN: Register = at(0x4000_651c);

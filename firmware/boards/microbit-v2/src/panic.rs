@@ -1,46 +1,49 @@
-//! A panic stays on the display for ten seconds, and a cross on the lights; then the board starts anew.
+//! The panic handler: the display shows the panic and the LEDs a cross for 10 s, then the board resets.
 #![allow(unsafe_code)]
 
-use crate::oled::Oled;
-use crate::{dog, leds};
-use board_parts::ssd1306::Pages;
-use board_parts::tiny::Lights;
+use crate::{board, leds, watchdog};
+use board_common::cortex_m::ClockDelay;
+use board_common::{PanicBoard, panic_screen};
+use board_drivers::Mono128x64;
+use board_drivers::led_matrix::Leds;
 use core::panic::PanicInfo;
+use embedded_hal::delay::DelayNs;
 use nrf52833_hal::gpio::{p0, p1};
 use nrf52833_hal::pac::Peripherals;
-use pantin_figure::surface::Framebuffer;
 
-/// How long it stays, in milliseconds, and clocks of one.
-const STAYS: u32 = 10_000;
-const MILLISECOND: u32 = 64_000;
+const CPU_HZ: u32 = 64_000_000;
 
-const CROSS: Lights = [[3, 0, 0, 0, 3], [0, 3, 0, 3, 0], [0, 0, 3, 0, 0], [0, 3, 0, 3, 0], [3, 0, 0, 0, 3]];
+const CROSS: Leds = [[3, 0, 0, 0, 3], [0, 3, 0, 3, 0], [0, 0, 3, 0, 0], [0, 3, 0, 3, 0], [3, 0, 0, 0, 3]];
 
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
-    cortex_m::interrupt::disable();
-    board_common::last_words(info, |page| {
-        #[cfg(feature = "defmt")]
-        defmt::error!("{}", defmt::Display2Format(info));
-        tell(page);
-    });
-    // At once, not by the watchdog, which may not run yet.
+    panic_screen(info, set_up, LedDelay);
+    // Not by the watchdog, which may not run yet.
     cortex_m::peripheral::SCB::sys_reset()
 }
 
-fn tell(page: &mut Framebuffer<Pages>) {
-    // Safety: whoever had the peripherals does not run any more.
+fn set_up() -> impl PanicBoard<Mono128x64> {
+    // Safety: the code that had the peripherals does not run any more.
     let parts = unsafe { Peripherals::steal() };
     let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));
-    let clock = p0.p0_26.into_floating_input().degrade();
-    Oled::new(parts.TWIM0, clock, p1.p1_00.into_floating_input().degrade()).show(page);
-    let mut dog = dog::start(parts.WDT);
+    let oled = board::oled(parts.TWIM0, p0.p0_26.into_floating_input().degrade(), p1.p1_00.into_floating_input().degrade());
     leds::set(&CROSS);
-    for _ in 0..STAYS {
-        if let Some(dog) = &mut dog {
-            dog.pet();
+    // Without the serial line, which cannot be set up twice.
+    (oled, watchdog::start(parts.WDT))
+}
+
+/// A delay that refreshes the LEDs.
+struct LedDelay;
+
+impl DelayNs for LedDelay {
+    fn delay_ns(&mut self, nanoseconds: u32) {
+        ClockDelay::<CPU_HZ>.delay_ns(nanoseconds);
+    }
+
+    fn delay_ms(&mut self, ms: u32) {
+        for _ in 0..ms {
+            leds::next();
+            self.delay_ns(1_000_000);
         }
-        leds::next();
-        cortex_m::asm::delay(MILLISECOND);
     }
 }

@@ -3,27 +3,15 @@
 #![no_main]
 
 mod board;
-#[cfg(feature = "update")]
 mod flash;
-#[cfg(feature = "update")]
-mod received;
 mod registers;
-
-use board::{Microbit, Pages};
-use cortex_m_rt::entry;
-use pantin_figure::surface::Framebuffer;
+#[cfg(feature = "update")]
+mod uart_rx;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
-/// Most figures side by side.
-const SEATS: usize = 1;
-
-#[entry]
+#[cortex_m_rt::entry]
 fn main() -> ! {
-    let mut frame = Framebuffer::<Pages>::new();
-    #[cfg(feature = "update")]
-    if let Some(mut store) = board_common::store::<flash::Nvmc>() {
-        board_common::play_stored(&mut store, CLIPS, &mut frame, &mut Microbit::new())
-    }
-    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Microbit::new())
+    // One figure: there is no memory for several.
+    board_common::run_emulated::<flash::Flash, _, 1>(CLIPS, board::new())
 }

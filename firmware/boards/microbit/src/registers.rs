@@ -3,7 +3,7 @@
 
 use board_common::Register;
 
-/// The register at an address below.
+/// Names a register by its address.
 const fn at(address: usize) -> Register {
     // Safety: every address below is a register of the machine that this program is linked for, aligned to 4 bytes.
     unsafe { Register::at(address) }
@@ -23,7 +23,7 @@ pub mod uart {
     pub const TXD: Register = at(0x4000_251c);
 }
 
-/// Timer 0, of 16 MHz.
+/// Timer 0, at 16 MHz.
 pub mod timer0 {
     use super::{Register, at};
     pub const START: Register = at(0x4000_8000);
@@ -34,7 +34,6 @@ pub mod timer0 {
 }
 
 /// The flash's controller.
-#[cfg(feature = "update")]
 pub mod nvmc {
     use super::{Register, at};
     pub const READY: Register = at(0x4001_e400);

@@ -5,18 +5,15 @@
 mod board;
 mod registers;
 
-use board::{Mps2, Oled};
-use cortex_m_rt::entry;
-use pantin_figure::surface::Framebuffer;
+use board_common::{NoFlash, cortex_m, run_emulated};
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// Most figures side by side.
-const SEATS: usize = 16;
+const FIGURES: usize = 16;
 
-#[entry]
+#[cortex_m_rt::entry]
 fn main() -> ! {
-    board_common::cortex_m::guard_stack();
-    let mut frame = Framebuffer::<Oled>::new();
-    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Mps2::new())
+    cortex_m::guard_stack();
+    run_emulated::<NoFlash, _, FIGURES>(CLIPS, board::new())
 }

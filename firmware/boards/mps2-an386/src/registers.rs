@@ -3,7 +3,7 @@
 
 use board_common::Register;
 
-/// The register at an address below.
+/// Names a register by its address.
 const fn at(address: usize) -> Register {
     // Safety: every address below is a register of the machine that this program is linked for, aligned to 4 bytes.
     unsafe { Register::at(address) }

@@ -1,21 +1,12 @@
 //! Pantin on the Raspberry Pi Pico: what its programs share.
 #![no_std]
 
-mod board;
+pub mod board;
 mod boot;
-mod clocks;
-mod display;
-#[cfg(feature = "update")]
-mod flash;
+pub mod clocks;
+pub mod flash;
 mod panic;
+#[cfg(feature = "st7789")]
+mod st7789;
 #[cfg(feature = "update")]
-mod received;
-
-pub use board::Pico;
-pub use clocks::{RATE, start};
-pub use display::Lit;
-#[cfg(feature = "update")]
-pub use flash::Rom;
-
-#[cfg(feature = "defmt")]
-use defmt_rtt as _;
+mod uart_rx;

@@ -1,42 +1,15 @@
-//! A panic stays on the display for ten seconds; then the board starts anew.
+//! The panic handler: the display shows the panic for 10 s, then the watchdog resets the board.
 #![allow(unsafe_code)]
 
-use crate::board::Pico;
-use core::fmt::Write;
+use crate::{board, clocks::CPU_HZ};
+use board_common::{cortex_m::ClockDelay, panic_screen};
 use core::panic::PanicInfo;
-use core::sync::atomic::{AtomicBool, Ordering};
-use pantin_app::TextScreen;
-use pantin_figure::surface::Framebuffer;
 use rp2040_hal::pac::Peripherals;
 
-/// How long it stays, in clocks.
-const STAYS: u32 = 10 * crate::clocks::RATE;
-/// A part of that: shorter than the watchdog's patience.
-const PART: u32 = STAYS / 20;
-
 #[panic_handler]
+#[allow(clippy::empty_loop)]
 fn panic(info: &PanicInfo) -> ! {
-    static PANICKED: AtomicBool = AtomicBool::new(false);
-    cortex_m::interrupt::disable();
-    if !PANICKED.load(Ordering::Relaxed) {
-        PANICKED.store(true, Ordering::Relaxed);
-        tell(info);
-    }
-    // Not fed any more, the watchdog bites.
-    #[allow(clippy::empty_loop)]
+    // Safety: the code that had the peripherals does not run any more, and the set-up resets them.
+    panic_screen(info, || board::new(unsafe { Peripherals::steal() }), ClockDelay::<CPU_HZ>);
     loop {}
-}
-
-fn tell(info: &PanicInfo) {
-    #[cfg(feature = "defmt")]
-    defmt::error!("{}", defmt::Display2Format(info));
-    let mut frame = Framebuffer::new();
-    let _ = write!(TextScreen::new(&mut frame), "{info}");
-    // Safety: whoever had the peripherals does not run any more, and they are set up from their reset.
-    let mut pico = Pico::new(unsafe { Peripherals::steal() });
-    pico.tell(&mut frame);
-    for _ in 0..STAYS / PART {
-        pico.feed();
-        cortex_m::asm::delay(PART);
-    }
 }

@@ -1,29 +1,22 @@
-//! The machine's line, which carries pictures and keys, and its time for the program.
+//! The machine: its serial line, which carries pictures and commands, and its clock.
 
 use crate::registers::{MTIME, uart};
-use board_common::{Pace, markers};
+use board_common::{Capacity, FnSerial, Mono128x64, NoButtons, SharedBoard, TickTimer};
 use pantin_app::{Board, frame_stream};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::surface::{Framebuffer, MonoPages};
+use pantin_figure::surface::Framebuffer;
 
-/// The pictures: 128x64 pixels, lit or dark, as on the SSD1306 of an ESP32-C3.
-pub type Pages = MonoPages<128, 64, 1024>;
-
-/// Counts of the time a microsecond.
-const RATE: u32 = 10;
+/// The clock's frequency.
+const MTIME_HZ: u32 = 10_000_000;
 
 const RECEIVED: u8 = 1 << 0;
 const TRANSMIT_EMPTY: u8 = 1 << 5;
 
-/// The machine.
-pub struct Virt {
-    pace: Pace,
-}
-
-impl Virt {
-    pub fn new() -> Self {
-        Virt { pace: Pace::new(RATE) }
-    }
+/// Makes the board. The pictures are those of an ESP32-C3 with its SSD1306.
+pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> {
+    let timer = TickTimer::<MTIME_HZ, _>::new(|| MTIME.read());
+    let display = |framebuffer: &mut Framebuffer<Mono128x64>| frame_stream::send(framebuffer, send);
+    SharedBoard::new(display, FnSerial { send, poll }, NoButtons, timer, || {})
 }
 
 fn send(bytes: &[u8]) {
@@ -33,38 +26,6 @@ fn send(bytes: &[u8]) {
     }
 }
 
-impl Board for Virt {
-    type Layout = Pages;
-    type Rotation = Rotation;
-    type Capacity = board_common::Capacity;
-
-    fn present(&mut self, framebuffer: &mut Framebuffer<Pages>) {
-        frame_stream::send(framebuffer, send);
-    }
-
-    fn start_timer(&mut self, period_ns: u32) {
-        self.pace.start(period_ns, MTIME.read());
-    }
-
-    fn ticks(&mut self) -> u32 {
-        self.pace.ticks(MTIME.read())
-    }
-
-    fn send(&mut self, bytes: &[u8]) {
-        send(bytes);
-    }
-
-    fn poll(&mut self) -> Option<u8> {
-        (uart::LINE_STATUS.read() & RECEIVED != 0).then(|| uart::DATA.read())
-    }
-
-    #[inline(always)]
-    fn mark_start(&mut self) {
-        markers::start();
-    }
-
-    #[inline(always)]
-    fn mark_stop(&mut self) {
-        markers::stop();
-    }
+fn poll() -> Option<u8> {
+    (uart::LINE_STATUS.read() & RECEIVED != 0).then(|| uart::DATA.read())
 }

@@ -6,18 +6,13 @@ mod board;
 mod registers;
 mod trap;
 
-use board::{Pages, Virt};
-use pantin_figure::surface::Framebuffer;
+use board_common::{NoFlash, run_emulated};
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
-
-/// Most figures side by side.
-const SEATS: usize = 1;
 
 /// Never returns: the emulator ends.
 #[riscv_rt::entry]
 fn main() -> ! {
     trap::guard_stack();
-    let mut frame = Framebuffer::<Pages>::new();
-    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Virt::new())
+    run_emulated::<NoFlash, _, 1>(CLIPS, board::new())
 }

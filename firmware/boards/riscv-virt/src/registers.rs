@@ -3,7 +3,7 @@
 
 use board_common::Register;
 
-/// The register at an address below.
+/// Names a register by its address.
 const fn at<T: Copy>(address: usize) -> Register<T> {
     // Safety: every address below is a register of the machine that this program is linked for, aligned to its width.
     unsafe { Register::at(address) }

@@ -4,7 +4,7 @@
 use board_common::{Code, exit};
 use riscv::register::{Permission, Range, pmpaddr0, pmpcfg0};
 
-// Not Rust: the fault may be that of a stack that ran out, so that there is none until it starts anew. riscv-rt has the processor
+// Not Rust: after a stack overflow there is no stack before the pointer is set back. riscv-rt makes the processor
 // trap to this name.
 core::arch::global_asm!(
     ".section .trap.start, \"ax\"",
@@ -15,20 +15,20 @@ core::arch::global_asm!(
     "call board_fault"
 );
 
-// Safety: nothing else is named so.
+// Safety: no other symbol has this name.
 #[unsafe(no_mangle)]
 extern "C" fn board_fault() -> ! {
     exit(Code::Fault)
 }
 
-/// Forbids the memory below the stack, by the processor's memory protection: growing into it is a fault instead of a riddle.
+/// Protects the memory below the stack with the processor's memory protection: a stack overflow is a fault instead of corrupted data.
 pub fn guard_stack() {
     unsafe extern "C" {
         static _guard_start: u8;
         static _guard_end: u8;
     }
     let (start, end) = ((&raw const _guard_start).addr(), (&raw const _guard_end).addr());
-    // Safety: nothing lies there. A region of 2^n bytes is told as its address with n - 3 ones below it, in words of four bytes.
+    // Safety: the region holds no data. A region of 2^n bytes is encoded as its address with n - 3 ones below it, in words of four bytes.
     unsafe {
         pmpaddr0::write(start >> 2 | ((end - start) / 8 - 1));
         pmpcfg0::set_pmp(0, Range::NAPOT, Permission::NONE, true);

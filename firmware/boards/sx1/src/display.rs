@@ -1,4 +1,4 @@
-//! The phone's display: 176x220 pixels of 16 bits, which a DMA channel brings from memory to the controller.
+//! The phone's display: 176x220 pixels of 16 bits, which a DMA channel copies from memory to the controller.
 #![allow(unsafe_code)]
 
 use crate::board::Lcd;
@@ -6,13 +6,13 @@ use crate::registers::{lcd, lcd_dma};
 use core::ptr;
 use pantin_figure::surface::{Framebuffer, Layout, Pair};
 
-/// Palette that says: no palette, 12 or 16 bits a pixel.
+/// The palette's first entry: no palette, 12 or 16 bits a pixel.
 const NO_PALETTE: u16 = 0x4000;
 
 const ENABLE: u32 = 1 << 0;
-/// 5, 6 and 5 bits of colour.
+/// RGB565.
 const TFT: u32 = 1 << 7;
-/// What is brought: the palette alone, or the pixels alone.
+/// Load only the palette, or only the pixels.
 const PALETTE_ONLY: u32 = 1 << 20;
 const PIXELS_ONLY: u32 = 2 << 20;
 
@@ -26,9 +26,9 @@ unsafe extern "C" {
     static mut _pixels_end: Pair;
 }
 
-/// Sets up controller and channel: first for the palette, then for the pixels.
+/// Sets up controller and channel, first for the palette, then for the pixels.
 pub fn start() {
-    // Safety: the memory map leaves the room of a palette there.
+    // Safety: the memory map reserves this place for the palette.
     unsafe { ptr::write_volatile(&raw mut _palette, NO_PALETTE) };
     lcd::CONTROL.write(0);
     lcd::TIMING_0.write(Lcd::WIDTH as u32 - 1);
@@ -36,15 +36,15 @@ pub fn start() {
     lcd::TIMING_2.write(0);
     lcd_dma::CONTROL.write(0);
     let palette = (&raw mut _palette).expose_provenance();
-    bring(palette, palette + PALETTE);
+    transfer(palette, palette + PALETTE);
     lcd::CONTROL.write(ENABLE | TFT | PALETTE_ONLY);
     lcd::CONTROL.write(0);
-    bring((&raw mut _pixels).expose_provenance(), (&raw mut _pixels_end).expose_provenance());
+    transfer((&raw mut _pixels).expose_provenance(), (&raw mut _pixels_end).expose_provenance());
     lcd::CONTROL.write(ENABLE | TFT | PIXELS_ONLY);
 }
 
-/// Has the channel bring memory up to `end`.
-fn bring(start: usize, end: usize) {
+/// Makes the channel copy the memory from `start` to `end`.
+fn transfer(start: usize, end: usize) {
     let last = end - 2;
     lcd_dma::TOP_LOW.write(start as u16);
     lcd_dma::TOP_HIGH.write((start >> 16) as u16);
@@ -52,14 +52,14 @@ fn bring(start: usize, end: usize) {
     lcd_dma::BOTTOM_HIGH.write((last >> 16) as u16);
 }
 
-/// Copies what changed of a picture to where the channel finds it.
+/// Copies what changed since the last call to the memory that the channel reads.
 pub fn show(frame: &mut Framebuffer<Lcd>) {
     for window in frame.send() {
         let cells = window.cells::<Lcd>();
         for (row, stretch) in (cells.rows[0]..).zip(frame.stretches(window)) {
             let at = row * (Lcd::WIDTH / Lcd::CELL[0]) + cells.columns[0];
-            // Safety: a window lies inside the picture, for all of which the memory map leaves room there, and where no Rust
-            // value is.
+            // Safety: a window lies inside the picture. The memory map reserves this place for a whole picture, and no Rust value lies
+            // there.
             unsafe { ptr::copy_nonoverlapping(stretch.as_ptr(), (&raw mut _pixels).add(at), stretch.len()) };
         }
     }

@@ -1,4 +1,4 @@
-//! The log over semihosting. ARMv4T has no atomic memory access, which `defmt-semihosting` builds on; nor does it need any here:
+//! The log over semihosting. `defmt-semihosting` needs atomic memory access, which ARMv4T lacks. This module needs none:
 //! there is one core, and no interrupt.
 #![allow(unsafe_code)]
 
@@ -23,7 +23,7 @@ static STATE: Cell = Cell(UnsafeCell::new(State { encoder: Encoder::new(), out: 
 #[defmt::global_logger]
 struct Log;
 
-// Safety: `defmt` writes and releases only what was acquired; a second acquisition meanwhile is passed over.
+// Safety: `defmt` writes and releases only after it acquired; a second acquisition in between is harmless.
 unsafe impl defmt::Logger for Log {
     fn acquire() {
         with(|state| {
@@ -61,7 +61,7 @@ fn with(change: impl FnOnce(&mut State)) {
     change(unsafe { &mut *STATE.0.get() });
 }
 
-/// What cannot be written is lost: there is nowhere to tell.
+/// Bytes that cannot be written are dropped: there is nowhere to report it.
 fn write(out: &mut Option<Stdout>, bytes: &[u8]) {
     if let Some(out) = out {
         let _ = out.write_all(bytes);

@@ -8,15 +8,13 @@ mod log;
 mod registers;
 mod start;
 
-use board::{Lcd, Sx1};
-use pantin_figure::surface::Framebuffer;
+use board_common::{NoFlash, run_emulated};
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// Most figures side by side.
-const SEATS: usize = 8;
+const FIGURES: usize = 8;
 
 fn main() -> ! {
-    let mut frame = Framebuffer::<Lcd>::new();
-    board_common::play::<_, SEATS>(CLIPS, &mut frame, &mut Sx1::new())
+    run_emulated::<NoFlash, _, FIGURES>(CLIPS, board::new())
 }

@@ -3,7 +3,7 @@
 
 use board_common::Register;
 
-/// The register at an address below.
+/// Names a register by its address.
 const fn at<T: Copy>(address: usize) -> Register<T> {
     // Safety: every address below is a register of the machine that this program is linked for, of the width that it is named with,
     // aligned to it.
@@ -19,7 +19,7 @@ pub mod lcd {
     pub const TIMING_2: Register = at(0xfffe_c00c);
 }
 
-/// The channel that brings the display its pixels: halves of addresses, 16 bits each.
+/// The display's DMA channel. Addresses are split into halves of 16 bits.
 pub mod lcd_dma {
     use super::{Register, at};
     pub const CONTROL: Register<u16> = at(0xfffe_db00);

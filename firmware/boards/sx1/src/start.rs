@@ -1,5 +1,5 @@
 //! Start and faults. Interrupts stay off.
-// Neither the first instructions nor those of a fault can be Rust: there is no stack yet.
+// Neither the first instructions nor those of a fault can be Rust: there is no stack.
 #![allow(unsafe_code)]
 
 use board_common::{Code, exit};
@@ -13,12 +13,12 @@ core::arch::global_asm!(
     "ldr sp, =_stack_top",
     "bl board_start",
     "_fault:",
-    // Each mode has a stack pointer of its own.
+    // Each processor mode has its own stack pointer.
     "ldr sp, =_stack_top",
     "bl board_fault",
     ".pool",
     ".section .vectors, \"ax\"",
-    // Reset, then undefined instruction, supervisor call, the two aborts, one that is none, and the two interrupts.
+    // Reset, undefined instruction, supervisor call, the two aborts, one that is reserved, and the two interrupts.
     ".rept 8",
     "ldr pc, [pc, #24]",
     ".endr",
@@ -28,7 +28,7 @@ core::arch::global_asm!(
     ".endr",
 );
 
-// Safety: nothing else is named so.
+// Safety: no other symbol has this name.
 #[unsafe(no_mangle)]
 extern "C" fn board_start() -> ! {
     crate::main()
@@ -43,7 +43,7 @@ extern "C" fn board_fault() -> ! {
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     crate::log::until_panic();
-    // Where, without its words: those would bring in the library's formatting.
+    // The place without the message, which would link the library's formatting.
     if let Some(place) = info.location() {
         defmt::error!("panic in {}, line {}", place.file(), place.line());
     }

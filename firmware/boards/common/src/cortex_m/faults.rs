@@ -1,11 +1,11 @@
-//! Faults, and interrupts that nothing asked for: they end the emulator with a code that says what, or else are panics.
+//! Faults and unhandled interrupts. They end the emulator with an exit code of their own; on other boards they panic.
 #![allow(unsafe_code)]
 
 #[cfg(feature = "emulated-cortex-m")]
-use crate::end::{Code, exit};
+use crate::exit::{Code, exit};
 use cortex_m_rt::exception;
 
-// Not Rust: the fault may be that of a stack that ran out, so that there is none until it starts anew.
+// Not Rust: after a stack overflow there is no stack before the pointer is set back.
 core::arch::global_asm!(
     ".section .HardFault.user, \"ax\"",
     ".global HardFault",
@@ -18,20 +18,20 @@ core::arch::global_asm!(
     ".pool"
 );
 
-// Safety: nothing else is named so.
+// Safety: no other symbol has this name.
 #[unsafe(no_mangle)]
 extern "C" fn board_fault() -> ! {
     #[cfg(feature = "emulated-cortex-m")]
     exit(Code::Fault);
     #[cfg(not(feature = "emulated-cortex-m"))]
-    panic!("a fault of the processor: a bad access, or the stack ran out")
+    panic!("processor fault: an invalid access, or a stack overflow")
 }
 
-// The attribute declares the handler unsafe: an interrupt can strike anywhere. It touches nothing but the call.
+// The attribute demands an unsafe function, since an interrupt can occur anywhere. This one touches no data.
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {
     #[cfg(feature = "emulated-cortex-m")]
     exit(Code::Interrupt);
     #[cfg(not(feature = "emulated-cortex-m"))]
-    panic!("interrupt {_number}, which nothing asked for")
+    panic!("interrupt {_number} has no handler")
 }

@@ -3,17 +3,17 @@
 
 use cortex_m::peripheral::MPU;
 
-/// Size of the stretch between data and stack that faults when touched: 2^12 bytes.
+/// The guarded region between data and stack has 2^12 bytes.
 const GUARD_BITS: u32 = 12;
 
-/// Guards the end of the stack by the memory protection unit: growing into the data is a fault instead of a riddle.
+/// Guards the end of the stack with the memory protection unit: an overflow is a fault instead of corrupted data.
 pub fn guard_stack() {
     unsafe extern "C" {
         static mut __sheap: u8;
     }
     let end_of_data = (&raw const __sheap).addr() as u32;
     let start = end_of_data.next_multiple_of(1 << GUARD_BITS);
-    // Safety: the addresses are the unit's; the region holds nothing, and all other memory stays as it was (PRIVDEFENA).
+    // Safety: these registers are the unit's own. The region holds no data, and all other memory keeps its access rights (PRIVDEFENA).
     unsafe {
         let unit = &*MPU::PTR;
         unit.rnr.write(0);

@@ -1,13 +1,14 @@
-//! The first clip moves a puppet: joints' angles become pulses for four servos on GP6 to GP9.
+//! The first clip moves a puppet: the angles of joints become pulses for four servos on GP6 to GP9.
 #![no_std]
 #![no_main]
 
-use board_common::Capacity;
 use board_common::cortex_m::SysTick;
-use board_parts::servo::{Law, Servo, channel, slew};
+use board_common::{Capacity, TickSource};
+use board_drivers::servo::{JointAngle, Law, Servo, slew};
 use embedded_hal::pwm::SetDutyCycle;
-use pantin::{Clip, Kind, Player};
+use pantin::{Axis, Clip, Player};
 use pantin_app::Capacity as _;
+use pico::clocks::{self, CPU_HZ};
 use rp2040_hal::fugit::ExtU32;
 use rp2040_hal::pac::Peripherals;
 use rp2040_hal::pwm::{FreeRunning, Slice, SliceId, Slices};
@@ -17,66 +18,65 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// The joints whose rotation about x moves the servos, in the order of the pins.
 const JOINTS: [&str; 4] = ["left-thigh", "right-thigh", "left-upper-arm", "right-upper-arm"];
-/// Microseconds of a pulse a second: a small servo goes 60 degrees in 0.12 s.
-const SPEED: u32 = 5500;
-/// Microseconds from pulse to pulse.
-const PERIOD: u16 = 20_000;
+/// The fastest change of a pulse width, in microseconds a second: a small servo turns by 60 degrees in 0.12 s.
+const SLEW_US_PER_S: u32 = 5500;
+/// The time from pulse to pulse.
+const PULSE_PERIOD_US: u16 = 20_000;
 
 #[rp2040_hal::entry]
 fn main() -> ! {
-    let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes them") };
+    let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes the peripherals") };
     let mut resets = parts.RESETS;
     let mut watchdog = Watchdog::new(parts.WATCHDOG);
-    pico::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
+    clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
     let pins = rp2040_hal::gpio::Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
     let slices = Slices::new(parts.PWM, &mut resets);
-    let (mut legs, mut arms) = (every_period(slices.pwm3), every_period(slices.pwm4));
+    let (mut legs, mut arms) = (pulses(slices.pwm3), pulses(slices.pwm4));
     legs.channel_a.output_to(pins.gpio6);
     legs.channel_b.output_to(pins.gpio7);
     arms.channel_a.output_to(pins.gpio8);
     arms.channel_b.output_to(pins.gpio9);
     watchdog.pause_on_debug(true);
     watchdog.start(8.secs());
-    perform(|pulses| {
+    play(|widths| {
         watchdog.feed();
-        // A width is less than the period: none fails.
-        let _ = legs.channel_a.set_duty_cycle(pulses[0]);
-        let _ = legs.channel_b.set_duty_cycle(pulses[1]);
-        let _ = arms.channel_a.set_duty_cycle(pulses[2]);
-        let _ = arms.channel_b.set_duty_cycle(pulses[3]);
+        // A width is less than the period: no call fails.
+        let _ = legs.channel_a.set_duty_cycle(widths[0]);
+        let _ = legs.channel_b.set_duty_cycle(widths[1]);
+        let _ = arms.channel_a.set_duty_cycle(widths[2]);
+        let _ = arms.channel_b.set_duty_cycle(widths[3]);
     })
 }
 
-/// A pair of outputs whose counter counts microseconds, from pulse to pulse.
-fn every_period<S: SliceId>(mut slice: Slice<S, FreeRunning>) -> Slice<S, FreeRunning> {
+/// Sets up a pair of outputs whose counter counts microseconds from pulse to pulse.
+fn pulses<S: SliceId>(mut slice: Slice<S, FreeRunning>) -> Slice<S, FreeRunning> {
     slice.default_config();
-    slice.set_div_int((pico::RATE / 1_000_000) as u8);
-    slice.set_top(PERIOD - 1);
+    slice.set_div_int((CPU_HZ / 1_000_000) as u8);
+    slice.set_top(PULSE_PERIOD_US - 1);
     slice.enable();
     slice
 }
 
-/// Plays the clip for ever, and hands on the servos' pulses with each frame.
-fn perform(mut set: impl FnMut([u16; 4])) -> ! {
+/// Plays the clip forever, and passes the servos' pulse widths to `set` with each frame.
+fn play(mut set: impl FnMut([u16; 4])) -> ! {
     let clip = CLIPS.first().map(|entry| Clip::new_checked(entry.bytes));
     let Some(Ok(clip)) = clip else { panic!("there is no clip, or it cannot be opened") };
     let (mut states, mut pose) = (Capacity::states(), Capacity::pose());
     let Ok(mut player) = Player::new(clip, &mut states, &mut pose) else { panic!("the clip is too big for this board") };
-    let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: slew(SPEED, clip.frame_time_ns()) };
-    // The right side's servos are mounted the other way round.
+    let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: slew(SLEW_US_PER_S, clip.frame_time_ns()) };
+    // The servos of the right side are mounted mirrored.
     let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
-    let channels = JOINTS.map(|joint| channel(&clip, joint, Kind::Xrotation));
-    let mut ticks = SysTick::<{ pico::RATE / 1000 }>::new();
-    ticks.start(clip.frame_time_ns());
+    let angle = |joint| JointAngle::find(&clip, joint, Axis::X).unwrap_or_else(|| panic!("the clip has no joint {joint}"));
+    let angles = JOINTS.map(angle);
+    let mut timer = SysTick::<CPU_HZ>::new();
+    timer.start(clip.frame_time_ns());
     loop {
-        let mut pulses = [0; 4];
-        for ((pulse, servo), channel) in pulses.iter_mut().zip(&mut servos).zip(channels) {
-            // A joint that the clip lacks stays where it is.
-            let angle = channel.and_then(|channel| player.pose().values.get(channel));
-            *pulse = angle.map_or(servo.pulse(), |angle| servo.follow(*angle));
+        let mut widths = [0; 4];
+        for ((width, servo), angle) in widths.iter_mut().zip(&mut servos).zip(&angles) {
+            *width = servo.follow(angle.at(&player));
         }
-        set(pulses);
-        for _ in 0..ticks.wait(|| {}) {
+        set(widths);
+        for _ in 0..timer.wait(|| {}) {
             player.step();
         }
     }

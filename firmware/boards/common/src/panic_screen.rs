@@ -1,0 +1,82 @@
+//! The screen that shows a panic.
+
+use board_drivers::Display;
+use core::fmt::Write;
+use core::panic::PanicInfo;
+use core::sync::atomic::{AtomicBool, Ordering};
+use embedded_hal::delay::DelayNs;
+use pantin_app::TextScreen;
+use pantin_figure::surface::{Framebuffer, Layout};
+
+/// How long a panic stays on the display.
+const PANIC_SHOW_MS: u32 = 10_000;
+/// The time between two feeds of the watchdog: shorter than any board's watchdog waits.
+const FEED_MS: u32 = 500;
+
+/// What a panic screen needs of a board: a display, a watchdog, and a serial line if there is no other log.
+///
+/// `L` is the layout of the panic screen. It may take less memory than the program's own: after a panic there may be no RAM for a second
+/// large framebuffer.
+pub trait PanicBoard<L: Layout> {
+    /// Shows a framebuffer.
+    fn show(&mut self, framebuffer: &mut Framebuffer<L>);
+
+    /// Feeds the watchdog.
+    fn feed(&mut self);
+
+    /// Sends bytes over the serial line.
+    fn send(&mut self, bytes: &[u8]);
+}
+
+/// A display and a function that feeds the watchdog, without a serial line.
+impl<L: Layout, D: Display<L>, W: FnMut()> PanicBoard<L> for (D, W) {
+    fn show(&mut self, framebuffer: &mut Framebuffer<L>) {
+        self.0.present(framebuffer);
+    }
+
+    fn feed(&mut self) {
+        (self.1)();
+    }
+
+    fn send(&mut self, _: &[u8]) {}
+}
+
+/// Shows a panic on the display of a board, which `set_up` sets up again, for 10 s, and logs it: over the serial line unless the feature
+/// `defmt` is on. It returns at once if it panics itself.
+///
+/// On a Cortex-M interrupts are off: `delay` must not need them.
+pub fn panic_screen<L: Layout, B: PanicBoard<L>>(info: &PanicInfo, set_up: impl FnOnce() -> B, mut delay: impl DelayNs) {
+    static PANICKED: AtomicBool = AtomicBool::new(false);
+    #[cfg(feature = "cortex-m")]
+    cortex_m::interrupt::disable();
+    // Not `swap`: a Cortex-M0 has none.
+    if PANICKED.load(Ordering::Relaxed) {
+        return;
+    }
+    PANICKED.store(true, Ordering::Relaxed);
+    #[cfg(feature = "defmt")]
+    defmt::error!("{}", defmt::Display2Format(info));
+    let mut framebuffer = Framebuffer::new();
+    // Writing on a text screen cannot fail.
+    let _ = write!(TextScreen::new(&mut framebuffer), "{info}");
+    let mut board = set_up();
+    board.show(&mut framebuffer);
+    #[cfg(not(feature = "defmt"))]
+    let _ = write!(SerialText(|text: &str| board.send(text.as_bytes())), "\r\n{info}\r\n");
+    for _ in 0..PANIC_SHOW_MS / FEED_MS {
+        board.feed();
+        delay.delay_ms(FEED_MS);
+    }
+}
+
+/// Text that is sent over a serial line.
+#[cfg(not(feature = "defmt"))]
+struct SerialText<S>(S);
+
+#[cfg(not(feature = "defmt"))]
+impl<S: FnMut(&str)> Write for SerialText<S> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        (self.0)(text);
+        Ok(())
+    }
+}

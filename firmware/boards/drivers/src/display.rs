@@ -1,0 +1,20 @@
+//! The trait of a display.
+
+use pantin_figure::surface::{Framebuffer, Layout};
+
+/// A display that takes framebuffers of the layout `L`.
+///
+/// A function or closure that takes a framebuffer is a display too.
+pub trait Display<L: Layout> {
+    /// Brings the display up to date. Only the windows that [`Framebuffer::send`] returns have changed since the last call.
+    ///
+    /// There is no error to return: a program has nothing better to do than to try again with the next picture.
+    fn present(&mut self, framebuffer: &mut Framebuffer<L>);
+}
+
+impl<L: Layout, F: FnMut(&mut Framebuffer<L>)> Display<L> for F {
+    #[inline(always)]
+    fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
+        self(framebuffer);
+    }
+}

@@ -1,0 +1,14 @@
+//! Drivers for what boards have wired to them, over the traits of `embedded-hal`: the chip's own crate provides the bus.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+mod display;
+pub mod led_matrix;
+pub mod servo;
+pub mod ssd1306;
+pub mod st7789;
+
+pub use display::Display;
+pub use servo::Servo;
+pub use ssd1306::{Mono128x64, Ssd1306};
+pub use st7789::St7789;

@@ -1,0 +1,173 @@
+//! The SSD1306: a monochrome display of 128x64 pixels, over I2C.
+//!
+//! The crate `ssd1306` is not used: over I2C it copies what it sends into transfers of 16 bytes, each with an address and a control byte of
+//! its own. This driver sends each page that changed in one transfer, straight from the framebuffer: 8 bytes and the page's columns.
+
+use crate::Display;
+use embedded_hal::i2c::{I2c, Operation};
+use pantin_figure::surface::{BAND, Framebuffer, Layout, MonoPages, Surface};
+
+/// The layout of the display's memory.
+pub type Mono128x64 = MonoPages<128, 64, 1024>;
+
+/// The I2C address of most modules; a solder bridge changes it to 0x3d.
+pub const ADDRESS: u8 = 0x3c;
+
+/// Control bytes: one command and then another control byte follow; only commands follow; only data follow.
+const ONE_COMMAND: u8 = 0x80;
+const COMMANDS: u8 = 0x00;
+const DATA: u8 = 0x40;
+
+/// Display off, then the data sheet's set-up of a panel of 64 rows with a charge pump, whose connector is above the picture.
+const SET_UP: [u8; 26] = [
+    COMMANDS, 0xae, // display off
+    0xd5, 0x80, 0xa8, 63, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
+    0x8d, 0x14, // charge pump on
+    0x20, 2, // page addressing
+    0xa1, 0xc8, 0xda, 0x12, // columns and rows reversed, row pins
+    0x81, 0xcf, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
+    0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
+];
+const DISPLAY_ON: [u8; 2] = [COMMANDS, 0xaf];
+
+/// The display.
+#[derive(Debug)]
+pub struct Ssd1306<B> {
+    bus: B,
+    address: u8,
+    /// The display is set up and shows what was last sent.
+    ready: bool,
+}
+
+impl<B: I2c> Ssd1306<B> {
+    /// Makes a driver for a display on a bus of at most 400 kHz. Most modules have the address [`ADDRESS`]. Nothing is sent before the first
+    /// picture.
+    pub fn new(bus: B, address: u8) -> Self {
+        Ssd1306 { bus, address, ready: false }
+    }
+
+    /// Sends what changed since the last call. After an error it sets the display up again and sends the whole picture, so that a display
+    /// can be unplugged while the program runs.
+    ///
+    /// # Errors
+    /// The bus failed, or the display did not answer.
+    pub fn show(&mut self, frame: &mut Framebuffer<Mono128x64>) -> Result<(), B::Error> {
+        let sent = self.send(frame);
+        self.ready = sent.is_ok();
+        if !self.ready {
+            frame.mark([0, 0], [Mono128x64::WIDTH as i32 - 1, Mono128x64::HEIGHT as i32 - 1]);
+        }
+        sent
+    }
+
+    fn send(&mut self, frame: &mut Framebuffer<Mono128x64>) -> Result<(), B::Error> {
+        if !self.ready {
+            self.bus.write(self.address, &SET_UP)?;
+        }
+        for window in frame.send() {
+            let (column, page) = (window.columns[0] as u8, (window.rows[0] / BAND) as u8);
+            let head = [ONE_COMMAND, 0xb0 | page, ONE_COMMAND, column & 15, ONE_COMMAND, 0x10 | column >> 4, DATA];
+            for cells in frame.stretches(window) {
+                self.bus.transaction(self.address, &mut [Operation::Write(&head), Operation::Write(cells)])?;
+            }
+        }
+        if !self.ready {
+            // Only now: at power-on the display's memory holds random pixels.
+            self.bus.write(self.address, &DISPLAY_ON)?;
+        }
+        Ok(())
+    }
+}
+
+impl<B: I2c> Display<Mono128x64> for Ssd1306<B> {
+    fn present(&mut self, framebuffer: &mut Framebuffer<Mono128x64>) {
+        // The next picture tries again.
+        let _ = self.show(framebuffer);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics::pixelcolor::BinaryColor;
+    use embedded_hal::i2c::{ErrorKind, ErrorType};
+
+    /// A panel that stores what it was sent, and counts bytes with their addresses.
+    struct Panel {
+        memory: [u8; 1024],
+        lit: bool,
+        bytes: usize,
+        plugged: bool,
+    }
+
+    impl ErrorType for Panel {
+        type Error = ErrorKind;
+    }
+
+    impl I2c for Panel {
+        fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+            assert_eq!(address, ADDRESS);
+            if !self.plugged {
+                return Err(ErrorKind::Bus);
+            }
+            let mut bytes = vec![];
+            for operation in operations {
+                let Operation::Write(part) = operation else { panic!("nothing is read") };
+                bytes.extend_from_slice(part);
+            }
+            self.bytes += 1 + bytes.len();
+            match *bytes {
+                [COMMANDS, ref commands @ ..] => self.lit = commands.last() == Some(&0xaf),
+                [ONE_COMMAND, page, ONE_COMMAND, low, ONE_COMMAND, high, DATA, ref data @ ..] => {
+                    assert!((0xb0..0xb8).contains(&page) && low < 16 && (0x10..0x18).contains(&high));
+                    let at = usize::from(page & 15) * 128 + usize::from(high & 15) * 16 + usize::from(low);
+                    self.memory[at..at + data.len()].copy_from_slice(data);
+                }
+                ref other => panic!("{other:x?}"),
+            }
+            Ok(())
+        }
+    }
+
+    fn panel() -> Ssd1306<Panel> {
+        Ssd1306::new(Panel { memory: [0xaa; 1024], lit: false, bytes: 0, plugged: true }, ADDRESS)
+    }
+
+    fn put(frame: &mut Framebuffer<Mono128x64>, x: i32, y: i32) {
+        frame.mark([x, y], [x, y]);
+        frame.put(Mono128x64::cursor(x as usize, y as usize), BinaryColor::On);
+    }
+
+    #[test]
+    fn the_first_picture_is_sent_whole_and_then_only_changes() {
+        let (mut display, mut frame) = (panel(), Framebuffer::new());
+        put(&mut frame, 0, 0);
+        display.show(&mut frame).unwrap();
+        assert!(display.bus.lit && display.bus.memory == frame.cells());
+        assert_eq!(display.bus.bytes, 27 + 8 * (8 + 128) + 3);
+        for (x, bytes) in [(21, (8 + 1) + (8 + 1)), (28, 8 + 8)] {
+            frame.clear();
+            put(&mut frame, x, 17);
+            display.bus.bytes = 0;
+            display.show(&mut frame).unwrap();
+            assert_eq!(display.bus.memory, frame.cells());
+            assert_eq!(display.bus.bytes, bytes, "one transfer for the columns of the page that changed");
+        }
+    }
+
+    #[test]
+    fn a_display_that_was_unplugged_shows_everything_again() {
+        let (mut display, mut frame) = (panel(), Framebuffer::new());
+        put(&mut frame, 5, 5);
+        display.show(&mut frame).unwrap();
+        display.bus.plugged = false;
+        frame.clear();
+        put(&mut frame, 6, 40);
+        assert_eq!(display.show(&mut frame), Err(ErrorKind::Bus));
+        display.bus = panel().bus;
+        frame.clear();
+        put(&mut frame, 7, 7);
+        display.show(&mut frame).unwrap();
+        assert!(display.bus.lit && display.bus.memory == frame.cells());
+    }
+}

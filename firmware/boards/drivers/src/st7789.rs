@@ -1,0 +1,245 @@
+//! The ST7789: a colour display of 240x240 pixels, over SPI. The crate `mipidsi` sets it up and encodes its commands. This driver sends the
+//! rows that changed itself, because `mipidsi` takes pixels one by one, which takes a small processor twice as long.
+//!
+//! The framebuffer may have any layout whose pixels convert to RGB565: `Rgb565Rows<240, 240, 28800>` takes 115,200 bytes and distinguishes
+//! left and right limbs by hue, `Gray4Rows<240, 240, 7200>` takes a quarter of that, `MonoPages<240, 240, 7200>` a sixteenth.
+
+use crate::Display;
+use core::fmt::Debug;
+use embedded_graphics::pixelcolor::Rgb565;
+use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::spi::SpiDevice;
+use mipidsi::Builder;
+use mipidsi::dcs::{InterfaceExt, SetColumnAddress, SetPageAddress, WriteMemoryStart};
+use mipidsi::interface::{Interface, InterfaceKind};
+use mipidsi::models::ST7789;
+use mipidsi::options::ColorInversion;
+use pantin_figure::surface::{Cursor, Framebuffer, Layout, Window};
+
+/// The number of columns, and of rows.
+pub const SIDE: usize = 240;
+
+/// An error of the display's bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error<S, D> {
+    /// SPI failed.
+    Bus(S),
+    /// The data/command pin failed.
+    Pin(D),
+}
+
+/// The bus, and a pin that is high for data. `mipidsi` has the same, but borrows a buffer of pixels as long as the display lives.
+#[derive(Debug)]
+struct Wires<S, D> {
+    bus: S,
+    data: D,
+}
+
+impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> Interface for Wires<S, D> {
+    type Word = u8;
+    type Error = Error<S::Error, D::Error>;
+    const KIND: InterfaceKind = InterfaceKind::Serial4Line;
+
+    fn send_command(&mut self, command: u8, arguments: &[u8]) -> Result<(), Self::Error> {
+        self.data.set_low().map_err(Error::Pin)?;
+        self.bus.write(&[command]).map_err(Error::Bus)?;
+        self.data.set_high().map_err(Error::Pin)?;
+        self.bus.write(arguments).map_err(Error::Bus)
+    }
+
+    fn send_pixels<const N: usize>(&mut self, pixels: impl IntoIterator<Item = [u8; N]>) -> Result<(), Self::Error> {
+        pixels.into_iter().try_for_each(|pixel| self.bus.write(&pixel).map_err(Error::Bus))
+    }
+
+    fn send_repeated_pixel<const N: usize>(&mut self, pixel: [u8; N], count: u32) -> Result<(), Self::Error> {
+        self.send_pixels((0..count).map(|_| pixel))
+    }
+}
+
+/// The display.
+#[derive(Debug)]
+pub struct St7789<S, D>(Wires<S, D>);
+
+impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<S, D> {
+    /// Sets the display up, which takes about 330 ms. The bus has at most 62.5 MHz and SPI mode 0, or mode 3 if the panel has no chip select;
+    /// `data` is the data/command pin. Returns `None` if bus or pin fails.
+    pub fn new(bus: S, data: D, delay: &mut impl DelayNs) -> Option<Self> {
+        // IPS panels show inverted colours by default.
+        let builder = Builder::new(ST7789, Wires { bus, data }).invert_colors(ColorInversion::Inverted);
+        let display = builder.display_size(SIDE as u16, SIDE as u16).init(delay).ok()?;
+        Some(St7789(display.release().0))
+    }
+
+    /// Sends what changed since the last call.
+    ///
+    /// # Errors
+    /// Bus or pin failed; the pixels not sent are lost until they change again.
+    pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Framebuffer<L>) -> Result<(), Error<S::Error, D::Error>> {
+        const { assert!(L::WIDTH == SIDE && L::HEIGHT == SIDE) };
+        let mut buffer = [[0; 2]; SIDE];
+        for Window { columns: [left, right], rows: [top, bottom] } in frame.send() {
+            self.0.write_command(SetColumnAddress::new(left as u16, right as u16))?;
+            self.0.write_command(SetPageAddress::new(top as u16, bottom as u16))?;
+            self.0.write_command(WriteMemoryStart)?;
+            let row = buffer.get_mut(left..=right).unwrap_or_default();
+            for y in top..=bottom {
+                encode::<L>(frame.cells(), L::cursor(left, y), row);
+                self.0.bus.write(row.as_flattened()).map_err(Error::Bus)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Encodes pixels from a cursor to the right as the display takes them: RGB565, high byte first.
+#[inline(never)]
+fn encode<L: Layout<Ink: Into<Rgb565>>>(cells: &[L::Cell], mut cursor: L::Cursor, row: &mut [[u8; 2]]) {
+    for pixel in row {
+        let ink: Rgb565 = L::get(cells, cursor).into();
+        *pixel = RawU16::from(ink).into_inner().to_be_bytes();
+        cursor.across(true);
+    }
+}
+
+impl<L, S, D> Display<L> for St7789<S, D>
+where
+    L: Layout<Ink: Into<Rgb565>>,
+    S: SpiDevice<Error: Debug>,
+    D: OutputPin<Error: Debug>,
+{
+    fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
+        // What is lost is sent when it changes again.
+        let _ = self.show(framebuffer);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics::pixelcolor::{BinaryColor, Gray4, RgbColor};
+    use embedded_hal::spi::Operation;
+    use pantin_figure::surface::{Gray4Rows, MonoPages, Rgb565Rows, Surface};
+    use std::cell::RefCell;
+    use std::convert::Infallible;
+
+    /// A panel that keeps what it was sent.
+    struct Panel {
+        memory: Vec<u16>,
+        data: bool,
+        command: u8,
+        arguments: Vec<u8>,
+        commands: Vec<u8>,
+        /// First and last column, and row, of the window.
+        ends: [[usize; 2]; 2],
+        pixels: usize,
+    }
+
+    impl Panel {
+        fn new() -> Self {
+            let memory = vec![0x5a5a; SIDE * SIDE];
+            Panel { memory, data: false, command: 0, arguments: vec![], commands: vec![], ends: [[0; 2]; 2], pixels: 0 }
+        }
+
+        fn take(&mut self, byte: u8) {
+            if !self.data {
+                (self.command, self.arguments) = (byte, vec![]);
+                self.commands.push(byte);
+                self.pixels = if byte == 0x2c { 0 } else { self.pixels };
+                return;
+            }
+            self.arguments.push(byte);
+            match (self.command, &*self.arguments) {
+                (0x2a, &[a, b, c, d]) => self.window(0, [a, b, c, d]),
+                (0x2b, &[a, b, c, d]) => self.window(1, [a, b, c, d]),
+                (0x2c, &[high, low]) => {
+                    let [[left, right], [top, bottom]] = self.ends;
+                    let wide = right - left + 1;
+                    let (x, y) = (left + self.pixels % wide, top + self.pixels / wide);
+                    assert!(y <= bottom, "more pixels than the window has");
+                    self.memory[y * SIDE + x] = u16::from_be_bytes([high, low]);
+                    self.pixels += 1;
+                    self.arguments = vec![];
+                }
+                _ => {}
+            }
+        }
+
+        fn window(&mut self, axis: usize, [a, b, c, d]: [u8; 4]) {
+            self.ends[axis] = [[a, b], [c, d]].map(|end| u16::from_be_bytes(end).into());
+        }
+    }
+
+    /// The bus, and the pin: both ends of one panel.
+    struct Bus<'a>(&'a RefCell<Panel>);
+    struct Pin<'a>(&'a RefCell<Panel>);
+
+    impl embedded_hal::spi::ErrorType for Bus<'_> {
+        type Error = Infallible;
+    }
+
+    impl SpiDevice for Bus<'_> {
+        fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+            for operation in operations {
+                let Operation::Write(bytes) = operation else { panic!("nothing is read") };
+                bytes.iter().for_each(|byte| self.0.borrow_mut().take(*byte));
+            }
+            Ok(())
+        }
+    }
+
+    impl embedded_hal::digital::ErrorType for Pin<'_> {
+        type Error = Infallible;
+    }
+
+    impl OutputPin for Pin<'_> {
+        fn set_low(&mut self) -> Result<(), Infallible> {
+            self.0.borrow_mut().data = false;
+            Ok(())
+        }
+
+        fn set_high(&mut self) -> Result<(), Infallible> {
+            self.0.borrow_mut().data = true;
+            Ok(())
+        }
+    }
+
+    struct NoTime;
+
+    impl DelayNs for NoTime {
+        fn delay_ns(&mut self, _: u32) {}
+    }
+
+    /// Shows three pictures of moving squares, and compares the panel's memory with each.
+    fn shows<L: Layout<Ink: Into<Rgb565>>>(ink: L::Ink) {
+        let panel = RefCell::new(Panel::new());
+        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut NoTime).unwrap();
+        assert!(panel.borrow().commands.ends_with(&[0x29]), "it is on");
+        let mut frame = Box::new(Framebuffer::<L>::new());
+        for at in [0, 100, 220] {
+            frame.clear();
+            frame.mark([at, at], [at + 19, at + 19]);
+            for (x, y) in (0..20).flat_map(|y| (0..20).map(move |x| (at + x, at + y))) {
+                frame.put(L::cursor(x as usize, y as usize), ink);
+            }
+            panel.borrow_mut().commands.clear();
+            display.show(&mut frame).unwrap();
+            for (index, &shown) in panel.borrow().memory.iter().enumerate() {
+                let pixel: Rgb565 = frame.pixel(index % SIDE, index / SIDE).into();
+                assert_eq!(shown, RawU16::from(pixel).into_inner(), "pixel {index} at {at}");
+            }
+        }
+        let windows = panel.borrow().commands.iter().filter(|&&command| command == 0x2c).count();
+        assert_eq!(windows, 3 + 3, "20 rows from 100 and 20 from 220 touch three bands each");
+    }
+
+    #[test]
+    fn colours_greys_and_light_are_shown_as_they_are() {
+        shows::<Rgb565Rows<240, 240, 28800>>(Rgb565::new(31, 5, 30));
+        shows::<Gray4Rows<240, 240, 7200>>(Gray4::new(9));
+        shows::<MonoPages<240, 240, 7200>>(BinaryColor::On);
+        assert_eq!(Rgb565::from(Gray4::new(15)), Rgb565::WHITE);
+        assert_eq!(Rgb565::from(BinaryColor::On), Rgb565::WHITE);
+    }
+}

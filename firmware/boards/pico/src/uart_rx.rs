@@ -1,0 +1,24 @@
+//! The serial line's receive interrupt.
+#![allow(unsafe_code)]
+
+use board_common::uart_rx;
+use cortex_m::peripheral::NVIC;
+use rp2040_hal::pac::{Interrupt, UART0, interrupt};
+use rp2040_hal::uart::{Enabled, UartPeripheral, ValidUartPinout};
+
+/// Enables the interrupt.
+pub fn listen<P: ValidUartPinout<UART0>>(mut serial: UartPeripheral<Enabled, UART0, P>) -> UartPeripheral<Enabled, UART0, P> {
+    serial.enable_rx_interrupt();
+    // Safety: no critical section relies on this interrupt's mask.
+    unsafe { NVIC::unmask(Interrupt::UART0_IRQ) };
+    serial
+}
+
+#[interrupt]
+fn UART0_IRQ() {
+    // Safety: nothing else reads the data register.
+    let uart = unsafe { &*UART0::PTR };
+    while uart.uartfr().read().rxfe().bit_is_clear() {
+        uart_rx::push(uart.uartdr().read().data().bits());
+    }
+}
