@@ -12,6 +12,7 @@ mod memory;
 mod pico;
 mod pico_update;
 mod qemu;
+mod shape;
 mod sizes;
 mod update;
 mod vectors;
