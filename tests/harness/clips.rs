@@ -17,7 +17,7 @@ pub fn feature(clips: &[&Path]) -> Result<&'static str> {
     for path in clips {
         let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         let clip = Clip::new_checked(&bytes).map_err(|error| anyhow::anyhow!("{}: {error}", path.display()))?;
-        if Binding::of(&clip.rig(), &model).is_face() {
+        if Binding::new(&clip.rig(), &model).is_face() {
             return Ok("face");
         }
     }

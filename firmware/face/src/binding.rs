@@ -1,102 +1,109 @@
-//! Which of a clip's scalars drive which shapes: found by name once, then a multiplication and a shift each.
+//! Binds the scalars of a clip to the shapes of a face: by name once, then one multiplication and one shift for each in every frame.
 
-use crate::model::{Model, Name, Target};
-use crate::morph::Weights;
-use crate::{BINDINGS, FULL};
+use crate::model::{Model, NameEntry};
+use crate::target::Target;
+use crate::weights::{Weights, shifted};
 use heapless::Vec;
 use pantin::{Rig, Scalars};
 
-/// One scalar that drives one shape.
+/// A scalar that drives a shape.
 #[derive(Clone, Copy, Debug)]
 struct Drive {
-    /// As bytes: a list of these is long, and would have holes.
+    /// The channel of a pose, as bytes: as a `u16` it would cost a byte of padding in each of many entries.
     channel: [u8; 2],
-    /// The shape, and which of its weights, as the model's names have them.
     target: Target,
     mantissa: i8,
     shift: i8,
 }
 
-/// How a clip drives a face.
+/// Maximum number of shapes that the scalars of a clip drive together; a scalar may drive several.
+pub const BINDINGS: usize = 80;
+
+/// Which scalars of a clip drive which shapes of a face.
+///
+/// ```
+/// # fn play(clip: pantin::Clip) -> Result<(), Box<dyn core::error::Error>> {
+/// use pantin_face::{Binding, MODEL, Model, Morph, VERTICES, Weights};
+///
+/// let model = Model::new_checked(MODEL)?;
+/// let mut morph = Morph::<VERTICES>::new(&model)?;
+/// let mut weights = Weights::new();
+/// let binding = Binding::new(&clip.rig(), &model);
+/// # let (mut states, mut pose) = (vec![pantin::ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]);
+/// let player = pantin::Player::new(clip, &mut states, &mut pose)?;
+/// // In every frame:
+/// binding.read(player.pose(), &mut weights);
+/// morph.apply(&model, &weights);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Binding {
     drives: Vec<Drive, BINDINGS>,
-    names: u16,
+    driving: u16,
     scalars: u16,
 }
 
-/// A clip with so many known names is a face whatever else it holds.
-const FEW: u16 = 3;
+/// A clip with this many scalars that drive a face is a face, whatever else it holds.
+const SUFFICIENT: u16 = 3;
 
 impl Binding {
-    /// Nothing.
-    pub const EMPTY: Binding = Binding { drives: Vec::new(), names: 0, scalars: 0 };
+    /// A binding of no scalars, for [`Binding::set_up`].
+    pub const EMPTY: Binding = Binding { drives: Vec::new(), driving: 0, scalars: 0 };
 
-    /// Looks up the names of `rig`'s scalars among those that `model` knows. What finds no room is left out.
+    /// Binds the scalars of `rig` whose names `model` has. Bindings beyond [`BINDINGS`] are dropped.
     #[inline(always)]
-    pub fn of(rig: &Rig, model: &Model) -> Binding {
+    pub fn new(rig: &Rig, model: &Model) -> Binding {
         let mut binding = Binding::EMPTY;
         binding.set_up(rig, model);
         binding
     }
 
-    /// The same, where nothing was bound: as [`crate::Morph::set_up`].
+    /// Binds in place, where nothing was bound before: [`Binding::new`] may copy its result, for which a small machine may have no RAM.
     #[inline(never)]
     pub fn set_up(&mut self, rig: &Rig, model: &Model) {
-        self.bind(rig.scalars(), rig.joint_channels(), model);
+        self.bind_scalars(rig.scalars(), rig.joint_channels(), model);
     }
 
-    /// The same for scalars of which the first is channel `first`.
+    /// Binds scalars of which the first is channel `first` of a pose.
     #[inline(always)]
-    pub fn bind(&mut self, scalars: Scalars, first: usize, model: &Model) {
+    pub fn bind_scalars(&mut self, scalars: Scalars, first: usize, model: &Model) {
         for (index, scalar) in scalars.enumerate() {
             let wanted = scalar.name_hash();
             let mut known = false;
-            for name in model.names().filter(|name| name.hash == wanted) {
+            for entry in model.name_entries().filter(|entry| entry.hash == wanted) {
                 known = true;
                 let channel = ((first + index) as u16).to_le_bytes();
-                let shift = scalar.exponent.saturating_add(name.exponent);
-                let Name { target, mantissa, .. } = name;
+                let shift = scalar.exponent.saturating_add(entry.exponent);
+                let NameEntry { target, mantissa, .. } = entry;
                 let _ = self.drives.push(Drive { channel, target, mantissa, shift });
             }
-            self.names += u16::from(known);
+            self.driving += u16::from(known);
             self.scalars += 1;
         }
     }
 
-    /// Number of the clip's scalars that drive something.
-    pub fn names(&self) -> usize {
-        usize::from(self.names)
+    /// Number of scalars that drive the face.
+    pub fn driving(&self) -> usize {
+        usize::from(self.driving)
     }
 
-    /// Whether the clip is a face: a few of its scalars drive one, or all of them. A lone name among others may mean anything.
+    /// Whether the clip is a face: three of its scalars drive one, or all of them. A single name among others may mean something else.
     pub fn is_face(&self) -> bool {
-        self.names >= FEW || (self.names > 0 && self.names == self.scalars)
+        self.driving >= SUFFICIENT || (self.driving > 0 && self.driving == self.scalars)
     }
 
-    /// The weights of a pose.
-    pub fn weigh(&self, pose: &[i32], weights: &mut Weights) {
+    /// Sets `weights` to those of `pose`, the values of a player. Weights that no scalar drives become 0.
+    pub fn read(&self, pose: &[i32], weights: &mut Weights) {
         weights.clear();
         for drive in &self.drives {
             let raw = pose.get(usize::from(u16::from_le_bytes(drive.channel))).map_or(0, |raw| raw >> 16);
             if raw == 0 {
                 continue;
             }
-            // 2^15 times 2^7. What is below nothing in the end is nothing: two opposites may share a channel.
+            // 2^15 times 2^7. Negative sums are raised to 0 later: two opposite units may share a channel.
             let value = shifted(raw * i32::from(drive.mantissa), drive.shift);
-            weights.add(drive.target, value);
+            weights.add_to(drive.target, value);
         }
     }
-}
-
-/// Within two whole weights.
-#[inline(always)]
-fn shifted(value: i32, shift: i8) -> i32 {
-    let value = match shift {
-        ..-30 => 0,
-        -30..0 => value >> -i32::from(shift),
-        0..8 => value << shift,
-        _ => value.signum() * 2 * FULL,
-    };
-    value.clamp(-2 * FULL, 2 * FULL)
 }

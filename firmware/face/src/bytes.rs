@@ -1,43 +1,43 @@
 //! A cursor over a model's bytes.
 
-use crate::model::Error;
+use crate::error::ModelError;
 
 /// Reads fields from the front of a slice; numbers are little-endian.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bytes<'a>(pub &'a [u8]);
 
 impl<'a> Bytes<'a> {
-    pub fn take(&mut self, len: usize) -> Result<&'a [u8], Error> {
-        let (head, rest) = self.0.split_at_checked(len).ok_or(Error::Truncated)?;
+    pub fn take(&mut self, len: usize) -> Result<&'a [u8], ModelError> {
+        let (head, rest) = self.0.split_at_checked(len).ok_or(ModelError::Truncated)?;
         self.0 = rest;
         Ok(head)
     }
 
-    pub fn byte(&mut self) -> Result<u8, Error> {
+    pub fn u8(&mut self) -> Result<u8, ModelError> {
         self.array().map(|[byte]| byte)
     }
 
-    pub fn short(&mut self) -> Result<u16, Error> {
+    pub fn u16(&mut self) -> Result<u16, ModelError> {
         self.array().map(u16::from_le_bytes)
     }
 
-    pub fn number(&mut self) -> Result<i16, Error> {
+    pub fn i16(&mut self) -> Result<i16, ModelError> {
         self.array().map(i16::from_le_bytes)
     }
 
-    pub fn array<const N: usize>(&mut self) -> Result<[u8; N], Error> {
-        let (head, rest) = self.0.split_first_chunk().ok_or(Error::Truncated)?;
+    pub fn array<const N: usize>(&mut self) -> Result<[u8; N], ModelError> {
+        let (head, rest) = self.0.split_first_chunk().ok_or(ModelError::Truncated)?;
         self.0 = rest;
         Ok(*head)
     }
 
-    /// A vertex's index, of one byte or two.
-    pub fn index(&mut self, wide: bool) -> Result<u16, Error> {
-        if wide { self.short() } else { self.byte().map(u16::from) }
+    /// Reads the index of a vertex: two bytes where `wide`, else one.
+    pub fn index(&mut self, wide: bool) -> Result<u16, ModelError> {
+        if wide { self.u16() } else { self.u8().map(u16::from) }
     }
 }
 
-/// Indices of vertices, each of one byte or two.
+/// Walks indices of vertices: two bytes each where `wide`, else one.
 #[inline(always)]
 pub(crate) fn indices(bytes: &[u8], wide: bool) -> impl Iterator<Item = u16> + '_ {
     bytes.chunks_exact(1 << u32::from(wide)).map(|bytes| match *bytes {

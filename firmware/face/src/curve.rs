@@ -1,7 +1,8 @@
-//! Curves on the face that are drawn: brows, lids, lips.
+//! Curves that are drawn on the face: brows, lids, lips.
 
 use crate::bytes::{Bytes, indices};
-use crate::model::{Error, Model};
+use crate::counts::Counts;
+use crate::error::ModelError;
 
 /// A curve through vertices.
 #[derive(Clone, Copy, Debug)]
@@ -10,23 +11,23 @@ pub struct Curve<'a> {
     pub closed: bool,
     /// Whether its mirror image is drawn too.
     pub mirrored: bool,
-    /// From which size on it is drawn: 0 always.
+    /// The lowest detail, 0 to 3, at which it is drawn: details 1, 2 and 3 apply to faces of at least 96, 150 and 190 pixels.
     pub detail: u8,
-    /// Whether the smallest displays alone draw it: in place of one with more vertices.
+    /// Whether it is drawn at detail 0 only, in place of a curve with more vertices.
     pub small: bool,
-    /// Whether it has corners at its vertices on displays of any size.
+    /// Whether it consists of straight lines at every detail. Other curves bend from detail 1 on.
     pub straight: bool,
-    /// Brightness.
+    /// Brightness, 0 to 255.
     pub shade: u8,
     indices: &'a [u8],
     wide: bool,
 }
 
 impl<'a> Curve<'a> {
-    fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, Error> {
+    fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, ModelError> {
         let [flags, shade, count] = bytes.array()?;
         if flags >> 6 != 0 || count < 2 {
-            return Err(Error::Malformed);
+            return Err(ModelError::Malformed);
         }
         Ok(Curve {
             closed: flags & 1 != 0,
@@ -40,9 +41,9 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// Whether it is drawn on displays of some detail.
+    /// Whether it is drawn at `detail`.
     #[inline(always)]
-    pub(crate) fn drawn(&self, detail: u8) -> bool {
+    pub(crate) fn is_drawn(&self, detail: u8) -> bool {
         self.detail <= detail && !(self.small && detail > 0)
     }
 
@@ -51,22 +52,22 @@ impl<'a> Curve<'a> {
         self.indices.len() >> u32::from(self.wide)
     }
 
-    /// Never.
+    /// Returns `false`: a curve has at least 2 vertices.
     pub fn is_empty(&self) -> bool {
         self.indices.is_empty()
     }
 
-    /// A vertex of it.
+    /// The index of its vertex at `position`.
     #[inline]
-    pub(crate) fn vertex(&self, place: usize) -> u16 {
+    pub(crate) fn vertex(&self, position: usize) -> u16 {
         if self.wide {
-            self.indices.as_chunks().0.get(place).map_or(0, |&bytes| u16::from_le_bytes(bytes))
+            self.indices.as_chunks().0.get(position).map_or(0, |&bytes| u16::from_le_bytes(bytes))
         } else {
-            self.indices.get(place).map_or(0, |&byte| u16::from(byte))
+            self.indices.get(position).map_or(0, |&byte| u16::from(byte))
         }
     }
 
-    /// Its vertices.
+    /// Walks the indices of its vertices.
     #[inline(always)]
     pub fn vertices(&self) -> impl Iterator<Item = u16> + '_ {
         indices(self.indices, self.wide)
@@ -85,13 +86,13 @@ impl<'a> Curves<'a> {
         Curves { bytes: Bytes(bytes), wide }
     }
 
-    pub(crate) fn check(bytes: &mut Bytes<'a>, count: u8, model: &Model) -> Result<(), Error> {
+    pub(crate) fn check(bytes: &mut Bytes<'a>, count: u8, counts: &Counts) -> Result<(), ModelError> {
         for _ in 0..count {
-            let curve = Curve::parse(bytes, model.wide)?;
+            let curve = Curve::parse(bytes, counts.wide)?;
             for index in curve.vertices() {
-                model.check_index(index)?;
-                if curve.mirrored && usize::from(index) >= model.middles() + model.pairs() {
-                    return Err(Error::Malformed);
+                counts.check_index(index)?;
+                if curve.mirrored && usize::from(index) >= counts.middles() + counts.pairs() {
+                    return Err(ModelError::Malformed);
                 }
             }
         }

@@ -1,44 +1,93 @@
-//! From weights to a wireframe face: a model checked once, its units added and turned in fixed point, a camera, lines.
-//! No heap, no float, no product wider than 32 bits, no division.
+//! Draws a wireframe face from weights of its action units, in fixed point: sparse morphs, rotations, a camera, lines. There is no heap, no
+//! float, no product wider than 32 bits and no division per vertex.
 //!
-//! ```text
-//! Model::new_checked(bytes)   the face in flash (MODEL.md): points, curves, shapes, names
-//! Binding::of(rig, model)     which of a clip's scalars drive which shapes, by name, once
-//! Binding::weigh(pose)        a frame: scalars -> Weights
-//! Morph::place(model, weights)         -> vertices
-//! Look::project(model, morph)          -> places on the display
-//! Look::lines(model, |line| ..)        -> lines, the bright ones last
+//! # Which type do I want?
+//!
+//! | task | type |
+//! |---|---|
+//! | the face itself | [`MODEL`], checked by [`Model::new_checked`] |
+//! | weights by name, such as `"smile"` or ARKit's `"jawOpen"` | [`Weights::set`]; [`NAMES`] lists the names |
+//! | weights from a clip of the `pantin` crate | [`Binding`] |
+//! | from weights to vertices | [`Morph`] |
+//! | from vertices to a display | [`FaceRenderer`], seen from a [`FaceView`] |
+//! | what the model consists of | [`curve`], [`shape`], [`model`] |
+//!
+//! A picture takes three calls: [`Morph::apply`], [`FaceRenderer::project`], [`FaceRenderer::draw`].
+//!
 //! ```
+//! use embedded_graphics::{mock_display::MockDisplay, pixelcolor::BinaryColor};
+//! use pantin_face::{FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES, Weight, Weights};
+//! use pantin_figure::Canvas;
+//!
+//! # let mut display = MockDisplay::<BinaryColor>::new();
+//! # display.set_allow_overdraw(true);
+//! // Any `DrawTarget` of embedded-graphics whose colour is `BinaryColor`, `Gray4`, `Gray8`, `Rgb565` or `Rgb888`.
+//! let display: &mut MockDisplay<BinaryColor> = &mut display;
+//!
+//! let model = Model::new_checked(MODEL)?;
+//! let mut morph = Morph::<VERTICES>::new(&model)?;
+//! let mut renderer = FaceRenderer::<VERTICES>::new(&model, Canvas { width: 64, height: 64 }, FaceView::default());
+//!
+//! let mut weights = Weights::new();
+//! weights.set(&model, "jawOpen", Weight::lit("0.5"))?;
+//! weights.set(&model, "blink_left", Weight::ONE)?;
+//!
+//! morph.apply(&model, &weights);
+//! renderer.project(&model, &morph);
+//! renderer.draw(&model, display)?;
+//! # assert_ne!(display.affected_area().size.height, 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! On small machines make the large values in a `static` or in place: `Morph::EMPTY` and [`Morph::set_up`], `FaceRenderer::EMPTY` and
+//! [`FaceRenderer::set_up`]. With [`VERTICES`] a morph takes 1,316 bytes of RAM, a renderer 1,616.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-mod aperture;
-pub mod binding;
+mod binding;
 mod bytes;
+mod camera;
+mod counts;
+mod crossing;
 pub mod curve;
+mod error;
+mod format;
 pub mod model;
-pub mod morph;
+mod morph;
+mod opening;
+mod opening_clip;
 mod outline;
 mod pen;
 mod projection;
-pub mod renderer;
+mod renderer;
+mod rotate;
 pub mod shape;
 mod strokes;
-mod turn;
+mod target;
+mod vertex;
+mod weights;
 
-pub use binding::Binding;
-pub use model::{Error, Model, Target};
-pub use morph::{Morph, Weights};
-pub use renderer::{FaceRenderer, View};
+pub use binding::{BINDINGS, Binding};
+pub use camera::FaceView;
+pub use error::{ModelError, UnknownName};
+pub use fixed;
+pub use model::{Model, NameEntry, SHAPES};
+pub use morph::Morph;
+pub use renderer::FaceRenderer;
+pub use target::Target;
+pub use vertex::Vertex;
+pub use weights::{FULL_WEIGHT, Weight, Weights};
 
-/// Pantin's own face, as [`Model::new_checked`] takes it. `pantin face model` writes it; docs/FACE.md lists its units.
+/// The model of Pantin's own face, for [`Model::new_checked`]. `pantin face model` writes it; docs/FACE.md describes its units.
 pub static MODEL: &[u8] = include_bytes!("../face.model");
 
-/// Most vertices of Pantin's own face; other models take more room.
+/// The names that drive Pantin's own face, one per line: its units, sums of units such as `joy` and `viseme_aa`, the blend shapes of ARKit and
+/// the facial animation parameters of MPEG-4. docs/FACE.md explains them.
+///
+/// ```
+/// assert!(pantin_face::NAMES.lines().any(|name| name == "smile_left"));
+/// ```
+pub static NAMES: &str = include_str!("../face.names");
+
+/// Number of vertices for which [`Morph`] and [`FaceRenderer`] need space to hold Pantin's own face (it has 215). Other models may need more.
 pub const VERTICES: usize = 216;
-/// Most shapes of a model.
-pub const SHAPES: usize = 48;
-/// Most names of a clip that drive a face.
-pub const BINDINGS: usize = 80;
-/// A whole weight: Q15.
-pub const FULL: i32 = 1 << 15;

@@ -1,293 +1,188 @@
-//! A face's bytes (MODEL.md), checked once: afterwards nothing can fail.
+//! A face model's bytes ([MODEL.md](https://docs.rs/crate/pantin-face/latest/source/MODEL.md)), checked once: afterwards no operation can fail.
 
-use crate::SHAPES;
 use crate::bytes::Bytes;
+use crate::counts::{Counts, Image};
 use crate::curve::Curves;
+use crate::opening::Opening;
 use crate::shape::Shapes;
+use crate::target::Target;
+
+pub use crate::error::ModelError;
+pub use crate::format::{NAME_LEN, NO_SHAPE, SHAPES, VERSION, WIDE};
 pub use pantin::names::hash;
 
-/// The only version.
-pub const VERSION: u8 = 1;
-/// Flag: indices of vertices take two bytes.
-pub const WIDE: u8 = 1;
-/// Bytes of one entry of the name table.
-pub const NAME_LEN: usize = 7;
-/// Stands for no shape.
-pub const NO_SHAPE: u8 = 0xff;
-
-/// Why bytes are no model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Error {
-    /// They end early.
-    Truncated,
-    /// A version that this reader does not know.
-    UnsupportedVersion(u8),
-    /// They contradict themselves.
-    Malformed,
-    /// More vertices than there is room for.
-    TooManyVertices {
-        /// The room.
-        most: usize,
-    },
-}
-
-impl core::fmt::Display for Error {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        match self {
-            Error::Truncated => write!(f, "the face model ends early"),
-            Error::UnsupportedVersion(version) => write!(f, "face model of version {version}; this reader knows {VERSION}"),
-            Error::Malformed => write!(f, "the face model contradicts itself"),
-            Error::TooManyVertices { most } => write!(f, "the face model has more than {most} vertices"),
-        }
-    }
-}
-
-impl core::error::Error for Error {}
-
-/// A checked model.
+/// A checked model: vertices, curves, shapes and the hashes of the names that drive the shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a> {
-    pub(crate) wide: bool,
+    pub(crate) counts: Counts,
     step_exponent: i8,
-    middles: u16,
-    pairs: u16,
-    moving: [u16; 2],
     outline: u16,
     pub(crate) points: &'a [u8],
     pub(crate) normals: &'a [u8],
     pub(crate) triangles: &'a [u8],
     pub(crate) fixed: &'a [u8],
     curves: &'a [u8],
-    pub(crate) apertures: &'a [u8],
+    pub(crate) openings: &'a [u8],
     shapes: &'a [u8],
-    shape_count: u8,
     names: &'a [u8],
 }
 
 impl<'a> Model<'a> {
-    /// Checks `bytes`, all of them one model.
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, Error> {
+    /// Checks `bytes`, which must be exactly one model. Returns an error if they are truncated, have an unknown version, or contradict
+    /// themselves.
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, ModelError> {
         let mut bytes = Bytes(bytes);
-        let version = bytes.byte()?;
+        let version = bytes.u8()?;
         if version != VERSION {
-            return Err(Error::UnsupportedVersion(version));
+            return Err(ModelError::UnsupportedVersion(version));
         }
-        let flags = bytes.byte()?;
-        let step_exponent = bytes.byte()? as i8;
-        let [middles, pairs, moving_middles, moving_pairs] = [(); 4].map(|()| bytes.short());
+        let flags = bytes.u8()?;
+        let step_exponent = bytes.u8()? as i8;
+        let [middles, pairs, moving_middles, moving_pairs] = [(); 4].map(|()| bytes.u16());
         let (middles, pairs, moving) = (middles?, pairs?, [moving_middles?, moving_pairs?]);
-        let [triangles, outline, names] = [(); 3].map(|()| bytes.short());
+        let [triangles, outline, names] = [(); 3].map(|()| bytes.u16());
         let (triangles, outline, names) = (triangles?, outline?, names?);
-        let [fixed, curves, apertures, shape_count] = bytes.array()?;
-        let wide = flags & WIDE != 0;
-        let vertices = usize::from(middles) + 2 * usize::from(pairs);
+        let [fixed, curves, openings, shapes] = bytes.array()?;
+        let counts = Counts { wide: flags & WIDE != 0, middles, pairs, moving, shapes };
+        let wide = counts.wide;
+        let vertices = counts.vertices();
         let stored = usize::from(middles) + usize::from(pairs);
         if flags & !WIDE != 0 || vertices > if wide { 1 << 15 } else { 1 << 8 } || vertices == 0 || outline > triangles {
-            return Err(Error::Malformed);
+            return Err(ModelError::Malformed);
         }
         if moving[0] > middles || moving[1] > pairs {
-            return Err(Error::Malformed);
+            return Err(ModelError::Malformed);
         }
-        if usize::from(shape_count) > SHAPES || !(-24..=24).contains(&step_exponent) {
-            return Err(Error::Malformed);
+        if usize::from(shapes) > SHAPES || !(-24..=24).contains(&step_exponent) {
+            return Err(ModelError::Malformed);
         }
         let width = 1 + usize::from(wide);
         let mut model = Model {
-            wide,
+            counts,
             step_exponent,
-            middles,
-            pairs,
-            moving,
             outline,
             points: bytes.take(stored * 6)?,
             normals: bytes.take(stored * 3)?,
             triangles: bytes.take(usize::from(triangles) * 3 * width)?,
             fixed: bytes.take(usize::from(fixed) * width)?,
             curves: &[],
-            apertures: &[],
+            openings: &[],
             shapes: &[],
-            shape_count,
             names: &[],
         };
-        model.check_stored(model.triangles)?;
-        model.check_indices(model.fixed)?;
-        model.curves = consumed(&mut bytes, |bytes| Curves::check(bytes, curves, &model))?;
-        model.apertures = consumed(&mut bytes, |bytes| crate::aperture::check(bytes, apertures, &model))?;
-        model.shapes = consumed(&mut bytes, |bytes| Shapes::check(bytes, &model))?;
+        counts.check_stored(model.triangles)?;
+        counts.check_indices(model.fixed)?;
+        model.curves = consumed(&mut bytes, |bytes| Curves::check(bytes, curves, &counts))?;
+        model.openings = consumed(&mut bytes, |bytes| Opening::check(bytes, openings, &counts))?;
+        model.shapes = consumed(&mut bytes, |bytes| Shapes::check(bytes, &counts))?;
         model.names = bytes.take(usize::from(names) * NAME_LEN)?;
-        let known = |entry: &[u8]| entry.get(4).is_some_and(|target| target & 0x3f < shape_count);
+        let known = |entry: &[u8]| entry.get(4).is_some_and(|target| target & 0x3f < shapes);
         if !bytes.0.is_empty() || !model.names.chunks_exact(NAME_LEN).all(known) {
-            return Err(Error::Malformed);
+            return Err(ModelError::Malformed);
         }
         Ok(model)
     }
 
-    fn check_indices(&self, indices: &[u8]) -> Result<(), Error> {
-        let mut indices = Bytes(indices);
-        while !indices.0.is_empty() {
-            self.check_index(indices.index(self.wide)?)?;
-        }
-        Ok(())
-    }
-
-    /// What is mirrored lies in the middle or left.
-    fn check_stored(&self, indices: &[u8]) -> Result<(), Error> {
-        let stored = usize::from(self.middles) + usize::from(self.pairs);
-        let mut indices = Bytes(indices);
-        while !indices.0.is_empty() {
-            if usize::from(indices.index(self.wide)?) >= stored {
-                return Err(Error::Malformed);
-            }
-        }
-        Ok(())
-    }
-
-    pub(crate) fn check_index(&self, index: u16) -> Result<(), Error> {
-        if usize::from(index) < self.vertices() { Ok(()) } else { Err(Error::Malformed) }
-    }
-
-    /// Vertices `first..first + count`, which are all in the middle, all left, or all right, and of those that may move.
-    pub(crate) fn check_run(&self, first: u16, count: u8) -> Result<(), Error> {
-        let (first, end) = (usize::from(first), usize::from(first) + usize::from(count));
-        if count > 0 && self.moving().into_iter().any(|[from, to]| first >= from && end <= to) {
-            Ok(())
-        } else {
-            Err(Error::Malformed)
-        }
-    }
-
-    /// The vertices that may move, from one index to another: in the middle, left, right.
-    pub(crate) fn moving(&self) -> [[usize; 2]; 3] {
-        let [middles, pairs] = self.moving.map(usize::from);
-        let (left, right) = (self.middles(), self.middles() + self.pairs());
-        [[0, middles], [left, left + pairs], [right, right + pairs]]
-    }
-
-    /// Number of vertices: those in the middle, then the left ones, then their mirror images.
+    /// Number of vertices: those in the middle, those on the left, and their mirror images, in this order.
     pub fn vertices(&self) -> usize {
-        usize::from(self.middles) + 2 * usize::from(self.pairs)
+        self.counts.vertices()
     }
 
     /// Number of vertices in the middle, which are their own mirror images.
     pub fn middles(&self) -> usize {
-        usize::from(self.middles)
+        self.counts.middles()
     }
 
-    /// Number of vertices of the left half.
+    /// Number of vertices on the left, which is the number of pairs of a vertex and its mirror image.
     pub fn pairs(&self) -> usize {
-        usize::from(self.pairs)
+        self.counts.pairs()
     }
 
-    /// The vertex that mirrors another.
+    /// The index of the vertex that mirrors the one with index `index`.
     #[inline(always)]
     pub fn mirror(&self, index: u16) -> u16 {
-        if index < self.middles {
-            index
-        } else if index < self.middles.wrapping_add(self.pairs) {
-            index.wrapping_add(self.pairs)
-        } else {
-            index.wrapping_sub(self.pairs)
-        }
+        self.counts.mirror(index)
     }
 
-    /// What makes vertices in the middle or left into their mirror images.
     #[inline(always)]
     pub(crate) fn image(&self) -> Image {
-        Image { middles: self.middles, pairs: self.pairs }
+        self.counts.image()
     }
 
-    /// One step of a vertex is 2^`step_exponent` of the model's units (millimetres of Pantin's own face).
+    /// Exponent of a step: a coordinate of 1 is 2^exponent of the model's unit of length (millimetres for Pantin's own face).
     pub fn step_exponent(&self) -> i8 {
         self.step_exponent
     }
 
-    /// Triangles of the stored half whose silhouette makes the outline; those behind them only make the mesh.
+    /// Number of the first stored triangles, whose silhouette is the outline. The others are part of the mesh only.
     pub(crate) fn outline(&self) -> usize {
         usize::from(self.outline)
     }
 
-    /// Curves that are drawn.
+    /// Walks the curves in the order in which they are drawn.
     pub fn curves(&self) -> Curves<'a> {
-        Curves::new(self.curves, self.wide)
+        Curves::new(self.curves, self.counts.wide)
     }
 
-    /// Shapes, in the order of their weights.
+    /// Walks the shapes in the order of their weights.
     pub fn shapes(&self) -> Shapes<'a> {
-        Shapes::new(self.shapes, self.shape_count, self.wide)
+        Shapes::new(self.shapes, &self.counts)
     }
 
-    /// Number of shapes.
+    /// Number of shapes, at most [`SHAPES`].
     pub fn shape_count(&self) -> usize {
-        usize::from(self.shape_count)
+        self.counts.shapes()
     }
 
-    /// Names that drive shapes: each a hash, and what it drives.
-    pub fn names(&self) -> impl Iterator<Item = Name> {
-        self.names.chunks_exact(NAME_LEN).filter_map(Name::parse)
+    /// Walks the table of names. A name has an entry for each shape that it drives. The model stores hashes of the names, not the names;
+    /// [`NAMES`](crate::NAMES) has those of Pantin's own face.
+    pub fn name_entries(&self) -> impl Iterator<Item = NameEntry> {
+        self.names.chunks_exact(NAME_LEN).filter_map(NameEntry::parse)
+    }
+
+    /// The hash under which the model has `name`: as given, or else with a capital first letter.
+    pub(crate) fn find(&self, name: &str) -> Option<u32> {
+        let known = |hash: u32| self.name_entries().any(|entry| entry.hash == hash).then_some(hash);
+        known(hash(name.as_bytes())).or_else(|| {
+            let mut capital = [0; LONGEST_NAME];
+            let capital = capital.get_mut(..name.len())?;
+            capital.copy_from_slice(name.as_bytes());
+            capital.first_mut()?.make_ascii_uppercase();
+            known(hash(capital))
+        })
     }
 }
 
-/// Mirror images of vertices in the middle or left.
-#[derive(Clone, Copy)]
-pub(crate) struct Image {
-    middles: u16,
-    pairs: u16,
-}
+/// Longer names are not looked up with a capital first letter.
+const LONGEST_NAME: usize = 32;
 
-impl Image {
-    #[inline(always)]
-    pub fn of(self, index: u16) -> u16 {
-        if index < self.middles { index } else { index.wrapping_add(self.pairs) }
-    }
-}
-
-/// What `check` reads off the front.
-fn consumed<'a>(bytes: &mut Bytes<'a>, check: impl FnOnce(&mut Bytes<'a>) -> Result<(), Error>) -> Result<&'a [u8], Error> {
+/// The bytes that `check` reads.
+fn consumed<'a>(
+    bytes: &mut Bytes<'a>,
+    check: impl FnOnce(&mut Bytes<'a>) -> Result<(), ModelError>,
+) -> Result<&'a [u8], ModelError> {
     let before = bytes.0;
     check(bytes)?;
     Ok(before.get(..before.len() - bytes.0.len()).unwrap_or(&[]))
 }
 
-/// A channel's name, and what a channel so called drives.
+/// A channel's name, and a shape that a channel with this name drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Name {
-    /// FNV-1a of the name, 32 bits.
+pub struct NameEntry {
+    /// [`hash`] of the name.
     pub hash: u32,
-    /// What it drives.
+    /// The sides of the shape.
     pub target: Target,
     /// A value of 1 is a weight of mantissa * 2^exponent.
     pub mantissa: i8,
-    /// See [`Name::mantissa`].
+    /// See [`NameEntry::mantissa`].
     pub exponent: i8,
 }
 
-impl Name {
-    fn parse(entry: &[u8]) -> Option<Name> {
+impl NameEntry {
+    fn parse(entry: &[u8]) -> Option<NameEntry> {
         let &[a, b, c, d, target, mantissa, exponent] = entry else { return None };
         let hash = u32::from_le_bytes([a, b, c, d]);
-        Some(Name { hash, target: Target(target), mantissa: mantissa as i8, exponent: exponent as i8 })
-    }
-}
-
-/// A shape's weights: of one of its sides, or both.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Target(u8);
-
-impl Target {
-    /// Of a shape below 64.
-    pub fn of(shape: u8, sides: [bool; 2]) -> Target {
-        Target(shape & 0x3f | u8::from(sides[0]) << 6 | u8::from(sides[1]) << 7)
-    }
-
-    /// Index of the shape.
-    #[inline(always)]
-    pub fn shape(self) -> usize {
-        usize::from(self.0 & 0x3f)
-    }
-
-    /// Whether it is the shape as it is stored (the left side), and its mirror image.
-    #[inline(always)]
-    pub fn sides(self) -> [bool; 2] {
-        [self.0 & 0x40 != 0, self.0 & 0x80 != 0]
+        Some(NameEntry { hash, target: Target::of_byte(target), mantissa: mantissa as i8, exponent: exponent as i8 })
     }
 }

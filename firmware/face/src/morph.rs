@@ -1,222 +1,145 @@
-//! Weights become vertices: neutral places, plus deltas, then turned.
+//! From weights to vertices: neutral positions, plus deltas, then rotated.
 
-use crate::model::{Error, Model, Target};
-use crate::shape::{Interpolation, Kind, Run, Shape};
-use crate::turn::{self, Sides};
-use crate::{FULL, SHAPES, aperture};
-use pantin_figure::trig::{ONE, sin_cos};
+use crate::error::ModelError;
+use crate::model::Model;
+use crate::opening_clip::clip_members;
+use crate::rotate::{SideWeights, rotate};
+use crate::shape::{Run, Shape, ShapeKind, eased};
+use crate::vertex::{self, Vertex};
+use crate::weights::Weights;
 
-/// A vertex, in steps of the model.
-pub type Place = [i16; 3];
-
-/// Weights of a model's shapes, Q15: each as it is stored (or its left side), and mirrored (or its right side). They are kept in Q14: nearly up to two
-/// whole ones.
-#[derive(Clone, Debug)]
-pub struct Weights([[i16; 2]; SHAPES]);
-
-impl Default for Weights {
-    fn default() -> Self {
-        Weights([[0; 2]; SHAPES])
-    }
-}
-
-impl Weights {
-    /// The neutral face.
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Back to the neutral face.
-    pub fn clear(&mut self) {
-        self.0 = [[0; 2]; SHAPES];
-    }
-
-    /// Adds to a shape's weights.
-    #[inline(always)]
-    pub fn add(&mut self, target: Target, weight: i32) {
-        let Some(pair) = self.0.get_mut(target.shape()) else { return };
-        let sides = target.sides();
-        if sides[0] {
-            pair[0] = pair[0].saturating_add(kept(weight));
-        }
-        if sides[1] {
-            pair[1] = pair[1].saturating_add(kept(weight));
-        }
-    }
-
-    /// The two weights of each shape.
-    #[inline(always)]
-    pub fn pairs(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
-        self.0.iter().map(|&pair| match pair {
-            [0, 0] => [0; 2],
-            pair => pair.map(given),
-        })
-    }
-
-    /// The two weights of a shape.
-    pub fn of(&self, shape: usize) -> [i32; 2] {
-        self.0.get(shape).map_or([0; 2], |pair| pair.map(given))
-    }
-}
-
-/// Q15 to Q14.
-#[inline(always)]
-fn kept(weight: i32) -> i16 {
-    (weight >> 1).clamp(i16::MIN.into(), i16::MAX.into()) as i16
-}
-
-/// And back, a whole weight at most.
-#[inline(always)]
-fn given(weight: i16) -> i32 {
-    (i32::from(weight) << 1).clamp(-FULL, FULL)
-}
-
-/// The vertices of a face of at most `N`.
+/// The vertices of a face as weights move them. `N` is the maximum number of vertices: [`VERTICES`](crate::VERTICES) for Pantin's own face.
 #[derive(Clone, Debug)]
 pub struct Morph<const N: usize> {
-    places: [Place; N],
-    vertices: usize,
+    vertices: [Vertex; N],
+    count: usize,
     head: [i32; 3],
-    pivot: Place,
+    pivot: Vertex,
 }
 
 impl<const N: usize> Morph<N> {
-    /// No face yet.
-    pub const EMPTY: Self = Morph { places: [[0; 3]; N], vertices: 0, head: [0; 3], pivot: [0; 3] };
+    /// A morph without vertices, for [`Morph::set_up`].
+    pub const EMPTY: Self = Morph { vertices: [[0; 3]; N], count: 0, head: [0; 3], pivot: [0; 3] };
 
-    /// The neutral face.
+    /// Returns the neutral face, or [`ModelError::TooManyVertices`] if the model has more than `N`.
     #[inline(always)]
-    pub fn new(model: &Model) -> Result<Self, Error> {
+    pub fn new(model: &Model) -> Result<Self, ModelError> {
         let mut morph = Morph::EMPTY;
         morph.set_up(model)?;
         Ok(morph)
     }
 
-    /// The neutral face, where there was none: what is handed on is copied, and for that a small machine may have no room.
+    /// Makes this the neutral face in place: [`Morph::new`] may copy its result, for which a small machine may have no RAM. Returns
+    /// [`ModelError::TooManyVertices`] if the model has more than `N`.
     #[inline(never)]
-    pub fn set_up(&mut self, model: &Model) -> Result<(), Error> {
+    pub fn set_up(&mut self, model: &Model) -> Result<(), ModelError> {
         if model.vertices() > N {
-            return Err(Error::TooManyVertices { most: N });
+            return Err(ModelError::TooManyVertices { needed: model.vertices(), given: N });
         }
-        self.vertices = model.vertices();
+        self.count = model.vertices();
         let right = model.middles() + model.pairs();
-        rest(model, [0, right], &mut self.places);
-        rest(model, [right, model.vertices()], &mut self.places);
+        reset(model, [0, right], &mut self.vertices);
+        reset(model, [right, model.vertices()], &mut self.vertices);
         Ok(())
     }
 
-    /// The vertices, in the order of the model.
-    pub fn places(&self) -> &[Place] {
-        self.places.get(..self.vertices).unwrap_or(&[])
+    /// The vertices in the order of the model.
+    pub fn vertices(&self) -> &[Vertex] {
+        self.vertices.get(..self.count).unwrap_or(&[])
     }
 
-    /// How the head turns: angles in 2^-32 turns about x, y, z, and what it turns about.
-    pub(crate) fn turn(&self) -> ([i32; 3], Place) {
+    /// The head's rotation: angles about x, y, z in 2^-32 turns, and the point about which it rotates.
+    pub(crate) fn head_rotation(&self) -> ([i32; 3], Vertex) {
         (self.head, self.pivot)
     }
 
-    /// Puts the vertices where `weights` have them. The head's own turn is left to [`crate::FaceRenderer`].
-    pub fn place(&mut self, model: &Model, weights: &Weights) {
-        self.place_open(model, weights);
-        aperture::close(model, &mut self.places, weights);
+    /// Moves the vertices as `weights` say. `model` is the one that this morph was made for. The rotation of the head is applied later, by
+    /// [`FaceRenderer::project`](crate::FaceRenderer::project).
+    pub fn apply(&mut self, model: &Model, weights: &Weights) {
+        self.apply_unclipped(model, weights);
+        clip_members(model, &mut self.vertices, weights);
     }
 
-    /// The same, but what is behind lids and lips is where it would be without them.
-    pub fn place_open(&mut self, model: &Model, weights: &Weights) {
-        for stretch in model.moving() {
-            rest(model, stretch, &mut self.places);
+    /// Like [`Morph::apply`], but lids and lips do not clip irises, teeth and the tongue.
+    pub fn apply_unclipped(&mut self, model: &Model, weights: &Weights) {
+        for range in model.counts.moving() {
+            reset(model, range, &mut self.vertices);
         }
-        (self.head, self.pivot) = apply(model, weights, &mut self.places);
+        (self.head, self.pivot) = apply_shapes(model, weights, &mut self.vertices);
     }
 }
 
-/// Applies the shapes one after the other, and returns how the head turns.
+/// Applies the shapes one after the other, and returns the head's rotation.
 #[inline(never)]
-fn apply(model: &Model, weights: &Weights, places: &mut [Place]) -> ([i32; 3], Place) {
+fn apply_shapes(model: &Model, weights: &Weights, vertices: &mut [Vertex]) -> ([i32; 3], Vertex) {
     let (mut head, mut pivot) = ([0i32; 3], [0; 3]);
     for (shape, pair) in model.shapes().zip(weights.pairs()) {
-        if pair == [0; 2] && shape.kind != Kind::Head {
+        if pair == [0; 2] && shape.kind != ShapeKind::Head {
             continue;
         }
-        let pair = if shape.kind == Kind::Whole { [pair[0].max(0), pair[1].max(0)] } else { pair };
-        if shape.kind == Kind::Head {
-            for turn in shape.turns() {
-                pivot = turn.centre;
-                if let Some(angle) = head.get_mut(turn.axis) {
-                    *angle = angle.wrapping_add((i32::from(turn.angle) * pair[0]).wrapping_shl(1));
+        let pair = if shape.kind == ShapeKind::Unsigned { [pair[0].max(0), pair[1].max(0)] } else { pair };
+        if shape.kind == ShapeKind::Head {
+            for rotation in shape.rotations() {
+                pivot = rotation.centre;
+                if let Some(angle) = head.get_mut(rotation.axis) {
+                    *angle = angle.wrapping_add((i32::from(rotation.angle) * pair[0]).wrapping_shl(1));
                 }
             }
             continue;
         }
-        add(model, &shape, pair, places);
-        for turn in shape.turns() {
-            let sides = Sides { pair, middles: model.middles(), pairs: model.pairs() };
-            turn::apply(&turn, shape.interpolation, sides, places);
+        add_deltas(model, &shape, pair, vertices);
+        for rotation in shape.rotations() {
+            let sides = SideWeights { pair, middles: model.middles(), pairs: model.pairs() };
+            rotate(&rotation, shape.interpolation, sides, vertices);
         }
     }
     (head, pivot)
 }
 
-/// Puts vertices `from..to` in their neutral places.
-fn rest(model: &Model, [from, to]: [usize; 2], places: &mut [Place]) {
+/// Moves vertices `from..to` to their neutral positions.
+fn reset(model: &Model, [from, to]: [usize; 2], vertices: &mut [Vertex]) {
     let points = model.points.as_chunks::<6>().0;
     let right = model.middles() + model.pairs();
     let stored = if from >= right { from - model.pairs() } else { from };
-    let Some(places) = places.get_mut(from..to) else { return };
-    for (place, point) in places.iter_mut().zip(points.get(stored..).unwrap_or(&[])) {
-        let [x, y, z] = coordinates(*point);
-        *place = [if from >= right { x.wrapping_neg() } else { x }, y, z];
+    let Some(vertices) = vertices.get_mut(from..to) else { return };
+    for (vertex, point) in vertices.iter_mut().zip(points.get(stored..).unwrap_or(&[])) {
+        let [x, y, z] = vertex::of_bytes(*point);
+        *vertex = [if from >= right { x.wrapping_neg() } else { x }, y, z];
     }
 }
 
-/// Factors below this move nothing by more than 16 steps, 1/8 mm of Pantin's face: left out.
-const LEAST: i32 = 32;
+/// Smaller factors move no vertex by more than 16 steps, which are 1/8 mm of Pantin's face: such deltas are skipped.
+const MIN_FACTOR: i32 = 32;
 
 /// Adds a shape's deltas.
-fn add(model: &Model, shape: &Shape, pair: [i32; 2], places: &mut [Place]) {
-    if !shape.moves_something() {
+fn add_deltas(model: &Model, shape: &Shape, pair: [i32; 2], vertices: &mut [Vertex]) {
+    if !shape.has_deltas() {
         return;
     }
     // Q15 times Q8 to Q8: at most 2^16.
     let factor = |weight| (eased(shape.interpolation, weight) * i32::from(shape.scale)) >> 15;
     let stored = factor(pair[0]);
     let mirrored = if pair[1] == pair[0] { stored } else { factor(pair[1]) };
-    if stored.abs().max(mirrored.abs()) < LEAST {
+    if stored.abs().max(mirrored.abs()) < MIN_FACTOR {
         return;
     }
     for run in shape.runs() {
-        if stored.abs() >= LEAST {
-            add_run(run, run.first, [stored, stored], places);
+        if stored.abs() >= MIN_FACTOR {
+            add_run(run, run.first, [stored, stored], vertices);
         }
-        if mirrored.abs() >= LEAST {
-            add_run(run, model.mirror(run.first), [-mirrored, mirrored], places);
+        if mirrored.abs() >= MIN_FACTOR {
+            add_run(run, model.mirror(run.first), [-mirrored, mirrored], vertices);
         }
     }
 }
 
-/// The first factor is that of x.
+/// Adds a run of deltas: x times the first factor (Q8), y and z times the second.
 #[inline]
-fn add_run(run: Run, first: u16, [across, factor]: [i32; 2], places: &mut [Place]) {
-    let Some(places) = places.get_mut(usize::from(first)..) else { return };
-    for (place, delta) in places.iter_mut().zip(run.deltas) {
+fn add_run(run: Run, first: u16, [across, factor]: [i32; 2], vertices: &mut [Vertex]) {
+    let Some(vertices) = vertices.get_mut(usize::from(first)..) else { return };
+    for (vertex, delta) in vertices.iter_mut().zip(run.deltas) {
         // A delta of 2^7 times a factor of 2^16, in Q8.
         let along = |x: i16, delta: u8, factor: i32| x.wrapping_add(((i32::from(delta as i8) * factor + 128) >> 8) as i16);
-        *place = [along(place[0], delta[0], across), along(place[1], delta[1], factor), along(place[2], delta[2], factor)];
+        *vertex = [along(vertex[0], delta[0], across), along(vertex[1], delta[1], factor), along(vertex[2], delta[2], factor)];
     }
-}
-
-#[inline(always)]
-pub(crate) fn coordinates([a, b, c, d, e, f]: [u8; 6]) -> Place {
-    [i16::from_le_bytes([a, b]), i16::from_le_bytes([c, d]), i16::from_le_bytes([e, f])]
-}
-
-/// The part of the way that a weight has gone, Q15.
-pub(crate) fn eased(interpolation: Interpolation, weight: i32) -> i32 {
-    if interpolation != Interpolation::Cosine {
-        return weight;
-    }
-    // A whole weight is half a turn.
-    let (_, cos) = sin_cos(weight.wrapping_shl(16));
-    let way = (ONE - cos) >> 1;
-    if weight < 0 { -way } else { way }
 }

@@ -1,18 +1,18 @@
-//! The outline: where the surface turns away, a line through each triangle with corners on both sides.
+//! The outline: where the surface turns away from the camera, a line through each triangle that has corners on both sides.
 
+use crate::crossing::{between, zero_crossing};
 use crate::model::Model;
-use crate::pen::Paint;
-use crate::strokes::{Screen, between, way};
+use crate::pen::StrokeSink;
 use heapless::Vec;
 
 /// Brightness.
 const SHADE: u8 = 200;
-/// Most triangles that are kept from frame to frame: what is beyond is looked for in each frame.
+/// Maximum number of triangles that are kept from frame to frame; if there are more, all are searched for in every frame.
 const KEPT: usize = 48;
-/// Lines after which is told what they cover: mirror images follow each other, so their rectangles are as wide as the face anyway.
-const TOLD: usize = 2;
+/// Lines for which the surface is marked at once. Mirror images follow each other, so the rectangles are as wide as the face anyway.
+const LINES_PER_MARK: usize = 2;
 
-/// The triangles that make the outline, as long as the head keeps its turn.
+/// The triangles that make the outline while the head does not rotate.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
     triangles: Vec<Crossed, KEPT>,
@@ -24,8 +24,8 @@ pub(crate) struct Outline {
 struct Crossed {
     /// The corner that is alone on its side, and the two others.
     corners: [u16; 3],
-    /// The part of the way to these, Q8, at which the surface turns away.
-    ways: [u8; 2],
+    /// The part of the edges to these two, Q8, at which the surface turns away.
+    parts: [u8; 2],
 }
 
 impl Crossed {
@@ -33,25 +33,25 @@ impl Crossed {
     fn new(corners: [u16; 3], facing: &[i8]) -> Self {
         let of = |index: u16| i32::from(facing.get(usize::from(index)).copied().unwrap_or(0));
         let [apex, one, other] = corners;
-        Crossed { corners, ways: [one, other].map(|index| way(of(apex), of(index)).min(255) as u8) }
+        Crossed { corners, parts: [one, other].map(|index| zero_crossing(of(apex), of(index)).min(255) as u8) }
     }
 
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-    fn draw(&self, points: &[[i16; 2]], out: &mut impl Paint) {
+    fn draw(&self, points: &[[i16; 2]], out: &mut impl StrokeSink) {
         let at = |index: u16| points.get(usize::from(index)).copied().unwrap_or_default();
         let [apex, one, other] = self.corners;
         let apex = at(apex);
-        out.line(between(apex, at(one), self.ways[0].into()), between(apex, at(other), self.ways[1].into()));
+        out.line(between(apex, at(one), self.parts[0].into()), between(apex, at(other), self.parts[1].into()));
     }
 }
 
 impl Outline {
-    /// None.
+    /// An outline without triangles.
     pub const EMPTY: Outline = Outline { triangles: Vec::new(), overflown: false };
 
-    /// Finds them.
+    /// Finds the triangles.
     #[inline(never)]
-    pub fn of(&mut self, model: &Model, facing: &[i8]) {
+    pub fn find(&mut self, model: &Model, facing: &[i8]) {
         self.triangles.clear();
         self.overflown = false;
         each_crossed(model, facing, &mut |corners| self.keep(corners, facing));
@@ -62,37 +62,37 @@ impl Outline {
         self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err();
     }
 
-    /// Whether there are more than are kept.
+    /// Whether there are more triangles than are kept.
     pub fn overflown(&self) -> bool {
         self.overflown
     }
 
-    /// The corners of those that are kept.
-    pub fn corners(&self, mut visit: impl FnMut(u16)) {
+    /// Visits the corners of the triangles that are kept.
+    pub fn each_corner(&self, mut visit: impl FnMut(u16)) {
         self.triangles.iter().flat_map(|crossed| crossed.corners).for_each(&mut visit);
     }
 
-    /// Draws them.
+    /// Draws the lines, given the vertices on the display and which of them face the camera.
     #[inline]
-    pub fn lines(&self, model: &Model, screen: Screen, out: &mut impl Paint) {
+    pub fn draw(&self, model: &Model, points: &[[i16; 2]], facing: &[i8], out: &mut impl StrokeSink) {
         out.begin(SHADE);
         if self.overflown {
-            all(model, screen, out);
+            draw_all(model, points, facing, out);
         } else {
-            // It goes all about the face: what it covers is told every few lines.
-            for some in self.triangles.chunks(TOLD) {
-                some.iter().for_each(|crossed| crossed.draw(screen.points, out));
+            // The outline surrounds the face: the surface is marked every few lines.
+            for some in self.triangles.chunks(LINES_PER_MARK) {
+                some.iter().for_each(|crossed| crossed.draw(points, out));
                 out.end();
             }
         }
     }
 }
 
-/// More than are kept. In a function of its own: what it needs of memory is seldom needed.
+/// Draws more triangles than are kept. In a function of its own, because its stack is seldom needed.
 #[inline(never)]
-fn all(model: &Model, screen: Screen, out: &mut impl Paint) {
-    each_crossed(model, screen.facing, &mut |corners| {
-        Crossed::new(corners, screen.facing).draw(screen.points, out);
+fn draw_all(model: &Model, points: &[[i16; 2]], facing: &[i8], out: &mut impl StrokeSink) {
+    each_crossed(model, facing, &mut |corners| {
+        Crossed::new(corners, facing).draw(points, out);
         out.end();
     });
 }
@@ -122,10 +122,10 @@ fn each_crossed(model: &Model, facing: &[i8], visit: &mut dyn FnMut([u16; 3])) {
     });
 }
 
-/// Most stored vertices of which it is looked up whether they look away.
+/// Maximum number of stored vertices for which a table says which side of the outline they are on.
 const SIGNS: usize = 128;
 
-/// Which stored vertices look away (bit 0), and which of their images (bit 1); of no use for models that have more.
+/// Which stored vertices face away (bit 0), and which of their images (bit 1). Not usable for models with more than [`SIGNS`] stored vertices.
 #[inline(always)]
 fn signs(model: &Model, facing: &[i8]) -> [u8; SIGNS] {
     let mut signs = [0; SIGNS];
@@ -141,7 +141,7 @@ fn signs(model: &Model, facing: &[i8]) -> [u8; SIGNS] {
     signs
 }
 
-/// Of the first `most` triangles of the stored half those that are `wanted`, and their mirror images.
+/// Visits those of the first `most` stored triangles that are `wanted`, each with its mirror image.
 #[inline(always)]
 pub(crate) fn each_triangle(model: &Model, most: usize, wanted: impl Fn([u16; 3]) -> bool, mut visit: impl FnMut([u16; 3])) {
     let (image, halves) = (model.image(), model.pairs() > 0);
@@ -150,12 +150,12 @@ pub(crate) fn each_triangle(model: &Model, most: usize, wanted: impl Fn([u16; 3]
             return;
         }
         visit([a, b, c]);
-        // A model without halves has no images; otherwise no triangle is its own: one in the middle would be flat.
+        // A model without pairs has no images. Otherwise no triangle is its own image: one in the middle would be flat.
         if halves {
             visit([image.of(a), image.of(c), image.of(b)]);
         }
     };
-    if model.wide {
+    if model.counts.wide {
         for &[a, b, c, d, e, f] in model.triangles.as_chunks::<6>().0.iter().take(most) {
             both(u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
         }

@@ -1,4 +1,4 @@
-//! Strokes of a face on a surface: many short lines, of which the beginning costs more than the pixels.
+//! Draws the strokes of a face on a surface: many short lines, whose set-up costs more than their pixels.
 
 use pantin_figure::draw::stroke;
 use pantin_figure::ink::{BodyPart, Ink};
@@ -6,29 +6,29 @@ use pantin_figure::lines::{Line, pixel};
 use pantin_figure::raster::{Pace, walk};
 use pantin_figure::surface::Surface;
 
-/// Takes lines, in strokes of one brightness.
-pub(crate) trait Paint {
-    /// A stroke begins.
+/// Takes lines, grouped in strokes of one brightness.
+pub(crate) trait StrokeSink {
+    /// Begins a stroke.
     fn begin(&mut self, shade: u8);
-    /// A line of it.
+    /// Adds a line; ends are in sixteenths of a pixel.
     fn line(&mut self, from: [i16; 2], to: [i16; 2]);
-    /// The stroke ends.
+    /// Ends the stroke.
     fn end(&mut self) {}
 }
 
-/// Gives each line to a function.
-pub(crate) struct Each<F> {
+/// Passes each line to a function.
+pub(crate) struct EachLine<F> {
     out: F,
     shade: u8,
 }
 
-impl<F: FnMut(Line)> Each<F> {
+impl<F: FnMut(Line)> EachLine<F> {
     pub fn new(out: F) -> Self {
-        Each { out, shade: 0 }
+        EachLine { out, shade: 0 }
     }
 }
 
-impl<F: FnMut(Line)> Paint for Each<F> {
+impl<F: FnMut(Line)> StrokeSink for EachLine<F> {
     #[inline(always)]
     fn begin(&mut self, shade: u8) {
         self.shade = shade;
@@ -44,18 +44,18 @@ fn line(from: [i16; 2], to: [i16; 2], shade: u8) -> Line {
     Line { from, to, depth: 0, shade, body_part: BodyPart::Middle, width: 1 }
 }
 
-/// Sets the pixels that [`stroke`] would, and tells the surface of a whole stroke at once.
+/// Sets the same pixels as [`stroke`], and marks the surface once for each stroke.
 pub(crate) struct Pen<'a, S: Surface> {
     surface: &'a mut S,
     shade: u8,
     ink: S::Ink,
-    /// Where the line before ended, in pixels: it need not be set again.
+    /// The pixel where the previous line ended: it is set already.
     at: [i32; 2],
     least: [i32; 2],
     most: [i32; 2],
 }
 
-/// No pixel of any line.
+/// A pixel of no line.
 const NOWHERE: [i32; 2] = [i32::MAX; 2];
 
 impl<'a, S: Surface> Pen<'a, S> {
@@ -63,7 +63,7 @@ impl<'a, S: Surface> Pen<'a, S> {
         Pen { surface, shade: 0, ink: S::Ink::DARK, at: NOWHERE, least: NOWHERE, most: [-1; 2] }
     }
 
-    /// Takes a pixel into the rectangle of the stroke.
+    /// Extends the rectangle of the stroke by a pixel.
     #[inline(always)]
     fn cover(&mut self, [x, y]: [i32; 2]) {
         self.least = [self.least[0].min(x), self.least[1].min(y)];
@@ -77,7 +77,7 @@ impl<'a, S: Surface> Pen<'a, S> {
         (x as u32) < columns as u32 && (y as u32) < rows as u32
     }
 
-    /// A line that may leave the surface.
+    /// Draws a line that may leave the surface.
     #[inline(never)]
     fn cut(&mut self, from: [i16; 2], to: [i16; 2]) {
         self.at = NOWHERE;
@@ -85,7 +85,7 @@ impl<'a, S: Surface> Pen<'a, S> {
     }
 }
 
-impl<S: Surface> Paint for Pen<'_, S> {
+impl<S: Surface> StrokeSink for Pen<'_, S> {
     #[inline(always)]
     fn begin(&mut self, shade: u8) {
         (self.shade, self.ink, self.at) = (shade, S::Ink::of(BodyPart::Middle, shade), NOWHERE);
@@ -110,10 +110,10 @@ impl<S: Surface> Paint for Pen<'_, S> {
         }
         let steep = y.abs() > x.abs();
         let (along, aside) = if steep { (y, x) } else { (x, y) };
-        let turned = along < 0;
-        // What the line before has set need not be set again where it comes last.
+        let reversed = along < 0;
+        // The last pixel is omitted where the previous line has set it.
         let (start, along, aside, count) =
-            if turned { (b, -along, -aside, -along - i32::from(goes_on)) } else { (a, along, aside, along) };
+            if reversed { (b, -along, -aside, -along - i32::from(goes_on)) } else { (a, along, aside, along) };
         let cursor = self.surface.cursor(start[0], start[1]);
         let pace = Pace::new(steep, aside < 0, along, aside.abs());
         walk(self.surface, cursor, pace, count, self.ink);

@@ -1,26 +1,26 @@
-//! Vertices through the camera: nine multiplications for the place, two for perspective, no division.
+//! Projects vertices: nine multiplications for the position, two for perspective, no division.
 
+use crate::camera::Camera;
 use crate::model::Model;
-use crate::morph::Place;
-use crate::renderer::Camera;
+use crate::vertex::Vertex;
 use pantin_figure::rotation::{Rotation, Vector};
 use pantin_figure::trig::FRACTION_BITS;
 
-/// Places in one orientation, before the camera.
+/// The camera's projection of vertices in one orientation.
 pub(crate) struct Projection {
-    /// Right and down: sixteenths of a pixel after `shift`.
+    /// Directions to the right and down: sums of products with these are sixteenths of a pixel after `shift`.
     across: [Vector; 2],
     /// Added before the shift.
     offset: [i32; 2],
     shift: u32,
     centre: [i32; 2],
-    /// Towards the camera, Q15.
+    /// Direction towards the camera, Q15.
     towards: Vector,
     nearer: i32,
 }
 
 impl Projection {
-    /// `offset` is added to places after `head` has turned them.
+    /// `offset` is added to vertices after `head` has rotated them.
     pub fn new(camera: &Camera, head: &Rotation, offset: Vector) -> Projection {
         let [right, up, towards] = camera.rows;
         let rows = [right, up.map(|x| -x)];
@@ -40,24 +40,24 @@ impl Projection {
         }
     }
 
-    /// All places that are drawn.
+    /// Projects all vertices that are drawn.
     #[inline(never)]
-    pub fn points(&self, places: &[Place], facing: &[i8], points: &mut [[i16; 2]]) {
+    pub fn points(&self, vertices: &[Vertex], facing: &[i8], points: &mut [[i16; 2]]) {
         if let ([[right, 0, 0], [0, down, 0]], [0, 0, towards]) = (self.across, self.towards) {
-            return self.straight([right, down, towards], places, facing, points);
+            return self.straight([right, down, towards], vertices, facing, points);
         }
-        for ((point, &place), &facing) in points.iter_mut().zip(places).zip(facing) {
-            if facing != UNSEEN {
-                *point = self.point(place);
+        for ((point, &vertex), &facing) in points.iter_mut().zip(vertices).zip(facing) {
+            if facing != NOT_DRAWN {
+                *point = self.point(vertex);
             }
         }
     }
 
-    /// A head that looks the camera in the eyes: the same sums without the products with 0.
+    /// Projects a head that looks into the camera: the same sums without the products with 0.
     #[inline(always)]
-    fn straight(&self, [right, down, towards]: Vector, places: &[Place], facing: &[i8], points: &mut [[i16; 2]]) {
-        for ((point, &[x, y, z]), &facing) in points.iter_mut().zip(places).zip(facing) {
-            if facing == UNSEEN {
+    fn straight(&self, [right, down, towards]: Vector, vertices: &[Vertex], facing: &[i8], points: &mut [[i16; 2]]) {
+        for ((point, &[x, y, z]), &facing) in points.iter_mut().zip(vertices).zip(facing) {
+            if facing == NOT_DRAWN {
                 continue;
             }
             let magnification = self.magnification(towards.wrapping_mul(i32::from(z)));
@@ -66,16 +66,16 @@ impl Projection {
         }
     }
 
-    /// Perspective, to the first order: 1 / (1 - z / d) is taken for 1 + z / d.
+    /// Perspective to the first order: 1 + z / d instead of 1 / (1 - z / d).
     #[inline(always)]
     fn magnification(&self, towards: i32) -> i32 {
         (1 << 12) + (((towards >> FRACTION_BITS) * self.nearer) >> 16)
     }
 
-    /// Rows are no longer than 2^15, places no farther than 2^15.8: sums stay below 2^31.
+    /// Rows are at most 2^15 long, positions at most 2^15.8: sums stay below 2^31.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-    pub fn point(&self, place: Place) -> [i16; 2] {
-        let (x, y, z) = (i32::from(place[0]), i32::from(place[1]), i32::from(place[2]));
+    pub fn point(&self, vertex: Vertex) -> [i16; 2] {
+        let (x, y, z) = (i32::from(vertex[0]), i32::from(vertex[1]), i32::from(vertex[2]));
         let along =
             |row: &Vector| row[0].wrapping_mul(x).wrapping_add(row[1].wrapping_mul(y)).wrapping_add(row[2].wrapping_mul(z));
         let magnification = self.magnification(along(&self.towards));
@@ -83,7 +83,7 @@ impl Projection {
         [self.onto(along(right), magnification, 0), self.onto(along(down), magnification, 1)]
     }
 
-    /// On a display a place is within 2^15 sixteenths, magnified at most twice.
+    /// A position on the display: within 2^15 sixteenths, magnified at most twice.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn onto(&self, along: i32, magnification: i32, axis: usize) -> i16 {
         let flat = along.wrapping_add(self.offset[axis]) >> self.shift;
@@ -91,11 +91,11 @@ impl Projection {
     }
 }
 
-/// Stands for a vertex that no line needs.
-pub(crate) const UNSEEN: i8 = i8::MIN;
+/// Marks a vertex that no line needs.
+pub(crate) const NOT_DRAWN: i8 = i8::MIN;
 
-/// The head's turn: about y, then x, then z.
-pub(crate) fn turned([x, y, z]: [i32; 3]) -> Rotation {
+/// The head's rotation: about y, then x, then z.
+pub(crate) fn head_rotation([x, y, z]: [i32; 3]) -> Rotation {
     let mut head = Rotation::IDENTITY;
     for (axis, angle) in [(1, y), (0, x), (2, z)] {
         head.turn(axis, angle);
@@ -103,12 +103,12 @@ pub(crate) fn turned([x, y, z]: [i32; 3]) -> Rotation {
     head
 }
 
-/// The way to the camera, Q15, as a head so turned has it.
+/// The direction towards the camera, Q15, in the axes of a head with this rotation.
 pub(crate) fn towards(camera: &Camera, angles: [i32; 3]) -> Vector {
-    row_times(camera.rows[2], &turned(angles))
+    row_times(camera.rows[2], &head_rotation(angles))
 }
 
-/// How far each vertex's surface looks along a way to the camera (Q15), 127 is straight: mirror images share two of three products.
+/// The cosine between each vertex's normal and a direction towards the camera (Q15), 127 is 1. Mirror images share two of three products.
 #[inline(never)]
 pub(crate) fn facing(model: &Model, [a, b, c]: Vector, facing: &mut [i8]) {
     let normals = model.normals.as_chunks::<3>().0;

@@ -1,57 +1,60 @@
-//! What a weight moves: sparse deltas, and turns about an axis.
+//! What a weight moves: sparse deltas, and rotations about an axis.
 
 use crate::bytes::Bytes;
-use crate::model::{Error, Model};
+use crate::counts::Counts;
+use crate::error::ModelError;
+use pantin_figure::trig::{ONE, sin_cos};
 
-/// How vertices go from the neutral place to the final one (docs/METHOD.md 3.3).
+/// How vertices move from their neutral position to their final one (docs/METHOD.md 3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// In proportion to the weight.
     Linear,
-    /// Eased: (1 - cos(pi w)) / 2 of the way.
+    /// Eased at both ends: (1 - cos(pi w)) / 2 of the distance at weight w.
     Cosine,
-    /// Along the arc of a turn; what does not turn goes straight, as near W = 0.
+    /// On the arc of a rotation. Deltas, which have no axis, move in proportion to the weight.
     Spherical,
 }
 
-/// What a shape takes its weights for.
+/// The range of a shape's weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ShapeKind {
     /// Weights from 0 to 1.
-    Whole,
+    Unsigned,
     /// Weights from -1 to 1.
     Signed,
-    /// Weights from -1 to 1 that turn the whole head.
+    /// Weights from -1 to 1 that rotate the whole head.
     Head,
 }
 
-/// A shape. It has two weights: as it is stored, which is its left side if it has sides, and mirrored.
+/// A shape: what one unit of the face moves. It has two weights: one moves the shape as stored (its left side, if it has sides), the other
+/// its mirror image.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
-    /// How it goes.
+    /// How its vertices move.
     pub interpolation: Interpolation,
-    /// What its weights are.
-    pub kind: Kind,
-    /// Steps of a vertex that a delta of 1 is at full weight, Q8.
+    /// The range of its weights.
+    pub kind: ShapeKind,
+    /// Movement of a delta of 1 at full weight, in 256ths of a step.
     pub scale: u16,
     pub(crate) deltas: &'a [u8],
-    turns: &'a [u8],
+    rotations: &'a [u8],
     wide: bool,
 }
 
-/// Neighbouring vertices that a shape moves.
+/// Deltas of consecutive vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Run<'a> {
-    /// The first of them.
+    /// Index of the first vertex.
     pub first: u16,
-    /// x, y, z of each.
+    /// x, y, z of each delta as `i8`, in units of [`Shape::scale`].
     pub deltas: &'a [[u8; 3]],
 }
 
-/// A turn about a line parallel to an axis.
+/// A rotation about a line parallel to an axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn<'a> {
-    /// 0, 1, 2: x, y, z.
+pub struct AxisRotation<'a> {
+    /// The axis: 0, 1, 2 for x, y, z.
     pub axis: usize,
     /// A point of the line, in steps.
     pub centre: [i16; 3],
@@ -61,12 +64,12 @@ pub struct Turn<'a> {
     pub(crate) wide: bool,
 }
 
-/// Neighbouring vertices that turn by one part of the angle.
+/// Consecutive vertices that rotate by the same part of the angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Members {
-    /// The first of them.
+    /// Index of the first vertex.
     pub first: u16,
-    /// How many.
+    /// Number of vertices.
     pub count: u8,
     /// The part of the angle, in 255ths.
     pub part: u8,
@@ -74,69 +77,68 @@ pub struct Members {
 
 impl<'a> Shape<'a> {
     #[inline(always)]
-    fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, Error> {
+    fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, ModelError> {
         let [head, a, b, c, d, e, f] = bytes.array()?;
         let interpolation = match head & 3 {
             0 => Interpolation::Linear,
             1 => Interpolation::Cosine,
             2 => Interpolation::Spherical,
-            _ => return Err(Error::Malformed),
+            _ => return Err(ModelError::Malformed),
         };
         let kind = match head >> 2 {
-            0 => Kind::Whole,
-            1 => Kind::Signed,
-            2 => Kind::Head,
-            _ => return Err(Error::Malformed),
+            0 => ShapeKind::Unsigned,
+            1 => ShapeKind::Signed,
+            2 => ShapeKind::Head,
+            _ => return Err(ModelError::Malformed),
         };
-        let (scale, deltas, turns) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
+        let (scale, deltas, rotations) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
         Ok(Shape {
             interpolation,
             kind,
             scale,
             deltas: bytes.take(usize::from(deltas))?,
-            turns: bytes.take(usize::from(turns))?,
+            rotations: bytes.take(usize::from(rotations))?,
             wide,
         })
     }
 
-    /// Its deltas.
+    /// Walks its deltas.
     #[inline(always)]
     pub fn runs(&self) -> impl Iterator<Item = Run<'a>> {
         let (mut bytes, wide) = (Bytes(self.deltas), self.wide);
         core::iter::from_fn(move || run(&mut bytes, wide).ok())
     }
 
-    /// Its turns.
-    pub fn turns(&self) -> impl Iterator<Item = Turn<'a>> {
-        let (mut bytes, wide) = (Bytes(self.turns), self.wide);
-        core::iter::from_fn(move || turn(&mut bytes, wide).ok())
+    /// Walks its rotations.
+    pub fn rotations(&self) -> impl Iterator<Item = AxisRotation<'a>> {
+        let (mut bytes, wide) = (Bytes(self.rotations), self.wide);
+        core::iter::from_fn(move || rotation(&mut bytes, wide).ok())
     }
 
-    /// Whether it has deltas.
-    pub(crate) fn moves_something(&self) -> bool {
+    pub(crate) fn has_deltas(&self) -> bool {
         !self.deltas.is_empty()
     }
 }
 
 #[inline(always)]
-fn run<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<Run<'a>, Error> {
+fn run<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<Run<'a>, ModelError> {
     let first = bytes.index(wide)?;
-    let count = bytes.byte()?;
+    let count = bytes.u8()?;
     Ok(Run { first, deltas: bytes.take(usize::from(count) * 3)?.as_chunks().0 })
 }
 
-fn turn<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<Turn<'a>, Error> {
+fn rotation<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<AxisRotation<'a>, ModelError> {
     let [axis, runs] = bytes.array()?;
-    let [x, y, z, angle] = [(); 4].map(|()| bytes.number());
+    let [x, y, z, angle] = [(); 4].map(|()| bytes.i16());
     if axis > 2 {
-        return Err(Error::Malformed);
+        return Err(ModelError::Malformed);
     }
     let members = bytes.take(usize::from(runs) * (3 + usize::from(wide)))?;
-    Ok(Turn { axis: usize::from(axis), centre: [x?, y?, z?], angle: angle?, members, wide })
+    Ok(AxisRotation { axis: usize::from(axis), centre: [x?, y?, z?], angle: angle?, members, wide })
 }
 
-impl Turn<'_> {
-    /// What it turns.
+impl AxisRotation<'_> {
+    /// Walks the vertices that rotate.
     pub fn members(&self) -> impl Iterator<Item = Members> + '_ {
         let (mut bytes, wide) = (Bytes(self.members), self.wide);
         core::iter::from_fn(move || {
@@ -156,22 +158,22 @@ pub struct Shapes<'a> {
 }
 
 impl<'a> Shapes<'a> {
-    pub(crate) fn new(bytes: &'a [u8], count: u8, wide: bool) -> Self {
-        Shapes { bytes: Bytes(bytes), left: count, wide }
+    pub(crate) fn new(bytes: &'a [u8], counts: &Counts) -> Self {
+        Shapes { bytes: Bytes(bytes), left: counts.shapes, wide: counts.wide }
     }
 
-    pub(crate) fn check(bytes: &mut Bytes<'a>, model: &Model) -> Result<(), Error> {
-        for _ in 0..model.shape_count() {
-            let shape = Shape::parse(bytes, model.wide)?;
+    pub(crate) fn check(bytes: &mut Bytes<'a>, counts: &Counts) -> Result<(), ModelError> {
+        for _ in 0..counts.shapes() {
+            let shape = Shape::parse(bytes, counts.wide)?;
             let mut deltas = Bytes(shape.deltas);
             while !deltas.0.is_empty() {
-                let run = run(&mut deltas, model.wide)?;
-                model.check_run(run.first, run.deltas.len() as u8)?;
+                let run = run(&mut deltas, counts.wide)?;
+                counts.check_run(run.first, run.deltas.len() as u8)?;
             }
-            let mut turns = Bytes(shape.turns);
-            while !turns.0.is_empty() {
-                for members in turn(&mut turns, model.wide)?.members() {
-                    model.check_run(members.first, members.count)?;
+            let mut rotations = Bytes(shape.rotations);
+            while !rotations.0.is_empty() {
+                for members in rotation(&mut rotations, counts.wide)?.members() {
+                    counts.check_run(members.first, members.count)?;
                 }
             }
         }
@@ -187,4 +189,15 @@ impl<'a> Iterator for Shapes<'a> {
         self.left = self.left.checked_sub(1)?;
         Shape::parse(&mut self.bytes, self.wide).ok()
     }
+}
+
+/// The part of its distance that a vertex has moved at a weight; both in Q15.
+pub(crate) fn eased(interpolation: Interpolation, weight: i32) -> i32 {
+    if interpolation != Interpolation::Cosine {
+        return weight;
+    }
+    // A full weight is half a turn.
+    let (_, cos) = sin_cos(weight.wrapping_shl(16));
+    let part = (ONE - cos) >> 1;
+    if weight < 0 { -part } else { part }
 }

@@ -1,35 +1,36 @@
-//! The lines of a face: its outline, its curves, and on large displays its mesh; what looks away is left out.
+//! The lines of a face: its outline, its curves, and on large displays its mesh. Parts that face away from the camera are not drawn.
 
+use crate::crossing::{between, zero_crossing};
 use crate::curve::Curve;
 use crate::model::Model;
 use crate::outline::{Outline, each_triangle};
-use crate::pen::Paint;
-use crate::projection::UNSEEN;
-use pantin_figure::trig::WORKED_OUT;
+use crate::pen::StrokeSink;
+use crate::projection::NOT_DRAWN;
 
 /// Brightness of the mesh.
 const MESH: u8 = 44;
-/// The mesh is drawn from this detail on.
+/// The lowest detail at which the mesh is drawn.
 const MESH_DETAIL: u8 = 3;
-/// Curves end where they turn away by more than this, in 127ths.
+/// Curves end where the cosine between normal and camera falls below this, in 127ths.
 const GRAZING: i8 = 4;
 
-/// Vertices on the display.
+/// A face on the display.
 #[derive(Clone, Copy)]
-pub(crate) struct Screen<'s> {
+pub(crate) struct ProjectedFace<'s> {
+    /// Vertices in sixteenths of a pixel.
     pub points: &'s [[i16; 2]],
     pub facing: &'s [i8],
     pub outline: &'s Outline,
 }
 
-/// All lines, the brighter ones after the darker ones.
+/// Draws all lines, the brighter ones after the darker ones.
 #[inline]
-pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl Paint) {
+pub(crate) fn draw(model: &Model, face: ProjectedFace, detail: u8, out: &mut impl StrokeSink) {
     if detail >= MESH_DETAIL {
-        screen.mesh(model, out);
+        face.mesh(model, out);
     }
-    screen.outline.lines(model, screen, out);
-    for curve in model.curves().filter(|curve| curve.drawn(detail)) {
+    face.outline.draw(model, face.points, face.facing, out);
+    for curve in model.curves().filter(|curve| curve.is_drawn(detail)) {
         let fine = if curve.straight { &[][..] } else { FINE.get(usize::from(detail)).copied().unwrap_or(&[]) };
         for mirrored in [false, true] {
             if mirrored && !curve.mirrored {
@@ -37,26 +38,26 @@ pub(crate) fn draw(model: &Model, screen: Screen, detail: u8, out: &mut impl Pai
             }
             out.begin(curve.shade);
             if fine.is_empty() {
-                screen.straight(model, &curve, mirrored, out);
+                face.straight(model, &curve, mirrored, out);
             } else {
-                screen.smooth(model, &curve, mirrored, fine, out);
+                face.smooth(model, &curve, mirrored, fine, out);
             }
             out.end();
         }
     }
 }
 
-/// Marks the vertices that no line needs, before the head turns on. Of large displays and wide models all are needed.
+/// Marks the vertices that no line needs as [`NOT_DRAWN`]. Large displays and wide models need all.
 #[inline(never)]
-pub(crate) fn leave_out(model: &Model, detail: u8, outline: &Outline, facing: &mut [i8]) {
-    if detail >= MESH_DETAIL || model.wide || outline.overflown() {
+pub(crate) fn mark_unneeded(model: &Model, detail: u8, outline: &Outline, facing: &mut [i8]) {
+    if detail >= MESH_DETAIL || model.counts.wide || outline.overflown() {
         return;
     }
-    // A bit a vertex: narrow models have at most 256.
+    // One bit for each vertex: models that are not wide have at most 256.
     let mut needed = [0u32; 8];
     let mut need = |index: u16| needed[usize::from(index as u8 >> 5)] |= 1 << (index & 31);
-    outline.corners(&mut need);
-    for curve in model.curves().filter(|curve| curve.drawn(detail)) {
+    outline.each_corner(&mut need);
+    for curve in model.curves().filter(|curve| curve.is_drawn(detail)) {
         for index in curve.vertices() {
             need(index);
             if curve.mirrored {
@@ -66,31 +67,31 @@ pub(crate) fn leave_out(model: &Model, detail: u8, outline: &Outline, facing: &m
     }
     for (index, facing) in facing.iter_mut().enumerate() {
         if needed[(index >> 5) & 7] & 1 << (index & 31) == 0 {
-            *facing = UNSEEN;
+            *facing = NOT_DRAWN;
         }
     }
 }
 
-impl Screen<'_> {
+impl ProjectedFace<'_> {
     #[inline(always)]
     pub fn facing(&self, index: u16) -> i8 {
         self.facing.get(usize::from(index)).copied().unwrap_or(-127)
     }
 
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-    pub fn end(&self, index: u16) -> End {
-        End { at: self.points.get(usize::from(index)).copied().unwrap_or_default(), facing: self.facing(index) }
+    pub fn vertex(&self, index: u16) -> ScreenVertex {
+        ScreenVertex { at: self.points.get(usize::from(index)).copied().unwrap_or_default(), facing: self.facing(index) }
     }
 
-    /// Edges between triangles that look here, each once: it runs the other way in its other triangle.
-    fn mesh(&self, model: &Model, out: &mut impl Paint) {
+    /// Draws the edges of triangles that face the camera. An edge is part of two triangles, in opposite directions: one of them draws it.
+    fn mesh(&self, model: &Model, out: &mut impl StrokeSink) {
         out.begin(MESH);
         each_triangle(
             model,
             usize::MAX,
             |_| true,
             |corners| {
-                let ends = corners.map(|index| self.end(index));
+                let ends = corners.map(|index| self.vertex(index));
                 if ends.iter().all(|end| end.facing <= GRAZING) {
                     return;
                 }
@@ -104,10 +105,10 @@ impl Screen<'_> {
         out.end();
     }
 
-    /// A curve with corners at its vertices.
-    fn straight(&self, model: &Model, curve: &Curve, mirrored: bool, out: &mut impl Paint) {
+    /// Draws a curve as straight lines.
+    fn straight(&self, model: &Model, curve: &Curve, mirrored: bool, out: &mut impl StrokeSink) {
         let image = model.image();
-        let end = |index| self.end(if mirrored { image.of(index) } else { index });
+        let end = |index| self.vertex(if mirrored { image.of(index) } else { index });
         let first = end(curve.vertex(0));
         let mut from = first;
         for index in curve.vertices().skip(1) {
@@ -120,17 +121,17 @@ impl Screen<'_> {
         }
     }
 
-    /// A curve that bends: between two vertices it goes on as those before and after them say.
-    fn smooth(&self, model: &Model, curve: &Curve, mirrored: bool, fine: &[[i32; 4]], out: &mut impl Paint) {
+    /// Draws a curve that bends through its vertices.
+    fn smooth(&self, model: &Model, curve: &Curve, mirrored: bool, fine: &[[i32; 4]], out: &mut impl StrokeSink) {
         let len = curve.len();
-        let at = |place: usize| {
-            let place = match place {
-                place if place < len => place,
-                place if curve.closed => place - len,
+        let at = |position: usize| {
+            let position = match position {
+                position if position < len => position,
+                position if curve.closed => position - len,
                 _ => len - 1,
             };
-            let index = curve.vertex(place);
-            self.end(if mirrored { model.mirror(index) } else { index })
+            let index = curve.vertex(position);
+            self.vertex(if mirrored { model.mirror(index) } else { index })
         };
         let mut ends = [at(if curve.closed { len - 1 } else { 0 }), at(0), at(1), at(2)];
         for segment in 0..if curve.closed { len } else { len - 1 } {
@@ -149,8 +150,8 @@ impl Screen<'_> {
     }
 }
 
-/// Weights (128ths) of four vertices at the places between the second and the third of them that are drawn too: the cubic through
-/// these two that leaves each along the way from its one neighbour to its other.
+/// Weights (128ths) of four vertices for the points that are drawn between the second and the third of them, at details 0 to 3: a
+/// Catmull-Rom spline.
 const FINE: [&[[i32; 4]]; 4] = [
     &[],
     &[[-8, 72, 72, -8]],
@@ -160,72 +161,39 @@ const FINE: [&[[i32; 4]]; 4] = [
 
 /// A vertex on the display.
 #[derive(Clone, Copy)]
-pub(crate) struct End {
+pub(crate) struct ScreenVertex {
     at: [i16; 2],
     facing: i8,
 }
 
-impl End {
-    /// Where the way to `other`, on the other side of where curves end, crosses it.
-    fn towards(self, other: End) -> [i16; 2] {
-        between(self.at, other.at, way(i32::from(self.facing) - i32::from(GRAZING), i32::from(other.facing) - i32::from(GRAZING)))
+impl ScreenVertex {
+    /// The point where the line to `other` ends, which faces away.
+    fn cut(self, other: ScreenVertex) -> [i16; 2] {
+        let part = zero_crossing(i32::from(self.facing) - i32::from(GRAZING), i32::from(other.facing) - i32::from(GRAZING));
+        between(self.at, other.at, part)
     }
 }
 
-/// The part of the way, Q8, at which what is `from` here and `to` at its end passes 0: their signs differ, both are below 2^8.
-#[inline]
-pub(crate) fn way(from: i32, to: i32) -> i32 {
-    let whole = (from - to).unsigned_abs() as usize;
-    let reciprocal = if WORKED_OUT { reciprocal(whole) } else { RECIPROCALS.get(whole).copied().unwrap_or(0) };
-    (from.abs() * i32::from(reciprocal)) >> 7
-}
-
-/// A place on the way from one to another, Q8.
-#[inline(always)]
-pub(crate) fn between(from: [i16; 2], to: [i16; 2], way: i32) -> [i16; 2] {
-    let (x, y) = (i32::from(from[0]), i32::from(from[1]));
-    let (across, down) = (i32::from(to[0]) - x, i32::from(to[1]) - y);
-    [(x + ((across * way) >> 8)) as i16, (y + ((down * way) >> 8)) as i16]
-}
-
-/// A vertex between the second and the third; it looks where the nearer of them does.
-fn blend(ends: [End; 4], weights: &[i32; 4]) -> End {
+/// A point between the second and the third vertex.
+fn blend(ends: [ScreenVertex; 4], weights: &[i32; 4]) -> ScreenVertex {
     let at = core::array::from_fn(|axis| {
         let sum = ends.iter().zip(weights).fold(64, |sum, (end, weight)| sum + i32::from(end.at[axis]) * weight);
         (sum >> 7) as i16
     });
     let [_, from, to, _] = ends;
     let (a, b) = (i32::from(from.facing), i32::from(to.facing));
-    // In proportion to the way: a quarter, half or three quarters of it, which the second weight tells.
-    let way = if weights[1] > weights[2] { 1 } else { 3 - i32::from(weights[1] == weights[2]) };
-    End { at, facing: (a + (((b - a) * way) >> 2)) as i8 }
+    // Linear between the two: at a quarter, half or three quarters, which the second weight shows.
+    let quarters = if weights[1] > weights[2] { 1 } else { 3 - i32::from(weights[1] == weights[2]) };
+    ScreenVertex { at, facing: (a + (((b - a) * quarters) >> 2)) as i8 }
 }
 
-/// 2^15 over 1 to 255, and nothing over 0.
-static RECIPROCALS: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut x = 1;
-    while x < 256 {
-        table[x] = reciprocal(x);
-        x += 1;
-    }
-    table
-};
-
-const fn reciprocal(x: usize) -> u16 {
-    match (1usize << 15).checked_div(x) {
-        Some(reciprocal) => reciprocal as u16,
-        None => 0,
-    }
-}
-
-/// The part of a line that looks here.
+/// Draws the part of a line that faces the camera.
 #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-fn visible(from: End, to: End, out: &mut impl Paint) {
+fn visible(from: ScreenVertex, to: ScreenVertex, out: &mut impl StrokeSink) {
     match (from.facing > GRAZING, to.facing > GRAZING) {
         (true, true) => out.line(from.at, to.at),
-        (true, false) => out.line(from.at, from.towards(to)),
-        (false, true) => out.line(to.at, to.towards(from)),
+        (true, false) => out.line(from.at, from.cut(to)),
+        (false, true) => out.line(to.at, to.cut(from)),
         (false, false) => {}
     }
 }

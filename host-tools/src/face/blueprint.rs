@@ -1,7 +1,8 @@
 //! A face in full precision, as it becomes a model: what moves which points, and by which names.
 
 use super::head::Vector;
-use pantin_face::shape::{Interpolation, Kind};
+use pantin_face::shape::{Interpolation, ShapeKind};
+use std::collections::HashSet;
 
 /// A turn about a line parallel to an axis.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ pub struct Shape {
     /// How it goes.
     pub interpolation: Interpolation,
     /// What its weights are.
-    pub kind: Kind,
+    pub kind: ShapeKind,
     /// Whether it has a left and a right version.
     pub sided: bool,
     /// Points and the ways that they go at full weight of the stored side.
@@ -121,6 +122,13 @@ impl Blueprint {
     /// Index of the shape called so.
     pub fn shape(&self, name: &str) -> Option<usize> {
         self.shapes.iter().position(|shape| shape.name == name)
+    }
+
+    /// The names of the channels that drive shapes, one per line, in the order of their first entries.
+    pub fn name_list(&self) -> String {
+        let mut listed = HashSet::new();
+        let names = self.names.iter().map(|drive| drive.name.as_str());
+        names.filter(|name| listed.insert(*name)).map(|name| format!("{name}\n")).collect()
     }
 
     /// Places of all points at rest.

@@ -2,13 +2,13 @@
 
 use anyhow::Result;
 use pantin::Clip;
-use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::Canvas;
 use pantin_figure::lines::Line;
 
 /// Whether a clip is a face and nothing else.
 pub fn is_face(clip: &Clip) -> Result<bool> {
-    Ok(clip.rig().joint_count() == 0 && Binding::of(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
+    Ok(clip.rig().joint_count() == 0 && Binding::new(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
 }
 
 /// The face that a clip drives.
@@ -27,20 +27,20 @@ impl Cast {
             return Ok(None);
         }
         let model = Model::new_checked(MODEL)?;
-        let view = |view: &pantin_figure::View| View { orbit: view.orbit, tilt: view.tilt };
+        let view = |view: &pantin_figure::View| FaceView { orbit: view.orbit, tilt: view.tilt };
         let looks = views.iter().map(|seen| FaceRenderer::new(&model, canvas, view(seen))).collect();
-        let (binding, weights, morph) = (Binding::of(&clip.rig(), &model), Weights::new(), Morph::new(&model)?);
+        let (binding, weights, morph) = (Binding::new(&clip.rig(), &model), Weights::new(), Morph::new(&model)?);
         Ok(Some(Cast { model, binding, weights, morph, looks }))
     }
 
     /// The lines of a pose as a view's camera sees it.
     pub fn lines(&mut self, pose: &[i32], view: usize) -> Vec<Line> {
-        self.binding.weigh(pose, &mut self.weights);
-        self.morph.place(&self.model, &self.weights);
+        self.binding.read(pose, &mut self.weights);
+        self.morph.apply(&self.model, &self.weights);
         let renderer = &mut self.looks[view];
         renderer.project(&self.model, &self.morph);
         let mut lines = Vec::new();
-        renderer.lines(&self.model, |line| lines.push(line));
+        renderer.each_line(&self.model, |line| lines.push(line));
         lines
     }
 }

@@ -3,7 +3,7 @@
 use super::blueprint::{Blueprint, Shape, Turn};
 use anyhow::{Result, ensure};
 use pantin_face::model::{self, NO_SHAPE, VERSION, WIDE};
-use pantin_face::shape::{Interpolation, Kind};
+use pantin_face::shape::{Interpolation, ShapeKind};
 
 /// Deltas smaller than this many steps are left out.
 const LEAST: f64 = 0.5;
@@ -144,9 +144,9 @@ impl Writer {
             Interpolation::Spherical => 2,
         };
         let kind = match shape.kind {
-            Kind::Whole => 0,
-            Kind::Signed => 4,
-            Kind::Head => 8,
+            ShapeKind::Unsigned => 0,
+            ShapeKind::Signed => 4,
+            ShapeKind::Head => 8,
         };
         let scale = scale(shape, step);
         ensure!(

@@ -8,7 +8,7 @@ use super::sheet::{self, Cell};
 use super::{Face, compact, pose};
 use anyhow::Result;
 use pantin_face::shape::Interpolation;
-use pantin_face::{Model, View};
+use pantin_face::{FaceView, Model};
 use std::io::Write;
 
 /// The interpolations, in the paper's order.
@@ -51,7 +51,7 @@ pub fn write(out: impl Write, face: &Face) -> Result<()> {
             for weight in WEIGHTS {
                 let weights = pose::weights(&pose::parse(&face.blueprint, &format!("{action}={weight}"))?);
                 let label = format!("{label} {method} {:.0} %", weight * 100.0);
-                cells.push(Cell { label, pixels: picture(&model, &weights, canvas, View::default()) });
+                cells.push(Cell { label, pixels: picture(&model, &weights, canvas, FaceView::default()) });
             }
         }
     }

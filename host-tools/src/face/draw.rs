@@ -1,20 +1,20 @@
 //! Pictures of a face, by the device's own code.
 
 use crate::render::shades::Shades;
-use pantin_face::{FaceRenderer, Model, Morph, View, Weights};
+use pantin_face::{FaceRenderer, FaceView, Model, Morph, Weights};
 use pantin_figure::Canvas;
 
 /// Room for models from outside too.
 pub const ROOM: usize = 1 << 15;
 
 /// One picture of a face: rows of greys.
-pub fn picture(model: &Model, weights: &Weights, canvas: Canvas, view: View) -> Vec<u8> {
+pub fn picture(model: &Model, weights: &Weights, canvas: Canvas, view: FaceView) -> Vec<u8> {
     let mut morph = Box::new(Morph::<ROOM>::new(model).expect("a model has at most ROOM vertices"));
     let mut renderer = Box::new(FaceRenderer::<ROOM>::new(model, canvas, view));
-    morph.place(model, weights);
+    morph.apply(model, weights);
     renderer.project(model, &morph);
     let mut lines = Vec::new();
-    renderer.lines(model, |line| lines.push(line));
+    renderer.each_line(model, |line| lines.push(line));
     let (width, height) = (usize::from(canvas.width), usize::from(canvas.height));
     let mut shades = Shades::new(width, height);
     shades.draw_lines(&lines, false);

@@ -6,7 +6,7 @@ use super::exact;
 use super::head::{dot, minus};
 use super::pose;
 use anyhow::Result;
-use pantin_face::shape::Kind;
+use pantin_face::shape::ShapeKind;
 use pantin_face::{Model, Morph};
 
 /// Mixtures that are tried, besides each unit alone.
@@ -30,8 +30,8 @@ pub fn greatest(face: &Blueprint, bytes: &[u8]) -> Result<Greatest> {
     let step = f64::from(model.step_exponent()).exp2();
     let mut most = 0f64;
     let mut compare = |pairs: &pose::Pairs| {
-        morph.place_open(&model, &pose::weights(pairs));
-        for (place, exact) in morph.places().iter().zip(exact::places(face, pairs)) {
+        morph.apply_unclipped(&model, &pose::weights(pairs));
+        for (place, exact) in morph.vertices().iter().zip(exact::places(face, pairs)) {
             let gap = minus(place.map(|x| f64::from(x) * step), exact);
             most = most.max(dot(gap, gap).sqrt());
         }
@@ -46,7 +46,7 @@ pub fn greatest(face: &Blueprint, bytes: &[u8]) -> Result<Greatest> {
         let mut pairs = vec![[0.0; 2]; face.shapes.len()];
         for _ in 0..AT_ONCE {
             let shape = (random() * face.shapes.len() as f64) as usize;
-            let least = if face.shapes[shape].kind == Kind::Whole { 0.0 } else { -1.0 };
+            let least = if face.shapes[shape].kind == ShapeKind::Unsigned { 0.0 } else { -1.0 };
             pairs[shape] = [(); 2].map(|()| least + random() * (1.0 - least));
         }
         compare(&pairs);

@@ -2,7 +2,7 @@
 
 use super::blueprint::{Blueprint, Shape};
 use super::head::{Vector, dot, minus, plus};
-use pantin_face::shape::{Interpolation, Kind};
+use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
 
 /// About this point go, under the spherical interpolation of the comparison, points that do not turn: the middle of the head.
@@ -21,8 +21,9 @@ pub fn eased(interpolation: Interpolation, weight: f64) -> f64 {
 /// `weights` are a pair a shape, -1 to 1.
 pub fn places(face: &Blueprint, weights: &[[f64; 2]]) -> Vec<Vector> {
     let mut places = face.neutral();
-    let moved = |shape: &Shape, pair: [f64; 2]| shape.kind != Kind::Head && pair != [0.0; 2];
-    let whole = |shape: &Shape, pair: [f64; 2]| if shape.kind == Kind::Whole { pair.map(|weight| weight.max(0.0)) } else { pair };
+    let moved = |shape: &Shape, pair: [f64; 2]| shape.kind != ShapeKind::Head && pair != [0.0; 2];
+    let whole =
+        |shape: &Shape, pair: [f64; 2]| if shape.kind == ShapeKind::Unsigned { pair.map(|weight| weight.max(0.0)) } else { pair };
     for (shape, &pair) in face.shapes.iter().zip(weights).filter(|(shape, pair)| moved(shape, **pair)) {
         let [stored, mirrored] = whole(shape, pair).map(|weight| eased(shape.interpolation, weight));
         for &(index, way) in &shape.deltas {

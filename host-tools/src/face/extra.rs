@@ -4,7 +4,7 @@ use super::blueprint::{Shape, Turn};
 use super::head::{Head, Vector};
 use super::paper::{follow, jaw_region, shape};
 use anyhow::{Context, Result, bail};
-use pantin_face::shape::{Interpolation, Kind};
+use pantin_face::shape::{Interpolation, ShapeKind};
 
 /// The table of units that deltas make.
 pub const TABLE: &str = include_str!("units.txt");
@@ -91,7 +91,7 @@ fn lid(head: &Head) -> Shape {
     let mut members: Vec<(usize, f64)> = ways.iter().map(|&(index, angle)| (index, angle / degrees)).collect();
     members.extend(["crease-in", "crease", "crease-out"].iter().filter_map(|name| Some((head.find(name).ok()?, CREASE))));
     let turn = Turn { axis: 0, centre: EYEBALL, degrees, members };
-    Shape { kind: Kind::Signed, turns: vec![turn], ..shape("lid", Interpolation::Spherical, true) }
+    Shape { kind: ShapeKind::Signed, turns: vec![turn], ..shape("lid", Interpolation::Spherical, true) }
 }
 
 /// Outwards and up, and by negative weights inwards and down.
@@ -103,7 +103,7 @@ fn gaze(head: &Head) -> [Shape; 2] {
         .collect();
     let turned = |name: &str, axis, degrees| {
         let turn = Turn { axis, centre: EYEBALL, degrees, members: members.clone() };
-        Shape { kind: Kind::Signed, turns: vec![turn], ..shape(name, Interpolation::Spherical, true) }
+        Shape { kind: ShapeKind::Signed, turns: vec![turn], ..shape(name, Interpolation::Spherical, true) }
     };
     [turned("eye_out", 1, GAZE[0]), turned("eye_up", 0, -GAZE[1])]
 }
@@ -112,7 +112,7 @@ fn gaze(head: &Head) -> [Shape; 2] {
 fn head_turns() -> [Shape; 3] {
     [("head_up", 0, -HEAD[0]), ("head_left", 1, HEAD[1]), ("head_tilt_left", 2, -HEAD[2])].map(|(name, axis, degrees)| {
         let turn = Turn { axis, centre: NECK, degrees, members: Vec::new() };
-        Shape { kind: Kind::Head, turns: vec![turn], ..shape(name, Interpolation::Spherical, false) }
+        Shape { kind: ShapeKind::Head, turns: vec![turn], ..shape(name, Interpolation::Spherical, false) }
     })
 }
 

@@ -6,7 +6,7 @@ use super::head::{Vector, minus};
 use super::names::goes_aside;
 use super::pose::Pairs;
 use anyhow::{Result, ensure};
-use pantin_face::shape::{Interpolation, Kind};
+use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
 
 /// Rounds of linearizing; each solves its system by sweeps over the weights.
@@ -58,7 +58,7 @@ pub fn fit(face: &Blueprint, target: &[Vector]) -> Result<Fit> {
     let mut pairs = pairs(face, &unknowns, &ways);
     for (shape, pair) in face.shapes.iter().zip(&mut pairs).filter(|(shape, _)| !shape.sided && goes_aside(&shape.name)) {
         // Its two ways undo each other.
-        let both = if shape.kind == Kind::Whole { pair[0].min(pair[1]) } else { 0.0 };
+        let both = if shape.kind == ShapeKind::Unsigned { pair[0].min(pair[1]) } else { 0.0 };
         *pair = pair.map(|weight| weight - both);
     }
     let distances = |places: &[Vector]| -> Vec<f64> {
@@ -78,11 +78,11 @@ fn differences(a: &[Vector], b: &[Vector]) -> Vec<f64> {
 /// Each side of a unit that has sides; the head's turn is no part of a pose.
 fn unknowns(face: &Blueprint) -> Vec<Unknown> {
     let of = |(index, shape): (usize, &super::blueprint::Shape)| {
-        let least = if shape.kind == Kind::Whole { 0.0 } else { -1.0 };
+        let least = if shape.kind == ShapeKind::Unsigned { 0.0 } else { -1.0 };
         let one = |sides| Unknown { shape: index, sides, least };
         let apart = shape.sided || goes_aside(&shape.name);
         match (shape.kind, apart) {
-            (Kind::Head, _) => vec![],
+            (ShapeKind::Head, _) => vec![],
             (_, true) => vec![one([true, false]), one([false, true])],
             (_, false) => vec![one([true, true])],
         }

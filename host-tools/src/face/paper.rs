@@ -2,7 +2,7 @@
 
 use super::blueprint::{Shape, Turn};
 use super::head::{Head, Vector, dot, minus, plus};
-use pantin_face::shape::{Interpolation, Kind};
+use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
 
 /// By how much unit 5 widens the distance of the cheeks.
@@ -63,7 +63,7 @@ fn open_mouth(head: &Head) -> Shape {
 
 /// A shape that moves nothing yet.
 pub fn shape(name: &str, interpolation: Interpolation, sided: bool) -> Shape {
-    Shape { name: name.into(), interpolation, kind: Kind::Whole, sided, deltas: Vec::new(), turns: Vec::new() }
+    Shape { name: name.into(), interpolation, kind: ShapeKind::Unsigned, sided, deltas: Vec::new(), turns: Vec::new() }
 }
 
 fn smile(head: &Head) -> Shape {

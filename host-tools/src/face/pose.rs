@@ -2,7 +2,7 @@
 
 use super::blueprint::{Blueprint, Drive};
 use anyhow::{Context, Result, bail};
-use pantin_face::{FULL, Target, Weights};
+use pantin_face::{FULL_WEIGHT, Target, Weights};
 
 /// A pair of weights a shape.
 pub type Pairs = Vec<[f64; 2]>;
@@ -37,7 +37,7 @@ pub fn weights(pairs: &Pairs) -> Weights {
     let mut weights = Weights::new();
     for (shape, pair) in pairs.iter().enumerate() {
         for (sides, weight) in [[true, false], [false, true]].into_iter().zip(pair) {
-            weights.add(Target::of(shape as u8, sides), (weight * f64::from(FULL)).round() as i32);
+            weights.add_to(Target::new(shape as u8, sides), (weight * f64::from(FULL_WEIGHT)).round() as i32);
         }
     }
     weights

@@ -10,7 +10,7 @@ use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
 use embedded_graphics::pixelcolor::Gray8;
 use embedded_graphics::text::{Baseline, Text};
-use pantin_face::View;
+use pantin_face::FaceView;
 use std::io::Write;
 
 const GAP: usize = 6;
@@ -123,7 +123,7 @@ pub fn units(out: impl Write, face: &Face) -> Result<()> {
     let canvas = pantin_figure::Canvas { width: SIZE[0] as u16, height: SIZE[1] as u16 };
     let cell = |&(label, sum, orbit): &(&str, &str, i16)| {
         let weights = pose::weights(&pose::parse(&face.blueprint, sum)?);
-        Ok(Cell { label: label.into(), pixels: picture(&model, &weights, canvas, View { orbit, tilt: 0 }) })
+        Ok(Cell { label: label.into(), pixels: picture(&model, &weights, canvas, FaceView { orbit, tilt: 0 }) })
     };
     let cells = POSES.iter().map(cell).collect::<Result<Vec<_>>>()?;
     write(out, &cells, COLUMNS, SIZE)

@@ -1,7 +1,7 @@
 //! The model that devices play: the committed bytes, the device's arithmetic against full precision, hostile bytes, names.
 
-use pantin_face::model::{Error, hash};
-use pantin_face::{Binding, FaceRenderer, Model, Morph, Target, VERTICES, View, Weights};
+use pantin_face::model::{ModelError, hash};
+use pantin_face::{Binding, FaceRenderer, FaceView, Model, Morph, Target, VERTICES, Weights};
 use pantin_figure::Canvas;
 use pantin_tools::face::cast::{Cast, is_face};
 use pantin_tools::face::{Face, error, export, fit, outside, pose};
@@ -28,8 +28,9 @@ fn the_committed_model_is_what_the_tables_make() {
     let face = Face::new().unwrap();
     assert!(
         pantin_face::MODEL == face.bytes,
-        "the face has changed: write its model again by `pantin face model -o firmware/face/face.model`"
+        "the face has changed: write its model again by `pantin face model -o firmware/face/face.model --names firmware/face/face.names`"
     );
+    assert_eq!(pantin_face::NAMES, face.blueprint.name_list(), "the names have changed: write them again by the same command");
     assert!(face.bytes.len() <= 8 << 10, "{} bytes", face.bytes.len());
     let parts = [size_of::<Morph<VERTICES>>(), size_of::<FaceRenderer<VERTICES>>(), size_of::<Binding>(), size_of::<Weights>()];
     println!("RAM: vertices {}, display {}, names {}, weights {} bytes", parts[0], parts[1], parts[2], parts[3]);
@@ -46,15 +47,15 @@ fn the_device_keeps_within_a_tenth_of_a_percent() {
 /// Plays and draws a model, whatever it is.
 fn play(model: &Model) {
     let Ok(mut morph) = Morph::<512>::new(model) else { return };
-    for view in [View::default(), View { orbit: 70, tilt: -30 }] {
+    for view in [FaceView::default(), FaceView { orbit: 70, tilt: -30 }] {
         let mut renderer = FaceRenderer::<512>::new(model, pantin_figure::Canvas { width: 240, height: 240 }, view);
         for weight in [0, 20_000, 1 << 15, -(1 << 15)] {
             let mut weights = Weights::new();
-            (0..model.shape_count()).for_each(|shape| weights.add(Target::of(shape as u8, [true, shape % 2 == 0]), weight));
-            morph.place(model, &weights);
+            (0..model.shape_count()).for_each(|shape| weights.add_to(Target::new(shape as u8, [true, shape % 2 == 0]), weight));
+            morph.apply(model, &weights);
             renderer.project(model, &morph);
             let mut lines = 0;
-            renderer.lines(model, |_| lines += 1);
+            renderer.each_line(model, |_| lines += 1);
             assert!(lines < 1 << 16);
         }
     }
@@ -67,7 +68,7 @@ fn hostile_bytes_are_refused_or_harmless() {
     for len in 0..bytes.len() {
         assert!(Model::new_checked(&bytes[..len]).is_err(), "{len} bytes are taken for all");
     }
-    assert_eq!(Model::new_checked(&[9]).unwrap_err(), Error::UnsupportedVersion(9));
+    assert_eq!(Model::new_checked(&[9]).unwrap_err(), ModelError::UnsupportedVersion(9));
     let mut state = 7u32;
     let mut random = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

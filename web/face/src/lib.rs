@@ -12,7 +12,7 @@
 #![allow(unsafe_code)]
 
 use pantin::Scalars;
-use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, View, Weights};
+use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, FaceView, Weights};
 use pantin_figure::Canvas;
 use pantin_web_module::memory::{room as make_room, written};
 use pantin_web_module::{Only, Stroke};
@@ -55,7 +55,7 @@ extern "C" fn room(bytes: usize) -> *mut u8 {
 extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
     let face = face();
     let Ok(model) = Model::new_checked(MODEL) else { return false };
-    face.binding.bind(Scalars::of_bytes(written(bytes), count), first, &model);
+    face.binding.bind_scalars(Scalars::of_bytes(written(bytes), count), first, &model);
     face.model = Some(model);
     face.binding.is_face() && face.morph.set_up(&model).is_ok()
 }
@@ -66,7 +66,7 @@ extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
 extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
     let Face { model: Some(model), renderer, .. } = face() else { return };
     let canvas = Canvas { width: width.clamp(1, 2047) as u16, height: height.clamp(1, 2047) as u16 };
-    renderer.set_up(model, canvas, View { orbit: orbit as i16, tilt: tilt as i16 });
+    renderer.set_up(model, canvas, FaceView { orbit: orbit as i16, tilt: tilt as i16 });
     renderer.shift(right as i16, 0);
 }
 
@@ -77,11 +77,11 @@ extern "C" fn place(channels: usize) -> usize {
     // SAFETY: any bits are integers.
     let (_, pose, _) = unsafe { written(channels.saturating_mul(4)).align_to::<i32>() };
     let mut weights = Weights::new();
-    binding.weigh(pose, &mut weights);
-    morph.place(model, &weights);
+    binding.read(pose, &mut weights);
+    morph.apply(model, &weights);
     renderer.project(model, morph);
     let mut count = 0;
-    renderer.lines(model, |line| {
+    renderer.each_line(model, |line| {
         if let Some(place) = strokes.get_mut(count) {
             *place = line.into();
             count += 1;

@@ -12,7 +12,7 @@ use pantin_figure::{Canvas, DrawStyle, View};
 /// Returns whether a clip drives a face. Not inlined: the binding is on the stack only meanwhile.
 #[inline(never)]
 pub(super) fn is_in(clip: &Clip) -> bool {
-    Model::new_checked(MODEL).is_ok_and(|model| Binding::of(&clip.rig(), &model).is_face())
+    Model::new_checked(MODEL).is_ok_and(|model| Binding::new(&clip.rig(), &model).is_face())
 }
 
 /// A face and its camera.
@@ -43,7 +43,7 @@ pub(super) fn with<T>(
     let mut renderer = FaceRenderer::EMPTY;
     renderer.set_up(&model, canvas, face_view(view, ahead));
     renderer.shift(column, 0);
-    info!("{} scalars drive the face", binding.names());
+    info!("{} scalars drive the face", binding.driving());
     Some(then(Face { model: &model, binding: &binding, morph: &mut morph, renderer: &mut renderer, ahead }))
 }
 
@@ -57,8 +57,8 @@ impl Face<'_> {
     #[inline(never)]
     fn shape(&mut self, pose: &[i32]) {
         let mut weights = Weights::new();
-        self.binding.weigh(pose, &mut weights);
-        self.morph.place(self.model, &weights);
+        self.binding.read(pose, &mut weights);
+        self.morph.apply(self.model, &weights);
     }
 
     pub(super) fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>) {
@@ -71,8 +71,8 @@ impl Face<'_> {
 }
 
 /// Returns the view of a face: it is turned by the difference to the view that is straight ahead.
-fn face_view(view: View, ahead: View) -> pantin_face::View {
-    pantin_face::View { orbit: view.orbit - ahead.orbit, tilt: view.tilt - ahead.tilt }
+fn face_view(view: View, ahead: View) -> pantin_face::FaceView {
+    pantin_face::FaceView { orbit: view.orbit - ahead.orbit, tilt: view.tilt - ahead.tilt }
 }
 
 impl<L: Layout> Content<L> for Face<'_> {

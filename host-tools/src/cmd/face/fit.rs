@@ -64,16 +64,16 @@ fn frame(arguments: &Arguments, face: &Face) -> Result<Vec<[f64; 3]>> {
     let clip = files.open().with_context(place)?;
     ensure!(arguments.frame < clip.frames(), "{}: frame {} of {}", place(), arguments.frame, clip.frames());
     let model = face.model()?;
-    let binding = Binding::of(&clip.rig(), &model);
-    ensure!(binding.names() > 0, "{}: no channel bears a name that the face knows; docs/FACE.md lists them", place());
+    let binding = Binding::new(&clip.rig(), &model);
+    ensure!(binding.driving() > 0, "{}: no channel bears a name that the face knows; docs/FACE.md lists them", place());
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(clip, &mut states, &mut pose)?;
     player.seek(arguments.frame);
     let mut weights = Weights::new();
-    binding.weigh(player.pose().values, &mut weights);
+    binding.read(player.pose().values, &mut weights);
     let mut morph = Morph::<VERTICES>::new(&model)?;
-    morph.place_open(&model, &weights);
+    morph.apply_unclipped(&model, &weights);
     let step = f64::from(model.step_exponent()).exp2();
-    Ok(morph.places().iter().map(|place| place.map(|x| f64::from(x) * step)).collect())
+    Ok(morph.vertices().iter().map(|place| place.map(|x| f64::from(x) * step)).collect())
 }

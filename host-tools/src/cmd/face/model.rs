@@ -17,6 +17,9 @@ pub struct Arguments {
     /// The file to write
     #[arg(short, long)]
     output: PathBuf,
+    /// Also write the names that drive the face to this file, one per line
+    #[arg(long, value_name = "FILE")]
+    names: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -41,5 +44,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     outln!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12)?;
     let error = error::greatest(&blueprint, &bytes)?;
     outln!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0)?;
+    if let Some(path) = &arguments.names {
+        write_whole(path, blueprint.name_list().as_bytes())?;
+    }
     write_whole(&arguments.output, &bytes)
 }
