@@ -45,7 +45,7 @@ impl Camera {
     pub const EMPTY: Camera = Camera { centre: [0; 2], rows: [[0; 3]; 3], scale: 1, shift: 16, nearer: 0, middle: [0; 3] };
 
     /// Points the camera.
-    #[inline(always)]
+    #[inline(never)]
     pub fn aim(&mut self, view: FaceView) {
         let mut rotated = Rotation::IDENTITY;
         rotated.turn(0, of_degrees(view.tilt));

@@ -1,8 +1,8 @@
 //! Curves that are drawn on the face: brows, lids, lips.
 
 use crate::bytes::{Bytes, indices};
-use crate::counts::Counts;
 use crate::error::ModelError;
+use crate::model::Model;
 
 /// A curve through vertices.
 #[derive(Clone, Copy, Debug)]
@@ -86,12 +86,12 @@ impl<'a> Curves<'a> {
         Curves { bytes: Bytes(bytes), wide }
     }
 
-    pub(crate) fn check(bytes: &mut Bytes<'a>, count: u8, counts: &Counts) -> Result<(), ModelError> {
+    pub(crate) fn check(bytes: &mut Bytes<'a>, count: u8, model: &Model) -> Result<(), ModelError> {
         for _ in 0..count {
-            let curve = Curve::parse(bytes, counts.wide)?;
+            let curve = Curve::parse(bytes, model.wide)?;
             for index in curve.vertices() {
-                counts.check_index(index)?;
-                if curve.mirrored && usize::from(index) >= counts.middles() + counts.pairs() {
+                model.check_index(index)?;
+                if curve.mirrored && usize::from(index) >= model.middles() + model.pairs() {
                     return Err(ModelError::Malformed);
                 }
             }

@@ -47,7 +47,7 @@
 mod binding;
 mod bytes;
 mod camera;
-mod counts;
+mod checked;
 mod crossing;
 pub mod curve;
 mod error;

@@ -1,10 +1,6 @@
 //! A face model's bytes ([MODEL.md](https://docs.rs/crate/pantin-face/latest/source/MODEL.md)), checked once: afterwards no operation can fail.
 
 use crate::bytes::Bytes;
-use crate::counts::{Counts, Image};
-use crate::curve::Curves;
-use crate::opening::Opening;
-use crate::shape::Shapes;
 use crate::target::Target;
 
 pub use crate::error::ModelError;
@@ -14,99 +10,97 @@ pub use pantin::names::hash;
 /// A checked model: vertices, curves, shapes and the hashes of the names that drive the shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a> {
-    pub(crate) counts: Counts,
-    step_exponent: i8,
-    outline: u16,
+    pub(crate) wide: bool,
+    pub(crate) step_exponent: i8,
+    pub(crate) middles: u16,
+    pub(crate) pairs: u16,
+    pub(crate) moving: [u16; 2],
+    pub(crate) outline: u16,
     pub(crate) points: &'a [u8],
     pub(crate) normals: &'a [u8],
     pub(crate) triangles: &'a [u8],
     pub(crate) fixed: &'a [u8],
-    curves: &'a [u8],
+    pub(crate) curves: &'a [u8],
     pub(crate) openings: &'a [u8],
-    shapes: &'a [u8],
-    names: &'a [u8],
+    pub(crate) shapes: &'a [u8],
+    pub(crate) shape_count: u8,
+    pub(crate) names: &'a [u8],
 }
 
 impl<'a> Model<'a> {
-    /// Checks `bytes`, which must be exactly one model. Returns an error if they are truncated, have an unknown version, or contradict
-    /// themselves.
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Self, ModelError> {
-        let mut bytes = Bytes(bytes);
-        let version = bytes.u8()?;
-        if version != VERSION {
-            return Err(ModelError::UnsupportedVersion(version));
+    /// Checks that all `indices` are those of vertices.
+    pub(crate) fn check_indices(&self, indices: &[u8]) -> Result<(), ModelError> {
+        let mut indices = Bytes(indices);
+        while !indices.0.is_empty() {
+            self.check_index(indices.index(self.wide)?)?;
         }
-        let flags = bytes.u8()?;
-        let step_exponent = bytes.u8()? as i8;
-        let [middles, pairs, moving_middles, moving_pairs] = [(); 4].map(|()| bytes.u16());
-        let (middles, pairs, moving) = (middles?, pairs?, [moving_middles?, moving_pairs?]);
-        let [triangles, outline, names] = [(); 3].map(|()| bytes.u16());
-        let (triangles, outline, names) = (triangles?, outline?, names?);
-        let [fixed, curves, openings, shapes] = bytes.array()?;
-        let counts = Counts { wide: flags & WIDE != 0, middles, pairs, moving, shapes };
-        let wide = counts.wide;
-        let vertices = counts.vertices();
-        let stored = usize::from(middles) + usize::from(pairs);
-        if flags & !WIDE != 0 || vertices > if wide { 1 << 15 } else { 1 << 8 } || vertices == 0 || outline > triangles {
-            return Err(ModelError::Malformed);
+        Ok(())
+    }
+
+    /// Checks that all `indices` are those of vertices in the middle or on the left, which are the ones that have mirror images.
+    pub(crate) fn check_stored(&self, indices: &[u8]) -> Result<(), ModelError> {
+        let stored = usize::from(self.middles) + usize::from(self.pairs);
+        let mut indices = Bytes(indices);
+        while !indices.0.is_empty() {
+            if usize::from(indices.index(self.wide)?) >= stored {
+                return Err(ModelError::Malformed);
+            }
         }
-        if moving[0] > middles || moving[1] > pairs {
-            return Err(ModelError::Malformed);
+        Ok(())
+    }
+
+    pub(crate) fn check_index(&self, index: u16) -> Result<(), ModelError> {
+        if usize::from(index) < self.vertices() { Ok(()) } else { Err(ModelError::Malformed) }
+    }
+
+    /// Checks that vertices `first..first + count` may move and are all in the middle, all on the left, or all on the right.
+    pub(crate) fn check_run(&self, first: u16, count: u8) -> Result<(), ModelError> {
+        let (first, end) = (usize::from(first), usize::from(first) + usize::from(count));
+        if count > 0 && self.moving().into_iter().any(|[from, to]| first >= from && end <= to) {
+            Ok(())
+        } else {
+            Err(ModelError::Malformed)
         }
-        if usize::from(shapes) > SHAPES || !(-24..=24).contains(&step_exponent) {
-            return Err(ModelError::Malformed);
-        }
-        let width = 1 + usize::from(wide);
-        let mut model = Model {
-            counts,
-            step_exponent,
-            outline,
-            points: bytes.take(stored * 6)?,
-            normals: bytes.take(stored * 3)?,
-            triangles: bytes.take(usize::from(triangles) * 3 * width)?,
-            fixed: bytes.take(usize::from(fixed) * width)?,
-            curves: &[],
-            openings: &[],
-            shapes: &[],
-            names: &[],
-        };
-        counts.check_stored(model.triangles)?;
-        counts.check_indices(model.fixed)?;
-        model.curves = consumed(&mut bytes, |bytes| Curves::check(bytes, curves, &counts))?;
-        model.openings = consumed(&mut bytes, |bytes| Opening::check(bytes, openings, &counts))?;
-        model.shapes = consumed(&mut bytes, |bytes| Shapes::check(bytes, &counts))?;
-        model.names = bytes.take(usize::from(names) * NAME_LEN)?;
-        let known = |entry: &[u8]| entry.get(4).is_some_and(|target| target & 0x3f < shapes);
-        if !bytes.0.is_empty() || !model.names.chunks_exact(NAME_LEN).all(known) {
-            return Err(ModelError::Malformed);
-        }
-        Ok(model)
+    }
+
+    /// Ranges of the vertices that may move: in the middle, on the left, on the right.
+    pub(crate) fn moving(&self) -> [[usize; 2]; 3] {
+        let [middles, pairs] = self.moving.map(usize::from);
+        let (left, right) = (self.middles(), self.middles() + self.pairs());
+        [[0, middles], [left, left + pairs], [right, right + pairs]]
     }
 
     /// Number of vertices: those in the middle, those on the left, and their mirror images, in this order.
     pub fn vertices(&self) -> usize {
-        self.counts.vertices()
+        usize::from(self.middles) + 2 * usize::from(self.pairs)
     }
 
     /// Number of vertices in the middle, which are their own mirror images.
     pub fn middles(&self) -> usize {
-        self.counts.middles()
+        usize::from(self.middles)
     }
 
     /// Number of vertices on the left, which is the number of pairs of a vertex and its mirror image.
     pub fn pairs(&self) -> usize {
-        self.counts.pairs()
+        usize::from(self.pairs)
     }
 
     /// The index of the vertex that mirrors the one with index `index`.
     #[inline(always)]
     pub fn mirror(&self, index: u16) -> u16 {
-        self.counts.mirror(index)
+        if index < self.middles {
+            index
+        } else if index < self.middles.wrapping_add(self.pairs) {
+            index.wrapping_add(self.pairs)
+        } else {
+            index.wrapping_sub(self.pairs)
+        }
     }
 
+    /// Finds mirror images of vertices in the middle or on the left: less work than [`Model::mirror`].
     #[inline(always)]
     pub(crate) fn image(&self) -> Image {
-        self.counts.image()
+        Image { middles: self.middles, pairs: self.pairs }
     }
 
     /// Exponent of a step: a coordinate of 1 is 2^exponent of the model's unit of length (millimetres for Pantin's own face).
@@ -119,19 +113,9 @@ impl<'a> Model<'a> {
         usize::from(self.outline)
     }
 
-    /// Walks the curves in the order in which they are drawn.
-    pub fn curves(&self) -> Curves<'a> {
-        Curves::new(self.curves, self.counts.wide)
-    }
-
-    /// Walks the shapes in the order of their weights.
-    pub fn shapes(&self) -> Shapes<'a> {
-        Shapes::new(self.shapes, &self.counts)
-    }
-
     /// Number of shapes, at most [`SHAPES`].
     pub fn shape_count(&self) -> usize {
-        self.counts.shapes()
+        usize::from(self.shape_count)
     }
 
     /// Walks the table of names. A name has an entry for each shape that it drives. The model stores hashes of the names, not the names;
@@ -153,18 +137,22 @@ impl<'a> Model<'a> {
     }
 }
 
+/// Finds mirror images of vertices in the middle or on the left.
+#[derive(Clone, Copy)]
+pub(crate) struct Image {
+    middles: u16,
+    pairs: u16,
+}
+
+impl Image {
+    #[inline(always)]
+    pub fn of(self, index: u16) -> u16 {
+        if index < self.middles { index } else { index.wrapping_add(self.pairs) }
+    }
+}
+
 /// Longer names are not looked up with a capital first letter.
 const LONGEST_NAME: usize = 32;
-
-/// The bytes that `check` reads.
-fn consumed<'a>(
-    bytes: &mut Bytes<'a>,
-    check: impl FnOnce(&mut Bytes<'a>) -> Result<(), ModelError>,
-) -> Result<&'a [u8], ModelError> {
-    let before = bytes.0;
-    check(bytes)?;
-    Ok(before.get(..before.len() - bytes.0.len()).unwrap_or(&[]))
-}
 
 /// A channel's name, and a shape that a channel with this name drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

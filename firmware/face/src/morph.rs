@@ -62,7 +62,7 @@ impl<const N: usize> Morph<N> {
 
     /// Like [`Morph::apply`], but lids and lips do not clip irises, teeth and the tongue.
     pub fn apply_unclipped(&mut self, model: &Model, weights: &Weights) {
-        for range in model.counts.moving() {
+        for range in model.moving() {
             reset(model, range, &mut self.vertices);
         }
         (self.head, self.pivot) = apply_shapes(model, weights, &mut self.vertices);

@@ -1,9 +1,9 @@
 //! An opening between two edges, an eye or the mouth, as a model stores it.
 
 use crate::bytes::Bytes;
-use crate::counts::Counts;
 use crate::error::ModelError;
 use crate::format::NO_SHAPE;
+use crate::model::Model;
 
 /// An opening. Its members are clipped by its edges.
 pub(crate) struct Opening<'a> {
@@ -31,18 +31,18 @@ impl<'a> Opening<'a> {
     }
 
     /// Checks `count` openings.
-    pub fn check(bytes: &mut Bytes, count: u8, counts: &Counts) -> Result<(), ModelError> {
+    pub fn check(bytes: &mut Bytes, count: u8, model: &Model) -> Result<(), ModelError> {
         for _ in 0..count {
-            let opening = Opening::parse(bytes, counts.wide)?;
-            if opening.release != NO_SHAPE && usize::from(opening.release) >= counts.shapes() {
+            let opening = Opening::parse(bytes, model.wide)?;
+            if opening.release != NO_SHAPE && usize::from(opening.release) >= model.shape_count() {
                 return Err(ModelError::Malformed);
             }
             let mut members = Bytes(opening.members);
             while !members.0.is_empty() {
-                counts.check_run(members.index(counts.wide)?, 1)?;
+                model.check_run(members.index(model.wide)?, 1)?;
             }
-            counts.check_indices(opening.upper)?;
-            counts.check_indices(opening.lower)?;
+            model.check_indices(opening.upper)?;
+            model.check_indices(opening.lower)?;
         }
         Ok(())
     }

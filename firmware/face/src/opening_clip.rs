@@ -11,7 +11,7 @@ use heapless::Vec;
 #[inline(never)]
 pub(crate) fn clip_members(model: &Model, vertices: &mut [Vertex], weights: &Weights) {
     let mut bytes = Bytes(model.openings);
-    let wide = model.counts.wide;
+    let wide = model.wide;
     while let Ok(opening) = Opening::parse(&mut bytes, wide) {
         let released = weights.get(usize::from(opening.release))[0].max(0);
         let drop = (i32::from(opening.drop) * released) >> 15;

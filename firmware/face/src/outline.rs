@@ -155,7 +155,7 @@ pub(crate) fn each_triangle(model: &Model, most: usize, wanted: impl Fn([u16; 3]
             visit([image.of(a), image.of(c), image.of(b)]);
         }
     };
-    if model.counts.wide {
+    if model.wide {
         for &[a, b, c, d, e, f] in model.triangles.as_chunks::<6>().0.iter().take(most) {
             both(u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
         }

@@ -168,7 +168,7 @@ fn project(
     let carried = head.apply_any(pivot);
     let whole = Projection::new(camera, &head, core::array::from_fn(|axis| pivot[axis] - carried[axis] - camera.middle[axis]));
     if !all {
-        for [from, to] in model.counts.moving() {
+        for [from, to] in model.moving() {
             if let (Some(vertices), Some(facing), Some(points)) =
                 (vertices.get(from..to), facing.get(from..to), points.get_mut(from..to))
             {
@@ -180,7 +180,7 @@ fn project(
     whole.points(vertices, facing, points);
     let still = Projection::new(camera, &Rotation::IDENTITY, camera.middle.map(|x| -x));
     let mut fixed = Bytes(model.fixed);
-    while let Ok(index) = fixed.index(model.counts.wide) {
+    while let Ok(index) = fixed.index(model.wide) {
         if let (Some(point), Some(&vertex)) = (points.get_mut(usize::from(index)), vertices.get(usize::from(index))) {
             *point = still.point(vertex);
         }

@@ -1,8 +1,8 @@
 //! What a weight moves: sparse deltas, and rotations about an axis.
 
 use crate::bytes::Bytes;
-use crate::counts::Counts;
 use crate::error::ModelError;
+use crate::model::Model;
 use pantin_figure::trig::{ONE, sin_cos};
 
 /// How vertices move from their neutral position to their final one (docs/METHOD.md 3.3).
@@ -158,22 +158,22 @@ pub struct Shapes<'a> {
 }
 
 impl<'a> Shapes<'a> {
-    pub(crate) fn new(bytes: &'a [u8], counts: &Counts) -> Self {
-        Shapes { bytes: Bytes(bytes), left: counts.shapes, wide: counts.wide }
+    pub(crate) fn new(bytes: &'a [u8], model: &Model) -> Self {
+        Shapes { bytes: Bytes(bytes), left: model.shape_count, wide: model.wide }
     }
 
-    pub(crate) fn check(bytes: &mut Bytes<'a>, counts: &Counts) -> Result<(), ModelError> {
-        for _ in 0..counts.shapes() {
-            let shape = Shape::parse(bytes, counts.wide)?;
+    pub(crate) fn check(bytes: &mut Bytes<'a>, model: &Model) -> Result<(), ModelError> {
+        for _ in 0..model.shape_count() {
+            let shape = Shape::parse(bytes, model.wide)?;
             let mut deltas = Bytes(shape.deltas);
             while !deltas.0.is_empty() {
-                let run = run(&mut deltas, counts.wide)?;
-                counts.check_run(run.first, run.deltas.len() as u8)?;
+                let run = run(&mut deltas, model.wide)?;
+                model.check_run(run.first, run.deltas.len() as u8)?;
             }
             let mut rotations = Bytes(shape.rotations);
             while !rotations.0.is_empty() {
-                for members in rotation(&mut rotations, counts.wide)?.members() {
-                    counts.check_run(members.first, members.count)?;
+                for members in rotation(&mut rotations, model.wide)?.members() {
+                    model.check_run(members.first, members.count)?;
                 }
             }
         }

@@ -50,7 +50,7 @@ pub(crate) fn draw(model: &Model, face: ProjectedFace, detail: u8, out: &mut imp
 /// Marks the vertices that no line needs as [`NOT_DRAWN`]. Large displays and wide models need all.
 #[inline(never)]
 pub(crate) fn mark_unneeded(model: &Model, detail: u8, outline: &Outline, facing: &mut [i8]) {
-    if detail >= MESH_DETAIL || model.counts.wide || outline.overflown() {
+    if detail >= MESH_DETAIL || model.wide || outline.overflown() {
         return;
     }
     // One bit for each vertex: models that are not wide have at most 256.
