@@ -32,7 +32,7 @@ pub const BINDINGS: usize = 80;
 /// # let (mut states, mut pose) = (vec![pantin::ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]);
 /// let player = pantin::Player::new(clip, &mut states, &mut pose)?;
 /// // In every frame:
-/// binding.read(player.pose(), &mut weights);
+/// binding.read(player.pose().values, &mut weights);
 /// morph.apply(&model, &weights);
 /// # Ok(())
 /// # }

@@ -54,8 +54,9 @@ impl<'a> Model<'a> {
             shape_count,
             names: &[],
         };
-        model.check_stored(model.triangles)?;
-        model.check_indices(model.fixed)?;
+        // The vertices of triangles have mirror images: they are in the middle or on the left.
+        model.check_indices(model.triangles, stored)?;
+        model.check_indices(model.fixed, vertices)?;
         model.curves = consumed(&mut bytes, |bytes| Curves::check(bytes, curves, &model))?;
         model.openings = consumed(&mut bytes, |bytes| Opening::check(bytes, openings, &model))?;
         model.shapes = consumed(&mut bytes, |bytes| Shapes::check(bytes, &model))?;

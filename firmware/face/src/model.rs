@@ -28,21 +28,12 @@ pub struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// Checks that all `indices` are those of vertices.
-    pub(crate) fn check_indices(&self, indices: &[u8]) -> Result<(), ModelError> {
+    /// Checks that all `indices` are below a limit.
+    #[inline(never)]
+    pub(crate) fn check_indices(&self, indices: &[u8], below: usize) -> Result<(), ModelError> {
         let mut indices = Bytes(indices);
         while !indices.0.is_empty() {
-            self.check_index(indices.index(self.wide)?)?;
-        }
-        Ok(())
-    }
-
-    /// Checks that all `indices` are those of vertices in the middle or on the left, which are the ones that have mirror images.
-    pub(crate) fn check_stored(&self, indices: &[u8]) -> Result<(), ModelError> {
-        let stored = usize::from(self.middles) + usize::from(self.pairs);
-        let mut indices = Bytes(indices);
-        while !indices.0.is_empty() {
-            if usize::from(indices.index(self.wide)?) >= stored {
+            if usize::from(indices.index(self.wide)?) >= below {
                 return Err(ModelError::Malformed);
             }
         }
@@ -54,6 +45,7 @@ impl<'a> Model<'a> {
     }
 
     /// Checks that vertices `first..first + count` may move and are all in the middle, all on the left, or all on the right.
+    #[inline(never)]
     pub(crate) fn check_run(&self, first: u16, count: u8) -> Result<(), ModelError> {
         let (first, end) = (usize::from(first), usize::from(first) + usize::from(count));
         if count > 0 && self.moving().into_iter().any(|[from, to]| first >= from && end <= to) {

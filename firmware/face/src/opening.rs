@@ -41,8 +41,8 @@ impl<'a> Opening<'a> {
             while !members.0.is_empty() {
                 model.check_run(members.index(model.wide)?, 1)?;
             }
-            model.check_indices(opening.upper)?;
-            model.check_indices(opening.lower)?;
+            model.check_indices(opening.upper, model.vertices())?;
+            model.check_indices(opening.lower, model.vertices())?;
         }
         Ok(())
     }

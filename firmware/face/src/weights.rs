@@ -5,7 +5,8 @@ use crate::format::SHAPES;
 use crate::model::{Model, NameEntry};
 use crate::target::Target;
 
-/// A weight as a fixed-point number: 1 is the full effect of a unit, 0 none. [`Weights`] keep -2 to 2.
+/// A weight as a fixed-point number: 1 is the full effect of a unit, 0 none. [`Weights`] keep -2 to 2. Constants are `Weight::lit("0.5")`; a
+/// `pantin::Fraction` is converted by `Weight::from_num`.
 pub type Weight = fixed::types::I16F16;
 
 /// A full weight in Q15.

@@ -1,10 +1,10 @@
-//! A face in full precision, as it becomes a model: what moves which points, and by which names.
+//! A face in full precision, from which a model is encoded: points, curves, shapes that move points, and names of channels.
 
 use super::head::Vector;
 use pantin_face::shape::{Interpolation, ShapeKind};
 use std::collections::HashSet;
 
-/// A turn about a line parallel to an axis.
+/// A rotation about a line parallel to an axis.
 #[derive(Clone, Debug)]
 pub struct Turn {
     /// 0, 1, 2: x, y, z.
@@ -13,104 +13,104 @@ pub struct Turn {
     pub centre: Vector,
     /// Degrees at full weight.
     pub degrees: f64,
-    /// Points, each with its part of the angle, 0 to 1: in the middle or left.
+    /// Points in the middle or on the left, each with its part of the angle, 0 to 1.
     pub members: Vec<(usize, f64)>,
 }
 
 /// What a weight moves. Its other weight moves the mirror image.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// Its name; with `_left` and `_right` that of one side.
+    /// Its name; a suffix `_left` or `_right` selects one side.
     pub name: String,
-    /// How it goes.
+    /// How its points move.
     pub interpolation: Interpolation,
-    /// What its weights are.
+    /// The range of its weights.
     pub kind: ShapeKind,
     /// Whether it has a left and a right version.
     pub sided: bool,
-    /// Points and the ways that they go at full weight of the stored side.
+    /// Points and their displacements at full weight of the stored side.
     pub deltas: Vec<(usize, Vector)>,
-    /// What turns.
+    /// Its rotations.
     pub turns: Vec<Turn>,
 }
 
-/// What a name drives: a shape's sides, by so much a unit of the channel.
+/// A name, and the sides of a shape that a channel with this name drives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// Name of the channel.
     pub name: String,
     /// Index of the shape.
     pub shape: usize,
-    /// The stored side, the mirrored one.
+    /// Whether it drives the stored side, and the mirrored side.
     pub sides: [bool; 2],
-    /// Weight for a value of 1.
+    /// Weight at a channel value of 1.
     pub gain: f64,
 }
 
-/// A curve by its points.
+/// A curve through points.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// From which size on it is drawn.
+    /// The lowest detail, 0 to 3, at which it is drawn.
     pub detail: u8,
-    /// Brightness.
+    /// Brightness, 0 to 255.
     pub shade: u8,
     /// Whether its mirror image is drawn too.
     pub paired: bool,
-    /// Whether it runs back to its first point.
+    /// Whether the last point is joined to the first.
     pub closed: bool,
-    /// Whether it keeps its corners at any size.
+    /// Whether it consists of straight lines at every size.
     pub straight: bool,
-    /// Whether the smallest displays alone draw it.
+    /// Whether it is drawn at detail 0 only.
     pub small: bool,
     /// Its points.
     pub points: Vec<usize>,
 }
 
-/// An opening, and the shape that lets what is behind over its lower edge by so much.
+/// An opening, and the shape that lets its members pass the lower edge.
 #[derive(Clone, Debug)]
 pub struct Opening {
     /// The edges and members.
     pub opening: super::head::Opening,
-    /// Index of the shape, and the drop.
+    /// Index of the shape, and the distance at full weight, in the model's units of length.
     pub release: Option<(usize, f64)>,
 }
 
-/// All that a model holds.
+/// The content of a model.
 #[derive(Clone, Debug, Default)]
 pub struct Blueprint {
-    /// Points in the middle.
+    /// Number of points in the middle.
     pub middles: usize,
-    /// Points of the left half.
+    /// Number of points on the left.
     pub pairs: usize,
-    /// Steps a unit, as a power of two.
+    /// Steps per unit of length, as a power of two.
     pub fraction_bits: i8,
-    /// Points of the middle and of the left half.
+    /// Points in the middle and on the left.
     pub points: Vec<Vector>,
     /// Their normals.
     pub normals: Vec<Vector>,
-    /// Triangles of the left half.
+    /// Triangles of the left half of the skin.
     pub triangles: Vec<[usize; 3]>,
-    /// Number of triangles that make the outline.
+    /// Number of the first triangles that make the outline.
     pub outline: usize,
-    /// Points that stay when the head turns.
+    /// Points that stay fixed when the head rotates.
     pub fixed: Vec<usize>,
-    /// What is drawn.
+    /// Curves in the order in which they are drawn.
     pub curves: Vec<Curve>,
-    /// Eyes and mouth.
+    /// The eyes and the mouth.
     pub openings: Vec<Opening>,
-    /// What moves.
+    /// The shapes.
     pub shapes: Vec<Shape>,
-    /// By which names.
+    /// The names that drive the shapes.
     pub names: Vec<Drive>,
 }
 
 impl Blueprint {
-    /// Number of points of both halves.
+    /// Number of points, including mirror images.
     pub fn vertices(&self) -> usize {
         self.middles + 2 * self.pairs
     }
 
-    /// The point that mirrors another.
+    /// The index of the point that mirrors another.
     pub fn mirror(&self, index: usize) -> usize {
         match index {
             index if index < self.middles => index,
@@ -119,7 +119,7 @@ impl Blueprint {
         }
     }
 
-    /// Index of the shape called so.
+    /// Index of the shape with this name.
     pub fn shape(&self, name: &str) -> Option<usize> {
         self.shapes.iter().position(|shape| shape.name == name)
     }
@@ -131,7 +131,7 @@ impl Blueprint {
         names.filter(|name| listed.insert(*name)).map(|name| format!("{name}\n")).collect()
     }
 
-    /// Places of all points at rest.
+    /// Positions of all points of the neutral face.
     pub fn neutral(&self) -> Vec<Vector> {
         let right = self.points[self.middles..].iter().map(|&[x, y, z]| [-x, y, z]);
         self.points.iter().copied().chain(right).collect()

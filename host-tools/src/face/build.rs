@@ -1,14 +1,14 @@
-//! Pantin's own face: the head, and all that moves on it.
+//! Builds Pantin's own face from the head and its units.
 
 use super::blueprint::{Blueprint, Curve, Opening};
 use super::head::Head;
 use super::{extra, faps, names, paper};
 use anyhow::Result;
 
-/// A step is 2^-7 mm: the head keeps within 16 bits.
+/// A step is 2^-7 mm: coordinates of the head fit 16 bits.
 pub const FRACTION_BITS: i8 = 7;
 
-/// The head without anything that moves it.
+/// Returns the head without units.
 pub fn neutral(head: &Head) -> Blueprint {
     let stored = head.middles + head.pairs;
     let curve = |curve: &super::head::Curve| Curve {
@@ -21,8 +21,8 @@ pub fn neutral(head: &Head) -> Blueprint {
         points: curve.points.clone(),
     };
     let opening = |opening: &super::head::Opening| Opening { opening: opening.clone(), release: None };
-    // Below the jaw and in the eye's socket the surface turns away in many places at once: there the jaw's own curve is the
-    // outline, and the lids are.
+    // Below the jaw and in the eye sockets the surface turns away in many places at once. There the curves of jaw and lids are the
+    // outline.
     let hollow =
         ["submental", "submental-side", "throat", "neck-front-side", "bag", "bag-out", "crease", "crease-out", "crease-end"];
     let hollow: Vec<usize> = hollow.iter().filter_map(|name| head.find(name).ok()).collect();
@@ -44,14 +44,14 @@ pub fn neutral(head: &Head) -> Blueprint {
     }
 }
 
-/// Millimetres that a tongue that is put out goes over the lower lip.
+/// Distance in mm by which a tongue that sticks out passes the edge of the lower lip.
 const TONGUE_DROP: f64 = 40.0;
 
-/// Pantin's own face.
+/// Returns Pantin's own face.
 pub fn face(head: &Head) -> Result<Blueprint> {
     let mut shapes = paper::units(head);
     shapes.extend(extra::units(head));
-    // What turns goes on from where deltas have brought it.
+    // Rotations apply after all deltas.
     shapes.sort_by_key(|shape| !shape.turns.is_empty());
     let names = names::drives(&shapes)?;
     let mut face = Blueprint { shapes, names, ..neutral(head) };

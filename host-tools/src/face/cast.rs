@@ -1,4 +1,4 @@
-//! A clip's face before one camera or several, by the device's own code.
+//! Draws a clip's face from one or several views, with the device's own code.
 
 use anyhow::Result;
 use pantin::Clip;
@@ -6,12 +6,12 @@ use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES
 use pantin_figure::Canvas;
 use pantin_figure::lines::Line;
 
-/// Whether a clip is a face and nothing else.
+/// Returns whether a clip is a face without a body.
 pub fn is_face(clip: &Clip) -> Result<bool> {
     Ok(clip.rig().joint_count() == 0 && Binding::new(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
 }
 
-/// The face that a clip drives.
+/// A face that a clip drives, with a renderer for each view.
 pub struct Cast {
     model: Model<'static>,
     binding: Binding,
@@ -21,7 +21,7 @@ pub struct Cast {
 }
 
 impl Cast {
-    /// Sets up the cameras, for a clip that is a face.
+    /// Sets up a renderer for each view, or returns `None` for a clip that is not a face.
     pub fn of_clip(clip: &Clip, canvas: Canvas, views: &[pantin_figure::View]) -> Result<Option<Cast>> {
         if !is_face(clip)? {
             return Ok(None);
@@ -33,7 +33,7 @@ impl Cast {
         Ok(Some(Cast { model, binding, weights, morph, looks }))
     }
 
-    /// The lines of a pose as a view's camera sees it.
+    /// Returns the lines of a pose from the view with index `view`.
     pub fn lines(&mut self, pose: &[i32], view: usize) -> Vec<Line> {
         self.binding.read(pose, &mut self.weights);
         self.morph.apply(&self.model, &self.weights);

@@ -1,14 +1,14 @@
-//! A blueprint's bytes (firmware/face/MODEL.md).
+//! Encodes a blueprint as a model (firmware/face/MODEL.md).
 
 use super::blueprint::{Blueprint, Shape, Turn};
 use anyhow::{Result, ensure};
 use pantin_face::model::{self, NO_SHAPE, VERSION, WIDE};
 use pantin_face::shape::{Interpolation, ShapeKind};
 
-/// Deltas smaller than this many steps are left out.
+/// Deltas smaller than this many steps are omitted.
 const LEAST: f64 = 0.5;
 
-/// The bytes of `blueprint`.
+/// Returns the model's bytes. Fails if a number exceeds the format's limits.
 pub fn encode(blueprint: &Blueprint) -> Result<Vec<u8>> {
     let vertices = blueprint.vertices();
     ensure!(vertices <= 1 << 15, "{vertices} vertices; a model holds at most {}", 1 << 15);
@@ -72,7 +72,7 @@ pub fn encode(blueprint: &Blueprint) -> Result<Vec<u8>> {
     Ok(out.bytes)
 }
 
-/// How many of the first points in the middle, and of the first pairs, hold all that moves or lies in an opening.
+/// Numbers of the first points in the middle and of the first pairs that include every point that moves or is a member of an opening.
 fn moving(blueprint: &Blueprint) -> [usize; 2] {
     let step = f64::from(blueprint.fraction_bits).exp2();
     let shapes = blueprint.shapes.iter();
@@ -90,7 +90,7 @@ fn members(shape: &Shape) -> impl Iterator<Item = usize> {
     shape.turns.iter().flat_map(|turn| turn.members.iter().map(|member| member.0))
 }
 
-/// A shape's deltas in units of its scale, but for those that come to nothing.
+/// A shape's deltas in units of its scale, without those that round to zero.
 fn deltas(shape: &Shape, step: f64) -> Vec<(usize, [i8; 3])> {
     let unit = scale(shape, step) / 256.0;
     let far = shape.deltas.iter().filter(|(_, way)| way.iter().any(|x| (x * step).abs() >= LEAST));
@@ -100,7 +100,7 @@ fn deltas(shape: &Shape, step: f64) -> Vec<(usize, [i8; 3])> {
     deltas
 }
 
-/// The nearest mantissa * 2^exponent with a mantissa of 7 bits and a sign.
+/// Returns the closest mantissa * 2^exponent, with a mantissa of 7 bits and a sign.
 pub fn short_float(value: f64) -> (i8, i8) {
     if value == 0.0 {
         return (0, 0);
@@ -198,13 +198,13 @@ impl Writer {
     }
 }
 
-/// Steps that a delta of 1 is, Q8, a whole number: so that the longest way takes 127.
+/// Steps of a delta of 1, Q8, rounded up to a whole number so that the largest displacement is at most 127.
 fn scale(shape: &Shape, step: f64) -> f64 {
     let longest = shape.deltas.iter().flat_map(|(_, way)| way).fold(0f64, |longest, x| longest.max(x.abs()));
     (longest * step / 127.0 * 256.0).ceil()
 }
 
-/// Entries of neighbouring points, at most 255 a run, none over the borders between middle, left and right.
+/// Runs of entries of consecutive points, at most 255 each, which do not cross the borders between middle, left and right.
 fn runs<'e, T>(blueprint: &Blueprint, entries: &'e [(usize, T)]) -> Vec<&'e [(usize, T)]> {
     let borders = [blueprint.middles, blueprint.middles + blueprint.pairs];
     let runs = entries.chunk_by(move |a, b| b.0 == a.0 + 1 && !borders.contains(&b.0));

@@ -1,4 +1,4 @@
-//! The paper's comparison: each action at 20, 50 and 80 % under the three interpolations (docs/METHOD.md 3.4).
+//! Compares interpolations as the paper does: each action at 20, 50 and 80 % (docs/METHOD.md 3.4).
 
 use super::blueprint::Blueprint;
 use super::draw::picture;
@@ -14,7 +14,7 @@ use std::io::Write;
 /// The interpolations, in the paper's order.
 pub const METHODS: [(Interpolation, &str); 3] =
     [(Interpolation::Linear, "linear"), (Interpolation::Cosine, "cosine"), (Interpolation::Spherical, "spherical")];
-/// The weights that the pictures show.
+/// Weights of the pictures.
 const WEIGHTS: [f64; 3] = [0.2, 0.5, 0.8];
 /// The paper's actions, and its emotions.
 pub const ACTIONS: [(&str, &str); 9] = [
@@ -29,17 +29,17 @@ pub const ACTIONS: [(&str, &str); 9] = [
     ("surprise", "surprise"),
 ];
 const SIZE: [usize; 2] = [144, 144];
-/// Weights at which the numbers are taken.
+/// Number of weights at which distances are measured.
 const STEPS: usize = 100;
 
-/// A face all of whose units go one way.
+/// Returns the face with one interpolation for all units.
 pub fn under(face: &Blueprint, interpolation: Interpolation) -> Blueprint {
     let mut face = face.clone();
     face.shapes.iter_mut().for_each(|shape| shape.interpolation = interpolation);
     face
 }
 
-/// Writes the picture: a row an action, the three weights under each interpolation.
+/// Writes the picture as PNG: a row for each action, with the three weights under each interpolation.
 pub fn write(out: impl Write, face: &Face) -> Result<()> {
     let models =
         METHODS.iter().map(|&(method, _)| compact::encode(&under(&face.blueprint, method))).collect::<Result<Vec<_>>>()?;
@@ -58,16 +58,16 @@ pub fn write(out: impl Write, face: &Face) -> Result<()> {
     sheet::write(out, &cells, METHODS.len() * WEIGHTS.len(), SIZE)
 }
 
-/// What an interpolation does to the jaw.
+/// The length of the jaw under an interpolation.
 #[derive(Clone, Copy, Debug)]
 pub struct Jaw {
-    /// Its shortest length while the mouth opens, as a part of its length at rest.
+    /// The shortest length while the mouth opens, relative to the neutral face.
     pub shortest: f64,
-    /// Its longest.
+    /// The longest length, relative to the neutral face.
     pub longest: f64,
 }
 
-/// The jaw's length, from the middle of 2.13 and 2.14 to 2.1, while the mouth opens.
+/// Measures the jaw's length, from the midpoint of 2.13 and 2.14 to 2.1, while the mouth opens.
 pub fn jaw(face: &Face, interpolation: Interpolation) -> Result<Jaw> {
     let under = under(&face.blueprint, interpolation);
     let (left, right, chin) = (face.head.find("2.13")?, face.head.find("2.14")?, face.head.find("2.1")?);
@@ -85,7 +85,7 @@ pub fn jaw(face: &Face, interpolation: Interpolation) -> Result<Jaw> {
     Ok(jaw)
 }
 
-/// The greatest distance, in millimetres, of a point between two interpolations at one weight, over the action, and that weight.
+/// Returns the largest distance in millimetres between the positions of a point under two interpolations, and its weight.
 pub fn deviation(face: &Face, action: &str, methods: [Interpolation; 2]) -> Result<(f64, f64)> {
     let faces = methods.map(|method| under(&face.blueprint, method));
     let mut worst = (0.0, 0.0);
@@ -96,7 +96,7 @@ pub fn deviation(face: &Face, action: &str, methods: [Interpolation; 2]) -> Resu
             if method != Interpolation::Spherical {
                 return Ok(places);
             }
-            // What turns is on its arc already; the rest goes about the head's middle.
+            // Rotating points are on their arc already; the others move about the centre of the head.
             let end = exact::places(of, &pose::parse(of, action)?);
             let arcs = about_head(&of.neutral(), &end, weight);
             let turns = of.shapes.iter().flat_map(|shape| &shape.turns).flat_map(|turn| &turn.members);

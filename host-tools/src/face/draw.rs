@@ -1,13 +1,13 @@
-//! Pictures of a face, by the device's own code.
+//! Draws pictures of a face with the device's own code.
 
 use crate::render::shades::Shades;
 use pantin_face::{FaceRenderer, FaceView, Model, Morph, Weights};
 use pantin_figure::Canvas;
 
-/// Room for models from outside too.
+/// Maximum number of vertices of any model.
 pub const ROOM: usize = 1 << 15;
 
-/// One picture of a face: rows of greys.
+/// Returns a picture of a face: rows of grey values, 0 to 255.
 pub fn picture(model: &Model, weights: &Weights, canvas: Canvas, view: FaceView) -> Vec<u8> {
     let mut morph = Box::new(Morph::<ROOM>::new(model).expect("a model has at most ROOM vertices"));
     let mut renderer = Box::new(FaceRenderer::<ROOM>::new(model, canvas, view));

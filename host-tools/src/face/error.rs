@@ -1,4 +1,4 @@
-//! How far the device's vertices are from the blueprint's.
+//! Measures the distance between the device's vertices and those in full precision.
 
 use super::blueprint::Blueprint;
 use super::draw::ROOM;
@@ -9,21 +9,21 @@ use anyhow::Result;
 use pantin_face::shape::ShapeKind;
 use pantin_face::{Model, Morph};
 
-/// Mixtures that are tried, besides each unit alone.
+/// Number of mixtures that are measured, besides each unit alone.
 const MIXTURES: usize = 200;
-/// Units that are on at once in a mixture.
+/// Number of units in a mixture.
 const AT_ONCE: usize = 8;
 
-/// The greatest error.
+/// The largest error.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Greatest {
     /// In the model's units of length.
     pub most: f64,
-    /// As a part of the model's greatest extent.
+    /// As a fraction of the model's largest extent.
     pub part: f64,
 }
 
-/// Compares the morph of `bytes` with `face` at each unit whole, and at mixtures.
+/// Compares the morph of `bytes` with `face`, for each unit at full weight and for mixtures.
 pub fn greatest(face: &Blueprint, bytes: &[u8]) -> Result<Greatest> {
     let model = Model::new_checked(bytes)?;
     let mut morph = Box::new(Morph::<ROOM>::new(&model)?);
@@ -58,7 +58,7 @@ pub fn greatest(face: &Blueprint, bytes: &[u8]) -> Result<Greatest> {
     Ok(Greatest { most, part: most / extent.fold(1e-9, f64::max) })
 }
 
-/// Numbers from 0 to 1, the same ones each time.
+/// Returns a generator of numbers from 0 to 1, the same in every run.
 fn numbers() -> impl FnMut() -> f64 {
     let mut state = 1u64;
     move || {

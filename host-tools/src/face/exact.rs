@@ -1,14 +1,14 @@
-//! What weights make of a blueprint, in full precision: the reference that the device is compared with.
+//! Evaluates a blueprint in full precision: the reference for the device's arithmetic.
 
 use super::blueprint::{Blueprint, Shape};
 use super::head::{Vector, dot, minus, plus};
 use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
 
-/// About this point go, under the spherical interpolation of the comparison, points that do not turn: the middle of the head.
+/// The centre of the head. In the comparison of interpolations, points without an axis of rotation move about it.
 const CENTRE: Vector = [0.0, -14.0, 4.0];
 
-/// The part of the way that a weight has gone.
+/// The part of its displacement that a point has moved at a weight.
 pub fn eased(interpolation: Interpolation, weight: f64) -> f64 {
     match interpolation {
         Interpolation::Cosine => weight.signum() * (1.0 - (PI * weight).cos()) / 2.0,
@@ -16,9 +16,8 @@ pub fn eased(interpolation: Interpolation, weight: f64) -> f64 {
     }
 }
 
-/// Places of all points; openings are not closed, and the head stays.
-///
-/// `weights` are a pair a shape, -1 to 1.
+/// Returns the positions of all points for a pair of weights per shape, -1 to 1. Openings do not clip their members, and the head does not
+/// rotate.
 pub fn places(face: &Blueprint, weights: &[[f64; 2]]) -> Vec<Vector> {
     let mut places = face.neutral();
     let moved = |shape: &Shape, pair: [f64; 2]| shape.kind != ShapeKind::Head && pair != [0.0; 2];
@@ -55,7 +54,7 @@ fn turn(face: &Blueprint, shape: &Shape, [stored, mirrored]: [f64; 2], places: &
     }
 }
 
-/// A point between where it is and where a whole turn takes it: the paper's formulas, as they stand.
+/// Rotates a point by a part of an angle, with the paper's formulas.
 pub fn turned(place: Vector, centre: Vector, axis: usize, degrees: f64, interpolation: Interpolation, weight: f64) -> Vector {
     let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
     let angle = degrees.to_radians();
@@ -67,7 +66,7 @@ pub fn turned(place: Vector, centre: Vector, axis: usize, degrees: f64, interpol
         }
         _ => [1.0 - eased(interpolation, weight).abs(), eased(interpolation, weight)],
     };
-    // Backwards from rest the straight way leads to the mirror image of the end.
+    // With a negative weight the end is the rotation by the opposite angle.
     let end = if weight < 0.0 && interpolation != Interpolation::Spherical {
         [start[0] * angle.cos() + start[1] * angle.sin(), start[1] * angle.cos() - start[0] * angle.sin()]
     } else {
@@ -80,7 +79,7 @@ pub fn turned(place: Vector, centre: Vector, axis: usize, degrees: f64, interpol
     out
 }
 
-/// The spherical interpolation of points that do not turn, each about the middle of the head with the angle between its ends.
+/// Spherical interpolation of points about the centre of the head, each by the angle between its start and its end.
 pub fn about_head(from: &[Vector], to: &[Vector], weight: f64) -> Vec<Vector> {
     let mix = |(&from, &to): (&Vector, &Vector)| {
         let (s, e) = (minus(from, CENTRE), minus(to, CENTRE));

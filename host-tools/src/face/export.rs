@@ -1,4 +1,4 @@
-//! The face for other programs: glTF with morph targets, or a pose of it as OBJ.
+//! Exports the face: as glTF with morph targets, or one pose as OBJ.
 
 use super::Face;
 use super::exact;
@@ -9,20 +9,20 @@ use serde_json::json;
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// glTF's names for numbers.
+/// glTF's component types.
 const FLOAT: u32 = 5126;
 const SHORT: u32 = 5123;
-/// glTF measures in metres.
+/// Metres per millimetre: glTF's unit is the metre.
 const METRES: f64 = 1e-3;
 
-/// All triangles of both halves.
+/// Returns the triangles of both halves.
 pub fn triangles(face: &Face) -> Vec<[usize; 3]> {
     let half = &face.blueprint.triangles;
     let images = half.iter().map(|&[a, b, c]| [a, c, b].map(|index| face.blueprint.mirror(index)));
     half.iter().copied().chain(images).collect()
 }
 
-/// A pose as OBJ: points with their names as comments, faces, and the curves as lines. Millimetres.
+/// Returns a pose as OBJ, in millimetres: points with their names as comments, faces, and curves as lines.
 pub fn obj(face: &Face, pairs: &Pairs) -> Result<String> {
     let mut out = String::from("# Pantin's face, in millimetres\no face\n");
     for (index, [x, y, z]) in exact::places(&face.blueprint, pairs).into_iter().enumerate() {
@@ -42,7 +42,7 @@ pub fn obj(face: &Face, pairs: &Pairs) -> Result<String> {
     Ok(out)
 }
 
-/// A pose as .glb: the mesh, and from the neutral face a morph target a unit. Turns become straight ways there: glTF knows no other.
+/// Returns a pose as .glb: the mesh, with one morph target per unit. Rotations become straight displacements, because glTF has no others.
 pub fn glb(face: &Face, pairs: &Pairs) -> Result<Vec<u8>> {
     let mut file = Buffers::default();
     let places = exact::places(&face.blueprint, pairs);
@@ -72,7 +72,7 @@ pub fn glb(face: &Face, pairs: &Pairs) -> Result<Vec<u8>> {
     glb.to_vec().context("the .glb cannot be put together")
 }
 
-/// The units' own names, by sides where they have them; the head's turns move no point of the mesh.
+/// The names of the units, for each side where they have sides. Rotations of the head are omitted: they move no point of the mesh.
 fn targets_of(face: &Face) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     let sided = |shape: usize| face.blueprint.shapes[shape].sided;
@@ -118,7 +118,7 @@ impl Buffers {
         let offset = self.bytes.len();
         self.views.push(json!({"buffer": 0, "byteOffset": offset, "byteLength": bytes.len()}));
         self.bytes.extend(bytes);
-        // Accessors begin at multiples of their component's size.
+        // Accessors start at multiples of their component's size.
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
     }
 }

@@ -1,4 +1,4 @@
-//! The units that the paper leaves out: those of `units.txt`, and what turns, the lids, the gaze, the jaw, the head.
+//! The units that the paper does not have: those of `units.txt`, and lids, gaze, jaw and head.
 
 use super::blueprint::{Shape, Turn};
 use super::head::{Head, Vector};
@@ -6,25 +6,25 @@ use super::paper::{follow, jaw_region, shape};
 use anyhow::{Context, Result, bail};
 use pantin_face::shape::{Interpolation, ShapeKind};
 
-/// The table of units that deltas make.
+/// The table of units that consist of deltas.
 pub const TABLE: &str = include_str!("units.txt");
 
-/// The left eyeball, and what the head turns about: the joint of skull and neck.
+/// The centre of the left eyeball, and the point about which the head rotates: the joint of skull and neck.
 const EYEBALL: Vector = [32.0, 0.0, 62.0];
 const NECK: Vector = [0.0, -42.0, -12.0];
-/// Degrees of a whole gaze aside, and up.
+/// Degrees at full weight of the gaze to the side and up.
 pub const GAZE: [f64; 2] = [32.0, 26.0];
-/// Degrees of a whole turn of the head about x, y, z.
+/// Degrees at full weight of the head's rotation about x, y, z.
 pub const HEAD: [f64; 3] = [30.0, 45.0, 30.0];
-/// Millimetres that the jaw goes aside, and forwards.
+/// Displacement of the jaw in mm at full weight, to the side and forwards.
 const JAW: [f64; 2] = [8.0, 7.0];
-/// How far the crease of the lid follows it, as a part of its angle.
+/// The angle of the lid's crease as a part of the lid's angle.
 const CREASE: f64 = 0.12;
 
-/// Points that the skin about them follows, and how far.
+/// Points whose surrounding skin follows, and the radius in mm.
 type Leaders = Vec<(usize, f64)>;
 
-/// All of them.
+/// Returns all of them.
 pub fn units(head: &Head) -> Vec<Shape> {
     let mut units = vec![lid(head)];
     units.extend(gaze(head));
@@ -35,7 +35,7 @@ pub fn units(head: &Head) -> Vec<Shape> {
     units
 }
 
-/// The units of a table.
+/// Parses a table of units.
 pub fn table(head: &Head, table: &str) -> Result<Vec<Shape>> {
     let mut units: Vec<(Shape, bool, Leaders)> = Vec::new();
     for (number, line) in table.lines().enumerate() {
@@ -60,11 +60,11 @@ pub fn table(head: &Head, table: &str) -> Result<Vec<Shape>> {
     Ok(units.into_iter().map(|(shape, whole, leaders)| finish(head, shape, whole, &leaders)).collect())
 }
 
-/// Lets the skin follow, and gives each side its part of the middle.
+/// Adds the skin that follows, and gives each side its part of the points in the middle.
 fn finish(head: &Head, mut shape: Shape, whole: bool, leaders: &[(usize, f64)]) -> Shape {
     shape.deltas = follow(head, shape.deltas, leaders);
     if whole {
-        // As given is the left half; the right half goes the same way.
+        // The table gives the left half; the right half moves in the same direction.
         shape.deltas.retain(|entry| entry.0 < head.middles + head.pairs);
         let right: Vec<_> =
             shape.deltas.iter().filter(|entry| entry.0 >= head.middles).map(|&(index, way)| (head.mirror(index), way)).collect();
@@ -76,7 +76,7 @@ fn finish(head: &Head, mut shape: Shape, whole: bool, leaders: &[(usize, f64)]) 
     shape
 }
 
-/// The upper lid runs over the eyeball down to the lower one; back beyond rest it shows more of the eye.
+/// The upper lid rotates over the eyeball down to the lower lid. Negative weights open the eye further.
 fn lid(head: &Head) -> Shape {
     let lids = [("lid-upper-in", "lid-lower-in"), ("3.1", "3.3"), ("lid-upper-out", "lid-lower-out")];
     let elevation = |place: Vector| (place[1] - EYEBALL[1]).atan2(place[2] - EYEBALL[2]);
@@ -94,7 +94,7 @@ fn lid(head: &Head) -> Shape {
     Shape { kind: ShapeKind::Signed, turns: vec![turn], ..shape("lid", Interpolation::Spherical, true) }
 }
 
-/// Outwards and up, and by negative weights inwards and down.
+/// The gaze outwards and up; negative weights are inwards and down.
 fn gaze(head: &Head) -> [Shape; 2] {
     let left = head.middles..head.middles + head.pairs;
     let members: Vec<(usize, f64)> = left
@@ -108,7 +108,7 @@ fn gaze(head: &Head) -> [Shape; 2] {
     [turned("eye_out", 1, GAZE[0]), turned("eye_up", 0, -GAZE[1])]
 }
 
-/// Up, to the left, and its top to the left.
+/// Rotations of the head: up, to the left, and tilted to the left.
 fn head_turns() -> [Shape; 3] {
     [("head_up", 0, -HEAD[0]), ("head_left", 1, HEAD[1]), ("head_tilt_left", 2, -HEAD[2])].map(|(name, axis, degrees)| {
         let turn = Turn { axis, centre: NECK, degrees, members: Vec::new() };
@@ -116,10 +116,10 @@ fn head_turns() -> [Shape; 3] {
     })
 }
 
-/// The region that unit 1 turns, pushed aside and forwards: FACS 30 and 29, ARKit jawLeft and jawForward.
+/// The region that unit 1 rotates, moved to the side and forwards: FACS 30 and 29, ARKit jawLeft and jawForward.
 fn jaw(head: &Head) -> [Shape; 2] {
     let region = jaw_region(head);
-    // In proportion to how far below the axis a point is, for the joints are held where they are.
+    // In proportion to a point's distance below the axis, because the joints do not move.
     let (axis, chin) = (head.at("2.13")[1], head.at("2.1")[1]);
     let depth = |index: usize| ((axis - head.points[index][1]) / (axis - chin) * 1.5).clamp(0.0, 1.0);
     let moved = |way: Vector| region.iter().map(|&index| (index, way.map(|x| x * depth(index)))).collect();

@@ -1,4 +1,5 @@
-//! MPEG-4's parameters on our units: how much a parameter moves a feature point, over how much the unit does.
+//! MPEG-4's facial animation parameters as weights of our units: the displacement of a feature point by the parameter, divided by that of the
+//! full unit.
 
 use super::blueprint::{Blueprint, Drive};
 use super::exact;
@@ -6,12 +7,12 @@ use super::head::Head;
 use anyhow::{Context, Result, bail};
 
 const TABLE: &str = include_str!("faps.txt");
-/// The value that stands for a whole distance unit.
+/// Parameter values per unit of length.
 const PARTS: f64 = 1024.0;
-/// Radians of an angle of 1.
+/// Radians per unit of an angle parameter.
 const ANGLE: f64 = 1e-5;
 
-/// The drives of all parameters; `face` has the units and their names already.
+/// Returns the drives of all parameters, given a face with units and their names.
 pub fn drives(head: &Head, face: &Blueprint) -> Result<Vec<Drive>> {
     let mut drives = Vec::new();
     for (number, line) in TABLE.lines().enumerate() {
@@ -56,7 +57,7 @@ fn length(head: &Head, unit: &str) -> Result<f64> {
     })
 }
 
-/// Millimetres that a whole unit moves a feature point along an axis (`+x`).
+/// Displacement of a feature point along an axis (`+x`) at full weight of a unit, in mm.
 fn way(head: &Head, face: &Blueprint, drive: &Drive, point: &str, axis: &str) -> Result<f64> {
     let mut weights = vec![[0.0; 2]; face.shapes.len()];
     weights[drive.shape] = drive.sides.map(|driven| f64::from(u8::from(driven)));

@@ -1,4 +1,4 @@
-//! A pose taken apart into units: the weights whose sum comes nearest to a target, by bounded least squares (docs/METHOD.md 3.2).
+//! Decomposes a pose into units: the weights whose sum is closest to a target, by bounded least squares (docs/METHOD.md 3.2).
 
 use super::blueprint::Blueprint;
 use super::exact;
@@ -9,12 +9,12 @@ use anyhow::{Result, ensure};
 use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
 
-/// Rounds of linearizing; each solves its system by sweeps over the weights.
+/// Number of linearizations; each system is solved by sweeps over the weights.
 const ROUNDS: usize = 12;
 const SWEEPS: usize = 200;
 /// Step of the numeric derivatives.
 const STEP: f64 = 1e-4;
-/// What weighs against needless units, in mm^2 a weight of 1: units that nearly repeat each other share no more than they must.
+/// Regularization in mm^2 per squared weight: it keeps units that are nearly equal from cancelling each other.
 const RIDGE: f64 = 1e-3;
 
 /// A fitted pose.
@@ -24,20 +24,20 @@ pub struct Fit {
     pub pairs: Pairs,
     /// Root mean square distance of a point from the target, in millimetres.
     pub residual: f64,
-    /// The same with all weights 0.
+    /// Root mean square distance with all weights 0, in millimetres.
     pub before: f64,
-    /// The greatest distance, and the point.
+    /// The largest distance in millimetres, and the index of its point.
     pub worst: (f64, usize),
 }
 
-/// One number that is fitted.
+/// One weight that is fitted.
 struct Unknown {
     shape: usize,
     sides: [bool; 2],
     least: f64,
 }
 
-/// Fits the units of `face` to `target`.
+/// Fits the units of `face` to `target`. Fails if the target has another number of points.
 pub fn fit(face: &Blueprint, target: &[Vector]) -> Result<Fit> {
     ensure!(target.len() == face.vertices(), "the target has {} points; Pantin's face has {}", target.len(), face.vertices());
     let unknowns = unknowns(face);
@@ -57,7 +57,7 @@ pub fn fit(face: &Blueprint, target: &[Vector]) -> Result<Fit> {
     }
     let mut pairs = pairs(face, &unknowns, &ways);
     for (shape, pair) in face.shapes.iter().zip(&mut pairs).filter(|(shape, _)| !shape.sided && goes_aside(&shape.name)) {
-        // Its two ways undo each other.
+        // Its two directions cancel each other.
         let both = if shape.kind == ShapeKind::Unsigned { pair[0].min(pair[1]) } else { 0.0 };
         *pair = pair.map(|weight| weight - both);
     }
@@ -75,7 +75,7 @@ fn differences(a: &[Vector], b: &[Vector]) -> Vec<f64> {
     a.iter().zip(b).flat_map(|(&a, &b)| minus(a, b)).collect()
 }
 
-/// Each side of a unit that has sides; the head's turn is no part of a pose.
+/// Returns an unknown per unit, or per side of units with sides. The head's rotation is not fitted.
 fn unknowns(face: &Blueprint) -> Vec<Unknown> {
     let of = |(index, shape): (usize, &super::blueprint::Shape)| {
         let least = if shape.kind == ShapeKind::Unsigned { 0.0 } else { -1.0 };
@@ -90,7 +90,7 @@ fn unknowns(face: &Blueprint) -> Vec<Unknown> {
     face.shapes.iter().enumerate().flat_map(of).collect()
 }
 
-/// Weights of the parts of the way: an eased unit is fitted by its way, which is linear in it.
+/// Converts parts of displacements to weights: eased units are fitted by their displacement, in which the problem is linear.
 fn pairs(face: &Blueprint, unknowns: &[Unknown], ways: &[f64]) -> Pairs {
     let mut pairs = vec![[0.0; 2]; face.shapes.len()];
     for (unknown, &way) in unknowns.iter().zip(ways) {

@@ -1,49 +1,49 @@
-//! The neutral head as `head.txt` has it: named points, curves through them, openings.
+//! The neutral head, parsed from `head.txt`: named points, curves through them, openings.
 
 use super::skin::{self, Triangle};
 use anyhow::{Context, Result, bail, ensure};
 use std::collections::HashMap;
 
-/// The table that the model is made of.
+/// The table of the head.
 pub const TABLE: &str = include_str!("head.txt");
 
-/// A place or a way in millimetres.
+/// A position or a displacement in millimetres.
 pub type Vector = [f64; 3];
 
-/// A curve that is drawn.
+/// A curve through points.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What it is.
+    /// Its name.
     pub name: String,
-    /// From which size on it is drawn.
+    /// The lowest detail, 0 to 3, at which it is drawn.
     pub detail: u8,
-    /// Brightness.
+    /// Brightness, 0 to 255.
     pub shade: u8,
     /// Whether its mirror image is drawn too.
     pub paired: bool,
-    /// Whether it runs back to its first point.
+    /// Whether the last point is joined to the first.
     pub closed: bool,
-    /// Whether the smallest displays alone draw it.
+    /// Whether it is drawn at detail 0 only.
     pub small: bool,
     /// Its points.
     pub points: Vec<usize>,
 }
 
-/// An opening: upper edge, lower edge, and what is behind.
+/// An opening, an eye or the mouth: its edges, and the points behind it.
 #[derive(Clone, Debug)]
 pub struct Opening {
-    /// Whether there is a mirror image of it.
+    /// Whether it has a mirror image.
     pub paired: bool,
-    /// From one corner to the other.
+    /// Points of the upper edge, from one corner to the other.
     pub upper: Vec<usize>,
-    /// Between the same corners.
+    /// Points of the lower edge, between the same corners.
     pub lower: Vec<usize>,
-    /// Points that are drawn no farther than the edges.
+    /// Points that the edges clip.
     pub members: Vec<usize>,
 }
 
 impl Opening {
-    /// Whether a point is on its edges.
+    /// Returns whether a point is on its edges.
     pub fn edges(&self, point: usize) -> bool {
         self.upper.contains(&point) || self.lower.contains(&point)
     }
@@ -52,17 +52,17 @@ impl Opening {
 /// The neutral head. Points in the middle come first, then the left ones, then their mirror images.
 #[derive(Clone, Debug)]
 pub struct Head {
-    /// Points in the middle.
+    /// Number of points in the middle.
     pub middles: usize,
-    /// Points of the left half.
+    /// Number of points on the left.
     pub pairs: usize,
-    /// Where all points are.
+    /// Positions of all points.
     pub points: Vec<Vector>,
-    /// Unit vectors away from the surface.
+    /// Unit normals, pointing outwards.
     pub normals: Vec<Vector>,
-    /// Triangles of the left half of the skin, seen from outside anticlockwise.
+    /// Triangles of the left half of the skin, anticlockwise seen from outside.
     pub triangles: Vec<Triangle>,
-    /// Points that stay when the head turns.
+    /// Points that stay fixed when the head rotates.
     pub fixed: Vec<usize>,
     /// Curves in the order in which they are drawn.
     pub curves: Vec<Curve>,
@@ -70,7 +70,7 @@ pub struct Head {
     pub openings: Vec<Opening>,
     names: HashMap<String, usize>,
     labels: Vec<String>,
-    /// Number of points of the stored half that are skin, by index.
+    /// Whether a stored point is skin, by index.
     skin: Vec<bool>,
 }
 
@@ -85,13 +85,13 @@ struct Row {
 }
 
 impl Head {
-    /// Pantin's own head.
+    /// Returns Pantin's own head.
     pub fn new() -> Head {
         // The table is part of the program, and tested.
         Head::parse(TABLE).expect("head.txt")
     }
 
-    /// Reads a table.
+    /// Parses a table.
     pub fn parse(table: &str) -> Result<Head> {
         let mut sections: HashMap<&str, Vec<(usize, &str)>> = HashMap::new();
         let mut section = "";
@@ -158,7 +158,7 @@ impl Head {
         Ok(Head { middles, pairs, points, normals, triangles, fixed, curves, openings, names, labels, skin })
     }
 
-    /// The skin's triangles, without those that close an opening, and all normals.
+    /// Adds the skin's triangles, without those that close an opening, and all normals.
     fn dress(&mut self, rows: &[Row]) {
         let stored: Vec<usize> = (0..rows.len()).filter(|&index| self.skin[index]).collect();
         let mut triangles = skin::triangles(&self.points, &stored, self.middles);
@@ -183,17 +183,17 @@ impl Head {
         }
     }
 
-    /// Whether a stored point is of the skin.
+    /// Returns whether a point is part of the skin.
     pub fn is_skin(&self, index: usize) -> bool {
         self.skin[self.stored(index)]
     }
 
-    /// The point of the stored half for any point.
+    /// The index of the stored point for a point or its mirror image.
     pub fn stored(&self, index: usize) -> usize {
         if index >= self.middles + self.pairs { index - self.pairs } else { index }
     }
 
-    /// The point that mirrors another.
+    /// The index of the point that mirrors another.
     pub fn mirror(&self, index: usize) -> usize {
         match index {
             index if index < self.middles => index,
@@ -202,22 +202,22 @@ impl Head {
         }
     }
 
-    /// The point of a name or of an MPEG-4 feature point; `-name` is the mirror image.
+    /// Finds a point by its name or its MPEG-4 number; `-name` is the mirror image. Fails if there is none.
     pub fn find(&self, name: &str) -> Result<usize> {
         self.names.get(name).copied().with_context(|| format!("no point is called {name}"))
     }
 
-    /// Where a point that the table is known to have is.
+    /// The position of a point by name. Panics if there is none.
     pub fn at(&self, name: &str) -> Vector {
         self.points[self.find(name).expect("a point of head.txt")]
     }
 
-    /// What a point is called.
+    /// The name of a point.
     pub fn label(&self, index: usize) -> &str {
         &self.labels[index]
     }
 
-    /// Points one after the other; `|` goes back over the mirror images.
+    /// Parses a list of points; `|` appends the mirror images in reverse order.
     fn path(&self, words: &[&str]) -> Result<Vec<usize>> {
         let mut path = Vec::new();
         for word in words {
@@ -278,33 +278,33 @@ impl Row {
     }
 }
 
-/// The mirror image of a place or way.
+/// The mirror image of a position or displacement.
 pub fn mirror([x, y, z]: Vector) -> Vector {
     [-x, y, z]
 }
 
-/// Of length 1.
+/// Scales a vector to length 1.
 pub fn unit(v: Vector) -> Vector {
     let length = dot(v, v).sqrt().max(1e-12);
     v.map(|x| x / length)
 }
 
-/// The inner product.
+/// The dot product.
 pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The outer product.
+/// The cross product.
 pub fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The way from `b` to `a`.
+/// `a - b`.
 pub fn minus(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// `a` and `part` of `b`.
+/// `a + part * b`.
 pub fn plus(a: Vector, b: Vector, part: f64) -> Vector {
     [a[0] + b[0] * part, a[1] + b[1] * part, a[2] + b[2] * part]
 }

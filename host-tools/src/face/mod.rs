@@ -1,4 +1,4 @@
-//! The face: its head, its units by the paper's algorithms, and the model that devices play (docs/FACE.md).
+//! The face: the head, its units after the paper's algorithms, and the model that devices play (docs/FACE.md).
 
 pub mod blueprint;
 pub mod build;
@@ -25,18 +25,18 @@ use blueprint::Blueprint;
 use head::Head;
 use pantin_face::Model;
 
-/// Pantin's own face, and its bytes.
+/// Pantin's own face, and its model.
 pub struct Face {
     /// The neutral head, with the names of its points.
     pub head: Head,
     /// The face in full precision.
     pub blueprint: Blueprint,
-    /// What the device has of it.
+    /// The bytes of the model.
     pub bytes: Vec<u8>,
 }
 
 impl Face {
-    /// Builds it.
+    /// Builds the face and encodes its model.
     pub fn new() -> Result<Face> {
         let head = Head::new();
         let blueprint = build::face(&head)?;
@@ -44,7 +44,7 @@ impl Face {
         Ok(Face { head, blueprint, bytes })
     }
 
-    /// The face as the device sees it.
+    /// Returns the model as the device reads it.
     pub fn model(&self) -> Result<Model<'_>> {
         Ok(Model::new_checked(&self.bytes)?)
     }

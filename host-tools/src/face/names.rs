@@ -1,4 +1,4 @@
-//! By which names channels drive the units: the units' own, those of `names.txt`, and MPEG-4's parameters.
+//! Names of channels that drive the units: the units' own names, those of `names.txt`, and MPEG-4's parameters.
 
 use super::blueprint::{Drive, Shape};
 use anyhow::{Context, Result, ensure};
@@ -6,7 +6,7 @@ use anyhow::{Context, Result, ensure};
 /// The table of names.
 pub const TABLE: &str = include_str!("names.txt");
 
-/// All drives of `shapes`: each unit by its name, or by its sides, and those of the table.
+/// Returns the drives of `shapes`: each unit by its name and by its sides, and those of the table.
 pub fn drives(shapes: &[Shape]) -> Result<Vec<Drive>> {
     let mut drives: Vec<Drive> = shapes.iter().enumerate().flat_map(|(index, shape)| own(index, shape)).collect();
     let units = drives.clone();
@@ -24,13 +24,13 @@ fn own(shape: usize, entry: &Shape) -> Vec<Drive> {
     match (entry.sided, goes_aside(&entry.name)) {
         (true, _) => vec![drive("", [true, true]), drive("_left", [true, false]), drive("_right", [false, true])],
         (false, true) => vec![drive("_left", [true, false]), drive("_right", [false, true])],
-        // A head turns once: by the weight of the stored side.
+        // A head rotates once: by the weight of the stored side.
         (false, false) if entry.name.starts_with("head_") => vec![drive("", [true, false])],
         (false, false) => vec![drive("", [true, true])],
     }
 }
 
-/// Whether a unit goes to one side as a whole: its mirror image is its opposite.
+/// Returns whether a unit moves to one side as a whole: its mirror image is the opposite movement.
 pub fn goes_aside(name: &str) -> bool {
     matches!(name, "mouth_side" | "jaw_side")
 }

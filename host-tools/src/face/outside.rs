@@ -1,4 +1,4 @@
-//! Meshes from outside: points of an .obj, and a glTF's morph targets as a model of the device.
+//! Meshes of other programs: points of an .obj, and a glTF's morph targets as a model.
 
 use super::blueprint::{Blueprint, Drive, Shape};
 use super::head::{Vector, cross, minus, plus, unit};
@@ -8,10 +8,10 @@ use anyhow::{Context, Result, ensure};
 use pantin_face::shape::Interpolation;
 use std::path::Path;
 
-/// Maximum coordinate of the device's vertices, in steps.
+/// Maximum coordinate of a vertex of the device, in steps.
 const MOST_STEPS: f64 = i16::MAX as f64;
 
-/// The points of an .obj.
+/// Reads the points of an .obj.
 pub fn obj_points(text: &str) -> Result<Vec<Vector>> {
     let point = |(number, line): (usize, &str)| -> Option<Result<Vector>> {
         let mut words = line.split('#').next()?.split_whitespace();
@@ -23,12 +23,12 @@ pub fn obj_points(text: &str) -> Result<Vec<Vector>> {
     text.lines().enumerate().filter_map(point).collect()
 }
 
-/// The points of a .glb that `pantin face export` wrote, in millimetres.
+/// Reads the points of a .glb that `pantin face export` wrote, in millimetres.
 pub fn glb_points(path: &Path) -> Result<Vec<Vector>> {
     Ok(mesh::read(path)?.points.iter().map(|place| place.map(|x| x * 1000.0)).collect())
 }
 
-/// A model of the morph targets of a glTF's first mesh that has some. Its points are all stored, none mirrored.
+/// Returns the first mesh of a glTF that has morph targets, one shape per target. All its points are stored, none is a mirror image.
 pub fn model(path: &Path) -> Result<Blueprint> {
     let mesh = mesh::read(path)?;
     ensure!(!mesh.targets.is_empty(), "{}: no mesh with morph targets", path.display());
@@ -56,7 +56,7 @@ fn of_target(ways: &[Vector], name: &str) -> Shape {
     }
 }
 
-/// The finest step with which no sum of all targets leaves 16 bits.
+/// The finest step with which the sum of all targets fits 16 bits.
 fn fraction_bits(mesh: &Mesh) -> i8 {
     let farthest = (0..mesh.points.len()).flat_map(|index| {
         let reach =

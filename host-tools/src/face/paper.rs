@@ -1,36 +1,36 @@
-//! The paper's action units, by its algorithms on the feature points (docs/METHOD.md 3.1).
+//! The paper's action units, after its algorithms on the feature points (docs/METHOD.md 3.1).
 
 use super::blueprint::{Shape, Turn};
 use super::head::{Head, Vector, dot, minus, plus};
 use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
 
-/// By how much unit 5 widens the distance of the cheeks.
+/// The increase of the distance between the cheeks by unit 5.
 pub const PUFF: f64 = 0.2;
-/// Skin about a lip's corner or a brow's end follows it as far as this, in mm: the paper says that it follows, not how far.
+/// Radius in mm in which skin follows a corner of the lips or an end of a brow: the paper says that it follows, not how far.
 const FOLLOWS: f64 = 24.0;
-/// The region that unit 1 turns ends so far below the chin, in mm: its underside turns too, the throat does not.
+/// Distance in mm below the chin where the region that unit 1 rotates ends: the chin's underside rotates too, the throat does not.
 const BELOW_CHIN: f64 = 2.0;
 
-/// Units 1, 2, 3, 4a, 4b and 5.
+/// Returns units 1, 2, 3, 4a, 4b and 5.
 pub fn units(head: &Head) -> Vec<Shape> {
     vec![open_mouth(head), smile(head), lower_corners(head), brow_inner_lower(head), brow_outer_raise(head), puff_cheeks(head)]
 }
 
-/// The law of the cosine: 1 at nothing, 0 from `reach` on.
+/// The cosine law: 1 at distance 0, 0 from `reach` on.
 pub fn cosine_law(distance: f64, reach: f64) -> f64 {
     if distance >= reach { 0.0 } else { (1.0 + (PI * distance / reach).cos()) / 2.0 }
 }
 
-/// Unit 1: the angle, in degrees, that brings 2.3 onto the line through the middle of 2.13 and 2.14 and 2.1.
+/// The angle of unit 1 in degrees: it rotates 2.3 onto the line from the midpoint of 2.13 and 2.14 to 2.1.
 pub fn opening_angle(head: &Head) -> f64 {
     let axis = head.at("2.13");
     let below = |name: &str| (head.at(name)[1] - axis[1]).atan2(head.at(name)[2] - axis[2]);
     (below("2.3") - below("2.1")).to_degrees()
 }
 
-/// The points inside the curve 2.14-5.2-8.4-2.5-2.9-2.3-2.8-2.4-8.3-5.1-2.13, seen from the front; of the curve itself the lower lip.
-/// It is closed below the chin. Points behind the axis are no part of the face.
+/// The points inside the curve 2.14-5.2-8.4-2.5-2.9-2.3-2.8-2.4-8.3-5.1-2.13, seen from the front, and the lower lip on the curve. The curve
+/// is closed below the chin. Points behind the axis do not belong to the region.
 pub fn jaw_region(head: &Head) -> Vec<usize> {
     let curve = ["2.14", "5.2", "8.4", "2.5", "2.9", "2.3", "2.8", "2.4", "8.3", "5.1", "2.13"];
     let floor = head.at("2.1")[1] - BELOW_CHIN;
@@ -41,7 +41,7 @@ pub fn jaw_region(head: &Head) -> Vec<usize> {
     let (on_curve, lip) = (named(&curve), named(&["2.9", "2.3", "2.8"]));
     let inside = |&index: &usize| {
         let [x, y, z] = head.points[index];
-        // What is loose in the mouth is the tongue, which lies on the jaw, and the upper teeth, which do not.
+        // Inside the mouth the tongue rotates with the jaw, the upper teeth do not.
         let hangs = head.is_skin(index) || head.label(index).contains("tongue");
         hangs && z > axis[2] && (lip.contains(&index) || (!on_curve.contains(&index) && encloses(&polygon, [x, y])))
     };
@@ -61,7 +61,7 @@ fn open_mouth(head: &Head) -> Shape {
     Shape { turns: vec![turn], ..shape("open_mouth", Interpolation::Spherical, false) }
 }
 
-/// A shape that moves nothing yet.
+/// Returns a shape without deltas and rotations.
 pub fn shape(name: &str, interpolation: Interpolation, sided: bool) -> Shape {
     Shape { name: name.into(), interpolation, kind: ShapeKind::Unsigned, sided, deltas: Vec::new(), turns: Vec::new() }
 }
@@ -71,7 +71,7 @@ fn smile(head: &Head) -> Shape {
     let inner = head.at("8.5")[1];
     let mut ways = to_height(head, &["8.3", "8.5", "8.10"], outer);
     ways.extend(to_height(head, &["2.4", "2.8"], inner));
-    // The upper inner contour goes with the lower one: it stays above it, whatever the weight.
+    // The upper inner contour moves with the lower one, so that it stays above it at every weight.
     ways.push(along(head, "2.6", "2.8", &ways));
     following("smile", head, ways, &["8.3"])
 }
@@ -85,29 +85,29 @@ fn lower_corners(head: &Head) -> Shape {
     following("lower_corners", head, ways, &["8.3"])
 }
 
-/// The ways of the named points to a height.
+/// Displacements of points to a height.
 fn to_height(head: &Head, names: &[&str], height: f64) -> Vec<(usize, Vector)> {
     let way = |name: &&str| (head.find(name).expect("a feature point"), [0.0, height - head.at(name)[1], 0.0]);
     names.iter().map(way).collect()
 }
 
-/// The way of a point that goes with another.
+/// The displacement of a point that moves with another.
 fn along(head: &Head, name: &str, other: &str, ways: &[(usize, Vector)]) -> (usize, Vector) {
     let find = |name| head.find(name).expect("a feature point");
     let way = ways.iter().find(|(index, _)| *index == find(other)).map_or([0.0; 3], |entry| entry.1);
     (find(name), way)
 }
 
-/// A one-sided shape of `ways`; the skin about the points `led` by follows them by the cosine law.
+/// Returns a sided shape of the displacements `ways`; skin around the points `led` follows them by the cosine law.
 fn following(name: &str, head: &Head, ways: Vec<(usize, Vector)>, led: &[&str]) -> Shape {
     let leaders: Vec<(usize, f64)> = led.iter().map(|name| (head.find(name).expect("a feature point"), FOLLOWS)).collect();
     let mut deltas = follow(head, ways, &leaders);
-    // What lies in the middle follows both sides, by half each.
+    // Points in the middle follow both sides, each by half.
     deltas.iter_mut().filter(|entry| entry.0 < head.middles).for_each(|entry| entry.1 = entry.1.map(|x| x / 2.0));
     Shape { deltas, ..shape(name, Interpolation::Cosine, true) }
 }
 
-/// Adds the skin within each leader's reach, but for what has a way already and for the edges of lips and lids.
+/// Adds the skin within each leader's radius, except points that have a displacement already and the edges of lips and lids.
 pub fn follow(head: &Head, ways: Vec<(usize, Vector)>, leaders: &[(usize, f64)]) -> Vec<(usize, Vector)> {
     let bound = |index: usize| {
         let edges = head
@@ -135,7 +135,7 @@ pub fn follow(head: &Head, ways: Vec<(usize, Vector)>, leaders: &[(usize, f64)])
     all
 }
 
-/// How far 4b raises a brow's outer end: to the height of its top.
+/// The distance by which 4b raises the outer end of a brow: to the height of its top.
 fn raise(head: &Head) -> f64 {
     head.at("4.3")[1] - head.at("4.5")[1]
 }
@@ -150,7 +150,7 @@ fn brow_inner_lower(head: &Head) -> Shape {
 
 fn brow_outer_raise(head: &Head) -> Shape {
     let up = raise(head);
-    // Between its top and its end a brow rises in proportion to how far outside a point is.
+    // Between its top and its end a brow rises in proportion to the distance from the top.
     let (top, end) = (head.at("4.3")[0], head.at("4.5")[0]);
     let part = |name: &str| {
         let index = head.find(name).expect("a point of the brow");
@@ -159,7 +159,7 @@ fn brow_outer_raise(head: &Head) -> Shape {
     following("brow_outer_raise", head, vec![part("4.5"), part("brow-top-out"), part("brow-low-out")], &["4.5"])
 }
 
-/// How far the cheek that unit 5 puffs reaches from 5.1: as far as the curve 2.11-2.13 is from it, over the jaw.
+/// The radius around 5.1 of the cheek that unit 5 puffs: the distance of the curve 2.11-2.13 along the jaw.
 pub fn puff_reach(head: &Head) -> f64 {
     let curve = ["2.11", "jaw", "2.13"].map(|name| head.at(name));
     curve.windows(2).map(|ends| distance(head.at("5.1"), ends[0], ends[1])).fold(f64::MAX, f64::min)

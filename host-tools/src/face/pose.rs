@@ -1,13 +1,13 @@
-//! Poses written as sums, `joy=0.5,blink_left=1`.
+//! Parses poses written as sums, `joy=0.5,blink_left=1`.
 
 use super::blueprint::{Blueprint, Drive};
 use anyhow::{Context, Result, bail};
 use pantin_face::{FULL_WEIGHT, Target, Weights};
 
-/// A pair of weights a shape.
+/// A pair of weights for each shape.
 pub type Pairs = Vec<[f64; 2]>;
 
-/// The weights of a sum of names, each with a value, 1 where none is given.
+/// Parses a sum of names, each with a value (default 1). Fails on unknown names.
 pub fn parse(face: &Blueprint, sum: &str) -> Result<Pairs> {
     let mut pairs = vec![[0.0; 2]; face.shapes.len()];
     for term in sum.split([',', '+']).map(str::trim).filter(|term| !term.is_empty()) {
@@ -18,7 +18,7 @@ pub fn parse(face: &Blueprint, sum: &str) -> Result<Pairs> {
     Ok(pairs)
 }
 
-/// Adds what a channel called `name` would give at a value.
+/// Adds the weights of a channel with this name at a value. Fails if the name is unknown.
 pub fn add(face: &Blueprint, name: &str, value: f64, pairs: &mut Pairs) -> Result<()> {
     let driven: Vec<&Drive> = face.names.iter().filter(|drive| drive.name == name).collect();
     if driven.is_empty() {
@@ -32,7 +32,7 @@ pub fn add(face: &Blueprint, name: &str, value: f64, pairs: &mut Pairs) -> Resul
     Ok(())
 }
 
-/// The same as the device has it.
+/// Converts weights to those of the device.
 pub fn weights(pairs: &Pairs) -> Weights {
     let mut weights = Weights::new();
     for (shape, pair) in pairs.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! One picture of many faces, each with its label; and the sheet of all units and emotions.
+//! Writes a picture of many labelled faces, such as the sheet of all units and emotions.
 
 use super::Face;
 use super::draw::picture;
@@ -18,14 +18,14 @@ const LABEL: usize = 13;
 /// Brightness of the sheet and of its labels.
 const SHEET: u8 = 40;
 const INK: u8 = 210;
-/// A letter's width.
+/// Width of a letter in pixels.
 const LETTER: usize = 6;
 
 /// A labelled picture.
 pub struct Cell {
-    /// Written below it.
+    /// The text below the picture.
     pub label: String,
-    /// Rows of its pixels.
+    /// Rows of grey values.
     pub pixels: Vec<u8>,
 }
 
@@ -45,11 +45,11 @@ pub fn write(out: impl Write, cells: &[Cell], columns: usize, [width, height]: [
     sheet.write(out)
 }
 
-/// Faces a row, and their size.
+/// Faces per row, and their size in pixels.
 const COLUMNS: usize = 8;
 const SIZE: [usize; 2] = [160, 160];
 
-/// What the sheet shows: a label, the pose, and degrees about the face.
+/// The pictures of the sheet: label, pose, and degrees of the view's orbit.
 const POSES: [(&str, &str, i16); 64] = [
     ("neutral", "", 0),
     ("three quarters", "", 35),

@@ -1,18 +1,18 @@
-//! The skin's triangles: the hull of the points' directions, seen from inside the head, so that no list of them is needed.
+//! Finds the skin's triangles: the convex hull of the points' directions from inside the head. No list of triangles is needed.
 
 use super::head::{Head, Vector, cross, dot, minus, mirror, unit};
 
-/// Three points, anticlockwise from outside.
+/// Three points, anticlockwise seen from outside.
 pub type Triangle = [usize; 3];
 
-/// From here all of the skin is seen: in the middle of the head, low enough to see the throat.
+/// The centre from which all of the skin is visible: low enough for the throat.
 const CENTRE: Vector = [0.0, -14.0, 4.0];
-/// What the hull pulls in: directions of points in the middle lean a little to the left, where the stored half is.
+/// Tolerance of the hull.
 const NEAREST: f64 = 1e-9;
 
-/// Triangles of the left half over `stored` points, of which those below `middles` lie in the middle.
+/// Returns the triangles of the left half over the points `stored`, of which those below `middles` are in the middle.
 pub fn triangles(points: &[Vector], stored: &[usize], middles: usize) -> Vec<Triangle> {
-    // Symmetric directions: a hull of both halves has the middle as an edge wherever two neighbours in the middle are near enough.
+    // A hull of both halves has edges along the middle wherever two neighbours in the middle are close enough.
     let mut indices = stored.to_vec();
     let images: Vec<(usize, Vector)> =
         stored.iter().filter(|&&index| index >= middles).map(|&index| (index, mirror(points[index]))).collect();
@@ -27,7 +27,7 @@ pub fn triangles(points: &[Vector], stored: &[usize], middles: usize) -> Vec<Tri
     left.map(|triangle| triangle.map(|corner| indices[corner])).collect()
 }
 
-/// The convex hull of unit vectors, triangle by triangle.
+/// Returns the triangles of the convex hull of unit vectors.
 fn hull(points: &[Vector]) -> Vec<Triangle> {
     let mut faces = first(points);
     for index in 0..points.len() {
@@ -44,7 +44,7 @@ fn hull(points: &[Vector]) -> Vec<Triangle> {
     faces
 }
 
-/// A tetrahedron to start with: four corners with the most room between them.
+/// Returns a tetrahedron to start with.
 fn first(points: &[Vector]) -> Vec<Triangle> {
     let farthest =
         |way: Vector| (0..points.len()).max_by(|&a, &b| dot(points[a], way).total_cmp(&dot(points[b], way))).unwrap_or(0);
@@ -57,7 +57,7 @@ fn first(points: &[Vector]) -> Vec<Triangle> {
     vec![outwards([a, b, c], d), outwards([a, b, d], c), outwards([a, c, d], b), outwards([b, c, d], a)]
 }
 
-/// Unit normals of all points: those of the skin by the triangles around them, weighed by their areas; others are left 0.
+/// Returns unit normals of the skin's points, the means of the triangles around them weighted by area; others are 0.
 pub fn normals(head: &Head) -> Vec<Vector> {
     let mut sums = vec![[0.0; 3]; head.points.len()];
     for &triangle in &head.triangles {
