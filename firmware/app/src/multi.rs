@@ -48,8 +48,8 @@ pub fn multi<B: Board>(
     let mut first = 0;
     loop {
         let listener = Listener::default();
-        let context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
-        match play_from(entries, first, buffers, context) {
+        let mut context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
+        match play_from(entries, first, buffers, &mut context) {
             Outcome::Clip(steps) => first = (first as i32 + steps).checked_rem_euclid(entries.len() as i32).unwrap_or(0) as usize,
             Outcome::Exit(exit) => return exit,
             #[cfg(feature = "update")]
@@ -59,7 +59,12 @@ pub fn multi<B: Board>(
 }
 
 /// Sets the figures up, the first one with the clip at `first`, and plays them.
-fn play_from<B: Board>(entries: &[Entry], first: usize, buffers: &mut [FigureBuffers<B>], context: PlayContext<B>) -> Outcome {
+fn play_from<B: Board>(
+    entries: &[Entry],
+    first: usize,
+    buffers: &mut [FigureBuffers<B>],
+    context: &mut PlayContext<B>,
+) -> Outcome {
     let count = buffers.len().min(FIGURES);
     let mut figures: Vec<(&str, Player, &mut BoardRenderer<B>), FIGURES> = Vec::new();
     let entries = entries.iter().cycle().skip(first);

@@ -34,8 +34,8 @@ pub fn run<B: Board>(entries: &[Entry], options: Options, framebuffer: &mut Fram
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
         let listener = Listener::default();
-        let context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
-        match open(entry, Task::Play { from: 0 }, context) {
+        let mut context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
+        match open(entry, Task::Play { from: 0 }, &mut context) {
             Outcome::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             Outcome::Exit(exit) => return exit,
             #[cfg(feature = "update")]
@@ -56,7 +56,7 @@ pub(crate) enum Task {
 }
 
 /// Opens a clip, builds its content and plays it.
-pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: PlayContext<B>) -> Outcome {
+pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: &mut PlayContext<B>) -> Outcome {
     let clip = match Clip::new_checked(entry.bytes) {
         Ok(clip) => clip,
         Err(error) => {
@@ -75,10 +75,10 @@ pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: PlayContext<B>)
     info!(
         "{}: {} frames of {} ns, {} channels, {} of them moving",
         entry.name,
-        clip.frames(),
-        clip.frame_time_ns(),
-        clip.rig().channels(),
-        clip.moving()
+        player.clip().frames(),
+        player.clip().frame_time_ns(),
+        player.clip().rig().channels(),
+        player.clip().moving()
     );
     build(&mut player, context, |player, content, context| match task {
         Task::Play { from } => start(entry.name, player, from, content, context),
@@ -88,7 +88,13 @@ pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: PlayContext<B>)
 }
 
 /// Plays a clip's content from a frame, with poses of the clip or of the link.
-fn start<B: Board>(name: &str, player: &mut Player, from: u32, content: &mut AnyContent<B>, context: PlayContext<B>) -> Outcome {
+fn start<B: Board>(
+    name: &str,
+    player: &mut Player,
+    from: u32,
+    content: &mut AnyContent<B>,
+    context: &mut PlayContext<B>,
+) -> Outcome {
     if from > 0 {
         player.seek(from);
     }
@@ -111,8 +117,9 @@ pub(crate) struct Actor<'a, B: Board, S> {
 /// Plays figures side by side until the mode ends or a command chooses another clip: the loop over frames. Frame time and frame number are
 /// those of the first figure; commands apply to all.
 #[inline(never)]
-pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: PlayContext<B>) -> Outcome {
-    let PlayContext { mode, view_state, framebuffer, board, mut listener } = context;
+pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mut PlayContext<B>) -> Outcome {
+    let PlayContext { mode, view_state, framebuffer, board, listener } = context;
+    let (mode, view_state, framebuffer, board) = (*mode, &mut **view_state, &mut **framebuffer, &mut **board);
     let mut frame_ns = actors.first().map_or(0, |first| first.source.frame_time_ns());
     let (mut frames, mut shown, mut late) = (0, 0u32, 0u32);
     let mut effects = Effects::new();
@@ -135,9 +142,9 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: Pla
         shown = shown.wrapping_add(1);
         listener.frame_shown();
         let ticks = match mode {
-            Mode::Sync => wait_for_request(first.source, view_state, &mut effects, &mut listener, board),
+            Mode::Sync => wait_for_request(first.source, view_state, &mut effects, listener, board),
             Mode::Frames(count) if shown >= count => None,
-            Mode::Frames(_) | Mode::Play => Some(wait_for_tick(first.source, view_state, &mut effects, &mut listener, board)),
+            Mode::Frames(_) | Mode::Play => Some(wait_for_tick(first.source, view_state, &mut effects, listener, board)),
         };
         let Some(ticks) = ticks else { break };
         late = late.wrapping_add(ticks.saturating_sub(1));

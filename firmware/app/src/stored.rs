@@ -59,8 +59,8 @@ fn until_replaced<B: Board, S: Slot>(
     let mut own = stored.as_ref().map(entry);
     let (mut at, mut from) = (0, 0);
     while let Some(entry) = own.as_ref().into_iter().chain(entries).nth(at) {
-        let context = stored_context.lend(Listener { update: Some(update) });
-        match open(entry, Task::Play { from }, context) {
+        let mut context = stored_context.lend(Listener { update: Some(update) });
+        match open(entry, Task::Play { from }, &mut context) {
             Outcome::Clip(steps) => {
                 let count = (entries.len() + usize::from(own.is_some())) as i32;
                 (at, from) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
@@ -87,5 +87,5 @@ fn until_replaced<B: Board, S: Slot>(
 #[inline(never)]
 fn is_playable<B: Board, S: Slot>(update: &Update<S>, stored_context: &mut StoredContext<B>) -> bool {
     let Some(candidate) = update.candidate() else { return false };
-    matches!(open(&entry(&candidate), Task::Check, stored_context.lend(Listener::default())), Outcome::Playable)
+    matches!(open(&entry(&candidate), Task::Check, &mut stored_context.lend(Listener::default())), Outcome::Playable)
 }

@@ -30,8 +30,8 @@ impl<L: Layout, R: Renderer> Content<L> for R {
 #[cfg_attr(feature = "face", inline(never))]
 pub(super) fn build<B: Board>(
     player: &mut Player,
-    context: PlayContext<B>,
-    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+    context: &mut PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
     let mut renderer = BoardRenderer::<B>::empty();
     if let Err(error) = renderer.set_up(player, whole_display::<B::Layout>()) {

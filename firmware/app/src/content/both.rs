@@ -59,8 +59,8 @@ impl<L: Layout, R: Renderer> Content<L> for Both<'_, R> {
 #[inline(never)]
 pub(super) fn build<B: Board>(
     player: &mut Player,
-    context: PlayContext<B>,
-    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+    context: &mut PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
     let areas = Areas::of::<B::Layout>();
     let mut renderer = BoardRenderer::<B>::empty();
@@ -79,8 +79,8 @@ fn add_face<B: Board>(
     player: &mut Player,
     renderer: &mut BoardRenderer<B>,
     areas: Areas,
-    context: PlayContext<B>,
-    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+    context: &mut PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
     let rig = player.clip().rig();
     let views = [context.view_state.view, context.view_state.ahead];

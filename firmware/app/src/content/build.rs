@@ -10,8 +10,8 @@ use pantin::Player;
 /// Builds the content of a player's clip and hands it to `then`.
 pub(crate) fn build<B: Board>(
     player: &mut Player,
-    context: PlayContext<B>,
-    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+    context: &mut PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
     #[cfg(feature = "face")]
     if face::is_in(player.clip()) {

@@ -93,8 +93,8 @@ impl<L: Layout> Content<L> for Face<'_> {
 #[inline(never)]
 pub(super) fn build<B: Board>(
     player: &mut Player,
-    context: PlayContext<B>,
-    then: impl FnOnce(&mut Player, &mut AnyContent<B>, PlayContext<B>) -> Outcome,
+    context: &mut PlayContext<B>,
+    then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
     let rig = player.clip().rig();
     let views = [context.view_state.view, context.view_state.ahead];
