@@ -1,44 +1,44 @@
-//! A channel at the receiver: the state that the sender's equals while both are in step, and the value that is drawn.
+//! One channel at the receiver: the state, which equals the sender's while the two are in sync, and the drawn value.
 
 use crate::head::{ChannelKind, pace};
 use crate::message::Message;
 
-/// What is known of a channel.
+/// What the receiver knows about a channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Sync {
-    /// Nothing yet.
+    /// Nothing.
     #[default]
     Unknown,
-    /// That it has one value.
+    /// The channel has one value for the whole clip.
     Constant,
-    /// That it moves, but not where it is.
+    /// The channel moves; its state is unknown.
     Lost,
-    /// Its state.
+    /// The channel moves; its state equals the sender's.
     Exact,
 }
 
-/// A channel of the pose: 36 bytes.
+/// The receiver's memory for one channel of the pose: 36 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Channel {
-    /// p, v, w, k.
+    /// p, v, w and k in raw units.
     state: [i32; 4],
-    /// What the drawn value moved by last.
+    /// The last change of the drawn value, in raw units.
     last_move: i32,
-    /// p when it was drawn last, for one that was exact then.
+    /// p at the last drawn frame, if the state was exact there.
     last_exact: Option<i32>,
-    /// The frame at which the next message is due.
+    /// The line frame, modulo 2^16, at which the next message is due.
     due: u16,
-    /// How many channels before it stands the one that it follows; 0 if it leads.
+    /// The distance in channels to the leader that this channel follows; 0 if it follows none.
     back: u16,
     step: u8,
     pace: u8,
     sync: Sync,
-    /// Whether the drawn value has once been the state.
+    /// Whether the drawn value has reached the state once since the clip began.
     joined: bool,
 }
 
 impl Channel {
-    /// Takes what the channel is. ScheduledMessage again it changes nothing.
+    /// Sets what kind of channel this is. Repeating the same kind changes nothing.
     pub(crate) fn set_kind(&mut self, kind: ChannelKind) {
         let sync = match kind {
             ChannelKind::Constant(p) => {
@@ -59,22 +59,22 @@ impl Channel {
         }
     }
 
-    /// Forgets all but what is drawn.
+    /// Forgets everything except the drawn value's speed.
     pub(crate) fn forget(&mut self) {
         *self = Channel { last_move: self.last_move, ..Channel::default() };
     }
 
-    /// Whether it is all that the sender has of it.
+    /// Returns whether the state equals the sender's.
     pub(crate) fn is_exact(&self) -> bool {
         matches!(self.sync, Sync::Constant | Sync::Exact)
     }
 
-    /// How many channels before it the one stands that it follows.
+    /// Returns the distance to the leader, if the channel follows one.
     pub(crate) fn follows(&self) -> Option<usize> {
         (self.back > 0).then_some(usize::from(self.back))
     }
 
-    /// Becomes as the channel that it follows.
+    /// Copies the leader's state.
     pub(crate) fn follow(&mut self, leader: &Channel) {
         (self.state, self.pace, self.sync) = (leader.state, leader.pace, leader.sync);
     }
@@ -84,12 +84,12 @@ impl Channel {
         self.joined
     }
 
-    /// p, v, w and k, where they are known.
+    /// Returns p, v, w and k in raw units, or `None` if the state is not known exactly.
     pub fn state(&self) -> Option<[i32; 4]> {
         self.is_exact().then_some(self.state)
     }
 
-    /// Takes a message of this frame. A segment alone is of use where the one before it ends.
+    /// Applies a message of this frame. A segment without a refresh is used only if it was due at this frame.
     pub(crate) fn apply(&mut self, frame: u16, message: &Message) {
         let moves = matches!(self.sync, Sync::Lost | Sync::Exact) && self.back == 0;
         if moves && (message.refresh.is_some() || self.is_due(frame)) {
@@ -99,12 +99,12 @@ impl Channel {
         }
     }
 
-    /// Whether a segment has to begin at this frame.
+    /// Returns whether a message must start at this frame.
     fn is_due(&self, frame: u16) -> bool {
         self.sync == Sync::Exact && self.due == frame && self.back == 0
     }
 
-    /// Loses the state if none began at this frame; whether it did.
+    /// Gives up the state if its message was due at this frame and did not arrive; returns whether it did so.
     pub(crate) fn check(&mut self, frame: u16) -> bool {
         let lost = self.is_due(frame);
         if lost {
@@ -113,27 +113,27 @@ impl Channel {
         lost
     }
 
-    /// Loses the state: time has jumped.
+    /// Gives up the state because the clock has jumped.
     pub(crate) fn lose(&mut self) {
         if self.sync == Sync::Exact {
             self.sync = Sync::Lost;
         }
     }
 
-    /// The three additions.
+    /// Advances the state by one frame: three additions.
     pub(crate) fn advance(&mut self) {
         let [p, v, w, k] = self.state;
         self.state = [p.wrapping_add(v), v.wrapping_add(w), w.wrapping_add(k), k];
     }
 
-    /// The value to draw after `drawn`; `went` is whether time went on. It never moves by more than the pace, but where the figure first
-    /// appears: a channel that has not joined its state yet goes three quarters of the way.
+    /// Returns the value to draw after `drawn`; `went` says whether the clock advanced. The value moves by at most the pace, except when the figure first
+    /// appears: then a channel that has not reached its state yet takes three quarters of the error at once.
     pub(crate) fn draw(&mut self, drawn: i32, went: bool) -> i32 {
         let exact = self.is_exact() && (went || self.sync == Sync::Constant);
         let p = if exact { Some(self.state[0]) } else { None };
         let before = core::mem::replace(&mut self.last_exact, p);
         self.last_move = match (p, before) {
-            // It comes to rest; what came by three quarters may have been faster.
+            // The value comes to rest. A first approach by three quarters may have been faster than the pace.
             (None, _) if self.joined => (self.last_move / 2).clamp(-pace(self.pace), pace(self.pace)),
             (None, _) => self.last_move / 2,
             (Some(p), before) => {
@@ -147,7 +147,7 @@ impl Channel {
         drawn.wrapping_add(self.last_move)
     }
 
-    /// As the state has moved, and a third of the way to it; at least an eighth of the pace, so that it arrives; at most the pace in all.
+    /// Returns the state's own movement plus a third of the error, at least an eighth of the pace, in total at most the pace.
     fn joining(&self, moved: i32, off: i32) -> i32 {
         let pace = pace(self.pace);
         let least = (pace >> 3).max(1) as u32;

@@ -1,12 +1,11 @@
-//! Consistent overhead byte stuffing (S. Cheshire and M. Baker, 1999): bytes without a zero, one longer a started 254.
+//! Consistent overhead byte stuffing (S. Cheshire and M. Baker, 1999): removes zeros and adds one byte for every 254 started.
 //!
-//! The crate of that name would bring a macro's parser into every firmware's build, and needs a frame's rest kept from it by hand
-//! where one is too long.
+//! The crate `cobs` would add a macro parser to every firmware build, and has no way to skip the rest of a frame that is too long.
 
-/// What a run of 254 bytes and no zero after it begins with.
+/// The code byte of a run of 254 bytes that no zero follows.
 const FULL: u8 = 0xff;
 
-/// Writes `parts`, one after the other, without zeros into `out`: how many bytes. None if they do not fit.
+/// Encodes the concatenated `parts` into `out`. Returns the number of bytes written, or `None` if `out` is too small.
 pub(crate) fn encode(parts: &[&[u8]], out: &mut [u8]) -> Option<usize> {
     let (mut code_at, mut at, mut code) = (0, 1, 1);
     for &byte in parts.iter().copied().flatten() {
@@ -26,22 +25,22 @@ pub(crate) fn encode(parts: &[&[u8]], out: &mut [u8]) -> Option<usize> {
     Some(at)
 }
 
-/// Takes bytes that are not zero, one by one.
+/// Decodes bytes one by one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decoder {
-    /// Bytes of the run that are still to come.
+    /// Bytes of the run that have not arrived yet.
     left: u8,
-    /// A zero stands between the run and the next one.
+    /// Whether a zero comes between this run and the next.
     zero: bool,
 }
 
 impl Decoder {
-    /// Before the first byte.
+    /// Waits for the first byte.
     pub(crate) const fn new() -> Decoder {
         Decoder { left: 0, zero: false }
     }
 
-    /// Takes a byte, and hands on what it gives: at most one.
+    /// Takes a byte other than zero, and returns the decoded byte if there is one.
     pub(crate) fn feed(&mut self, byte: u8) -> Option<u8> {
         if let Some(left) = self.left.checked_sub(1) {
             self.left = left;
@@ -52,7 +51,7 @@ impl Decoder {
         zero.then_some(0)
     }
 
-    /// Whether the bytes may end here.
+    /// Returns whether the encoded bytes may end here.
     pub(crate) fn whole(&self) -> bool {
         self.left == 0
     }

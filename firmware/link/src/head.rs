@@ -1,11 +1,11 @@
-//! What is played, and what its channels are: packets of kind HEAD and STARTS.
+//! HEAD and STARTS packets, which describe a clip and its channels.
 
 use crate::symbols::{Coder, Reader};
 use pantin::Form;
 use pantin::codec::crc;
 use pantin::codec::layout::MAX_STEP;
 
-/// Version of all payloads; it is the first thing that an identity counts.
+/// Version of the payloads: the first byte of an identity.
 const VERSION: u8 = 1;
 /// The check of a HEAD.
 pub const HEAD_CHECK: u16 = VERSION as u16;
@@ -24,29 +24,29 @@ fn exponentials(form: &Form) -> [u8; EXPONENTIAL_BYTES] {
     bytes
 }
 
-/// A clip on its way over the line. `Default` is no clip.
+/// The description of a clip that is sent. `Default` describes no valid clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Head {
-    /// Drawn by chance when a sender starts: what another one sent is not taken for its own.
+    /// A random number chosen when the sender starts: it tells the packets of two senders apart.
     pub session: u16,
-    /// Counts the clips of a session.
+    /// The number of the clip within the session, modulo 256.
     pub clip: u8,
-    /// What its values mean.
+    /// What the values of its poses mean.
     pub form: Form,
     /// Number of frames.
     pub frames: u32,
     /// Whether frame 0 follows the last frame.
     pub looped: bool,
-    /// Time from one frame to the next.
+    /// Nanoseconds per frame.
     pub frame_time_ns: u32,
     /// Channels of a pose.
     pub channels: u16,
-    /// The line's frame at which the clip's frame 0 is shown; the line's frames go on over its rounds.
+    /// The line frame at which the clip's frame 0 is shown. Line frames keep counting through the repetitions of a clip.
     pub begin: u32,
 }
 
 impl Head {
-    /// Reads or writes one, and the line's frame that the sender is at.
+    /// Writes this description and the sender's line frame to an encoder, or reads both from a decoder.
     pub fn code<C: Coder>(&self, coder: &mut C, now: u32) -> (Head, u32) {
         let form = self.form;
         let mut head = Head {
@@ -71,7 +71,7 @@ impl Head {
         (head, coder.bits(32, now))
     }
 
-    /// Reads the payload of a packet of kind HEAD: the head, and the line's frame that the sender was at.
+    /// Reads the payload of a HEAD packet: the description, and the sender's line frame. Returns `None` if it is damaged or describes no valid clip.
     pub fn read(payload: &[u8]) -> Option<(Head, u32)> {
         let mut reader = Reader::new(payload);
         let read = Head::default().code(&mut reader, 0);
@@ -79,7 +79,7 @@ impl Head {
         (sound && reader.ends_with(HEAD_CHECK)).then_some(read)
     }
 
-    /// What all other packets of the clip are checked by.
+    /// Returns the check of the clip's STARTS packets, from which that of its MOTION packets derives.
     pub fn identity(&self) -> u16 {
         let mut sum = crc::of(&[VERSION, self.clip, u8::from(self.looped), self.form.length_exponent() as u8]);
         for part in
@@ -90,32 +90,32 @@ impl Head {
         crc::update(sum, &exponentials(&self.form))
     }
 
-    /// What a motion's packet is checked by, whose first frame is this.
+    /// Returns the check of a MOTION packet with this first line frame.
     pub fn check(&self, frame: u32) -> u16 {
         crc::update(self.identity(), &(frame >> 16).to_le_bytes())
     }
 }
 
-/// What a channel is for the whole clip.
+/// What a channel does during the whole clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChannelKind {
-    /// It has this value at all frames.
+    /// It has this raw value at all frames.
     Constant(i32),
     /// It moves.
     Moving {
-        /// Index of its step: FORMAT.md 7.
+        /// Index of its step, 0 to [`MAX_STEP`]: FORMAT.md 7.
         step: u8,
-        /// What it may move by in a frame while it joins: [`pace`] of this.
+        /// Index of its [`pace`], the largest change per frame of the drawn value.
         pace: u8,
     },
-    /// It is the same as the channel so many before it.
+    /// It equals the channel that many places before it in the pose.
     Follower(u16),
 }
 
 /// Greatest index of a [`pace`].
 pub const MAX_PACE: u8 = 61;
 
-/// Raw units a frame by index: 0, 1, 2, 3, 4, 6, 8, 12, ..., 2^31 - 1.
+/// Returns a pace in raw units per frame: 0, 1, 2, 3, 4, 6, 8, 12, ..., 2^31 - 1.
 pub const fn pace(index: u8) -> i32 {
     match index {
         0 => 0,
@@ -128,7 +128,7 @@ pub const fn pace(index: u8) -> i32 {
 const CONSTANT: u32 = 0;
 const MOVING: u32 = 1;
 const FOLLOWER: u32 = 2;
-/// Still, at 0.
+/// Constant at 0.
 const ZERO: u32 = 3;
 
 impl ChannelKind {
@@ -164,8 +164,8 @@ pub const FIRST_BITS: u32 = 10;
 /// Bits of the number of channels in a STARTS.
 pub const COUNT_BITS: u32 = 8;
 
-/// Reads the payload of a packet of kind STARTS, checked by the clip's [`Head::identity`], and shows each channel of the pose with what it is.
-/// Nothing is shown of one that is not whole.
+/// Reads the payload of a STARTS packet whose check is the clip's [`Head::identity`], and passes each channel of the pose and its kind to `show`.
+/// Returns false, and calls `show` for none, if the payload is damaged.
 pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, ChannelKind)) -> bool {
     let go = |show: &mut dyn FnMut(u16, ChannelKind)| {
         let mut reader = Reader::new(payload);

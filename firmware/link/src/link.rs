@@ -1,4 +1,4 @@
-//! The receiver: packets in, a pose a frame out. Nothing that comes can make it fail; what it says of itself is true.
+//! The receiver: takes packets, and yields one pose per frame. No input makes it fail, and a state that it reports as exact is exact.
 
 use crate::channel::Channel;
 use crate::head::{ChannelKind, Head, read_starts};
@@ -7,55 +7,54 @@ use crate::packet::{Packet, kind};
 use heapless::Vec;
 use pantin::{Form, Pose};
 
-/// Bytes of a motion's payload that a sender makes at most.
+/// Most bytes of a MOTION payload.
 pub const MAX_PAYLOAD: usize = 96;
-/// Packets of motion that wait for their frames at a receiver at most: a sender counts on as many places.
+/// MOTION packets that can wait for their frames at a receiver: senders assume this number.
 pub const QUEUE_PACKETS: usize = 24;
-/// Bytes of any packet of this crate, for [`crate::packet::Receiver`]: with parity.
+/// Most bytes of a packet, for [`crate::packet::Receiver`], parity included.
 pub const MAX_PACKET: usize = MAX_PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
 
-/// A packet of motion that waits for its frames.
+/// A MOTION packet that waits for its frames.
 #[derive(Clone, Debug)]
 struct QueuedPacket {
-    /// The line's frame of its last message.
+    /// The line frame of its last message.
     last: u32,
     payload: Vec<u8, MAX_PAYLOAD>,
 }
 
-/// What has come, modulo 2^32.
+/// Statistics of the received packets, modulo 2^32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Packets of this crate's kinds.
+    /// HEAD, STARTS and MOTION packets.
     pub packets: u32,
-    /// Packets that are missing by their sequence; such as come later than others are counted here too.
+    /// Gaps in the sequence numbers. Packets that arrive out of order count too.
     pub missing: u32,
-    /// Packets of another clip, with a check that is not right, or too late.
+    /// Packets of another clip, with a wrong check, that arrived too late, or whose time is not believed.
     pub rejected: u32,
-    /// Packets that found the queue full.
+    /// Packets that arrived while the queue was full.
     pub dropped: u32,
-    /// Times that a channel's state was lost.
+    /// How often a channel lost its state.
     pub desyncs: u32,
 }
 
-/// Plays what comes over a line in memory of the caller's. `Q` packets wait for their frames: [`QUEUE_PACKETS`] is
-/// what senders count on.
+/// Plays the motion that arrives in packets, in memory of the caller. At most `Q` packets wait for their frames; senders assume [`QUEUE_PACKETS`].
 #[derive(Debug)]
 pub struct Link<'m, const Q: usize> {
     channels: &'m mut [Channel],
     pose: &'m mut [i32],
     form: Form,
     head: Option<Head>,
-    /// A clip that was told of, with where the sender was: it begins with the first other packet of it.
+    /// An announced clip and the sender's line frame: the receiver switches to it with the first other packet of that clip.
     next: Option<(Head, u32)>,
     queue: Vec<QueuedPacket, Q>,
     clock: Option<Clock>,
-    /// Where the sender was when it told of the clip.
+    /// The sender's line frame in the last HEAD.
     heard: u32,
     sequence: Option<u8>,
     counts: Counts,
 }
 
-/// The line's frames.
+/// The clock of the line, in line frames.
 #[derive(Clone, Copy, Debug)]
 struct Clock {
     /// The frame that is shown.
@@ -86,36 +85,37 @@ impl Clock {
     }
 }
 
-/// Frames that the clock may be behind the sender's before it takes two at once, and ahead (negative) before it waits: the jitter of packets.
+/// Frames behind the sender from which the clock advances two frames at once. Smaller differences are the jitter of packets.
 const CATCH_UP_FRAMES: i32 = 5;
+/// Frames behind the sender (negative: ahead) below which the clock waits.
 const HOLD_FRAMES: i32 = -2;
-/// Frames behind from which it takes all at once,
+/// Frames behind the sender from which the clock advances all of them at once.
 const SKIP_FRAMES: i32 = 12;
-/// and from which it no longer follows what has gone on since.
+/// Frames that are skipped without playing them: all channels lose their state.
 const FORGET_FRAMES: u32 = 256;
 
-/// A clip that this receiver cannot play.
+/// The reason why this receiver cannot play a clip.
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipMismatch {
-    /// It is of another rig.
+    /// The clip has another rig.
     Rig,
-    /// Its positions or its rotations are coded in another way; `pantin convert --rotations euler` leaves no choice.
+    /// The clip has another length exponent, or codes other joints as exponential maps; `pantin convert --rotations euler` avoids the latter.
     Form,
-    /// There are more channels than memory for them.
+    /// The clip has more channels than the receiver has memory for.
     Channels,
 }
 
 impl<'m, const Q: usize> Link<'m, Q> {
-    /// Waits for clips of this form, in memory for the channels of its pose. The pose as it is is where the figure stands until
-    /// more is known.
+    /// Waits for clips of this form. `channels` and `pose` have one element for each channel of the pose; the figure keeps the given pose until
+    /// packets arrive.
     pub fn new(form: Form, channels: &'m mut [Channel], pose: &'m mut [i32]) -> Self {
         channels.iter_mut().for_each(|channel| *channel = Channel::default());
         let (queue, counts) = (Vec::new(), Counts::default());
         Link { channels, pose, form, head: None, next: None, queue, clock: None, heard: 0, sequence: None, counts }
     }
 
-    /// Takes a packet. Those of other kinds are passed over.
+    /// Takes a packet; ignores other kinds. Returns an error for a HEAD of a clip that this receiver cannot play; the current clip keeps playing.
     pub fn receive(&mut self, packet: &Packet<'_>) -> Result<(), ClipMismatch> {
         if !matches!(packet.kind, kind::HEAD | kind::STARTS | kind::MOTION) {
             return Ok(());
@@ -123,7 +123,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
         self.counts.packets = self.counts.packets.wrapping_add(1);
         let expected = self.sequence.map_or(packet.sequence, |last| last.wrapping_add(1));
         let gap = packet.sequence.wrapping_sub(expected);
-        // Half of what a byte holds is a packet that comes later than its successors.
+        // More than half of the range means a packet that was overtaken.
         if gap < 128 {
             self.counts.missing = self.counts.missing.wrapping_add(u32::from(gap));
             self.sequence = Some(packet.sequence);
@@ -131,7 +131,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
         if packet.kind == kind::HEAD {
             return self.take_head(packet.payload);
         }
-        // A head alone changes nothing: it may be another sender's that came by chance.
+        // A HEAD alone changes nothing: it may be a stray one of another sender.
         let of_next = |(head, now): (Head, u32)| match packet.kind {
             kind::STARTS => read_starts(packet.payload, head.identity(), |_, _| {}),
             _ => motion_of(packet.payload, &head, now).is_some(),
@@ -174,7 +174,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
         Ok(())
     }
 
-    /// Goes over to the clip that was told of last.
+    /// Switches to the clip that was announced last.
     fn change(&mut self) {
         let Some((head, now)) = self.next.take() else { return };
         self.channels.iter_mut().for_each(Channel::forget);
@@ -235,7 +235,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
         true
     }
 
-    /// Goes on by the time of a frame: [`Link::pose`] is what to draw then. Time stands still while nothing is told of the frames to come.
+    /// Advances by one frame's time; then [`Link::pose`] is what to draw. The clock stands still while nothing is received about the next frames.
     pub fn step(&mut self) {
         let steps = self.steps();
         for _ in 0..steps {
@@ -254,10 +254,10 @@ impl<'m, const Q: usize> Link<'m, Q> {
         }
     }
 
-    /// How many frames time goes on by now.
+    /// Returns by how many frames the clock advances now.
     fn steps(&mut self) -> u32 {
         let Some(clock) = &mut self.clock else { return 0 };
-        // No sender is further than what it has told of.
+        // The sender is assumed to stand still if nothing more was received.
         if before(clock.sender_frame, clock.received_until) {
             clock.sender_frame = clock.sender_frame.wrapping_add(1);
         }
@@ -278,7 +278,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
         1
     }
 
-    /// A frame on: the additions, then what begins there.
+    /// Plays one frame: the additions, then the messages of that frame.
     fn play(&mut self) {
         let Some(clock) = &mut self.clock else { return };
         clock.now = clock.now.wrapping_add(1);
@@ -305,45 +305,45 @@ impl<'m, const Q: usize> Link<'m, Q> {
         Pose { values: self.pose, form: &self.form }
     }
 
-    /// The clip that plays.
+    /// Returns the clip that plays.
     pub fn head(&self) -> Option<&Head> {
         self.head.as_ref()
     }
 
-    /// The line's frame that is shown.
+    /// Returns the line frame that is shown.
     pub fn now(&self) -> Option<u32> {
         self.clock.map(|clock| clock.now)
     }
 
-    /// The frame of the clip that is shown.
+    /// Returns the clip's frame that is shown.
     pub fn frame(&self) -> Option<u32> {
         let head = self.head?;
         self.now()?.checked_sub(head.begin)?.checked_rem(head.frames)
     }
 
-    /// How many of the clip's channels are exactly what the sender has of them.
+    /// Returns the number of channels whose state equals the sender's.
     pub fn exact_channels(&self) -> usize {
         let channels = self.head.map_or(0, |head| usize::from(head.channels));
         self.channels.iter().take(channels).filter(|channel| channel.is_exact()).count()
     }
 
-    /// Whether every channel is.
+    /// Returns whether the state of every channel equals the sender's.
     pub fn is_synced(&self) -> bool {
         self.clock.is_some() && self.head.is_some_and(|head| usize::from(head.channels) == self.exact_channels())
     }
 
-    /// The states of the pose's channels.
+    /// Returns the channels of the pose.
     pub fn channels(&self) -> &[Channel] {
         self.channels
     }
 
-    /// What has come.
+    /// Returns the statistics.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 }
 
-/// First and last frame of a packet of motion, and how far ahead it was, if it is of this clip and whole.
+/// Returns the first and the last frame of a MOTION packet and how many frames it was ahead, if it is intact and belongs to this clip.
 fn motion_of(payload: &[u8], head: &Head, about: u32) -> Option<(u32, u32, u8)> {
     let mut messages = Messages::new(payload);
     let base = near(messages.base(), about);
@@ -352,12 +352,12 @@ fn motion_of(payload: &[u8], head: &Head, about: u32) -> Option<(u32, u32, u8)> 
     messages.whole(head.check(base)).then_some((base, last, messages.ahead()))
 }
 
-/// The frame nearest to `about` with these low bits.
+/// Returns the frame nearest to `about` with these low 16 bits.
 fn near(low: u16, about: u32) -> u32 {
     about.wrapping_add(i32::from(low.wrapping_sub(about as u16) as i16) as u32)
 }
 
-/// Whether `a` comes before `b`; frames may wrap.
+/// Returns whether `a` comes before `b`; frames may wrap.
 fn before(a: u32, b: u32) -> bool {
     (a.wrapping_sub(b) as i32) < 0
 }

@@ -1,59 +1,59 @@
-//! What a packet of kind MOTION says of one channel: a segment that begins at a frame, with or without a refresh of the state there.
+//! Messages of a MOTION packet: a segment that starts at a frame, with or without a refresh of the state.
 
 use crate::symbols::{Coder, Reader};
 use crate::tables;
 use pantin::codec::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
 use pantin::codec::{segment, segment_frames, step_size};
 
-/// A segment from a frame on, and perhaps the state that it starts from.
+/// A segment, and optionally the state from which it starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Message {
-    /// Type and length of the file's segment, as FORMAT.md 9 has them: the steps of `w` and `k` are that length's.
+    /// Type and length of the segment as in FORMAT.md 9; the length determines the steps of `w` and `k`.
     pub mode: u8,
-    /// Frames until this channel is told of again, 1 to 127; the mode's length unless the sender cuts there.
+    /// Frames until this channel's next message, 1 to 127: the mode's length, unless the sender splits the segment.
     pub run: u8,
-    /// New acceleration in steps, with types `W` and `WK`.
+    /// New acceleration in steps, for the types `W` and `WK`.
     pub w: i32,
-    /// New slope in steps, with types `K` and `WK`.
+    /// New slope in steps, for the types `K` and `WK`.
     pub k: i32,
-    /// The state at this frame, with a refresh.
+    /// The state at this frame, if the message has a refresh.
     pub refresh: Option<Refresh>,
 }
 
-/// A state in units of the channel step S, each at least 1 raw unit.
+/// A state in fractions of the channel step S, each at least 1 raw unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refresh {
     /// Position in S / 16.
     pub p: i32,
     /// Velocity in S / 256.
     pub v: i32,
-    /// Acceleration in S / 4096, with types `K` and `NONE`, which carry it on; else 0.
+    /// Acceleration in S / 4096 for the types `K` and `NONE`, which keep it; otherwise 0.
     pub w: i32,
 }
 
-/// Shifts that bring a channel step to the units of a [`Refresh`]: 16 frames at rounding's worst move p by less than its own rounding.
+/// Shifts from a channel step to the units of a [`Refresh`]. After 16 frames, the rounding of v and w has moved p by less than the rounding of p.
 const SHIFTS: [u32; 3] = [4, 8, 12];
 
-/// The units of a [`Refresh`] in raw units: of p, v, w.
+/// Returns the units of a [`Refresh`] in raw units, for p, v and w.
 pub fn units(step: u8) -> [i32; 3] {
-    // At most 805306368.
+    // The largest is 805,306,368.
     SHIFTS.map(|shift| (step_size(step.min(MAX_STEP)) >> shift).max(1) as i32)
 }
 
-/// Bits of a run that is not the mode's length.
+/// Bits of a run that differs from the mode's length.
 const RUN_BITS: u32 = 7;
 /// Flags of the first symbol.
 const REFRESH: u32 = 1;
 const CUT: u32 = 2;
 
 impl Message {
-    /// Whether the type has a new w, and whether it has a new k.
+    /// Returns whether the type has a new w, and whether it has a new k.
     pub fn is_new(&self) -> [bool; 2] {
         let kind = self.mode >> 4;
         [kind & 1 == 0, kind == segment_type::K || kind == segment_type::WK]
     }
 
-    /// Reads or writes one.
+    /// Writes this message to an encoder, or reads one from a decoder.
     pub fn code<C: Coder>(&self, coder: &mut C) -> Message {
         let cut = self.run != segment_frames(self.mode);
         let flags = (u32::from(self.refresh.is_some()) * REFRESH) | (u32::from(cut) * CUT);
@@ -82,7 +82,7 @@ impl Message {
         message
     }
 
-    /// The state [p, v, w, k] of a channel with this step from here on.
+    /// Returns the state [p, v, w, k] from which a channel with this step index continues.
     pub fn apply(&self, state: [i32; 4], step: u8) -> [i32; 4] {
         let [mut p, mut v, mut w, _] = state;
         if let Some(refresh) = self.refresh {
@@ -102,7 +102,7 @@ impl Message {
     }
 }
 
-/// A number in steps, as FORMAT.md 9 has it, without a context.
+/// Codes a number in steps as in FORMAT.md 9, without a context.
 fn number<C: Coder>(coder: &mut C, table: &[u16], value: i32) -> i32 {
     let size = value.unsigned_abs();
     let last = GROUPS + 1;
@@ -126,7 +126,7 @@ fn number<C: Coder>(coder: &mut C, table: &[u16], value: i32) -> i32 {
     if symbol & 1 == 0 { read as i32 } else { (read as i32).wrapping_neg() }
 }
 
-/// The first magnitude behind the groups, and more.
+/// The smallest magnitude above the groups, plus `more`.
 const fn far(more: u32) -> u32 {
     group(GROUPS + 1) + more
 }
@@ -136,18 +136,18 @@ pub const FRAME_BITS: u32 = 16;
 /// Bits of how many frames ahead of the sender's clock that was.
 pub const AHEAD_BITS: u32 = 8;
 
-/// Symbols of a place: so many channels passed over; then, instead of a channel,
+/// Place symbol: 30 channels are skipped, and another place follows.
 pub const PASS: u32 = 30;
-/// a frame on, and
+/// Place symbol: the next frame follows.
 pub const FRAME: u32 = 31;
-/// the end.
+/// Place symbol: the packet ends.
 pub const END: u32 = 32;
 
-/// The messages of a packet, one after the other.
+/// Iterates over the messages of a packet.
 #[derive(Clone, Copy, Debug)]
 pub struct Messages<'a> {
     reader: Reader<'a>,
-    /// The first frame's low bits.
+    /// The low 16 bits of the first frame.
     base: u16,
     ahead: u8,
     frame: u16,
@@ -156,7 +156,7 @@ pub struct Messages<'a> {
 }
 
 impl<'a> Messages<'a> {
-    /// Of the payload of a packet of kind MOTION.
+    /// Reads the payload of a MOTION packet.
     pub fn new(payload: &'a [u8]) -> Self {
         let mut reader = Reader::new(payload);
         let base = reader.bits(FRAME_BITS, 0) as u16;
@@ -164,29 +164,29 @@ impl<'a> Messages<'a> {
         Messages { reader, base, ahead, frame: base, channel: 0, ended: false }
     }
 
-    /// The frame of the first message, modulo 2^16: all that is told of frames before it has been sent.
+    /// The first frame, modulo 2^16. Everything about earlier frames was sent in earlier packets.
     pub fn base(&self) -> u16 {
         self.base
     }
 
-    /// By how many frames that was ahead of the sender's clock when the packet had left.
+    /// How many frames the first frame was ahead of the sender's clock when the packet had been sent.
     pub fn ahead(&self) -> u8 {
         self.ahead
     }
 
-    /// The frame that has been come to.
+    /// The frame that the iterator has reached, modulo 2^16.
     pub fn frame(&self) -> u16 {
         self.frame
     }
 
-    /// Whether all was read and the check is this: only then has any of it been meant.
+    /// Returns whether the whole payload was read and ends with `check`. Only then are its messages valid.
     pub fn whole(&self, check: u16) -> bool {
         self.ended && self.reader.ends_with(check)
     }
 }
 
 impl Iterator for Messages<'_> {
-    /// Frame modulo 2^16, channel of the pose, message.
+    /// The frame modulo 2^16, the channel of the pose, and the message.
     type Item = (u16, u16, Message);
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -1,59 +1,75 @@
-//! Packets on a line: kind, sequence, payload and CRC, stuffed, between zeros.
+//! Packets on a line: kind, sequence, payload and CRC, encoded by COBS, between zeros.
 //!
 //! ```text
-//! 00  COBS( kind u8, sequence u8, payload, CRC-16/IBM-3740 u16 of all before it, least first )  00
+//! 00  COBS( kind u8, sequence u8, payload, CRC-16/IBM-3740 u16 of all before it, least significant byte first )  00
 //! ```
 //!
-//! A zero is nothing but an end, so a receiver is in step again at the first zero after any damage; one zero between two packets
-//! is enough. A byte alone between zeros is no packet but a **letter**: a terminal's keys share the line.
+//! A zero only ever ends a packet, so any damage ends at the next zero. Two adjacent packets may share one zero. A single byte between two zeros is
+//! a **key** of a terminal on the same line.
+//!
+//! ```
+//! use pantin_link::packet::{self, Receiver, kind};
+//!
+//! let mut line = [0; packet::line_len(3)];
+//! let len = packet::encode(kind::MOTION, 7, b"abc", &mut line).unwrap();
+//! let mut receiver = Receiver::<16>::new();
+//! let mut received = false;
+//! for &byte in &line[..len] {
+//!     if let Some(packet) = receiver.push(byte) {
+//!         assert_eq!((packet.sequence, packet.payload), (7, &b"abc"[..]));
+//!         received = true;
+//!     }
+//! }
+//! assert!(received);
+//! ```
 
 use crate::{cobs, parity};
 use pantin::codec::crc;
 
-/// What a packet is for: its first byte.
+/// Packet kinds: the first byte of a packet.
 pub mod kind {
     use core::ops::RangeInclusive;
 
-    /// What is played: LINK.md, "Head".
+    /// Describes the clip: LINK.md 3.
     pub const HEAD: u8 = 0x01;
-    /// Segments and refreshes: LINK.md, "Motion".
+    /// Segments and refreshes: LINK.md 5.
     pub const MOTION: u8 = 0x02;
-    /// What the channels are: LINK.md, "Starts".
+    /// Describes the channels: LINK.md 4.
     pub const STARTS: u8 = 0x03;
-    /// For clips that are updated over the line.
+    /// Messages of a clip update: `pantin-store`.
     pub const UPDATES: RangeInclusive<u8> = 0x10..=0x1f;
 }
 
-/// Bytes of a packet beside its payload, before COBS encoding.
+/// Bytes of a packet in addition to its payload, before COBS encoding.
 pub const OVERHEAD: usize = 4;
 
-/// Bytes that are added behind the CRC, before cobs, where both ends have agreed on it: they mend 4 wrong bytes.
+/// Parity bytes after the CRC, if both ends have agreed on parity: they correct 4 wrong bytes.
 pub use crate::parity::PARITY;
 
-/// Bytes that a packet takes on the line at most, both zeros included, and parity.
+/// Returns the most bytes that a packet takes on the line, both zeros and parity included.
 pub const fn line_len(payload: usize) -> usize {
     let len = payload + OVERHEAD + PARITY;
     len + len.div_ceil(254) + 2
 }
 
-/// A packet that came whole.
+/// An intact packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet<'a> {
-    /// What it is for, as [`kind`] lists.
+    /// One of [`kind`].
     pub kind: u8,
-    /// One more than the sender's last packet's, modulo 256.
+    /// The sender's packet counter, modulo 256.
     pub sequence: u8,
-    /// What it says.
+    /// The content.
     pub payload: &'a [u8],
 }
 
-/// Writes a packet as it goes over the line, with a zero before and behind: how many bytes. Straight after another packet the
-/// first zero may be left out. None if `out` has not the room ([`line_len`] says how much that is at most).
+/// Encodes a packet with a zero before and after it. Returns the number of bytes, or `None` if `out` is too small ([`line_len`] is always enough).
+/// After another packet the first zero may be omitted.
 pub fn encode(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
     put(&[kind, sequence], payload, sum(&[kind, sequence], payload), &[], out)
 }
 
-/// The same with parity behind the CRC, for a receiver [`Receiver::with_parity`]: payloads of up to 243 bytes.
+/// Encodes a packet with parity after the CRC, for [`Receiver::with_parity`]. The payload has at most 243 bytes.
 pub fn encode_with_parity(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]) -> Option<usize> {
     let head = [kind, sequence];
     let crc = sum(&head, payload);
@@ -72,21 +88,21 @@ fn put(head: &[u8], payload: &[u8], crc: [u8; 2], parity: &[u8], out: &mut [u8])
     Some(len + 2)
 }
 
-/// Finds packets of up to `N` bytes (payload and [`OVERHEAD`]) in what comes over a line. What is damaged is counted, and never handed on;
-/// of packets that chance made, one in 65,536 passes the CRC.
+/// Finds packets of at most `N` bytes (payload, [`OVERHEAD`] and parity) in the bytes of a line. Damaged packets are counted and dropped; random
+/// bytes pass the CRC with probability 2^-16.
 #[derive(Clone, Debug)]
 pub struct Receiver<const N: usize> {
     bytes: [u8; N],
     len: usize,
     cobs: cobs::Decoder,
-    /// Bytes since the last zero.
+    /// Bytes since the last zero, before decoding.
     run_bytes: usize,
     first: u8,
-    /// 0 for none: no letter is that.
+    /// A confirmed key; 0 if there is none.
     key: u8,
-    /// A letter, until what follows shows that it is no damaged packet's first byte; 0 for none.
+    /// A single byte that may still be the first byte of a damaged packet; 0 if there is none.
     pending_key: u8,
-    /// What was last is damaged: a letter may be its last byte.
+    /// Whether the last packet was damaged: a single byte may be its last one.
     after_damage: bool,
     damaged: u32,
     /// Corrects packets with parity: a pointer, so that programs without parity do not link the code.
@@ -117,12 +133,12 @@ impl<const N: usize> Receiver<N> {
         }
     }
 
-    /// The same for packets with parity, which count among the `N` bytes.
+    /// The same, for packets with parity.
     pub const fn with_parity() -> Self {
         Receiver { correct: Some(parity::correct), ..Self::new() }
     }
 
-    /// Takes a byte from the line, and hands on the packet that it ends.
+    /// Takes a byte from the line, and returns the packet that it completes.
     pub fn push(&mut self, byte: u8) -> Option<Packet<'_>> {
         if byte == 0 {
             return self.end();
@@ -151,9 +167,9 @@ impl<const N: usize> Receiver<N> {
             }
             return None;
         }
-        // A damaged COBS code byte puts zeros in wrong places, but none too many: parity may mend that too.
+        // A damaged COBS code byte puts zeros in wrong places but keeps the length, so parity may correct it.
         let whole = self.cobs.whole() || self.correct.is_some();
-        // None for one that was too long.
+        // `None` for a packet that was too long.
         let bytes = self.bytes.get_mut(..self.len).filter(|_| whole);
         let correct = self.correct;
         let unmended = |bytes| match correct {
@@ -171,14 +187,14 @@ impl<const N: usize> Receiver<N> {
         packet
     }
 
-    /// A byte that came alone between two zeros since the last call, once it is no piece of a packet in which a flipped bit has made a zero: what follows it is
-    /// whole, another letter, or a second zero; what stands before it too.
+    /// Returns the key that was pressed since the last call. A single byte between two zeros is a key once an intact packet, another single byte or a
+    /// second zero follows it, and no damaged packet precedes it: a bit error that creates a zero within a packet presses no key.
     pub fn take_key(&mut self) -> Option<u8> {
         Some(core::mem::take(&mut self.key)).filter(|&key| key != 0)
     }
 
-    /// The same for a byte alone behind the last zero, for when the line has been silent for a while: a packet's first byte that is
-    /// taken for a letter costs that packet.
+    /// Returns the key also if it is the only byte after the last zero. Call this when no byte has arrived for a while: if the byte was the first of a packet,
+    /// that packet is lost.
     pub fn take_key_after_timeout(&mut self) -> Option<u8> {
         if self.run_bytes == 1 {
             self.run_bytes = 0;
@@ -188,26 +204,26 @@ impl<const N: usize> Receiver<N> {
         self.take_key()
     }
 
-    /// How many packets came damaged, modulo 2^32. Pieces count: a zero that a flipped bit made gives two.
+    /// Returns the number of damaged packets, modulo 2^32. Pieces count: a zero created by a bit error makes two.
     pub fn damaged(&self) -> u32 {
         self.damaged
     }
 }
 
-/// What follows a letter is no piece of the same packet.
+/// Confirms the pending key: what follows it does not belong to the same packet.
 fn confirm_key(pending: &mut u8, key: &mut u8) {
     if *pending != 0 {
         *key = core::mem::take(pending);
     }
 }
 
-/// A packet's bytes without parity, mended if need be.
+/// Returns the bytes before the parity, corrected if necessary.
 fn without_parity(bytes: &mut [u8], correct: fn(&mut [u8]) -> bool) -> Option<&mut [u8]> {
     let len = bytes.len().checked_sub(PARITY)?;
     if correct(bytes) { bytes.get_mut(..len) } else { None }
 }
 
-/// The packet in COBS-decoded bytes, if their CRC is right.
+/// Returns the packet if the CRC of its decoded bytes is right.
 fn open(bytes: &[u8]) -> Option<Packet<'_>> {
     let (bytes, sum) = bytes.split_last_chunk()?;
     let &[kind, sequence, ref payload @ ..] = bytes else { return None };
@@ -297,7 +313,7 @@ mod tests {
             let mut receiver = Receiver::<128>::with_parity();
             missed += usize::from(received(&mut receiver, &bytes) != [(kind::MOTION, 9, payload.clone())]);
         }
-        // Stuffing is mended too, unless it is damaged so that wrong runs go on and on.
+        // Parity corrects COBS code bytes too, unless the runs shift.
         assert!(missed <= 2, "{missed} of {len}");
     }
 
@@ -317,7 +333,7 @@ mod tests {
         fn any_bytes_at_all_and_then_two_packets(noise in prop::collection::vec(any::<u8>(), 0..600)) {
             let mut receiver = Receiver::<64>::new();
             received(&mut receiver, &noise);
-            // What the noise began ends at the first zero.
+            // Whatever the noise began ends at the first zero.
             let got = received(&mut receiver, &[line(1, 5, b"first"), line(1, 6, b"second")].concat());
             prop_assert_eq!(got, vec![(1, 5, b"first".to_vec()), (1, 6, b"second".to_vec())]);
         }
@@ -335,7 +351,7 @@ mod tests {
             let mut receiver = Receiver::<64>::new();
             let got = received(&mut receiver, &bytes);
             prop_assert_eq!(got.last(), Some(&(1, 2, b"whole".to_vec())));
-            // Only a zero put in beside a zero leaves it as it was, and is not damage.
+            // Only a zero inserted beside another zero is no damage.
             prop_assert!(got.len() == 1 || bytes.iter().filter(|&&b| b != 0).eq(whole.iter().chain(&line(1, 2, b"whole")).filter(|&&b| b != 0)));
         }
     }

@@ -1,13 +1,12 @@
-//! Bytes that mend others: Reed and Solomon's code (1960) over the field of 256 with x^8 + x^4 + x^3 + x^2 + 1, 8 bytes behind up to 247. It finds
-//! and mends 4 wrong bytes.
+//! A Reed-Solomon code over GF(256) with x^8 + x^4 + x^3 + x^2 + 1: 8 parity bytes after at most 247 bytes correct 4 wrong bytes.
 //!
-//! The crate of that name copies whole packets a dozen times on the stack, and has panics on its ways.
+//! The crate `reed-solomon` copies whole packets a dozen times on the stack, and can panic.
 
-/// Bytes that are added.
+/// Parity bytes of a packet.
 pub const PARITY: usize = 8;
-/// Bytes that are mended at most.
+/// Most bytes that are corrected.
 const MOST: usize = PARITY / 2;
-/// Bytes that the code counts.
+/// Longest code word in bytes.
 const LONGEST: usize = 255;
 
 const EXP: [u8; 512] = {
@@ -38,17 +37,17 @@ const fn times(a: u8, b: u8) -> u8 {
     if a == 0 || b == 0 { 0 } else { EXP[LOG[a as usize] as usize + LOG[b as usize] as usize] }
 }
 
-/// 1 / a; of 0 it is 1, which no one asks for.
+/// Returns 1 / a, and 1 for 0, which no caller passes.
 fn inverse(a: u8) -> u8 {
     EXP[255 - usize::from(LOG[usize::from(a)])]
 }
 
-/// The field's generator to a power.
+/// Returns a power of the field's generator.
 fn power(n: usize) -> u8 {
     EXP[n % 255]
 }
 
-/// The code's generator without its leading 1, the highest power first: its roots are the powers 0 to 7.
+/// The generator polynomial without its leading 1, the highest power first. Its roots are the powers 0 to 7.
 const GENERATOR: [u8; PARITY] = {
     let mut all = [0u8; PARITY + 1];
     all[0] = 1;
@@ -70,7 +69,7 @@ const GENERATOR: [u8; PARITY] = {
     lower
 };
 
-/// The bytes to add behind `parts`, one after the other.
+/// Returns the parity bytes of the concatenated `parts`.
 pub(crate) fn of(parts: &[&[u8]]) -> [u8; PARITY] {
     let mut parity = [0; PARITY];
     for &byte in parts.iter().copied().flatten() {
@@ -85,12 +84,12 @@ pub(crate) fn of(parts: &[&[u8]]) -> [u8; PARITY] {
     parity
 }
 
-/// A polynomial's value, its lowest coefficient first.
+/// Evaluates a polynomial whose lowest coefficient comes first.
 fn value(polynomial: &[u8], at: u8) -> u8 {
     polynomial.iter().rev().fold(0, |sum, &coefficient| times(sum, at) ^ coefficient)
 }
 
-/// What the bytes are at the code's roots: zeros if none is wrong.
+/// Returns the syndromes: all are zero if no byte is wrong.
 fn syndromes(bytes: &[u8]) -> [u8; PARITY] {
     let mut all = [0; PARITY];
     for (root, own) in all.iter_mut().enumerate() {
@@ -99,7 +98,7 @@ fn syndromes(bytes: &[u8]) -> [u8; PARITY] {
     all
 }
 
-/// Mends bytes that end with their parity. False if that cannot be; then they may have been changed.
+/// Corrects bytes that end with their parity. Returns false if there are too many wrong bytes; then `bytes` may have changed.
 pub(crate) fn correct(bytes: &mut [u8]) -> bool {
     let syndromes = syndromes(bytes);
     if syndromes == [0; PARITY] {
@@ -109,13 +108,13 @@ pub(crate) fn correct(bytes: &mut [u8]) -> bool {
     if wrong > MOST || bytes.len() > LONGEST {
         return false;
     }
-    // The syndromes times the locator, below x^8.
+    // The product of syndromes and locator, below x^8.
     let mut evaluator = [0; PARITY];
     for (power, own) in evaluator.iter_mut().enumerate() {
         let pairs = locator.iter().zip(syndromes.get(..=power).unwrap_or(&[]).iter().rev());
         *own = pairs.fold(0, |sum, (&a, &b)| sum ^ times(a, b));
     }
-    // The locator's derivative: of a field of characteristic 2, only the odd powers leave something.
+    // The locator's derivative: in a field of characteristic 2, only the odd powers remain.
     let mut slope = [0; PARITY];
     slope.iter_mut().zip(locator.iter().skip(1)).step_by(2).for_each(|(own, &odd)| *own = odd);
     let mut found = 0;
@@ -129,7 +128,7 @@ pub(crate) fn correct(bytes: &mut [u8]) -> bool {
     found == wrong && self::syndromes(bytes) == [0; PARITY]
 }
 
-/// The polynomial whose roots tell where bytes are wrong, and how many are (Berlekamp and Massey).
+/// Returns the error locator polynomial and the number of wrong bytes (Berlekamp-Massey).
 fn locate(syndromes: &[u8; PARITY]) -> ([u8; PARITY + 1], usize) {
     let (mut locator, mut before) = ([0; PARITY + 1], [0; PARITY + 1]);
     (locator[0], before[0]) = (1, 1);
@@ -158,7 +157,7 @@ mod tests {
 
     #[test]
     fn the_codes_generator() {
-        // Worked out by hand for x - 1 and x - 2, and by another program for all eight.
+        // Checked by hand for x - 1 and x - 2, and by another program for all eight roots.
         assert_eq!(GENERATOR, [255, 11, 81, 54, 239, 173, 200, 24]);
     }
 

@@ -1,25 +1,25 @@
-//! A payload's fields, by rANS with static tables (FORMAT.md 5 has the method). One description serves both ends: [`Coder`] hands back
-//! what it reads, or what it was given to write.
+//! The fields of a payload, coded by rANS with static tables (FORMAT.md 5). One description serves both ends: a [`Coder`] returns what it reads, or what
+//! it was given to write.
 //!
-//! The coder begins from 2^16 + a **check** of 16 bits, which a reader must find again at the payload's end, with no byte left: it
-//! ties a packet to its session, at no cost, and is a second line behind the CRC.
+//! The encoder starts at 2^16 plus a 16-bit **check**, which the decoder must find at the payload's end, with no byte left. It ties a packet to its
+//! session without costing a byte, and adds to the CRC.
 
-/// Sizes in 2^-12 of an alphabet's symbols: all at least 1, together 4096.
+/// The probabilities of an alphabet's symbols in 2^-12: each at least 1, in total 4096.
 pub type Table = [u16];
 
 const SCALE_BITS: u32 = 12;
-/// The state lies in `LOW..LOW << 8` between symbols.
+/// Between symbols, the state is in `LOW..LOW << 8`.
 const LOW: u32 = 1 << 16;
 
-/// Reads fields, or writes them.
+/// Reads the fields of a payload, or writes them.
 pub trait Coder {
-    /// A symbol of an alphabet.
+    /// Codes a symbol of an alphabet.
     fn symbol(&mut self, table: &Table, symbol: u32) -> u32;
 
-    /// 8 bits at most.
+    /// Codes at most 8 bits.
     fn few_bits(&mut self, count: u32, value: u32) -> u32;
 
-    /// 32 bits at most, the least significant first.
+    /// Codes at most 32 bits, the least significant first.
     fn bits(&mut self, count: u32, value: u32) -> u32 {
         let (mut read, mut shift) = (0, 0);
         while shift < count {
@@ -30,7 +30,7 @@ pub trait Coder {
         read
     }
 
-    /// A signed number: its length in bits as a symbol of 33, the bits below the highest, the sign.
+    /// Codes a signed number: its length in bits (a symbol of 33), the bits below the highest, and the sign.
     fn magnitude(&mut self, table: &Table, value: i32) -> i32 {
         let size = value.unsigned_abs();
         let Some(below) = self.symbol(table, u32::BITS - size.leading_zeros()).checked_sub(1) else { return 0 };
@@ -40,12 +40,12 @@ pub trait Coder {
     }
 }
 
-/// Reads a payload.
+/// Reads the fields of a payload.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     state: u32,
-    /// Whether it was asked for more than there was.
+    /// Whether more was read than the payload has.
     past: bool,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Reader<'a> {
         for _ in 0..3 {
             reader.shift();
         }
-        // No well-formed payload begins below; from here on the state is never 0, so that every refill ends.
+        // No valid payload starts below LOW. From here on the state is never 0, so every refill ends.
         reader.state = reader.state.max(LOW);
         reader
     }
@@ -77,12 +77,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether more was read than there is.
+    /// Returns whether more was read than the payload has.
     pub(crate) fn past(&self) -> bool {
         self.past
     }
 
-    /// Whether this is the end that the writer began from.
+    /// Returns whether this is the payload's end and `check` is the check that the encoder started with.
     pub(crate) fn ends_with(&self, check: u16) -> bool {
         !self.past && self.bytes.is_empty() && self.state == LOW | u32::from(check)
     }
@@ -95,7 +95,7 @@ impl Coder for Reader<'_> {
         for &size in table {
             let size = u32::from(size);
             if low < size {
-                // Less than 2^12 times less than 2^12.
+                // Both factors are less than 2^12.
                 self.state = size * (self.state >> SCALE_BITS) + low;
                 self.refill();
                 break;

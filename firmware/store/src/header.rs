@@ -1,52 +1,52 @@
-//! What stands before a clip in its slot.
+//! The header of a clip in its slot.
 //!
 //! | at | bytes | what |
 //! |--:|--:|---|
 //! | 0 | 4 | `PTN` and 1 |
 //! | 4 | 4 | length of the clip, bytes |
 //! | 8 | 4 | CRC-32 of the clip |
-//! | 12 | 4 | sequence: one more than that of the clip before, modulo 2^32 |
-//! | 16 | 28 | name, UTF-8, filled up with zeros |
+//! | 12 | 4 | sequence: one more than that of the previous clip, modulo 2^32 |
+//! | 16 | 28 | name, UTF-8, padded with zeros |
 //! | 44 | 4 | CRC-32 of the 44 bytes before it |
 //!
-//! Numbers have their least byte first. The CRC-32 is CRC-32/ISO-HDLC, that of zip and PNG. The rest of the block is as it was erased.
+//! Numbers are little-endian. The CRC-32 is CRC-32/ISO-HDLC, as in zip and PNG. The rest of the block stays erased.
 
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
-/// Bytes of it.
+/// Bytes of a header.
 pub const HEADER_BYTES: usize = 48;
-/// Bytes of a name.
+/// Most bytes of a name.
 pub const NAME_BYTES: usize = 28;
 
 const MAGIC: [u8; 4] = *b"PTN\x01";
 
-/// Without a table: a kilobyte of flash less, and time is no matter.
+/// Without a table: it saves a kilobyte of flash, and the checksum is not time-critical.
 const CRC_32: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// CRC-32/ISO-HDLC.
+/// Returns the CRC-32/ISO-HDLC of the bytes.
 pub fn crc_32(bytes: &[u8]) -> u32 {
     CRC_32.checksum(bytes)
 }
 
-/// What a clip is called: up to [`NAME_BYTES`] bytes.
+/// The name of a clip: at most [`NAME_BYTES`] bytes of UTF-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name([u8; NAME_BYTES]);
 
 impl Name {
-    /// The beginning of `name`, as far as there is capacity.
+    /// Takes as many whole characters of `name` as fit.
     pub fn new(name: &str) -> Name {
         let end = (0..=NAME_BYTES).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
         Name::of_bytes(name.as_bytes().get(..end).unwrap_or_default())
     }
 
-    /// Bytes that may be no UTF-8 and too long.
+    /// Takes bytes that may be invalid UTF-8 or too long.
     pub(crate) fn of_bytes(bytes: &[u8]) -> Name {
         let mut name = [0; NAME_BYTES];
         name.iter_mut().zip(bytes).for_each(|(place, &byte)| *place = byte);
         Name(name)
     }
 
-    /// Its letters; "clip" where they are none.
+    /// Returns the name, or "clip" if it is empty or no UTF-8.
     pub fn as_str(&self) -> &str {
         let letters = self.0.split(|&byte| byte == 0).next().unwrap_or_default();
         match core::str::from_utf8(letters) {
@@ -60,19 +60,19 @@ impl Name {
     }
 }
 
-/// What is claimed of a clip, by a header or by who sends it.
+/// Length, checksum and name of a clip, as a header or a sender states them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClipInfo {
-    /// Bytes of it.
+    /// Length in bytes.
     pub length: u32,
-    /// CRC-32 of them.
+    /// CRC-32 of these bytes.
     pub crc: u32,
-    /// What it is called.
+    /// The name that a board shows.
     pub name: Name,
 }
 
 impl ClipInfo {
-    /// What is so of a clip. None for one of 4 GiB.
+    /// Describes a clip. Returns `None` for 4 GiB and more.
     pub fn of(clip: &[u8], name: &str) -> Option<ClipInfo> {
         Some(ClipInfo { length: u32::try_from(clip.len()).ok()?, crc: crc_32(clip), name: Name::new(name) })
     }
@@ -81,14 +81,14 @@ impl ClipInfo {
 /// A slot's header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
-    /// Of the clip.
+    /// The clip.
     pub info: ClipInfo,
-    /// Which of two clips is newer.
+    /// Determines which of two clips is newer.
     pub sequence: u32,
 }
 
 impl Header {
-    /// Reads it. None where there is none, or only a part of one.
+    /// Reads a header. Returns `None` if the bytes are too few or the CRC is wrong.
     pub fn read(bytes: &[u8]) -> Option<Header> {
         let (fields, crc) = bytes.get(..HEADER_BYTES)?.split_last_chunk()?;
         if crc_32(fields) != u32::from_le_bytes(*crc) {
@@ -101,7 +101,7 @@ impl Header {
         Some(Header { info: ClipInfo { length, crc, name: Name::of_bytes(name) }, sequence })
     }
 
-    /// Its bytes.
+    /// Returns the header's bytes.
     pub fn bytes(&self) -> [u8; HEADER_BYTES] {
         let ClipInfo { length, crc, name } = &self.info;
         let mut bytes = [0; HEADER_BYTES];
@@ -114,13 +114,13 @@ impl Header {
         bytes
     }
 
-    /// Whether it was written after another one: as long as fewer than 2^31 were between.
+    /// Returns whether this header was written after `other`, if fewer than 2^31 were written in between.
     pub fn is_newer_than(&self, other: &Header) -> bool {
         self.sequence.wrapping_sub(other.sequence).cast_signed() > 0
     }
 }
 
-/// Takes a number off the front.
+/// Splits a little-endian number off the front.
 pub(crate) fn number(bytes: &[u8]) -> Option<(u32, &[u8])> {
     let (number, rest) = bytes.split_first_chunk()?;
     Some((u32::from_le_bytes(*number), rest))

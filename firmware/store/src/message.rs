@@ -1,45 +1,45 @@
-//! What is said over the line while a clip is replaced.
+//! Messages that replace a board's clip over the line.
 //!
-//! Messages are [packets](pantin_link::packet) of these kinds, and go one by one: who sends the clip requests, the board answers, and what
-//! is not answered in time is asked again. Every message names the clip by its CRC-32, so none is taken for that of another clip, and
-//! each can be said twice without harm. Numbers are of 4 bytes, the least first.
+//! Messages are [packets](pantin_link::packet) of the kinds below. The host sends a request, the board answers it, and the host repeats a request that is not
+//! answered in time. Every message contains the CRC-32 of its clip, so messages of another clip and repeated messages are harmless. Numbers have 4
+//! bytes, little-endian.
 //!
 //! | kind | message | payload | answers |
 //! |---|---|---|---|
-//! | 0x10 | [`Request::Begin`] | CRC-32, length, name (up to 28 bytes) | want, done, refused |
-//! | 0x11 | [`Request::Data`] | CRC-32, offset, bytes | want, refused |
-//! | 0x12 | [`Request::End`] | CRC-32 | want, done, refused |
+//! | 0x10 | [`Request::Begin`] | CRC-32, length, name (up to 28 bytes) | next, done, refused |
+//! | 0x11 | [`Request::Data`] | CRC-32, offset, bytes | next, refused |
+//! | 0x12 | [`Request::End`] | CRC-32 | next, done, refused |
 //! | 0x18 | [`Response::Next`] | CRC-32, offset | |
 //! | 0x19 | [`Response::Done`] | CRC-32 | |
-//! | 0x1a | [`Response::Refused`] | CRC-32, reason (a byte), number | |
+//! | 0x1a | [`Response::Refused`] | CRC-32, reason (1 byte), number |
 //!
-//! Data are [`BLOCK_BYTES`] bytes from a multiple of that, only the last ones fewer. `want` says from where the board wants
-//! them next: the clip's length when it has them all. Beginning again what is under way answers `want` with how far it came; so a
-//! transfer goes on after the line was lost. `done` means that the clip stands in flash, sealed, and plays.
+//! Data are [`BLOCK_BYTES`](crate::BLOCK_BYTES) bytes from a multiple of that; only the last ones are fewer. `next` is the offset that the board expects next: the clip's
+//! length when it has all. A repeated `begin` of the current transfer returns how far it has come, so a transfer resumes after the line was
+//! interrupted. `done` means that the clip is sealed in flash and plays.
 //!
-//! The board gives a transfer up when [`IDLE_FRAMES`] pictures went by without a message, or another begins. It tells letters
-//! (keys) from packets by the zero that a packet begins with: bytes up to the next zero are the packet's. After a packet that was
-//! damaged, or a byte that no terminal's letter has, it takes nothing for a letter until the next zero or [`SILENCE_FRAMES`] pictures without a byte.
+//! The board abandons a transfer after [`IDLE_FRAMES`] frames without a message, or when another one begins. A zero starts a packet, and the bytes up to the next
+//! zero belong to it; other bytes are keys. After a damaged packet, or a byte that is no key of a terminal, the board ignores keys until the
+//! next zero or [`SILENCE_FRAMES`] frames without a byte.
 
 use crate::BLOCK_BYTES;
 use crate::header::{ClipInfo, NAME_BYTES, Name, number};
 use pantin::OpenError;
 use pantin_link::packet::{self, Packet};
 
-/// Pictures without a message after which a transfer is given up.
+/// Frames without a message after which the board abandons a transfer.
 pub const IDLE_FRAMES: u16 = 1024;
-/// Pictures without a byte after which a packet that was begun is.
+/// Frames without a byte after which the board abandons an incomplete packet.
 pub const SILENCE_FRAMES: u16 = 16;
 
-/// Transfers that may bring data before one is sealed or the board restarts: a sender that begins again and again must not wear out the flash.
+/// Most transfers that may bring data before one is sealed or the board restarts: a sender that begins again and again must not wear out the flash.
 pub const MAX_STARTS: u8 = 32;
 
-/// Most bytes of a message to the board, as a receiver counts them.
+/// Most bytes of a request, as [`packet::Receiver`] counts them.
 pub const MAX_REQUEST: usize = 8 + BLOCK_BYTES + packet::OVERHEAD;
-/// Most bytes of an answer, as a receiver counts them.
+/// Most bytes of a response, as [`packet::Receiver`] counts them.
 pub const MAX_RESPONSE: usize = 9 + packet::OVERHEAD;
 
-/// Numbers of the kinds of messages: all of [`packet::kind::UPDATES`].
+/// Packet kinds of the messages, within [`packet::kind::UPDATES`].
 mod kind {
     pub const BEGIN: u8 = 0x10;
     pub const DATA: u8 = 0x11;
@@ -49,66 +49,66 @@ mod kind {
     pub const REFUSED: u8 = 0x1a;
 }
 
-/// What is said to the board.
+/// A message to the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request<'a> {
-    /// A clip is to come.
+    /// Starts or resumes the transfer of a clip.
     Begin(ClipInfo),
-    /// Bytes of it.
+    /// Sends bytes of the clip.
     Data {
         /// The clip's CRC-32.
         id: u32,
-        /// Where they belong in the clip.
+        /// The offset of `bytes` in the clip.
         offset: u32,
-        /// At most [`BLOCK_BYTES`].
+        /// 1 to [`BLOCK_BYTES`] bytes.
         bytes: &'a [u8],
     },
-    /// That was all: check it and play it.
+    /// Ends the transfer: the board checks the clip and plays it.
     End {
         /// The clip's CRC-32.
         id: u32,
     },
 }
 
-/// What the board says.
+/// A message from the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
-    /// Bytes from this offset on are wanted next.
+    /// The board expects the bytes from this offset on.
     Next {
         /// The clip's CRC-32.
         id: u32,
-        /// Its length when all are there.
+        /// The clip's length if the board has all of it.
         offset: u32,
     },
     /// The clip plays.
     Done {
-        /// Its CRC-32.
+        /// The clip's CRC-32.
         id: u32,
     },
-    /// The clip will not play.
+    /// The clip is refused; the old one keeps playing.
     Refused {
-        /// Its CRC-32.
+        /// The clip's CRC-32.
         id: u32,
-        /// Why.
+        /// The reason.
         refusal: Refusal,
     },
 }
 
-/// Why a clip is refused.
+/// The reason why a clip is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The clip is longer than the slot's capacity.
+    /// The slot is too small.
     TooLong {
-        /// Of the slot.
+        /// The longest clip that fits, in bytes.
         capacity: u32,
     },
-    /// No such transfer is under way (any more): begin it.
+    /// The board does not know this transfer, or has abandoned it: begin again.
     NotBegun,
-    /// The bytes in the flash are not those that were claimed.
+    /// The bytes in the flash are not those of the clip.
     BadCrc,
-    /// They are, but no clip that can be opened.
+    /// The decoder cannot open the clip.
     Clip(OpenError),
-    /// The board has not the memory to play it.
+    /// The board has too little RAM for the clip's channels or joints.
     TooBig,
     /// The flash cannot be erased or written.
     Flash,
@@ -116,7 +116,7 @@ pub enum Refusal {
     TooManyStarts,
 }
 
-/// Writes a message of up to `N` bytes as a packet; none if `out` has not the capacity.
+/// Encodes the concatenated `parts`, at most `N` bytes, as a packet. Returns `None` if `out` is too small.
 fn packet<const N: usize>(kind: u8, sequence: u8, parts: &[&[u8]], out: &mut [u8]) -> Option<usize> {
     let mut payload = [0; N];
     let mut len = 0;
@@ -128,7 +128,7 @@ fn packet<const N: usize>(kind: u8, sequence: u8, parts: &[&[u8]], out: &mut [u8
 }
 
 impl<'a> Request<'a> {
-    /// Reads a packet; none if it is something else.
+    /// Reads a packet. Returns `None` if it is no request.
     pub fn read(packet: &Packet<'a>) -> Option<Request<'a>> {
         let (id, rest) = number(packet.payload)?;
         match packet.kind {
@@ -145,7 +145,7 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// Writes it as it goes over the line: how many bytes. None if `out` has not the capacity: [`packet::line_len`] of 264 is enough.
+    /// Encodes the request as a packet and returns its length. Returns `None` if `out` is smaller than [`packet::line_len`] of 264.
     pub fn write(&self, sequence: u8, out: &mut [u8]) -> Option<usize> {
         let (kind, id, number, bytes) = match *self {
             Request::Begin(ClipInfo { length, crc, ref name }) => {
@@ -159,7 +159,7 @@ impl<'a> Request<'a> {
 }
 
 impl Response {
-    /// Reads a packet; none if it is something else.
+    /// Reads a packet. Returns `None` if it is no response.
     pub fn read(packet: &Packet) -> Option<Response> {
         let (id, rest) = number(packet.payload)?;
         match (packet.kind, rest) {
@@ -176,7 +176,7 @@ impl Response {
         }
     }
 
-    /// Writes it as it goes over the line: how many bytes. None if `out` has not the capacity: [`packet::line_len`] of 9 is enough.
+    /// Encodes the response as a packet and returns its length. Returns `None` if `out` is smaller than [`packet::line_len`] of 9.
     pub fn write(&self, sequence: u8, out: &mut [u8]) -> Option<usize> {
         match *self {
             Response::Next { id, offset } => packet::<9>(kind::NEXT, sequence, &[&id.to_le_bytes(), &offset.to_le_bytes()], out),
@@ -190,7 +190,7 @@ impl Response {
 }
 
 impl Refusal {
-    /// Reason and number, as they go over the line.
+    /// Returns the reason and the number that go over the line.
     fn code(self) -> (u8, u32) {
         match self {
             Refusal::TooLong { capacity } => (1, capacity),
@@ -204,7 +204,7 @@ impl Refusal {
             Refusal::Clip(OpenError::Truncated) => (18, 0),
             Refusal::Clip(OpenError::BadCrc) => (19, 0),
             Refusal::Clip(OpenError::WrongRig) => (21, 0),
-            // Also what later decoders may find wrong.
+            // Also errors that later decoders may add.
             Refusal::Clip(_) => (20, 0),
         }
     }

@@ -1,27 +1,27 @@
-//! Where boards keep their clips.
+//! The flash that each board reserves for clips.
 
-/// A board's flash for clips: two slots, one after the other.
+/// A board's flash for clips: two adjacent slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
-    /// The board.
+    /// The name of the board.
     pub board: &'static str,
-    /// Where the first slot begins, for who flashes it.
+    /// The address of the first slot, as flash tools expect it.
     pub address: u32,
-    /// Bytes of a slot: complete sectors.
+    /// Bytes of a slot: a whole number of sectors.
     pub slot: u32,
-    /// Bytes that are erased at once.
+    /// Bytes of a sector, the unit that is erased.
     pub sector: u32,
-    /// Bytes that are written at once.
+    /// Bytes of a word, the unit that is written.
     pub word: u32,
-    /// Of a board with a drive that takes UF2 files: its chip's family.
+    /// The UF2 family of the chip, for boards with a drive that takes UF2 files.
     pub family: Option<u32>,
 }
 
-/// The boards that have a store. Their memory maps say the same.
+/// The boards with a store. Their memory maps contain the same addresses.
 pub const REGIONS: [Region; 5] = [
     // The last two sectors of 512 KiB.
     Region { board: "blackpill", address: 0x0804_0000, slot: 128 << 10, sector: 128 << 10, word: 1, family: None },
-    // The last 128 KiB of 4 MiB, as they are flashed; the processor reads them where the firmware maps them.
+    // The last 128 KiB of 4 MiB, as flash addresses; the firmware maps them elsewhere.
     Region { board: "esp32-c3", address: 0x003e_0000, slot: 64 << 10, sector: 4096, word: 4, family: None },
     // The last 64 KiB of 256.
     Region { board: "microbit", address: 0x0003_0000, slot: 32 << 10, sector: 1024, word: 4, family: None },
@@ -32,7 +32,7 @@ pub const REGIONS: [Region; 5] = [
 ];
 
 impl Region {
-    /// The board of this name.
+    /// Finds a board by its name.
     pub fn of(board: &str) -> Option<&'static Region> {
         REGIONS.iter().find(|region| region.board == board)
     }

@@ -1,24 +1,23 @@
-//! Flash that holds a clip.
+//! The flash that holds one clip.
 
 use crate::BLOCK_BYTES;
 use embedded_storage::nor_flash::NorFlash;
 
-/// Flash for one clip, which the processor reads as memory. Offsets count from its beginning.
+/// Flash for one clip, which the processor reads as memory. Offsets count from its start.
 ///
-/// Two slots are two values, even where one controller writes both: so a clip that plays from one is borrowed, and cannot be
-/// written over, while the other is written.
+/// Two slots are two values, even if one controller writes both: a clip that plays from one slot stays borrowed while the other slot is written.
 pub trait Slot: NorFlash {
-    /// All its bytes, complete sectors, as they are now.
+    /// Returns the current contents: whole sectors.
     fn bytes(&self) -> &[u8];
 }
 
-/// Refuses at compile time flash that blocks do not fit.
+/// Refuses flash at compile time whose words or sectors do not fit the blocks.
 pub(crate) const fn fits<S: Slot>() {
     assert!(BLOCK_BYTES.is_multiple_of(S::WRITE_SIZE), "a block must be complete words of the flash");
     assert!(S::ERASE_SIZE.is_multiple_of(BLOCK_BYTES), "a sector of the flash must be complete blocks");
 }
 
-/// A clip's bytes in a slot's: none if they are not all there.
+/// Returns the clip in a slot's bytes, or `None` if `length` exceeds the slot.
 pub(crate) fn clip(slot: &[u8], length: u32) -> Option<&[u8]> {
     slot.get(BLOCK_BYTES..)?.get(..length as usize)
 }

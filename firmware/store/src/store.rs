@@ -1,4 +1,4 @@
-//! Two slots: which of them plays.
+//! Two slots, and which of them plays.
 
 use crate::header::{ClipInfo, Header, crc_32};
 use crate::inactive_slot::InactiveSlot;
@@ -11,23 +11,23 @@ pub struct Store<S> {
     slots: [S; 2],
 }
 
-/// A clip from flash.
+/// A valid clip in flash.
 #[derive(Clone, Copy, Debug)]
 pub struct StoredClip<'a> {
-    /// The clip's file: [`Clip::new_checked`] takes it.
+    /// The file of the clip, for [`Clip::new_checked`].
     pub bytes: &'a [u8],
-    /// What its header says of it.
+    /// What the header states.
     pub info: ClipInfo,
 }
 
 impl<S: Slot> Store<S> {
-    /// Two slots, of the same size usually.
+    /// Takes two slots, usually of the same size.
     pub const fn new(slots: [S; 2]) -> Self {
         const { slot::fits::<S>() };
         Store { slots }
     }
 
-    /// The clip to play, if there is one, and the slot for the next.
+    /// Returns the newest valid clip, if there is one, and the slot for the next.
     pub fn open(&mut self) -> (Option<StoredClip<'_>>, InactiveSlot<'_, S>) {
         let [first, second] = &mut self.slots;
         let newest_is_second = match (read(first.bytes()), read(second.bytes())) {
@@ -41,13 +41,13 @@ impl<S: Slot> Store<S> {
         }
     }
 
-    /// The flash.
+    /// Returns the slots.
     pub fn into_slots(self) -> [S; 2] {
         self.slots
     }
 }
 
-/// A slot's header and clip, if both are right.
+/// Returns a slot's header and clip if both are valid.
 fn read(slot: &[u8]) -> Option<(Header, StoredClip<'_>)> {
     let header = Header::read(slot)?;
     let bytes = slot::clip(slot, header.info.length)?;

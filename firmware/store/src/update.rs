@@ -1,4 +1,4 @@
-//! A clip's replacement, as the board does its part.
+//! The board's side of a clip update.
 
 use crate::BLOCK_BYTES;
 use crate::header::ClipInfo;
@@ -9,7 +9,7 @@ use crate::slot::Slot;
 use crate::store::{Store, StoredClip};
 use pantin_link::packet;
 
-/// Listens for a clip while another plays.
+/// Receives a clip while another plays.
 #[derive(Debug)]
 pub struct Update<'a, S> {
     line: Line,
@@ -17,26 +17,26 @@ pub struct Update<'a, S> {
     transfer: Transfer<'a, S>,
 }
 
-/// The clip that comes.
+/// The transfer of a clip.
 #[derive(Debug)]
 struct Transfer<'a, S> {
     inactive: InactiveSlot<'a, S>,
     /// The clip that the store plays.
     current: Option<ClipInfo>,
-    /// The one that comes.
+    /// The clip that is being received.
     incoming: Option<ClipInfo>,
-    /// How much of it is there.
+    /// The number of its bytes that are in the flash.
     next: u32,
-    /// It is to be checked and sealed.
+    /// Whether all of it is there, to be checked and sealed.
     complete: bool,
-    /// Pictures since the last message.
+    /// Frames shown since the last message.
     idle: u16,
-    /// Transfers that have brought data.
+    /// Transfers that have brought data, at most [`MAX_STARTS`].
     starts: u8,
 }
 
 impl<'a, S: Slot> Update<'a, S> {
-    /// The clip to play, if the store holds one, and who listens for the next.
+    /// Returns the clip to play, if the store holds one, and the receiver of the next one.
     pub fn open(store: &'a mut Store<S>) -> (Option<StoredClip<'a>>, Self) {
         let (stored, inactive) = store.open();
         let current = stored.map(|stored| stored.info);
@@ -44,7 +44,7 @@ impl<'a, S: Slot> Update<'a, S> {
         (stored, Update { line: Line::new(), sequence: 0, transfer })
     }
 
-    /// Takes a byte from the line, and answers if it ends a message. What is no part of a packet is a letter, and handed on.
+    /// Takes a byte from the line, and passes the answer to `send` if the byte completes a message. Returns the byte if it is a key and not part of a packet.
     pub fn receive(&mut self, byte: u8, send: impl FnMut(&[u8])) -> Option<u8> {
         let request = match self.line.push(byte) {
             Input::Key(letter) => return Some(letter),
@@ -58,7 +58,7 @@ impl<'a, S: Slot> Update<'a, S> {
         None
     }
 
-    /// A picture was shown.
+    /// Counts a frame that was shown: a transfer without a message for [`IDLE_FRAMES`] is abandoned.
     pub fn frame_shown(&mut self) {
         self.line.frame_shown();
         self.transfer.idle = self.transfer.idle.saturating_add(1);
@@ -67,19 +67,19 @@ impl<'a, S: Slot> Update<'a, S> {
         }
     }
 
-    /// Whether a clip came complete: then [`candidate`](Update::candidate) is to be tried, and [`finish`](Update::finish) called.
+    /// Returns whether a clip is complete: then try [`candidate`](Update::candidate), and call [`finish`](Update::finish).
     pub fn is_complete(&self) -> bool {
         self.transfer.complete
     }
 
-    /// The clip that came, if it is what was claimed and can be opened.
+    /// Returns the received clip, if its bytes are right and the decoder can open it.
     pub fn candidate(&self) -> Option<StoredClip<'_>> {
         let info = self.transfer.incoming?;
         let bytes = self.transfer.inactive.check(&info).ok()?;
         Some(StoredClip { bytes, info })
     }
 
-    /// Seals the clip if the board can play it, and answers the host. Returns whether it is sealed; then the store must be opened again.
+    /// Seals the clip if the board can play it, and answers the host. Returns whether the clip is sealed: then open the store again.
     pub fn finish(&mut self, playable: bool, send: impl FnMut(&[u8])) -> bool {
         self.transfer.complete = false;
         let Some(info) = self.transfer.incoming.take() else { return false };
@@ -106,7 +106,7 @@ impl<'a, S: Slot> Update<'a, S> {
 }
 
 impl<S: Slot> Transfer<'_, S> {
-    /// Takes a message. None where the answer must wait for the check.
+    /// Takes a message. Returns `None` if the answer has to wait for the check.
     fn receive(&mut self, request: &Request) -> Option<Response> {
         let (id, done) = match *request {
             Request::Begin(info) => (info.crc, self.begin(info)),
@@ -139,7 +139,7 @@ impl<S: Slot> Transfer<'_, S> {
         Ok(())
     }
 
-    /// What is not wanted now is answered with what is.
+    /// Writes the bytes that are expected next; ignores others, which the answer corrects.
     fn data(&mut self, id: u32, offset: u32, bytes: &[u8]) -> Result<(), Refusal> {
         let info = self.incoming.filter(|info| info.crc == id).ok_or(Refusal::NotBegun)?;
         let left = info.length.saturating_sub(self.next);
@@ -156,7 +156,7 @@ impl<S: Slot> Transfer<'_, S> {
     fn end(&mut self, id: u32) -> Result<(), Refusal> {
         match self.incoming {
             Some(info) if info.crc == id => self.complete = self.next == info.length,
-            // Said twice: the first answer was lost.
+            // A repeated `end`: the first answer was lost.
             None if self.current.is_some_and(|current| current.crc == id) => {}
             _ => return Err(Refusal::NotBegun),
         }

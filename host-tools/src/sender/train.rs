@@ -81,7 +81,7 @@ fn train() {
             [row] => (format!("[u16; {}]", row.len()), format!("{row:?}")),
             rows => (format!("[[u16; {}]; {}]", rows[0].len(), rows.len()), format!("{rows:?}")),
         };
-        let _ = writeln!(out, "/// {doc}\npub(crate) static {name}: {kind} = {value};\n");
+        let _ = writeln!(out, "/// {doc}\npub static {name}: {kind} = {value};\n");
     };
     row("FLAGS", "Neither, refresh, cut, both.", &[&tables::FLAGS]);
     row("PLACE", "Channels passed over, or what stands instead of a channel.", &[&tables::PLACE]);
