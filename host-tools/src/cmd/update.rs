@@ -32,7 +32,7 @@ pub struct Arguments {
     /// Seconds to wait for an answer before a message is sent again
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
     patience: f64,
-    /// Number of unanswered messages after which the board counts as lost
+    /// Number of unanswered messages, or of restarts of the board, after which the transfer is given up
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     tries: u32,
     /// Print nothing but errors
@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let (name, seconds) = (info.name.as_str(), begun.elapsed().as_secs_f64());
         match outcome.sent {
             0 => note!("{name}: the board has it already"),
-            sent => note!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages said again", outcome.again),
+            sent => note!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages sent again", outcome.again),
         }
     }
     Ok(())
