@@ -14,6 +14,12 @@ pub const MOST_HEAD: usize = 8 << 10;
 pub const MOST_CONNECTIONS: usize = 32;
 /// How long a request's head may take to come, and how long a client may take no byte of the answer.
 pub const PATIENCE: Duration = Duration::from_secs(5);
+/// The time in which a client must have taken its answer, plus one second per [`SLOWEST`] bytes.
+pub const ANSWER_TIME: Duration = Duration::from_secs(10);
+/// Bytes per second at which a client must take an answer.
+pub const SLOWEST: usize = 512 << 10;
+/// The time that a client has to close the connection after its answer.
+const CLOSE_TIME: Duration = Duration::from_millis(500);
 const MOST_HEADERS: usize = 64;
 /// Bytes that are read of what a client still sends once it has its answer: unread, they would take it back from the client.
 const MOST_REST: usize = 64 << 10;
@@ -140,7 +146,7 @@ fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD]) -> Result<R
     }
 }
 
-fn answer(mut stream: &TcpStream, status: Status, file: Option<&super::File>, body: bool) -> io::Result<()> {
+fn answer(stream: &TcpStream, status: Status, file: Option<&super::File>, body: bool) -> io::Result<()> {
     let line = status.line();
     let own = format!("{line}\n");
     let (bytes, kind) = file.map_or((own.as_bytes(), "text/plain"), |file| (&file.bytes, file.kind));
@@ -150,19 +156,40 @@ fn answer(mut stream: &TcpStream, status: Status, file: Option<&super::File>, bo
          Cache-Control: no-cache\r\nConnection: close\r\n\r\n",
         bytes.len()
     );
-    stream.write_all(head.as_bytes())?;
-    if body {
-        stream.write_all(bytes)?;
-    }
-    stream.flush()
+    let until = Instant::now() + ANSWER_TIME + Duration::from_secs((bytes.len() / SLOWEST) as u64);
+    write_until(stream, head.as_bytes(), until)?;
+    if body { write_until(stream, bytes, until) } else { Ok(()) }
 }
 
-/// Lets the client read the answer before the connection goes.
+/// Writes all bytes, or fails at the deadline: a client that takes a byte now and then must not hold its connection for ever.
+fn write_until(mut stream: &TcpStream, mut bytes: &[u8], until: Instant) -> io::Result<()> {
+    while !bytes.is_empty() {
+        let left = until.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        stream.set_write_timeout(Some(left.min(PATIENCE)))?;
+        match stream.write(bytes) {
+            Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
+            Ok(count) => bytes = bytes.get(count..).unwrap_or_default(),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// Lets the client read the answer before the connection closes: what it still sends is read for [`CLOSE_TIME`] at most.
 fn finish(mut stream: &TcpStream) -> io::Result<()> {
     stream.shutdown(Shutdown::Write)?;
-    stream.set_read_timeout(Some(Duration::from_millis(500)))?;
+    let until = Instant::now() + CLOSE_TIME;
     let (mut rest, mut buffer) = (0, [0; 1024]);
     while rest < MOST_REST {
+        let left = until.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            break;
+        }
+        stream.set_read_timeout(Some(left))?;
         match stream.read(&mut buffer)? {
             0 => break,
             count => rest += count,

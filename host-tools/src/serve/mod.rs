@@ -3,5 +3,5 @@
 mod http;
 mod site;
 
-pub use http::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, serve};
+pub use http::{ANSWER_TIME, MOST_CONNECTIONS, MOST_HEAD, PATIENCE, SLOWEST, serve};
 pub use site::{File, Site};

@@ -1,6 +1,6 @@
 //! The server against hostile clients: it answers, or drops them, and goes on serving others.
 
-use pantin_tools::serve::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, Site, serve};
+use pantin_tools::serve::{ANSWER_TIME, MOST_CONNECTIONS, MOST_HEAD, PATIENCE, SLOWEST, Site, serve};
 use std::fs;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -242,4 +242,37 @@ fn the_command_prints_its_address_and_serves_there() {
     assert!(!refused.status.success() && refused.stdout.is_empty());
     assert!(String::from_utf8_lossy(&refused.stderr).contains("the clip is truncated"), "{refused:?}");
     fs::remove_dir_all(site).unwrap();
+}
+
+#[test]
+fn clients_that_drip_bytes_after_their_answer_keep_nobody_waiting() {
+    let place = server();
+    let mut dripping: Vec<TcpStream> = (0..MOST_CONNECTIONS).map(|_| connect(place)).collect();
+    for stream in &mut dripping {
+        stream.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
+    }
+    let begun = Instant::now();
+    while begun.elapsed() < PATIENCE / 2 {
+        dripping.iter_mut().for_each(|stream| drop(stream.write_all(b"x")));
+        thread::sleep(Duration::from_millis(100));
+    }
+    serves(place);
+    drop(dripping);
+}
+
+#[test]
+fn clients_that_take_an_answer_byte_by_byte_keep_nobody_waiting() {
+    let place = server();
+    let mut slow: Vec<TcpStream> = (0..MOST_CONNECTIONS).map(|_| connect(place)).collect();
+    for stream in &mut slow {
+        stream.write_all(b"GET /clips/0.ptn HTTP/1.1\r\n\r\n").unwrap();
+    }
+    let (begun, mut piece) = (Instant::now(), vec![0; 2048]);
+    while begun.elapsed() < ANSWER_TIME + Duration::from_secs((4 << 20) / SLOWEST as u64) {
+        for stream in &mut slow {
+            let _ = stream.read(&mut piece);
+        }
+        thread::sleep(Duration::from_millis(500));
+    }
+    serves(place);
 }
