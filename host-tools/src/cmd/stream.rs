@@ -76,10 +76,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             let mut schedule = sender.clip(source, *fit, rounds);
             let start = Instant::now();
             say(arguments, &opening(source, fit, path));
-            pace::send(&mut line, &mut schedule, &stop).with_context(|| path.display().to_string())?;
+            let delay = pace::send(&mut line, &mut schedule, &stop).with_context(|| path.display().to_string())?;
             let length = source.seconds();
             // What was sent ahead is still to be shown.
-            let end = start + Duration::from_secs_f64(length + f64::from(fit.ahead) * source.frame_seconds());
+            let end = start + delay + Duration::from_secs_f64(length + f64::from(fit.ahead) * source.frame_seconds());
             if rounds.is_some() && !pace::wait(end, &stop) {
                 break;
             }

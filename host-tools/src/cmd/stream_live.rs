@@ -84,6 +84,9 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
             out.send(&timed.bytes)?;
         }
         at += frame;
+        if at.elapsed() > pace::CATCH_UP {
+            at = Instant::now();
+        }
     }
     say(arguments, &closing(live.bytes(), start.elapsed().as_secs_f64()));
     if live.omitted_messages() > 0 {
