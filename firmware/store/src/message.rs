@@ -13,7 +13,7 @@
 //! | 0x19 | [`Response::Done`] | CRC-32 | |
 //! | 0x1a | [`Response::Refused`] | CRC-32, reason (1 byte), number |
 //!
-//! Data are [`BLOCK_BYTES`](crate::BLOCK_BYTES) bytes from a multiple of that; only the last ones are fewer. `next` is the offset that the board expects next: the clip's
+//! Data are [`BLOCK_BYTES`] bytes from a multiple of that; only the last ones are fewer. `next` is the offset that the board expects next: the clip's
 //! length when it has all. A repeated `begin` of the current transfer returns how far it has come, so a transfer resumes after the line was
 //! interrupted. `done` means that the clip is sealed in flash and plays.
 //!
