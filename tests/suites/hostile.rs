@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Instant;
 
 use harness::{paths, vectors};
@@ -123,4 +124,16 @@ fn every_door_has_its_fuzz_target() {
     named.sort_unstable();
     let targets: Vec<String> = targets.iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     assert_eq!(targets, named);
+}
+
+#[test]
+fn the_fuzz_targets_have_the_dependencies_of_their_lock_file() {
+    let mut lock = Command::new("cargo");
+    lock.args(["update", "--workspace", "--locked", "--offline", "--manifest-path"]).arg(paths::root().join("fuzz/Cargo.toml"));
+    let output = lock.output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success(),
+        "fuzz/Cargo.lock is stale: run `cargo update --workspace --manifest-path fuzz/Cargo.toml`\n{words}"
+    );
 }
