@@ -15,6 +15,11 @@ fn the_apps_modules_import_downwards_only() {
     no_circles("firmware/app/src");
 }
 
+#[test]
+fn the_faces_modules_import_downwards_only() {
+    no_circles("firmware/face/src");
+}
+
 fn no_circles(folder: &str) {
     let found = shape::circles(&paths::root().join(folder)).unwrap();
     assert!(found.is_empty(), "{folder}: these modules import each other: {found:?}");

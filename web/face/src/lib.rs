@@ -12,7 +12,7 @@
 #![allow(unsafe_code)]
 
 use pantin::Scalars;
-use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, FaceView, Weights};
+use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::Canvas;
 use pantin_web_module::memory::{room as make_room, written};
 use pantin_web_module::{Only, Stroke};
