@@ -1,4 +1,4 @@
-//! What is told of each channel, and when: its segments, cut so that none outlasts the refresh it needs.
+//! Plans what is sent of each channel, and when: its segments, split so that none lasts longer than the refresh cycle allows.
 
 use super::source::{Segment, Source, Track};
 use super::writer::Writer;
@@ -90,7 +90,7 @@ pub(crate) fn pass(writer: &mut Writer, mut passed: u32) {
     writer.symbol(&pantin_link::tables::PLACE, passed);
 }
 
-/// What every receiver in step has of the clip's channels: p, v, w, k by frame, of each channel that is told of, with its place in the pose.
+/// The states that every synchronized receiver has: p, v, w, k by frame for each transmitted channel, with its place in the pose.
 pub(crate) fn expected_states(source: &Source, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
     let mut all: Vec<(u16, Vec<[i32; 4]>)> = source.tracks.iter().map(|track| (track.channel, vec![])).collect();
     let told = round(source, cycle);

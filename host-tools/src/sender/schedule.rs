@@ -30,7 +30,7 @@ const ANNOUNCED: f64 = 0.05;
 const MARGIN: f64 = 2.0;
 /// Packets that wait at the receiver at most: jitter of its clock may take the other places.
 const SENT: usize = QUEUE_PACKETS - 4;
-/// How often heads and starts are told at first.
+/// How often HEAD and STARTS are sent before a clip starts.
 const AT_FIRST: usize = 2;
 
 /// What went over the line, in bytes.
@@ -143,7 +143,7 @@ impl<'s> Schedule<'s> {
         self.rounds += 1;
         self.left = self.left.map(|left| left - 1);
         if self.left == Some(0) {
-            // The last frames are told of only where something comes after them.
+            // The last frames are sent only if something follows them.
             self.batches.push_back(MotionPacket::empty(begin + self.head.frames));
         }
     }

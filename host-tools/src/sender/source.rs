@@ -108,7 +108,7 @@ impl Source {
         f64::from(self.head.frames) * self.frame_seconds()
     }
 
-    /// What every receiver in step has of the channels that are told of, for a line of this cycle: place in the pose, and p, v, w, k by frame.
+    /// Returns the states that every synchronized receiver has for a line of this cycle: for each transmitted channel its place in the pose, and p, v, w, k by frame.
     pub fn expected_states(&self, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
         super::plan::expected_states(self, cycle)
     }
@@ -122,7 +122,7 @@ impl Source {
         self.tracks.iter().zip(self.expected_states(cycle)).map(off).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
     }
 
-    /// Channels that are told of.
+    /// Returns the number of transmitted channels.
     pub fn moving_channels(&self) -> usize {
         self.tracks.len()
     }

@@ -224,9 +224,9 @@ enum Fate {
     Flipped(usize, u8),
     Cut(usize),
     Twice,
-    /// It comes after so many others.
+    /// The packet arrives after this number of later ones.
     Later(usize),
-    /// What was sent so many packets ago comes instead.
+    /// The packet that was sent this number of packets ago arrives instead.
     Replayed(usize),
     Foreign,
     Noise(Vec<u8>),
@@ -303,7 +303,7 @@ proptest! {
                 for (track, start) in source.starts.iter().enumerate() {
                     if let pantin_link::ChannelKind::Moving { pace, .. } = start {
                         let moved = link.pose().values[track].wrapping_sub(before[track]).unsigned_abs();
-                        // One that was told anew in between, of another clip, starts anew too.
+                        // A channel that was described again in between, for another clip, restarts too.
                         let keeps = link.channels()[track].has_joined();
                         assert!(!(met[track] && keeps) || moved <= pantin_link::pace(*pace).unsigned_abs(), "channel {track}: {moved}");
                         met[track] = keeps;

@@ -55,7 +55,7 @@ fn figures_are_told_apart_from_rigs_and_seconds_from_frames() {
     assert_eq!(json["player_bytes"], bytes);
 }
 
-/// The figure of our walk has `figure_joints` joints: so many are enough, and one less is not.
+/// The figure of our walk has `figure_joints` joints: that number is enough, and one less is not.
 #[test]
 fn the_memory_that_is_stated_is_what_a_figure_takes() {
     const JOINTS: usize = 25;
