@@ -1,6 +1,6 @@
 //! The last step of a conversion under a bound for each channel: the bytes, played by the device's own decoder, against the motion.
 
-use crate::expand::expand;
+use crate::expand::expand_made;
 use crate::fit::bounds::{Bounds, unit};
 use crate::fit::chain::Held;
 use crate::fit::refusal::amount;
@@ -66,7 +66,7 @@ impl Worst {
 
 /// Opens `bytes` (with `rig` if they hold none), plays them, and refuses them if a bound is broken.
 pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bounds: &Bounds) -> Result<Report> {
-    let played = expand(&Clip::with_rig(bytes, rig)?)?;
+    let played = expand_made(&Clip::with_rig(bytes, rig)?)?;
     let report = compare(motion, &played, bounds)?;
     let Worst { error, part, channel, frame } = report.worst;
     let unit = unit(motion.rig.channel_kinds()[channel].1);

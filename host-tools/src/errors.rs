@@ -19,6 +19,11 @@ pub fn to_json(report: &Report, motion: &Motion) -> Map<String, Value> {
         fields.insert("worst_joint".into(), json!(report.worst_joint));
         fields.insert("worst_frame".into(), json!(report.worst_frame));
     }
+    if report.max_unseen_degrees > 0.0 {
+        fields.insert("max_rotation_error_degrees".into(), json!(report.max_unseen_degrees));
+        fields.insert("worst_rotation_joint".into(), json!(report.unseen_joint));
+        fields.insert("worst_rotation_frame".into(), json!(report.unseen_frame));
+    }
     if !motion.rig.scalars.is_empty() {
         fields.insert("max_scalar_error_percent".into(), json!(100.0 * report.max_scalar));
         fields.insert("worst_scalar".into(), json!(report.worst_scalar));

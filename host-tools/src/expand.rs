@@ -1,68 +1,104 @@
 //! A clip as per-frame motion again, by the device's own decoder.
 
+use crate::budget;
 use crate::encode::rig;
 use crate::euler;
 use crate::fit::raw;
 use crate::fk::from_exponential;
-use crate::motion::{Kind, Motion};
+use crate::motion::{Frames, Joint, Motion, Rig};
 use anyhow::Result;
 use pantin::{ChannelState, Clip, Player};
 
-/// Plays `clip` from its first to its last frame. Angles run on past half a turn; joints that the clip codes as exponential
-/// maps come back as the Euler angles that the rig has.
+/// A clip that is played frame by frame. Angles run on past half a turn; joints that the clip codes as exponential maps come back as
+/// the Euler angles that the rig has.
+pub struct Expanded<'a> {
+    clip: Clip<'a>,
+    rig: Rig,
+}
+
+/// Three rotation channels that hold an exponential map: their indices and axes.
+type Slots = [(usize, usize); 3];
+
+impl<'a> Expanded<'a> {
+    /// Prepares `clip`.
+    pub fn new(clip: &Clip<'a>) -> Expanded<'a> {
+        Expanded { clip: *clip, rig: rig::decode(&clip.rig()) }
+    }
+
+    fn exponential(&self) -> Vec<Slots> {
+        let first = self.rig.first_channels();
+        let joints = self.rig.joints.iter().enumerate().filter(|(index, _)| self.clip.is_exponential(*index));
+        joints.filter_map(|(index, joint)| slots(joint, first[index])).collect()
+    }
+}
+
+impl Frames for Expanded<'_> {
+    fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    fn frame_time(&self) -> f64 {
+        f64::from(self.clip.frame_time_ns()) * 1e-9
+    }
+
+    fn frames(&self) -> usize {
+        self.clip.frames() as usize
+    }
+
+    fn each(&self, each: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+        let scales = raw::scales(&self.rig, self.clip.length_exponent());
+        let rotations: Vec<bool> = self.rig.channel_kinds().iter().map(|(_, kind)| kind.is_rotation()).collect();
+        let exponential = self.exponential();
+        let mut states = vec![ChannelState::default(); self.clip.moving()];
+        let mut pose = vec![0; self.rig.channels()];
+        let mut player = Player::new(self.clip, &mut states, &mut pose)?;
+        let mut angles = vec![[0.0; 3]; exponential.len()];
+        let (mut before, mut values) = (vec![0.0; scales.len()], vec![0.0; scales.len()]);
+        for frame in 0..self.frames() {
+            for ((out, raw), scale) in values.iter_mut().zip(player.pose().values).zip(&scales) {
+                *out = f64::from(*raw) * scale;
+            }
+            for (slots, before) in exponential.iter().zip(&mut angles) {
+                let vector = slots.map(|(slot, _)| values[slot].to_radians());
+                *before = euler::near(&from_exponential(vector), slots.map(|(_, axis)| axis), *before);
+                slots.iter().zip(*before).for_each(|(&(slot, _), angle)| values[slot] = angle);
+            }
+            if frame > 0 {
+                let turned = values.iter_mut().zip(&before).zip(&rotations).filter(|(_, rotation)| **rotation);
+                turned.for_each(|((value, before), _)| *value = euler::nearest(*value, *before));
+            }
+            each(&values)?;
+            before.copy_from_slice(&values);
+            if frame + 1 < self.frames() {
+                player.step();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Plays `clip` from its first to its last frame into memory. Fails for a clip that takes more than the limit.
 pub fn expand(clip: &Clip<'_>) -> Result<Motion> {
-    let motion_rig = rig::decode(&clip.rig());
-    let scales = raw::scales(&motion_rig, clip.length_exponent());
-    let frames = clip.frames() as usize;
-    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(frames); motion_rig.channels()];
-    let mut states = vec![ChannelState::default(); clip.moving()];
-    let mut pose = vec![0; motion_rig.channels()];
-    let mut player = Player::new(*clip, &mut states, &mut pose)?;
-    for frame in 0..frames {
-        for ((out, raw), scale) in values.iter_mut().zip(player.pose().values).zip(&scales) {
-            out.push(f64::from(*raw) * scale);
-        }
-        if frame + 1 < frames {
-            player.step();
-        }
-    }
-    let first = motion_rig.first_channels();
-    for (index, joint) in motion_rig.joints.iter().enumerate() {
-        if clip.is_exponential(index) {
-            back_to_euler(&joint.kinds, first[index], &mut values);
-        }
-    }
-    for ((_, kind), values) in motion_rig.channel_kinds().iter().zip(&mut values) {
-        if kind.is_rotation() {
-            unwrap(values);
-        }
-    }
-    let keys = vec![None; values.len()];
-    let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
-    Ok(Motion { rig: motion_rig, frame_time, frames, values, keys, looped: clip.looped() })
+    budget::check(clip.frames() as usize, clip.rig().channels())?;
+    expand_made(clip)
 }
 
-/// Replaces the exponential map in a joint's three rotation channels by its Euler angles.
-fn back_to_euler(kinds: &[Kind], first: usize, values: &mut [Vec<f64>]) {
-    let slots: Vec<(usize, usize)> = kinds
-        .iter()
-        .enumerate()
-        .filter(|(_, kind)| kind.is_rotation())
-        .map(|(i, kind)| (first + i, kind.axis().unwrap_or(0)))
-        .collect();
-    let &[(s0, a0), (s1, a1), (s2, a2)] = &slots[..] else { return };
-    let mut before = [0.0; 3];
-    for frame in 0..values[s0].len() {
-        let vector = [values[s0][frame], values[s1][frame], values[s2][frame]].map(f64::to_radians);
-        before = euler::near(&from_exponential(vector), [a0, a1, a2], before);
-        for (slot, angle) in [s0, s1, s2].into_iter().zip(before) {
-            values[slot][frame] = angle;
-        }
-    }
+/// The same for a clip that was made of a motion in memory, which has its size.
+pub(crate) fn expand_made(clip: &Clip<'_>) -> Result<Motion> {
+    let expanded = Expanded::new(clip);
+    let (frames, channels) = (expanded.frames(), expanded.rig.channels());
+    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(frames); channels];
+    expanded.each(&mut |pose| {
+        values.iter_mut().zip(pose).for_each(|(out, &value)| out.push(value));
+        Ok(())
+    })?;
+    let (frame_time, keys) = (expanded.frame_time(), vec![None; channels]);
+    Ok(Motion { rig: expanded.rig, frame_time, frames, values, keys, looped: clip.looped() })
 }
 
-fn unwrap(values: &mut [f64]) {
-    for frame in 1..values.len() {
-        values[frame] = euler::nearest(values[frame], values[frame - 1]);
-    }
+/// The rotation channels of a joint that has three of them, its first channel being `first`.
+fn slots(joint: &Joint, first: usize) -> Option<Slots> {
+    let rotations = joint.kinds.iter().enumerate().filter(|(_, kind)| kind.is_rotation());
+    let slots: Vec<(usize, usize)> = rotations.map(|(i, kind)| (first + i, kind.axis().unwrap_or(0))).collect();
+    slots.try_into().ok()
 }

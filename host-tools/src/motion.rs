@@ -92,6 +92,43 @@ impl Rig {
     }
 }
 
+/// A motion that is read frame by frame, so that a long one need not be in memory.
+pub trait Frames {
+    /// The figure.
+    fn rig(&self) -> &Rig;
+
+    /// Seconds a frame.
+    fn frame_time(&self) -> f64;
+
+    /// Number of frames.
+    fn frames(&self) -> usize;
+
+    /// Calls `each` with the values of all channels at every frame, in order.
+    fn each(&self, each: &mut dyn FnMut(&[f64]) -> anyhow::Result<()>) -> anyhow::Result<()>;
+}
+
+impl Frames for Motion {
+    fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
+    fn frame_time(&self) -> f64 {
+        self.frame_time
+    }
+
+    fn frames(&self) -> usize {
+        self.frames
+    }
+
+    fn each(&self, each: &mut dyn FnMut(&[f64]) -> anyhow::Result<()>) -> anyhow::Result<()> {
+        let mut pose = vec![0.0; self.values.len()];
+        (0..self.frames).try_for_each(|frame| {
+            pose.iter_mut().zip(&self.values).for_each(|(out, values)| *out = values[frame]);
+            each(&pose)
+        })
+    }
+}
+
 /// How a channel runs between its keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {

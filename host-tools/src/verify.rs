@@ -1,8 +1,8 @@
 //! The last step of every conversion: the bytes, played by the device's own decoder, against the motion.
 
-use crate::expand::expand;
+use crate::expand::expand_made;
 use crate::fk;
-use crate::motion::Motion;
+use crate::motion::{Joint, Motion, Rig};
 use anyhow::{Result, ensure};
 use pantin::Clip;
 
@@ -23,6 +23,12 @@ pub struct Report {
     pub worst_scalar: String,
     /// When it has it.
     pub worst_scalar_frame: usize,
+    /// Greatest error in degrees of a rotation that moves no joint and no End Site, which a bound on places does not see.
+    pub max_unseen_degrees: f64,
+    /// The joint that has it.
+    pub unseen_joint: String,
+    /// When it has it.
+    pub unseen_frame: usize,
 }
 
 /// Compares two motions of the same figure.
@@ -52,13 +58,45 @@ pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
             }
         }
     }
+    unseen_rotations(original, other, &mut report);
     Ok(report)
+}
+
+/// Joints that turn and carry nothing that stands away from them.
+fn unseen(rig: &Rig) -> Vec<usize> {
+    let mut carries = vec![false; rig.joints.len()];
+    for (index, joint) in rig.joints.iter().enumerate().rev() {
+        let stands = joint.offset != [0.0; 3] || joint.kinds.iter().any(|kind| kind.is_position());
+        if let Some(parent) = joint.parent {
+            carries[parent] |= stands || carries[index];
+        }
+    }
+    let turns = |joint: &Joint| joint.kinds.iter().any(|kind| !kind.is_position());
+    (0..rig.joints.len()).filter(|&joint| !carries[joint] && turns(&rig.joints[joint])).collect()
+}
+
+fn unseen_rotations(original: &Motion, other: &Motion, report: &mut Report) {
+    let firsts = original.rig.first_channels();
+    for index in unseen(&original.rig) {
+        let joint = &original.rig.joints[index];
+        for frame in 0..original.frames {
+            let turn = |motion: &Motion| fk::local(joint, |channel| motion.values[firsts[index] + channel][frame]).0;
+            let (a, b) = (turn(original), turn(other));
+            // The squared distance of two rotation matrices is 8 sin^2 of half the angle between them.
+            let far: f64 = (0..9).map(|i| (a[i / 3][i % 3] - b[i / 3][i % 3]).powi(2)).sum();
+            let degrees = 2.0 * (far / 8.0).sqrt().min(1.0).asin().to_degrees();
+            if degrees > report.max_unseen_degrees {
+                (report.max_unseen_degrees, report.unseen_frame) = (degrees, frame);
+                report.unseen_joint = original.rig.joint_name(index);
+            }
+        }
+    }
 }
 
 /// Opens `bytes` (with `rig` if they hold none), plays them, and refuses them if a bound is broken.
 pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bound_cm: f64, scalar_part: f64) -> Result<Report> {
     let clip = Clip::with_rig(bytes, rig)?;
-    let report = compare(motion, &expand(&clip)?)?;
+    let report = compare(motion, &expand_made(&clip)?)?;
     ensure!(
         report.max_cm <= bound_cm,
         "joint {} at frame {} is {:.4} cm off; the bound is {bound_cm} cm",

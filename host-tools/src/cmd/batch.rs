@@ -3,7 +3,7 @@
 //! A clip that is up to date carries its source's modification time in seconds, and in the microseconds beside them a fingerprint of
 //! the source, the options and this program. So nothing but clips is written, and whatever loses the time (an edit, a copy) converts again.
 
-use super::convert::{Arguments, convert};
+use super::convert::{Arguments, Made, convert};
 use crate::import;
 use crate::output::{self, note, outln};
 use anyhow::{Context, Result, bail, ensure};
@@ -19,7 +19,7 @@ use std::time::{Duration, SystemTime};
 
 /// A file's outcome.
 enum Outcome {
-    Converted { frames: usize, bytes: usize, error: String, seconds: f64 },
+    Converted { frames: usize, bytes: usize, error: String, seconds: f64, warnings: Vec<String> },
     UpToDate,
     Refused(String),
 }
@@ -27,6 +27,7 @@ enum Outcome {
 /// Converts the folder `arguments.input` into the folder `arguments.output`. Fails if a file did.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let (from, to) = (&arguments.input, arguments.output());
+    ensure!(arguments.output.is_some(), "{}: a folder; --output names the folder for its clips", from.display());
     ensure!(arguments.rig_out.is_none(), "--rig-out names one file, so it goes with one motion");
     ensure!(!to.is_file(), "{}: a file; a folder's clips need a folder", to.display());
     let mut found = Found::default();
@@ -35,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let tasks = tasks(arguments, &found.motions)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(tasks.len() as u64) };
-    bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} files {eta}")?);
+    bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} files {eta} left")?);
     let convert = |task: &Arguments| {
         let outcome = outcome(task);
         bar.inc(1);
@@ -49,6 +50,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         output::print_json(&json!(tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect::<Vec<_>>()))?;
     } else if !arguments.quiet {
         table(from, &tasks, &outcomes).iter().try_for_each(|line| outln!("{line}"))?;
+    }
+    for (task, outcome) in tasks.iter().zip(&outcomes) {
+        let file = task.input.display();
+        match outcome {
+            Outcome::Converted { warnings, .. } if !arguments.quiet => {
+                warnings.iter().for_each(|warning| note!("{file}: warning: {warning}"));
+            }
+            // The table and the JSON name them; without either, somebody must.
+            Outcome::Refused(why) if arguments.quiet && !arguments.json => note!("pantin: {file}: {why}"),
+            _ => {}
+        }
     }
     let fresh = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::UpToDate)).count();
     if !arguments.quiet {
@@ -158,7 +170,8 @@ fn outcome(task: &Arguments) -> Outcome {
             File::options().write(true).open(task.output())?.set_modified(stamp).context("cannot set the clip's time")?;
         }
         let seconds = begun.elapsed().as_secs_f64();
-        Ok(Outcome::Converted { frames: made.frames, bytes: made.bytes.len(), error: made.cell, seconds })
+        let Made { frames, bytes, cell: error, warnings, .. } = made;
+        Ok(Outcome::Converted { frames, bytes: bytes.len(), error, seconds, warnings })
     };
     match catch_unwind(AssertUnwindSafe(convert)) {
         Ok(Ok(outcome)) => outcome,
@@ -202,8 +215,8 @@ impl Outcome {
     fn json(&self, task: &Arguments) -> serde_json::Value {
         let file = task.input.display().to_string();
         match self {
-            Outcome::Converted { frames, bytes, error, seconds } => {
-                json!({"file": file, "frames": frames, "bytes": bytes, "error": error, "seconds": seconds})
+            Outcome::Converted { frames, bytes, error, seconds, warnings } => {
+                json!({"file": file, "frames": frames, "bytes": bytes, "error": error, "seconds": seconds, "warnings": warnings})
             }
             Outcome::UpToDate => json!({"file": file, "up_to_date": true}),
             Outcome::Refused(why) => json!({"file": file, "refused": why}),
@@ -219,7 +232,7 @@ fn table(root: &Path, tasks: &[Arguments], outcomes: &[Outcome]) -> Vec<String> 
     let mut out = vec![format!("{:wide$} {:>7} {:>9}  {:26} {:>7}", "file", "frames", "bytes", "greatest error", "s")];
     for (name, outcome) in names.iter().zip(outcomes) {
         out.push(match outcome {
-            Outcome::Converted { frames, bytes, error, seconds } => {
+            Outcome::Converted { frames, bytes, error, seconds, .. } => {
                 format!("{name:wide$} {frames:7} {bytes:9}  {error:26} {seconds:7.1}")
             }
             Outcome::UpToDate => format!("{name:wide$} up to date"),

@@ -17,7 +17,7 @@ use crate::import;
 use crate::motion::Motion;
 use crate::output::{self, Wanted, note, refuse_foreign};
 use crate::verify::verify;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use indicatif::{ProgressBar, ProgressStyle};
 use pantin::codec::layout::MAX_FRAMES;
 use serde_json::json;
@@ -57,10 +57,10 @@ pub struct Arguments {
     pub(super) more: Vec<PathBuf>,
     /// Give the clips of all motions one form: the same length exponent, and the same joints coded as exponential maps, chosen by
     /// what all clips together cost. One figure renderer then plays any of them. All motions need the same rig; --output is a folder
-    #[arg(long, conflicts_with_all = ["list", "jobs"])]
+    #[arg(long, requires = "output", conflicts_with_all = ["list", "jobs"])]
     pub(super) same_form: bool,
-    /// The clip to write, or the folder
-    #[arg(short, long, required_unless_present = "list")]
+    /// The clip to write, or the folder [default: the motion's name, ending in .ptn]
+    #[arg(short, long)]
     pub(super) output: Option<PathBuf>,
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
     #[arg(long)]
@@ -78,6 +78,9 @@ pub struct Arguments {
     /// Largest error of channels that move no joint, in percent of their full scale
     #[arg(long, value_name = "PERCENT", default_value = "2", value_parser = above_zero)]
     max_scalar_error: f64,
+    /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = above_zero)]
+    max_rotation_error: Option<f64>,
     #[command(flatten)]
     channels: ChannelBound,
     /// Length of the source's unit in cm, instead of a guess
@@ -117,6 +120,14 @@ impl Arguments {
         self.output.as_deref().unwrap_or(Path::new(""))
     }
 
+    /// The same with a name for the clip: without --output that of the motion, ending in .ptn.
+    fn with_output(&self) -> Result<Arguments> {
+        let stdin = self.input.as_os_str() == "-";
+        ensure!(self.output.is_some() || !stdin, "standard input has no name for the clip: --output gives one");
+        let output = self.output.clone().unwrap_or_else(|| self.input.with_extension("ptn"));
+        Ok(Arguments { output: Some(output), ..self.clone() })
+    }
+
     /// Every file that the conversion is known to read before it begins.
     pub(super) fn inputs(&self) -> Vec<&Path> {
         [self.input.as_path()].into_iter().chain(self.skeleton.as_deref()).chain(self.edits.inputs()).collect()
@@ -154,6 +165,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.input.is_dir() {
         return batch::run(arguments);
     }
+    let arguments = &arguments.with_output()?;
     arguments.check_outputs(&[])?;
     let made = convert(arguments)?;
     if arguments.json {
@@ -164,6 +176,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     Ok(())
 }
+
+/// Smaller errors of rotations that move nothing are not mentioned.
+const TOLD_DEGREES: f64 = 0.01;
 
 /// A clip that keeps its bound.
 pub(super) struct Made {
@@ -177,6 +192,8 @@ pub(super) struct Made {
     channels: usize,
     /// Every file that was read for it.
     pub read: Vec<PathBuf>,
+    /// What is odd about the motion, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 impl Made {
@@ -200,7 +217,7 @@ pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
     let prepared = prepare(arguments)?;
     arguments.check_outputs(&prepared.read)?;
     let mut made = prepared.code(arguments, &prepared.coding(arguments))?;
-    made.read.clone_from(&prepared.read);
+    (made.read, made.warnings) = (prepared.read.clone(), prepared.warnings.clone());
     // A clip opens with its own rig alone: a new one beside an old one would be lost.
     let rig = arguments.rig_out.as_deref().map(|path| (path, prepared.rig.as_slice()));
     let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
@@ -215,6 +232,8 @@ pub(super) struct Prepared {
     pub rig: Vec<u8>,
     /// Every file that was read for it.
     pub read: Vec<PathBuf>,
+    /// What is odd about the motion, a sentence each.
+    pub warnings: Vec<String>,
     bound: Bound,
     retarget_max_cm: Option<f64>,
 }
@@ -251,7 +270,7 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
         motion = closed.motion;
     }
     let rig = rig::encode(&motion.rig)?;
-    Ok(Prepared { motion, rig, read, bound, retarget_max_cm: edited.retarget_max_cm })
+    Ok(Prepared { motion, rig, read, warnings: imported.warnings, bound, retarget_max_cm: edited.retarget_max_cm })
 }
 
 impl Prepared {
@@ -341,7 +360,7 @@ fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
 
 fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
     let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(length) };
-    bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta}")?);
+    bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta} left")?);
     Ok(bar)
 }
 
@@ -370,9 +389,30 @@ fn by_distance(arguments: &Arguments, prepared: &Prepared, cm: f64, part: f64, c
     let bytes = file(arguments, &coded, rig)?;
     let not_written = || format!("{}: not written", arguments.output().display());
     let report = verify(&bytes, rig, motion, cm, part).with_context(not_written)?;
+    let (degrees, joint, frame) = (report.max_unseen_degrees, &report.unseen_joint, report.unseen_frame);
+    if let Some(most) = arguments.max_rotation_error.filter(|most| degrees > *most) {
+        bail!(
+            "{}: joint {joint} at frame {frame} is turned by {degrees:.2} degrees; --max-rotation-error is {most}",
+            not_written()
+        );
+    }
+    if degrees > TOLD_DEGREES && !arguments.quiet {
+        note!(
+            "rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame}); --max-rotation-error bounds it"
+        );
+    }
     let (json, errors, cell) =
         (errors::to_json(&report, motion).into(), errors::to_text(&report, motion), errors::to_cell(&report, motion));
-    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels(), read: Vec::new() })
+    Ok(Made {
+        bytes,
+        json,
+        errors,
+        cell,
+        frames: motion.frames,
+        channels: motion.rig.channels(),
+        read: Vec::new(),
+        warnings: Vec::new(),
+    })
 }
 
 fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, coding: &Coding) -> Result<Made> {
@@ -402,5 +442,14 @@ fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, codin
         }
     };
     let cell = worst.sentence(motion);
-    Ok(Made { bytes, json, errors, cell, frames: motion.frames, channels: motion.rig.channels(), read: Vec::new() })
+    Ok(Made {
+        bytes,
+        json,
+        errors,
+        cell,
+        frames: motion.frames,
+        channels: motion.rig.channels(),
+        read: Vec::new(),
+        warnings: Vec::new(),
+    })
 }

@@ -1,5 +1,6 @@
 //! The flags of `pantin convert` that change the motion before it is fitted.
 
+use super::render::Moment;
 use crate::edit::{cut::cut, join::join, mirror::mirror, pick::pick, resample::resample, retarget};
 use crate::import;
 use crate::motion::Motion;
@@ -16,12 +17,12 @@ pub struct Edits {
     /// Drop the joints and scalars whose names match, in the same way
     #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
     drop: Vec<String>,
-    /// First frame to convert, counted from 0 after --fps
-    #[arg(long, value_name = "FRAME")]
-    from: Option<usize>,
+    /// First frame to convert, counted from 0 after --fps: a number, or seconds as in 1.5s
+    #[arg(long, value_name = "MOMENT")]
+    from: Option<Moment>,
     /// Last frame to convert, inclusive
-    #[arg(long, value_name = "FRAME")]
-    to: Option<usize>,
+    #[arg(long, value_name = "MOMENT")]
+    to: Option<Moment>,
     /// Mirror the motion at x = 0, with left and right exchanged
     #[arg(long)]
     mirror: bool,
@@ -74,7 +75,8 @@ impl Edits {
             }
         }
         if self.from.is_some() || self.to.is_some() {
-            motion = cut(&motion, self.from, self.to)?;
+            let frame = |moment: Moment| moment.nearest(motion.frame_time);
+            motion = cut(&motion, self.from.map(frame), self.to.map(frame))?;
         }
         if !self.joints.is_empty() || !self.drop.is_empty() {
             motion = pick(&motion, &self.joints, &self.drop)?;

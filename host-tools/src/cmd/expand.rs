@@ -1,15 +1,17 @@
 //! `pantin expand`.
 
 use super::Files;
-use crate::expand::expand;
-use crate::export;
-use crate::output::{self, Wanted, refuse_foreign};
+use crate::expand::{Expanded, expand};
+use crate::export::{self, bvh::Columns};
+use crate::motion::Frames;
+use crate::output::{self, Staged, Wanted, refuse_foreign};
 use anyhow::{Context, Result, bail};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Turn a clip back into per-frame motion, or into source text for firmware.
 ///
-/// The output's extension selects the format: .bvh has the same joints, channels and frames; .glb is a
+/// The output's extension selects the format: .bvh has the same joints and frames, and three rotations a joint; .glb is a
 /// tree of nodes, with scalars as morph weights; .csv has one row per frame with the time in seconds and
 /// all channels' values; .h and .rs hold the clip's bytes, their length, the frame rate and the channels' names.
 #[derive(clap::Args)]
@@ -41,14 +43,23 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let place = || arguments.input.display().to_string();
     let clip = files.open().with_context(place)?;
     let stem = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
-    let mut out = Vec::new();
+    let expanded = Expanded::new(&clip);
+    // A digit and a comma or a space a value; four bytes a number in glTF; as text, a digit and a comma a byte.
+    let values = expanded.frames() as u64 * (expanded.rig().channels() as u64 + 1);
+    let least = match output.extension().and_then(|extension| extension.to_str()) {
+        Some("glb") => 4 * values,
+        Some("h" | "rs") => 3 * files.clip_len() as u64,
+        _ => 2 * values,
+    };
+    output::check_size(output, least)?;
+    let mut out = Staged::create(output)?;
     match arguments.output.extension().and_then(|extension| extension.to_str()) {
-        Some("bvh") => export::bvh::write(&expand(&clip)?, &mut out).with_context(place)?,
-        Some("csv") => export::table::write(&expand(&clip)?, &mut out)?,
-        Some("glb") => out = export::gltf::write(&expand(&clip)?).with_context(place)?,
-        Some("h") => out = export::source::c_header(&clip, files.clip(), &stem)?.into_bytes(),
-        Some("rs") => out = export::source::rust_module(&clip, files.clip(), &stem)?.into_bytes(),
+        Some("bvh") => export::bvh::write(&expanded, Columns::ThreeRotations, &mut out).with_context(place)?,
+        Some("csv") => export::table::write(&expanded, &mut out).with_context(place)?,
+        Some("glb") => out.write_all(&export::gltf::write(&expand(&clip).with_context(place)?).with_context(place)?)?,
+        Some("h") => out.write_all(export::source::c_header(&clip, files.clip(), &stem)?.as_bytes())?,
+        Some("rs") => out.write_all(export::source::rust_module(&clip, files.clip(), &stem)?.as_bytes())?,
         _ => bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs", arguments.output.display()),
     }
-    output::write_whole(output, &out)
+    output::commit(vec![out])
 }

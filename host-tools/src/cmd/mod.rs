@@ -18,28 +18,74 @@ mod stream_live;
 pub mod train;
 pub mod update;
 
+use crate::encode;
+use crate::fit::{descent::Level, fit};
 use crate::import;
-use anyhow::Result;
-use std::path::Path;
+use crate::verify::verify;
+use anyhow::{Context, Result, anyhow};
+use pantin::OpenError;
+use std::path::{Path, PathBuf};
 
 /// A clip and, if it was made without one, its rig.
 pub struct Files {
+    path: PathBuf,
     clip: Vec<u8>,
     rig: Vec<u8>,
 }
 
+/// Bounds of a motion that is converted only to be shown: in cm, and as a part of a scalar's full scale.
+const SHOWN_CM: f64 = 0.5;
+const SHOWN_PART: f64 = 0.02;
+
 impl Files {
     /// Reads both; `-` is standard input.
     pub fn read(clip: &Path, rig: Option<&Path>) -> Result<Files> {
-        let files = import::Files::default();
-        let read = |path: &Path| files.read(path);
-        Ok(Files { clip: read(clip)?, rig: rig.map(read).transpose()?.unwrap_or_default() })
+        Files::read_from(&import::Files::default(), clip, rig)
     }
 
-    /// Opens the clip.
+    fn read_from(files: &import::Files, clip: &Path, rig: Option<&Path>) -> Result<Files> {
+        let read = |path: &Path| files.read(path);
+        Ok(Files { path: clip.into(), clip: read(clip)?, rig: rig.map(read).transpose()?.unwrap_or_default() })
+    }
+
+    /// The same for a command that shows clips: a motion file is converted first, quickly and in memory.
+    pub fn read_to_show(clip: &Path, rig: Option<&Path>) -> Result<Files> {
+        let from = import::Files::default();
+        let mut files = Files::read_from(&from, clip, rig)?;
+        if files.is_motion() {
+            let motion = import::load(clip, &import::Options { files: from, ..Default::default() })?.motion;
+            let place = || clip.display().to_string();
+            let rig = encode::rig::encode(&motion.rig).with_context(place)?;
+            let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, &mut |_| ()).with_context(place)?;
+            files.clip = encode::clip::encode(&coded, &rig, false).with_context(place)?;
+            verify(&files.clip, &rig, &motion, SHOWN_CM, SHOWN_PART).with_context(place)?;
+        }
+        Ok(files)
+    }
+
+    /// Whether the file is no clip, but a motion that can be made one.
+    fn is_motion(&self) -> bool {
+        let opened = pantin::Clip::new_checked(&self.clip);
+        matches!(opened, Err(OpenError::BadMagic)) && import::looks_like_motion(&self.path, &self.clip)
+    }
+
+    /// Opens the clip. The error says which command or option helps.
     pub fn open(&self) -> Result<pantin::Clip<'_>> {
-        let opened = pantin::Clip::with_rig(&self.clip, &self.rig);
-        Ok(if self.rig.is_empty() { pantin::Clip::new_checked(&self.clip) } else { opened }?)
+        let opened = match self.rig.is_empty() {
+            true => pantin::Clip::new_checked(&self.clip),
+            false => pantin::Clip::with_rig(&self.clip, &self.rig),
+        };
+        opened.map_err(|error| match error {
+            OpenError::BadMagic if self.is_motion() => {
+                let path = self.path.display();
+                anyhow!(
+                    "a motion, not a clip; `pantin convert {path} -o {}` makes one",
+                    self.path.with_extension("ptn").display()
+                )
+            }
+            OpenError::WrongRig if self.rig.is_empty() => anyhow!("{error}; --rig FILE names the one that --rig-out wrote"),
+            error => error.into(),
+        })
     }
 
     /// The clip's bytes.

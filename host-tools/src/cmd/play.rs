@@ -90,7 +90,8 @@ enum DotsOrAuto {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let files = arguments.inputs.iter().map(|input| Files::read(input, arguments.rig.as_deref())).collect::<Result<Vec<_>>>()?;
+    let files =
+        arguments.inputs.iter().map(|input| Files::read_to_show(input, arguments.rig.as_deref())).collect::<Result<Vec<_>>>()?;
     let opened =
         files.iter().zip(&arguments.inputs).map(|(file, input)| file.open().with_context(|| input.display().to_string()));
     let clips: Vec<Clip> = opened.collect::<Result<_>>()?;

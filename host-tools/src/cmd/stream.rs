@@ -1,5 +1,6 @@
 //! `pantin stream`: clips over a line, while they play.
 
+use crate::budget;
 use crate::cmd::Files;
 use crate::output::note;
 use crate::sender::{ByteCounts, Line, Sender, Source};
@@ -109,6 +110,8 @@ pub(super) fn say(arguments: &Arguments, sentence: &str) {
 fn source(arguments: &Arguments, path: &Path) -> Result<Source> {
     let files = Files::read(path, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| format!("{}: not a clip that plays; `pantin convert` makes one", path.display()))?;
+    // The sender keeps the state of every channel at every frame.
+    budget::check(clip.frames() as usize, clip.rig().channels()).with_context(|| path.display().to_string())?;
     Source::new(&clip)
         .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
 }

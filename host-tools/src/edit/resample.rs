@@ -1,19 +1,19 @@
 //! `--fps`: the same motion at another rate.
 
 use super::curve;
+use crate::budget;
 use crate::euler::{self, nearest};
 use crate::fk::{Matrix, local, product};
 use crate::keys::sample_pieces;
 use crate::motion::{Keys, Kind, Motion};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
+use pantin::codec::layout::MAX_FRAMES;
 
 /// Rates closer than this, as a part, are the same.
 const SAME_RATE: f64 = 1e-4;
 /// From one frame to the next, angles that jump farther than this may have changed to another triple for the same pose: the joint's
 /// turn itself runs between them, in degrees.
 const JUMP: f64 = 20.0;
-/// Frames times channels: what importers allow, too.
-const MOST_VALUES: f64 = 1e8;
 
 /// Takes `motion` at `fps` frames a second from its first frame on.
 ///
@@ -32,7 +32,10 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
         let factor = if whole >= 1.0 && (ratio * whole - 1.0).abs() < SAME_RATE { 1.0 / whole } else { snapped(ratio) };
         (((motion.frames - 1) as f64 * factor + 1e-9).floor(), factor)
     };
-    ensure!((steps + 1.0) * motion.values.len() as f64 <= MOST_VALUES, "--fps {fps} gives too many frames");
+    ensure!(steps < f64::from(MAX_FRAMES), "--fps {fps} gives more than {MAX_FRAMES} frames, too many for a clip");
+    if steps as usize >= motion.frames {
+        budget::check(steps as usize + 1, motion.values.len()).with_context(|| format!("--fps {fps}"))?;
+    }
     let times: Vec<f64> = (0..=steps as usize).map(|frame| frame as f64 / factor).collect();
     let kinds = motion.rig.channel_kinds();
     let sampled = |(channel, values): (usize, &Vec<f64>)| {

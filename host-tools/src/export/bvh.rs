@@ -1,6 +1,8 @@
 //! BVH out: the joints, End Sites, channels and frames of a motion, for any other tool.
 
-use crate::motion::{Kind, Motion, Rig};
+#[cfg(feature = "cli")]
+use crate::motion::Motion;
+use crate::motion::{Frames, Joint, Kind, Rig};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write as _;
 use std::io::Write;
@@ -10,40 +12,74 @@ use {
     std::path::Path,
 };
 
-/// Writes `motion` to the output `path`: all of it, or the file stays as it was.
+/// Which channels a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Columns {
+    /// Those of the motion.
+    Own,
+    /// Three rotations a joint, as many readers demand: those that the motion has not are 0.
+    ThreeRotations,
+}
+
+/// Writes `motion`, with its own channels, to the output `path`: all of it, or the file stays as it was.
 #[cfg(feature = "cli")]
 pub fn save(motion: &Motion, path: &Path) -> Result<()> {
     let place = || path.display().to_string();
     let mut file = Staged::create(path)?;
-    write(motion, &mut file).with_context(place)?;
+    write(motion, Columns::Own, &mut file).with_context(place)?;
     commit(vec![file])
 }
 
-/// Writes `motion` as BVH. Values carry seven decimals, so they come back within 5e-8 of their unit.
-/// Fails on channels that BVH has no word for, naming the joint.
-pub fn write(motion: &Motion, out: &mut impl Write) -> Result<()> {
+/// Writes `motion` as BVH. Values carry seven decimals, so they come back within 5e-8 of their unit. Fails
+/// on what BVH cannot hold, and names the joint.
+pub fn write(motion: &impl Frames, of: Columns, out: &mut impl Write) -> Result<()> {
+    let rig = motion.rig();
     let mut text = String::from("HIERARCHY\n");
-    let order = hierarchy(&motion.rig, &mut text)?;
-    writeln!(text, "MOTION\nFrames: {}\nFrame Time: {}", motion.frames, trimmed(format!("{:.9}", motion.frame_time)))?;
-    let firsts = motion.rig.first_channels();
-    let channels: Vec<usize> =
-        order.iter().flat_map(|&joint| (firsts[joint]..).take(motion.rig.joints[joint].kinds.len())).collect();
-    for frame in 0..motion.frames {
-        for (index, &channel) in channels.iter().enumerate() {
+    let order = hierarchy(rig, of, &mut text)?;
+    writeln!(text, "MOTION\nFrames: {}\nFrame Time: {}", motion.frames(), trimmed(format!("{:.9}", motion.frame_time())))?;
+    let firsts = rig.first_channels();
+    let of_joint = |&joint: &usize| {
+        columns(&rig.joints[joint], of).into_iter().map({
+            let first = firsts[joint];
+            move |(_, at)| at.map(|at| first + at)
+        })
+    };
+    let channels: Vec<Option<usize>> = order.iter().flat_map(of_joint).collect();
+    motion.each(&mut |pose| {
+        for (index, channel) in channels.iter().enumerate() {
             text.push_str(if index == 0 { "" } else { " " });
-            number(&mut text, motion.values[channel][frame])?;
+            number(&mut text, channel.map_or(0.0, |channel| pose[channel]))?;
         }
         text.push('\n');
         out.write_all(text.as_bytes())?;
         text.clear();
+        Ok(())
+    })?;
+    // Of a motion without frames the hierarchy is still to be written.
+    Ok(out.write_all(text.as_bytes())?)
+}
+
+/// Channels of a joint in the file, each with its place among the joint's own; rotations that are added come last.
+fn columns(joint: &Joint, of: Columns) -> Vec<(Kind, Option<usize>)> {
+    let mut columns: Vec<_> = joint.kinds.iter().enumerate().map(|(at, &kind)| (kind, Some(at))).collect();
+    let three = of == Columns::ThreeRotations && !joint.end_site;
+    if three && joint.kinds.iter().filter(|kind| kind.is_rotation()).count() < 3 {
+        let missing = [Kind::Zrotation, Kind::Xrotation, Kind::Yrotation].into_iter().filter(|kind| !joint.kinds.contains(kind));
+        columns.extend(missing.map(|kind| (kind, None)));
     }
-    Ok(())
+    columns
 }
 
 /// Writes the joints depth first, as BVH nests them, and returns their indices in that order.
-fn hierarchy(rig: &Rig, text: &mut String) -> Result<Vec<usize>> {
+fn hierarchy(rig: &Rig, of: Columns, text: &mut String) -> Result<Vec<usize>> {
     if let Some(scalar) = rig.scalars.first() {
         bail!("channel `{}` moves no joint, so BVH cannot hold it", scalar.name);
+    }
+    if rig.joints.is_empty() {
+        bail!("a motion without joints, so BVH cannot hold it; .csv holds any channels");
+    }
+    if let Some(second) = rig.joints.iter().skip(1).find(|joint| joint.parent.is_none()) {
+        bail!("`{}` is a second root, and a BVH holds one figure", second.name);
     }
     let mut children = vec![Vec::new(); rig.joints.len()];
     for (index, joint) in rig.joints.iter().enumerate() {
@@ -61,7 +97,7 @@ fn hierarchy(rig: &Rig, text: &mut String) -> Result<Vec<usize>> {
             writeln!(text, "{}}}", "\t".repeat(depth))?;
             continue;
         };
-        open(rig, joint, depth, text)?;
+        open(rig, of, joint, depth, text)?;
         order.push(joint);
         depth += 1;
         left.push(None);
@@ -70,7 +106,7 @@ fn hierarchy(rig: &Rig, text: &mut String) -> Result<Vec<usize>> {
     Ok(order)
 }
 
-fn open(rig: &Rig, index: usize, depth: usize, text: &mut String) -> Result<()> {
+fn open(rig: &Rig, of: Columns, index: usize, depth: usize, text: &mut String) -> Result<()> {
     let joint = &rig.joints[index];
     let indent = "\t".repeat(depth);
     match (joint.end_site, joint.parent) {
@@ -85,8 +121,9 @@ fn open(rig: &Rig, index: usize, depth: usize, text: &mut String) -> Result<()> 
     }
     text.push('\n');
     if !joint.end_site {
-        write!(text, "{indent}\tCHANNELS {}", joint.kinds.len())?;
-        for &kind in &joint.kinds {
+        let columns = columns(joint, of);
+        write!(text, "{indent}\tCHANNELS {}", columns.len())?;
+        for (kind, _) in columns {
             write!(text, " {}", word(kind).with_context(|| format!("joint `{}`: BVH has no {kind:?}", joint.name))?)?;
         }
         text.push('\n');
@@ -131,7 +168,7 @@ fn trimmed(number: String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{Joint, Scalar};
+    use crate::motion::{Motion, Scalar};
 
     fn joint(name: &str, parent: Option<usize>, kinds: &[Kind], end_site: bool) -> Joint {
         Joint { name: name.into(), parent, offset: [0.0, 1.5, -0.00000001], kinds: kinds.to_vec(), end_site }
@@ -153,16 +190,16 @@ mod tests {
             joint("", Some(1), &[], true),
         ];
         let mut out = Vec::new();
-        write(&motion(joints, &[1.0, -0.25, 1e-9]), &mut out).unwrap();
+        write(&motion(joints, &[1.0, -0.25, 1e-9]), Columns::ThreeRotations, &mut out).unwrap();
         let expected = "HIERARCHY
 ROOT a _b_
 {
 \tOFFSET 0 1.5 0
-\tCHANNELS 1 Xposition
+\tCHANNELS 4 Xposition Zrotation Xrotation Yrotation
 \tJOINT left
 \t{
 \t\tOFFSET 0 1.5 0
-\t\tCHANNELS 1 Xrotation
+\t\tCHANNELS 3 Xrotation Zrotation Yrotation
 \t\tEnd Site
 \t\t{
 \t\t\tOFFSET 0 1.5 0
@@ -171,13 +208,13 @@ ROOT a _b_
 \tJOINT right
 \t{
 \t\tOFFSET 0 1.5 0
-\t\tCHANNELS 1 Yrotation
+\t\tCHANNELS 3 Yrotation Zrotation Xrotation
 \t}
 }
 MOTION
 Frames: 1
 Frame Time: 0.008333333
-1 -0.25 0
+1 0 0 0 -0.25 0 0 0 0 0
 ";
         assert_eq!(String::from_utf8(out).unwrap(), expected);
     }

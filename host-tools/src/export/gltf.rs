@@ -1,6 +1,6 @@
 //! glTF out, as .glb: a node a joint, and one animation with a key at every frame.
 //!
-//! Lengths are metres, as glTF has it. Scalars become the morph weights of a mesh of one point, whose targets bear their names: any
+//! Lengths are metres, as glTF has it. A skin names the joints, so that readers make an armature of them. Scalars become the morph weights of a mesh of one point, whose targets bear their names: any
 //! reader of morph weights finds them. End Sites are nodes called like their parents, with `/end` behind.
 
 use crate::fk::local;
@@ -21,6 +21,7 @@ pub fn write(motion: &Motion) -> Result<Vec<u8>> {
     let seconds: Vec<f64> = (0..motion.frames).map(|frame| frame as f64 * motion.frame_time).collect();
     let times = file.accessor("SCALAR", 1, &seconds, true);
     joints(motion, times, &mut file);
+    skin(motion, &mut file);
     scalars(motion, times, &mut file);
     file.finish()
 }
@@ -33,6 +34,7 @@ struct Writer {
     nodes: Vec<Value>,
     roots: Vec<usize>,
     meshes: Vec<Value>,
+    skins: Vec<Value>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
 }
@@ -69,13 +71,16 @@ impl Writer {
             "scene": 0,
             "scenes": [{"nodes": self.roots}],
             "nodes": self.nodes,
-            "animations": [{"samplers": self.samplers, "channels": self.channels}],
+            "animations": [{"name": "motion", "samplers": self.samplers, "channels": self.channels}],
             "accessors": self.accessors,
             "bufferViews": self.views,
             "buffers": [{"byteLength": self.bytes.len()}],
         });
         if !self.meshes.is_empty() {
             root["meshes"] = json!(self.meshes);
+        }
+        if !self.skins.is_empty() {
+            root["skins"] = json!(self.skins);
         }
         let header = gltf::binary::Header { magic: *b"glTF", version: 2, length: 0 };
         let glb = gltf::Glb { header, json: Cow::Owned(serde_json::to_vec(&root)?), bin: Some(Cow::Owned(self.bytes)) };
@@ -118,6 +123,14 @@ fn joints(motion: &Motion, times: usize, file: &mut Writer) {
             let output = file.accessor("VEC4", 4, &turns, false);
             file.animate(index, "rotation", times, output);
         }
+    }
+}
+
+/// A skin that names the joints: by it readers such as Blender know that the nodes are bones of one armature.
+fn skin(motion: &Motion, file: &mut Writer) {
+    let count = motion.rig.joints.len();
+    if count > 0 {
+        file.skins.push(json!({"name": "figure", "joints": (0..count).collect::<Vec<_>>()}));
     }
 }
 

@@ -1,33 +1,54 @@
 //! CSV out: a row of names, then time and values frame by frame, for spreadsheets, plots, and the table importer.
 
-use crate::motion::Motion;
+use crate::motion::{Frames, Rig};
 use anyhow::Result;
+use std::collections::HashSet;
 use std::io::Write;
 
 /// Significant digits of a channel's greatest value: what rounding takes is at most 5e-8 of it.
 const DIGITS: i32 = 7;
 
-/// Writes `motion` as CSV: `time` in seconds, joints' channels as `hip.Xrotation` in their units, scalars by their names.
-pub fn write(motion: &Motion, out: impl Write) -> Result<()> {
+/// Writes `motion` as CSV: `time` in seconds, joints' channels as `hip.Xrotation` in their units, scalars by their names. A name that
+/// stands there already gets a number behind it, so that the table can be read again.
+pub fn write(motion: &impl Frames, out: impl Write) -> Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let channels = motion.rig.channels();
     writer.write_field("time")?;
-    (0..channels).try_for_each(|channel| writer.write_field(motion.rig.channel_name(channel)))?;
+    names(motion.rig()).iter().try_for_each(|name| writer.write_field(name))?;
     writer.write_record(None::<&[u8]>)?;
-    let decimals: Vec<usize> = motion.values.iter().map(|values| decimals(values)).collect();
-    for frame in 0..motion.frames {
-        writer.write_field(number(frame as f64 * motion.frame_time, 9))?;
-        for (values, &decimals) in motion.values.iter().zip(&decimals) {
-            writer.write_field(number(values[frame], decimals))?;
+    let mut peaks = vec![0f64; motion.rig().channels()];
+    motion.each(&mut |pose| {
+        peaks.iter_mut().zip(pose).for_each(|(peak, value)| *peak = peak.max(value.abs()));
+        Ok(())
+    })?;
+    let decimals: Vec<usize> = peaks.into_iter().map(decimals).collect();
+    let mut frame = 0u32;
+    motion.each(&mut |pose| {
+        writer.write_field(number(f64::from(frame) * motion.frame_time(), 9))?;
+        for (&value, &decimals) in pose.iter().zip(&decimals) {
+            writer.write_field(number(value, decimals))?;
         }
-        writer.write_record(None::<&[u8]>)?;
-    }
+        frame += 1;
+        Ok(writer.write_record(None::<&[u8]>)?)
+    })?;
     Ok(writer.flush()?)
 }
 
-/// Decimals that leave `values` their digits.
-fn decimals(values: &[f64]) -> usize {
-    let peak = values.iter().fold(0f64, |peak, value| peak.max(value.abs()));
+/// A name for every channel, all different from each other and from the column of times.
+fn names(rig: &Rig) -> Vec<String> {
+    let mut taken: HashSet<String> = HashSet::from(["time".into()]);
+    let mut name = |channel: usize| {
+        let plain = rig.channel_name(channel);
+        let plain = if plain.trim().is_empty() { format!("channel{channel}") } else { plain };
+        let numbered = (2..).map(|number| format!("{plain}_{number}"));
+        let free = std::iter::once(plain.clone()).chain(numbered).find(|name| !taken.contains(name)).unwrap_or(plain);
+        taken.insert(free.clone());
+        free
+    };
+    (0..rig.channels()).map(&mut name).collect()
+}
+
+/// Decimals that leave values up to `peak` their digits.
+fn decimals(peak: f64) -> usize {
     if peak == 0.0 { 0 } else { (DIGITS - 1 - peak.log10().floor() as i32).max(0) as usize }
 }
 
@@ -40,7 +61,7 @@ fn number(value: f64, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{Joint, Kind, Rig, Scalar};
+    use crate::motion::{Joint, Kind, Motion, Scalar};
 
     #[test]
     fn every_channel_has_a_column() {

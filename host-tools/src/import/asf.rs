@@ -8,9 +8,12 @@ use super::acclaim::{Bone, Dof, Skeleton};
 use super::text::{Words, shown};
 use crate::fk::{IDENTITY, about, product};
 use anyhow::Result;
+use pantin::codec::layout::MAX_JOINTS;
 use std::path::Path;
 
 const INCH_CM: f64 = 2.54;
+/// Lines that are not read, by their names, of which the first ones are reported.
+const MOST_UNREAD: usize = 100;
 
 /// A bone as its lines give it.
 #[derive(Default)]
@@ -49,6 +52,9 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Skeleton> {
             (":units", "angle") => file.radians = is_radians(&words, line.get(1))?,
             (":root", "position") => file.position = numbers(&words, &line[1..])?,
             (":root", key) => root_line(&words, &mut file.entries[0], key, &line[1..])?,
+            (":bonedata", "begin") if file.entries.len() >= MAX_JOINTS => {
+                return Err(words.error(format!("more than {MAX_JOINTS} bones, which a rig cannot hold")));
+            }
             (":bonedata", "begin") => file.entries.push(Entry { line: words.line(), ..Entry::default() }),
             (":bonedata", key) => bone_line(&words, &mut file, key, &line)?,
             (":hierarchy", "begin" | "end") => {}
@@ -131,7 +137,7 @@ fn bone_line(words: &Words, file: &mut File, key: &str, line: &[&[u8]]) -> Resul
         "end" | "id" | "limits" | "bodymass" | "cofmass" => {}
         // The limits of further values stand on lines of their own.
         _ if key.parse::<f64>().is_ok() => {}
-        _ if file.unread.iter().any(|unread| unread == key) => {}
+        _ if file.unread.len() >= MOST_UNREAD || file.unread.iter().any(|unread| unread == key) => {}
         _ => file.unread.push(key.to_string()),
     }
     Ok(())

@@ -3,9 +3,10 @@
 //! White space is free, as other readers have it: a row may span lines and a line may hold rows.
 
 use super::text::{Words, shown};
-use super::{Options, Source};
+use super::{Options, Source, ends};
 use crate::motion::{Joint, Kind, Motion, Rig};
 use anyhow::Result;
+use pantin::codec::layout::MAX_JOINTS;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -21,8 +22,9 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let mut words = Words::new(path, &bytes);
     let mut warnings = Vec::new();
     words.expect("HIERARCHY", "at the start of a BVH file")?;
-    let rig = hierarchy(&mut words)?;
+    let mut rig = hierarchy(&mut words)?;
     warnings.extend(repeated_names(&rig));
+    warnings.extend(ends::complete(&mut rig.joints));
     let header = header(&mut words, options)?;
     let values = rows(&mut words, &header, rig.channels(), &mut warnings)?;
     let keys = vec![None; values.len()];
@@ -100,6 +102,9 @@ fn begin_joint(words: &mut Words, joints: &mut Vec<Joint>, parent: Option<usize>
     }
     words.expect("{", "after the joint's name")?;
     let name = if end_site { String::new() } else { name };
+    if joints.len() == MAX_JOINTS {
+        return Err(words.error(format!("more than {MAX_JOINTS} joints and End Sites, which a rig cannot hold")));
+    }
     joints.push(Joint { name, parent, offset: [0.0; 3], kinds: Vec::new(), end_site });
     Ok(Open { index: joints.len() - 1, line, has_offset: false, has_channels: false })
 }

@@ -74,6 +74,16 @@ impl Expression {
         if parser.peek().is_some() { Err(parser.expected("an operator")) } else { Ok(expression) }
     }
 
+    /// Whether its value depends on a name.
+    pub fn uses(&self, name: usize) -> bool {
+        match self {
+            Expression::Number(_) => false,
+            Expression::Name(own) => *own == name,
+            Expression::One(_, x) => x.uses(name),
+            Expression::Two(_, both) => both.iter().any(|x| x.uses(name)),
+        }
+    }
+
     /// Its value; `values` are those of the names.
     pub fn value(&self, values: &[f64]) -> f64 {
         match self {

@@ -1,6 +1,6 @@
 //! The animations of files that may hold several.
 
-use super::{fbx, gltf, vrml};
+use super::{Files, Options, fbx, gltf, vrml};
 use anyhow::Result;
 use std::path::Path;
 
@@ -32,10 +32,15 @@ pub fn chooses(path: &Path) -> bool {
 
 /// All animations of the file `path`: of a glTF or FBX file, or the time sensors of a VRML world.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-    match extension.as_deref() {
-        Some("fbx") => fbx::list(path, fps),
-        Some("wrl" | "vrml" | "x3dv") => vrml::list(path, fps),
-        _ => gltf::list(path, fps),
+    match super::format_of(path, &Files::default())?.name {
+        "FBX" => fbx::list(path, fps),
+        "VRML" => vrml::list(path, fps),
+        "glTF" => gltf::list(path, fps),
+        // All others hold one motion without a name.
+        _ => {
+            let motion = super::load(path, &Options { fps, ..Options::default() })?.motion;
+            let tracks = motion.rig.channels();
+            Ok(vec![Entry { name: None, frames: motion.frames, fps: 1.0 / motion.frame_time, tracks }])
+        }
     }
 }

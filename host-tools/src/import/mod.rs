@@ -5,6 +5,7 @@ pub mod amc;
 mod angles;
 mod asf;
 pub mod bvh;
+mod ends;
 mod expression;
 pub mod fap;
 mod fap_names;
@@ -34,9 +35,11 @@ pub mod units;
 pub mod vrml;
 mod written;
 
+use crate::budget;
 use crate::motion::Motion;
 use anyhow::{Context, Result, bail, ensure};
 pub use files::Files;
+use pantin::codec::layout::MAX_CHANNELS;
 use std::path::{Path, PathBuf};
 
 /// What the user says about a source.
@@ -108,13 +111,31 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
     if let Some(fps) = options.fps {
         ensure!(fps.is_finite() && fps > 0.0, "--fps {fps}: expected a number above 0");
     }
-    let source = (format_of(path, &options.files)?.read)(path, options)?;
+    let format = format_of(path, &options.files)?;
+    let source = (format.read)(path, options)?;
     let Source { mut motion, unit_known, warnings } = source;
+    let place = || path.display().to_string();
+    ensure!(
+        motion.rig.channels() <= MAX_CHANNELS,
+        "{}: {} channels; a rig holds at most {MAX_CHANNELS}",
+        place(),
+        motion.rig.channels()
+    );
+    // Formats of rows hold as many bytes as they take; all others can ask for any number of frames.
+    if !matches!(format.name, "BVH" | "AMC") {
+        budget::check(motion.frames, motion.rig.channels()).with_context(place)?;
+    }
     let known = unit_known.then_some(motion.rig.cm_per_unit);
     let unit = units::settle(&motion, options.cm_per_unit, known).with_context(|| path.display().to_string())?;
     motion.rig.cm_per_unit = unit.cm_per_unit;
     unwrap_angles(&mut motion);
     Ok(Imported { motion, units: unit.sentence, warnings })
+}
+
+/// Whether `bytes`, the content of `path`, are of a format that [`load`] knows, by their name or by how they begin.
+pub fn looks_like_motion(path: &Path, bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(HEAD as usize)];
+    is_motion(path) || FORMATS.iter().any(|format| (format.begins)(head))
 }
 
 /// Whether a file's name says that it is of a format that [`load`] knows.

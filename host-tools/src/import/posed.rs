@@ -3,11 +3,12 @@
 //! A rig's joints turn and move but do not stretch. A node's rotation is the one nearest to its linear part with columns of length 1, so
 //! scales go into the places of the joints below, and every joint stands where the evaluation puts it.
 
-use super::angles;
 use super::grid::Grid;
+use super::{angles, ends};
+use crate::budget;
 use crate::fk::{IDENTITY, Matrix, apply, product};
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar};
-use anyhow::{Result, ensure};
+use anyhow::{Result, anyhow, ensure};
 use pantin::codec::layout::MAX_JOINTS;
 
 /// Three rows; the last column is the place.
@@ -20,8 +21,6 @@ pub const UNMOVED: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0
 const LARGEST: f64 = 1e9;
 /// Columns shorter than this part of the longest turn nothing.
 const FLAT: f64 = 1e-9;
-/// Numbers that may be held at a time, about: five minutes of 100 joints at 60 frames a second.
-const MOST_NUMBERS: usize = 1 << 25;
 
 /// One thing in the tree, before it is known whether it becomes a joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,12 +74,19 @@ pub struct Node {
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
 pub fn check_size(joints: usize, scalars: usize, grid: &Grid) -> Result<()> {
     let numbers = (24 * joints + scalars + 1).saturating_mul(grid.frames);
-    ensure!(numbers <= MOST_NUMBERS, "{} frames are too many for this figure; --fps takes fewer", grid.frames);
-    Ok(())
+    budget::check_numbers(numbers, "the joints' places")
+        .and_then(|()| budget::check(grid.frames, 3 * joints + scalars))
+        .map_err(|error| anyhow!("{} frames are too many for this figure: {error}; --fps takes fewer", grid.frames))
 }
 
-/// The motion of `nodes` (parents before children) and `scalars`. Places that waver by less than `stands` of the figure's extent stand still.
-pub fn motion(nodes: Vec<Node>, scalars: Vec<(Scalar, Vec<f64>)>, grid: &Grid, cm_per_unit: f64, stands: f64) -> Result<Motion> {
+/// The motion of `nodes` (parents before children) and `scalars`, and what is odd about it. Places that waver by less than `stands` of the figure's extent stand still.
+pub fn motion(
+    nodes: Vec<Node>,
+    scalars: Vec<(Scalar, Vec<f64>)>,
+    grid: &Grid,
+    cm_per_unit: f64,
+    stands: f64,
+) -> Result<(Motion, Option<String>)> {
     for node in &nodes {
         let sound = node.worlds.iter().flatten().flatten().all(|x| x.abs() <= LARGEST);
         ensure!(sound, "`{}` is moved beyond {LARGEST:e}", node.name);
@@ -90,7 +96,7 @@ pub fn motion(nodes: Vec<Node>, scalars: Vec<(Scalar, Vec<f64>)>, grid: &Grid, c
     let turns: Vec<Vec<Matrix>> = nodes.iter().map(|node| rotations(&node.worlds)).collect();
     let mut joints = Vec::new();
     let mut values = Vec::new();
-    let mut ends = Vec::new();
+    let mut sites = Vec::new();
     for (index, node) in nodes.iter().enumerate() {
         let above = node.parent.map(|parent| (&nodes[parent], &turns[parent]));
         let (offset, places) = places(node, above, wavers);
@@ -99,18 +105,19 @@ pub fn motion(nodes: Vec<Node>, scalars: Vec<(Scalar, Vec<f64>)>, grid: &Grid, c
         let rotations = angles::channels(&locals);
         let leaf = nodes.iter().all(|other| other.parent != Some(index));
         if leaf && !rotations.is_empty() && node.parent.is_some() && offset != [0.0; 3] {
-            ends.push(end(index, offset));
+            sites.push(end(index, offset));
         }
         let (kinds, channels): (Vec<Kind>, Vec<Vec<f64>>) = places.into_iter().chain(rotations).unzip();
         values.extend(channels);
         joints.push(Joint { name: node.name.clone(), parent: node.parent, offset, kinds, end_site: false });
     }
-    joints.extend(ends);
+    joints.extend(sites);
+    let warning = ends::complete(&mut joints);
     let (scalars, of_scalars): (Vec<_>, Vec<_>) = scalars.into_iter().unzip();
     values.extend(of_scalars);
     let keys = vec![None; values.len()];
     let rig = Rig { joints, scalars, cm_per_unit };
-    Ok(Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false })
+    Ok((Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false }, warning))
 }
 
 /// An End Site for a joint that turns and carries no other, as a bound on places would not see its rotation: half as far as the bone before
@@ -260,7 +267,7 @@ mod tests {
             parent: joint.checked_sub(1),
             worlds: (0..grid.frames).map(|frame| world(frame, joint)).collect(),
         };
-        let motion = motion((0..3).map(node).collect(), Vec::new(), &grid, 1.0, 0.0).unwrap();
+        let (motion, _) = motion((0..3).map(node).collect(), Vec::new(), &grid, 1.0, 0.0).unwrap();
         for frame in 0..grid.frames {
             for (joint, found) in positions(&motion.rig, &motion.values, frame)[..3].iter().enumerate() {
                 let expected = place(&world(frame, joint));

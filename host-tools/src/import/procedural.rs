@@ -3,8 +3,9 @@
 
 use super::expression::{Expression, is_free};
 use super::text::shown;
-use super::written::{self, HEADINGS, Header, MOST_VALUES, Read, Reader as _, Wrong, rig, wrong};
+use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, rig, wrong};
 use super::{Options, Source};
+use crate::budget;
 use crate::motion::{Motion, Rig};
 use anyhow::Result;
 use std::collections::BTreeMap;
@@ -12,6 +13,8 @@ use std::path::Path;
 
 /// No length or angle of a real motion comes near it.
 const LARGEST: f64 = 1e9;
+/// Names of `let` and those that every expression may use: far more than a hand writes.
+const MOST_NAMES: usize = 1024;
 
 /// Whether `head` begins such a file.
 pub fn begins(head: &[u8]) -> bool {
@@ -90,9 +93,11 @@ impl Reader {
             let name = shown(Some(name.as_bytes()));
             return wrong(format!("expected a new name of letters, digits and `_` after `let`, found {name}"));
         }
-        if (self.names.len() + self.header.rig.channels()) * self.header.frames.unwrap_or(0) > MOST_VALUES {
-            return wrong(format!("more than {MOST_VALUES} values: fewer frames or names are needed"));
+        if self.names.len() >= MOST_NAMES {
+            return wrong(format!("more than {MOST_NAMES} names"));
         }
+        let (frames, values) = (self.header.frames.unwrap_or(0), self.names.len() + self.header.rig.channels());
+        budget::check(frames, values).map_err(|error| Wrong::from(error.to_string()))?;
         let values = self.sample(expression)?;
         self.names.insert(name.into(), values);
         Ok(())
@@ -114,9 +119,10 @@ impl Reader {
     fn sample(&self, expression: &str) -> Read<Vec<f64>> {
         let names: Vec<&str> = self.names.keys().map(String::as_str).collect();
         let parsed = Expression::parse(expression, &names).map_err(Wrong::from)?;
+        let used: Vec<(usize, &Vec<f64>)> = self.names.values().enumerate().filter(|(name, _)| parsed.uses(*name)).collect();
         let mut values = vec![0.0; names.len()];
         let at = |frame: usize| {
-            values.iter_mut().zip(self.names.values()).for_each(|(value, all)| *value = all[frame]);
+            used.iter().for_each(|&(name, all)| values[name] = all[frame]);
             match parsed.value(&values) {
                 value if value.abs() <= LARGEST => Ok(value),
                 value => wrong(format!("is {value} at frame {frame}; expected a finite number of at most {LARGEST:e}")),

@@ -1,11 +1,10 @@
 //! Motions of scalars alone: a rig without joints, and rows put on an even grid of frames.
 
+use crate::budget;
 use crate::motion::{Motion, Rig, Scalar};
 use anyhow::{Result, ensure};
 use pantin::codec::layout::MAX_CHANNELS;
 
-/// Frames times channels: 128 MB of samples.
-pub const MOST_VALUES: usize = 1 << 24;
 /// Rows are put no farther on a grid: [`check_size`] refuses it long before.
 const FARTHEST: usize = 1 << 30;
 /// No full scale is smaller: of channels that never leave 0, nor of such as a clip's raw values could not tell from it.
@@ -30,9 +29,7 @@ pub fn peak(values: &[f64]) -> f64 {
 pub fn check_size(channels: usize, frames: usize) -> Result<()> {
     ensure!(channels > 0, "no channels; expected at least one column of values");
     ensure!(channels <= MAX_CHANNELS, "{channels} channels; a clip holds at most {MAX_CHANNELS}");
-    let within = frames.checked_mul(channels).is_some_and(|values| values <= MOST_VALUES);
-    ensure!(within, "{frames} frames of {channels} channels; expected at most {MOST_VALUES} values");
-    Ok(())
+    budget::check(frames, channels)
 }
 
 /// Where rows at nearly even times, some of them missing, stand on a grid of frames.

@@ -6,6 +6,7 @@
 //!   when it is whole. It is removed on every other exit, signals included.
 //! - A symbolic link stays; the file that it names is replaced. Pipes and devices are written through. `-` is standard output.
 //! - Lines for people go through [`print_note`] and [`print_line`], which escape control characters.
+//! - No output is longer than `--max-output`; [`check_size`] refuses one before it is begun where its size is known.
 //! - Files that belong together are committed together: [`write_together`] replaces all of them or none.
 
 mod foreign;
@@ -15,7 +16,7 @@ mod terminal;
 
 pub use foreign::{Wanted, refuse_foreign};
 pub use place::{Place, check};
-pub use staged::{Staged, commit};
+pub use staged::{Staged, check_size, commit, set_most_bytes};
 pub use terminal::{clean, is_hostile, print_json, print_line, print_note, reader_gone};
 pub(crate) use terminal::{note, noticed, outln};
 

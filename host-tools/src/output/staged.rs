@@ -2,11 +2,13 @@
 
 use super::place::{Place, folder};
 use super::terminal::noticed;
-use anyhow::{Context, Result};
+use crate::budget;
+use anyhow::{Context, Result, ensure};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, Once, PoisonError};
 use tempfile::{Builder, NamedTempFile, TempPath};
 
@@ -15,6 +17,23 @@ pub struct Staged {
     /// As the user gave it.
     path: PathBuf,
     to: To,
+    written: u64,
+}
+
+/// The limit without `--max-output`, in bytes.
+static MOST_BYTES: AtomicU64 = AtomicU64::new(1 << 30);
+
+/// Sets the most bytes that an output of this process may have.
+pub fn set_most_bytes(bytes: u64) {
+    MOST_BYTES.store(bytes, Ordering::Relaxed);
+}
+
+/// Refuses an output of `bytes` or more, before it is begun.
+pub fn check_size(path: &Path, bytes: u64) -> Result<()> {
+    let most = MOST_BYTES.load(Ordering::Relaxed);
+    let (size, limit) = (budget::size(bytes), budget::size(most));
+    ensure!(bytes <= most, "{}: would have {size} or more; the limit is {limit}, and --max-output raises it", path.display());
+    Ok(())
 }
 
 enum To {
@@ -38,12 +57,14 @@ impl Staged {
                 Ok(To::Replace { bytes: BufWriter::new(bytes), file, _name: name })
             }
         });
-        Ok(Staged { path: path.to_path_buf(), to: to.with_context(|| path.display().to_string())? })
+        Ok(Staged { path: path.to_path_buf(), to: to.with_context(|| path.display().to_string())?, written: 0 })
     }
 }
 
 impl Write for Staged {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.written = self.written.saturating_add(bytes.len() as u64);
+        check_size(&self.path, self.written).map_err(io::Error::other)?;
         match &mut self.to {
             To::Replace { bytes: file, .. } => file.write(bytes),
             To::Through(file) => noticed(file.write(bytes)),

@@ -236,3 +236,15 @@ fn a_cut_clip_with_the_right_time_is_converted_again() {
     let again = folder.convert(&[]);
     assert!(text(&again.stderr).contains("1 converted") && std::fs::read(&clip).unwrap() == whole, "{}", text(&again.stderr));
 }
+
+#[test]
+fn every_warning_and_under_quiet_every_failure_is_printed() {
+    let folder = Folder::new("warnings");
+    folder.put("gap.csv", "time,a\n0,0\n0.1,1\n0.2,0.5\n0.5,0\n");
+    folder.put("bad.bvh", "HIERARCHY\n");
+    let done = folder.convert(&[]);
+    assert!(text(&done.stderr).contains("gap.csv: warning: "), "{}", text(&done.stderr));
+    let quiet = folder.convert(&["-q"]);
+    assert!(!quiet.status.success() && quiet.stdout.is_empty());
+    assert!(text(&quiet.stderr).contains("bad.bvh: ") && !text(&quiet.stderr).contains("gap.csv"), "{}", text(&quiet.stderr));
+}

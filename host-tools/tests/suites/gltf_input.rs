@@ -457,3 +457,13 @@ fn a_clip_expands_to_glb() {
     let expanded = expand::expand(&pantin::Clip::new_checked(&bytes).unwrap()).unwrap();
     assert!(gltf::Gltf::from_slice(&export::gltf::write(&expanded).unwrap()).is_ok());
 }
+
+#[test]
+fn a_mesh_whose_points_are_missing_is_refused() {
+    let text = json!({
+        "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 3}}]}],
+        "animations": [{"samplers": [], "channels": []}],
+    });
+    let error = format!("{:#}", load("points", &text.to_string(), &Options::default()).unwrap_err());
+    assert!(error.contains("meshes[0]: no such accessor"), "{error}");
+}

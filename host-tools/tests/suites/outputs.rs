@@ -125,7 +125,7 @@ fn a_name_of_another_kind_of_file_is_refused_with_a_hint() {
     folder.done(&["convert", "run.keys", "-o", "a.ptn"]);
     for (arguments, hint) in [
         (["render", "a.ptn", "-o", "a.bvh"], "pantin expand"),
-        (["render", "a.ptn", "-o", "a.ptn"], "pantin convert"),
+        (["render", "a.ptn", "-o", "b.ptn"], "pantin convert"),
         (["render", "a.ptn", "-o", "a.jpg"], ".png"),
         (["expand", "a.ptn", "-o", "a.gif"], "pantin render"),
         (["expand", "a.ptn", "-o", "b.fbx"], ".bvh"),

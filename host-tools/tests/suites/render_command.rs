@@ -243,7 +243,7 @@ fn what_cannot_be_done_is_refused_in_one_clear_line() {
     let cases: [(&str, &[&str], &[&str]); 14] = [
         ("walk.mp4", &[], &["walk.mp4", ".gif, .apng, .png or .svg"]),
         ("walk", &[], &["expected a name that ends in"]),
-        ("no/such/folder.png", &[], &["no/such/folder.png: cannot be written"]),
+        ("no/such/folder.png", &[], &["no/such/folder.png: there is no folder no/such"]),
         ("a.png", &["--size", "9000x9000"], &["each side must be 8 to 4096"]),
         ("a.png", &["--size", "big"], &["as in 240x240"]),
         ("a.png", &["--size", "4000x4000"], &["more than is sensible", "smaller --size"]),

@@ -1,6 +1,7 @@
 //! `pantin face fit`
 
 use crate::cmd::Files;
+use crate::cmd::render::Moment;
 use crate::face::{Face, fit, outside};
 use crate::output::outln;
 use anyhow::{Context, Result, bail, ensure};
@@ -22,9 +23,9 @@ const LEAST: f64 = 0.005;
 pub struct Arguments {
     /// The face: .obj, .glb or a clip
     target: PathBuf,
-    /// The frame of a clip
-    #[arg(long, default_value_t = 0)]
-    frame: u32,
+    /// The frame of a clip: a number, or seconds as in 1.5s
+    #[arg(long, value_name = "MOMENT", default_value = "0")]
+    frame: Moment,
     /// The rig of a clip that was made with --rig-out
     #[arg(long)]
     rig: Option<PathBuf>,
@@ -62,14 +63,14 @@ fn frame(arguments: &Arguments, face: &Face) -> Result<Vec<[f64; 3]>> {
     let place = || arguments.target.display().to_string();
     let files = Files::read(&arguments.target, arguments.rig.as_deref())?;
     let clip = files.open().with_context(place)?;
-    ensure!(arguments.frame < clip.frames(), "{}: frame {} of {}", place(), arguments.frame, clip.frames());
+    let frame = arguments.frame.frame(clip.frames(), f64::from(clip.frame_time_ns()) * 1e-9).with_context(place)?;
     let model = face.model()?;
     let binding = Binding::new(&clip.rig(), &model);
     ensure!(binding.driving() > 0, "{}: no channel bears a name that the face knows; docs/FACE.md lists them", place());
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(clip, &mut states, &mut pose)?;
-    player.seek(arguments.frame);
+    player.seek(frame);
     let mut weights = Weights::new();
     binding.read(player.pose().values, &mut weights);
     let mut morph = Morph::<VERTICES>::new(&model)?;

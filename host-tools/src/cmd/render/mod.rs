@@ -36,7 +36,7 @@ const SMOOTH_FROM: usize = 240;
 Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink) or
 RRGGBB,RRGGBB,RRGGBB (paper, far, near).")]
 pub struct Arguments {
-    /// The clip
+    /// The clip, or a motion file, which is converted first
     input: PathBuf,
     /// The picture to write: .gif, .apng, .png or .svg
     #[arg(short, long)]
@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let inputs: Vec<&Path> = [arguments.input.as_path()].into_iter().chain(arguments.rig.as_deref()).collect();
     check(&inputs, &[&arguments.output])?;
     refuse_foreign(&arguments.output, Wanted::Picture)?;
-    let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
+    let files = Files::read_to_show(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
     let kind = arguments.kind()?;
     let face = is_face(&clip)?;

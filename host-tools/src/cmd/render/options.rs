@@ -74,6 +74,14 @@ impl FromStr for Moment {
 }
 
 impl Moment {
+    /// The nearest frame, whether a motion has it or not.
+    pub fn nearest(self, frame_time: f64) -> usize {
+        match self {
+            Moment::Frame(frame) => frame as usize,
+            Moment::Seconds(seconds) => (seconds / frame_time).round() as usize,
+        }
+    }
+
     /// Returns the frame of a clip with `frames` frames.
     pub fn frame(self, frames: u32, frame_time: f64) -> Result<u32> {
         let frame = match self {

@@ -19,6 +19,8 @@ const COLUMNS: usize = 3;
 const ROW: u32 = 6;
 /// Most pixels of a whole sheet, or of an animation's picture.
 const MOST_PIXELS: usize = 64 << 20;
+/// Most pictures of an animation: ten minutes at the most that displays show in a second.
+const MOST_PICTURES: f64 = 36_000.0;
 /// Pixels are enlarged so far that a picture has about as many columns.
 const EASY_TO_SEE: usize = 512;
 const EASY_TO_SEE_IN_A_SHEET: usize = 256;
@@ -89,6 +91,14 @@ impl Output<'_, '_> {
     fn animation(&mut self, mut out: &mut impl Write) -> Result<()> {
         let (from, to) = self.stretch()?;
         let most = if self.kind == Kind::Gif { gif::MOST_A_SECOND } else { apng::MOST_A_SECOND };
+        // Counted before they are listed: a small clip may last for years.
+        let pictures = |fps: f64| (f64::from(to - from) * self.frame_time * fps).ceil();
+        let rate = self.arguments.fps.unwrap_or(most).min(1.0 / self.frame_time);
+        let count = pictures(self.arguments.fps.unwrap_or(rate));
+        ensure!(
+            count <= MOST_PICTURES,
+            "the animation would have {count} pictures; the limit is {MOST_PICTURES}: --from and --to, or a lower --fps, take fewer"
+        );
         let timing = match self.arguments.fps {
             None => Timing::of_clip(from, to, self.frame_time, most),
             Some(fps) if (0.1..=most).contains(&fps) => Timing::at_rate(from, to, self.frame_time, fps),
@@ -105,7 +115,7 @@ impl Output<'_, '_> {
             _ => Box::new(Apng::new(&mut out, timing.frames.len() as u32, timing.seconds)),
         };
         let bar = if self.arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(timing.frames.len() as u64) };
-        bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} pictures {eta}")?);
+        bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} pictures {eta} left")?);
         for &frame in &timing.frames {
             self.figure.seek(frame);
             let mut picture = Image::new(whole[0], whole[1], palette.paper());

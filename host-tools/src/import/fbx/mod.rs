@@ -38,8 +38,14 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let stack = chosen(&scene, options.animation.as_deref()).with_context(place)?;
     let moves = Moves::of(&scene, stack);
     let grid = grid(&scene, stack, options.fps).with_context(place)?;
-    let (motion, left_out) = motion(&scene, stack, &grid).with_context(place)?;
+    let (motion, left_out, warning) = motion(&scene, stack, &grid).with_context(place)?;
     let mut warnings = vec![grid.sentence];
+    let stacks = scene.anim_stacks.len();
+    if options.animation.is_none() && stacks > 1 {
+        let name = one_line(&stack.element.name);
+        warnings.push(format!("stack `{name}` of {stacks}; --animation takes another, --list shows all"));
+    }
+    warnings.extend(warning);
     if moves.none() {
         warnings.push(format!("stack `{}` moves nothing: a pose", one_line(&stack.element.name)));
     }
@@ -85,7 +91,8 @@ fn chosen<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s AnimStack> {
             .map(|stack| &**stack)
             .context("no curve changes a node's place or a blend shape's weight, so nothing moves");
     };
-    let by_name = stacks.iter().find(|stack| &*stack.element.name == wanted);
+    let called = |same: fn(&str, &str) -> bool| stacks.iter().find(|stack| same(&stack.element.name, wanted));
+    let by_name = called(|a, b| a == b).or_else(|| called(|a, b| a.to_lowercase() == b.to_lowercase()));
     let by_number = || wanted.parse().ok().and_then(|number: usize| stacks.get(number));
     by_name.or_else(by_number).map(|stack| &**stack).ok_or_else(|| {
         let names = stacks.iter().enumerate().map(|(number, stack)| format!("{number} ({})", &*stack.element.name));
@@ -108,8 +115,8 @@ fn grid(scene: &Scene, stack: &AnimStack, fps: Option<f64>) -> Result<Grid> {
     grid::over(first, last, fps, why)
 }
 
-/// The motion, and how many nodes are no part of it.
-fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motion::Motion, usize)> {
+/// The motion, how many nodes are no part of it, and what is odd about it.
+fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motion::Motion, usize, Option<String>)> {
     let order = nodes::depth_first(scene);
     let kept: Vec<usize> = posed::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
     let weights = nodes::weights(scene);
@@ -137,7 +144,8 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motio
     let scalars = weights.iter().zip(scalars).map(|(&channel, values)| scalar(scene, channel, values)).collect::<Result<_>>()?;
     // The root of all, which is ufbx's own, is no node of the file.
     let left_out = scene.nodes.len() - 1 - kept.len().min(scene.nodes.len() - 1);
-    Ok((posed::motion(joints, scalars, grid, 1.0, STANDS)?, left_out))
+    let (motion, warning) = posed::motion(joints, scalars, grid, 1.0, STANDS)?;
+    Ok((motion, left_out, warning))
 }
 
 /// A weight of 1 is the whole shape; full scale is more where a weight goes beyond.

@@ -8,7 +8,7 @@ use gltf::json::buffer::View;
 use gltf::json::validation::Checked;
 
 /// Elements of an accessor that no bytes stand for (a sparse one over zeros).
-const MOST_ZEROS: usize = 1 << 20;
+pub const MOST_ZEROS: usize = 1 << 20;
 /// No length or weight of a real motion comes near it.
 const LARGEST: f64 = 1e9;
 

@@ -5,9 +5,10 @@ pub(crate) use crate::import::one_line;
 use anyhow::{Result, anyhow, bail};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use gltf::json::accessor::Accessor;
 use gltf::json::animation::{Animation, Channel};
 use gltf::json::validation::Validate;
-use gltf::json::{Path as JsonPath, Root};
+use gltf::json::{Index, Path as JsonPath, Root};
 use std::cell::OnceCell;
 use std::path::{Component, Path, PathBuf};
 
@@ -43,6 +44,9 @@ impl File {
         };
         let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&json);
         let root: Root = gltf::json::deserialize::from_slice(json).map_err(|error| place(format!("glTF's JSON: {error}")))?;
+        if let Some(message) = missing_accessor(&root) {
+            return Err(place(message));
+        }
         let mut wrong = None;
         root.validate(&root, JsonPath::new, &mut |at, error| {
             let at = at().to_string();
@@ -110,6 +114,13 @@ impl File {
         let uris = self.root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
         uris.filter(|uri| !uri.starts_with("data:")).filter_map(|uri| self.beside(uri)).collect()
     }
+}
+
+/// An accessor that a mesh names and that is not there: the gltf crate looks into it without asking.
+fn missing_accessor(root: &Root) -> Option<String> {
+    let missing = |accessor: &Index<Accessor>| accessor.value() >= root.accessors.len();
+    let mesh = root.meshes.iter().position(|mesh| mesh.primitives.iter().any(|part| part.attributes.values().any(missing)))?;
+    Some(format!("meshes[{mesh}]: no such accessor"))
 }
 
 /// A node that a channel names and that is not there: the gltf crate does not look into channels.

@@ -7,8 +7,8 @@ use super::track::Track;
 use super::tree::Tree;
 use super::{Channels, POSITIONS, Target, Tracks, Values};
 use crate::fk::{Matrix, apply, from_quaternion, product};
-use crate::import::angles;
 use crate::import::grid::Grid;
+use crate::import::{angles, ends};
 use crate::keys::sample_pieces;
 use crate::motion::{Joint, Keys, Kind, Piece};
 use anyhow::Result;
@@ -22,7 +22,7 @@ const STANDS: f64 = 1e-5;
 pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<Channels> {
     let mut channels = Channels::default();
     let mut stretches: Vec<Stretch> = Vec::new();
-    let mut ends = Vec::new();
+    let mut sites = Vec::new();
     let under = tree.under.iter().map(|&node| rest(file, node)).collect::<Result<Vec<_>>>()?;
     for (node, parent) in tree.nodes.iter().zip(&tree.parents) {
         let Some(node) = *node else {
@@ -53,13 +53,14 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
         let below = base.stretch.below(&moving.turns, &moving.scale, grid.frames);
         let index = channels.joints.len();
         if moving.turns.len() > 1 && !tree.parents.contains(&Some(index)) {
-            ends.extend(end(file, node, parent.map(|_| offset), &below).map(|offset| (index, offset)));
+            sites.extend(end(file, node, parent.map(|_| offset), &below).map(|offset| (index, offset)));
         }
         stretches.push(below);
         channels.joints.push(Joint { name, parent: *parent, offset, kinds, end_site: false });
     }
     let site = |(parent, offset)| Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true };
-    channels.joints.extend(ends.into_iter().map(site));
+    channels.joints.extend(sites.into_iter().map(site));
+    channels.warnings.extend(ends::complete(&mut channels.joints));
     Ok(channels)
 }
 

@@ -17,8 +17,9 @@ pub(crate) use place::quaternion;
 
 use super::grid::{self, Grid};
 use super::{Files, Options, Source, units};
+use crate::budget;
 use crate::motion::{Keys, Kind, Motion, Rig};
-use anyhow::{Result, anyhow, bail, ensure};
+use anyhow::{Result, anyhow, bail};
 use file::{File, one_line};
 use gltf::json::Root;
 use gltf::json::animation::Property;
@@ -32,9 +33,6 @@ use track::Track;
 const CM_PER_UNIT: f64 = 100.0;
 /// Figures of other heights make one doubt that the file's unit is the metre, in cm.
 const PLAUSIBLE_CM: std::ops::RangeInclusive<f64> = 20.0..=500.0;
-
-/// Numbers that may be held at a time, about: five minutes of 100 joints at 60 frames a second.
-const MOST_NUMBERS: usize = 1 << 25;
 
 /// Whether `head` begins a glTF file.
 pub fn begins(head: &[u8]) -> bool {
@@ -54,6 +52,15 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let file = File::open(path, &options.files.read(path)?, &options.files)?;
     let number = chosen(&file, path, options)?;
     let mut warnings = Vec::new();
+    let animations = &file.root.animations;
+    if options.animation.is_none() && animations.len() > 1 {
+        let first = named(number, &animations[number].name);
+        warnings.push(format!(
+            "animation {} of {}; --animation takes another, --list shows all",
+            one_line(&first),
+            animations.len()
+        ));
+    }
     let tracks = tracks(&file, number, &mut warnings)?;
     if tracks.is_empty() {
         bail!(file.error(&format!("animations[{number}]"), "no channel moves a node or a weight"));
@@ -66,6 +73,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let mut channels = joints::joints(&file, &tree, &tracks, &grid)?;
     channels.scalars.extend(scalars::weights(&file, &tracks, &grid)?);
     scalars::tell_apart(&mut channels.scalars);
+    warnings.append(&mut channels.warnings);
     let motion = channels.motion(&grid);
     warnings.extend(doubts(&file, &tree, &motion, options));
     Ok(Source { motion, unit_known: true, warnings })
@@ -78,7 +86,10 @@ fn chosen(file: &File, path: &Path, options: &Options) -> Result<usize> {
         bail!("{}: no animation, so nothing moves", path.display());
     }
     let Some(wanted) = &options.animation else { return Ok(0) };
-    let by_name = animations.iter().position(|animation| animation.name.as_deref() == Some(wanted.as_str()));
+    let called = |same: fn(&str, &str) -> bool| {
+        animations.iter().position(|animation| animation.name.as_deref().is_some_and(|name| same(name, wanted)))
+    };
+    let by_name = called(|a, b| a == b).or_else(|| called(|a, b| a.to_lowercase() == b.to_lowercase()));
     let by_number = wanted.parse().ok().filter(|&number: &usize| number < animations.len());
     by_name.or(by_number).ok_or_else(|| {
         let names: Vec<String> =
@@ -105,6 +116,7 @@ type Tracks = BTreeMap<Target, Track>;
 
 fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Tracks> {
     let animation = &file.root.animations[number];
+    check_keys(file, animation).map_err(|error| file.error(&format!("animations[{number}]"), error))?;
     let mut tracks = Tracks::new();
     for (index, channel) in animation.channels.iter().enumerate() {
         let node = channel.target.node.value();
@@ -124,14 +136,31 @@ fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Trac
     Ok(tracks)
 }
 
+/// Refuses keys that would fill the memory: any number of tracks may share one accessor.
+fn check_keys(file: &File, animation: &gltf::json::Animation) -> Result<()> {
+    // No accessor has more elements than its view has bytes: one that claims more is refused when it is read.
+    let count = |index: usize| {
+        let Some(accessor) = file.root.accessors.get(index) else { return 0 };
+        let view = accessor.buffer_view.and_then(|view| file.root.buffer_views.get(view.value()));
+        let most = view.map_or(accessor::MOST_ZEROS, |view| view.byte_length.0 as usize);
+        (accessor.count.0 as usize).min(most)
+    };
+    let samplers = animation.channels.iter().filter_map(|channel| animation.samplers.get(channel.sampler.value()));
+    // Of a key's time and the numbers of its value, of which rotations have most.
+    let numbers =
+        samplers.map(|sampler| count(sampler.input.value()).saturating_add(count(sampler.output.value()).saturating_mul(4)));
+    budget::check_numbers(numbers.fold(0, usize::saturating_add), "the keys of all tracks")
+}
+
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
 fn check_size(tracks: &Tracks, tree: &tree::Tree, grid: &Grid) -> Result<()> {
     let stretches = tracks.keys().any(|target| matches!(target, Target::Scale(_)));
     let of_joint = if stretches { 15 } else { 6 };
     let of_tracks: usize = tracks.values().map(|track| 3 * track.components).sum();
     let numbers = (of_tracks + of_joint * tree.nodes.len()).saturating_mul(grid.frames);
-    ensure!(numbers <= MOST_NUMBERS, "{} frames are too many for this figure; --fps takes fewer", grid.frames);
-    Ok(())
+    let frames = grid.frames;
+    budget::check_numbers(numbers, "the tracks")
+        .map_err(|error| anyhow!("{frames} frames are too many for this figure: {error}; --fps takes fewer"))
 }
 
 /// A channel of the motion: its values, and its curve where that is known.
@@ -146,6 +175,7 @@ struct Channels {
     joints: Vec<crate::motion::Joint>,
     of_joints: Vec<Values>,
     scalars: Vec<scalars::Weight>,
+    warnings: Vec<String>,
 }
 
 impl Channels {

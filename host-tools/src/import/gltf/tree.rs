@@ -2,7 +2,7 @@
 //!
 //! Joints are the scene's nodes that some animation of the file moves or that some skin names, all above them, so that they stand where
 //! they stand, and all below them, which they carry. Lights, cameras and meshes that nothing moves are no part of the figure. Nodes
-//! above all others that no animation moves and that carry one node each (axes, armatures) only say where the figure stands: they
+//! above all others that no animation moves, that no skin names and that carry one node each (axes, armatures) only say where the figure stands: they
 //! are one joint with the node that they carry. All this is the same for every animation of a file.
 
 use super::file::File;
@@ -52,7 +52,7 @@ pub fn tree(file: &File) -> Result<Tree> {
         tree.nodes.push(None);
         tree.parents.push(None);
     } else {
-        let mut line = order.iter().copied().take_while(|&node| !moved[node] && children[node] == 1).peekable();
+        let mut line = order.iter().copied().take_while(|&node| !used[node] && children[node] == 1).peekable();
         while let Some(node) = line.next_if(|node| tree.under.last().copied() == above[*node]) {
             tree.under.push(node);
         }

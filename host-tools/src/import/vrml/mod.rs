@@ -42,8 +42,9 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         bail!("{}: the interpolators have no keys, so nothing moves", place());
     }
     let grid = frames(&tracks, chosen[0], options.fps).with_context(place)?;
-    let motion = motion(&world, &clocks, &tracks, &grid, &words).with_context(place)?;
+    let (motion, warning) = motion(&world, &clocks, &tracks, &grid, &words).with_context(place)?;
     let mut warnings = vec![grid.sentence.clone()];
+    warnings.extend(warning);
     warnings.extend(doubts(&world, &clocks, &chosen));
     Ok(Source { motion, unit_known: false, warnings })
 }
@@ -96,7 +97,7 @@ fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Resul
     })
 }
 
-fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words) -> Result<Motion> {
+fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words) -> Result<(Motion, Option<String>)> {
     let stands = figure::stands(world, words)?;
     // The figure is the same for every clock.
     let drives = clocks.iter().flat_map(|clock| &clock.drives);

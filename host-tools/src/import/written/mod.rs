@@ -4,14 +4,13 @@ pub mod rig;
 
 use super::Options;
 use super::text::{number_in, shown};
+use crate::budget;
 use crate::motion::Rig;
 use anyhow::{Result, anyhow};
 use std::path::Path;
 
 /// Far more than a hand writes, and little enough to sample.
 const MOST_FRAMES: f64 = 1e6;
-/// Frames times channels: 128 MB of samples.
-pub const MOST_VALUES: usize = 1 << 24;
 
 /// What is wrong, and where if it is not the line at hand.
 pub struct Wrong {
@@ -131,9 +130,7 @@ impl Header {
         if channels == 0 {
             return wrong("no joint has channels and there is no scalar, so nothing can move");
         }
-        if channels * frames > MOST_VALUES {
-            return wrong(format!("{frames} frames of {channels} channels; expected at most {MOST_VALUES} values"));
-        }
+        budget::check(frames, channels).map_err(|error| Wrong::from(error.to_string()))?;
         Ok((frames, fps))
     }
 

@@ -1,0 +1,92 @@
+//! The memory that one motion may take: a small file can ask for any number of frames.
+//!
+//! Everything that allocates by a count (importers, edits, the fit, expansion) asks [`check`] before it does.
+
+use anyhow::{Result, ensure};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Bytes that a value of a channel at a frame takes on its way from a file to a clip, with all copies that exist at a time.
+const BYTES_A_VALUE: u64 = 192;
+/// The limit without `--max-memory`.
+pub const DEFAULT: u64 = 1 << 30;
+
+static MOST_BYTES: AtomicU64 = AtomicU64::new(DEFAULT);
+
+/// Sets the limit of this process in bytes.
+pub fn set(bytes: u64) {
+    MOST_BYTES.store(bytes, Ordering::Relaxed);
+}
+
+/// The limit in bytes.
+pub fn most_bytes() -> u64 {
+    MOST_BYTES.load(Ordering::Relaxed)
+}
+
+/// Values of channels at frames within the limit.
+pub fn most_values() -> usize {
+    usize::try_from(most_bytes() / BYTES_A_VALUE).unwrap_or(usize::MAX)
+}
+
+/// Refuses a motion that takes more memory than the limit.
+pub fn check(frames: usize, channels: usize) -> Result<()> {
+    let bytes = (frames as u64).saturating_mul(channels as u64).saturating_mul(BYTES_A_VALUE);
+    ensure!(
+        bytes <= most_bytes(),
+        "{frames} frames of {channels} channels take about {}; the limit is {}, and --max-memory raises it",
+        size(bytes),
+        size(most_bytes())
+    );
+    Ok(())
+}
+
+/// Refuses `numbers` of 8 bytes each that exist beside the motion, with a copy.
+pub fn check_numbers(numbers: usize, what: &str) -> Result<()> {
+    let bytes = (numbers as u64).saturating_mul(16);
+    ensure!(
+        bytes <= most_bytes(),
+        "{what} take about {}; the limit is {}, and --max-memory raises it",
+        size(bytes),
+        size(most_bytes())
+    );
+    Ok(())
+}
+
+/// A number of bytes for a person: `1.5 GB`.
+pub fn size(bytes: u64) -> String {
+    let units = [("GB", 30), ("MB", 20), ("kB", 10)];
+    let unit = units.into_iter().find(|(_, bits)| bytes >> bits > 0);
+    match unit {
+        Some((name, bits)) => format!("{:.1} {name}", bytes as f64 / f64::from(1 << bits)),
+        None => format!("{bytes} bytes"),
+    }
+}
+
+/// Reads a size: `500MB`, `2GB`, or bytes without a unit.
+pub fn parse(text: &str) -> Result<u64, String> {
+    let units = [("gb", 30), ("mb", 20), ("kb", 10), ("g", 30), ("m", 20), ("k", 10), ("", 0)];
+    let lower = text.trim().to_ascii_lowercase();
+    let found = units.iter().find_map(|(unit, bits)| Some((lower.strip_suffix(unit)?.trim(), bits)));
+    let number = found.and_then(|(number, bits)| Some(number.parse::<f64>().ok()? * f64::from(1u32 << bits)));
+    match number {
+        Some(bytes) if bytes >= 1.0 && bytes < u64::MAX as f64 => Ok(bytes as u64),
+        _ => Err("expected a size such as 500MB or 2GB".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_and_printed() {
+        assert_eq!(["1GB", "1.5 mb", "10k", "7"].map(|text| parse(text).unwrap()), [1 << 30, 3 << 19, 10 << 10, 7]);
+        assert!(["", "0", "-1GB", "nan", "1TB"].iter().all(|text| parse(text).is_err()));
+        assert_eq!([size(3 << 29), size(999)], ["1.5 GB", "999 bytes"]);
+    }
+
+    #[test]
+    fn counts_beyond_the_limit_are_refused() {
+        assert!(check(100_000, 30).is_ok());
+        assert!(check(1 << 24, 1).is_err() && check(usize::MAX, usize::MAX).is_err());
+    }
+}

@@ -1,0 +1,196 @@
+//! What other programs must read of ours, and joints whose rotation a bound on places would not see.
+
+use super::outputs::{Folder, err};
+use pantin_tools::import::{self, Options};
+use serde_json::{Value, json};
+
+/// A figure whose arm turns by 60 degrees about one axis and ends without an End Site.
+const LEAF: &str = "HIERARCHY
+ROOT hip
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT arm
+  {
+    OFFSET 0 40 0
+    CHANNELS 1 Xrotation
+  }
+}
+MOTION
+Frames: 4
+Frame Time: 0.0333333
+0 90 0 0 0 0 0
+0 90 0 0 0 0 20
+0 90 0 0 0 0 40
+0 90 0 0 0 0 60
+";
+
+#[test]
+fn a_leaf_without_an_end_site_gets_one() {
+    let folder = Folder::new();
+    folder.put("leaf.bvh", LEAF);
+    let loaded = import::load(&folder.path("leaf.bvh"), &Options::default()).unwrap();
+    let site = loaded.motion.rig.joints.last().unwrap();
+    assert!(site.end_site && site.parent == Some(1) && site.offset == [0.0, 40.0, 0.0], "{site:?}");
+    assert_eq!(loaded.warnings.iter().filter(|warning| warning.contains("End Site")).count(), 1, "{:?}", loaded.warnings);
+    folder.done(&["convert", "leaf.bvh", "-o", "leaf.ptn", "--cm-per-unit", "1"]);
+    folder.done(&["expand", "leaf.ptn", "-o", "back.bvh"]);
+    let back = import::load(&folder.path("back.bvh"), &Options::default()).unwrap().motion;
+    let arm = back.rig.joints.iter().position(|joint| joint.name == "arm").unwrap();
+    let turned = &back.values[back.rig.first_channels()[arm]];
+    // Half a cm at 40 cm is 0.7 degrees.
+    for (frame, &angle) in turned.iter().enumerate() {
+        assert!((angle - 20.0 * frame as f64).abs() < 1.0, "frame {frame}: {angle}");
+    }
+    // An End Site of length 0 says that turning does not count.
+    folder.put("zero.bvh", LEAF.replace("CHANNELS 1 Xrotation", "CHANNELS 1 Xrotation End Site { OFFSET 0 0 0 }"));
+    let loaded = import::load(&folder.path("zero.bvh"), &Options::default()).unwrap();
+    assert_eq!(loaded.motion.rig.joints.len(), 3);
+    assert!(loaded.warnings.iter().all(|warning| !warning.contains("End Site")), "{:?}", loaded.warnings);
+}
+
+#[test]
+fn exported_bvh_has_three_rotations_a_joint() {
+    let folder = Folder::new();
+    folder.put("leaf.bvh", LEAF);
+    folder.done(&["convert", "leaf.bvh", "-o", "leaf.ptn"]);
+    folder.done(&["expand", "leaf.ptn", "-o", "back.bvh"]);
+    let text = String::from_utf8(folder.get("back.bvh")).unwrap();
+    let lines: Vec<&str> = text.lines().filter(|line| line.trim_start().starts_with("CHANNELS")).collect();
+    assert!(lines.len() == 2 && lines.iter().all(|line| line.matches("rotation").count() == 3), "{lines:?}");
+}
+
+fn json_of(bytes: &[u8]) -> Value {
+    serde_json::from_slice(&gltf::Glb::from_slice(bytes).unwrap().json).unwrap()
+}
+
+#[test]
+fn exported_glb_has_a_skin_and_a_named_animation() {
+    let folder = Folder::new();
+    folder.put("leaf.bvh", LEAF);
+    folder.done(&["convert", "leaf.bvh", "-o", "leaf.ptn"]);
+    folder.done(&["expand", "leaf.ptn", "-o", "leaf.glb"]);
+    let root = json_of(&folder.get("leaf.glb"));
+    assert_eq!(root["skins"][0]["joints"], json!([0, 1, 2]));
+    assert!(root["animations"][0]["name"].as_str().is_some_and(|name| !name.is_empty()));
+    gltf::Gltf::from_slice(&folder.get("leaf.glb")).unwrap();
+}
+
+#[test]
+fn a_clip_without_joints_is_no_bvh_and_says_so() {
+    let folder = Folder::new();
+    folder.put("a.csv", "time,a\n0,0\n0.1,1\n");
+    folder.done(&["convert", "a.csv", "-o", "a.ptn"]);
+    assert!(folder.refused(&["expand", "a.ptn", "-o", "a.bvh"]).contains("BVH"));
+    let empty = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/vectors/empty.ptn");
+    let said = folder.refused(&["expand", empty.to_str().unwrap(), "-o", "a.bvh"]);
+    assert!(said.contains("BVH"), "{said}");
+}
+
+#[test]
+fn a_table_with_equal_names_can_be_read_again() {
+    let folder = Folder::new();
+    let twins = LEAF.replace("JOINT arm", "JOINT hip");
+    folder.put("twins.bvh", twins.replace("CHANNELS 1 Xrotation", "CHANNELS 1 Xrotation JOINT time { OFFSET 0 1 0 CHANNELS 0 }"));
+    folder.done(&["convert", "twins.bvh", "-o", "twins.ptn"]);
+    folder.done(&["expand", "twins.ptn", "-o", "twins.csv"]);
+    let done = folder.done(&["convert", "twins.csv", "-o", "again.ptn"]);
+    assert!(err(&done).contains("7 channels"), "{}", err(&done));
+}
+
+/// Two joints that a skin names and nothing moves, and a mesh whose weight changes.
+fn skin_at_rest() -> String {
+    let floats = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+    let bytes = floats(&[0.0, 0.5, 1.0, 0.0, 1.0, 0.0]);
+    use base64::Engine as _;
+    let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+    json!({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2]}],
+        "nodes": [{"name": "a", "children": [1]}, {"name": "b", "translation": [0, 1, 0]}, {"name": "face", "mesh": 0}],
+        "skins": [{"joints": [0, 1]}],
+        "meshes": [{"primitives": [{"attributes": {}, "targets": [{}]}], "extras": {"targetNames": ["smile"]}}],
+        "buffers": [{"byteLength": bytes.len(), "uri": format!("data:application/octet-stream;base64,{data}")}],
+        "bufferViews": [{"buffer": 0, "byteLength": bytes.len()}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [1]},
+            {"bufferView": 0, "byteOffset": 12, "componentType": 5126, "count": 3, "type": "SCALAR"},
+        ],
+        "animations": [
+            {"name": "Smile", "samplers": [{"input": 0, "output": 1}],
+             "channels": [{"sampler": 0, "target": {"node": 2, "path": "weights"}}]},
+            {"name": "Other", "samplers": [{"input": 0, "output": 1}],
+             "channels": [{"sampler": 0, "target": {"node": 2, "path": "weights"}}]},
+        ],
+    })
+    .to_string()
+}
+
+#[test]
+fn a_skin_that_nothing_moves_keeps_its_bones() {
+    let folder = Folder::new();
+    folder.put("skin.gltf", skin_at_rest());
+    let motion = import::load(&folder.path("skin.gltf"), &Options::default()).unwrap().motion;
+    let joints: Vec<&str> = motion.rig.joints.iter().map(|joint| joint.name.as_str()).collect();
+    assert_eq!(joints, ["a", "b"]);
+    folder.done(&["convert", "skin.gltf", "-o", "skin.ptn"]);
+    folder.done(&["render", "skin.ptn", "-o", "skin.png", "--frame", "0"]);
+}
+
+#[test]
+fn an_animation_is_named_where_it_is_chosen_and_ignores_case() {
+    let folder = Folder::new();
+    folder.put("skin.gltf", skin_at_rest());
+    let said = err(&folder.done(&["convert", "skin.gltf", "-o", "skin.ptn"]));
+    assert!(said.contains("Smile") && said.contains("--animation"), "{said}");
+    let said = err(&folder.done(&["convert", "skin.gltf", "-o", "skin.ptn", "--animation", "oTHER"]));
+    assert!(!said.contains("--animation"), "{said}");
+}
+
+#[test]
+fn a_motion_is_shown_without_a_clip_and_other_commands_name_the_way_to_one() {
+    let folder = Folder::new();
+    folder.put("leaf.bvh", LEAF);
+    folder.done(&["render", "leaf.bvh", "-o", "leaf.png"]);
+    let shown = folder.done(&["play", "leaf.bvh", "--plain", "--frames", "1"]);
+    assert!(!shown.stdout.is_empty());
+    let said = folder.refused(&["info", "leaf.bvh"]);
+    assert!(said.contains("a motion, not a clip") && said.contains("pantin convert leaf.bvh -o leaf.ptn"), "{said}");
+    folder.done(&["convert", "leaf.bvh", "--rig-out", "leaf.rig"]);
+    let said = folder.refused(&["info", "leaf.ptn"]);
+    assert!(said.contains("--rig"), "{said}");
+    folder.done(&["info", "leaf.ptn", "--rig", "leaf.rig"]);
+    let listed = folder.done(&["convert", "--list", "leaf.bvh"]);
+    assert!(String::from_utf8_lossy(&listed.stdout).contains("4 frames"), "{listed:?}");
+}
+
+#[test]
+fn moments_are_frames_or_seconds() {
+    let folder = Folder::new();
+    folder.put("leaf.bvh", LEAF);
+    folder.done(&["convert", "leaf.bvh", "-o", "frames.ptn", "--from", "1", "--to", "3"]);
+    folder.done(&["convert", "leaf.bvh", "-o", "seconds.ptn", "--from", "0.033s", "--to", "0.1s"]);
+    assert!(folder.get("frames.ptn") == folder.get("seconds.ptn"));
+}
+
+#[test]
+fn completions_and_manual_pages_are_printed() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(String::from_utf8_lossy(&folder.done(&["completions", shell]).stdout).contains("convert"), "{shell}");
+    }
+    assert!(String::from_utf8_lossy(&folder.done(&["man"]).stdout).contains(".TH"));
+    assert!(String::from_utf8_lossy(&folder.done(&["man", "convert"]).stdout).contains("max\\-error"));
+}
+
+#[test]
+fn rotations_that_move_nothing_have_a_bound_of_their_own() {
+    let folder = Folder::new();
+    folder.put("zero.bvh", LEAF.replace("CHANNELS 1 Xrotation", "CHANNELS 1 Xrotation End Site { OFFSET 0 0 0 }"));
+    let said = err(&folder.done(&["convert", "zero.bvh", "-o", "zero.ptn"]));
+    assert!(said.contains("degrees off (arm"), "{said}");
+    let said = folder.refused(&["convert", "zero.bvh", "-o", "bound.ptn", "--max-rotation-error", "1"]);
+    assert!(said.contains("arm") && said.contains("--max-rotation-error"), "{said}");
+    assert!(!folder.path("bound.ptn").exists());
+    folder.put("leaf.bvh", LEAF);
+    folder.done(&["convert", "leaf.bvh", "-o", "leaf.ptn", "--max-rotation-error", "1"]);
+}
