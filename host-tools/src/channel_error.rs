@@ -2,7 +2,7 @@
 
 use crate::expand::expand_made;
 use crate::fit::bounds::{Bounds, unit};
-use crate::fit::chain::Held;
+use crate::fit::chain::Constraint;
 use crate::fit::refusal::amount;
 use crate::motion::Motion;
 use anyhow::{Result, ensure};
@@ -42,7 +42,7 @@ pub fn compare(original: &Motion, other: &Motion, bounds: &Bounds) -> Result<Rep
         for frame in 0..original.frames {
             report.drift.take(off(frame), bounds.greatest[channel], channel, frame);
             // The first two frames have no second difference: there the value counts.
-            let held = if bounds.held == Held::Positions || frame < 2 { off(frame) } else { bend(frame) };
+            let held = if bounds.constraint == Constraint::Positions || frame < 2 { off(frame) } else { bend(frame) };
             report.worst.take(held, bounds.greatest[channel], channel, frame);
         }
     }

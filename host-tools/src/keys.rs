@@ -44,7 +44,7 @@ pub fn sample_pieces(pieces: &[Piece], frames: usize) -> Vec<f64> {
 /// Values of frames `0..frames` of the curve through `keys`: frame and value, frames strictly ascending from 0, at least one.
 ///
 /// In a `cycle` the last key is where the first comes round again: the curve arrives as it leaves there, a difference
-/// of the two values (a walk's way forward) being added each time round. Otherwise splines end without curvature.
+/// of the two values (the distance of a walk cycle) being added in each cycle. Otherwise splines end without curvature.
 /// Frames after the last key keep its value.
 pub fn sample(keys: &[(usize, f64)], interpolation: Interpolation, frames: usize, cycle: bool) -> Vec<f64> {
     let cubics = cubics(keys, interpolation, cycle);

@@ -1,7 +1,7 @@
 //! The flags of `pantin convert` that bound channels instead of joints.
 
 use crate::fit::bounds::Bounds;
-use crate::fit::chain::Held;
+use crate::fit::chain::Constraint;
 use crate::motion::Motion;
 use anyhow::Result;
 
@@ -34,8 +34,8 @@ impl ChannelBound {
     /// The bounds that the flags ask for, if any.
     pub fn bounds(&self, motion: &Motion) -> Result<Option<Bounds>> {
         Ok(match (self.max_channel_error, self.max_accel_error) {
-            (Some(delta), _) => Some(Bounds::of(motion, Held::Positions, delta)),
-            (_, Some(epsilon)) => Some(Bounds::of(motion, Held::Accelerations, epsilon)),
+            (Some(delta), _) => Some(Bounds::of(motion, Constraint::Positions, delta)),
+            (_, Some(epsilon)) => Some(Bounds::of(motion, Constraint::Accelerations, epsilon)),
             _ if self.exact => Some(Bounds::exact(motion)?),
             _ => None,
         })

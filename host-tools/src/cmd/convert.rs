@@ -9,7 +9,7 @@ use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
 use crate::errors;
 use crate::fit::bounds::Bounds;
-use crate::fit::chain::Held;
+use crate::fit::chain::Constraint;
 use crate::fit::descent::Level;
 use crate::fit::parametrize::{Coding, Rotations};
 use crate::fit::{channelwise, fit_coding};
@@ -435,9 +435,9 @@ fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, codin
         "max_drift": report.drift.error,
         "drifting_channel": motion.rig.channel_name(report.drift.channel),
     });
-    let errors = match bounds.held {
-        Held::Positions => format!("error max {}", worst.sentence(motion)),
-        Held::Accelerations => {
+    let errors = match bounds.constraint {
+        Constraint::Positions => format!("error max {}", worst.sentence(motion)),
+        Constraint::Accelerations => {
             format!("error max {}, a frame^2; drift max {}", worst.sentence(motion), report.drift.sentence(motion))
         }
     };

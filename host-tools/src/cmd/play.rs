@@ -16,7 +16,7 @@ use crate::play::playback::{Playback, Room};
 use crate::play::session::{Outcome, Session};
 use crate::play::settings::Settings;
 use crate::play::terminal::Terminal;
-use crate::render::figure::Memory;
+use crate::render::figure::PlayerBuffers;
 use crate::render::palette::Palette;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
@@ -126,7 +126,7 @@ fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Re
     if clip.rig().joint_count() == 0 && !face {
         return play(&mut Meters::of(expand(clip)?));
     }
-    let (mut room, mut memory) = (Room::of(clip), Memory::of(clip));
+    let (mut room, mut memory) = (Room::of(clip), PlayerBuffers::of(clip));
     let playback = Playback::new(*clip, &mut room)?;
     if face {
         return play(&mut Face::new(*clip, playback, ahead));

@@ -8,7 +8,7 @@ const SAME: f64 = 1e-9;
 
 /// The cubics that `keys` stand for, if they give the channel's `values` at every frame.
 ///
-/// Between two keys on frames, four frames tell the cubic. Where fewer lie there, what passes between the frames is not known:
+/// Between two keys on frames, four frames determine the cubic. Where fewer lie there, what passes between the frames is not known:
 /// such a channel has no cubics, and is sampled.
 pub fn pieces(keys: &Keys, values: &[f64]) -> Option<Vec<Piece>> {
     let pieces: Vec<Piece> = match keys {

@@ -21,7 +21,7 @@ pub struct Closed {
     pub joint: String,
     /// The farthest that a channel's value was moved, one a channel, in the motion's units.
     pub moved: Vec<f64>,
-    /// Channels of the root's place that do not come back: a way forward, a round.
+    /// Channels of the root's place that do not come back: the movement of one cycle.
     pub travel: Vec<(String, f64)>,
 }
 

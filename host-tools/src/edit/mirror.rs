@@ -7,7 +7,7 @@ use super::sides::{Part, counterparts, parts};
 use crate::motion::{Joint, Keys, Kind, Motion, Rig, Scalar};
 use anyhow::{Context, Result, ensure};
 
-/// Mirrors `motion`. Refuses a figure whose names tell no sides, or whose sides are not built alike.
+/// Mirrors `motion`. Refuses a figure whose names have no sides, or whose sides are not built alike.
 pub fn mirror(motion: &Motion) -> Result<Motion> {
     let rig = &motion.rig;
     let pairs = joint_pairs(rig)?;

@@ -88,7 +88,7 @@ fn between(values: &[f64], t: f64, round: Option<f64>) -> f64 {
     b + s / 2.0 * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
 }
 
-/// By how much a channel of a loop is farther each time round: places by a way forward, angles by whole turns.
+/// By how much a channel of a loop advances in each cycle: positions by the distance travelled, angles by whole turns.
 fn round(motion: &Motion, channel: usize, kind: Kind) -> Option<f64> {
     let values = &motion.values[channel];
     let last = values.len() - 1;

@@ -95,7 +95,7 @@ fn without_common(names: &[String]) -> Vec<&str> {
     names.into_iter().map(|name| name.get(length..).unwrap_or_default()).collect()
 }
 
-/// A side that a whole word or letter tells.
+/// Finds a side that a whole word or letter names.
 fn by_word(name: &str) -> Option<Part> {
     let lower = name.to_lowercase();
     for (word, side) in [("left", Side::Left), ("right", Side::Right)] {

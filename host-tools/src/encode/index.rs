@@ -12,7 +12,7 @@ pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(clip, &mut states, &mut pose)?;
     let mut snapshots = Vec::new();
-    // One without segments has no state to tell.
+    // One without segments has no state to store.
     while clip.frames() > 2 && !player.ended() {
         player.step();
         if player.frame().is_multiple_of(spacing) {

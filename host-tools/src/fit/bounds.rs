@@ -1,6 +1,6 @@
-//! How far each channel may be off where channels are coded for themselves: the paper's delta and epsilon (METHOD 2.3).
+//! Bounds on the error of each channel, for coding channel by channel: the paper's delta and epsilon (METHOD 2.3).
 
-use super::chain::Held;
+use super::chain::Constraint;
 use super::raw;
 use crate::motion::{Kind, Motion};
 use anyhow::{Result, ensure};
@@ -10,11 +10,11 @@ pub const EXACT_DEGREES: f64 = 0.006;
 /// The same for other channels, as a part of their [`range`].
 pub const EXACT_PART: f64 = 1.0 / 65536.0;
 
-/// What channels keep to.
+/// The bounds of all channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
     /// What is bounded.
-    pub held: Held,
+    pub constraint: Constraint,
     /// Whether curves are known and tubes around them narrow.
     pub exact: bool,
     /// The greatest error of each channel in the motion's units, of accelerations in those a frame^2.
@@ -24,8 +24,8 @@ pub struct Bounds {
 impl Bounds {
     /// `error` degrees for rotations and exponential maps, `error` percent of the [`range`] for all others, but no less than the
     /// clip's own step there (2^-30 of the farthest position).
-    pub fn of(motion: &Motion, held: Held, error: f64) -> Bounds {
-        Bounds { held, exact: false, greatest: greatest(motion, error, error / 100.0) }
+    pub fn of(motion: &Motion, constraint: Constraint, error: f64) -> Bounds {
+        Bounds { constraint, exact: false, greatest: greatest(motion, error, error / 100.0) }
     }
 
     /// Of a motion whose curves are known, rounding alone: every channel that moves has keys.
@@ -38,7 +38,7 @@ impl Bounds {
                 motion.rig.channel_name(channel)
             );
         }
-        Ok(Bounds { held: Held::Positions, exact: true, greatest: greatest(motion, EXACT_DEGREES, EXACT_PART) })
+        Ok(Bounds { constraint: Constraint::Positions, exact: true, greatest: greatest(motion, EXACT_DEGREES, EXACT_PART) })
     }
 
     /// Raises bounds of positions below the step of a clip with this length exponent to that step.

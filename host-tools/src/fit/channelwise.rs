@@ -1,8 +1,8 @@
-//! Each channel for itself, without the figure, under the paper's two criteria (METHOD 2.3): (b) `|p_l(n) - p(n)| <= delta` at
+//! Codes each channel for itself, without the figure, under the paper's two criteria (METHOD 2.3): (b) `|p_l(n) - p(n)| <= delta` at
 //! every frame, or (a) `|w_l(n) - w(n)| <= epsilon`, where positions may drift.
 
 use super::bounds::{Bounds, unit};
-use super::chain::{Held, chain};
+use super::chain::{Constraint, chain};
 use super::cost::Costs;
 use super::refusal::amount;
 use super::search::{Effort, Fitted, Tube, in_grids, search};
@@ -33,14 +33,14 @@ const EFFORT: Effort = Effort { beam: 14, margin: 9.0, slopes: true };
 /// What a channel at rest costs, about.
 const REST_BITS: f64 = 0.4;
 
-/// One channel: its raw values, where the rig has it at rest, and what it keeps to.
+/// One channel: its raw values, its value at rest, and its bound.
 struct Aim<'a> {
     target: &'a [f64],
     rest: f64,
     bound: f64,
     /// Values beyond this come round from the other side; angles may.
     room: f64,
-    held: Held,
+    constraint: Constraint,
     exact: bool,
 }
 
@@ -63,7 +63,7 @@ pub fn fit_exponent(motion: &Motion, bounds: &Bounds, length_exponent: i8, progr
         let rest = f64::from(rests[channel]);
         let turns = motion.rig.channel_kinds()[channel].1.is_rotation();
         let room = if turns { f64::INFINITY } else { f64::from(i32::MAX) };
-        let aim = Aim { target: &target, rest, bound, room, held: bounds.held, exact: bounds.exact };
+        let aim = Aim { target: &target, rest, bound, room, constraint: bounds.constraint, exact: bounds.exact };
         let found = aim.best();
         progress();
         found.map_or_else(|| refuse(motion, channel, aim, scale), Ok)
@@ -92,7 +92,7 @@ fn check_range(motion: &Motion, channel: usize, target: &[f64]) -> Result<()> {
     Ok(())
 }
 
-/// Says by how much the best code would be off, and where.
+/// Reports by how much the best code would be off, and where.
 fn refuse<T>(motion: &Motion, channel: usize, mut aim: Aim<'_>, scale: f64) -> Result<T> {
     let name = motion.rig.channel_name(channel);
     let unit = unit(motion.rig.channel_kinds()[channel].1);
@@ -101,9 +101,9 @@ fn refuse<T>(motion: &Motion, channel: usize, mut aim: Aim<'_>, scale: f64) -> R
         aim.bound *= 2.0;
         let Some(found) = aim.best() else { continue };
         let off: Vec<f64> = found.path.iter().zip(aim.target).map(|(p, x)| p - x).collect();
-        let off = match aim.held {
-            Held::Positions => off,
-            Held::Accelerations => seconds(&off),
+        let off = match aim.constraint {
+            Constraint::Positions => off,
+            Constraint::Accelerations => seconds(&off),
         };
         let (frame, worst) =
             off.iter().enumerate().fold((0, 0.0), |worst, (frame, x)| if x.abs() > worst.1 { (frame, x.abs()) } else { worst });
@@ -127,7 +127,7 @@ impl Aim<'_> {
             let path = vec![self.rest; frames];
             return Some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits: REST_BITS });
         }
-        if frames >= 3 && self.held == Held::Accelerations {
+        if frames >= 3 && self.constraint == Constraint::Accelerations {
             return self.accelerations();
         }
         let tube = self.tube(self.target.to_vec(), self.room);
@@ -150,7 +150,7 @@ impl Aim<'_> {
             let start = start(near(p, position_grid(step)), near(v, velocity_grid(step)), step);
             // Nothing else bounds how the channel begins.
             let within = (start.0 - p).abs() <= self.bound && (start.0 + start.1 - p - v).abs() <= self.bound;
-            within.then(|| chain(&tube, Held::Accelerations, &[start], step, BEAM)).flatten()
+            within.then(|| chain(&tube, Constraint::Accelerations, &[start], step, BEAM)).flatten()
         })
     }
 
@@ -188,5 +188,5 @@ fn positions(tube: &Tube, step: u8, beam: usize) -> Option<Fitted> {
         let both = near(tube.x[1] - tube.x[0], v_grid).chain(near(tube.x[1] - p, v_grid));
         starts.extend(both.filter(|&v| inside(1, p + v)).map(|v| start(p, v, step)));
     }
-    chain(tube, Held::Positions, &starts, step, beam)
+    chain(tube, Constraint::Positions, &starts, step, beam)
 }

@@ -9,7 +9,7 @@ use crate::encode::clip::Start;
 use anyhow::{Result, bail};
 use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
 
-/// What may not be exceeded, and how hard to try.
+/// The bound, and the encoder's effort.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// Greatest distance of any joint or End Site from where it should be, in cm.
@@ -26,7 +26,7 @@ pub struct Plan {
     pub rotations: Rotations,
 }
 
-/// How hard to look for few bytes.
+/// Encoder effort: speed against size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Level {
@@ -117,7 +117,7 @@ impl<'m> Descent<'m> {
         Descent { figure, plan, first_part, targets, scales, rests, original, poses, values, codes, improved, seconds_a_frame }
     }
 
-    /// All passes. `progress` hears the part that is done, 0 to 1.
+    /// All passes. `progress` receives the fraction that is done, 0 to 1.
     pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
         let channels = self.targets.len();
         for pass in 0..self.plan.passes {

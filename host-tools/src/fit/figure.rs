@@ -1,4 +1,4 @@
-//! The figure over all frames: where every joint is, and how a channel moves the joints below it.
+//! Computes where every joint is at every frame, and how a channel moves the joints below it.
 
 use crate::fk::{IDENTITY, Matrix, about, apply, local, product};
 use crate::motion::{Kind, Rig};

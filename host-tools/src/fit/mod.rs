@@ -1,5 +1,6 @@
 //! From per-frame motion to segments: the fewest bits within the bound.
 
+mod beam;
 pub mod bounds;
 pub mod chain;
 pub mod channelwise;

@@ -1,8 +1,6 @@
-//! One channel: the cheapest segments within a tube, by dynamic programming over hypotheses.
-//!
-//! A hypothesis at frame t stands where a segment starts that first changes the position at t + 1 (the player reads it at
-//! t - 1). All of its numbers are the decoder's integers, held in f64, which is exact below 2^53; positions are not wrapped.
+//! Finds the cheapest W and K segments of one channel within a tube, by a beam search ([`super::beam`]).
 
+use super::beam::{Beam, Hypothesis};
 use super::cost::Costs;
 use crate::encode::clip::{Start, position_grid, velocity_grid};
 use crate::encode::segment::Segment;
@@ -55,7 +53,7 @@ pub struct Fitted {
 /// How hard to search.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Hypotheses that go on from a frame.
+    /// Hypotheses that are extended from a frame.
     pub beam: usize,
     /// Bits by which a hypothesis may be behind the best.
     pub margin: f64,
@@ -88,20 +86,6 @@ pub const SEGMENT_BITS: f64 = 2.0;
 const STATUS_BITS: f64 = 1.0;
 const STEP_BITS: f64 = 3.5;
 
-#[derive(Clone, Copy)]
-struct Hypothesis {
-    cost: f64,
-    p: f64,
-    v: f64,
-    w: f64,
-    k: f64,
-    frame: u32,
-    from: u32,
-    turn: i8,
-    mode: u8,
-    segment: Segment,
-}
-
 /// Both steps of a mode's length for one channel.
 struct Steps {
     w: [f64; 16],
@@ -115,12 +99,7 @@ struct Search<'t> {
     steps: Steps,
     costs: &'static Costs,
     effort: Effort,
-    /// Hypotheses by the frame they stand at.
-    heap: Vec<Vec<Hypothesis>>,
-    /// Those that went on, for the way back.
-    gone_on: Vec<Hypothesis>,
-    /// Least cost seen at each frame.
-    least: Vec<f64>,
+    beam: Beam<f64>,
 }
 
 /// The cheapest code of a channel with this step, if any is found.
@@ -212,45 +191,31 @@ impl<'t> Search<'t> {
             steps: Steps { w: of(0), k: of(SLOPE) },
             costs: Costs::get(),
             effort,
-            heap: vec![Vec::new(); frames],
-            gone_on: Vec::with_capacity(frames * effort.beam),
-            least: vec![f64::MAX; frames],
+            beam: Beam::new(frames, effort.beam),
         }
     }
 
     fn run(mut self) -> Option<Fitted> {
         self.begin();
         let frames = self.tube.x.len();
-        let mut cells = Vec::new();
-        let mut ranked: Vec<(f64, usize)> = Vec::new();
         let (position_cells, velocity_cells) =
             (4.0 / f64::from(step_size(self.step)), 1.0 / (0.03 * f64::from(step_size(self.step))));
+        let cell = |at: &Hypothesis<f64>| (floor(at.p * position_cells), floor(at.v * velocity_cells));
         for frame in 1..frames - 1 {
-            let here = std::mem::take(&mut self.heap[frame]);
-            let horizon = self.least[frame..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
-            let limit = (horizon + self.effort.margin).max(self.least[frame]);
-            ranked.clear();
-            ranked.extend(here.iter().enumerate().filter(|(_, h)| h.cost <= limit).map(|(index, h)| (h.cost, index)));
-            ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            cells.clear();
-            for &(_, index) in &ranked {
-                let hypothesis = here[index];
-                if cells.len() >= self.effort.beam {
-                    break;
-                }
-                let cell = (floor(hypothesis.p * position_cells), floor(hypothesis.v * velocity_cells));
-                if cells.contains(&cell) {
-                    continue;
-                }
-                cells.push(cell);
-                self.gone_on.push(hypothesis);
-                self.go_on(&hypothesis, segment_type::W);
+            let least = &self.beam.least;
+            let horizon = least[frame..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
+            let limit = (horizon + self.effort.margin).max(least[frame]);
+            for id in self.beam.choose(frame, limit, self.effort.beam, cell) {
+                let hypothesis = self.beam.extended(id);
+                self.extend(id, &hypothesis, segment_type::W);
                 if self.effort.slopes && hypothesis.mode != START_MODE {
-                    self.go_on(&hypothesis, segment_type::K);
+                    self.extend(id, &hypothesis, segment_type::K);
                 }
             }
         }
-        self.way_back()
+        let (fitted, cost) = self.beam.backtrack(self.step)?;
+        let bits = cost - self.tube.price(&fitted.path);
+        Some(Fitted { bits, ..fitted })
     }
 
     /// Starts near the target, each with its velocity.
@@ -270,18 +235,14 @@ impl<'t> Search<'t> {
                 }
                 let bits = STATUS_BITS + STEP_BITS + self.costs.start(wrap(p / pg), wrap(v / vg));
                 let cost = bits + tube.price_at(0, p) + tube.price_at(1, next);
-                let segment = Segment { mode: START_MODE, w: 0, k: 0 };
-                let start =
-                    Hypothesis { cost, p: next, v, w: 0.0, k: 0.0, frame: 1, from: u32::MAX, turn: 0, mode: START_MODE, segment };
-                self.heap[1].push(start);
+                self.beam.insert(Hypothesis::start(cost, p, v));
             }
         }
     }
 
-    /// All segments of one type that may follow.
-    fn go_on(&mut self, from: &Hypothesis, kind: u8) {
+    /// Adds all segments of one type that may follow the hypothesis `from`, whose index is `id`.
+    fn extend(&mut self, id: usize, from: &Hypothesis<f64>, kind: u8) {
         let tube = self.tube;
-        let id = self.gone_on.len() as u32 - 1;
         let start = from.frame as usize;
         let rest = tube.x.len() - 1 - start;
         let slope = kind == segment_type::K;
@@ -333,7 +294,7 @@ impl<'t> Search<'t> {
             }
             let mode = kind << 4 | index as u8;
             let mode_cost = from.cost + self.costs.mode(from.mode, mode) + SEGMENT_BITS;
-            let limit = self.least[frame] + self.effort.margin;
+            let limit = self.beam.least[frame] + self.effort.margin;
             if mode_cost > limit {
                 continue;
             }
@@ -345,8 +306,8 @@ impl<'t> Search<'t> {
             }
             let now = wrap(if slope { from.k } else { from.w });
             let which = index as u8 | if slope { SLOPE } else { 0 };
-            let context = Context::new(which, now, if slope { 0 } else { from.turn }, unit as u32);
-            let turn = if slope { from.turn } else { context.sign };
+            let context = Context::new(which, now, if slope { 0 } else { from.prev_sign }, unit as u32);
+            let prev_sign = if slope { from.prev_sign } else { context.sign };
             let (ql, qh) = (ql as i32, qh as i32);
             let nearest = |x: f64| (floor(x.clamp(-1e9, 1e9) + 0.5) as i32).clamp(ql, qh);
             let best = if s2 > 0.0 { nearest(-s1 / (s2 * unit)) } else { 0.clamp(ql, qh) };
@@ -358,49 +319,23 @@ impl<'t> Search<'t> {
                 if cost > limit {
                     continue;
                 }
-                self.least[frame] = self.least[frame].min(cost);
                 let segment = Segment { mode, w: if slope { 0 } else { q }, k: if slope { q } else { 0 } };
                 let (w, k) = if slope { (from.w, g) } else { (g, 0.0) };
-                self.heap[frame].push(Hypothesis {
+                let reached = Hypothesis {
                     cost,
                     p: base + c * g,
                     v: from.v + n * w + 0.5 * n * (n - 1.0) * k,
                     w: w + n * k,
                     k,
                     frame: frame as u32,
-                    from: id,
-                    turn,
+                    from: id as u32,
+                    prev_sign,
                     mode,
                     segment,
-                });
+                };
+                self.beam.offer(reached, self.effort.margin);
             }
         }
-    }
-
-    fn way_back(self) -> Option<Fitted> {
-        let frames = self.tube.x.len();
-        let end = self.heap[frames - 1].iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-        let mut chain = vec![*end];
-        while let Some(before) = self.gone_on.get(chain[chain.len() - 1].from as usize) {
-            chain.push(*before);
-        }
-        chain.reverse();
-        let first = chain[0];
-        let mut path = vec![first.p - first.v, first.p];
-        for pair in chain.windows(2) {
-            let (from, to) = (&pair[0], &pair[1]);
-            let slope = to.mode >> 4 == segment_type::K;
-            let w = if slope { from.w } else { to.w };
-            for m in 1..=(to.frame - from.frame) {
-                let n = f64::from(m);
-                let c2 = n * (n + 1.0) * 0.5;
-                path.push(from.p + n * from.v + c2 * w + if slope { c2 * (n - 1.0) / 3.0 * to.k } else { 0.0 });
-            }
-        }
-        let (p, v) = in_grids(path[0], first.v, self.step);
-        let start = Start::Moving { p, v, step: self.step };
-        let bits = end.cost - self.tube.price(&path);
-        Some(Fitted { start, segments: chain[1..].iter().map(|h| h.segment).collect(), path, bits })
     }
 }
 

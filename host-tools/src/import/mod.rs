@@ -15,6 +15,7 @@ pub mod fbx;
 #[path = "fbx_absent.rs"]
 pub mod fbx;
 mod files;
+mod from_transforms;
 #[cfg(feature = "gltf")]
 pub mod gltf;
 #[cfg(not(feature = "gltf"))]
@@ -24,7 +25,6 @@ mod grid;
 pub mod keyframes;
 pub mod list;
 pub mod livelink;
-mod posed;
 pub mod procedural;
 mod scalars;
 mod sheet;

@@ -85,7 +85,7 @@ fn leave_by_signals() -> Result<()> {
 
 fn restore() {
     if ENTERED.swap(false, Ordering::SeqCst) {
-        // There is nobody left to tell if this fails.
+        // Nobody is left to read an error.
         let _ = execute!(io::stdout(), ResetColor, EnableLineWrap, Show, LeaveAlternateScreen);
         let _ = disable_raw_mode();
     }

@@ -15,23 +15,23 @@ pub const MOST_PIXELS: usize = 1024;
 
 /// How lines are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
+pub enum LineStyle {
     /// One pixel wide, as the firmware draws on a display.
     Pixels,
     /// Smooth, thicker the nearer.
     Smooth,
 }
 
-/// A player's memory.
-pub struct Memory {
+/// The memory of a player.
+pub struct PlayerBuffers {
     states: Vec<ChannelState>,
     pose: Vec<i32>,
 }
 
-impl Memory {
-    /// As much as a clip needs.
-    pub fn of(clip: &Clip) -> Memory {
-        Memory { states: vec![ChannelState::default(); clip.moving()], pose: vec![0; clip.rig().channels()] }
+impl PlayerBuffers {
+    /// Allocates what `clip` needs.
+    pub fn of(clip: &Clip) -> PlayerBuffers {
+        PlayerBuffers { states: vec![ChannelState::default(); clip.moving()], pose: vec![0; clip.rig().channels()] }
     }
 
     /// A player at frame 0.
@@ -40,13 +40,13 @@ impl Memory {
     }
 }
 
-/// What is before the cameras.
+/// What the cameras see.
 enum Shown {
     Body(Vec<FigureRenderer<RIG_JOINTS>>),
     Face(Box<Cast>),
 }
 
-/// The figure of one frame after another, each view by its own camera.
+/// Draws the figure of one frame after another, each view by its own camera.
 pub struct Figure<'a, 'm> {
     player: Player<'a, 'm>,
     shown: Shown,
@@ -88,11 +88,11 @@ impl<'a, 'm> Figure<'a, 'm> {
     }
 
     /// The same as a picture. Pixels are at most [`MOST_PIXELS`] a side.
-    pub fn image(&mut self, view: usize, look: Look, palette: &Palette) -> Image {
+    pub fn image(&mut self, view: usize, look: LineStyle, palette: &Palette) -> Image {
         let [width, height] = self.size;
         match look {
-            Look::Smooth => smooth::draw(&self.scene(view), width, height, palette),
-            Look::Pixels => {
+            LineStyle::Smooth => smooth::draw(&self.scene(view), width, height, palette),
+            LineStyle::Pixels => {
                 let mut shades = Shades::new(width, height);
                 match &mut self.shown {
                     Shown::Body(stages) => shades.draw(&mut stages[view], self.player.pose(), true, palette.is_mono()),

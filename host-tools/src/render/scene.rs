@@ -122,7 +122,7 @@ impl Scene {
     }
 }
 
-/// Brightness tells the depth.
+/// Brightness depends on the depth.
 fn width(shade: u8) -> f32 {
     let near = f32::from(shade.saturating_sub(FARTHEST)) / f32::from(NEAREST - FARTHEST);
     FAR_WIDTH + (NEAR_WIDTH - FAR_WIDTH) * near

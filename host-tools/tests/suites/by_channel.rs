@@ -3,7 +3,7 @@
 use pantin_tools::channel_error::{self, Report};
 use pantin_tools::encode::{clip, rig};
 use pantin_tools::fit::bounds::{Bounds, EXACT_DEGREES};
-use pantin_tools::fit::chain::Held;
+use pantin_tools::fit::chain::Constraint;
 use pantin_tools::fit::channelwise;
 use pantin_tools::import::{self, Options};
 use pantin_tools::motion::Motion;
@@ -76,7 +76,7 @@ fn delta_holds_at_every_frame() {
     let mut before = usize::MAX;
     for delta in [0.1, 0.5, 2.0] {
         let motion = own("run");
-        let bounds = Bounds::of(&motion, Held::Positions, delta);
+        let bounds = Bounds::of(&motion, Constraint::Positions, delta);
         let (bytes, report) = coded(&motion, &bounds);
         println!("delta {delta}: {bytes} bytes, {:?}", report.worst);
         assert!(bytes < before);
@@ -87,17 +87,17 @@ fn delta_holds_at_every_frame() {
 #[test]
 fn epsilon_holds_for_second_differences_and_positions_drift() {
     let motion = own("run");
-    let bounds = Bounds::of(&motion, Held::Accelerations, 0.1);
+    let bounds = Bounds::of(&motion, Constraint::Accelerations, 0.1);
     let (bytes, report) = coded(&motion, &bounds);
     println!("epsilon 0.1: {bytes} bytes, {:?}, drift {:?}", report.worst, report.drift);
     assert!(report.drift.part > 1.0);
-    assert!(bytes < coded(&motion, &Bounds::of(&motion, Held::Accelerations, 0.01)).0);
+    assert!(bytes < coded(&motion, &Bounds::of(&motion, Constraint::Accelerations, 0.01)).0);
 }
 
 #[test]
 fn a_bound_below_what_a_clip_holds_is_refused_with_channel_frame_and_error() {
     let motion = own("run");
-    let bounds = Bounds::of(&motion, Held::Accelerations, 2e-8);
+    let bounds = Bounds::of(&motion, Constraint::Accelerations, 2e-8);
     let refused = channelwise::fit(&motion, &bounds, &|| ()).map(|coded| {
         let rig = rig::encode(&motion.rig).unwrap();
         let bytes = clip::encode(&coded, &rig, true).unwrap();
@@ -116,7 +116,7 @@ fn the_shortest_clips_work() {
         let mut motion = keyed("discrete", false);
         motion.frames = frames;
         motion.values.iter_mut().for_each(|values| values.truncate(frames));
-        for bounds in [Bounds::exact(&motion).unwrap(), Bounds::of(&motion, Held::Accelerations, 0.1)] {
+        for bounds in [Bounds::exact(&motion).unwrap(), Bounds::of(&motion, Constraint::Accelerations, 0.1)] {
             coded(&motion, &bounds);
         }
     }

@@ -3,7 +3,7 @@
 use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
 use pantin_figure::{View, surface};
 use pantin_tools::cmd::Files;
-use pantin_tools::render::figure::Memory;
+use pantin_tools::render::figure::PlayerBuffers;
 use pantin_tools::render::screen;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -186,7 +186,7 @@ fn an_svg_has_a_line_a_bone_thicker_and_brighter_the_nearer() {
 }
 
 fn drawn_bones(clip: &pantin::Clip) -> usize {
-    let mut memory = Memory::of(clip);
+    let mut memory = PlayerBuffers::of(clip);
     let mut player = memory.player(*clip).unwrap();
     let canvas = pantin_figure::Canvas { width: 300, height: 400 };
     let mut renderer = pantin_figure::FigureRenderer::<192>::of_clip(&mut player, canvas, View::default()).unwrap();
@@ -212,7 +212,7 @@ fn the_phones_picture_is_the_firmwares_own() {
     assert_eq!(size, [176, 220]);
     let files = Files::read(&folder.0.join("walk.ptn"), None).unwrap();
     let clip = files.open().unwrap();
-    let mut memory = Memory::of(&clip);
+    let mut memory = PlayerBuffers::of(&clip);
     let mut player = memory.player(clip).unwrap();
     let canvas = pantin_figure::Canvas { width: 176, height: 220 };
     let mut renderer = pantin_figure::FigureRenderer::<192>::of_clip(&mut player, canvas, View::default()).unwrap();

@@ -8,7 +8,7 @@ use crate::expand::expand;
 use crate::face::cast::is_face;
 use crate::output::{Staged, Wanted, check, commit, refuse_foreign};
 use crate::render::chart;
-use crate::render::figure::{Figure, Look, MOST_PIXELS, Memory};
+use crate::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
 use crate::render::palette::Palette;
 use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
@@ -126,7 +126,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         chart::write(&mut file, &expand(&clip)?)?;
     } else {
         let look = arguments.look(kind)?;
-        let mut memory = Memory::of(&clip);
+        let mut memory = PlayerBuffers::of(&clip);
         let sides = arguments.sides(face);
         let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views(&sides, face))?;
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
@@ -156,13 +156,13 @@ impl Arguments {
         Ok(kind)
     }
 
-    fn look(&self, kind: Kind) -> Result<Look> {
+    fn look(&self, kind: Kind) -> Result<LineStyle> {
         let [width, height] = self.size.0;
         let smooth = self.smooth || !self.pixels && width.min(height) >= SMOOTH_FROM && !self.palette.is_mono();
         ensure!(!(self.smooth && self.palette.is_mono()), "the palette mono has no colours between that make lines smooth");
         let pixels = width.max(height) <= MOST_PIXELS || kind == Kind::Svg;
         ensure!(smooth || pixels, "--size {width}x{height}: displays of pixels have at most {MOST_PIXELS} a side; --smooth more");
-        Ok(if smooth { Look::Smooth } else { Look::Pixels })
+        Ok(if smooth { LineStyle::Smooth } else { LineStyle::Pixels })
     }
 
     /// Those asked for; a face is looked in the eyes otherwise.

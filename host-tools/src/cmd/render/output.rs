@@ -3,7 +3,7 @@
 use super::{Arguments, Side};
 use crate::render::animation::{Animation, Timing};
 use crate::render::apng::{self, Apng};
-use crate::render::figure::{Figure, Look};
+use crate::render::figure::{Figure, LineStyle};
 use crate::render::gif::{self, Gif};
 use crate::render::image::Image;
 use crate::render::sheet::{Layout, arrange};
@@ -47,7 +47,7 @@ pub struct Output<'a, 'm> {
     pub sides: Vec<Side>,
     pub figure: Figure<'a, 'm>,
     pub kind: Kind,
-    pub look: Look,
+    pub look: LineStyle,
     pub frames: u32,
     pub frame_time: f64,
 }
@@ -79,7 +79,7 @@ impl Output<'_, '_> {
     }
 
     fn scale(&self, easy: usize) -> usize {
-        let own = if self.look == Look::Smooth { 1 } else { (easy / self.arguments.size.0[0]).clamp(1, MOST_ENLARGED) };
+        let own = if self.look == LineStyle::Smooth { 1 } else { (easy / self.arguments.size.0[0]).clamp(1, MOST_ENLARGED) };
         self.arguments.scale.map_or(own, usize::from)
     }
 
@@ -110,8 +110,8 @@ impl Output<'_, '_> {
         ensure_size(whole)?;
         let palette = &self.arguments.palette;
         let mut animation: Box<dyn Animation + '_> = match (self.kind, self.look) {
-            (Kind::Gif, Look::Pixels) => Box::new(Gif::new(&mut out, &palette.pixel_colours(), timing.seconds)),
-            (Kind::Gif, Look::Smooth) => Box::new(Gif::new(&mut out, &palette.smooth_colours(), timing.seconds)),
+            (Kind::Gif, LineStyle::Pixels) => Box::new(Gif::new(&mut out, &palette.pixel_colours(), timing.seconds)),
+            (Kind::Gif, LineStyle::Smooth) => Box::new(Gif::new(&mut out, &palette.smooth_colours(), timing.seconds)),
             _ => Box::new(Apng::new(&mut out, timing.frames.len() as u32, timing.seconds)),
         };
         let bar = if self.arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(timing.frames.len() as u64) };

@@ -1,39 +1,39 @@
-//! One channel in a narrow tube: the cheapest chain of segments of all four types, by a beam search in the decoder's integers.
+//! Finds the cheapest segments of all four types for one channel in a narrow tube, by a beam search ([`super::beam`]).
 //!
 //! Where a curve is known exactly, its acceleration and slope are both known: WK segments restart them, K and NONE segments
-//! carry them on. The tube holds positions (METHOD 2.3 (b)) or accelerations ((a)). As in [`super::search`], a hypothesis at frame
-//! t stands where a segment starts that first changes the position at t + 1; v is the difference from frame t - 1, and w the
-//! second difference that t + 1 has if the acceleration carries on. Numbers are the decoder's integers, held in f64.
+//! carry them on. The tube bounds positions (METHOD 2.3 (b)) or accelerations ((a)).
 
 mod numbers;
 
-pub use numbers::Held;
+pub use numbers::Constraint;
 
+use super::beam::{self, Beam};
 use super::cost::Costs;
-use super::search::{Fitted, Tube, in_grids};
-use crate::encode::clip::Start;
+use super::search::{Fitted, Tube};
 use crate::encode::segment::Segment;
 use numbers::{LARGEST, Range, Room, Sums};
 use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
 use pantin::codec::segment::{Context, SLOPE, step as number_step};
-use std::collections::HashSet;
 
-/// A place from which segments go on.
-#[derive(Clone, Copy)]
-struct Hypothesis {
+type Hypothesis = beam::Hypothesis<Cost>;
+
+#[derive(Clone, Copy, Default)]
+struct Cost {
     bits: f64,
-    /// Bits, the price of the errors so far, and what the error of the velocity will cost, about.
-    rank: f64,
+    /// Of the errors so far.
     price: f64,
-    p: f64,
-    v: f64,
-    w: f64,
-    k: f64,
-    frame: u32,
-    from: u32,
-    turn: i8,
-    mode: u8,
-    segment: Segment,
+    /// Bits, price, and about what the error of the velocity will cost.
+    rank: f64,
+}
+
+impl beam::Cost for Cost {
+    fn rank(&self) -> f64 {
+        self.rank
+    }
+
+    fn total(&self) -> f64 {
+        self.bits + self.price
+    }
 }
 
 /// Bits by which a hypothesis may be behind the best at its frame.
@@ -64,54 +64,52 @@ impl Ranges {
 
 struct Chains<'t> {
     tube: &'t Tube,
-    held: Held,
+    constraint: Constraint,
     step: u8,
     costs: &'static Costs,
     /// The target's velocity at each frame: the difference from the one before.
     velocities: Vec<f64>,
-    heap: Vec<Vec<Hypothesis>>,
-    /// Least rank at each frame.
-    least: Vec<f64>,
-    gone_on: Vec<Hypothesis>,
+    beam: Beam<Cost>,
 }
 
 /// The cheapest chain found with this step; the tube has at least 3 frames and a price at every one. `starts` lists a raw
 /// position and velocity each, with their bits.
-pub fn chain(tube: &Tube, held: Held, starts: &[(f64, f64, f64)], step: u8, beam: usize) -> Option<Fitted> {
+pub fn chain(tube: &Tube, constraint: Constraint, starts: &[(f64, f64, f64)], step: u8, width: usize) -> Option<Fitted> {
     let frames = tube.x.len();
-    let costs = Costs::get();
-    let heap = vec![Vec::new(); frames];
-    let velocities = velocities(tube, held, starts);
-    let mut chains = Chains { tube, held, step, costs, velocities, heap, least: vec![f64::MAX; frames], gone_on: Vec::new() };
+    let velocities = velocities(tube, constraint, starts);
+    let mut chains = Chains { tube, constraint, step, costs: Costs::get(), velocities, beam: Beam::new(frames, width) };
     for &(p, v, bits) in starts {
         chains.begin(p, v, bits);
     }
     for frame in 1..frames - 1 {
-        let mut here = std::mem::take(&mut chains.heap[frame]);
-        here.sort_unstable_by(|a, b| a.rank.total_cmp(&b.rank));
-        let mut cells = HashSet::new();
-        let limit = chains.least[frame] + MARGIN;
-        for hypothesis in here.into_iter().take_while(|hypothesis| hypothesis.rank <= limit) {
-            if cells.insert(chains.cell(&hypothesis)) {
-                chains.gone_on.push(hypothesis);
-                chains.go_on(&hypothesis);
-                if cells.len() >= beam {
-                    break;
-                }
-            }
+        let half = chains.half_width(frame);
+        let limit = chains.beam.least[frame] + MARGIN;
+        for id in chains.beam.choose(frame, limit, width, |at| cell(constraint, half, at)) {
+            let hypothesis = chains.beam.extended(id);
+            chains.extend(id, &hypothesis);
         }
     }
-    chains.way_back()
+    let (fitted, cost) = chains.beam.backtrack(step)?;
+    Some(Fitted { bits: cost.bits, ..fitted })
+}
+
+/// Hypotheses in one cell are as good as equal.
+fn cell(constraint: Constraint, half_width: f64, at: &Hypothesis) -> [i64; 3] {
+    let part = |x: f64, part: f64| (x / (part * half_width)).floor() as i64;
+    match constraint {
+        Constraint::Positions => [part(at.p, CELL[0]), part(at.v, CELL[1]), part(at.w, CELL[2])],
+        Constraint::Accelerations => [0, 0, part(at.w, CELL[1])],
+    }
 }
 
 /// The target's velocities; those of accelerations begin as the first start does.
-fn velocities(tube: &Tube, held: Held, starts: &[(f64, f64, f64)]) -> Vec<f64> {
+fn velocities(tube: &Tube, constraint: Constraint, starts: &[(f64, f64, f64)]) -> Vec<f64> {
     let mut v = starts.first().map_or(0.0, |start| start.1);
-    let of = |t: usize| match held {
-        Held::Positions if t == 0 => 0.0,
-        Held::Positions => tube.x[t] - tube.x[t - 1],
-        Held::Accelerations if t < 2 => v,
-        Held::Accelerations => {
+    let of = |t: usize| match constraint {
+        Constraint::Positions if t == 0 => 0.0,
+        Constraint::Positions => tube.x[t] - tube.x[t - 1],
+        Constraint::Accelerations if t < 2 => v,
+        Constraint::Accelerations => {
             v += tube.x[t];
             v
         }
@@ -128,50 +126,36 @@ impl Chains<'_> {
         0.5 * (self.tube.hi[frame] - self.tube.lo[frame])
     }
 
-    fn cell(&self, state: &Hypothesis) -> [i64; 3] {
-        let half = self.half_width(state.frame as usize);
-        let part = |x: f64, part: f64| (x / (part * half)).floor() as i64;
-        match self.held {
-            Held::Positions => [part(state.p, CELL[0]), part(state.v, CELL[1]), part(state.w, CELL[2])],
-            Held::Accelerations => [0, 0, part(state.w, CELL[1])],
-        }
-    }
-
     fn begin(&mut self, p: f64, v: f64, bits: f64) {
         let bits = bits + OPENING_BITS;
-        let segment = Segment { mode: START_MODE, w: 0, k: 0 };
-        let price = match self.held {
-            Held::Positions => (0..2).map(|f| self.tube.a[f] * (p + f as f64 * v - self.tube.x[f]).powi(2)).sum(),
-            Held::Accelerations => 0.0,
+        let price = match self.constraint {
+            Constraint::Positions => (0..2).map(|f| self.tube.a[f] * (p + f as f64 * v - self.tube.x[f]).powi(2)).sum(),
+            Constraint::Accelerations => 0.0,
         };
-        let (w, k, rank, frame, from, turn, mode) = (0.0, 0.0, 0.0, 1, u32::MAX, 0, START_MODE);
-        self.push(Hypothesis { bits, rank, price, p: p + v, v, w, k, frame, from, turn, mode, segment });
+        self.push(Hypothesis::start(Cost { bits, price, rank: 0.0 }, p, v));
     }
 
     fn push(&mut self, mut state: Hypothesis) {
         let t = state.frame as usize;
-        state.rank = state.bits + state.price;
         let error = (state.v - self.velocities[t]).abs() / self.half_width(t);
-        let (bits, ahead) = self.held.velocity_bits();
-        state.rank += bits * (1.0 + ahead * error).log2();
-        if state.rank <= self.least[t] + MARGIN {
-            self.least[t] = self.least[t].min(state.rank);
-            self.heap[t].push(state);
-        }
+        let (bits, ahead) = self.constraint.velocity_bits();
+        state.cost.rank = state.cost.bits + state.cost.price;
+        state.cost.rank += bits * (1.0 + ahead * error).log2();
+        self.beam.offer(state, MARGIN);
     }
 
     fn room(&self, from: &Hypothesis, m: usize) -> Room {
         let at = from.frame as usize + m;
-        let base = match self.held {
-            Held::Positions => from.p + m as f64 * from.v,
-            Held::Accelerations => 0.0,
+        let base = match self.constraint {
+            Constraint::Positions => from.p + m as f64 * from.v,
+            Constraint::Accelerations => 0.0,
         };
         let tube = self.tube;
-        Room { lo: tube.lo[at] - base, hi: tube.hi[at] - base, x: tube.x[at] - base, weights: self.held.weights(m) }
+        Room { lo: tube.lo[at] - base, hi: tube.hi[at] - base, x: tube.x[at] - base, weights: self.constraint.weights(m) }
     }
 
-    /// All segments that may follow.
-    fn go_on(&mut self, from: &Hypothesis) {
+    /// Adds all segments that may follow the hypothesis `from`, whose index is `id`.
+    fn extend(&mut self, id: usize, from: &Hypothesis) {
         let start = from.frame as usize;
         let rest = self.tube.x.len() - 1 - start;
         let mut ranges = Ranges { w: Range::ALL, k: Range::ALL, none: Range::ALL };
@@ -186,9 +170,9 @@ impl Chains<'_> {
                 sums.add(&next, self.tube.a[start + room.len() + 1]);
                 room.push(next);
             }
-            self.single(from, index, &sums, &ranges, length);
+            self.single(id, from, index, &sums, &ranges, length);
             if length > 1 && misses < MISSES {
-                misses = if self.both(from, index, &sums, &room) { 0 } else { misses + 1 };
+                misses = if self.both(id, from, index, &sums, &room) { 0 } else { misses + 1 };
             }
             if length == rest || (ranges.w.is_empty() && ranges.k.is_empty() && misses == MISSES) {
                 break;
@@ -197,23 +181,23 @@ impl Chains<'_> {
     }
 
     /// W, and after a first segment K and NONE.
-    fn single(&mut self, from: &Hypothesis, index: u8, sums: &Sums, ranges: &Ranges, length: usize) {
+    fn single(&mut self, id: usize, from: &Hypothesis, index: u8, sums: &Sums, ranges: &Ranges, length: usize) {
         for q in ranges.w.choices(self.unit(false, index), sums.best_w(0.0), from.w) {
-            self.segment(from, segment_type::W << 4 | index, sums, length, (q, 0));
+            self.segment(id, from, segment_type::W << 4 | index, sums, length, (q, 0));
         }
         if from.mode == START_MODE {
             return;
         }
         for q in ranges.k.choices(self.unit(true, index), sums.best_k(from.w), from.k) {
-            self.segment(from, segment_type::K << 4 | index, sums, length, (0, q));
+            self.segment(id, from, segment_type::K << 4 | index, sums, length, (0, q));
         }
         if !ranges.none.is_empty() {
-            self.segment(from, segment_type::NONE << 4 | index, sums, length, (0, 0));
+            self.segment(id, from, segment_type::NONE << 4 | index, sums, length, (0, 0));
         }
     }
 
     /// WK: slopes near the one that fits best, and for each the accelerations that stay in the tube. Whether there are any.
-    fn both(&mut self, from: &Hypothesis, index: u8, sums: &Sums, room: &[Room]) -> bool {
+    fn both(&mut self, id: usize, from: &Hypothesis, index: u8, sums: &Sums, room: &[Room]) -> bool {
         let (w_unit, k_unit) = (self.unit(false, index), self.unit(true, index));
         let near = (sums.slope() / k_unit).round();
         let mut found = false;
@@ -226,7 +210,7 @@ impl Chains<'_> {
             }
             for qw in range.choices(w_unit, sums.best_w(slope), from.w) {
                 found = true;
-                self.segment(from, segment_type::WK << 4 | index, sums, room.len(), (qw, qk as i32));
+                self.segment(id, from, segment_type::WK << 4 | index, sums, room.len(), (qw, qk as i32));
             }
         }
         found
@@ -240,19 +224,20 @@ impl Chains<'_> {
         self.costs.number(context.index, if context.flip != 0 { -number } else { number })
     }
 
-    fn segment(&mut self, from: &Hypothesis, mode: u8, sums: &Sums, length: usize, (qw, qk): (i32, i32)) {
+    #[allow(clippy::too_many_arguments)]
+    fn segment(&mut self, id: usize, from: &Hypothesis, mode: u8, sums: &Sums, length: usize, (qw, qk): (i32, i32)) {
         if mode == START_MODE {
             return;
         }
         let kind = mode >> 4;
-        let mut bits = from.bits + self.costs.mode(from.mode, mode);
-        let (mut w, mut k, mut turn) = (from.w, 0.0, from.turn);
+        let mut bits = from.cost.bits + self.costs.mode(from.mode, mode);
+        let (mut w, mut k, mut prev_sign) = (from.w, 0.0, from.prev_sign);
         let length_index = mode & 15;
         if kind == segment_type::W || kind == segment_type::WK {
             let unit = self.unit(false, mode);
-            let context = Context::new(length_index, wrap(from.w), from.turn, unit as u32);
+            let context = Context::new(length_index, wrap(from.w), from.prev_sign, unit as u32);
             bits += self.number_bits(context, qw);
-            turn = context.sign;
+            prev_sign = context.sign;
             w = f64::from(qw) * unit;
         }
         if kind == segment_type::K || kind == segment_type::WK {
@@ -261,44 +246,19 @@ impl Chains<'_> {
             k = f64::from(qk) * unit;
         }
         let n = length as f64;
-        let (w_moves, k_moves) = Held::Positions.weights(length);
+        let (w_moves, k_moves) = Constraint::Positions.weights(length);
+        let price = from.cost.price + sums.price(w, k);
         self.push(Hypothesis {
-            bits,
-            rank: 0.0,
-            price: from.price + sums.price(w, k),
+            cost: Cost { bits, price, rank: 0.0 },
             p: from.p + n * from.v + w_moves * w + k_moves * k,
             v: from.v + n * w + 0.5 * n * (n - 1.0) * k,
             w: w + n * k,
             k,
             frame: from.frame + length as u32,
-            from: self.gone_on.len() as u32 - 1,
-            turn,
+            from: id as u32,
+            prev_sign,
             mode,
             segment: Segment { mode, w: qw, k: qk },
         });
-    }
-
-    fn way_back(self) -> Option<Fitted> {
-        let cost = |h: &Hypothesis| h.bits + h.price;
-        let end = self.heap[self.tube.x.len() - 1].iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-        let mut chain = vec![*end];
-        while let Some(before) = self.gone_on.get(chain[chain.len() - 1].from as usize) {
-            chain.push(*before);
-        }
-        chain.reverse();
-        let first = chain[0];
-        let mut path = vec![first.p - first.v, first.p];
-        for pair in chain.windows(2) {
-            let (from, to) = (&pair[0], &pair[1]);
-            let n = (to.frame - from.frame) as usize;
-            let w = to.w - n as f64 * to.k;
-            path.extend((1..=n).map(|m| {
-                let (w_moves, k_moves) = Held::Positions.weights(m);
-                from.p + m as f64 * from.v + w_moves * w + k_moves * to.k
-            }));
-        }
-        let (p, v) = in_grids(path[0], first.v, self.step);
-        let start = Start::Moving { p, v, step: self.step };
-        Some(Fitted { start, segments: chain[1..].iter().map(|h| h.segment).collect(), path, bits: end.bits })
     }
 }

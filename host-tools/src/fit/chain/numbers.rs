@@ -1,30 +1,30 @@
 //! The numbers of one segment: what the tube leaves of w and k, and what they cost.
 
-/// What a tube holds.
+/// What a tube bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Held {
+pub enum Constraint {
     /// Positions at every frame.
     Positions,
     /// Second differences at frames 2 and later, `p(n) + p(n-2) - 2 p(n-1)`.
     Accelerations,
 }
 
-impl Held {
-    /// What `m` frames after a segment's start is held: by how much one of w and one of k change it.
+impl Constraint {
+    /// By how much one of w and one of k change what is bounded `m` frames after a segment's start.
     pub(super) fn weights(self, m: usize) -> (f64, f64) {
         let m = m as f64;
         match self {
-            Held::Positions => (0.5 * m * (m + 1.0), m * (m * m - 1.0) / 6.0),
-            Held::Accelerations => (1.0, m - 1.0),
+            Constraint::Positions => (0.5 * m * (m + 1.0), m * (m * m - 1.0) / 6.0),
+            Constraint::Accelerations => (1.0, m - 1.0),
         }
     }
 
     /// An error of the velocity of e half widths ranks a hypothesis lower by a log2(1 + b e) bits, for these a and b: where positions
-    /// are held, it costs as much later; where accelerations are, positions drift less for a few per cent more bits.
+    /// are bounded, it costs as much later; where accelerations are, positions drift less for a few per cent more bits.
     pub(super) fn velocity_bits(self) -> (f64, f64) {
         match self {
-            Held::Positions => (2.0, 20.0),
-            Held::Accelerations => (6.0, 1.0),
+            Constraint::Positions => (2.0, 20.0),
+            Constraint::Accelerations => (6.0, 1.0),
         }
     }
 }

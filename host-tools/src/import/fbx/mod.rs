@@ -5,9 +5,9 @@
 
 mod nodes;
 
+use super::from_transforms::{self, Affine, Node};
 use super::grid::{self, Grid};
 use super::list::Entry;
-use super::posed::{self, Affine, Node};
 use super::{Files, Options, Source, one_line};
 use crate::motion::Scalar;
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -118,9 +118,9 @@ fn grid(scene: &Scene, stack: &AnimStack, fps: Option<f64>) -> Result<Grid> {
 /// The motion, how many nodes are no part of it, and what is odd about it.
 fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motion::Motion, usize, Option<String>)> {
     let order = nodes::depth_first(scene);
-    let kept: Vec<usize> = posed::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
+    let kept: Vec<usize> = from_transforms::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
     let weights = nodes::weights(scene);
-    posed::check_size(kept.len(), weights.len(), grid)?;
+    from_transforms::check_size(kept.len(), weights.len(), grid)?;
     ensure!(
         scene.elements.len().saturating_mul(grid.frames) <= MOST_WORK,
         "{} frames are too many for this scene; --fps takes fewer",
@@ -144,7 +144,7 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motio
     let scalars = weights.iter().zip(scalars).map(|(&channel, values)| scalar(scene, channel, values)).collect::<Result<_>>()?;
     // The root of all, which is ufbx's own, is no node of the file.
     let left_out = scene.nodes.len() - 1 - kept.len().min(scene.nodes.len() - 1);
-    let (motion, warning) = posed::motion(joints, scalars, grid, 1.0, STANDS)?;
+    let (motion, warning) = from_transforms::motion(joints, scalars, grid, 1.0, STANDS)?;
     Ok((motion, left_out, warning))
 }
 

@@ -3,8 +3,8 @@
 //! Joints are the skeleton's bones and the nodes that a curve of any stack moves. Meshes that nothing moves are no part of the figure unless
 //! they carry a joint; cameras, lights and handles are part of it only where there is no body. This is the same for every stack of a file.
 
+use crate::import::from_transforms::Role;
 use crate::import::one_line;
-use crate::import::posed::Role;
 use ufbx::{AnimCurve, AnimProp, AnimStack, ElementType, Scene};
 
 /// What a stack moves.

@@ -4,7 +4,7 @@ use super::lexer::Words;
 use super::track::{Track, quaternion};
 use super::world::{World, children, is_joint, is_transform};
 use crate::fk::{Matrix, from_quaternion};
-use crate::import::posed::{Affine, Role, UNMOVED};
+use crate::import::from_transforms::{Affine, Role, UNMOVED};
 use anyhow::{Result, bail};
 use std::collections::HashMap;
 

@@ -9,9 +9,9 @@ mod parse;
 mod track;
 mod world;
 
+use super::from_transforms::{self, Node};
 use super::grid::{self, Grid};
 use super::list::Entry;
-use super::posed::{self, Node};
 use super::{Options, Source, one_line, read_bytes};
 use crate::motion::{Motion, Scalar};
 use anyhow::{Context, Result, anyhow, bail};
@@ -102,8 +102,8 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
     // The figure is the same for every clock.
     let drives = clocks.iter().flat_map(|clock| &clock.drives);
     let moved: HashSet<usize> = drives.filter(|drive| drive.place(world).is_some()).map(|drive| drive.target).collect();
-    let kept = posed::figure(&figure::roles(world, &stands, |node| moved.contains(&node)))?;
-    posed::check_size(kept.len(), tracks.scalars.len(), grid)?;
+    let kept = from_transforms::figure(&figure::roles(world, &stands, |node| moved.contains(&node)))?;
+    from_transforms::check_size(kept.len(), tracks.scalars.len(), grid)?;
     let mut joint_of = vec![None; stands.len()];
     let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
     for (joint, &stand) in kept.iter().enumerate() {
@@ -122,7 +122,7 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
         let full_scale = values.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
         (Scalar { name: name.clone(), full_scale }, values)
     };
-    posed::motion(joints, tracks.scalars.iter().map(scalar).collect(), grid, 1.0, STANDS)
+    from_transforms::motion(joints, tracks.scalars.iter().map(scalar).collect(), grid, 1.0, STANDS)
 }
 
 /// Which clock runs, and what is not used.

@@ -1,0 +1,154 @@
+//! The core of both searches for a channel's segments: hypotheses frame by frame, of which the best are extended.
+//!
+//! A hypothesis at frame t stands where a segment starts that first changes the position at t + 1 (the player reads it at
+//! t - 1). All of its numbers are the decoder's integers, held in f64, which is exact below 2^53; positions are not wrapped.
+
+use super::search::{Fitted, in_grids};
+use crate::encode::clip::Start;
+use crate::encode::segment::Segment;
+use pantin::codec::layout::START_MODE;
+use std::ops::Range;
+
+/// What a hypothesis has cost so far.
+pub trait Cost: Copy {
+    /// Ranks hypotheses at one frame: less is better.
+    fn rank(&self) -> f64;
+    /// Ranks whole codes at the last frame.
+    fn total(&self) -> f64;
+}
+
+impl Cost for f64 {
+    #[inline(always)]
+    fn rank(&self) -> f64 {
+        *self
+    }
+
+    #[inline(always)]
+    fn total(&self) -> f64 {
+        *self
+    }
+}
+
+/// A place from which segments extend.
+#[derive(Clone, Copy)]
+pub struct Hypothesis<C> {
+    pub cost: C,
+    /// Position.
+    pub p: f64,
+    /// The difference from the frame before.
+    pub v: f64,
+    /// The second difference of the next frame, if the acceleration carries on.
+    pub w: f64,
+    /// Slope.
+    pub k: f64,
+    pub frame: u32,
+    /// Index of the extended hypothesis before it.
+    pub from: u32,
+    /// The decoder's `prev_sign`.
+    pub prev_sign: i8,
+    pub mode: u8,
+    /// The segment that leads here.
+    pub segment: Segment,
+}
+
+impl<C> Hypothesis<C> {
+    /// The hypothesis that a start leads to: position `p` at frame 0 and `p + v` at frame 1.
+    pub fn start(cost: C, p: f64, v: f64) -> Self {
+        let segment = Segment { mode: START_MODE, w: 0, k: 0 };
+        Hypothesis { cost, p: p + v, v, w: 0.0, k: 0.0, frame: 1, from: u32::MAX, prev_sign: 0, mode: START_MODE, segment }
+    }
+}
+
+/// The hypotheses of one search.
+pub struct Beam<C> {
+    /// Hypotheses by the frame they stand at.
+    heap: Vec<Vec<Hypothesis<C>>>,
+    /// Those that were extended, to backtrack by.
+    extended: Vec<Hypothesis<C>>,
+    /// Least rank seen at each frame.
+    pub least: Vec<f64>,
+    ranked: Vec<(f64, usize)>,
+}
+
+impl<C: Cost> Beam<C> {
+    /// No hypotheses yet, for a channel of this many frames. About `width` are extended at each.
+    pub fn new(frames: usize, width: usize) -> Self {
+        let extended = Vec::with_capacity(frames * width);
+        Beam { heap: vec![Vec::new(); frames], extended, least: vec![f64::MAX; frames], ranked: Vec::new() }
+    }
+
+    /// Adds a hypothesis, whatever it costs and without an effect on [`Beam::least`].
+    #[inline]
+    pub fn insert(&mut self, hypothesis: Hypothesis<C>) {
+        self.heap[hypothesis.frame as usize].push(hypothesis);
+    }
+
+    /// Adds a hypothesis if it is within `margin` of the best at its frame.
+    #[inline]
+    pub fn offer(&mut self, hypothesis: Hypothesis<C>, margin: f64) {
+        let (least, rank) = (&mut self.least[hypothesis.frame as usize], hypothesis.cost.rank());
+        if rank <= *least + margin {
+            *least = least.min(rank);
+            self.insert(hypothesis);
+        }
+    }
+
+    /// Chooses up to `width` hypotheses of a frame to extend: the best within `limit`, and of those in one cell the best. Returns
+    /// their indices for [`Beam::extended`].
+    pub fn choose<K: PartialEq>(
+        &mut self,
+        frame: usize,
+        limit: f64,
+        width: usize,
+        cell: impl Fn(&Hypothesis<C>) -> K,
+    ) -> Range<usize> {
+        let here = std::mem::take(&mut self.heap[frame]);
+        let within = here.iter().enumerate().filter(|(_, hypothesis)| hypothesis.cost.rank() <= limit);
+        self.ranked.clear();
+        self.ranked.extend(within.map(|(index, hypothesis)| (hypothesis.cost.rank(), index)));
+        self.ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let first = self.extended.len();
+        let mut cells = Vec::with_capacity(width);
+        for &(_, index) in &self.ranked {
+            if cells.len() >= width {
+                break;
+            }
+            let cell = cell(&here[index]);
+            if !cells.contains(&cell) {
+                cells.push(cell);
+                self.extended.push(here[index]);
+            }
+        }
+        first..self.extended.len()
+    }
+
+    /// A hypothesis that was chosen.
+    pub fn extended(&self, index: usize) -> Hypothesis<C> {
+        self.extended[index]
+    }
+
+    /// The code that ends cheapest at the last frame, and what it costs; `None` if no hypothesis reaches that frame. Its bits are
+    /// for the caller to fill in.
+    pub fn backtrack(self, step: u8) -> Option<(Fitted, C)> {
+        let end = self.heap.last()?.iter().min_by(|a, b| a.cost.total().total_cmp(&b.cost.total()))?;
+        let mut chain = vec![*end];
+        while let Some(before) = self.extended.get(chain[chain.len() - 1].from as usize) {
+            chain.push(*before);
+        }
+        chain.reverse();
+        let first = chain[0];
+        let mut path = vec![first.p - first.v, first.p];
+        for pair in chain.windows(2) {
+            let (from, to) = (&pair[0], &pair[1]);
+            let frames = to.frame - from.frame;
+            let w = to.w - f64::from(frames) * to.k;
+            path.extend((1..=frames).map(|m| {
+                let n = f64::from(m);
+                from.p + n * from.v + 0.5 * n * (n + 1.0) * w + n * (n * n - 1.0) / 6.0 * to.k
+            }));
+        }
+        let (p, v) = in_grids(path[0], first.v, step);
+        let segments = chain[1..].iter().map(|hypothesis| hypothesis.segment).collect();
+        Some((Fitted { start: Start::Moving { p, v, step }, segments, path, bits: 0.0 }, end.cost))
+    }
+}
