@@ -11,6 +11,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use xtask::core_library::Core;
+use xtask::test_programs::HOST_TOOL;
 
 use crate::{paths, setup};
 
@@ -94,6 +95,9 @@ impl Firmware {
 /// Builds the host tool and returns its path. It uses the tests' profile, which is optimized, so that a fresh clone
 /// compiles the tool once.
 pub fn host_tool() -> Result<PathBuf> {
+    if let Some(tool) = std::env::var_os(HOST_TOOL) {
+        return Ok(tool.into());
+    }
     cargo(&Build {
         workspace: paths::root(),
         arguments: ["--package", "pantin-tools", "--bin", "pantin"].map(OsString::from).into(),

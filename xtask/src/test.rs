@@ -20,7 +20,7 @@ use xtask::browser::Browser;
 use xtask::core_library::Core;
 use xtask::packages::{self, Package};
 use xtask::steps::Steps;
-use xtask::test_programs::{self, TestProgram};
+use xtask::test_programs::{self, HOST_TOOL, TestProgram};
 use xtask::{paths, setup};
 
 use crate::publish;
@@ -136,7 +136,7 @@ fn web_lints(steps: &Steps, modules: &[Package]) {
 /// A test program as cargo would run it.
 fn tests(program: &TestProgram, host_only: bool) -> Command {
     let mut command = Command::new(&program.file);
-    command.current_dir(&program.folder);
+    command.current_dir(&program.folder).envs(program.host_tool.iter().map(|tool| (HOST_TOOL, tool)));
     if host_only {
         command.env(setup::HOST_ONLY, "1");
     }

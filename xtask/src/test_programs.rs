@@ -8,6 +8,9 @@ use serde_json::Value;
 
 use crate::paths;
 
+/// The variable that names the host tool for the tests: by itself it would be compiled again, with its own packages' features only.
+pub const HOST_TOOL: &str = "PANTIN_TOOL";
+
 /// A test program.
 pub struct TestProgram {
     /// Its package.
@@ -18,6 +21,8 @@ pub struct TestProgram {
     pub file: PathBuf,
     /// Its package's folder, in which it runs.
     pub folder: PathBuf,
+    /// The host tool, which is built with the tests.
+    pub host_tool: Option<PathBuf>,
 }
 
 /// Builds all of them, with the features of all packages together: what they share is compiled once.
@@ -27,12 +32,17 @@ pub fn build() -> Result<Vec<TestProgram>> {
     let output = cargo.current_dir(paths::root()).stderr(Stdio::inherit()).output().context("cannot start cargo")?;
     ensure!(output.status.success(), "cargo test --workspace --no-run");
     let messages = String::from_utf8_lossy(&output.stdout);
-    let programs = messages.lines().map(program).collect::<Result<Vec<_>>>()?;
+    let messages = messages.lines().map(serde_json::from_str).collect::<Result<Vec<Value>, _>>();
+    let messages = messages.context("cargo's messages are not JSON")?;
+    let tool = messages.iter().find(|message| {
+        message["target"]["name"] == "pantin" && message["target"]["kind"][0] == "bin" && message["profile"]["test"] == false
+    });
+    let tool = tool.and_then(|message| message["executable"].as_str()).map(PathBuf::from);
+    let programs = messages.iter().map(|message| program(message, &tool)).collect::<Result<Vec<_>>>()?;
     Ok(programs.into_iter().flatten().collect())
 }
 
-fn program(message: &str) -> Result<Option<TestProgram>> {
-    let message: Value = serde_json::from_str(message).context("cargo's messages are not JSON")?;
+fn program(message: &Value, host_tool: &Option<PathBuf>) -> Result<Option<TestProgram>> {
     let (Some(file), Some(true)) = (message["executable"].as_str(), message["profile"]["test"].as_bool()) else {
         return Ok(None);
     };
@@ -43,5 +53,5 @@ fn program(message: &str) -> Result<Option<TestProgram>> {
     let (place, rest) = package.rsplit_once('#').unwrap_or(("", package));
     let package = rest.split_once('@').map_or_else(|| place.rsplit('/').next().unwrap_or(rest), |(name, _)| name);
     let name = message["target"]["name"].as_str().context("cargo names no target")?;
-    Ok(Some(TestProgram { package: package.into(), name: name.into(), file: file.into(), folder }))
+    Ok(Some(TestProgram { package: package.into(), name: name.into(), file: file.into(), folder, host_tool: host_tool.clone() }))
 }
