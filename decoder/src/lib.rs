@@ -50,5 +50,5 @@ pub use room::Room;
 pub use scalar::{Scalar, ScalarRef, Scalars};
 pub use snapshots::SnapshotPos;
 pub use stream::{Progress, Stream};
-pub use turn::{Axis, EulerOrder, Turn};
+pub use turn::{Axis, EulerOrder, Matrix, Turn};
 pub use units::{Angle, Component, Fraction};

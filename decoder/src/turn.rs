@@ -91,6 +91,48 @@ pub enum Turn {
     Quaternion([Component; 4]),
 }
 
+/// A rotation matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Matrix {
+    /// Row by row: elements of -1 to 1. The columns are the images of the axes.
+    pub rows: [[Component; 3]; 3],
+}
+
+impl Matrix {
+    /// No rotation.
+    pub const IDENTITY: Matrix = {
+        let (one, zero) = (Component::from_bits(ONE), Component::from_bits(0));
+        Matrix { rows: [[one, zero, zero], [zero, one, zero], [zero, zero, one]] }
+    };
+
+    /// The Euler angles in an order, as [`Turn::euler`] gives them.
+    pub fn euler(&self, order: EulerOrder) -> [Angle; 3] {
+        euler_of(&self.rows, order)
+    }
+
+    /// The image of a vector in any unit, each component below 2^31 in magnitude.
+    pub fn apply(&self, vector: [i32; 3]) -> [i64; 3] {
+        let [x, y, z] = vector;
+        // Three products below 2^61.
+        self.rows.map(|[a, b, c]| (times(a.to_bits(), x) + times(b.to_bits(), y) + times(c.to_bits(), z) + (1 << 29)) >> 30)
+    }
+
+    /// This rotation, then `local` about the axes that it has turned: a joint's rotation in the world from its parent's.
+    pub fn then(&self, local: &Matrix) -> Matrix {
+        let [x, y, z] = &local.rows;
+        let element = |[a, b, c]: [Component; 3], (x, y, z): (Component, Component, Component)| {
+            // Rows and columns are unit vectors: the sum is at most 2^60.
+            let bits = |p: Component, q: Component| times(p.to_bits(), q.to_bits());
+            Component::from_bits(narrow(bits(a, x) + bits(b, y) + bits(c, z)))
+        };
+        Matrix {
+            rows: self.rows.map(|row| {
+                [element(row, (x[0], y[0], z[0])), element(row, (x[1], y[1], z[1])), element(row, (x[2], y[2], z[2]))]
+            }),
+        }
+    }
+}
+
 /// One in Q30.
 const ONE: i32 = 1 << 30;
 
@@ -107,7 +149,7 @@ impl Turn {
     pub fn euler(self, order: EulerOrder) -> [Angle; 3] {
         match self {
             Turn::Euler { order: own, angles } if own == order => angles,
-            _ => euler_of(&self.matrix(), order),
+            _ => self.matrix().euler(order),
         }
     }
 
@@ -116,8 +158,8 @@ impl Turn {
         self.unit().map(Component::from_bits)
     }
 
-    /// The rotation matrix, row by row: elements of -1 to 1, within 4e-7.
-    pub fn matrix(self) -> [[Component; 3]; 3] {
+    /// The rotation matrix; elements are within 4e-7.
+    pub fn matrix(self) -> Matrix {
         matrix_of(self.unit())
     }
 
@@ -189,15 +231,29 @@ pub(crate) fn normalized(q: [i32; 4]) -> Unit {
     q.map(|x| (x << 30).checked_div(length).unwrap_or(0) as i32)
 }
 
-fn matrix_of([w, x, y, z]: Unit) -> [[Component; 3]; 3] {
+fn matrix_of([w, x, y, z]: Unit) -> Matrix {
     // Twice the sum of two products of components of a unit quaternion is at most 1: Q60 to Q30 times two.
     let twice = |q60: i64| ((q60 + (1 << 28)) >> 29) as i32;
     let element = |diagonal: i32, q60: i64| Component::from_bits(diagonal.wrapping_add(twice(q60)));
-    [
-        [element(ONE, -times(y, y) - times(z, z)), element(0, times(x, y) - times(w, z)), element(0, times(x, z) + times(w, y))],
-        [element(0, times(x, y) + times(w, z)), element(ONE, -times(x, x) - times(z, z)), element(0, times(y, z) - times(w, x))],
-        [element(0, times(x, z) - times(w, y)), element(0, times(y, z) + times(w, x)), element(ONE, -times(x, x) - times(y, y))],
-    ]
+    Matrix {
+        rows: [
+            [
+                element(ONE, -times(y, y) - times(z, z)),
+                element(0, times(x, y) - times(w, z)),
+                element(0, times(x, z) + times(w, y)),
+            ],
+            [
+                element(0, times(x, y) + times(w, z)),
+                element(ONE, -times(x, x) - times(z, z)),
+                element(0, times(y, z) - times(w, x)),
+            ],
+            [
+                element(0, times(x, z) - times(w, y)),
+                element(0, times(y, z) + times(w, x)),
+                element(ONE, -times(x, x) - times(y, y)),
+            ],
+        ],
+    }
 }
 
 /// The Euler angles of a rotation matrix: Ri(a) Rj(b) Rk(c).
@@ -276,8 +332,8 @@ mod tests {
         }
     }
 
-    fn of_fixed(matrix: [[Component; 3]; 3]) -> Matrix {
-        matrix.map(|row| row.map(|x| x.to_num::<f64>()))
+    fn of_fixed(matrix: super::Matrix) -> Matrix {
+        matrix.rows.map(|row| row.map(|x| x.to_num::<f64>()))
     }
 
     #[test]

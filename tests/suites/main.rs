@@ -2,6 +2,7 @@
 
 mod conformance;
 mod display;
+mod examples;
 mod face_display;
 mod hostile;
 mod icount;

@@ -22,6 +22,7 @@ pub mod rotation_float;
 pub mod skeleton;
 pub mod surface;
 pub mod trig;
+mod world;
 
 pub use camera::{Canvas, Track, View};
 pub use draw::{DrawError, DrawStyle};
@@ -29,6 +30,7 @@ pub use ink::Ink;
 pub use joint_info::JointInfo;
 pub use renderer::FigureRenderer;
 pub use skeleton::{Detail, Skeleton};
+pub use world::{ChainError, JointChain, WorldJoint};
 
 /// Most joints of a rig that a figure is made of, End Sites included, before fingers and the like are left out.
 pub const RIG_JOINTS: usize = 192;

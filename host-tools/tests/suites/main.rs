@@ -2,6 +2,7 @@
 
 mod amc_bad_input;
 mod amc_real_clips;
+mod angles;
 mod batch_command;
 mod bvh_bad_input;
 mod bvh_real_clips;
