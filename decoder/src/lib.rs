@@ -1,4 +1,49 @@
-//! Plays recorded character motion on small machines: three integer additions a channel a frame.
+//! Plays recorded character motion on small machines: three integer additions per moving channel and frame, without heap,
+//! float, `unsafe` or panic.
+//!
+//! `pantin convert walk.bvh -o walk.ptn` makes a clip; this crate plays it, and `pantin-figure` draws it:
+//!
+//! ```
+//! use pantin::{Clip, Clock, EulerOrder, Room};
+//!
+//! static WALK: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/walk.ptn"));
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let clip = Clip::new_checked(WALK)?;                // checks every byte once: afterwards playing cannot fail
+//! let mut room = Room::<96, 144>::new();              // memory for 144 channels, 96 of them moving; can be a `static`
+//! let mut player = room.player(clip)?;
+//! let knee = clip.find("left-shin").ok_or("no such joint")?;
+//! let mut clock = Clock::new(&clip);
+//! for _ in 0..100 {
+//!     let [x, _, _] = player.turn(&knee)?.euler(EulerOrder::XYZ);
+//!     println!("frame {}: the knee bends by {} degrees", player.frame(), x.degrees());
+//!     player.advance(&mut clock, 16_667);             // 60 pictures a second, whatever the clip's rate
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Which type do I want?
+//!
+//! | to | use |
+//! |---|---|
+//! | open a file in flash | [`Clip::new_checked`] |
+//! | play it frame by frame, seek, rewind | [`Player`], in the memory of a [`Room`] |
+//! | play it by time, at any display rate and speed | [`Clock`] with [`Player::advance`]; [`Player::interpolate`] between frames |
+//! | read a joint's angles | [`Clip::find`], [`Player::turn`], [`Turn::euler`] |
+//! | read a morph weight or a servo channel by name | [`Clip::find_scalar`], [`Player::scalar`] |
+//! | know where a joint is in the world | `pantin_figure::JointChain` |
+//! | draw a figure or a face | `pantin_figure::FigureRenderer`, `pantin_face` |
+//! | step back, or seek often | [`SeekCache`] with [`Player::step_back`] and [`Player::seek_with`] |
+//! | play bytes as they arrive and forget them | [`Stream`]; [`RigCollector`] if the rig arrives too |
+//! | play a file while its buffer fills | [`PartialClip`]; [`PausedClip`] if the buffer moves as it grows |
+//! | play clips in turn | one [`Room`]: a player gives it back when it goes out of scope |
+//! | play several at once | a [`Room`] each |
+//! | mix poses, or draw one clip with another's renderer | compare their [`Form`] first: [`Form::check`] |
+//! | write an encoder | [`codec`] and [`format`](mod@format) |
+//!
+//! Angles, quaternion components and fractions are types of [`units`]. Sizes for [`Room`] are printed by `pantin info`, and
+//! `pantin expand -o clip.rs` writes them as constants.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

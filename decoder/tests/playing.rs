@@ -6,8 +6,8 @@ use pantin::{
     WrongForm,
 };
 
-static WALK: &[u8] = include_bytes!("../../motions/walk.ptn");
-static RUN: &[u8] = include_bytes!("../../motions/run.ptn");
+static WALK: &[u8] = include_bytes!("walk.ptn");
+static RUN: &[u8] = include_bytes!("run.ptn");
 
 type Memories = Room<96, 144>;
 
@@ -223,4 +223,15 @@ fn a_joint_of_another_rig_is_refused_by_name() {
     assert_eq!(player.turn(&joint), Err(WrongForm::Rig));
     assert_eq!(walk.form().check(&walk.form()), Ok(()));
     assert!(walk.find("no such joint").is_none() && walk.find("").is_none());
+}
+
+/// The clips beside this file are those of `motions/`: the package holds what its examples and tests read.
+#[test]
+fn the_packages_clips_are_the_repositorys() {
+    let motions = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions");
+    if !motions.exists() {
+        return println!("skipped: the package stands alone");
+    }
+    assert_eq!(std::fs::read(motions.join("walk.ptn")).unwrap(), WALK);
+    assert_eq!(std::fs::read(motions.join("run.ptn")).unwrap(), RUN);
 }
