@@ -48,8 +48,9 @@ fn compare(printed: &str, clip: &Path, joint: &str) {
     assert!(clip.is_exponential(index), "{joint} is not coded as an exponential map");
     let truth = pantin_tools::expand::expand(&clip).unwrap();
     let first = truth.rig.first_channels()[index];
-    let channels: Vec<usize> =
-        (0..3).map(|n| truth.rig.joints[index].kinds.iter().enumerate().filter(|(_, kind)| kind.is_rotation()).nth(n).unwrap().0).collect();
+    let channels: Vec<usize> = (0..3)
+        .map(|n| truth.rig.joints[index].kinds.iter().enumerate().filter(|(_, kind)| kind.is_rotation()).nth(n).unwrap().0)
+        .collect();
     let mut widest = [f64::MAX, f64::MIN];
     let mut frames = 0;
     for (frame, line) in printed.lines().enumerate() {

@@ -1,7 +1,43 @@
-//! From a pose to a wireframe figure: fixed-point forward kinematics, a perspective camera, lines with depth, and their
-//! drawing into any `embedded-graphics` target. No heap, no float, no product wider than 32 bits a frame.
+//! Draws a pose as a wireframe figure: fixed-point forward kinematics, a perspective camera, lines with depth, and their
+//! drawing into any `embedded-graphics` target. No heap, no float; no product is wider than 32 bits in a frame.
 //!
-//! [`FigureRenderer`] is the whole way; firmware, host tool and browser call the same code and get the same pixels.
+//! Firmware, host tool and browser call the same code and get the same pixels.
+//!
+//! ```
+//! use embedded_graphics::mock_display::MockDisplay;
+//! use embedded_graphics::pixelcolor::BinaryColor;
+//! use pantin::{Clip, Room};
+//! use pantin_figure::{Canvas, FigureRenderer, View};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let walk: &'static [u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../motions/walk.ptn"));
+//! let mut room = Room::<96, 144>::new();
+//! let mut player = room.player(Clip::new_checked(walk)?)?;
+//! // The camera takes in the whole clip, as large as the canvas allows.
+//! let canvas = Canvas { width: 64, height: 64 };
+//! let mut figure = FigureRenderer::<36>::of_clip(&mut player, canvas, View::default())?;
+//! let mut display = MockDisplay::<BinaryColor>::new();
+//! # display.set_allow_out_of_bounds_drawing(true);
+//! # display.set_allow_overdraw(true);
+//! figure.draw(player.pose(), &mut display)?;
+//! # assert!(display.affected_area().size.height > 40);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Which type do I want?
+//!
+//! | to | use |
+//! |---|---|
+//! | draw a clip into a display driver | [`FigureRenderer::of_clip`], then [`FigureRenderer::draw`] for each frame |
+//! | do so with little stack | [`FigureRenderer::empty`], [`FigureRenderer::set_up`] and [`FigureRenderer::aim`] |
+//! | draw several figures side by side | a renderer each, [`FigureRenderer::shift`] and [`FigureRenderer::draw_over`] |
+//! | look from elsewhere | [`View`] with [`FigureRenderer::aim`] |
+//! | draw lines yourself | [`FigureRenderer::lines`] |
+//! | draw faster into memory of a display's own layout | [`surface::Framebuffer`] with [`FigureRenderer::draw_on`] |
+//! | know where a joint is in the world | [`JointChain`] |
+//!
+//! A renderer takes poses of the form of its clip ([`pantin::Form`]); others are refused by name ([`pantin::WrongForm`]).
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
