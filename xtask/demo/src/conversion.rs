@@ -7,7 +7,6 @@ use anyhow::{Context, Result, ensure};
 use harness::build;
 use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::fit;
-use pantin_tools::output::write_whole;
 use pantin_tools::verify::verify;
 use pantin_tools::{encode, errors, import};
 use serde_json::Value;
@@ -55,7 +54,7 @@ fn by_library(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
     let coded = fit(&motion, Level::Default.plan(ERROR_CM), part, &mut |_| ())?;
     let bytes = encode::clip::encode(&coded, &rig, false)?;
     let report = verify(&bytes, &rig, &motion, ERROR_CM, part)?;
-    write_whole(path, &bytes)?;
+    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(errors::to_json(&report, &motion).into())
 }
 

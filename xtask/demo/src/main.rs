@@ -10,7 +10,7 @@ mod conversion;
 mod report;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -18,7 +18,6 @@ use conversion::Bounds;
 use harness::display::Picture;
 use harness::{paths, pictures, qemu, setup};
 use lexopt::{Arg, ValueExt};
-use pantin_tools::output::write_whole;
 use report::Report;
 use xtask::steps::say;
 
@@ -128,11 +127,11 @@ impl Demo {
     }
 
     fn write_pictures(&self, shown: &[Picture], rate: f64) -> Result<()> {
-        write_whole(&self.out.join("demo.gif"), &pictures::animation(shown, rate)?)?;
+        write(&self.out.join("demo.gif"), &pictures::animation(shown, rate)?)?;
         let chosen = SHEET.min(shown.len());
         let frames = (0..chosen).map(|index| index * shown.len() / chosen);
         let labelled: Vec<_> = frames.map(|frame| (format!("frame {frame}"), &shown[frame])).collect();
-        write_whole(&self.out.join("demo-sheet.png"), &pictures::sheet(&labelled, COLUMNS)?)
+        write(&self.out.join("demo-sheet.png"), &pictures::sheet(&labelled, COLUMNS)?)
     }
 }
 
@@ -144,4 +143,8 @@ fn simulating(arguments: &[OsString]) -> Result<()> {
     cargo.args(["--profile", "demo", "--package", "xtask-demo", "--features", "simulator", "--"]).args(arguments);
     ensure!(cargo.status().context("cannot start cargo")?.success(), "the simulator failed, see above");
     Ok(())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
 }
