@@ -1,4 +1,5 @@
-//! User commands, given by a button or by a letter over the serial line.
+//! User commands, given by a button or by a letter over the serial line. `view_state.rs` carries them out; a board's buttons are in
+//! `firmware/boards/common/src/buttons.rs`.
 
 /// A user's command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
