@@ -6,7 +6,7 @@ use fixed::types::{I16F16, U0F16};
 /// Turns elapsed time into frames of a clip, at any display rate and at speeds of -16 to 16, without drift: it counts in
 /// 2^-16 ns.
 ///
-/// A loop continues for ever. Another clip stops after its last frame, or backwards before frame 0, and [`Clock::ended`] says so.
+/// A loop continues for ever (`ended` never becomes true), each time from its first frame's place. Another clip stops after its last frame, or backwards before frame 0, and [`Clock::ended`] says so.
 ///
 /// ```
 /// # fn show(_: pantin::Pose) {}

@@ -15,8 +15,8 @@
 //! let knee = clip.find("left-shin").ok_or("no such joint")?;
 //! let mut clock = Clock::new(&clip);
 //! for _ in 0..100 {
-//!     let [x, _, _] = player.turn(&knee)?.euler(EulerOrder::XYZ);
-//!     println!("frame {}: the knee bends by {} degrees", player.frame(), x.degrees());
+//!     let [x, y, z] = player.turn(&knee)?.euler(EulerOrder::XYZ);
+//!     println!("frame {}: {} {} {} degrees", player.frame(), x.degrees(), y.degrees(), z.degrees());
 //!     player.advance(&mut clock, 16_667);             // 60 pictures a second, whatever the clip's rate
 //! }
 //! # Ok(())
@@ -30,7 +30,9 @@
 //! | open a file in flash | [`Clip::new_checked`] |
 //! | play it frame by frame, seek, rewind | [`Player`], in the memory of a [`Room`] |
 //! | play it by time, at any display rate and speed | [`Clock`] with [`Player::advance`]; [`Player::interpolate`] between frames |
-//! | read a joint's angles | [`Clip::find`], [`Player::turn`], [`Turn::euler`] |
+//! | list a clip's joints | [`Rig::joints`] of [`Clip::rig`] |
+//! | read a joint's angles | [`Clip::find`], [`Player::turn`], then [`Turn::euler`] in any order ([`JointRef::euler_order`] is the source's) |
+//! | know how far a hinge bends, wherever its axis lies | [`Turn::angle`] |
 //! | read a morph weight or a servo channel by name | [`Clip::find_scalar`], [`Player::scalar`] |
 //! | know where a joint is in the world | `pantin_figure::JointChain` |
 //! | draw a figure or a face | `pantin_figure::FigureRenderer`, `pantin_face` |
@@ -41,6 +43,8 @@
 //! | play several at once | a [`Room`] each |
 //! | mix poses, or draw one clip with another's renderer | compare their [`Form`] first: [`Form::check`] |
 //! | write an encoder | [`codec`] and [`format`](mod@format) |
+//!
+//! A loop starts again where it started: its root position jumps back. A place beyond the loop is the program's sum.
 //!
 //! Angles, quaternion components and fractions are types of [`units`]. Sizes for [`Room`] are printed by `pantin info`, and
 //! `pantin expand -o clip.rs` writes them as constants.

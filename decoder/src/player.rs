@@ -156,7 +156,7 @@ impl<'a, 'm> Player<'a, 'm> {
         self.position.frame
     }
 
-    /// Whether this is the last frame: the next step goes to frame 0.
+    /// Whether this is the last frame, of a loop too: the next step goes to frame 0. ([`crate::Clock::ended`] is about time.)
     pub fn ended(&self) -> bool {
         self.position.frame + 1 >= self.clip.frames()
     }

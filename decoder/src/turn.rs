@@ -35,7 +35,7 @@ impl Axis {
 
 /// The order of three Euler angles: each turns about the axis as rotated by those before it, as a BVH file lists them.
 ///
-/// `EulerOrder::ZYX` is the rotation matrix Rz Ry Rx.
+/// `EulerOrder::ZYX` is the rotation matrix Rz Ry Rx; arrays of its angles hold z, y, x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum EulerOrder {
@@ -142,15 +142,27 @@ pub(crate) type Unit = [i32; 4];
 pub(crate) const NO_ROTATION: Unit = [ONE, 0, 0, 0];
 
 impl Turn {
-    /// The Euler angles in another order, within 0.01 degree.
+    /// The Euler angles in the order asked for, within 0.01 degree: the first angle of the array is about the order's first axis.
+    /// [`crate::JointRef::euler_order`] is the order that the source had.
     ///
-    /// Angles of the joint's own order come back as they are. Otherwise the second angle lies within -90 to 90 degrees; where it
+    /// The angles of a hinge that lies along no axis are three numbers; [`Turn::angle`] is the one by which it bends.
+    ///
+    /// Angles in the joint's own order come back as they are. Otherwise the second angle lies within -90 to 90 degrees; where it
     /// is within 0.1 degree of either end, the first and the third turn about the same axis, and only their sum is determined.
     pub fn euler(self, order: EulerOrder) -> [Angle; 3] {
         match self {
             Turn::Euler { order: own, angles } if own == order => angles,
             _ => self.matrix().euler(order),
         }
+    }
+
+    /// How far the joint is turned in all, about whatever axis: 0 to 1/2 turn, within 0.001 degree, read by [`Angle::degrees`]. Half
+    /// a turn itself is -180 degrees, for angles wrap.
+    pub fn angle(self) -> Angle {
+        let [w, x, y, z] = self.unit();
+        // The sine of half the angle, from components of a unit quaternion in Q30: the sum of squares is below 2^62.
+        let sine = [x, y, z].iter().fold(0u64, |sum, &x| sum + times(x, x) as u64).isqrt() as i32;
+        Angle::from_bits(atan2(sine, w.saturating_abs()).wrapping_mul(2))
     }
 
     /// The rotation as a unit quaternion w, x, y, z, within 1e-7 a component. Of the two that are the same rotation it may be either.
@@ -359,6 +371,18 @@ mod tests {
         assert!(worst_matrix < 4e-7, "{worst_matrix}");
         // 0.01 degree is 1.7e-4.
         assert!(worst < 2e-6, "{worst}");
+    }
+
+    #[test]
+    fn the_whole_angle_of_a_map_is_its_length() {
+        let mut next = random();
+        for round in 0..20_000 {
+            let map = [next(), next(), next()].map(|x| Angle::from_bits(x >> (2 + round % 24)));
+            let length = map.map(radians).iter().map(|x| x * x).sum::<f64>().sqrt();
+            let folded = if length > std::f64::consts::PI { std::f64::consts::TAU - length } else { length };
+            let got = radians(Turn::Exponential(map).angle());
+            assert!((got - folded).abs() < 1.7e-5, "{map:?}: {got} for {folded}");
+        }
     }
 
     #[test]

@@ -63,7 +63,10 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         }
     }
 
-    /// Clears the target and draws the figure in a pose.
+    /// Clears the target and draws the figure in a pose, with the ground: [`FigureRenderer::draw_on`] leaves it out by its style.
+    ///
+    /// The picture has the size of the canvas; pixels beyond it, or beyond the target, can be passed to the target, which ignores
+    /// them as `embedded-graphics` asks of every driver.
     pub fn draw<D>(&mut self, pose: Pose<'_>, target: &mut D) -> Result<(), DrawError<D::Error>>
     where
         D: DrawTarget,

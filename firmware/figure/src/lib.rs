@@ -37,7 +37,7 @@
 //! | draw faster into memory of a display's own layout | [`surface::Framebuffer`] with [`FigureRenderer::draw_on`] |
 //! | know where a joint is in the world | [`JointChain`] |
 //!
-//! A renderer takes poses of the form of its clip ([`pantin::Form`]); others are refused by name ([`pantin::WrongForm`]).
+//! A renderer takes poses of the form of its clip ([`pantin::Form`]). For others it returns [`pantin::WrongForm`], which names the difference.
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 

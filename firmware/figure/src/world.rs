@@ -4,7 +4,7 @@ use fixed::types::I20F12;
 use heapless::Vec;
 use pantin::{Clip, JointRef, Matrix, Pose, WrongForm};
 
-/// A joint and those above it, at most `N` in all, found once and then asked for frame by frame.
+/// A joint and those above it, at most `N` in all (32 suffice for people and animals), found once and then asked for frame by frame.
 ///
 /// ```
 /// # fn reach(player: &pantin::Player) -> Option<()> {
@@ -58,9 +58,10 @@ impl core::error::Error for ChainError {}
 /// A joint in the world at one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorldJoint {
-    /// In centimetres, within 0.005 cm for a chain of 32 joints; x, y and z of the source.
+    /// Where the joint's own origin is (a foot's is its ankle), in centimetres, within 0.005 cm for a chain of 32 joints. The axes
+    /// are the source's: which one is up is the source's choice.
     pub position: [I20F12; 3],
-    /// How the joint's axes are turned against the world's; elements are within 1e-6.
+    /// How the joint's axes are turned against the world's; elements are within 1e-6 of the true ones.
     pub rotation: Matrix,
 }
 

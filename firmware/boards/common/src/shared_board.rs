@@ -7,6 +7,9 @@ use pantin_app::{Board, Capacity, Command};
 use pantin_figure::rotation::RotationBackend;
 use pantin_figure::surface::{Framebuffer, Layout};
 
+/// The types that a board chooses, of which it holds no values.
+type Kinds<L, C, R> = fn() -> (L, C, R);
+
 /// A board of a display, a serial port, buttons, a timer, and a function that feeds the watchdog.
 ///
 /// `L` is the layout of the framebuffer, `C` the largest clip, and `R` the arithmetic of rotations. A board's function that makes one returns
@@ -17,7 +20,7 @@ pub struct SharedBoard<L, C, R, D, S, B, T, W> {
     buttons: B,
     timer: T,
     feed: W,
-    kinds: PhantomData<fn() -> (L, C, R)>,
+    kinds: PhantomData<Kinds<L, C, R>>,
 }
 
 impl<L, C, R, D, S, B, T, W: FnMut()> SharedBoard<L, C, R, D, S, B, T, W> {
