@@ -268,7 +268,7 @@ fn panics_while_it_plays() {
 #[test]
 fn a_panic_restores_the_terminal_and_is_read() {
     let own = std::env::current_exe().unwrap();
-    let arguments = ["--ignored", "--exact", "panics_while_it_plays", "--nocapture"];
+    let arguments = ["--ignored", "--exact", "play_command::panics_while_it_plays", "--nocapture"];
     let mut seat = Seat::new(&std::env::temp_dir(), own.to_str().unwrap(), &arguments);
     assert!(!seat.wait().success());
     assert!(seat.is_restored());
@@ -331,7 +331,7 @@ fn without_a_terminal_it_says_what_to_do() {
     for (arguments, words) in [
         (&["play", "walk.ptn"][..], "play needs a terminal"),
         (&["play", "walk.ptn", "no.ptn", "--plain"], "no.ptn: cannot be read"),
-        (&["play", "face.csv", "--plain"], "face.csv"),
+        (&["play", "no.csv", "--plain"], "no.csv"),
         (&["play", "walk.ptn", "--palette", "sepia"], "blueprint"),
     ] {
         let output = folder.pantin(arguments);
