@@ -1,7 +1,7 @@
-//! The door `import_amc` of the `hostile` package, which says what must hold.
+//! Runs the fuzz target `import_amc` of the `hostile` package.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let door = hostile::door("import_amc").expect("a door of this name");
-    let _ = (door.enter)(bytes);
+    let target = hostile::fuzz_target("import_amc").expect("a target of this name");
+    let _ = (target.run)(bytes);
 });

@@ -1,7 +1,7 @@
-//! The door `import_proc` of the `hostile` package, which says what must hold.
+//! Runs the fuzz target `import_proc` of the `hostile` package.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let door = hostile::door("import_proc").expect("a door of this name");
-    let _ = (door.enter)(bytes);
+    let target = hostile::fuzz_target("import_proc").expect("a target of this name");
+    let _ = (target.run)(bytes);
 });

@@ -1,7 +1,7 @@
-//! The door `open_play` of the `hostile` package, which says what must hold.
+//! Runs the fuzz target `open_play` of the `hostile` package.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let door = hostile::door("open_play").expect("a door of this name");
-    let _ = (door.enter)(bytes);
+    let target = hostile::fuzz_target("open_play").expect("a target of this name");
+    let _ = (target.run)(bytes);
 });

@@ -1,4 +1,4 @@
-//! Bytes of strangers: the first inputs of the fuzz targets, the golden vectors, and damage to both, the same on every run.
+//! Untrusted input: the first inputs of the fuzz targets, the golden vectors, and damage to both, the same on every run.
 //! `cargo xtask fuzz` looks longer.
 
 use std::fs;
@@ -8,9 +8,9 @@ use std::time::Instant;
 
 use harness::{paths, vectors};
 use hostile::noise::Noise;
-use hostile::{DOORS, Door};
+use hostile::{FUZZ_TARGETS, FuzzTarget};
 
-/// Damaged inputs of a door: a second or two. (With RUST_BACKTRACE set, importers take many times longer over each error.)
+/// Damaged inputs of a target: a second or two. (With RUST_BACKTRACE set, importers take many times longer over each error.)
 const CLIPS: usize = 20_000;
 /// The same for files.
 const FILES: usize = 3000;
@@ -22,30 +22,30 @@ fn files(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
     files
 }
 
-fn inputs(door: Door) -> Vec<(PathBuf, Vec<u8>)> {
-    let of_kind = |path: &Path| door.vectors.iter().any(|kind| path.extension().is_some_and(|extension| extension == *kind));
-    let mut all = files(&paths::root().join("fuzz/corpus-seed").join(door.name), |_| true);
+fn inputs(target: FuzzTarget) -> Vec<(PathBuf, Vec<u8>)> {
+    let of_kind = |path: &Path| target.vectors.iter().any(|kind| path.extension().is_some_and(|extension| extension == *kind));
+    let mut all = files(&paths::root().join("fuzz/corpus-seed").join(target.name), |_| true);
     all.extend(files(&vectors::folder(), of_kind));
     all.into_iter().map(|path| (path.clone(), fs::read(&path).unwrap())).collect()
 }
 
 fn holds(name: &str, attempts: usize) {
-    let door = hostile::door(name).unwrap();
-    let inputs = inputs(door);
+    let target = hostile::fuzz_target(name).unwrap();
+    let inputs = inputs(target);
     assert!(!inputs.is_empty(), "no first inputs for {name}");
     for (path, input) in &inputs {
         println!("{}", path.display());
-        assert!((door.enter)(input), "a first input is refused: it reaches nothing");
+        assert!((target.run)(input), "a first input is refused: it reaches nothing");
     }
     let mut noise = Noise::new(1);
     let mut accepted = 0;
     let started = Instant::now();
     for attempt in 0..attempts {
         let [(path, input), (_, other)] = [0; 2].map(|_| &inputs[noise.below(inputs.len())]);
-        let damaged = noise.damage(input, other, door.words);
-        // Shown if the door panics: the input can be made again from it.
+        let damaged = noise.damage(input, other, target.words);
+        // Shown if the target panics: the input can be made again from it.
         println!("attempt {attempt} on {}", path.display());
-        accepted += usize::from((door.enter)(&damaged));
+        accepted += usize::from((target.run)(&damaged));
     }
     println!("{name}: {accepted} of {attempts} accepted, in {:.1} s", started.elapsed().as_secs_f64());
     // Behind CRCs none or nearly none is; elsewhere the damage would test too little.
@@ -118,9 +118,9 @@ fn vrml_files() {
 }
 
 #[test]
-fn every_door_has_its_fuzz_target() {
+fn every_fuzz_target_has_its_program() {
     let targets = files(&paths::root().join("fuzz/fuzz_targets"), |_| true);
-    let mut named: Vec<&str> = DOORS.iter().map(|door| door.name).collect();
+    let mut named: Vec<&str> = FUZZ_TARGETS.iter().map(|target| target.name).collect();
     named.sort_unstable();
     let targets: Vec<String> = targets.iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     assert_eq!(targets, named);

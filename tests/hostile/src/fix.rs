@@ -1,4 +1,4 @@
-//! Mends what a check at the door would refuse, and nothing else.
+//! Repairs what the first checks would refuse, and nothing else.
 
 use pantin::codec::crc;
 use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};

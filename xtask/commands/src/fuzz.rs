@@ -13,7 +13,7 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use harness::{paths, vectors};
-use hostile::{DOORS, Door};
+use hostile::{FUZZ_TARGETS, FuzzTarget};
 
 use xtask::steps::Steps;
 
@@ -21,7 +21,7 @@ use xtask::steps::Steps;
 #[derive(Args)]
 pub struct Fuzz {
     /// The target [default: all]
-    #[arg(value_parser = PossibleValuesParser::new(DOORS.map(|door| door.name)))]
+    #[arg(value_parser = PossibleValuesParser::new(FUZZ_TARGETS.map(|target| target.name)))]
     target: Option<String>,
     /// Seconds per target
     #[arg(long, default_value_t = 60)]
@@ -33,8 +33,8 @@ impl Fuzz {
     pub fn run(self) -> Result<()> {
         tools()?;
         let steps = Steps::default();
-        for door in DOORS.into_iter().filter(|door| self.target.as_ref().is_none_or(|target| target == door.name)) {
-            steps.run(door.name, || run(door, self.seconds));
+        for target in FUZZ_TARGETS.into_iter().filter(|target| self.target.as_ref().is_none_or(|wanted| wanted == target.name)) {
+            steps.run(target.name, || run(target, self.seconds));
         }
         steps.finish()
     }
@@ -52,33 +52,33 @@ fn tools() -> Result<()> {
     Ok(())
 }
 
-/// First inputs: those of the repository, and golden vectors of the kinds that the door takes.
-fn first_inputs(door: Door) -> Result<PathBuf> {
-    let folder = paths::root().join("fuzz/corpus").join(door.name);
+/// First inputs: those of the repository, and golden vectors of the kinds that the target takes.
+fn first_inputs(target: FuzzTarget) -> Result<PathBuf> {
+    let folder = paths::root().join("fuzz/corpus").join(target.name);
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
     for entry in std::fs::read_dir(vectors::folder()).context("tests/vectors")? {
         let path = entry?.path();
-        if door.vectors.iter().any(|kind| path.extension().is_some_and(|extension| extension == *kind)) {
+        if target.vectors.iter().any(|kind| path.extension().is_some_and(|extension| extension == *kind)) {
             std::fs::copy(&path, folder.join(path.file_name().unwrap_or_default()))?;
         }
     }
     Ok(folder)
 }
 
-fn run(door: Door, seconds: u32) -> Result<()> {
-    let found = first_inputs(door)?;
+fn run(target: FuzzTarget, seconds: u32) -> Result<()> {
+    let found = first_inputs(target)?;
     let mut fuzz = Command::new("cargo");
-    fuzz.args(["+nightly", "fuzz", "run", door.name]).arg(&found);
-    let seeds = paths::root().join("fuzz/corpus-seed").join(door.name);
+    fuzz.args(["+nightly", "fuzz", "run", target.name]).arg(&found);
+    let seeds = paths::root().join("fuzz/corpus-seed").join(target.name);
     if seeds.is_dir() {
         fuzz.arg(seeds);
     }
     fuzz.args(["--", "-timeout=10", "-rss_limit_mb=1024", "-print_final_stats=1"]);
     fuzz.arg(format!("-max_total_time={seconds}"));
     // An empty dictionary is an error to the fuzzer.
-    if !door.words.is_empty() {
+    if !target.words.is_empty() {
         let words = found.with_extension("dict");
-        let quoted: String = door.words.iter().map(|word| format!("{word:?}\n")).collect();
+        let quoted: String = target.words.iter().map(|word| format!("{word:?}\n")).collect();
         std::fs::write(&words, quoted).with_context(|| words.display().to_string())?;
         fuzz.arg(format!("-dict={}", words.display()));
     }
@@ -86,7 +86,7 @@ fn run(door: Door, seconds: u32) -> Result<()> {
     if !status.success() {
         bail!(
             "see above; an input that breaks it lies in fuzz/artifacts/{}: once mended, keep it in fuzz/corpus-seed/{0}",
-            door.name
+            target.name
         );
     }
     Ok(())
