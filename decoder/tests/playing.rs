@@ -178,9 +178,8 @@ fn a_buffer_that_grows_is_played_without_holding_it() {
     let truth = frames(WALK);
     let (mut states, mut values) = ([ChannelState::NEW; 144], [0; 144]);
     let mut file: Vec<u8> = Vec::new();
-    let (mut bytes, mut paused, mut frame) = (WALK.chunks(9), None::<pantin::PausedClip>, 0);
-    loop {
-        let Some(more) = bytes.next() else { break };
+    let (mut paused, mut frame) = (None::<pantin::PausedClip>, 0);
+    for more in WALK.chunks(9) {
         file.extend_from_slice(more);
         let started = match &paused {
             Some(paused) => Some(paused.resume(&file, &mut states, &mut values).unwrap()),

@@ -110,6 +110,8 @@ impl RotationBackend for FloatRotation {
 mod tests {
     use super::*;
 
+    type Turn<'a, R> = &'a dyn Fn(&mut R);
+
     fn worst(float: &FloatRotation, fixed: &Rotation) -> f32 {
         let pairs = float.0.iter().flatten().zip(fixed.0.iter().flatten());
         pairs.fold(0.0, |worst, (a, b)| worst.max((a - *b as f32 / ONE as f32).abs()))
@@ -125,7 +127,7 @@ mod tests {
         let mut most = [0f32; 3];
         for _ in 0..100_000 {
             let values = [next(), next(), next(), next()];
-            let turns: [(&dyn Fn(&mut FloatRotation), &dyn Fn(&mut Rotation)); 3] = [
+            let turns: [(Turn<FloatRotation>, Turn<Rotation>); 3] = [
                 (&|r| r.turn(1, values[0]), &|r| RotationBackend::turn(r, 1, values[0])),
                 (&|r| r.turn_exponential([values[0], values[1], values[2]]), &|r| {
                     RotationBackend::turn_exponential(r, [values[0], values[1], values[2]])

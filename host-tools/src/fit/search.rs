@@ -1,4 +1,4 @@
-//! Finds the cheapest W and K segments of one channel within a tube, by a beam search ([`super::beam`]).
+//! Finds the cheapest W and K segments of one channel within a tube, by a beam search (`beam.rs`).
 
 use super::beam::{Beam, Hypothesis};
 use super::cost::Costs;

@@ -406,7 +406,7 @@ fn a_packet_from_far_ahead_neither_stops_time_nor_costs_a_state() {
 fn packets_from_elsewhere_that_are_fewer_than_the_genuine_ones_change_nothing() {
     let every_third = |index: usize, sent: &[TimedPacket]| {
         let from = sent.len() / 4..sent.len() / 2;
-        if from.contains(&index) && index % 3 == 0 { sent[index + 300..=index + 300].to_vec() } else { vec![] }
+        if from.contains(&index) && index.is_multiple_of(3) { sent[index + 300..=index + 300].to_vec() } else { vec![] }
     };
     assert_eq!(disturbed(every_third), (0, 0));
 }

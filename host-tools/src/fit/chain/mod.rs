@@ -1,4 +1,4 @@
-//! Finds the cheapest segments of all four types for one channel in a narrow tube, by a beam search ([`super::beam`]).
+//! Finds the cheapest segments of all four types for one channel in a narrow tube, by a beam search (`beam.rs`).
 //!
 //! Where a curve is known exactly, its acceleration and slope are both known: WK segments restart them, K and NONE segments
 //! carry them on. The tube bounds positions (METHOD 2.3 (b)) or accelerations ((a)).
