@@ -54,7 +54,7 @@ impl<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Capacity f
 
     #[inline(always)]
     fn states() -> Self::States {
-        [ChannelState::default(); MOVING]
+        [ChannelState::NEW; MOVING]
     }
 
     #[inline(always)]

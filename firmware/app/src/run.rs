@@ -64,7 +64,9 @@ pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: &mut PlayContex
             return Outcome::Exit(Exit::BadClip);
         }
     };
-    let (mut states, mut pose) = (B::Capacity::states(), B::Capacity::pose());
+    // One by one: as a pair they would be copied, which takes their stack twice.
+    let mut states = B::Capacity::states();
+    let mut pose = B::Capacity::pose();
     let mut player = match Player::new(clip, states.as_mut(), pose.as_mut()) {
         Ok(player) => player,
         Err(error) => {

@@ -23,7 +23,8 @@ pub(crate) struct LinkSource<'m, 'p, 'c, 'b> {
 /// Opens a link and hands it to `then`. The buffers are here, so that only a program that plays a link has them on its stack.
 #[inline(never)]
 pub(crate) fn open<B: Board>(player: &mut Player, parity: bool, then: impl FnOnce(&mut LinkSource) -> Outcome) -> Outcome {
-    let (mut channels, mut pose) = (B::Capacity::link_channels(), B::Capacity::pose());
+    let mut channels = B::Capacity::link_channels();
+    let mut pose = B::Capacity::pose();
     let form = player.clip().form();
     if !fits(&form) {
         error!("the rig is too big for the link");

@@ -61,7 +61,8 @@ fn pulses<S: SliceId>(mut slice: Slice<S, FreeRunning>) -> Slice<S, FreeRunning>
 fn play(mut set: impl FnMut([u16; 4])) -> ! {
     let clip = CLIPS.first().map(|entry| Clip::new_checked(entry.bytes));
     let Some(Ok(clip)) = clip else { panic!("there is no clip, or it cannot be opened") };
-    let (mut states, mut pose) = (Capacity::states(), Capacity::pose());
+    let mut states = Capacity::states();
+    let mut pose = Capacity::pose();
     let Ok(mut player) = Player::new(clip, &mut states, &mut pose) else { panic!("the clip is too big for this board") };
     let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: slew(SLEW_US_PER_S, clip.frame_time_ns()) };
     // The servos of the right side are mounted mirrored.
