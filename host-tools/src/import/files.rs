@@ -49,7 +49,7 @@ impl Disk {
             return Ok(bytes.to_vec());
         }
         self.0.lock().unwrap_or_else(PoisonError::into_inner).read.insert(path.to_path_buf());
-        let file = File::open(path).context("cannot be read")?;
+        let file = File::open(path)?;
         limited(file)
     }
 
@@ -89,7 +89,7 @@ impl Files {
     /// The whole content of `path`.
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>> {
         match self {
-            Files::OnDisk(disk) => disk.whole(path).map_err(|error| anyhow!("{}: {error:#}", path.display())),
+            Files::OnDisk(disk) => disk.whole(path).map_err(|error| anyhow!("{}: cannot be read: {error:#}", path.display())),
             Files::Given(_) => Ok(self.given(path)?.to_vec()),
         }
     }
