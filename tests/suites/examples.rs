@@ -16,9 +16,11 @@ const CORE: &str = "thumbv7m-none-eabi";
 fn output(package: &Path) -> String {
     setup::rust_target(CORE).unwrap();
     let mut cargo = Command::new(env!("CARGO"));
-    // From a folder of its own it is built like from `examples`, whose settings are for packages below.
-    let settings = paths::root().join("examples/.cargo/config.toml");
-    cargo.args(["run", "--quiet", "--release", "--config"]).arg(settings).current_dir(package);
+    cargo.args(["run", "--quiet", "--release"]).current_dir(package);
+    // In `examples` cargo finds the settings itself; twice they would link twice.
+    if !package.starts_with(paths::root().join("examples")) {
+        cargo.arg("--config").arg(paths::root().join("examples/.cargo/config.toml"));
+    }
     for variable in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_TARGET_DIR", "CARGO_BUILD_TARGET_DIR"] {
         cargo.env_remove(variable);
     }

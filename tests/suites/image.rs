@@ -5,9 +5,10 @@ use harness::qemu::MICROBIT;
 use harness::setup;
 
 /// Bytes of code, the compiler's memory functions among them: growth is to be meant. (`cargo xtask bench footprint` says what the goal is.)
-const CODE: u64 = 12_000;
+/// Since poses have a form, the header has one parser for files and streams: 700 bytes more, and a jump table.
+const CODE: u64 = 12_600;
 /// Bytes of tables.
-const TABLES: u64 = 2048;
+const TABLES: u64 = 2112;
 
 #[test]
 fn the_decoder_alone_cannot_panic_and_stays_small() {

@@ -71,14 +71,22 @@ fn play(mut set: impl FnMut([u16; 4])) -> ! {
     let angles = JOINTS.map(angle);
     let mut timer = SysTick::<CPU_HZ>::new();
     timer.start(clip.frame_time_ns());
-    loop {
+    let mut follow = |player: &Player| {
         let mut widths = [0; 4];
         for ((width, servo), angle) in widths.iter_mut().zip(&mut servos).zip(&angles) {
-            *width = servo.follow(angle.at(&player));
+            *width = servo.follow(angle.at(player));
         }
+        widths
+    };
+    let mut widths = follow(&player);
+    loop {
         set(widths);
-        for _ in 0..timer.wait(|| {}) {
+        // Worked out before its tick: how long that takes, which depends on the angles, does not delay the pulses.
+        player.step();
+        widths = follow(&player);
+        for _ in 1..timer.wait(|| {}) {
             player.step();
+            widths = follow(&player);
         }
     }
 }
