@@ -147,15 +147,12 @@ impl Pose<'_> {
         let value = |channel: usize| self.values.get(channel).copied().unwrap_or(0);
         // Euler angles in the joint's order, x, y, z of a map, and w, x, y, z of a quaternion.
         let (mut axes, mut angles, mut count) = ([0; 3], [Angle::ZERO; 3], 0usize);
-        let (mut map, mut quaternion, mut chained) = (None, None, false);
+        let (mut map, mut quaternion) = (None, None);
         for (channel, kind) in channels {
             let raw = value(channel);
             if kind.is_rotation() {
-                if let (Some(axis), Some(angle)) = (axes.get_mut(count), angles.get_mut(count)) {
-                    (*axis, *angle) = (kind.axis().unwrap_or(0), Angle::from_bits(raw));
-                } else {
-                    chained = true;
-                }
+                put(&mut axes, count, kind.axis().unwrap_or(0));
+                put(&mut angles, count, Angle::from_bits(raw));
                 count += 1;
             } else if kind.is_exponential() {
                 put(map.get_or_insert([0; 3]), kind.axis().unwrap_or(0), raw);
@@ -169,7 +166,7 @@ impl Pose<'_> {
             _ if exponential && parts == 1 => Turn::Exponential(angles),
             (_, Some(map), None) if parts == 1 => Turn::Exponential(map.map(Angle::from_bits)),
             (_, None, Some(q)) if parts == 1 => Turn::Quaternion(q.map(Component::from_bits)),
-            (Some(order), None, None) if !chained => Turn::Euler { order, angles },
+            (Some(order), None, None) => Turn::Euler { order, angles },
             _ => Turn::Quaternion(self.chain(joint, exponential, map, quaternion).map(Component::from_bits)),
         })
     }
