@@ -17,6 +17,12 @@ pub struct Input<'a> {
 }
 
 impl Input<'_> {
+    /// The position after the last payload byte. Where a block's payload ends, this is the first byte of the next block.
+    pub(crate) fn end(&self) -> u32 {
+        let end = self.base.wrapping_add(self.bytes.len() as u32);
+        if end as usize % STRIDE == BLOCK_BYTES { end.wrapping_add(CRC_BYTES as u32) } else { end }
+    }
+
     /// The byte at `position`, which moves on to the next that is no CRC's; zero past the end.
     #[inline]
     pub(crate) fn byte(&self, position: &mut u32) -> u8 {

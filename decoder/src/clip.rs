@@ -173,10 +173,10 @@ impl<'a> Clip<'a> {
         let head = Head::read(&input, parts.flags, &rig, rig_id)?;
         let mut reader = Reader { input: &input, position: u32::from(head.events) };
         for _ in 0..head.event_count {
-            if reader.position as usize > motion.len() {
+            event(&mut reader, 0);
+            if reader.position > input.end() {
                 return Err(short);
             }
-            event(&mut reader, 0);
         }
         let symbols = reader.position;
         Ok(Clip { rig, motion, rig_len: parts.rig_len, head, symbols, index: &[] })

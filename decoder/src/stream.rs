@@ -301,11 +301,11 @@ impl<'a, 'm> Stream<'a, 'm> {
             self.phase = Phase::Starts(ChannelStarts::new(&self.rig, self.head.length_exponent));
             return self.starts();
         }
-        if position as usize > self.window.base as usize + input.bytes.len() {
-            return self.fail(Progress::Damaged(OpenError::Malformed));
-        }
         let mut reader = Reader { input: &input, position };
         let event = event(&mut reader, frame);
+        if reader.position > input.end() {
+            return self.fail(Progress::Damaged(OpenError::Malformed));
+        }
         self.phase = Phase::Events { left: left - 1, position: reader.position, frame: event.frame };
         Progress::Event(event)
     }

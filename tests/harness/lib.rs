@@ -6,6 +6,8 @@ pub mod clips;
 pub mod conformance;
 #[cfg(feature = "full")]
 pub mod defmt_log;
+#[cfg(feature = "full")]
+pub mod differential;
 pub mod display;
 #[cfg(feature = "full")]
 pub mod equal;

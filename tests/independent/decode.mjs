@@ -61,7 +61,7 @@ function readRig(bytes, tables) { // [2]
     need(head <= 16, `Joint ${j}'s head sets bits 5 to 7, or it is an End Site with channels.`);
     for (let i = 0, byte = 0; i < (head & 15); i++, byte >>= 4) {
       if (i % 2 === 0) byte = fields.u8();
-      need((byte & 15) <= SCALAR, `Joint ${j} has a channel of an unknown kind.`);
+      need((byte & 15) < SCALAR, `Joint ${j} has a channel of a scalar's or of no kind.`);
       kinds.push(byte & 15);
     }
     const offset = [fields.zigzag(), fields.zigzag(), fields.zigzag()];
@@ -116,7 +116,7 @@ function readHead(fields, flags, rig) { // [4]
     exponentialJoints.push(...able.filter((_, i) => (bits[i >> 3] >> (i % 8)) & 1));
   }
   for (let left = flags & HAS_EVENTS ? fields.varint() : 0, frame = 0; left > 0; left--) {
-    frame += fields.varint();
+    frame = (frame + fields.varint()) >>> 0;
     events.push([frame, fields.varint()]);
     need(fields.at <= fields.bytes.length, "The events lead past the motion's end.");
   }
@@ -257,8 +257,11 @@ function readIndex(payload, frames, moving) { // [14]
   });
 }
 
-/** Reads and checks a clip [1]. What the vectors' .json files hold has their names; `pose(frame)` gives raw values [11]. */
-export function decode(clipBytes, tables, rigBytes) {
+/**
+ * Reads and checks a clip [1]. What the vectors' .json files hold has their names; `pose(frame)` gives raw values [11]. With `index: false` it
+ * checks the CRCs of the index and leaves its snapshots out [14].
+ */
+export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = true } = {}) {
   const file = new Fields(clipBytes, "file"), before = file.take(4), [P, n, version, flags] = before;
   need(P === 0x50 && n === 0x6e, "The file does not begin with the magic of a clip.");
   need(version === VERSION && flags < 32, "The file's version, or a flag that it sets, is unknown.");
@@ -279,7 +282,8 @@ export function decode(clipBytes, tables, rigBytes) {
     },
   };
   clip.moving = clip.player().moving.length;
-  if (index) clip.snapshots = readIndex(readBlocks(index, u32Bytes(index.length), "index", lastCrc).payload, clip.frames, clip.moving);
+  const snapshots = index && readBlocks(index, u32Bytes(index.length), "index", lastCrc).payload;
+  if (snapshots && withSnapshots) clip.snapshots = readIndex(snapshots, clip.frames, clip.moving);
   return clip;
 }
 

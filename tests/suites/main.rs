@@ -1,6 +1,7 @@
 //! The suites that need more than one crate, one module each: on the host, in QEMU, in a Pico's emulator and in Chromium.
 
 mod conformance;
+mod differential;
 mod display;
 mod examples;
 mod face_display;

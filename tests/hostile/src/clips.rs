@@ -13,7 +13,7 @@ const BACK: u32 = 40;
 const SEEKS: usize = 8;
 
 /// For clips whose rig stands apart: one of our vectors' rig.
-const RIG: &[u8] = include_bytes!("../../vectors/rig-apart.rig");
+pub const RIG: &[u8] = include_bytes!("../../vectors/rig-apart.rig");
 
 /// Opens a clip as it is and plays it.
 pub fn open_play(bytes: &[u8]) -> bool {

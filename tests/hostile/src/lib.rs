@@ -3,6 +3,7 @@
 pub mod clips;
 pub mod fix;
 mod imports;
+pub mod mutants;
 pub mod noise;
 
 /// An entry point for untrusted input.

@@ -1,0 +1,85 @@
+//! Damaged clips in the Rust decoder and in the one that was written from FORMAT.md alone: both must refuse them, or read the same.
+
+use std::fs;
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use hostile::mutants::{EVENTS, FRAMES, REFUSED, VALUES, mutant, read};
+use hostile::noise::Noise;
+
+use crate::{paths, setup, vectors};
+
+/// Mutants that one run of Node.js reads.
+const BATCH: usize = 2000;
+
+/// What became of the mutants.
+#[derive(Clone, Debug, Default)]
+pub struct Counts {
+    /// Mutants that both decoders play with equal poses.
+    pub agreed: usize,
+    /// Mutants that both decoders refuse.
+    pub refused: usize,
+    /// Mutants that the decoders read differently.
+    pub differing: Vec<Difference>,
+}
+
+/// A mutant that two decoders read differently.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// The clip.
+    pub bytes: Vec<u8>,
+    /// What the Rust decoder reads.
+    pub rust: String,
+    /// What the independent decoder reads.
+    pub independent: String,
+}
+
+impl Counts {
+    /// Adds the comparison of more mutants.
+    pub fn add(&mut self, mutants: Vec<Vec<u8>>) -> Result<()> {
+        let independent = independent(&mutants)?;
+        for (bytes, independent) in mutants.into_iter().zip(independent) {
+            let rust = read(&bytes);
+            match (rust == independent, rust == REFUSED) {
+                (true, true) => self.refused += 1,
+                (true, false) => self.agreed += 1,
+                (false, _) => self.differing.push(Difference { bytes, rust, independent }),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Compares `count` mutants of the golden vectors; `seed` selects which. `after_batch` receives the counts so far.
+pub fn run(count: usize, seed: u64, mut after_batch: impl FnMut(&Counts)) -> Result<Counts> {
+    let vectors = vectors::load(&vectors::folder())?;
+    let clips: Vec<Vec<u8>> = vectors.into_iter().map(|vector| vector.clip).collect();
+    let mut noise = Noise::new(seed);
+    let (mut counts, mut left) = (Counts::default(), count);
+    while left > 0 {
+        let batch = left.min(BATCH);
+        counts.add((0..batch).map(|_| mutant(&mut noise, &clips)).collect())?;
+        left -= batch;
+        after_batch(&counts);
+    }
+    Ok(counts)
+}
+
+/// What the independent decoder reads of each clip.
+fn independent(clips: &[Vec<u8>]) -> Result<Vec<String>> {
+    let mut all = vec![];
+    for clip in clips {
+        all.extend_from_slice(&(clip.len() as u32).to_le_bytes());
+        all.extend_from_slice(clip);
+    }
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("mutants");
+    fs::write(&file, all)?;
+    let mut node = Command::new(setup::emulator("node")?);
+    node.arg(paths::root().join("tests/independent/mutants.mjs")).arg(vectors::folder()).arg(&file);
+    let output = node.args([VALUES, FRAMES, EVENTS].map(|limit| limit.to_string())).output().context("cannot start node")?;
+    ensure!(output.status.success(), "the independent decoder fails: {}", String::from_utf8_lossy(&output.stderr));
+    let lines: Vec<String> = String::from_utf8(output.stdout)?.lines().map(str::to_owned).collect();
+    ensure!(lines.len() == clips.len(), "{} lines for {} clips", lines.len(), clips.len());
+    Ok(lines)
+}
