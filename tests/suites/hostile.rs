@@ -26,7 +26,9 @@ fn inputs(target: FuzzTarget) -> Vec<(PathBuf, Vec<u8>)> {
     let of_kind = |path: &Path| target.vectors.iter().any(|kind| path.extension().is_some_and(|extension| extension == *kind));
     let mut all = files(&paths::root().join("fuzz/corpus-seed").join(target.name), |_| true);
     all.extend(files(&vectors::folder(), of_kind));
-    all.into_iter().map(|path| (path.clone(), fs::read(&path).unwrap())).collect()
+    let read = all.into_iter().map(|path| (path.clone(), fs::read(&path).unwrap()));
+    let made = (target.made)().into_iter().enumerate().map(|(index, bytes)| (PathBuf::from(format!("made {index}")), bytes));
+    read.chain(made).collect()
 }
 
 fn holds(name: &str, attempts: usize) {
@@ -65,6 +67,36 @@ fn clips_behind_their_crcs() {
 #[test]
 fn rigs() {
     holds("rig_open", CLIPS);
+}
+
+#[test]
+fn clips_in_pieces() {
+    holds("stream_play", CLIPS);
+}
+
+#[test]
+fn bytes_of_a_line_with_motion() {
+    holds("link_receive", FILES);
+}
+
+#[test]
+fn flash_with_clips() {
+    holds("store_open", CLIPS);
+}
+
+#[test]
+fn bytes_of_a_line_with_an_update() {
+    holds("update_receive", FILES);
+}
+
+#[test]
+fn models_of_faces() {
+    holds("face_model", CLIPS);
+}
+
+#[test]
+fn source_text_made_of_clips() {
+    holds("export_source", CLIPS);
 }
 
 #[test]

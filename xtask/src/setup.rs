@@ -76,6 +76,15 @@ pub fn component(name: &str) -> Result<()> {
     Ok(())
 }
 
+/// An error that says how to install a program of cargo, unless `cargo` with these words succeeds.
+pub fn cargo_program(words: &[&str], what: &str, install: &str) -> Result<()> {
+    let mut cargo = Command::new("cargo");
+    // The cargo that runs this one has named its own toolchain.
+    cargo.args(words).env_remove("RUSTUP_TOOLCHAIN").stdout(Stdio::null()).stderr(Stdio::null());
+    ensure!(cargo.status().is_ok_and(|status| status.success()), "{what} is missing; install it with: {install}");
+    Ok(())
+}
+
 /// An emulator, Node.js or Chromium, from `PATH`; if it is missing, the error says how to get it.
 pub fn emulator(name: &str) -> Result<PathBuf> {
     paths::program(name).ok_or_else(|| anyhow!("{name} is missing; {}", advice(name)))

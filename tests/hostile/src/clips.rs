@@ -5,8 +5,8 @@ use pantin::{ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, 
 use crate::fix;
 use crate::noise::Noise;
 
-/// Values of poses that one input may make: a few milliseconds.
-const VALUES: u64 = 200_000;
+/// Values of poses that one input may make: less than a millisecond.
+const VALUES: u64 = 16_000;
 /// Steps back of one input.
 const BACK: u32 = 40;
 /// Seeks of one input.

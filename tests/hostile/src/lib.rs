@@ -1,10 +1,14 @@
 //! Entry points for untrusted input, and what must hold for each: a target panics where it does not.
 
 pub mod clips;
+mod faces;
 pub mod fix;
 mod imports;
+pub mod lines;
 pub mod mutants;
 pub mod noise;
+mod sources;
+pub mod streams;
 
 /// An entry point for untrusted input.
 #[derive(Clone, Copy)]
@@ -17,25 +21,87 @@ pub struct FuzzTarget {
     pub words: &'static [&'static str],
     /// Which of the golden vectors' files are inputs too, by extension.
     pub vectors: &'static [&'static str],
+    /// First inputs that this repository's encoders make.
+    pub made: fn() -> Vec<Vec<u8>>,
 }
 
 const CLIPS: &[&str] = &["ptn"];
 
 /// All entry points.
-pub const FUZZ_TARGETS: [FuzzTarget; 13] = [
-    FuzzTarget { name: "open_play", run: clips::open_play, words: &[], vectors: CLIPS },
-    FuzzTarget { name: "crc_fixed_play", run: clips::crc_fixed_play, words: &[], vectors: CLIPS },
-    FuzzTarget { name: "rig_open", run: clips::rig_open, words: &[], vectors: &["rig"] },
-    FuzzTarget { name: "import_bvh", run: |text| imports::load("bvh", text), words: &imports::BVH_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_keys", run: |text| imports::load("keys", text), words: &imports::KEYS_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_gltf", run: |bytes| imports::load("gltf", bytes), words: &imports::GLTF_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_fbx", run: |bytes| imports::load("fbx", bytes), words: &imports::FBX_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_vrml", run: |text| imports::load("wrl", text), words: &imports::VRML_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_amc", run: imports::amc, words: &imports::AMC_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_fap", run: |text| imports::load("fap", text), words: &imports::FAP_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_livelink", run: |text| imports::load("csv", text), words: &imports::LIVELINK_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_table", run: |text| imports::load("tsv", text), words: &imports::TABLE_WORDS, vectors: &[] },
-    FuzzTarget { name: "import_proc", run: |text| imports::load("proc", text), words: &imports::PROC_WORDS, vectors: &[] },
+pub const FUZZ_TARGETS: [FuzzTarget; 19] = [
+    FuzzTarget { name: "open_play", run: clips::open_play, words: &[], vectors: CLIPS, made: Vec::new },
+    FuzzTarget { name: "crc_fixed_play", run: clips::crc_fixed_play, words: &[], vectors: CLIPS, made: Vec::new },
+    FuzzTarget { name: "rig_open", run: clips::rig_open, words: &[], vectors: &["rig"], made: Vec::new },
+    FuzzTarget { name: "stream_play", run: streams::stream_play, words: &[], vectors: CLIPS, made: Vec::new },
+    FuzzTarget { name: "link_receive", run: lines::link_receive, words: &[], vectors: &[], made: lines::streams },
+    FuzzTarget { name: "store_open", run: lines::store_open, words: &[], vectors: CLIPS, made: Vec::new },
+    FuzzTarget { name: "update_receive", run: lines::update_receive, words: &[], vectors: &[], made: lines::updates },
+    FuzzTarget { name: "face_model", run: faces::face_model, words: &[], vectors: &[], made: faces::models },
+    FuzzTarget { name: "export_source", run: sources::export_source, words: &sources::WORDS, vectors: CLIPS, made: Vec::new },
+    FuzzTarget {
+        name: "import_bvh",
+        run: |text| imports::load("bvh", text),
+        words: &imports::BVH_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_keys",
+        run: |text| imports::load("keys", text),
+        words: &imports::KEYS_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_gltf",
+        run: |bytes| imports::load("gltf", bytes),
+        words: &imports::GLTF_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_fbx",
+        run: |bytes| imports::load("fbx", bytes),
+        words: &imports::FBX_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_vrml",
+        run: |text| imports::load("wrl", text),
+        words: &imports::VRML_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget { name: "import_amc", run: imports::amc, words: &imports::AMC_WORDS, vectors: &[], made: Vec::new },
+    FuzzTarget {
+        name: "import_fap",
+        run: |text| imports::load("fap", text),
+        words: &imports::FAP_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_livelink",
+        run: |text| imports::load("csv", text),
+        words: &imports::LIVELINK_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_table",
+        run: |text| imports::load("tsv", text),
+        words: &imports::TABLE_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
+    FuzzTarget {
+        name: "import_proc",
+        run: |text| imports::load("proc", text),
+        words: &imports::PROC_WORDS,
+        vectors: &[],
+        made: Vec::new,
+    },
 ];
 
 /// Finds a target by its name.
