@@ -29,6 +29,8 @@ pub mod size_tables;
 #[cfg(feature = "full")]
 pub mod sizes;
 #[cfg(feature = "full")]
+pub mod soak;
+#[cfg(feature = "full")]
 pub mod stack;
 pub mod sync;
 #[cfg(feature = "full")]

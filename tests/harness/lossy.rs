@@ -26,7 +26,7 @@ impl Lossy {
     }
 
     /// 0 to 1: S. Vigna's splitmix64.
-    fn chance(&mut self) -> f64 {
+    pub fn chance(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

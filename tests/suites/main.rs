@@ -16,6 +16,7 @@ mod pico_update;
 mod qemu;
 mod shape;
 mod sizes;
+mod soak;
 mod update;
 mod vectors;
 mod web;

@@ -21,20 +21,25 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 17] = [
+const LIST: [(&str, Place, &str); 22] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     ("test", Place::Here(test::run), "Runs every check and test; --host-only leaves out QEMU and Chromium"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
+    ("coverage", COMMANDS, "Prints the line coverage of decoder, link and store by their own tests; needs cargo-llvm-cov"),
     ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),
     ("docs", Place::Here(publish::docs), "Builds the documentation of the published crates, with warnings as errors"),
     ("fuzz", COMMANDS, "Fuzzes the entry points for untrusted input; needs a nightly Rust and cargo-fuzz"),
     ("gallery", COMMANDS, "Converts every captured clip and draws one contact sheet of all"),
+    ("miri", COMMANDS, "Runs the decoder's tests in Miri; needs a nightly Rust"),
+    ("mutants-differential", COMMANDS, "Plays damaged clips in two decoders and compares them; needs Node.js"),
+    ("mutation", COMMANDS, "Mutates the decoder and lists what its tests do not notice; needs cargo-mutants"),
     ("msrv", Place::Here(publish::msrv), "Checks the published crates with the oldest Rust that they state"),
     ("package", Place::Here(publish::package), "Packs the published crates; --verify compiles each from its package"),
     ("semver", Place::Here(publish::semver), "Compares the public items of the published crates with the last tag's"),
     ("shape", Place::Here(shape), "Counts equal lines among the boards, and circles of imports"),
     ("sizes", COMMANDS, "Measures flash, RAM and stack of every image, and compares them with tests/sizes.txt"),
+    ("soak", COMMANDS, "Plays 24 hours of a clip over a simulated line with damage, restarts and drift"),
     ("strips", COMMANDS, "Plays motions on every emulated board and draws a contact sheet of each"),
     ("uf2", COMMANDS, "Makes a file to drag onto a board's drive"),
     ("vectors", COMMANDS, "Makes the golden vectors again"),
@@ -71,7 +76,7 @@ fn run(arguments: &[String]) -> Result<ExitCode> {
 }
 
 fn help() -> String {
-    let list: String = LIST.iter().map(|(name, _, purpose)| format!("  {name:<12} {purpose}\n")).collect();
+    let list: String = LIST.iter().map(|(name, _, purpose)| format!("  {name:<20} {purpose}\n")).collect();
     format!("Usage: cargo xtask <COMMAND>\n\nCommands:\n{list}\n`cargo xtask <COMMAND> --help` prints its options.\n")
 }
 

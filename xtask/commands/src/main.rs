@@ -1,6 +1,7 @@
 //! The commands of `cargo xtask` that need the harness or the host tool.
 
 mod bench;
+mod campaign;
 mod conformance;
 mod firmware;
 mod fuzz;
@@ -23,12 +24,17 @@ use clap::Parser;
 enum Command {
     Conformance(conformance::Conformance),
     Bench(bench::command::Bench),
+    Coverage(campaign::Coverage),
     Firmware(firmware::Firmware),
     Fuzz(fuzz::Fuzz),
     Gallery(gallery::Gallery),
     #[command(hide = true)]
     Log(log::Log),
+    Miri(campaign::Miri),
+    MutantsDifferential(campaign::MutantsDifferential),
+    Mutation(campaign::Mutation),
     Sizes(sizes::Sizing),
+    Soak(campaign::Soak),
     Strips(strips::Strips),
     Uf2(uf2::Uf2),
     Vectors(vectors::Vectors),
@@ -39,11 +45,16 @@ fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Conformance(conformance) => conformance.run(),
         Command::Bench(bench) => bench.run(),
+        Command::Coverage(coverage) => coverage.run(),
         Command::Firmware(firmware) => firmware.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Gallery(gallery) => gallery.run(),
         Command::Log(log) => log.run(),
+        Command::Miri(miri) => miri.run(),
+        Command::MutantsDifferential(differential) => differential.run(),
+        Command::Mutation(mutation) => mutation.run(),
         Command::Sizes(sizes) => sizes.run(),
+        Command::Soak(soak) => soak.run(),
         Command::Strips(strips) => strips.run(),
         Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
