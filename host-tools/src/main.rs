@@ -1,13 +1,17 @@
 //! `pantin`: the host tool. One file a command in `cmd`; this file only dispatches.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use pantin_tools::{budget, cmd, output};
+use serde_json::json;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// What shells report of a program that a closed pipe ended, as in `pantin info walk.ptn | head -1`.
 const READER_GONE: u8 = 141;
+/// The command line is wrong.
+const WRONG_USE: u8 = 2;
 
 /// Character motion for small machines: converts motion files to clips and back, plays and draws them.
 #[derive(Parser)]
@@ -15,11 +19,22 @@ const READER_GONE: u8 = 141;
 #[command(
     after_help = "Exit codes: 0 done; 1 failed, with the reason on standard error; 2 the command line is wrong; 141 the reader of \
 standard output went away.
-`-` is standard input as an input, and standard output as an output."
+`-` is standard input as an input, and standard output as an output.
+With --json, standard output is one JSON object; where standard output is itself the output, the object goes to standard error. A
+command that fails prints the reason there too, as `error`."
 )]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Print only results and errors: no notes, warnings or progress
+    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Messages")]
+    quiet: bool,
+    /// Print details too: files read and written with their sizes, and the time taken
+    #[arg(short, long, global = true, help_heading = "Messages")]
+    verbose: bool,
+    /// Print what the command reports as one JSON object, errors included
+    #[arg(long, global = true, help_heading = "Messages")]
+    json: bool,
     /// Refuse what takes more memory: a size such as 500MB or 4GB
     #[arg(long, global = true, value_name = "SIZE", default_value = "1GB", value_parser = budget::parse, help_heading = "Limits")]
     max_memory: u64,
@@ -55,10 +70,37 @@ enum Command {
     Update(cmd::update::Arguments),
 }
 
+impl Command {
+    /// As it is called on the command line.
+    fn name(&self) -> &'static str {
+        match self {
+            Command::Completions { .. } => "completions",
+            Command::Convert(_) => "convert",
+            Command::Expand(_) => "expand",
+            Command::Face(_) => "face",
+            Command::FlashImage(_) => "flash-image",
+            Command::Info(_) => "info",
+            Command::Man { .. } => "man",
+            Command::Play(_) => "play",
+            Command::Render(_) => "render",
+            Command::Serve(_) => "serve",
+            Command::Stream(_) => "stream",
+            Command::Train(_) => "train",
+            Command::Update(_) => "update",
+        }
+    }
+}
+
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let begun = Instant::now();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return not_understood(&error),
+    };
     budget::set(arguments.max_memory);
     output::set_most_bytes(arguments.max_output);
+    output::set_reporting(arguments.quiet, arguments.verbose, arguments.json);
+    let name = arguments.command.name();
     let result = match arguments.command {
         Command::Completions { shell } => completions(shell),
         Command::Convert(arguments) => cmd::convert::run(&arguments),
@@ -74,24 +116,50 @@ fn main() -> ExitCode {
         Command::Train(arguments) => cmd::train::run(&arguments),
         Command::Update(arguments) => cmd::update::run(&arguments),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
+    match result.and_then(|()| output::finish(name)) {
+        Ok(()) => {
+            output::print_detail(format_args!("{name}: {:.2} s", begun.elapsed().as_secs_f64()));
+            ExitCode::SUCCESS
+        }
         Err(_) if output::reader_gone() => ExitCode::from(READER_GONE),
         Err(error) => {
-            output::print_note(format_args!("pantin: {error:#}"));
+            output::fail(name, &error);
             ExitCode::FAILURE
         }
     }
 }
 
+/// Prints help and the version as clap does, and what is wrong with a command line as every other error.
+fn not_understood(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        error.exit();
+    }
+    let text = error.to_string();
+    if std::env::args_os().any(|argument| argument == "--json") {
+        output::set_reporting(false, false, true);
+        let reason = text.split("\n\nUsage:").next().unwrap_or_default();
+        let reason = reason.strip_prefix("error: ").unwrap_or(reason).split_whitespace().collect::<Vec<_>>().join(" ");
+        output::fail("", &Error::msg(reason));
+    } else {
+        match text.strip_prefix("error: ") {
+            Some(text) => output::print_error_text(text.trim_end()),
+            // A command without arguments gets its help.
+            None => drop(error.print()),
+        }
+    }
+    ExitCode::from(WRONG_USE)
+}
+
 fn completions(shell: clap_complete::Shell) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "pantin", &mut script);
-    output::write_whole(Path::new("-"), &script)
+    print_text("script", script)
 }
 
 fn manual(command: Option<&str>) -> Result<()> {
-    let all = Arguments::command();
+    let mut all = Arguments::command();
+    // Options of all commands become part of each.
+    all.build();
     let chosen = match command {
         Some(name) => {
             all.find_subcommand(name).with_context(|| format!("no command `{name}`; pantin --help lists them"))?.clone()
@@ -101,5 +169,14 @@ fn manual(command: Option<&str>) -> Result<()> {
     let title = command.map_or_else(|| "pantin".into(), |name| format!("pantin-{name}"));
     let mut page = Vec::new();
     clap_mangen::Man::new(chosen).title(&title).render(&mut page)?;
-    output::write_whole(Path::new("-"), &page)
+    print_text("page", page)
+}
+
+/// Writes a text to standard output, or as a field of the report.
+fn print_text(name: &str, text: Vec<u8>) -> Result<()> {
+    if output::is_json() {
+        output::report(json!({ name: String::from_utf8(text)? }));
+        return Ok(());
+    }
+    output::write_whole(Path::new("-"), &text)
 }

@@ -7,15 +7,18 @@ use super::convert::{Arguments, Made, convert};
 use crate::import;
 use crate::output::{self, note, outln};
 use anyhow::{Context, Result, bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::collections::{BTreeSet, HashMap};
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
+
+/// Letters of an animation's name that its clip's file keeps.
+const LONGEST_NAME: usize = 60;
 
 /// A file's outcome.
 enum Outcome {
@@ -34,9 +37,119 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     found.look(from, to)?;
     ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", from.display(), found.others);
     let tasks = tasks(arguments, &found.motions)?;
+    let label = |task: &Arguments| task.input.strip_prefix(from).unwrap_or(&task.input).display().to_string();
+    let labels: Vec<String> = tasks.iter().map(label).collect();
+    convert_all(arguments, &tasks, &labels, Some(found.others))
+}
+
+/// Converts several files, each to a clip of its name: in the folder `--output`, or beside it.
+pub fn run_several(arguments: &Arguments) -> Result<()> {
+    let folder = arguments.output.as_deref();
+    ensure!(arguments.rig_out.is_none(), "--rig-out names one file, so it goes with one motion");
+    folder.map_or(Ok(()), names_folder)?;
+    let mut tasks = Vec::new();
+    for input in std::iter::once(&arguments.input).chain(&arguments.more) {
+        ensure!(!input.is_dir(), "{}: a folder; convert a folder in a command of its own", input.display());
+        let clip = input.with_extension("ptn");
+        let name = clip.file_name().filter(|_| input.as_os_str() != "-");
+        let name = name.with_context(|| format!("{}: no file name for the clip", input.display()))?;
+        let output = folder.map_or_else(|| clip.clone(), |folder| folder.join(name));
+        tasks.push(arguments.for_file(input.clone(), output));
+    }
+    one_clip_each(&tasks, |task| task.input.display().to_string())?;
+    let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
+    convert_all(arguments, &tasks, &labels, None)
+}
+
+/// Converts every animation of a file, each to a clip of its name.
+pub fn run_animations(arguments: &Arguments) -> Result<()> {
+    let input = &arguments.input;
+    ensure!(input.as_os_str() != "-", "--animation all reads its input several times, so it needs a file");
+    ensure!(arguments.rig_out.is_none(), "--rig-out names one file, so it goes with one animation");
+    let own = input.with_extension("ptn");
+    let output = arguments.output.as_deref().unwrap_or(&own);
+    // `-o walk.ptn` gives walk-NAME.ptn; everything else is a folder.
+    let prefix = match output.extension().is_some_and(|extension| extension == "ptn") && !output.is_dir() {
+        true => Some(output.file_stem().unwrap_or_default().to_os_string()),
+        false => {
+            names_folder(output)?;
+            None
+        }
+    };
+    let (mut tasks, mut names) = (Vec::new(), Vec::new());
+    let entries = import::list::list(input, arguments.fps())?;
+    for (number, entry) in entries.iter().enumerate() {
+        let name = entry.name.clone().unwrap_or_default();
+        let label = if name.is_empty() { number.to_string() } else { format!("{number} ({name})") };
+        if entry.frames == 0 {
+            note!("{}: warning: animation {label} moves nothing that a clip holds: left out", input.display());
+            continue;
+        }
+        let chosen = number.to_string();
+        let ambiguous = entries.iter().any(|other| other.name.as_ref() == Some(&chosen));
+        ensure!(!ambiguous, "{}: an animation has the name `{chosen}`, which is another one's number", input.display());
+        let file = file_name(prefix.as_deref(), &name, number);
+        let output = if prefix.is_some() { output.with_file_name(file) } else { output.join(file) };
+        let mut task = arguments.for_file(input.clone(), output);
+        task.animation = Some(chosen);
+        tasks.push(task);
+        names.push(label);
+    }
+    ensure!(!tasks.is_empty(), "{}: no animation, so nothing moves", input.display());
+    one_clip_each(&tasks, |task| format!("animation {}", task.animation.as_deref().unwrap_or_default()))?;
+    convert_all(arguments, &tasks, &names, None)
+}
+
+/// `PREFIX-NAME.ptn`, or `NAME.ptn` in a folder. What a file system or a shell would read as more than a letter becomes `_`; an
+/// animation without a name has its number.
+fn file_name(prefix: Option<&OsStr>, name: &str, number: usize) -> OsString {
+    let safe = |c: char| if c.is_alphanumeric() || "-_+=() .".contains(c) { c } else { '_' };
+    let mut clean: String = name.chars().map(safe).take(LONGEST_NAME).collect::<String>().trim_matches([' ', '.', '-']).into();
+    if clean.is_empty() {
+        clean = number.to_string();
+    }
+    let device = ["con", "prn", "aux", "nul"].contains(&clean.to_lowercase().as_str())
+        || ["com", "lpt"].iter().any(|port| clean.to_lowercase().strip_prefix(port).is_some_and(|rest| rest.len() == 1));
+    if device {
+        clean.push('_');
+    }
+    let mut file = OsString::new();
+    if let Some(prefix) = prefix {
+        file.push(prefix);
+        file.push("-");
+    }
+    file.push(clean + ".ptn");
+    file
+}
+
+/// Fails unless several clips can go into `output`.
+fn names_folder(output: &Path) -> Result<()> {
+    let clip = output.extension().is_some_and(|extension| extension == "ptn") && !output.is_dir();
+    ensure!(!clip && !output.is_file() && output.as_os_str() != "-", "{}: a file; several clips need a folder", output.display());
+    Ok(())
+}
+
+/// Refuses tasks that would write one clip, or overwrite one of the sources, before anything is written.
+fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> Result<()> {
+    let mut named: HashMap<String, &Arguments> = HashMap::new();
+    for task in tasks {
+        // Some file systems ignore the case of letters.
+        if let Some(other) = named.insert(task.output().to_string_lossy().to_lowercase(), task) {
+            let output = task.output().display();
+            bail!(
+                "{} and {}: both would be written to {output}; convert one of them in a command of its own",
+                label(other),
+                label(task)
+            );
+        }
+    }
+    different_files(&tasks.iter().map(|task| task.output().to_path_buf()).collect::<Vec<_>>())
+}
+
+/// Converts all `tasks`, and reports a line for each under its label. Fails if one did.
+fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], others: Option<usize>) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
-    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(tasks.len() as u64) };
-    bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} files {eta} left")?);
+    let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} files {eta} left")?;
     let convert = |task: &Arguments| {
         let outcome = outcome(task);
         bar.inc(1);
@@ -46,27 +159,28 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let outcomes: Vec<Outcome> = pool.install(|| tasks.par_iter().with_max_len(1).map(convert).collect());
     bar.finish_and_clear();
     let refused = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Refused(_))).count();
-    if arguments.json {
-        output::print_json(&json!(tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect::<Vec<_>>()))?;
-    } else if !arguments.quiet {
-        table(from, &tasks, &outcomes).iter().try_for_each(|line| outln!("{line}"))?;
+    if output::is_json() {
+        let files: Vec<_> = tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect();
+        output::report(json!({"files": files}));
+    } else if !output::is_quiet() {
+        table(labels, &outcomes).iter().try_for_each(|line| outln!("{line}"))?;
     }
-    for (task, outcome) in tasks.iter().zip(&outcomes) {
-        let file = task.input.display();
+    for (file, outcome) in labels.iter().zip(&outcomes) {
         match outcome {
-            Outcome::Converted { warnings, .. } if !arguments.quiet => {
+            Outcome::Converted { warnings, .. } => {
                 warnings.iter().for_each(|warning| note!("{file}: warning: {warning}"));
             }
             // The table and the JSON name them; without either, somebody must.
-            Outcome::Refused(why) if arguments.quiet && !arguments.json => note!("pantin: {file}: {why}"),
+            Outcome::Refused(why) if output::is_quiet() && !output::is_json() => {
+                output::print_error(format_args!("{file}: {why}"));
+            }
             _ => {}
         }
     }
     let fresh = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::UpToDate)).count();
-    if !arguments.quiet {
-        let done = outcomes.len() - refused - fresh;
-        note!("{done} converted, {fresh} up to date, {refused} refused, {} other files passed over", found.others);
-    }
+    let done = outcomes.len() - refused - fresh;
+    let others = others.map_or_else(String::new, |others| format!(", {others} other files passed over"));
+    note!("{done} converted, {fresh} up to date, {refused} refused{others}");
     ensure!(refused == 0, "{refused} of {} files could not be converted", outcomes.len());
     Ok(())
 }
@@ -212,22 +326,30 @@ fn stamp(task: &Arguments) -> Result<(SystemTime, BTreeSet<PathBuf>)> {
 }
 
 impl Outcome {
-    fn json(&self, task: &Arguments) -> serde_json::Value {
-        let file = task.input.display().to_string();
-        match self {
-            Outcome::Converted { frames, bytes, error, seconds, warnings } => {
-                json!({"file": file, "frames": frames, "bytes": bytes, "error": error, "seconds": seconds, "warnings": warnings})
-            }
-            Outcome::UpToDate => json!({"file": file, "up_to_date": true}),
-            Outcome::Refused(why) => json!({"file": file, "refused": why}),
+    fn json(&self, task: &Arguments) -> Value {
+        let mut object = self.fields();
+        object.insert("file".into(), task.input.display().to_string().into());
+        object.insert("output".into(), task.output().display().to_string().into());
+        if let Some(animation) = &task.animation {
+            object.insert("animation".into(), animation.as_str().into());
         }
+        object.into()
+    }
+
+    fn fields(&self) -> Map<String, Value> {
+        let fields = match self {
+            Outcome::Converted { frames, bytes, error, seconds, warnings } => {
+                json!({"frames": frames, "bytes": bytes, "error": error, "seconds": seconds, "warnings": warnings})
+            }
+            Outcome::UpToDate => json!({"up_to_date": true}),
+            Outcome::Refused(why) => json!({"refused": why}),
+        };
+        if let Value::Object(fields) = fields { fields } else { Map::new() }
     }
 }
 
 /// A line a file.
-fn table(root: &Path, tasks: &[Arguments], outcomes: &[Outcome]) -> Vec<String> {
-    let names: Vec<String> =
-        tasks.iter().map(|task| task.input.strip_prefix(root).unwrap_or(&task.input).display().to_string()).collect();
+fn table(names: &[String], outcomes: &[Outcome]) -> Vec<String> {
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
     let mut out = vec![format!("{:wide$} {:>7} {:>9}  {:26} {:>7}", "file", "frames", "bytes", "greatest error", "s")];
     for (name, outcome) in names.iter().zip(outcomes) {

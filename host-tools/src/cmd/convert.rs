@@ -15,10 +15,10 @@ use crate::fit::parametrize::{Coding, Rotations};
 use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
-use crate::output::{self, Wanted, note, refuse_foreign};
+use crate::output::{self, Wanted, detail, note, refuse_foreign};
 use crate::verify::verify;
 use anyhow::{Context, Result, bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use pantin::codec::layout::MAX_FRAMES;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -45,6 +45,8 @@ use std::path::{Path, PathBuf};
   pantin convert walk.bvh -o legs.ptn --joints '*Leg,*Foot'
   pantin convert walk.bvh -o walk.ptn --drop '*Thumb*,*Finger*' --mirror
   pantin convert walk.bvh -o walk.ptn --retarget display --map names.txt
+  pantin convert fox.glb --animation all -o clips
+  pantin convert walk.bvh bow.bvh -o clips -j 2
   pantin convert captures -o clips --jobs 4 --max-error 0.5%
   pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips")]
 pub struct Arguments {
@@ -52,8 +54,8 @@ pub struct Arguments {
     /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
     /// with a row of names (.csv, .tsv)
     pub(super) input: PathBuf,
-    /// More motions of the same rig, for --same-form
-    #[arg(value_name = "MOTION", requires = "same_form", conflicts_with = "list")]
+    /// More motions, each of which gets a clip of its name in the folder --output, or beside it
+    #[arg(value_name = "MOTION", conflicts_with = "list")]
     pub(super) more: Vec<PathBuf>,
     /// Give the clips of all motions one form: the same length exponent, and the same joints coded as exponential maps, chosen by
     /// what all clips together cost. One figure renderer then plays any of them. All motions need the same rig; --output is a folder
@@ -98,26 +100,29 @@ pub struct Arguments {
     /// Store a snapshot of the player's state every N seconds, so that seeking starts from the nearest one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
-    /// Which animation of a file that holds several (glTF, FBX, VRML): its name, or its number from 0
-    #[arg(long, value_name = "NAME|INDEX")]
-    animation: Option<String>,
+    /// Which animation of a file that holds several (glTF, FBX, VRML): its name, or its number from 0. `all` writes a clip for each:
+    /// OUTPUT-NAME.ptn, or NAME.ptn if --output is a folder
+    #[arg(long, value_name = "NAME|INDEX|all")]
+    pub(super) animation: Option<String>,
     /// Write the rig to this file, and the clip without it
     #[arg(long)]
     pub(super) rig_out: Option<PathBuf>,
-    /// Print the measured errors as one JSON object
-    #[arg(long)]
-    pub(super) json: bool,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    pub(super) quiet: bool,
-    /// Number of files of a folder to convert at a time [default: the number of CPUs]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Number of files or animations to convert at a time [default: the number of CPUs]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) jobs: Option<u16>,
+    /// Whether this is one file of a folder, whose messages the folder's table replaces.
+    #[arg(skip)]
+    silent: bool,
 }
 
 impl Arguments {
     pub(super) fn output(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// The rate of the clips, if the user gives one.
+    pub(super) fn fps(&self) -> Option<f64> {
+        self.fps
     }
 
     /// The same with a name for the clip: without --output that of the motion, ending in .ptn.
@@ -145,35 +150,41 @@ impl Arguments {
 
     /// The same for one of several motions.
     pub(super) fn for_motion(&self, input: PathBuf, output: PathBuf) -> Arguments {
-        Arguments { input, more: Vec::new(), output: Some(output), json: false, ..self.clone() }
+        Arguments { input, more: Vec::new(), output: Some(output), ..self.clone() }
     }
 
     /// The same for one file of a folder, without messages.
     pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
-        Arguments { quiet: true, jobs: None, ..self.for_motion(input, output) }
+        Arguments { silent: true, jobs: None, ..self.for_motion(input, output) }
     }
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.list {
-        return super::info::animations(&arguments.input, arguments.json);
+        return super::info::animations(&arguments.input);
     }
     if arguments.same_form {
         return same_form::run(arguments);
     }
+    let all = arguments.animation.as_deref() == Some("all");
+    if !arguments.more.is_empty() {
+        ensure!(!all, "--animation all takes one file");
+        return batch::run_several(arguments);
+    }
     if arguments.input.is_dir() {
+        ensure!(!all, "--animation all takes one file");
         return batch::run(arguments);
+    }
+    if all {
+        return batch::run_animations(arguments);
     }
     let arguments = &arguments.with_output()?;
     arguments.check_outputs(&[])?;
     let made = convert(arguments)?;
-    if arguments.json {
-        output::print_json(&made.json)?;
-    }
-    if !arguments.quiet {
-        note!("{}", made.sentence(arguments.output()));
-    }
+    output::report(made.json.clone());
+    output::report(json!({"frames": made.frames, "bytes": made.bytes.len(), "warnings": made.warnings}));
+    note!("{}", made.sentence(arguments.output()));
     Ok(())
 }
 
@@ -249,7 +260,7 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     };
     let imported = import::load(&arguments.input, &options)?;
     let say = |sentence: &str| {
-        if !arguments.quiet {
+        if !arguments.silent {
             note!("{sentence}");
         }
     };
@@ -258,6 +269,7 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     let place = || arguments.input.display().to_string();
     let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
     let read = options.files.read_so_far();
+    read.iter().for_each(|path| detail!("read {}", path.display()));
     edited.said.iter().for_each(|sentence| say(sentence));
     let mut motion = edited.motion;
     let mut bound = match arguments.channels.bounds(&motion)? {
@@ -359,9 +371,10 @@ fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
 }
 
 fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
-    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(length) };
-    bar.set_style(ProgressStyle::with_template("fitting {wide_bar} {percent} % {eta} left")?);
-    Ok(bar)
+    if arguments.silent {
+        return Ok(ProgressBar::hidden());
+    }
+    output::progress(length, "fitting {wide_bar} {percent} % {eta} left")
 }
 
 /// The clip's bytes, with the index that was asked for; says what it costs.
@@ -372,7 +385,7 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8
     let spacing = (seconds * 1e9 / f64::from(coded.frame_time_ns)).round();
     ensure!((1.0..=f64::from(MAX_FRAMES)).contains(&spacing), "--index {seconds}: expected a frame's time or more, in seconds");
     let bytes = clip::encode_with_index(coded, rig, apart, spacing as u32)?;
-    if !arguments.quiet {
+    if !arguments.silent {
         let cost = bytes.len() - plain.len();
         let part = 100.0 * cost as f64 / plain.len() as f64;
         note!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)");
@@ -396,7 +409,7 @@ fn by_distance(arguments: &Arguments, prepared: &Prepared, cm: f64, part: f64, c
             not_written()
         );
     }
-    if degrees > TOLD_DEGREES && !arguments.quiet {
+    if degrees > TOLD_DEGREES && !arguments.silent {
         note!(
             "rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame}); --max-rotation-error bounds it"
         );

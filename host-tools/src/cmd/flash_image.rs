@@ -1,10 +1,12 @@
 //! `pantin flash-image`.
 
-use crate::output::{check, note, write_whole};
+use super::default_output;
+use crate::output::{check, note, report, write_whole};
 use crate::update::{self, image};
 use anyhow::{Context, Result, bail};
 use clap::builder::PossibleValuesParser;
 use pantin_store::region::{REGIONS, Region};
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Write an image of a board's clip flash; the firmware stays as it is.
@@ -23,39 +25,49 @@ The firmware must be built with feature `update`.")]
 pub struct Arguments {
     /// The clip, which must contain its rig
     input: PathBuf,
-    /// The file to write: .bin, .hex or .uf2
+    /// The file to write: .bin, .hex or .uf2 [default: the clip's name, ending in what the board's flash tool takes]
     #[arg(short, long)]
-    output: PathBuf,
+    output: Option<PathBuf>,
     /// The board
     #[arg(long, value_parser = PossibleValuesParser::new(REGIONS.map(|region| region.board)))]
     board: String,
     /// The name that the board shows, up to 28 bytes [default: the file's name]
     #[arg(long)]
     name: Option<String>,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
+}
+
+/// The extension that a board's flash tool takes: drives take UF2 files, espflash writes plain bytes.
+fn extension(region: &Region) -> &'static str {
+    match region.board {
+        _ if region.family.is_some() => "uf2",
+        "esp32-c3" => "bin",
+        _ => "hex",
+    }
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    check(&[&arguments.input], &[&arguments.output])?;
+    let region = Region::of(&arguments.board).context("no board has this name")?;
+    let output = &match &arguments.output {
+        Some(output) => output.clone(),
+        None => default_output(&arguments.input, extension(region))?,
+    };
+    check(&[&arguments.input], &[output])?;
     let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
-    let region = Region::of(&arguments.board).context("no board is called so")?;
     let place = || arguments.input.display().to_string();
-    let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {
+    let bytes = match output.extension().and_then(|extension| extension.to_str()) {
         Some("bin") => image::binary(region, &clip, &info).with_context(place)?,
         Some("hex") => image::hex(region, &clip, &info).with_context(place)?.into_bytes(),
         Some("uf2") => image::uf2(region, &clip, &info).with_context(place)?,
-        _ => bail!("{}: expected a name that ends in .bin, .hex or .uf2", arguments.output.display()),
+        _ => bail!("{}: expected a name that ends in .bin, .hex or .uf2", output.display()),
     };
-    write_whole(&arguments.output, &bytes)?;
-    if !arguments.quiet {
-        let Region { board, address, slot, sector, word, .. } = region;
-        note!(
-            "{board}: {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}",
-            clip.len()
-        );
-    }
+    write_whole(output, &bytes)?;
+    let Region { board, address, slot, sector, word, .. } = region;
+    report(json!({"board": board, "clip_bytes": clip.len(), "slot_bytes": slot, "address": address, "sector_bytes": sector}));
+    note!(
+        "{board}: {} holds {} bytes of clip; two slots of {slot} bytes at {address:#010x}, sectors of {sector}, words of {word}",
+        output.display(),
+        clip.len()
+    );
     Ok(())
 }

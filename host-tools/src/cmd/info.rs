@@ -3,7 +3,7 @@
 use super::Files;
 use crate::facts::{self, Channel, MemoryNeeds, Track};
 use crate::import::list;
-use crate::output::{clean, outln, print_json};
+use crate::output::{self, clean, outln};
 use anyhow::{Context, Result};
 use pantin::{Clip, Joint};
 use serde_json::{Value, json};
@@ -13,14 +13,11 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin info walk.ptn
-  pantin info --json walk.ptn
+  pantin info walk.ptn --json         `motion_bytes` is the file without its rig
   pantin info figure.glb")]
 pub struct Arguments {
     /// The clip, or a .glb, .gltf, .fbx, .wrl or .x3dv
     input: PathBuf,
-    /// Print one JSON object; `motion_bytes` is the file without its rig
-    #[arg(long)]
-    json: bool,
     /// The rig of a clip that was made with --rig-out
     #[arg(long)]
     rig: Option<PathBuf>,
@@ -29,7 +26,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     if list::chooses(&arguments.input) {
-        return animations(&arguments.input, arguments.json);
+        return animations(&arguments.input);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
@@ -65,10 +62,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("figure_workspace_bytes", json!(memory.workspace_bytes())),
     ];
     let channels = facts::channels(&clip)?;
-    if arguments.json {
+    if output::is_json() {
         let mut object: serde_json::Map<String, Value> = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
         object.insert("rig".into(), rig_json(&clip, &channels));
-        print_json(&Value::Object(object))?;
+        output::report(Value::Object(object));
     } else {
         fields.iter().try_for_each(|(name, value)| outln!("{:22} {value}", name.replace('_', " ")))?;
         table(&clip, &channels).iter().try_for_each(|line| outln!("{line}"))?;
@@ -161,11 +158,12 @@ fn tracks(channels: &[Channel]) -> String {
 }
 
 /// The animations of a file, one a line; `pantin convert --animation` takes their numbers or names.
-pub fn animations(path: &Path, as_json: bool) -> Result<()> {
+pub fn animations(path: &Path) -> Result<()> {
     let entries = list::list(path, None)?;
-    if as_json {
+    if output::is_json() {
         let object = |entry: &list::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
-        return print_json(&json!(entries.iter().map(object).collect::<Vec<_>>()));
+        output::report(json!({"animations": entries.iter().map(object).collect::<Vec<_>>()}));
+        return Ok(());
     }
     for (number, entry) in entries.iter().enumerate() {
         let name = entry.name.as_deref().unwrap_or("without a name");

@@ -21,8 +21,9 @@ pub mod update;
 use crate::encode;
 use crate::fit::{descent::Level, fit};
 use crate::import;
+use crate::output::detail;
 use crate::verify::verify;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
 use pantin::OpenError;
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,25 @@ pub struct Files {
     path: PathBuf,
     clip: Vec<u8>,
     rig: Vec<u8>,
+}
+
+/// The name of an output that the user does not name: the input's, with another extension.
+fn default_output(input: &Path, extension: &str) -> Result<PathBuf> {
+    ensure!(input.as_os_str() != "-", "standard input has no name for the output: --output gives one");
+    Ok(input.with_extension(extension))
+}
+
+/// The format of an output, by the option --format or by the extension of its name.
+/// `None` if neither says it.
+fn format_of<T: clap::ValueEnum>(output: &Path, option: Option<T>) -> Result<Option<T>> {
+    let extension = output.extension().and_then(|extension| extension.to_str());
+    let by_name = extension.and_then(|extension| T::from_str(extension, true).ok());
+    let name = |format: &T| format.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default();
+    if let (Some(by_name), Some(option)) = (&by_name, &option) {
+        let (by_name, option) = (name(by_name), name(option));
+        ensure!(by_name == option, "{}: its name ends in .{by_name}, and --format is {option}", output.display());
+    }
+    Ok(option.or(by_name))
 }
 
 /// Bounds of a motion that is converted only to be shown: in cm, and as a part of a scalar's full scale.
@@ -44,7 +64,11 @@ impl Files {
     }
 
     fn read_from(files: &import::Files, clip: &Path, rig: Option<&Path>) -> Result<Files> {
-        let read = |path: &Path| files.read(path);
+        let read = |path: &Path| {
+            let bytes = files.read(path)?;
+            detail!("read {}: {} bytes", path.display(), bytes.len());
+            anyhow::Ok(bytes)
+        };
         Ok(Files { path: clip.into(), clip: read(clip)?, rig: rig.map(read).transpose()?.unwrap_or_default() })
     }
 

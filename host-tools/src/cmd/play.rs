@@ -4,7 +4,7 @@ use super::Files;
 use super::render::{Axis, Side, Size};
 use crate::expand::expand;
 use crate::face::cast::is_face;
-use crate::output::noticed;
+use crate::output::{noticed, report, take_stdout};
 use crate::play::cells::Dots;
 use crate::play::clock::Clock;
 use crate::play::colours::Colours;
@@ -21,6 +21,7 @@ use crate::render::palette::Palette;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
 use pantin_figure::{Track, View};
+use serde_json::json;
 use std::io::{IsTerminal, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -95,6 +96,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let opened =
         files.iter().zip(&arguments.inputs).map(|(file, input)| file.open().with_context(|| input.display().to_string()));
     let clips: Vec<Clip> = opened.collect::<Result<_>>()?;
+    // Pictures are all that is printed there.
+    take_stdout();
+    let shown = |(clip, input): (&Clip, &PathBuf)| json!({"file": input.display().to_string(), "frames": clip.frames(), "seconds": clip.duration_ns() as f64 * 1e-9});
+    report(json!({"clips": clips.iter().zip(&arguments.inputs).map(shown).collect::<Vec<_>>()}));
     if arguments.plain {
         return arguments.plainly(&clips);
     }

@@ -34,7 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let inputs: Vec<&Path> = tasks.iter().flat_map(Arguments::inputs).chain(read).collect();
     output::check(&inputs, &outputs.iter().map(|(path, _)| *path).collect::<Vec<_>>())?;
     output::write_together(&outputs)?;
-    if arguments.json {
+    if output::is_json() {
         let object = |(task, made): (&Arguments, &Made)| {
             let mut object = json!({"file": task.input.display().to_string(), "bytes": made.bytes.len()});
             if let (Value::Object(all), Value::Object(errors)) = (&mut object, &made.json) {
@@ -42,15 +42,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             }
             object
         };
-        output::print_json(&json!(tasks.iter().zip(&made).map(object).collect::<Vec<_>>()))?;
+        output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
     }
-    if !arguments.quiet {
-        for (task, made) in tasks.iter().zip(&made) {
-            note!("{}", made.sentence(task.output()));
-        }
-        let count = coding.exponentials.iter().filter(|exponential| **exponential).count();
-        note!("{} clips of one form: length exponent {}, {count} joints as exponential maps", made.len(), coding.length_exponent);
+    for (task, made) in tasks.iter().zip(&made) {
+        note!("{}", made.sentence(task.output()));
     }
+    let count = coding.exponentials.iter().filter(|exponential| **exponential).count();
+    note!("{} clips of one form: length exponent {}, {count} joints as exponential maps", made.len(), coding.length_exponent);
     Ok(())
 }
 

@@ -1,8 +1,9 @@
 //! `pantin serve`.
 
+use crate::output::{self, outln};
 use crate::serve::{Site, serve};
 use anyhow::{Context, Result};
-use std::io::Write;
+use serde_json::json;
 use std::net::{IpAddr, TcpListener};
 use std::path::PathBuf;
 
@@ -38,9 +39,14 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let place = (arguments.bind, arguments.port);
     let listener = TcpListener::bind(place);
     let listener = listener.with_context(|| format!("cannot listen on {}, port {}: --port takes another", place.0, place.1))?;
-    let mut out = std::io::stdout();
-    writeln!(out, "http://{}/ (Ctrl-C ends it)", listener.local_addr()?)?;
-    out.flush()?;
+    let address = listener.local_addr()?;
+    output::report(json!({"url": format!("http://{address}/"), "clips": arguments.files.len()}));
+    if output::is_json() {
+        // The command has no end of its own.
+        output::finish("serve")?;
+    } else {
+        outln!("http://{address}/ (Ctrl-C ends it)")?;
+    }
     serve(&listener, site);
     Ok(())
 }

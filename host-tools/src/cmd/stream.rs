@@ -2,10 +2,11 @@
 
 use crate::budget;
 use crate::cmd::Files;
-use crate::output::note;
+use crate::output::{note, report};
 use crate::sender::{ByteCounts, Line, Sender, Source};
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
+use serde_json::json;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -49,9 +50,6 @@ pub struct Arguments {
     /// Add 8 bytes of parity to each packet, which correct 4 wrong bytes; the receiver must expect them (the board's argument `fec`)
     #[arg(long)]
     pub(super) fec: bool,
-    /// Print nothing
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 /// Runs the command.
@@ -76,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             let rounds = if arguments.looped && one { None } else { Some(1) };
             let mut schedule = sender.clip(source, *fit, rounds);
             let start = Instant::now();
-            say(arguments, &opening(source, fit, path));
+            note!("{}", opening(source, fit, path));
             let delay = pace::send(&mut line, &mut schedule, &stop).with_context(|| path.display().to_string())?;
             let length = source.seconds();
             // What was sent ahead is still to be shown.
@@ -92,19 +90,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             break;
         }
     }
-    say(arguments, &closing(bytes, seconds));
+    note!("{}", closing(bytes, seconds));
     Ok(())
 }
 
 /// A session of its own: no clock or process number is as unlikely to come again.
 pub(super) fn sender() -> Sender {
     Sender::new(RandomState::new().build_hasher().finish() as u16)
-}
-
-pub(super) fn say(arguments: &Arguments, sentence: &str) {
-    if !arguments.quiet {
-        note!("{sentence}");
-    }
 }
 
 fn source(arguments: &Arguments, path: &Path) -> Result<Source> {
@@ -147,7 +139,15 @@ fn opening(source: &Source, fit: &Line, path: &Path) -> String {
     )
 }
 
+/// What was sent, for the report and as a sentence.
 pub(super) fn closing(bytes: ByteCounts, seconds: f64) -> String {
+    report(json!({
+        "packets": bytes.packets,
+        "line_bytes": bytes.line,
+        "motion_bytes": bytes.motion,
+        "refresh_bytes": bytes.refresh,
+        "seconds": seconds,
+    }));
     let part = |part: f64| 100.0 * part / bytes.line.max(1.0);
     format!(
         "{} packets, {:.0} bytes in {seconds:.1} s: motion {:.1} %, refresh {:.1} %, heads and starts {:.1} %, framing and CRC {:.1} %, parity {:.1} %",
@@ -161,7 +161,7 @@ pub(super) fn closing(bytes: ByteCounts, seconds: f64) -> String {
     )
 }
 
-/// Set by the signals that end a program, so that what was sent is still told.
+/// Set by the signals that end a program, so that what was sent is still reported.
 fn stopped_by_signal() -> Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]

@@ -1,7 +1,8 @@
 //! `pantin stream --live`: a face over a line while it is recorded.
 
-use super::stream::{Arguments, closing, say, sender};
+use super::stream::{Arguments, closing, sender};
 use crate::cmd::Files;
+use crate::output::note;
 use crate::sender::{Line, Live, LiveChannel, Source};
 use crate::stream::live::Feed;
 use crate::stream::pace;
@@ -57,14 +58,11 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let cycle = REFRESH_BYTES * places.len() as f64 / (REFRESHES * rate) / source.frame_seconds();
     let line = Line { rate, ahead: AHEAD, share: 1.0, cycle: cycle.ceil().clamp(8.0, 120.0) as u32, parity: arguments.fec };
     let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
-    say(
-        arguments,
-        &format!(
-            "live: {} channels; shown {:.0} ms after they came; all of them refreshed within {:.0} ms",
-            places.iter().filter(|place| place.value.is_some()).count(),
-            milliseconds(Live::delay(&line)),
-            milliseconds(line.cycle)
-        ),
+    note!(
+        "live: {} channels; shown {:.0} ms after they came; all of them refreshed within {:.0} ms",
+        places.iter().filter(|place| place.value.is_some()).count(),
+        milliseconds(Live::delay(&line)),
+        milliseconds(line.cycle)
     );
     let mut live = sender().live(&source, line, &making);
     let mut out = arguments.to.open()?;
@@ -88,15 +86,9 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
             at = Instant::now();
         }
     }
-    say(arguments, &closing(live.bytes(), start.elapsed().as_secs_f64()));
+    note!("{}", closing(live.bytes(), start.elapsed().as_secs_f64()));
     if live.omitted_messages() > 0 {
-        say(
-            arguments,
-            &format!(
-                "{} segments found no room on the line: a faster one, or a larger --max-scalar-error",
-                live.omitted_messages()
-            ),
-        );
+        note!("{} segments found no room on the line: a faster one, or a larger --max-scalar-error", live.omitted_messages());
     }
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! `pantin update`.
 
-use crate::output::note;
+use crate::output::{note, progress, report};
 use crate::update::place::Place;
 use crate::update::{self, RetryPolicy};
 use anyhow::{Context, Result};
-use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -35,9 +35,6 @@ pub struct Arguments {
     /// Number of unanswered messages, or of restarts of the board, after which the transfer is given up
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     tries: u32,
-    /// Print nothing but errors
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -48,19 +45,17 @@ fn seconds(text: &str) -> Result<f64, String> {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
     let mut line = arguments.to.open()?;
-    let bar = if arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(info.length.into()) };
-    bar.set_style(ProgressStyle::with_template("{wide_bar} {bytes} of {total_bytes} {eta}")?);
+    let bar = progress(info.length.into(), "{wide_bar} {bytes} of {total_bytes} {eta} left")?;
     let patience = RetryPolicy { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };
     let begun = Instant::now();
     let outcome = update::send(&mut line, &clip, &info, patience, &mut |bytes| bar.set_position(bytes.into()));
     bar.finish_and_clear();
     let outcome = outcome.with_context(|| format!("{} to {}", arguments.input.display(), arguments.to))?;
-    if !arguments.quiet {
-        let (name, seconds) = (info.name.as_str(), begun.elapsed().as_secs_f64());
-        match outcome.sent {
-            0 => note!("{name}: the board has it already"),
-            sent => note!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages sent again", outcome.again),
-        }
+    let (name, seconds) = (info.name.as_str(), begun.elapsed().as_secs_f64());
+    report(json!({"name": name, "sent_bytes": outcome.sent, "seconds": seconds, "messages_sent_again": outcome.again}));
+    match outcome.sent {
+        0 => note!("{name}: the board has it already"),
+        sent => note!("{name}: plays; {sent} bytes in {seconds:.1} s, {} messages sent again", outcome.again),
     }
     Ok(())
 }

@@ -63,10 +63,46 @@ fn c_literal(name: &str) -> String {
     format!("\"{}\"", escaped.collect::<String>())
 }
 
-/// `dance-2` as `DANCE_2`; a name that begins with no letter gets `CLIP_` before it.
+/// What follows a clip's name in the names of its constants. A clip that ended so would share a name with another one's constant.
+const SUFFIXES: [&str; 10] =
+    ["_len", "_frames", "_frame_time_ns", "_channels", "_moving", "_figure_joints", "_workspace", "_names", "_id", "_h"];
+
+/// The name of a clip's constants: `DANCE_2` for the stem `dance_2`. A stem that is no lower-case identifier is cleaned and gets eight
+/// hexadecimal digits of its hash, so that different stems have different names: `DANCE_2_5E7D3A10` for `dance-2`.
 fn identifier(stem: &str) -> String {
-    let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' }).collect();
-    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("CLIP_{name}") }
+    let letters = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    let hashed =
+        |stem: &str| stem.rsplit_once('_').is_some_and(|(_, end)| end.len() == 8 && end.chars().all(|c| c.is_ascii_hexdigit()));
+    let plain = stem.starts_with(|c: char| c.is_ascii_lowercase())
+        && stem.chars().all(letters)
+        && !hashed(stem)
+        && !SUFFIXES.iter().any(|suffix| stem.ends_with(suffix))
+        && !KEYWORDS.contains(&stem)
+        && stem.len() <= LONGEST_NAME;
+    if plain {
+        return stem.to_ascii_uppercase();
+    }
+    let clean = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };
+    let name: String = stem.chars().take(LONGEST_NAME).map(clean).collect();
+    let name = if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("N{name}") };
+    format!("{}_{:08X}", name.trim_end_matches('_'), hash(stem.as_bytes()))
+}
+
+/// Longer names are cut: C compilers need not tell apart what differs later.
+const LONGEST_NAME: usize = 40;
+/// Lower-case words that are no identifiers in C or Rust, or mean something in upper case.
+const KEYWORDS: [&str; 73] = [
+    "abstract", "as", "asm", "async", "auto", "await", "become", "bool", "box", "break", "case", "char", "const", "continue",
+    "crate", "default", "do", "double", "dyn", "else", "enum", "eof", "extern", "false", "final", "float", "fn", "for", "gen",
+    "goto", "if", "impl", "in", "inline", "int", "let", "long", "loop", "macro", "main", "match", "mod", "move", "mut", "null",
+    "override", "priv", "pub", "ref", "register", "restrict", "return", "self", "short", "signed", "sizeof", "static", "struct",
+    "super", "switch", "trait", "true", "try", "type", "typedef", "typeof", "union", "unsafe", "unsigned", "use", "virtual",
+    "void", "while",
+];
+
+/// FNV-1a with 32 bits.
+fn hash(bytes: &[u8]) -> u32 {
+    bytes.iter().fold(0x811c_9dc5, |hash: u32, &byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
 }
 
 fn rows(bytes: &[u8], indent: &str) -> String {
@@ -74,9 +110,10 @@ fn rows(bytes: &[u8], indent: &str) -> String {
     bytes.chunks(PER_LINE).map(row).collect()
 }
 
-/// A C header: the clip's bytes as `static const unsigned char STEM[]`, and constants for the memory that it takes.
+/// A C header: the clip's bytes as `static const unsigned char CLIP_STEM[]`, and constants for the memory that it takes.
 pub fn c_header(clip: &Clip, bytes: &[u8], stem: &str) -> Result<String> {
-    let name = identifier(stem);
+    // The prefix keeps names such as `EOF` away from those of other headers.
+    let name = format!("CLIP_{}", identifier(stem));
     let facts = Facts::of(clip, bytes.len())?;
     let mut out = String::new();
     facts.lines.iter().for_each(|line| out.push_str(&format!("/* {line} */\n")));
@@ -90,7 +127,13 @@ pub fn c_header(clip: &Clip, bytes: &[u8], stem: &str) -> Result<String> {
         ("FIGURE_JOINTS", figure_joints),
         ("WORKSPACE", workspace),
     ];
-    let _ = write!(out, "#ifndef {name}_H\n#define {name}_H\n\n");
+    // Another clip with this name must not be left out silently, as a plain include guard would do.
+    let id = hash(bytes);
+    let _ = write!(
+        out,
+        "#if defined(PANTIN_{name}_ID) && PANTIN_{name}_ID != {id}\n#error \"two clips have the name {name}: rename one of their files\"\n#endif\n"
+    );
+    let _ = write!(out, "#ifndef PANTIN_{name}_H\n#define PANTIN_{name}_H\n#define PANTIN_{name}_ID {id}\n\n");
     numbers.iter().for_each(|(what, value)| out.push_str(&format!("#define {name}_{what} {value}\n")));
     let names: Vec<String> = facts.names.iter().map(|name| c_literal(name)).collect();
     let _ = write!(
@@ -147,10 +190,16 @@ mod tests {
 
     #[test]
     fn names_are_identifiers_and_end_no_comment() {
-        assert_eq!(
-            [identifier("dance-2"), identifier("2nd"), identifier("é"), identifier("")],
-            ["DANCE_2", "CLIP_2ND", "CLIP__", "CLIP_"]
-        );
+        assert_eq!([identifier("dance_2"), identifier("walk")], ["DANCE_2", "WALK"]);
+        let odd = ["dance-2", "Dance_2", "2nd", "é", "", "EOF", "while", "walk_frames", "dance_2_5E7D3A10", "_", "a\u{202e}b"];
+        let names: std::collections::BTreeSet<String> = odd.iter().map(|stem| identifier(stem)).collect();
+        assert_eq!(names.len(), odd.len());
+        for name in names {
+            assert!(name.starts_with(|c: char| c.is_ascii_uppercase()), "{name}");
+            assert!(name.chars().all(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_'), "{name}");
+            let digits = &name[name.len() - 9..];
+            assert!(digits.starts_with('_') && digits[1..].chars().all(|c| c.is_ascii_hexdigit()), "{name}");
+        }
         assert_eq!(plain("a*/b\n\\ 'é' \u{202e}"), "a*_b__ 'é' _");
         assert_eq!(c_literal("a\"\\?\né"), r#""a\"\\\?\012\303\251""#);
     }

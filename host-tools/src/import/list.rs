@@ -24,6 +24,15 @@ impl Entry {
     }
 }
 
+/// The animation that the user names among those called `names`: by its name, in any case of letters if none is the same exactly, or by
+/// its number from 0.
+pub(super) fn choose<'n>(wanted: &str, names: impl Iterator<Item = Option<&'n str>> + Clone) -> Option<usize> {
+    let exact = || names.clone().position(|name| name == Some(wanted));
+    let folded = || names.clone().position(|name| name.is_some_and(|name| name.to_lowercase() == wanted.to_lowercase()));
+    let number = || wanted.parse().ok().filter(|&number: &usize| number < names.clone().count());
+    exact().or_else(folded).or_else(number)
+}
+
 /// Whether files of this extension hold animations to choose from.
 pub fn chooses(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());

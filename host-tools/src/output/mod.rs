@@ -6,19 +6,22 @@
 //!   when it is whole. It is removed on every other exit, signals included.
 //! - A symbolic link stays; the file that it names is replaced. Pipes and devices are written through. `-` is standard output.
 //! - Lines for people go through [`print_note`] and [`print_line`], which escape control characters.
+//! - [`report()`] collects what `--json` prints.
 //! - No output is longer than `--max-output`; [`check_size`] refuses one before it is begun where its size is known.
 //! - Files that belong together are committed together: [`write_together`] replaces all of them or none.
 
 mod foreign;
 mod place;
+mod report;
 mod staged;
 mod terminal;
 
 pub use foreign::{Wanted, refuse_foreign};
 pub use place::{Place, check};
+pub use report::{fail, finish, is_json, is_quiet, is_verbose, progress, report, set_reporting, take_stdout};
 pub use staged::{Staged, check_size, commit, set_most_bytes};
-pub use terminal::{clean, is_hostile, print_json, print_line, print_note, reader_gone};
-pub(crate) use terminal::{note, noticed, outln};
+pub use terminal::{clean, is_hostile, print_detail, print_error, print_error_text, print_line, print_note, reader_gone};
+pub(crate) use terminal::{detail, note, noticed, outln};
 
 use anyhow::{Context, Result};
 use std::io::Write;

@@ -1,9 +1,11 @@
 //! Bytes on their way to an output: beside it until they are whole, then in its place.
 
 use super::place::{Place, folder};
-use super::terminal::noticed;
+use super::report;
+use super::terminal::{detail, noticed};
 use crate::budget;
 use anyhow::{Context, Result, ensure};
+use serde_json::json;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Stdout, Write};
@@ -46,7 +48,10 @@ impl Staged {
     /// Begins an output at `path`.
     pub fn create(path: &Path) -> Result<Staged> {
         let to = Place::of(path).and_then(|place| match place {
-            Place::Stdout => Ok(To::Stdout(BufWriter::new(io::stdout()))),
+            Place::Stdout => {
+                report::take_stdout();
+                Ok(To::Stdout(BufWriter::new(io::stdout())))
+            }
             Place::Through(path) => Ok(To::Through(BufWriter::new(
                 File::options().write(true).truncate(true).open(path).context("cannot be opened")?,
             ))),
@@ -63,13 +68,14 @@ impl Staged {
 
 impl Write for Staged {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.written = self.written.saturating_add(bytes.len() as u64);
-        check_size(&self.path, self.written).map_err(io::Error::other)?;
-        match &mut self.to {
+        check_size(&self.path, self.written.saturating_add(bytes.len() as u64)).map_err(io::Error::other)?;
+        let taken = match &mut self.to {
             To::Replace { bytes: file, .. } => file.write(bytes),
             To::Through(file) => noticed(file.write(bytes)),
             To::Stdout(out) => noticed(out.write(bytes)),
-        }
+        }?;
+        self.written += taken as u64;
+        Ok(taken)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -93,6 +99,7 @@ fn temporary() -> Builder<'static, 'static> {
 /// Puts all outputs in their places. If one cannot be put there, the files that were there come back.
 pub fn commit(staged: Vec<Staged>) -> Result<()> {
     let several = staged.len() > 1;
+    let sizes: Vec<_> = staged.iter().map(|output| (output.path.display().to_string(), output.written)).collect();
     let mut whole = Vec::new();
     for mut output in staged {
         let path = output.path.clone();
@@ -122,6 +129,10 @@ pub fn commit(staged: Vec<Staged>) -> Result<()> {
                 return Err(error).with_context(|| format!("{}: cannot be written", path.display()));
             }
         }
+    }
+    for (path, bytes) in sizes {
+        detail!("wrote {path}: {bytes} bytes");
+        report::list("outputs", json!({"file": path, "bytes": bytes}));
     }
     Ok(())
 }

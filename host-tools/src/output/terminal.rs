@@ -4,6 +4,7 @@
 //! colours or write into the terminal's input. A closed or full standard output is an error, which `main` turns into an exit code; a
 //! closed or full standard error is none, because nobody is left to read it.
 
+use super::report;
 use anyhow::{Context, Result};
 use std::borrow::Cow;
 use std::fmt::Arguments;
@@ -14,11 +15,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 macro_rules! outln {
     ($($part:tt)*) => { $crate::output::print_line(format_args!($($part)*)) };
 }
-/// Prints a line to standard error.
+/// Prints a note or a warning to standard error, unless `-q` leaves it out.
 macro_rules! note {
     ($($part:tt)*) => { $crate::output::print_note(format_args!($($part)*)) };
 }
-pub(crate) use {note, outln};
+/// Prints a detail to standard error under `-v`.
+macro_rules! detail {
+    ($($part:tt)*) => { $crate::output::print_detail(format_args!($($part)*)) };
+}
+pub(crate) use {detail, note, outln};
 
 /// Whether a reader of the output went away.
 static READER_GONE: AtomicBool = AtomicBool::new(false);
@@ -58,7 +63,16 @@ pub fn print_line(line: Arguments<'_>) -> Result<()> {
 }
 
 /// Writes a JSON value as a line. Escapes keep its strings what they were.
-pub fn print_json(value: &serde_json::Value) -> Result<()> {
+pub(super) fn print_json(value: &serde_json::Value) -> Result<()> {
+    print(&json_line(value))
+}
+
+/// The same on standard error.
+pub(super) fn print_error_json(value: &serde_json::Value) {
+    let _ = writeln!(io::stderr(), "{}", json_line(value));
+}
+
+fn json_line(value: &serde_json::Value) -> String {
     let mut text = String::new();
     for c in value.to_string().chars() {
         if is_hostile(c) {
@@ -67,7 +81,7 @@ pub fn print_json(value: &serde_json::Value) -> Result<()> {
             text.push(c);
         }
     }
-    print(&text)
+    text
 }
 
 fn print(line: &str) -> Result<()> {
@@ -75,11 +89,36 @@ fn print(line: &str) -> Result<()> {
     noticed(writeln!(out, "{line}").and_then(|()| out.flush())).context("standard output")
 }
 
-/// Writes a clean line to standard error.
+/// Writes a note: a clean line on standard error, unless `-q` leaves it out. It is part of the report.
 pub fn print_note(line: Arguments<'_>) {
-    let line = line.to_string();
+    if !report::is_quiet() {
+        report::list("notes", line.to_string().into());
+        print_to_stderr(&line.to_string());
+    }
+}
+
+/// Writes a detail to standard error, under `-v`.
+pub fn print_detail(line: Arguments<'_>) {
+    if report::is_verbose() {
+        print_to_stderr(&line.to_string());
+    }
+}
+
+/// Writes an error to standard error. All errors of all commands begin alike.
+pub fn print_error(line: Arguments<'_>) {
+    print_to_stderr(&format!("error: {line}"));
+}
+
+/// The same for a text of several lines.
+pub fn print_error_text(text: &str) {
+    for (number, line) in text.lines().enumerate() {
+        if number == 0 { print_error(format_args!("{line}")) } else { print_to_stderr(line) }
+    }
+}
+
+fn print_to_stderr(line: &str) {
     // Where it cannot be written, there is no place to say so.
-    let _ = writeln!(io::stderr(), "{}", clean(&line));
+    let _ = writeln!(io::stderr(), "{}", clean(line));
 }
 
 #[cfg(test)]

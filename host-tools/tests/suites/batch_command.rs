@@ -93,7 +93,7 @@ fn sources_of_one_name_do_not_write_one_clip() {
     assert!(done.status.success(), "{}", text(&done.stderr));
     assert!(folder.clip("light.csv.ptn").exists() && folder.clip("light.tsv.ptn").exists());
     let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
-    assert_eq!((json[0]["frames"].as_u64(), json[1]["frames"].as_u64()), (Some(3), Some(3)));
+    assert_eq!((json["files"][0]["frames"].as_u64(), json["files"][1]["frames"].as_u64()), (Some(3), Some(3)));
 }
 
 #[test]

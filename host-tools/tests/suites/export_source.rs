@@ -16,8 +16,13 @@ fn walk() -> Vec<u8> {
 
 /// Compiles and runs a program that prints the clip's bytes; `None` without the compiler.
 fn printed(compiler: &str, program: &Path, folder: &Path) -> Option<Vec<u8>> {
+    printed_with(compiler, &[], program, folder)
+}
+
+/// The same with options of the compiler.
+fn printed_with(compiler: &str, options: &[&str], program: &Path, folder: &Path) -> Option<Vec<u8>> {
     let runs = folder.join("program").with_extension(std::env::consts::EXE_EXTENSION);
-    let Ok(compiled) = Command::new(compiler).arg(program).arg("-o").arg(&runs).output() else {
+    let Ok(compiled) = Command::new(compiler).args(options).arg(program).arg("-o").arg(&runs).output() else {
         println!("skipped: no {compiler} here");
         return None;
     };
@@ -56,7 +61,7 @@ fn a_c_header_holds_the_clip() {
         "{header}"
     );
     std::fs::write(folder.join("walk.h"), header).unwrap();
-    let main = "#include <stdio.h>\n#include \"walk.h\"\n#include \"walk.h\"\nstatic const char *const names[WALK_CHANNELS] = { WALK_NAMES };\nint main(void) { return fwrite(WALK, 1, WALK_LEN, stdout) != sizeof WALK || WALK_FRAMES != 160 || WALK_FIGURE_JOINTS != 25 || WALK_WORKSPACE != 29 || names[0][0] != 'r' || !names[WALK_CHANNELS - 1]; }\n";
+    let main = "#include <stdio.h>\n#include \"walk.h\"\n#include \"walk.h\"\nstatic const char *const names[CLIP_WALK_CHANNELS] = { CLIP_WALK_NAMES };\nint main(void) { return fwrite(CLIP_WALK, 1, CLIP_WALK_LEN, stdout) != sizeof CLIP_WALK || CLIP_WALK_FRAMES != 160 || CLIP_WALK_FIGURE_JOINTS != 25 || CLIP_WALK_WORKSPACE != 29 || names[0][0] != 'r' || !names[CLIP_WALK_CHANNELS - 1]; }\n";
     std::fs::write(folder.join("main.c"), main).unwrap();
     if let Some(out) = printed("cc", &folder.join("main.c"), &folder) {
         assert_eq!(out, bytes);
@@ -75,4 +80,110 @@ fn channels_are_named_as_the_clip_codes_them() {
         assert!(text.contains("\"left-shin.Yexponential\"") && text.contains("\"spine.Xrotation\""), "{text}");
         assert!(!text.contains("left-shin.Xrotation"), "{text}");
     }
+}
+
+/// Names of files that are no identifiers, are words of a language, or look like another one's constant.
+const STEMS: [&str; 19] = [
+    "walk",
+    "Walk",
+    "WALK",
+    "a-b",
+    "a_b",
+    "a b",
+    "EOF",
+    "int",
+    "fn",
+    "walk_frames",
+    "walk_len",
+    "",
+    "2nd",
+    "é",
+    "\u{202e}gnp",
+    "walk_h",
+    "x*/y",
+    "NULL",
+    "crate",
+];
+
+/// A clip whose joints and scalars have hostile names.
+fn hostile_clip() -> Vec<u8> {
+    let names = ["*/ #error", "\u{202e}x\u{2066}", "a\"b\\", "??/", "tab\there", "x\r\ny", "e\u{301}", "\u{200b}", ""];
+    let joint = |(index, name): (usize, &&str)| pantin_tools::motion::Joint {
+        name: name.to_string(),
+        parent: index.checked_sub(1),
+        offset: [0.0, 1.0, 0.0],
+        kinds: vec![pantin_tools::motion::Kind::Xrotation],
+        end_site: false,
+    };
+    let scalar = |name: &&str| pantin_tools::motion::Scalar { name: name.to_string(), full_scale: 1.0 };
+    let rig = pantin_tools::motion::Rig {
+        joints: names.iter().enumerate().map(joint).collect(),
+        scalars: names.iter().map(scalar).collect(),
+        cm_per_unit: 1.0,
+    };
+    let channels = rig.channels();
+    let values = vec![vec![0.0, 0.5]; channels];
+    let keys = vec![None; channels];
+    let motion = pantin_tools::motion::Motion { rig, frame_time: 0.1, frames: 2, keys, values, looped: false };
+    let coded = fit(&motion, Level::Fast.plan(1.0), 0.02, &mut |_| ()).unwrap();
+    clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
+}
+
+#[test]
+fn headers_of_any_names_compile_together() {
+    let (clips, folder) = ([walk(), hostile_clip()], folder("hostile"));
+    let (mut c, mut length) = (String::from("#include <stdio.h>\n#include <stdlib.h>\n"), String::new());
+    let mut rust = String::new();
+    let mut uses = String::new();
+    for (index, stem) in STEMS.iter().enumerate() {
+        let bytes = &clips[index % 2];
+        let opened = pantin::Clip::new_checked(bytes).unwrap();
+        let (header, module) = (c_header(&opened, bytes, stem).unwrap(), rust_module(&opened, bytes, stem).unwrap());
+        for text in [&header, &module] {
+            let hostile = text.chars().find(|c| *c != '\n' && pantin_tools::output::is_hostile(*c));
+            assert_eq!(hostile, None, "{stem:?}");
+        }
+        let name = header.lines().find_map(|line| line.strip_prefix("#define ")?.strip_suffix("_H")).unwrap();
+        let name = name.strip_prefix("PANTIN_").unwrap();
+        c += &format!(
+            "#include \"{index}.h\"\n#include \"{index}.h\"\nstatic const char *const names{index}[] = {{ {name}_NAMES }};\n"
+        );
+        length += &format!(" + (sizeof {name} == {name}_LEN && names{index}[{name}_CHANNELS - 1] && {name}_FRAMES)");
+        rust += &format!("#[path = \"{index}.rs\"]\nmod m{index};\nuse m{index}::*;\n");
+        let name = name.strip_prefix("CLIP_").unwrap();
+        uses += &format!(" + usize::from({name}.len() == {} && {name}_NAMES.len() == {name}_CHANNELS)", bytes.len());
+        std::fs::write(folder.join(format!("{index}.h")), header).unwrap();
+        std::fs::write(folder.join(format!("{index}.rs")), module).unwrap();
+    }
+    c += &format!("int main(void) {{ printf(\"%d\", 0{length}); return 0; }}\n");
+    rust += &format!("fn main() {{ print!(\"{{}}\", 0{uses}); }}\n");
+    std::fs::write(folder.join("main.c"), &c).unwrap();
+    std::fs::write(folder.join("main.rs"), format!("#![deny(warnings)]\n#![allow(dead_code)]\n{rust}")).unwrap();
+    for (compiler, options, program) in [
+        ("cc", &["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"][..], "main.c"),
+        ("rustc", &["--edition=2024"][..], "main.rs"),
+    ] {
+        if let Some(out) = printed_with(compiler, options, &folder.join(program), &folder) {
+            assert_eq!(String::from_utf8(out).unwrap(), STEMS.len().to_string(), "{compiler}");
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn two_clips_of_one_name_are_an_error_and_not_left_out() {
+    let (first, second, folder) = (walk(), hostile_clip(), folder("twins"));
+    for (name, bytes) in [("a.h", &first), ("b.h", &second)] {
+        let header = c_header(&pantin::Clip::new_checked(bytes).unwrap(), bytes, "walk").unwrap();
+        std::fs::write(folder.join(name), header).unwrap();
+    }
+    std::fs::write(folder.join("main.c"), "#include \"a.h\"\n#include \"b.h\"\nint main(void) { return 0; }\n").unwrap();
+    match Command::new("cc").arg("-fsyntax-only").arg(folder.join("main.c")).output() {
+        Ok(compiled) => {
+            let said = String::from_utf8_lossy(&compiled.stderr);
+            assert!(!compiled.status.success() && said.contains("two clips have the name CLIP_WALK"), "{said}");
+        }
+        Err(_) => println!("skipped: no cc here"),
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -194,3 +194,71 @@ fn rotations_that_move_nothing_have_a_bound_of_their_own() {
     folder.put("leaf.bvh", LEAF);
     folder.done(&["convert", "leaf.bvh", "-o", "leaf.ptn", "--max-rotation-error", "1"]);
 }
+
+/// The file of [`skin_at_rest`] with its animations called so.
+fn animations(names: [&str; 2]) -> String {
+    let mut root: Value = serde_json::from_str(&skin_at_rest()).unwrap();
+    names.iter().enumerate().for_each(|(index, name)| root["animations"][index]["name"] = json!(name));
+    root.to_string()
+}
+
+#[test]
+fn every_animation_of_a_file_becomes_a_clip() {
+    let folder = Folder::new();
+    folder.put("fox.gltf", animations(["Walk", "../a b\u{1b}\u{202e}"]));
+    let all = ["convert", "fox.gltf", "--animation", "all"];
+    folder.done(&all);
+    folder.done(&[&all[..], &["-o", "pet.ptn"]].concat());
+    folder.done(&[&all[..], &["-o", "clips"]].concat());
+    folder.done(&["convert", "fox.gltf", "--animation", "walk", "-o", "one.ptn"]);
+    let one = folder.get("one.ptn");
+    for name in ["fox-Walk.ptn", "pet-Walk.ptn", "clips/Walk.ptn", "fox-_a b _.ptn", "clips/_a b _.ptn"] {
+        assert!(folder.get(name) == one, "{name}");
+    }
+    let report = folder.done(&[&all[..], &["-o", "clips", "--json", "-q"]].concat());
+    let report: Value = serde_json::from_slice(&report.stdout).unwrap();
+    assert!(report["files"].as_array().unwrap().len() == 2 && report["files"][1]["animation"] == "1", "{report}");
+    let before = folder.names();
+    for names in [["a/b", "a:b"], ["Walk", "walk"], ["Walk", "Walk"]] {
+        folder.put("fox.gltf", animations(names));
+        let said = folder.refused(&[&all[..], &["-o", "met"]].concat());
+        assert!(said.contains("animation 0 and animation 1: both would be written to"), "{said}");
+    }
+    assert_eq!(folder.names(), before);
+    folder.put("fox.gltf", animations(["", "con"]));
+    folder.done(&[&all[..], &["-o", "odd"]].concat());
+    assert!(folder.path("odd/0.ptn").exists() && folder.path("odd/con_.ptn").exists());
+}
+
+/// A world of two joints that nothing moves, and two clocks: one drives a number, the other a joint.
+const WORLD: &str = "#VRML V2.0 utf8
+PROTO Humanoid [ exposedField SFFloat smile 0 ] { Transform { } }
+DEF Face Humanoid { }
+DEF Hip HAnimJoint { name \"hip\" children [ DEF Arm HAnimJoint { name \"arm\" center 0 1 0 translation 0 1 0 children [ DEF Hand HAnimJoint { name \"hand\" translation 0 1 0 } ] } ] }
+DEF Smile TimeSensor { cycleInterval 1 }
+DEF Mouth ScalarInterpolator { key [ 0 1 ] keyValue [ 0 1 ] }
+ROUTE Smile.fraction_changed TO Mouth.set_fraction
+ROUTE Mouth.value_changed TO Face.set_smile
+DEF Wave TimeSensor { cycleInterval 2 }
+DEF Turn OrientationInterpolator { key [ 0 1 ] keyValue [ 0 0 1 0, 0 0 1 1 ] }
+ROUTE Wave.fraction_changed TO Turn.set_fraction
+ROUTE Turn.value_changed TO Arm.set_rotation
+";
+
+#[test]
+fn a_worlds_joints_are_drawn_even_where_a_clock_moves_none() {
+    let folder = Folder::new();
+    folder.put("world.wrl", WORLD);
+    folder.done(&["convert", "world.wrl", "--animation", "all", "-o", "clips"]);
+    for name in ["Smile", "Wave"] {
+        let info = folder.done(&["info", &format!("clips/{name}.ptn"), "--json"]);
+        let info: Value = serde_json::from_slice(&info.stdout).unwrap();
+        let joints: Vec<&str> =
+            info["rig"]["joints"].as_array().unwrap().iter().filter_map(|joint| joint["name"].as_str()).collect();
+        assert!(["Hip", "Arm", "Hand"].iter().all(|joint| joints.contains(joint)), "{name}: {joints:?}");
+        assert!(info["figure_joints"].as_u64() >= Some(3), "{name}: {info}");
+        folder.done(&["render", &format!("clips/{name}.ptn"), "-o", &format!("{name}.png"), "--frame", "0"]);
+    }
+    folder.done(&["convert", "world.wrl", "--animation", "sMILE", "-o", "smile.ptn"]);
+    assert!(folder.get("smile.ptn") == folder.get("clips/Smile.ptn"));
+}

@@ -30,6 +30,7 @@ mod info_command;
 mod interchange;
 mod keyframes_input;
 mod livelink_input;
+mod manners;
 mod optimum;
 mod outputs;
 mod own_clips;

@@ -250,7 +250,7 @@ fn what_cannot_be_done_is_refused_in_one_clear_line() {
         ("a.png", &["--size", "2000x10", "--pixels"], &["at most 1024 a side"]),
         ("a.gif", &["--from", "200"], &["frame 200 is not in the clip", "0 to 159"]),
         ("a.gif", &["--from", "9", "--to", "8"], &["--from is frame 9, behind --to"]),
-        ("a.gif", &["--fps", "60"], &["--fps", "0.1 to 50"]),
+        ("a.gif", &["--fps", "0"], &["--fps 0", "above 0"]),
         ("a.png", &["--fps", "10"], &["--fps is for animations"]),
         ("a.gif", &["--strip", "4"], &["--strip and --frame make a .png or .svg"]),
         ("a.png", &["--palette", "sepia"], &["blueprint", "RRGGBB,RRGGBB"]),

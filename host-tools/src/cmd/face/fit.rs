@@ -3,10 +3,11 @@
 use crate::cmd::Files;
 use crate::cmd::render::Moment;
 use crate::face::{Face, fit, outside};
-use crate::output::outln;
+use crate::output::{is_json, outln, report};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{ChannelState, Player};
 use pantin_face::{Binding, Morph, VERTICES, Weights};
+use serde_json::{Map, Value, json};
 use std::fs;
 use std::path::PathBuf;
 
@@ -43,6 +44,18 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         _ => bail!("{}: expected an .obj, a .glb or a clip (.ptn)", place()),
     };
     let fit = fit::fit(&face.blueprint, &target).with_context(place)?;
+    if is_json() {
+        let units: Map<String, Value> =
+            face.blueprint.shapes.iter().zip(&fit.pairs).map(|(shape, pair)| (shape.name.to_string(), json!(pair))).collect();
+        report(json!({
+            "units": units,
+            "residual_mm": fit.residual,
+            "neutral_residual_mm": fit.before,
+            "worst_mm": fit.worst.0,
+            "worst_vertex": face.head.label(fit.worst.1).to_string(),
+        }));
+        return Ok(());
+    }
     for (shape, pair) in face.blueprint.shapes.iter().zip(&fit.pairs) {
         match *pair {
             [left, right] if left == right && left.abs() >= LEAST => outln!("{:24} {left:6.3}", shape.name)?,

@@ -2,8 +2,9 @@
 
 use crate::face::blueprint::Blueprint;
 use crate::face::{Face, compact, error, outside};
-use crate::output::{Wanted, check, outln, refuse_foreign, write_whole};
+use crate::output::{Wanted, check, note, refuse_foreign, report, write_whole};
 use anyhow::Result;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Write the model that devices play: of Pantin's own face, or of a glTF's mesh and its morph targets.
@@ -34,16 +35,26 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let bytes = compact::encode(&blueprint)?;
     let moved: usize = blueprint.shapes.iter().map(|shape| shape.deltas.len()).sum();
     let whole = blueprint.shapes.len() * (blueprint.middles + blueprint.pairs);
-    outln!(
+    let error = error::greatest(&blueprint, &bytes)?;
+    report(json!({
+        "bytes": bytes.len(),
+        "vertices": blueprint.vertices(),
+        "units": blueprint.shapes.len(),
+        "names": blueprint.names.len(),
+        "stored_deltas": moved,
+        "deltas": whole,
+        "max_error_units": error.most,
+        "max_error_percent_of_size": error.part * 100.0,
+    }));
+    note!(
         "{} bytes: {} vertices, {} units, {} names",
         bytes.len(),
         blueprint.vertices(),
         blueprint.shapes.len(),
         blueprint.names.len()
-    )?;
-    outln!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12)?;
-    let error = error::greatest(&blueprint, &bytes)?;
-    outln!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0)?;
+    );
+    note!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12);
+    note!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0);
     if let Some(path) = &arguments.names {
         write_whole(path, blueprint.name_list().as_bytes())?;
     }

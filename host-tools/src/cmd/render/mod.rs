@@ -3,10 +3,10 @@
 mod options;
 mod output;
 
-use super::Files;
+use super::{Files, default_output, format_of};
 use crate::expand::expand;
 use crate::face::cast::is_face;
-use crate::output::{Staged, Wanted, check, commit, refuse_foreign};
+use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
 use crate::render::chart;
 use crate::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
 use crate::render::palette::Palette;
@@ -14,6 +14,7 @@ use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
 use pantin_figure::{Track, View};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Pixels on the shorter side from which lines are smooth by default.
@@ -27,6 +28,7 @@ const SMOOTH_FROM: usize = 240;
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin render walk.ptn -o walk.gif
+  pantin render walk.ptn --format png -o - > walk.png
   pantin render walk.ptn -o walk.png --view front,side,quarter
   pantin render walk.ptn -o walk.gif --size 480x480 --palette dusk --fps 25
   pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
@@ -38,9 +40,12 @@ RRGGBB,RRGGBB,RRGGBB (paper, far, near).")]
 pub struct Arguments {
     /// The clip, or a motion file, which is converted first
     input: PathBuf,
-    /// The picture to write: .gif, .apng, .png or .svg
+    /// The picture to write: .gif, .apng, .png or .svg [default: the clip's name, ending in .gif, or in .png for a still or a chart]
     #[arg(short, long)]
-    output: PathBuf,
+    output: Option<PathBuf>,
+    /// The format, where the output's name does not say it, as in `-o -`
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     /// The rig of a clip that was made with --rig-out
     #[arg(long)]
     rig: Option<PathBuf>,
@@ -90,9 +95,6 @@ pub struct Arguments {
     /// Write the .png as an animation
     #[arg(long, conflicts_with_all = ["strip", "frame"])]
     animate: bool,
-    /// Show no progress
-    #[arg(short, long)]
-    quiet: bool,
 }
 
 /// An axis of the world.
@@ -106,22 +108,37 @@ pub enum Axis {
     Z,
 }
 
+/// What the file is, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// An animation in 256 colours
+    Gif,
+    /// An animation in all colours
+    Apng,
+    /// A still, or an animation with --animate
+    Png,
+    /// A still of lines
+    Svg,
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let inputs: Vec<&Path> = [arguments.input.as_path()].into_iter().chain(arguments.rig.as_deref()).collect();
-    check(&inputs, &[&arguments.output])?;
-    refuse_foreign(&arguments.output, Wanted::Picture)?;
+    if let Some(output) = &arguments.output {
+        arguments.check(output)?;
+        format_of(output, arguments.format)?;
+    }
     let files = Files::read_to_show(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open().with_context(|| arguments.input.display().to_string())?;
-    let kind = arguments.kind()?;
     let face = is_face(&clip)?;
-    let mut file = Staged::create(&arguments.output)?;
+    let output = &match &arguments.output {
+        Some(output) => output.clone(),
+        None => arguments.default_output(clip.rig().joint_count() == 0 && !face)?,
+    };
+    let kind = arguments.kind(output)?;
+    let mut file = Staged::create(output)?;
     if clip.rig().joint_count() == 0 && !face {
         if kind != Kind::Png {
-            bail!(
-                "{}: a clip without joints has no figure to draw; a name that ends in .png gives a chart",
-                arguments.output.display()
-            );
+            bail!("{}: a clip without joints has no figure to draw; a name that ends in .png gives a chart", output.display());
         }
         chart::write(&mut file, &expand(&clip)?)?;
     } else {
@@ -132,22 +149,49 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
         Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.write(&mut file)?;
     }
-    commit(vec![file])
+    commit(vec![file])?;
+    report(json!({"frames": clip.frames(), "kind": format!("{kind:?}").to_lowercase()}));
+    if arguments.output.is_none() {
+        note!("{}: written", output.display());
+    }
+    Ok(())
 }
 
 impl Arguments {
-    fn kind(&self) -> Result<Kind> {
-        let extension = self.output.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-        let kind = match extension.as_deref() {
-            Some("gif") => Kind::Gif,
-            Some("apng") => Kind::Apng,
-            Some("png") if self.animate => Kind::Apng,
-            Some("png") => Kind::Png,
-            Some("svg") => Kind::Svg,
-            _ => bail!("{}: expected a name that ends in .gif, .apng, .png or .svg", self.output.display()),
+    /// Checks the output before any work.
+    fn check(&self, output: &Path) -> Result<()> {
+        let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(self.rig.as_deref()).collect();
+        check(&inputs, &[output])?;
+        refuse_foreign(output, Wanted::Picture)
+    }
+
+    /// The name of a picture that the user does not name; a `chart` is a still.
+    fn default_output(&self, chart: bool) -> Result<PathBuf> {
+        let still = chart || self.frame.is_some() || self.strip.is_some();
+        let extension = match self.format {
+            Some(Format::Gif) => "gif",
+            Some(Format::Apng) => "apng",
+            Some(Format::Png) => "png",
+            Some(Format::Svg) => "svg",
+            None if still || self.animate => "png",
+            None => "gif",
+        };
+        let output = default_output(&self.input, extension)?;
+        self.check(&output)?;
+        Ok(output)
+    }
+
+    fn kind(&self, output: &Path) -> Result<Kind> {
+        let name = output.display();
+        let kind = match format_of(output, self.format)? {
+            Some(Format::Gif) => Kind::Gif,
+            Some(Format::Apng) => Kind::Apng,
+            Some(Format::Png) if self.animate => Kind::Apng,
+            Some(Format::Png) => Kind::Png,
+            Some(Format::Svg) => Kind::Svg,
+            None => bail!("{name}: expected a name that ends in .gif, .apng, .png or .svg, or --format"),
         };
         let animated = matches!(kind, Kind::Gif | Kind::Apng);
-        let name = self.output.display();
         ensure!(!animated || (self.strip.is_none() && self.frame.is_none()), "{name}: --strip and --frame make a .png or .svg");
         ensure!(animated || self.fps.is_none(), "{name}: --fps is for animations: .gif, .apng, or .png with --animate");
         ensure!(kind != Kind::Svg || !self.animate, "{name}: an .svg does not move; .gif and .apng do");

@@ -1,6 +1,7 @@
 //! What is shown of the clip, and in which file format.
 
 use super::{Arguments, Side};
+use crate::output::{note, progress};
 use crate::render::animation::{Animation, Timing};
 use crate::render::apng::{self, Apng};
 use crate::render::figure::{Figure, LineStyle};
@@ -8,8 +9,7 @@ use crate::render::gif::{self, Gif};
 use crate::render::image::Image;
 use crate::render::sheet::{Layout, arrange};
 use crate::render::svg;
-use anyhow::{Result, bail, ensure};
-use indicatif::{ProgressBar, ProgressStyle};
+use anyhow::{Result, ensure};
 use std::io::Write;
 
 /// Pictures of a contact sheet of one view, and how many of them are in a row.
@@ -19,6 +19,8 @@ const COLUMNS: usize = 3;
 const ROW: u32 = 6;
 /// Most pixels of a whole sheet, or of an animation's picture.
 const MOST_PIXELS: usize = 64 << 20;
+/// Fewest pictures of an animation in a second: some viewers show none for longer.
+const LEAST_A_SECOND: f64 = 0.1;
 /// Most pictures of an animation: ten minutes at the most that displays show in a second.
 const MOST_PICTURES: f64 = 36_000.0;
 /// Pixels are enlarged so far that a picture has about as many columns.
@@ -93,17 +95,13 @@ impl Output<'_, '_> {
         let most = if self.kind == Kind::Gif { gif::MOST_A_SECOND } else { apng::MOST_A_SECOND };
         // Counted before they are listed: a small clip may last for years.
         let pictures = |fps: f64| (f64::from(to - from) * self.frame_time * fps).ceil();
-        let rate = self.arguments.fps.unwrap_or(most).min(1.0 / self.frame_time);
-        let count = pictures(self.arguments.fps.unwrap_or(rate));
+        let rate = self.arguments.fps.unwrap_or(most.min(1.0 / self.frame_time));
+        let count = pictures(rate.clamp(LEAST_A_SECOND, most));
         ensure!(
             count <= MOST_PICTURES,
             "the animation would have {count} pictures; the limit is {MOST_PICTURES}: --from and --to, or a lower --fps, take fewer"
         );
-        let timing = match self.arguments.fps {
-            None => Timing::of_clip(from, to, self.frame_time, most),
-            Some(fps) if (0.1..=most).contains(&fps) => Timing::at_rate(from, to, self.frame_time, fps),
-            Some(_) => bail!("--fps: viewers show from 0.1 to {most} pictures a second of this format"),
-        };
+        let timing = self.timing(from, to, most)?;
         let scale = self.scale(EASY_TO_SEE);
         let [width, height] = self.arguments.size.0.map(|side| side * scale);
         let whole = [width * self.views(), height];
@@ -114,8 +112,7 @@ impl Output<'_, '_> {
             (Kind::Gif, LineStyle::Smooth) => Box::new(Gif::new(&mut out, &palette.smooth_colours(), timing.seconds)),
             _ => Box::new(Apng::new(&mut out, timing.frames.len() as u32, timing.seconds)),
         };
-        let bar = if self.arguments.quiet { ProgressBar::hidden() } else { ProgressBar::new(timing.frames.len() as u64) };
-        bar.set_style(ProgressStyle::with_template("{wide_bar} {pos} of {len} pictures {eta} left")?);
+        let bar = progress(timing.frames.len() as u64, "{wide_bar} {pos} of {len} pictures {eta} left")?;
         for &frame in &timing.frames {
             self.figure.seek(frame);
             let mut picture = Image::new(whole[0], whole[1], palette.paper());
@@ -125,6 +122,25 @@ impl Output<'_, '_> {
         }
         bar.finish_and_clear();
         Ok(())
+    }
+
+    /// The pictures of the frames `from..to`: at rates that viewers do not show, others than the clip has.
+    fn timing(&self, from: u32, to: u32, most: f64) -> Result<Timing> {
+        let own = 1.0 / self.frame_time;
+        let Some(fps) = self.arguments.fps else {
+            let timing = Timing::of_clip(from, to, self.frame_time, most);
+            let shown = 1.0 / timing.seconds;
+            if shown < own * 0.999 {
+                note!("{own:.3} frames a second are more than viewers show: {shown:.3} are drawn; --fps takes another rate");
+            }
+            return Ok(timing);
+        };
+        ensure!(fps.is_finite() && fps > 0.0, "--fps {fps}: expected a number above 0");
+        let shown = fps.clamp(LEAST_A_SECOND, most);
+        if shown != fps {
+            note!("viewers show from {LEAST_A_SECOND} to {most} pictures a second of this format: {shown} are drawn");
+        }
+        Ok(Timing::at_rate(from, to, self.frame_time, shown))
     }
 
     fn frame(&mut self, frame: u32, out: &mut impl Write) -> Result<()> {

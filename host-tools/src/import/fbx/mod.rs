@@ -7,7 +7,7 @@ mod nodes;
 
 use super::from_transforms::{self, Affine, Node};
 use super::grid::{self, Grid};
-use super::list::Entry;
+use super::list::{self, Entry};
 use super::{Files, Options, Source, one_line};
 use crate::motion::Scalar;
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -91,10 +91,8 @@ fn chosen<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s AnimStack> {
             .map(|stack| &**stack)
             .context("no curve changes a node's place or a blend shape's weight, so nothing moves");
     };
-    let called = |same: fn(&str, &str) -> bool| stacks.iter().find(|stack| same(&stack.element.name, wanted));
-    let by_name = called(|a, b| a == b).or_else(|| called(|a, b| a.to_lowercase() == b.to_lowercase()));
-    let by_number = || wanted.parse().ok().and_then(|number: usize| stacks.get(number));
-    by_name.or_else(by_number).map(|stack| &**stack).ok_or_else(|| {
+    let chosen = list::choose(wanted, stacks.iter().map(|stack| Some(&*stack.element.name)));
+    chosen.map(|number| &stacks[number]).ok_or_else(|| {
         let names = stacks.iter().enumerate().map(|(number, stack)| format!("{number} ({})", &*stack.element.name));
         anyhow!("no animation `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
     })

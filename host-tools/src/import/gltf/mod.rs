@@ -86,12 +86,8 @@ fn chosen(file: &File, path: &Path, options: &Options) -> Result<usize> {
         bail!("{}: no animation, so nothing moves", path.display());
     }
     let Some(wanted) = &options.animation else { return Ok(0) };
-    let called = |same: fn(&str, &str) -> bool| {
-        animations.iter().position(|animation| animation.name.as_deref().is_some_and(|name| same(name, wanted)))
-    };
-    let by_name = called(|a, b| a == b).or_else(|| called(|a, b| a.to_lowercase() == b.to_lowercase()));
-    let by_number = wanted.parse().ok().filter(|&number: &usize| number < animations.len());
-    by_name.or(by_number).ok_or_else(|| {
+    let called = animations.iter().map(|animation| animation.name.as_deref());
+    super::list::choose(wanted, called).ok_or_else(|| {
         let names: Vec<String> =
             animations.iter().enumerate().map(|(number, animation)| named(number, &animation.name)).collect();
         anyhow!("{}: no animation `{wanted}`; there are {}", path.display(), one_line(&names.join(", ")))

@@ -11,7 +11,7 @@ mod world;
 
 use super::from_transforms::{self, Node};
 use super::grid::{self, Grid};
-use super::list::Entry;
+use super::list::{self, Entry};
 use super::{Options, Source, one_line, read_bytes};
 use crate::motion::{Motion, Scalar};
 use anyhow::{Context, Result, anyhow, bail};
@@ -89,9 +89,8 @@ fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Resul
         bail!("no TimeSensor moves anything through an interpolator");
     }
     let Some(wanted) = wanted else { return Ok(clocks.iter().filter(|clock| clock.seconds == longest).collect()) };
-    let by_name = clocks.iter().find(|clock| world.nodes[clock.node].def.as_deref() == Some(wanted));
-    let by_number = || wanted.parse().ok().and_then(|number: usize| clocks.get(number));
-    by_name.or_else(by_number).map(|clock| vec![clock]).ok_or_else(|| {
+    let chosen = list::choose(wanted, clocks.iter().map(|clock| world.nodes[clock.node].def.as_deref()));
+    chosen.map(|number| vec![&clocks[number]]).ok_or_else(|| {
         let names = clocks.iter().enumerate().map(|(number, clock)| format!("{number} ({})", world.name(clock.node)));
         anyhow!("no time sensor `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))
     })

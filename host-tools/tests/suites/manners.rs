@@ -1,0 +1,205 @@
+//! What all commands have in common: options, errors, exit codes, the report of `--json`, and names of outputs.
+
+use super::outputs::{Folder, err};
+use serde_json::Value;
+use std::process::Output;
+
+/// Every command, with arguments that succeed in a folder of [`prepared`]; `serve`, `stream` and `update` need a partner.
+const RUNS: [&[&str]; 16] = [
+    &["completions", "bash"],
+    &["man", "convert"],
+    &["convert", "run.keys", "-o", "b.ptn", "--effort", "fast"],
+    &["convert", "run.keys", "walk.keys", "-o", "clips", "--effort", "fast"],
+    &["convert", "run.keys", "run2.keys", "--same-form", "-o", "same", "--effort", "fast"],
+    &["convert", "in", "-o", "out"],
+    &["convert", "--list", "run.keys"],
+    &["expand", "a.ptn", "-o", "a.bvh"],
+    &["info", "a.ptn"],
+    &["render", "a.ptn", "-o", "a.png", "--frame", "0"],
+    &["play", "a.ptn", "--plain", "--frames", "1"],
+    &["flash-image", "a.ptn", "--board", "pico", "-o", "a.uf2"],
+    &["face", "model", "-o", "face.model"],
+    &["face", "export", "-o", "face.obj"],
+    &["face", "compare"],
+    &["face", "fit", "face.obj"],
+];
+
+fn prepared() -> Folder {
+    let folder = Folder::new();
+    let motions = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions");
+    std::fs::copy(motions.join("walk.keys"), folder.path("walk.keys")).unwrap();
+    std::fs::copy(motions.join("run.keys"), folder.path("run2.keys")).unwrap();
+    folder.put("in/light.csv", "time,a\n0,0\n0.1,1\n0.2,0.5\n");
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    folder.done(&["face", "export", "-o", "face.obj"]);
+    folder
+}
+
+/// The one object that a command with `--json` prints.
+fn object(output: &Output) -> Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    let value: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}{}", err(output)));
+    assert!(value.is_object(), "{value}");
+    value
+}
+
+#[test]
+fn every_command_takes_the_options_of_all() {
+    let folder = prepared();
+    for arguments in RUNS {
+        let quiet = folder.done(&[arguments, &["-q"]].concat());
+        assert!(quiet.stderr.is_empty(), "{arguments:?}: {}", err(&quiet));
+        let verbose = err(&folder.done(&[arguments, &["-v"]].concat()));
+        assert!(verbose.lines().last().is_some_and(|line| line.ends_with(" s")), "{arguments:?}: {verbose}");
+        let output = folder.done(&[arguments, &["--json"]].concat());
+        let report = if arguments[0] == "play" {
+            // The pictures are on standard output.
+            serde_json::from_str(err(&output).lines().last().unwrap()).unwrap()
+        } else {
+            object(&output)
+        };
+        assert_eq!(report["command"], arguments[0], "{arguments:?}");
+        assert!(report.as_object().unwrap().len() > 1, "{arguments:?}: {report}");
+        assert_eq!(folder.run(&[arguments, &["-q", "-v"]].concat()).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_report_lists_outputs_and_notes() {
+    let folder = prepared();
+    let report = object(&folder.done(&["convert", "run.keys", "-o", "b.ptn", "--rig-out", "b.rig", "--json", "-q"]));
+    let outputs: Vec<(&str, u64)> = report["outputs"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|output| (output["file"].as_str().unwrap(), output["bytes"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(outputs, [("b.rig", folder.get("b.rig").len() as u64), ("b.ptn", folder.get("b.ptn").len() as u64)]);
+    assert!(report["max_error_cm"].as_f64().unwrap() <= 0.5 && report["frames"].as_u64().unwrap() > 1, "{report}");
+    // With the clip on standard output, the report is on standard error.
+    let piped = folder.done(&["convert", "run.keys", "-o", "-", "--json", "-q"]);
+    assert!(pantin::Clip::new_checked(&piped.stdout).is_ok());
+    let report: Value = serde_json::from_str(&err(&piped)).unwrap();
+    assert_eq!(report["outputs"][0]["file"], "-");
+}
+
+#[test]
+fn errors_begin_alike_and_have_the_documented_codes() {
+    let folder = prepared();
+    let runs: [(&[&str], i32); 9] = [
+        (&["convert", "missing.bvh"], 1),
+        (&["info", "missing.ptn"], 1),
+        (&["expand", "run.keys", "-o", "x.bvh"], 1),
+        (&["man", "nothing"], 1),
+        (&["convert"], 2),
+        (&["nothing"], 2),
+        (&["render", "a.ptn", "--size", "big"], 2),
+        (&["info", "a.ptn", "--nothing\u{1b}[31m"], 2),
+        (&["flash-image", "a.ptn", "--board", "toaster"], 2),
+    ];
+    for (arguments, code) in runs {
+        let output = folder.run(arguments);
+        let said = err(&output);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(said.starts_with("error: ") && !said.contains('\u{1b}'), "{arguments:?}: {said:?}");
+        let output = folder.run(&[arguments, &["--json"]].concat());
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        let reason = object(&output)["error"].as_str().unwrap().to_string();
+        assert!(!reason.is_empty() && !reason.starts_with("error") && !reason.contains('\n'), "{arguments:?}: {reason}");
+    }
+    let help = String::from_utf8(folder.done(&["--help"]).stdout).unwrap();
+    assert!(help.contains("Exit codes: 0 done; 1 failed") && help.contains("2 the command line is wrong"), "{help}");
+}
+
+#[test]
+fn a_folder_with_a_failure_reports_every_file_and_the_error() {
+    let folder = prepared();
+    folder.put("in/bad.bvh", "HIERARCHY\n");
+    let output = folder.run(&["convert", "in", "-o", "out", "--json"]);
+    let report = object(&output);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(report["error"].as_str().unwrap().contains("1 of 2 files"), "{report}");
+    assert!(report["files"][0]["refused"].is_string() && report["files"][1]["frames"] == 3, "{report}");
+}
+
+#[test]
+fn several_motions_go_into_a_folder_or_beside_themselves() {
+    let folder = prepared();
+    folder.done(&["convert", "run.keys", "in/light.csv", "-o", "clips", "-j", "2", "--effort", "fast"]);
+    assert!(folder.path("clips/run.ptn").exists() && folder.path("clips/light.ptn").exists());
+    folder.done(&["convert", "run.keys", "in/light.csv", "--effort", "fast"]);
+    assert!(folder.get("run.ptn") == folder.get("clips/run.ptn") && folder.path("in/light.ptn").exists());
+    // Nothing is written where two clips would meet, or the output is one file.
+    folder.put("other/run.keys", folder.get("run.keys"));
+    let said = folder.refused(&["convert", "run.keys", "other/run.keys", "-o", "met"]);
+    assert!(said.contains("run.keys and other/run.keys: both would be written to"), "{said}");
+    let said = folder.refused(&["convert", "run.keys", "in/light.csv", "-o", "one.ptn"]);
+    assert!(said.contains("several clips need a folder"), "{said}");
+    let said = folder.refused(&["convert", "run.keys", "in", "-o", "met"]);
+    assert!(said.contains("in: a folder"), "{said}");
+    assert!(!folder.path("met").exists() && !folder.path("one.ptn").exists());
+    // One that fails does not hold up the others.
+    folder.put("bad.bvh", "HIERARCHY\n");
+    let said = folder.refused(&["convert", "bad.bvh", "in/light.csv", "-o", "some", "-q"]);
+    assert!(said.contains("error: bad.bvh: ") && folder.path("some/light.ptn").exists(), "{said}");
+}
+
+#[test]
+fn outputs_without_a_name_that_says_so_take_a_format() {
+    let folder = prepared();
+    folder.done(&["expand", "a.ptn", "-o", "a.csv"]);
+    assert!(folder.done(&["expand", "a.ptn", "--format", "csv", "-o", "-"]).stdout == folder.get("a.csv"));
+    let header = String::from_utf8(folder.done(&["expand", "a.ptn", "--format", "h", "-o", "-"]).stdout).unwrap();
+    assert!(header.contains("CLIP_A_LEN"), "{header}");
+    let png = folder.done(&["render", "a.ptn", "--format", "png", "--frame", "0", "-o", "-"]).stdout;
+    folder.done(&["render", "a.ptn", "--frame", "0", "-o", "a.png"]);
+    assert!(png.starts_with(b"\x89PNG") && png == folder.get("a.png"));
+    for command in ["expand", "render"] {
+        assert!(folder.refused(&[command, "a.ptn", "-o", "-"]).contains("--format"));
+        assert!(folder.refused(&[command, "a.ptn", "-o", "noextension"]).contains("--format"));
+    }
+    let said = folder.refused(&["expand", "a.ptn", "--format", "bvh", "-o", "b.csv"]);
+    assert!(said.contains("--format is bvh"), "{said}");
+}
+
+#[test]
+fn outputs_have_default_names_and_a_capture_is_kept() {
+    let folder = prepared();
+    folder.done(&["expand", "a.ptn"]);
+    folder.done(&["expand", "a.ptn", "--format", "glb"]);
+    folder.done(&["render", "a.ptn", "--to", "3"]);
+    folder.done(&["render", "a.ptn", "--frame", "0"]);
+    let said = err(&folder.done(&["flash-image", "a.ptn", "--board", "esp32-c3"]));
+    assert!(said.contains("a.bin holds "), "{said}");
+    for name in ["a.bvh", "a.glb", "a.gif", "a.png", "a.bin"] {
+        assert!(folder.path(name).exists(), "{name}");
+    }
+    folder.put("a.bvh", "the capture");
+    let said = folder.refused(&["expand", "a.ptn"]);
+    assert!(said.contains("a.bvh: exists; --output a.bvh replaces it"), "{said}");
+    assert_eq!(folder.get("a.bvh"), b"the capture");
+    folder.done(&["convert", "in/light.csv"]);
+    std::fs::remove_file(folder.path("in/light.csv")).unwrap();
+    folder.done(&["expand", "in/light.ptn"]);
+    assert!(folder.get("in/light.csv").starts_with(b"time,a\n"));
+}
+
+#[test]
+fn animations_at_rates_that_viewers_do_not_show_are_resampled_with_a_note() {
+    let folder = Folder::new();
+    let proc = |name: &str, fps: &str| {
+        let head = format!("procedural 1\nfps {fps}\nframes 8\njoint hip offset 0 0 0 channels Xrotation\n");
+        let arm =
+            "joint arm parent hip offset 0 10 0 channels Xrotation\njoint hand parent arm offset 0 10 0\nhip.Xrotation = 9 * t\n";
+        folder.put(&format!("{name}.proc"), head + arm);
+        folder.done(&["convert", &format!("{name}.proc"), "-o", &format!("{name}.ptn")]);
+    };
+    proc("fast", "120");
+    let said = err(&folder.done(&["render", "fast.ptn", "-o", "fast.gif"]));
+    assert!(said.contains("120.000 frames a second are more than viewers show"), "{said}");
+    let said = err(&folder.done(&["render", "fast.ptn", "-o", "slow.gif", "--fps", "0.01"]));
+    assert!(said.contains("0.1 are drawn"), "{said}");
+    let said = err(&folder.done(&["render", "fast.ptn", "-o", "asked.gif", "--fps", "100"]));
+    assert!(said.contains("50 are drawn"), "{said}");
+    assert!(err(&folder.done(&["render", "fast.ptn", "-o", "asked.gif", "--fps", "100", "-q"])).is_empty());
+}
