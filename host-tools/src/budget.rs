@@ -7,6 +7,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Bytes that a value of a channel at a frame takes on its way from a file to a clip, with all copies that exist at a time.
 const BYTES_A_VALUE: u64 = 192;
+/// Bytes that a frame takes whatever the number of channels: its time, its row, and how it was filled.
+const BYTES_A_FRAME: u64 = 192;
+/// Bytes that the search for a channel's code takes for each frame: always, and for each hypothesis that it extends from a frame.
+const SEARCH_BYTES: u64 = 500;
+const SEARCH_BYTES_A_HYPOTHESIS: u64 = 110;
+/// Without `--max-memory`, a fit may take this many bytes for each byte that its motion was read from: captures of many minutes are
+/// large, and fill no memory by surprise.
+const FIT_BYTES_A_BYTE_READ: u64 = 128;
 /// The limit without `--max-memory`.
 pub const DEFAULT: u64 = 1 << 30;
 
@@ -29,12 +37,29 @@ pub fn most_values() -> usize {
 
 /// Refuses a motion that takes more memory than the limit.
 pub fn check(frames: usize, channels: usize) -> Result<()> {
-    let bytes = (frames as u64).saturating_mul(channels as u64).saturating_mul(BYTES_A_VALUE);
+    check_bytes(frames, channels, (channels as u64).saturating_mul(BYTES_A_VALUE), most_bytes())
+}
+
+/// Refuses a motion whose fit takes more memory than the limit. Each thread searches a channel and extends `beam` hypotheses from each
+/// frame; the motion was read from `read` bytes of files.
+pub fn check_fit(frames: usize, channels: usize, beam: usize, read: u64) -> Result<()> {
+    let searches = channels.min(rayon::current_num_threads()) as u64;
+    let search = SEARCH_BYTES + SEARCH_BYTES_A_HYPOTHESIS * beam as u64;
+    let most = match most_bytes() {
+        DEFAULT => DEFAULT.max(read.saturating_mul(FIT_BYTES_A_BYTE_READ)),
+        asked => asked,
+    };
+    check_bytes(frames, channels, channels as u64 * BYTES_A_VALUE + searches * search, most)
+}
+
+/// Refuses frames that take more than `most` bytes, each `a_frame` and what every frame takes.
+fn check_bytes(frames: usize, channels: usize, a_frame: u64, most: u64) -> Result<()> {
+    let bytes = (frames as u64).saturating_mul(a_frame.saturating_add(BYTES_A_FRAME));
     ensure!(
-        bytes <= most_bytes(),
+        bytes <= most,
         "{frames} frames of {channels} channels take about {}; the limit is {}, and --max-memory raises it",
         size(bytes),
-        size(most_bytes())
+        size(most)
     );
     Ok(())
 }

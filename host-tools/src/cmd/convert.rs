@@ -3,7 +3,7 @@
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::max_error::{self, MaxError};
-use super::{batch, same_form};
+use super::{batch, check_fit, same_form};
 use crate::channel_error;
 use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
@@ -272,6 +272,7 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     read.iter().for_each(|path| detail!("read {}", path.display()));
     edited.said.iter().for_each(|sentence| say(sentence));
     let mut motion = edited.motion;
+    check_fit(&motion, arguments.effort, &options.files).with_context(place)?;
     let mut bound = match arguments.channels.bounds(&motion)? {
         Some(bounds) => Bound::Channels(bounds),
         None => Bound::Distance(arguments.max_error.cm(&motion).with_context(place)?, arguments.max_scalar_error / 100.0),

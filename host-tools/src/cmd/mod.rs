@@ -18,9 +18,11 @@ mod stream_live;
 pub mod train;
 pub mod update;
 
+use crate::budget;
 use crate::encode;
 use crate::fit::{descent::Level, fit};
 use crate::import;
+use crate::motion::Motion;
 use crate::output::detail;
 use crate::verify::verify;
 use anyhow::{Context, Result, anyhow, ensure};
@@ -32,6 +34,12 @@ pub struct Files {
     path: PathBuf,
     clip: Vec<u8>,
     rig: Vec<u8>,
+}
+
+/// Refuses a motion whose fit takes more memory than the limit; `files` are what it was read from.
+fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()> {
+    let read = files.read_so_far().iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
+    budget::check_fit(motion.frames, motion.rig.channels(), level.plan(SHOWN_CM).effort.beam, read)
 }
 
 /// The name of an output that the user does not name: the input's, with another extension.
@@ -77,8 +85,9 @@ impl Files {
         let from = import::Files::default();
         let mut files = Files::read_from(&from, clip, rig)?;
         if files.is_motion() {
-            let motion = import::load(clip, &import::Options { files: from, ..Default::default() })?.motion;
+            let motion = import::load(clip, &import::Options { files: from.clone(), ..Default::default() })?.motion;
             let place = || clip.display().to_string();
+            check_fit(&motion, Level::Fast, &from).with_context(place)?;
             let rig = encode::rig::encode(&motion.rig).with_context(place)?;
             let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, &mut |_| ()).with_context(place)?;
             files.clip = encode::clip::encode(&coded, &rig, false).with_context(place)?;

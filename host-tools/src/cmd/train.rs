@@ -60,7 +60,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     check(&inputs, &[&arguments.output])?;
     let mut counts = Counts::default();
     for path in &arguments.inputs {
-        let motion = import::load(path, &import::Options { fps: arguments.fps, ..Default::default() })?.motion;
+        let files = import::Files::default();
+        let motion =
+            import::load(path, &import::Options { fps: arguments.fps, files: files.clone(), ..Default::default() })?.motion;
+        super::check_fit(&motion, TRAINING, &files).with_context(|| path.display().to_string())?;
         let bytes = rig::encode(&motion.rig)?;
         let rig = pantin::Rig::new_checked(&bytes)?;
         for &stride in &arguments.strides {

@@ -11,6 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 const STDIN: &str = "-";
 /// A motion file is not larger: five hours of a whole figure as text.
 pub const MOST_BYTES: u64 = 1 << 30;
+/// What comes through a pipe or from a device is less: some never end, and nothing tells their length beforehand.
+const MOST_STREAM_BYTES: u64 = 256 << 20;
 
 /// Where a motion's files are.
 #[derive(Clone, Debug)]
@@ -50,7 +52,7 @@ impl Disk {
         }
         self.0.lock().unwrap_or_else(PoisonError::into_inner).read.insert(path.to_path_buf());
         let file = File::open(path)?;
-        limited(file)
+        limited(file, MOST_BYTES)
     }
 
     fn head(&self, path: &Path, most: u64) -> Result<Vec<u8>> {
@@ -72,16 +74,17 @@ impl Disk {
         if let Some(bytes) = state.streams.get(path) {
             return Ok(Some(bytes.clone()));
         }
-        let bytes: Arc<[u8]> = if stdin { limited(io::stdin().lock())? } else { limited(File::open(path)?)? }.into();
+        let most = MOST_STREAM_BYTES;
+        let bytes: Arc<[u8]> = if stdin { limited(io::stdin().lock(), most)? } else { limited(File::open(path)?, most)? }.into();
         state.streams.insert(path.to_path_buf(), bytes.clone());
         Ok(Some(bytes))
     }
 }
 
-fn limited(file: impl Read) -> Result<Vec<u8>> {
+fn limited(file: impl Read, most: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-    ensure!(bytes.len() as u64 <= MOST_BYTES, "more than {} MB", MOST_BYTES >> 20);
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    ensure!(bytes.len() as u64 <= most, "more than {} MB", most >> 20);
     Ok(bytes)
 }
 
