@@ -11,6 +11,7 @@ pub fn to_json(report: &Report, motion: &Motion) -> Map<String, Value> {
     if !motion.rig.joints.is_empty() {
         fields.insert("max_error_cm".into(), json!(report.max_cm));
         fields.insert("mean_error_cm".into(), json!(report.mean_cm));
+        fields.insert("mean_joint_error_cm".into(), json!(report.mean_joint_cm));
         if let Some(height) = figure_height_cm(motion) {
             fields.insert("figure_height_cm".into(), json!(height));
             fields.insert("max_error_percent_of_height".into(), json!(100.0 * report.max_cm / height));

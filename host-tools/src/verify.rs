@@ -13,6 +13,8 @@ pub struct Report {
     pub max_cm: f64,
     /// Mean distance.
     pub mean_cm: f64,
+    /// Mean distance of the joints, End Sites left out.
+    pub mean_joint_cm: f64,
     /// Where the greatest is.
     pub worst_joint: String,
     /// When the greatest is.
@@ -35,18 +37,23 @@ pub struct Report {
 pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
     ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
     let mut report = Report::default();
-    let mut sum = 0.0;
+    let (mut sum, mut sum_of_joints) = (0.0, 0.0);
+    let joints = original.rig.joints.iter().filter(|joint| !joint.end_site).count();
     for frame in 0..original.frames {
         let places = fk::positions(&original.rig, &original.values, frame);
         for (joint, (p, q)) in places.iter().zip(fk::positions(&other.rig, &other.values, frame)).enumerate() {
             let distance = (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>().sqrt();
             sum += distance;
+            if !original.rig.joints[joint].end_site {
+                sum_of_joints += distance;
+            }
             if distance > report.max_cm {
                 (report.max_cm, report.worst_frame) = (distance, frame);
                 report.worst_joint = original.rig.joint_name(joint);
             }
         }
     }
+    report.mean_joint_cm = sum_of_joints / (original.frames * joints).max(1) as f64;
     report.mean_cm = sum / (original.frames * original.rig.joints.len()).max(1) as f64;
     let first = original.rig.joint_channels();
     for (scalar, channel) in original.rig.scalars.iter().zip(first..) {

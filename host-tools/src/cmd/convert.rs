@@ -5,18 +5,19 @@ use super::edits::Edits;
 use super::max_error::{self, MaxError};
 use super::{batch, check_fit, same_form};
 use crate::channel_error;
+use crate::edit::cut::cut;
 use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
 use crate::errors;
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Constraint;
-use crate::fit::descent::Level;
+use crate::fit::descent::{Level, Plan};
 use crate::fit::parametrize::{Coding, Rotations};
 use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
 use crate::output::{self, Wanted, detail, note, refuse_foreign};
-use crate::verify::verify;
+use crate::verify::{compare, verify};
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
 use pantin::codec::layout::MAX_FRAMES;
@@ -69,8 +70,13 @@ pub struct Arguments {
     list: bool,
     /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
     /// with % of the figure's height
-    #[arg(long, group = "bound", default_value = "0.5cm", value_parser = max_error::parse)]
-    max_error: MaxError,
+    /// [default: 0.5cm, or 6 times --mean-error]
+    #[arg(long, group = "bound", value_parser = max_error::parse)]
+    max_error: Option<MaxError>,
+    /// Mean distance of the joints, End Sites left out, from their original positions, in the same units: the clip is as small as its
+    /// mean allows, instead of filling --max-error, which still holds for every joint
+    #[arg(long, conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = max_error::parse)]
+    mean_error: Option<MaxError>,
     /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
@@ -275,7 +281,7 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     check_fit(&motion, arguments.effort, &options.files).with_context(place)?;
     let mut bound = match arguments.channels.bounds(&motion)? {
         Some(bounds) => Bound::Channels(bounds),
-        None => Bound::Distance(arguments.max_error.cm(&motion).with_context(place)?, arguments.max_scalar_error / 100.0),
+        None => Bound::Distance(Distance::of(arguments, &motion).with_context(place)?),
     };
     if arguments.edits.looped {
         let closed = bound.close(&motion).with_context(place)?;
@@ -296,7 +302,7 @@ impl Prepared {
     pub fn code(&self, arguments: &Arguments, coding: &Coding) -> Result<Made> {
         let mut made = match &self.bound {
             Bound::Channels(bounds) => by_channel(arguments, self, bounds, coding)?,
-            &Bound::Distance(cm, part) => by_distance(arguments, self, cm, part, coding)?,
+            Bound::Distance(distance) => by_distance(arguments, self, distance, coding)?,
         };
         if let (Some(cm), Some(fields)) = (self.retarget_max_cm, made.json.as_object_mut()) {
             fields.insert("retarget_max_cm".into(), json!(cm));
@@ -307,8 +313,8 @@ impl Prepared {
 
 /// The cheapest coding for motions of one rig together.
 pub(super) fn shared_coding(prepared: &[Prepared], arguments: &Arguments) -> Coding {
-    let motion = |prepared: &Prepared| match prepared.bound {
-        Bound::Distance(cm, _) => (cm, arguments.rotations),
+    let motion = |prepared: &Prepared| match &prepared.bound {
+        Bound::Distance(distance) => (distance.plan(arguments.effort).filled_cm(), arguments.rotations),
         // Bounds of channels are bounds of the file's own angles.
         Bound::Channels(_) => (f64::INFINITY, Rotations::Euler),
     };
@@ -319,9 +325,42 @@ pub(super) fn shared_coding(prepared: &[Prepared], arguments: &Arguments) -> Cod
 
 /// What a conversion keeps to.
 enum Bound {
-    /// Of joints in cm, and of scalars as a part of full scale.
-    Distance(f64, f64),
+    Distance(Distance),
     Channels(Bounds),
+}
+
+/// The errors of joints and scalars that a conversion keeps to.
+struct Distance {
+    /// Of every joint.
+    max_cm: f64,
+    /// Of all joints in the mean, End Sites left out.
+    mean_cm: Option<f64>,
+    /// Of scalars, as a part of full scale.
+    scalar_part: f64,
+}
+
+/// The bound of every joint, relative to the mean.
+const MAX_OF_MEAN: f64 = 6.0;
+
+impl Distance {
+    fn of(arguments: &Arguments, motion: &Motion) -> Result<Distance> {
+        let mean_cm = arguments.mean_error.map(|mean| mean.cm(motion)).transpose()?;
+        let max_cm = match (arguments.max_error, mean_cm) {
+            (Some(max), _) => max.cm(motion)?,
+            (None, Some(mean)) => MAX_OF_MEAN * mean,
+            (None, None) => max_error::DEFAULT.cm(motion)?,
+        };
+        ensure!(
+            mean_cm.is_none_or(|mean| mean <= max_cm),
+            "--mean-error {} cm is more than --max-error, {max_cm} cm",
+            mean_cm.unwrap_or_default()
+        );
+        Ok(Distance { max_cm, mean_cm, scalar_part: arguments.max_scalar_error / 100.0 })
+    }
+
+    fn plan(&self, effort: Level) -> Plan {
+        Plan { mean_cm: self.mean_cm, ..effort.plan(self.max_cm) }
+    }
 }
 
 impl Bound {
@@ -337,17 +376,26 @@ impl Bound {
             parts.fold(0.0, f64::max)
         };
         match self {
-            Bound::Distance(cm, part) => {
-                let closed = loop_seam::close(motion, Most::Distance(*cm, *part))?;
+            Bound::Distance(distance) => {
+                let Distance { max_cm, mean_cm, scalar_part } = distance;
+                let closed = loop_seam::close(motion, Most::Distance(*max_cm, *scalar_part))?;
                 // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
                 ensure!(
-                    closed.moved_cm < 0.9 * *cm,
-                    "--loop: closing the seam moves {} by {:.3} cm; the bound is {cm} cm",
+                    closed.moved_cm < 0.9 * *max_cm,
+                    "--loop: closing the seam moves {} by {:.3} cm; the bound is {max_cm} cm",
                     closed.joint,
                     closed.moved_cm
                 );
-                *cm -= closed.moved_cm;
-                *part -= scalars(&closed.moved);
+                *max_cm -= closed.moved_cm;
+                *scalar_part -= scalars(&closed.moved);
+                if let Some(mean_cm) = mean_cm {
+                    let moved = compare(&cut(motion, None, Some(closed.motion.frames - 1))?, &closed.motion)?.mean_joint_cm;
+                    ensure!(
+                        moved < 0.9 * *mean_cm,
+                        "--loop: closing the seam moves the joints by {moved:.4} cm in the mean; --mean-error is {mean_cm} cm"
+                    );
+                    *mean_cm -= moved;
+                }
                 Ok(closed)
             }
             Bound::Channels(bounds) => {
@@ -394,15 +442,19 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-fn by_distance(arguments: &Arguments, prepared: &Prepared, cm: f64, part: f64, coding: &Coding) -> Result<Made> {
+fn by_distance(arguments: &Arguments, prepared: &Prepared, distance: &Distance, coding: &Coding) -> Result<Made> {
     let Prepared { motion, rig, .. } = prepared;
-    let plan = arguments.effort.plan(cm);
+    let (plan, part) = (distance.plan(arguments.effort), distance.scalar_part);
     let bar = bar(arguments, 1000)?;
     let coded = fit_coding(motion, coding, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
     bar.finish_and_clear();
     let bytes = file(arguments, &coded, rig)?;
     let not_written = || format!("{}: not written", arguments.output().display());
-    let report = verify(&bytes, rig, motion, cm, part).with_context(not_written)?;
+    let report = verify(&bytes, rig, motion, distance.max_cm, part).with_context(not_written)?;
+    if let Some(mean_cm) = distance.mean_cm {
+        let mean = report.mean_joint_cm;
+        ensure!(mean <= mean_cm, "{}: joints are {mean:.5} cm off in the mean; --mean-error is {mean_cm} cm", not_written());
+    }
     let (degrees, joint, frame) = (report.max_unseen_degrees, &report.unseen_joint, report.unseen_frame);
     if let Some(most) = arguments.max_rotation_error.filter(|most| degrees > *most) {
         bail!(

@@ -1,4 +1,4 @@
-//! `--max-error`: a length, or a part of the figure's height.
+//! `--max-error` and `--mean-error`: a length, or a part of the figure's height.
 
 use crate::import::units::figure_height_cm;
 use crate::motion::Motion;
@@ -13,6 +13,9 @@ pub enum MaxError {
     Percent(f64),
 }
 
+/// Without an option.
+pub const DEFAULT: MaxError = MaxError::Cm(0.5);
+
 impl MaxError {
     /// The bound for `motion`.
     pub fn cm(self, motion: &Motion) -> Result<f64> {
@@ -20,8 +23,8 @@ impl MaxError {
             MaxError::Cm(cm) => Ok(cm),
             MaxError::Percent(_) if motion.rig.joints.is_empty() => Ok(1.0),
             MaxError::Percent(percent) => {
-                let height = figure_height_cm(motion)
-                    .context("the figure has no height to take a part of: give --max-error as a length")?;
+                let height =
+                    figure_height_cm(motion).context("the figure has no height to take a part of: give the error as a length")?;
                 Ok(percent / 100.0 * height)
             }
         }

@@ -14,6 +14,8 @@ use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
 pub struct Plan {
     /// Greatest distance of any joint or End Site from where it should be, in cm.
     pub bound_cm: f64,
+    /// The mean distance of all joints, End Sites left out, to aim at within the bound, in cm. Without it the bound is filled.
+    pub mean_cm: Option<f64>,
     /// Passes over all channels.
     pub passes: usize,
     /// The price of an error, relative to a bit, in the first and the last pass.
@@ -25,6 +27,16 @@ pub struct Plan {
     /// How joints' rotations are coded.
     pub rotations: Rotations,
 }
+
+impl Plan {
+    /// The bound that a code with this plan's errors would fill.
+    pub fn filled_cm(&self) -> f64 {
+        self.mean_cm.map_or(self.bound_cm, |mean| MEAN_OF_FILLED * mean)
+    }
+}
+
+/// Codes that fill a bound have a mean this many times smaller.
+pub const MEAN_OF_FILLED: f64 = 2.2;
 
 /// Encoder effort: speed against size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +55,7 @@ impl Level {
     pub fn plan(self, bound_cm: f64) -> Plan {
         let plan = |passes, beam, margin, thorough| Plan {
             bound_cm,
+            mean_cm: None,
             passes,
             prices: (10.0, 0.2),
             both_steps: thorough,
@@ -73,6 +86,18 @@ const GAIN: f64 = 0.01;
 /// What a channel at rest costs, about.
 const REST_BITS: f64 = 0.4;
 
+/// Passes to a mean, in those to a bound.
+const MEAN_PASSES: usize = 3;
+/// The price of the first pass to a mean, in bits for each mean distance and second.
+const FIRST_PRICE: f64 = 144.0;
+/// The price falls by this factor from pass to pass, or by less once it fell too far; by hardly any, it is as low as it can be.
+const FALL: f64 = 0.8;
+const FALL_LEAST: f64 = 0.995;
+/// A mean this near below the one that was asked for is as good.
+const NEAR_MEAN: f64 = 0.99;
+/// End Sites are not part of the mean, but are seen: they have this part of a joint's price.
+const END_SITE_PART: f64 = 0.1;
+
 /// A channel's code, and what the search had found it to cost.
 type Code = Fitted;
 
@@ -97,6 +122,14 @@ pub struct Descent<'m> {
     seconds_a_frame: f64,
 }
 
+/// The codes of a pass whose mean is small enough.
+struct Kept {
+    price: f64,
+    bits: f64,
+    codes: Vec<Option<Code>>,
+    values: Vec<Vec<f64>>,
+}
+
 impl<'m> Descent<'m> {
     /// Starts from the original: nothing is coded yet, nothing is off but by the rig's own rounding.
     #[allow(clippy::too_many_arguments)]
@@ -119,6 +152,9 @@ impl<'m> Descent<'m> {
 
     /// All passes. `progress` receives the fraction that is done, 0 to 1.
     pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
+        if let Some(mean_cm) = self.plan.mean_cm {
+            return self.run_to_mean(mean_cm, progress);
+        }
         let channels = self.targets.len();
         for pass in 0..self.plan.passes {
             let (first, last) = self.plan.prices;
@@ -134,6 +170,75 @@ impl<'m> Descent<'m> {
             }
         }
         Ok(self.codes.into_iter().flatten().collect())
+    }
+
+    /// Passes whose price for a centimetre falls until the mean is reached. A higher price would not undo what a lower one did, so a
+    /// pass that goes too far is taken back and the price falls less from there.
+    fn run_to_mean(mut self, mean_cm: f64, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
+        let channels = self.targets.len();
+        let (passes, mut fall) = (MEAN_PASSES * self.plan.passes, FALL);
+        let mut price = FIRST_PRICE * self.seconds_a_frame / mean_cm;
+        let mut kept: Option<Kept> = None;
+        for pass in 0..passes {
+            for i in 0..channels {
+                let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
+                if pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) {
+                    self.improve(channel, price, pass)?;
+                }
+                progress((pass * channels + i + 1) as f64 / (passes * channels) as f64);
+            }
+            let part = self.mean() / mean_cm;
+            if part <= 1.0 {
+                let saved = kept.as_ref().is_none_or(|kept| self.bits() < 0.999 * kept.bits);
+                kept = Some(Kept { price, bits: self.bits(), codes: self.codes.clone(), values: self.values.clone() });
+                if part > NEAR_MEAN && !saved {
+                    break;
+                }
+                // Far from the mean, one pass at a price is enough.
+                if part < 0.6 || !pass.is_multiple_of(2) {
+                    price *= fall;
+                }
+            } else if let Some(kept) = &kept {
+                (self.codes, self.values) = (kept.codes.clone(), kept.values.clone());
+                self.poses = self.figure.poses(&self.values);
+                fall = fall.sqrt();
+                price = kept.price * fall;
+                if fall > FALL_LEAST {
+                    break;
+                }
+            } else {
+                price /= fall * fall;
+            }
+        }
+        let Some(kept) = kept else {
+            bail!("no code with a mean error of {mean_cm} cm was found within {} cm at every joint", self.plan.bound_cm);
+        };
+        Ok(kept.codes.into_iter().flatten().collect())
+    }
+
+    fn bits(&self) -> f64 {
+        self.codes.iter().flatten().map(|code| code.bits).sum()
+    }
+
+    /// The mean distance of the joints from where they should be, in cm.
+    fn mean(&self) -> f64 {
+        let counted: Vec<usize> = (0..self.figure.rig.joints.len()).filter(|&joint| self.counts(joint)).collect();
+        let frames = |joint: usize| (0..self.figure.frames).map(move |frame| (joint, frame));
+        let distances =
+            counted.iter().flat_map(|&joint| frames(joint)).map(|(joint, frame)| square(&self.error(joint, frame)).sqrt());
+        distances.sum::<f64>() / (counted.len() * self.figure.frames).max(1) as f64
+    }
+
+    /// Whether a joint is part of the mean.
+    fn counts(&self, joint: usize) -> bool {
+        !self.figure.rig.joints[joint].end_site
+    }
+
+    /// The price, in bits, of a joint's squared distance in cm, where it is off by `error` now: the distance itself has the price.
+    fn price_to_mean(&self, joint: usize, error: &[f64; 3], price: f64, mean_cm: f64) -> f64 {
+        let part = if self.counts(joint) { 1.0 } else { END_SITE_PART };
+        // In proportion to the square below the mean: otherwise what is exact by chance would stay so at any price.
+        part * price / (2.0 * square(error).sqrt().max(mean_cm))
     }
 
     /// Codes one channel again if that is better.
@@ -238,7 +343,10 @@ impl<'m> Descent<'m> {
                 let rest: [f64; 3] = std::array::from_fn(|i| error[i] - lever[i] * now);
                 let (jj, jr) = (dot(&lever, &lever), dot(&lever, &rest));
                 let used = square(&error) / (self.plan.bound_cm * self.plan.bound_cm);
-                let weight = share * (1.0 + CROWDING * used * used * used);
+                let weight = match self.plan.mean_cm {
+                    Some(mean_cm) => self.price_to_mean(joint, &error, price, mean_cm),
+                    None => share * (1.0 + CROWDING * used * used * used),
+                };
                 a += weight * jj;
                 b += weight * jr;
                 if jj > 0.0 {

@@ -29,7 +29,7 @@ const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 /// Codes `motion` within the plan's bound, in the coding that is cheapest for it. `progress` receives the fraction that is
 /// done, 0 to 1.
 pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnMut(f64)) -> Result<Coded> {
-    fit_coding(motion, &Coding::of(&[(motion, plan.bound_cm)], plan.rotations), plan, scalar_part, progress)
+    fit_coding(motion, &Coding::of(&[(motion, plan.filled_cm())], plan.rotations), plan, scalar_part, progress)
 }
 
 /// Codes `motion` in a given coding, which clips of its rig can share.

@@ -31,6 +31,7 @@ mod interchange;
 mod keyframes_input;
 mod livelink_input;
 mod manners;
+mod mean_error;
 mod optimum;
 mod outputs;
 mod own_clips;
