@@ -9,11 +9,12 @@ use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use harness::build::{self, Firmware};
+use harness::display::Picture;
 use harness::lossy::{Damage, Lossy, arrivals};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
-use pantin_link::packet::Receiver;
+use pantin_link::packet::{Receiver, TagKey};
 use pantin_link::{Channel, Link, MAX_PACKET, QUEUE_PACKETS};
 use pantin_tools::sender::{Line, Sender, Source};
 use tempfile::TempDir;
@@ -36,7 +37,12 @@ fn source() -> Source {
 
 /// What arrives in each frame's time of two rounds over a line of 38,400 baud that is damaged between two of them.
 fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
-    let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false };
+    keyed_line(source, None, damage, from, to)
+}
+
+/// The same, with tags of a key.
+fn keyed_line(source: &Source, key: Option<TagKey>, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
+    let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false, key };
     let fit = wanted.fitted(source).expect("the line carries it");
     let mut lossy = Lossy::new(5);
     let frames = arrivals(Sender::new(3).clip(source, fit, Some(2)), source, fit, |frame, timed| {
@@ -79,14 +85,90 @@ fn the_board_shows_what_the_host_shows_of_a_line_that_damages_and_recovers() {
     assert!(!wrong.is_empty() && wrong.iter().all(|frame| (from..last).contains(frame)), "{wrong:?}");
 }
 
+const KEY: &str = "00112233445566778899aabbccddeeff";
+const OTHER_KEY: &str = "00112233445566778899aabbccddeefe";
+
+/// Frames of the line with a key that the board shows.
+const KEYED: usize = 90;
+
+#[test]
+fn a_receiver_with_a_key_shows_packets_with_its_tag_and_no_others() {
+    let source = source();
+    let of_key = |key: Option<&str>| {
+        let key = key.map(|key| TagKey::from_hex(key).unwrap());
+        let (mut frames, _) = keyed_line(&source, key, Damage::default(), 0, 0);
+        frames.truncate(KEYED);
+        frames
+    };
+    let (genuine, plain, forged) = (of_key(Some(KEY)), of_key(None), of_key(Some(OTHER_KEY)));
+    let word = format!("key={KEY}");
+    let shown = |words: &[&str], line: &[Vec<u8>]| simulator::link(&CLIP.1, words, line).unwrap();
+    let expected = shown(&[&word], &genuine);
+    assert!(expected.windows(2).filter(|pair| pair[0].1 != pair[1].1).count() > KEYED / 3, "hardly anything moves");
+    // Another sender's packets come before and after each.
+    let mixed: Vec<Vec<u8>> = (0..KEYED).map(|frame| [&plain[frame][..], &genuine[frame], &forged[frame]].concat()).collect();
+    assert_eq!(shown(&[&word], &mixed), expected);
+    let still = |pictures: Vec<(u32, Picture)>| pictures.windows(2).all(|pair| pair[0] == pair[1]);
+    assert!(still(shown(&[&word], &plain)), "packets without a tag are shown");
+    assert!(still(shown(&[&word], &forged)), "packets with a tag of another key are shown");
+    assert!(still(shown(&[], &genuine)), "packets with a tag are shown without a key");
+    assert!(simulator::link(&CLIP.1, &["key=0011"], &genuine).is_err(), "a key that is none");
+    if setup::host_only("a line with a key") {
+        return;
+    }
+    let firmware = firmware("face,key");
+    let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("link").argument(&word).limit(Duration::from_secs(120));
+    let mut session = sync::Session::start(launch).unwrap();
+    for (frame, bytes) in [&vec![]].into_iter().chain(&mixed).enumerate() {
+        assert_eq!(session.hear(bytes).unwrap(), expected[frame], "picture {frame}");
+    }
+    assert_eq!(session.end().unwrap().code, 0);
+}
+
+#[test]
+fn a_key_that_is_none_is_refused_and_not_printed() {
+    let mut stream = Command::new(build::host_tool().unwrap());
+    let output = stream.args(["stream", "--to", "udp:127.0.0.1:9", "--key", "0123456789"]).arg(&CLIP.1).output().unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && words.contains("--key: neither 32 hexadecimal digits nor a file"), "{words}");
+    assert!(!words.contains("0123456789"), "{words}");
+}
+
+#[test]
+fn pantin_stream_plays_with_a_key_on_a_board_by_ethernet() {
+    if setup::host_only("pantin stream with a key") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("key");
+    std::fs::write(&file, format!("{KEY}\n")).unwrap();
+    let connect = |launch: Launch, port| launch.network(&format!("user,hostfwd=udp:127.0.0.1:{port}-10.0.2.15:4000"));
+    let to = |port| format!("udp:127.0.0.1:{port}@38400");
+    is_whole(&keyed_stream("face,ethernet,key", Some([KEY, file.to_str().unwrap()]), connect, to));
+}
+
 /// Plays in the board's own time what `pantin stream` sends there; what the board then logs.
 fn streamed(features: &str, connect: impl FnOnce(Launch, u16) -> Launch, to: impl Fn(u16) -> String) -> String {
+    keyed_stream(features, None, connect, to)
+}
+
+/// The same; both ends have the keys.
+fn keyed_stream(
+    features: &str,
+    keys: Option<[&str; 2]>,
+    connect: impl FnOnce(Launch, u16) -> Launch,
+    to: impl Fn(u16) -> String,
+) -> String {
     let firmware = firmware(features);
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let launch = Launch::new(LM3S6965EVB, firmware.elf()).argument("link").argument("info").argument("frames=320");
-    let mut qemu = connect(launch, port).display().start().unwrap();
+    let launch = keys.iter().fold(launch, |launch, [board, _]| launch.argument(format!("key={board}")));
+    // The board ends after its frames: nothing slow may come between its start and the stream's.
     let mut stream = Command::new(build::host_tool().unwrap());
-    let output = stream.args(["stream", "--ahead", "1", "--to", &to(port)]).arg(&CLIP.1).output().unwrap();
+    let mut qemu = connect(launch, port).display().start().unwrap();
+    stream.args(["stream", "--ahead", "1", "--to", &to(port)]).arg(&CLIP.1);
+    stream.args(keys.iter().flat_map(|[_, host]| ["--key", host]));
+    let output = stream.output().unwrap();
     let words = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && words.contains("packets") && words.contains("refresh"), "{words}");
     assert!(qemu.picture().unwrap().pixels.iter().any(|&pixel| pixel > 0));

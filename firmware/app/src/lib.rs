@@ -93,6 +93,8 @@ pub use board::{Board, Exit};
 pub use capacity::{Capacity, MaxClip, RIG, Renderer};
 pub use commands::Command;
 pub use multi::{FIGURES, FigureBuffers, multi};
+#[cfg(feature = "key")]
+pub use options::Key;
 pub use options::{Mode, Options};
 pub use run::{NEXT, QUIT, SHOWN, run};
 pub use session::Entry;

@@ -30,11 +30,26 @@ pub struct Options {
     /// Whether the link's packets have parity.
     #[cfg(feature = "link")]
     pub fec: bool,
+    /// The key of the link's packets.
+    #[cfg(feature = "key")]
+    pub key: Key,
+}
+
+/// Which packets of the link are taken.
+#[cfg(feature = "key")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// All that are intact.
+    None,
+    /// Those with a tag of this key.
+    Tag(pantin_link::packet::TagKey),
+    /// None: the option is not 32 hexadecimal digits, and the program ends.
+    Invalid,
 }
 
 impl Options {
     /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`, and with the feature `link` also `link` and
-    /// `fec`. Other words are ignored: an emulator without arguments passes the program's path.
+    /// `fec`, with the feature `key` also `key=HEX`. Other words are ignored: an emulator without arguments passes the program's path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
         let mut options = Options {
             mode: Mode::Play,
@@ -46,6 +61,8 @@ impl Options {
             link: false,
             #[cfg(feature = "link")]
             fec: false,
+            #[cfg(feature = "key")]
+            key: Key::None,
         };
         for word in words {
             match word.split_once('=') {
@@ -56,6 +73,10 @@ impl Options {
                 #[cfg(feature = "link")]
                 None if word == "fec" => options.fec = true,
                 None if word == "info" => options.hud = true,
+                #[cfg(feature = "key")]
+                Some(("key", digits)) => {
+                    options.key = pantin_link::packet::TagKey::from_hex(digits).map_or(Key::Invalid, Key::Tag);
+                }
                 Some(("frames", count)) => options.mode = count.parse().map_or(options.mode, Mode::Frames),
                 Some(("figures", count)) => options.figures = count.parse().unwrap_or(1),
                 Some(("view", degrees)) => options.orbit = degrees.parse().ok().or(options.orbit),

@@ -102,8 +102,15 @@ fn start<B: Board>(
     }
     #[cfg(feature = "link")]
     if context.view_state.link {
-        let parity = context.view_state.fec;
-        return crate::source::link::open::<B>(player, parity, |source| play(&mut [Actor { name, source, content }], context));
+        let line = crate::source::link::Line {
+            parity: context.view_state.fec,
+            #[cfg(feature = "key")]
+            key: context.view_state.key,
+            // The letters of the mode `sync` come from a test's line.
+            #[cfg(feature = "key")]
+            sync: context.mode == Mode::Sync,
+        };
+        return crate::source::link::open::<B>(player, line, |source| play(&mut [Actor { name, source, content }], context));
     }
     play(&mut [Actor { name, source: player, content }], context)
 }

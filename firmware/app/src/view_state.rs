@@ -26,6 +26,9 @@ pub(crate) struct ViewState {
     /// The link's packets have parity.
     #[cfg(feature = "link")]
     pub fec: bool,
+    /// The key of the link's packets.
+    #[cfg(feature = "key")]
+    pub key: crate::options::Key,
 }
 
 /// What is to be done for a command.
@@ -65,6 +68,8 @@ impl ViewState {
             link: options.link,
             #[cfg(feature = "link")]
             fec: options.fec,
+            #[cfg(feature = "key")]
+            key: options.key,
         }
     }
 

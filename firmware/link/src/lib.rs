@@ -35,6 +35,8 @@ pub mod packet;
 mod parity;
 mod symbols;
 pub mod tables;
+#[cfg(feature = "key")]
+mod tag;
 
 pub use channel::Channel;
 pub use head::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace, read_starts};

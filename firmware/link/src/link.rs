@@ -11,8 +11,13 @@ use pantin::{Form, Pose};
 pub const MAX_PAYLOAD: usize = 96;
 /// MOTION packets that can wait for their frames at a receiver: senders assume this number.
 pub const QUEUE_PACKETS: usize = 24;
-/// Most bytes of a packet, for [`crate::packet::Receiver`], parity included.
-pub const MAX_PACKET: usize = MAX_PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY;
+/// Most bytes of a packet, for [`crate::packet::Receiver`], parity and a tag included.
+pub const MAX_PACKET: usize = MAX_PAYLOAD + crate::packet::OVERHEAD + crate::packet::PARITY + TAG_MORE;
+/// Bytes by which a tag is longer than the CRC that it replaces.
+#[cfg(feature = "key")]
+const TAG_MORE: usize = crate::packet::TAG - 2;
+#[cfg(not(feature = "key"))]
+const TAG_MORE: usize = 0;
 
 /// A MOTION packet that waits for its frames.
 #[derive(Clone, Debug)]

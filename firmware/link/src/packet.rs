@@ -23,10 +23,10 @@
 //! assert!(received);
 //! ```
 
+#[cfg(feature = "key")]
+pub use crate::tag::{TAG, TagKey, encode_with_tag, tagged_line_len};
 use crate::{cobs, parity};
-use core::hash::Hasher;
 use pantin::codec::crc;
-use siphasher::sip::SipHasher24;
 
 /// Packet kinds: the first byte of a packet.
 pub mod kind {
@@ -47,60 +47,6 @@ pub const OVERHEAD: usize = 4;
 
 /// Parity bytes after the CRC, if both ends have agreed on parity: they correct 4 wrong bytes.
 pub use crate::parity::PARITY;
-
-/// Bytes of a tag, which replaces the CRC of a packet if both ends share a [`Secret`].
-pub const TAG: usize = 8;
-
-/// A secret that both ends of a line share: 128 bits. Packets then carry a tag (SipHash-2-4, 64 bits) in place of the CRC, which only those who know the
-/// secret can compute: a forged packet passes with probability 2^-64. It does not hide the motion, and recorded packets can be replayed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Secret([u8; 16]);
-
-impl Secret {
-    /// Takes the bytes of the secret, which should be random.
-    pub const fn new(bytes: [u8; 16]) -> Secret {
-        Secret(bytes)
-    }
-
-    /// Reads 32 hexadecimal digits. Returns `None` for anything else.
-    pub const fn from_hex(text: &str) -> Option<Secret> {
-        let text = text.as_bytes();
-        let mut bytes = [0; 16];
-        if text.len() != 2 * bytes.len() {
-            return None;
-        }
-        let mut index = 0;
-        while index < text.len() {
-            let digit = match text[index] {
-                digit @ b'0'..=b'9' => digit - b'0',
-                digit @ b'a'..=b'f' => digit - b'a' + 10,
-                digit @ b'A'..=b'F' => digit - b'A' + 10,
-                _ => return None,
-            };
-            bytes[index / 2] = bytes[index / 2] << 4 | digit;
-            index += 1;
-        }
-        Some(Secret(bytes))
-    }
-
-    /// Returns the tag of the concatenated parts.
-    fn tag(&self, parts: [&[u8]; 2]) -> [u8; TAG] {
-        let mut hasher = SipHasher24::new_with_key(&self.0);
-        parts.into_iter().for_each(|part| hasher.write(part));
-        hasher.finish().to_le_bytes()
-    }
-}
-
-impl core::fmt::Debug for Secret {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("Secret")
-    }
-}
-
-/// Returns the most bytes that a packet with a tag takes on the line, both zeros and parity included.
-pub const fn tagged_line_len(payload: usize) -> usize {
-    line_len(payload + TAG - 2)
-}
 
 /// Returns the most bytes that a packet takes on the line, both zeros and parity included.
 pub const fn line_len(payload: usize) -> usize {
@@ -132,19 +78,11 @@ pub fn encode_with_parity(kind: u8, sequence: u8, payload: &[u8], out: &mut [u8]
     put(&head, payload, &crc, &parity::of(&[&head, payload, &crc]), out)
 }
 
-/// Encodes a packet with a tag in place of the CRC, for [`Receiver::with_secret`], and with parity after it if `parity` is true.
-pub fn encode_with_tag(kind: u8, sequence: u8, payload: &[u8], secret: &Secret, parity: bool, out: &mut [u8]) -> Option<usize> {
-    let head = [kind, sequence];
-    let tag = secret.tag([&head, payload]);
-    let bytes = if parity { parity::of(&[&head, payload, &tag]) } else { [0; PARITY] };
-    put(&head, payload, &tag, if parity { &bytes } else { &[] }, out)
-}
-
 fn sum(head: &[u8], payload: &[u8]) -> [u8; 2] {
     crc::update(crc::of(head), payload).to_le_bytes()
 }
 
-fn put(head: &[u8], payload: &[u8], check: &[u8], parity: &[u8], out: &mut [u8]) -> Option<usize> {
+pub(crate) fn put(head: &[u8], payload: &[u8], check: &[u8], parity: &[u8], out: &mut [u8]) -> Option<usize> {
     let (first, rest) = out.split_first_mut()?;
     let len = cobs::encode(&[head, payload, check, parity], rest)?;
     *rest.get_mut(len)? = 0;
@@ -171,11 +109,10 @@ pub struct Receiver<const N: usize> {
     damaged: u32,
     /// Corrects packets with parity: a pointer, so that programs without parity do not link the code.
     correct: Option<fn(&mut [u8]) -> bool>,
-    /// Opens packets with a tag: a pointer for the same reason.
-    tagged: Option<(Secret, OpenTagged)>,
+    /// The key of the packets' tags.
+    #[cfg(feature = "key")]
+    tag_key: Option<TagKey>,
 }
-
-type OpenTagged = fn(&Secret, &[u8]) -> bool;
 
 impl<const N: usize> Default for Receiver<N> {
     fn default() -> Self {
@@ -198,7 +135,8 @@ impl<const N: usize> Receiver<N> {
             after_damage: false,
             damaged: 0,
             correct: None,
-            tagged: None,
+            #[cfg(feature = "key")]
+            tag_key: None,
         }
     }
 
@@ -207,9 +145,10 @@ impl<const N: usize> Receiver<N> {
         Receiver { correct: Some(parity::correct), ..Self::new() }
     }
 
-    /// The same, for packets with a tag: others count as damaged.
-    pub const fn with_secret(self, secret: Secret) -> Self {
-        Receiver { tagged: Some((secret, has_tag)), ..self }
+    /// Takes only packets with a tag of this key: all others count as damaged. Letters ([`Receiver::take_key`]) have no tag.
+    #[cfg(feature = "key")]
+    pub const fn with_tag_key(self, key: TagKey) -> Self {
+        Receiver { tag_key: Some(key), ..self }
     }
 
     /// Takes a byte from the line, and returns the packet that it completes.
@@ -250,7 +189,13 @@ impl<const N: usize> Receiver<N> {
             Some(correct) => without_parity(bytes, correct),
             None => Some(bytes),
         };
-        let packet = bytes.and_then(unmended).and_then(|bytes| open(bytes, self.tagged.as_ref()));
+        let packet = bytes.and_then(unmended).and_then(|bytes| {
+            #[cfg(feature = "key")]
+            if let Some(key) = &self.tag_key {
+                return packet_of(key.without_tag(bytes)?);
+            }
+            open(bytes)
+        });
         self.after_damage = packet.is_none();
         if self.after_damage {
             self.damaged = self.damaged.wrapping_add(1);
@@ -297,23 +242,14 @@ fn without_parity(bytes: &mut [u8], correct: fn(&mut [u8]) -> bool) -> Option<&m
     if correct(bytes) { bytes.get_mut(..len) } else { None }
 }
 
-/// Returns whether the decoded bytes of a packet end with their tag.
-fn has_tag(secret: &Secret, bytes: &[u8]) -> bool {
-    bytes.split_last_chunk::<TAG>().is_some_and(|(bytes, tag)| {
-        // All bytes are compared, so that the time does not tell how many are right.
-        secret.tag([bytes, &[]]).iter().zip(tag).fold(0, |wrong, (a, b)| wrong | (a ^ b)) == 0
-    })
+/// Returns the packet if the CRC of its decoded bytes is right.
+fn open(bytes: &[u8]) -> Option<Packet<'_>> {
+    let (bytes, sum) = bytes.split_last_chunk()?;
+    if crc::of(bytes) == u16::from_le_bytes(*sum) { packet_of(bytes) } else { None }
 }
 
-/// Returns the packet if the tag or the CRC of its decoded bytes is right.
-fn open<'b>(bytes: &'b [u8], tagged: Option<&(Secret, OpenTagged)>) -> Option<Packet<'b>> {
-    let bytes = match tagged {
-        Some((secret, has_tag)) => bytes.get(..bytes.len().checked_sub(TAG)?).filter(|_| has_tag(secret, bytes))?,
-        None => {
-            let (bytes, sum) = bytes.split_last_chunk()?;
-            Some(bytes).filter(|bytes| crc::of(bytes) == u16::from_le_bytes(*sum))?
-        }
-    };
+/// Splits the bytes of a packet without its CRC or tag.
+fn packet_of(bytes: &[u8]) -> Option<Packet<'_>> {
     let &[kind, sequence, ref payload @ ..] = bytes else { return None };
     Some(Packet { kind, sequence, payload })
 }
@@ -403,50 +339,6 @@ mod tests {
         }
         // Parity corrects COBS code bytes too, unless the runs shift.
         assert!(missed <= 2, "{missed} of {len}");
-    }
-
-    const SECRET: Secret = Secret::new(*b"0123456789abcdef");
-
-    fn tagged(sequence: u8, payload: &[u8], secret: &Secret, parity: bool) -> Vec<u8> {
-        let mut out = vec![0; tagged_line_len(payload.len())];
-        let len = encode_with_tag(1, sequence, payload, secret, parity, &mut out).expect("tagged_line_len is enough");
-        out.truncate(len);
-        out
-    }
-
-    #[test]
-    fn packets_with_a_tag_are_received_by_who_shares_the_secret_and_no_others_are() {
-        for parity in [false, true] {
-            let receiver = || if parity { Receiver::<64>::with_parity() } else { Receiver::new() };
-            let forged = Secret::new([0; 16]);
-            let bytes = [
-                tagged(1, b"abc", &SECRET, parity),
-                tagged(2, b"abc", &forged, parity),
-                line(1, 3, b"abc"),
-                tagged(4, b"", &SECRET, parity),
-            ]
-            .concat();
-            let mut own = receiver().with_secret(SECRET);
-            let sequences: Vec<u8> = received(&mut own, &bytes).iter().map(|packet| packet.1).collect();
-            assert_eq!((sequences, own.damaged()), (vec![1, 4], 2), "parity {parity}");
-            assert!(received(&mut receiver(), &bytes).iter().all(|packet| packet.1 == 3));
-        }
-        let mut without = Receiver::<64>::new().with_secret(SECRET);
-        let bytes = tagged(1, b"abc", &SECRET, false);
-        for bit in 8..(bytes.len() - 1) * 8 {
-            let mut bytes = bytes.clone();
-            bytes[bit / 8] ^= 1 << (bit % 8);
-            assert!(received(&mut without, &bytes).is_empty(), "bit {bit}");
-        }
-    }
-
-    #[test]
-    fn the_tag_is_siphash_2_4() {
-        // The reference vector of J.-P. Aumasson and D. J. Bernstein (2012), appendix A: 15 bytes.
-        let secret = Secret::from_hex("000102030405060708090a0b0c0d0e0f").expect("32 digits");
-        let bytes: Vec<u8> = (0..15).collect();
-        assert_eq!(secret.tag([&bytes[..2], &bytes[2..]]), 0xa129_ca61_49be_45e5u64.to_le_bytes());
-        assert_eq!([Secret::from_hex("00"), Secret::from_hex(&"g".repeat(32)), Secret::from_hex(&"ä".repeat(16))], [None; 3]);
     }
 
     proptest! {

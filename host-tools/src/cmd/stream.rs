@@ -6,6 +6,7 @@ use crate::output::{note, report};
 use crate::sender::{ByteCounts, Line, Sender, Source};
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
+use pantin_link::packet::TagKey;
 use serde_json::json;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::path::{Path, PathBuf};
@@ -50,6 +51,25 @@ pub struct Arguments {
     /// Add 8 bytes of parity to each packet, which correct 4 wrong bytes; the receiver must expect them (the board's argument `fec`)
     #[arg(long)]
     pub(super) fec: bool,
+    /// Add a tag of 8 bytes to each packet, in place of its CRC of 2: the receiver, which must have the key, drops all other packets. KEY is a file with
+    /// 32 hexadecimal digits, or these digits
+    #[arg(long, value_name = "KEY")]
+    key: Option<String>,
+}
+
+impl Arguments {
+    /// The key of the packets' tags.
+    pub(super) fn tag_key(&self) -> Result<Option<TagKey>> {
+        let Some(key) = &self.key else { return Ok(None) };
+        if let Some(key) = TagKey::from_hex(key) {
+            return Ok(Some(key));
+        }
+        // An error does not print the key.
+        let text = std::fs::read_to_string(key).context("--key: neither 32 hexadecimal digits nor a file that can be read")?;
+        let key =
+            TagKey::from_hex(text.trim()).with_context(|| format!("--key {key}: expected 32 hexadecimal digits in the file"))?;
+        Ok(Some(key))
+    }
 }
 
 /// Runs the command.
@@ -116,6 +136,7 @@ fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
         share: arguments.refresh / 100.0,
         cycle: frames(arguments.cycle).clamp(1.0, 120.0) as u32,
         parity: arguments.fec,
+        key: arguments.tag_key()?,
     };
     wanted.fitted(source).with_context(|| {
         format!(

@@ -56,7 +56,14 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let source = Source::live(form, clip.frame_time_ns(), &making);
     let rate = arguments.to.rate();
     let cycle = REFRESH_BYTES * places.len() as f64 / (REFRESHES * rate) / source.frame_seconds();
-    let line = Line { rate, ahead: AHEAD, share: 1.0, cycle: cycle.ceil().clamp(8.0, 120.0) as u32, parity: arguments.fec };
+    let line = Line {
+        rate,
+        ahead: AHEAD,
+        share: 1.0,
+        cycle: cycle.ceil().clamp(8.0, 120.0) as u32,
+        parity: arguments.fec,
+        key: arguments.tag_key()?,
+    };
     let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
     note!(
         "live: {} channels; shown {:.0} ms after they came; all of them refreshed within {:.0} ms",

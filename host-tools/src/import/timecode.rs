@@ -28,7 +28,7 @@ impl Timecode {
         let mut parts = clock.split([':', ';']).map(|part| part.parse::<u32>().ok().filter(|_| digits(part)));
         let (hour, minute, second) = (parts.next()??, parts.next()??, parts.next()??);
         let real = hour < 24 && minute < 60 && second < 60 && frame < 60.0 && parts.next().is_none();
-        real.then_some(Timecode { minute: hour * 60 + minute, second, frame, marked: text.as_bytes()[at] == b';' })
+        real.then(|| Timecode { minute: hour * 60 + minute, second, frame, marked: text.as_bytes()[at] == b';' })
     }
 }
 

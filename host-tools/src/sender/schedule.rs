@@ -5,7 +5,7 @@ use super::pack::{MotionPacket, pack};
 use super::plan::round;
 use super::source::Source;
 use pantin_link::Head;
-use pantin_link::packet::{self, kind};
+use pantin_link::packet::{self, TagKey, kind};
 use pantin_link::{MAX_PAYLOAD, QUEUE_PACKETS};
 use std::collections::VecDeque;
 
@@ -22,6 +22,8 @@ pub struct Line {
     pub cycle: u32,
     /// Packets have parity.
     pub parity: bool,
+    /// The key of the packets' tags, if they have tags in place of CRCs.
+    pub key: Option<TagKey>,
 }
 
 /// Part of the line for heads and starts, once they have been told at first.
@@ -38,7 +40,7 @@ const AT_FIRST: usize = 2;
 pub struct ByteCounts {
     /// All.
     pub line: f64,
-    /// Zeros, stuffing, kind, sequence, CRC.
+    /// Zeros, stuffing, kind, sequence, CRC or tag.
     pub framing: f64,
     /// Parity.
     pub parity: f64,
@@ -185,9 +187,13 @@ impl<'s> Schedule<'s> {
     }
 
     fn leave(&mut self, at: f64, kind: u8, payload: &[u8]) -> TimedPacket {
-        let mut bytes = vec![0; packet::line_len(payload.len())];
-        let encode = if self.line.parity { packet::encode_with_parity } else { packet::encode };
-        let len = encode(kind, self.sequence, payload, &mut bytes).unwrap_or(0);
+        let mut bytes = vec![0; packet::tagged_line_len(payload.len())];
+        let len = match (&self.line.key, self.line.parity) {
+            (Some(key), parity) => packet::encode_with_tag(kind, self.sequence, payload, key, parity, &mut bytes),
+            (None, true) => packet::encode_with_parity(kind, self.sequence, payload, &mut bytes),
+            (None, false) => packet::encode(kind, self.sequence, payload, &mut bytes),
+        };
+        let len = len.unwrap_or(0);
         let parity = if self.line.parity { packet::PARITY as f64 } else { 0.0 };
         bytes.truncate(len);
         if at == self.free && self.bytes.packets > 0 {

@@ -62,7 +62,7 @@ fn play(timed_packets: impl Iterator<Item = TimedPacket>, (source, line): (&Sour
 
 fn line(source: &Source, rate: f64) -> Line {
     let ahead = (1e9 / f64::from(source.head.frame_time_ns)) as u32;
-    Line { rate, ahead, share: 1.0, cycle: 4, parity: false }.fitted(source).expect("it fits")
+    Line { rate, ahead, share: 1.0, cycle: 4, parity: false, key: None }.fitted(source).expect("it fits")
 }
 
 /// A wave that is never still, and a step.
@@ -75,7 +75,7 @@ fn made(frame: usize, channel: usize) -> i32 {
 fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
     let making = [LiveChannel { bound: 1 << 25, way: 1 << 30 }; 8];
     let source = Source::live(pantin::Form::default(), 33_333_333, &making);
-    let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false };
+    let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false, key: None };
     let mut live = Sender::new(5).live(&source, line, &making);
     let (mut states, mut pose) = ([Channel::default(); 8], [0; 8]);
     let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);

@@ -31,7 +31,7 @@ pub fn streams() -> Vec<Vec<u8>> {
         return vec![];
     };
     let packets = |parity| {
-        let line = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 60, parity };
+        let line = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 60, parity, key: None };
         Sender::new(3).clip(&source, line, Some(1)).flat_map(|timed| timed.bytes).take(LINE_BYTES / 4).collect()
     };
     [false, true].map(packets).to_vec()

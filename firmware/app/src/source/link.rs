@@ -7,10 +7,22 @@ use super::{LinkStatus, Source, Status};
 use crate::board::{Board, Exit};
 use crate::capacity::Capacity;
 use crate::log::{error, info};
+#[cfg(feature = "key")]
+use crate::options::Key;
 use crate::session::Outcome;
 use pantin::{Player, Pose};
 use pantin_link::packet::Receiver;
 use pantin_link::{ClipMismatch, Link, MAX_PACKET, QUEUE_PACKETS, fits};
+
+/// What the packets of a line have.
+pub(crate) struct Line {
+    pub parity: bool,
+    #[cfg(feature = "key")]
+    pub key: Key,
+    /// Letters are requests of a test.
+    #[cfg(feature = "key")]
+    pub sync: bool,
+}
 
 /// The receiving end of a link.
 pub(crate) struct LinkSource<'m, 'p, 'c, 'b> {
@@ -18,11 +30,14 @@ pub(crate) struct LinkSource<'m, 'p, 'c, 'b> {
     receiver: Receiver<MAX_PACKET>,
     link: Link<'m, QUEUE_PACKETS>,
     refusal: Option<ClipMismatch>,
+    /// Whether letters are commands: they have no tag, so that with a key anybody could send them.
+    #[cfg(feature = "key")]
+    letters: bool,
 }
 
 /// Opens a link and hands it to `then`. The buffers are here, so that only a program that plays a link has them on its stack.
 #[inline(never)]
-pub(crate) fn open<B: Board>(player: &mut Player, parity: bool, then: impl FnOnce(&mut LinkSource) -> Outcome) -> Outcome {
+pub(crate) fn open<B: Board>(player: &mut Player, line: Line, then: impl FnOnce(&mut LinkSource) -> Outcome) -> Outcome {
     let mut channels = B::Capacity::link_channels();
     let mut pose = B::Capacity::pose();
     let form = player.clip().form();
@@ -32,8 +47,24 @@ pub(crate) fn open<B: Board>(player: &mut Player, parity: bool, then: impl FnOnc
     }
     pose.as_mut().iter_mut().zip(player.pose().values).for_each(|(value, own)| *value = *own);
     let link = Link::new(form, channels.as_mut(), pose.as_mut());
-    let receiver = if parity { Receiver::with_parity() } else { Receiver::new() };
-    then(&mut LinkSource { player, receiver, link, refusal: None })
+    let receiver = if line.parity { Receiver::with_parity() } else { Receiver::new() };
+    #[cfg(feature = "key")]
+    let receiver = match line.key {
+        Key::None => receiver,
+        Key::Tag(key) => receiver.with_tag_key(key),
+        Key::Invalid => {
+            error!("the option key is not 32 hexadecimal digits");
+            return Outcome::Exit(Exit::BadClip);
+        }
+    };
+    then(&mut LinkSource {
+        player,
+        receiver,
+        link,
+        refusal: None,
+        #[cfg(feature = "key")]
+        letters: line.sync || line.key == Key::None,
+    })
 }
 
 impl LinkSource<'_, '_, '_, '_> {
@@ -86,11 +117,19 @@ impl Source for LinkSource<'_, '_, '_, '_> {
         if let Some(packet) = self.receiver.push(byte) {
             self.refusal = self.link.receive(&packet).err();
         }
-        self.receiver.take_key()
+        let letter = self.receiver.take_key();
+        #[cfg(feature = "key")]
+        return letter.filter(|_| self.letters);
+        #[cfg(not(feature = "key"))]
+        letter
     }
 
     fn receive_nothing(&mut self) -> Option<u8> {
-        self.receiver.take_key_after_timeout()
+        let letter = self.receiver.take_key_after_timeout();
+        #[cfg(feature = "key")]
+        return letter.filter(|_| self.letters);
+        #[cfg(not(feature = "key"))]
+        letter
     }
 
     fn log(&self) {

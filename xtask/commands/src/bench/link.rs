@@ -65,7 +65,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let (mut goals, mut rows) = (vec![], vec![]);
     for (baud, ahead, exact) in LINES {
         let fitted = |parity: bool| {
-            let wanted = Line { rate: f64::from(baud) / 10.0, ahead, share: 1.0, cycle: 1, parity };
+            let wanted = Line { rate: f64::from(baud) / 10.0, ahead, share: 1.0, cycle: 1, parity, key: None };
             wanted.fitted(&source).with_context(|| format!("{baud} baud do not carry the clip"))
         };
         let lines = [fitted(false)?, fitted(true)?];
