@@ -119,6 +119,8 @@ mod tests {
             "+1:00:00:00",
             "1:0:0:0:0",
             "0.035",
+            // An hour whose minutes do not fit: found by fuzzing.
+            "280100023:59:59;29",
         ] {
             assert_eq!(Timecode::parse(bad.as_bytes()), None, "{bad}");
         }

@@ -24,7 +24,8 @@ pub fn export_source(bytes: &[u8]) -> bool {
     // An error is of the figure's memory: nothing is written.
     if let (Ok(c), Ok(rust)) = (c_header(&clip, &bytes, stem), rust_module(&clip, &bytes, stem)) {
         let channels = clip.rig().channels();
-        assert!(!c.contains("??"), "a trigraph");
+        // In a comment that ends on its line a trigraph has no effect.
+        assert!(!c.lines().any(|line| line.contains("??") && !line.starts_with("/* ")), "a trigraph");
         check(&c, channels, |line| line.strip_prefix("/* ").and_then(|line| line.strip_suffix(" */")));
         check(&rust, channels, |line| line.strip_prefix("//"));
     }
