@@ -21,10 +21,11 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 22] = [
+const LIST: [(&str, Place, &str); 23] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     ("test", Place::Here(test::run), "Runs every check and test; --host-only leaves out QEMU and Chromium"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
+    ("blender", COMMANDS, "Imports exports of our clips into Blender (bpy), and validates the glTF files"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
     ("coverage", COMMANDS, "Prints the line coverage of decoder, link and store by their own tests; needs cargo-llvm-cov"),
     ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),

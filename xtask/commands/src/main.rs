@@ -1,6 +1,7 @@
 //! The commands of `cargo xtask` that need the harness or the host tool.
 
 mod bench;
+mod blender;
 mod campaign;
 mod conformance;
 mod firmware;
@@ -24,6 +25,7 @@ use clap::Parser;
 enum Command {
     Conformance(conformance::Conformance),
     Bench(bench::command::Bench),
+    Blender(blender::Blender),
     Coverage(campaign::Coverage),
     Firmware(firmware::Firmware),
     Fuzz(fuzz::Fuzz),
@@ -45,6 +47,7 @@ fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Conformance(conformance) => conformance.run(),
         Command::Bench(bench) => bench.run(),
+        Command::Blender(blender) => blender.run(),
         Command::Coverage(coverage) => coverage.run(),
         Command::Firmware(firmware) => firmware.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
