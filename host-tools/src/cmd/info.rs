@@ -6,6 +6,8 @@ use crate::import::list;
 use crate::output::{self, clean, outln};
 use anyhow::{Context, Result};
 use pantin::{Clip, Joint};
+use pantin_store::BLOCK_BYTES;
+use pantin_store::region::{REGIONS, Region};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -61,16 +63,43 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("figure_workspace", json!(memory.workspace)),
         ("figure_workspace_bytes", json!(memory.workspace_bytes())),
     ];
+    let (built_in, by_update) = boards(&clip, &memory, file);
+    let fields = fields.into_iter().chain([("boards", json!(built_in)), ("boards_by_update", json!(by_update))]);
+    let fields: Vec<(&str, Value)> = fields.collect();
     let channels = facts::channels(&clip)?;
     if output::is_json() {
         let mut object: serde_json::Map<String, Value> = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
         object.insert("rig".into(), rig_json(&clip, &channels));
         output::report(Value::Object(object));
     } else {
-        fields.iter().try_for_each(|(name, value)| outln!("{:22} {value}", name.replace('_', " ")))?;
+        for (name, value) in fields {
+            let value = match &value {
+                Value::Array(names) => names.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", "),
+                value => value.to_string(),
+            };
+            outln!("{:22} {value}", name.replace('_', " "))?;
+        }
         table(&clip, &channels).iter().try_for_each(|line| outln!("{line}"))?;
     }
     Ok(())
+}
+
+/// Most channels, moving channels and joints of the figure of a clip that a board has buffers for (`firmware/boards`): with 16 KiB of
+/// RAM, and with more.
+pub const SMALL_CAPACITY: [usize; 3] = [144, 96, 36];
+/// The same with 64 KiB of RAM or more.
+pub const CAPACITY: [usize; 3] = [400, 320, 80];
+
+/// The boards that play the clip when it is built in, and those that keep it when `pantin update` sends it.
+fn boards(clip: &Clip, memory: &MemoryNeeds, file: usize) -> (Vec<&'static str>, Vec<&'static str>) {
+    let needs = [memory.channels, memory.moving, memory.figure_joints];
+    let plays = |region: &&Region| {
+        let capacity = if region.board == "microbit" { SMALL_CAPACITY } else { CAPACITY };
+        needs.iter().zip(capacity).all(|(need, most)| *need <= most)
+    };
+    let keeps = |region: &&Region| plays(region) && clip.rig_len() > 0 && file + BLOCK_BYTES <= region.slot as usize;
+    let names = |fits: &dyn Fn(&&Region) -> bool| REGIONS.iter().filter(fits).map(|region| region.board).collect();
+    (names(&plays), names(&keeps))
 }
 
 /// Joints and scalars with how they are coded; `channels` are the pose's.

@@ -91,3 +91,18 @@ fn channels_that_follow_others_are_reported_and_a_clip_without_joints_has_no_fig
     assert_eq!((&face["figure_joints"], &face["figure_workspace"]), (&Value::from(0), &Value::from(0)));
     assert_eq!(face["rig"]["scalars"].as_array().unwrap().len() as u64, face["scalar_channels"].as_u64().unwrap());
 }
+
+#[test]
+fn boards_that_a_clip_fits_are_listed() {
+    let all = serde_json::json!(["blackpill", "esp32-c3", "microbit", "microbit-v2", "pico"]);
+    let walk = info_json("motions/walk.ptn");
+    assert!(walk["boards"] == all && walk["boards_by_update"] == all, "{walk}");
+    let large = info_json("tests/vectors/channels-300.ptn");
+    assert_eq!(large["boards"], serde_json::json!([]), "more joints than any board has buffers for");
+    assert!(info("motions/walk.ptn", &[]).contains("boards                 blackpill, esp32-c3, microbit"));
+    // The boards' own numbers.
+    let source = |path: &str| std::fs::read_to_string(root().join("firmware/boards").join(path)).unwrap();
+    let [channels, moving, joints] = pantin_tools::cmd::info::CAPACITY;
+    assert!(source("common/src/capacity.rs").contains(&format!("MaxClip<{channels}, {moving}, {joints}>")));
+    assert!(source("build/src/lib.rs").contains(&format!("SMALL: [usize; 3] = {:?}", pantin_tools::cmd::info::SMALL_CAPACITY)));
+}

@@ -262,3 +262,40 @@ fn a_worlds_joints_are_drawn_even_where_a_clock_moves_none() {
     folder.done(&["convert", "world.wrl", "--animation", "sMILE", "-o", "smile.ptn"]);
     assert!(folder.get("smile.ptn") == folder.get("clips/Smile.ptn"));
 }
+
+/// Every exported .glb is glTF that holds together: the `gltf` crate's validation, and ranges that it does not look at.
+#[test]
+fn exported_glb_files_hold_together() {
+    let folder = Folder::new();
+    let motions = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions");
+    for name in ["walk", "greet", "kneebend", "face/joy"] {
+        let clip = motions.join(name).with_extension("ptn");
+        folder.done(&["expand", clip.to_str().unwrap(), "-o", "a.glb"]);
+        let bytes = folder.get("a.glb");
+        let gltf = gltf::Gltf::from_slice(&bytes).unwrap();
+        let length = gltf.blob.as_ref().unwrap().len();
+        assert_eq!(gltf.buffers().map(|buffer| buffer.length()).collect::<Vec<_>>(), [length], "{name}");
+        for accessor in gltf.accessors() {
+            let view = accessor.view().unwrap();
+            assert!(view.offset() + view.length() <= length && view.offset() % 4 == 0, "{name}");
+            assert!(accessor.offset() + accessor.count() * accessor.size() <= view.length(), "{name}");
+        }
+        let nodes = gltf.nodes().count();
+        for skin in gltf.skins() {
+            assert!(skin.joints().all(|joint| joint.index() < nodes), "{name}");
+        }
+        for animation in gltf.animations() {
+            assert!(animation.name().is_some(), "{name}");
+            for channel in animation.channels() {
+                let (input, output) = (channel.sampler().input(), channel.sampler().output());
+                let weights = channel.target().node().mesh().and_then(|mesh| mesh.weights()).map_or(1, <[f32]>::len);
+                let weighted = matches!(channel.target().property(), gltf::animation::Property::MorphTargetWeights);
+                let each = if weighted { weights } else { 1 };
+                assert_eq!(input.count() * each, output.count(), "{name}");
+                assert!(input.min().is_some() && input.max().is_some(), "{name}");
+            }
+        }
+        // What we write is read by our own importer too.
+        import::load(&folder.path("a.glb"), &Options::default()).unwrap();
+    }
+}
