@@ -44,6 +44,18 @@ impl Title {
     }
 }
 
+/// The help in lines that fit beside the left margin, each of whole entries.
+fn help_lines(columns: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for entry in HELP.split("  ") {
+        match lines.last_mut().filter(|line| line.len() + 2 + entry.len() < columns) {
+            Some(line) => *line += &format!("  {entry}"),
+            None => lines.push(entry.into()),
+        }
+    }
+    lines
+}
+
 /// Draws a frame with its status line, the last row.
 pub fn draw(
     show: &mut dyn Show,
@@ -60,9 +72,13 @@ pub fn draw(
         show.draw(frame, settings, &mut grid, last)?;
     }
     let (ink, paper) = (palette.letters(), palette.margin());
-    if settings.help && last > 0 {
-        grid.write_text(0, last - 1, &" ".repeat(columns), ink, palette.paper());
-        grid.write_text(1, last - 1, HELP, ink, palette.paper());
+    if settings.help {
+        let lines = help_lines(columns);
+        let shown = lines.len().min(last);
+        for (line, row) in lines.iter().zip(last - shown..last) {
+            grid.write_text(0, row, &" ".repeat(columns), ink, palette.paper());
+            grid.write_text(1, row, line, ink, palette.paper());
+        }
     }
     grid.write_text(0, last, &" ".repeat(columns), ink, paper);
     let status = title.status(frame, clock, settings, show.has_views());
@@ -72,4 +88,19 @@ pub fn draw(
         grid.write_text(columns - hint.len(), last, hint, ink, paper);
     }
     Ok(grid)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_help_fits_eighty_columns_and_names_every_key() {
+        for columns in [40, 80, 200] {
+            let lines = help_lines(columns);
+            assert!(lines.iter().all(|line| line.len() < columns), "{lines:?}");
+            assert_eq!(lines.join("  "), HELP);
+        }
+        assert_eq!(help_lines(80).len(), 2);
+    }
 }

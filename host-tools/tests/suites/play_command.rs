@@ -167,7 +167,8 @@ fn keys_do_what_they_say_and_the_terminal_is_left_as_it_was() {
     seat.status(&["x2", "orbit -35 tilt 17 fixed", "reverse", "paused"]);
     seat.press("?");
     let begun = Instant::now();
-    while !seat.rows()[22].contains("space pause") {
+    // Two lines in 80 columns.
+    while !(seat.rows()[21].contains("space pause") && seat.rows()[22].contains("q quit")) {
         assert!(begun.elapsed() < PATIENCE, "no help in {:?}", seat.rows());
     }
     seat.press("n");
