@@ -16,6 +16,32 @@ pub struct Canvas {
     pub height: u16,
 }
 
+/// The areas of a display that shows a body and its face: side by side on a wide display, the face in a corner of a tall one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Areas {
+    /// The body's, from the left.
+    pub body: Canvas,
+    /// The face's square at the top right.
+    pub face: Canvas,
+    /// First column of the face's area.
+    pub face_column: i16,
+}
+
+impl Canvas {
+    /// Divides the display between a body and its face.
+    pub const fn with_face(self) -> Areas {
+        let Canvas { width, height } = self;
+        let wide = 2 * width >= 3 * height;
+        let side = if wide { height } else { width / 5 * 2 };
+        let body = if wide { width - side } else { width };
+        Areas {
+            body: Canvas { width: body, height },
+            face: Canvas { width: side, height: side },
+            face_column: (width - side) as i16,
+        }
+    }
+}
+
 /// What the camera looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Track {

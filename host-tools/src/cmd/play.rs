@@ -136,7 +136,7 @@ fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Re
     if face {
         return play(&mut Face::new(*clip, playback, ahead));
     }
-    play(&mut Figure::new(playback, memory.player(*clip)?))
+    play(&mut Figure::new(playback, memory.player(*clip)?, ahead))
 }
 
 impl Arguments {

@@ -4,11 +4,17 @@ use anyhow::Result;
 use pantin::Clip;
 use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::Canvas;
+use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::lines::Line;
 
 /// Returns whether a clip is a face without a body.
 pub fn is_face(clip: &Clip) -> Result<bool> {
-    Ok(clip.rig().joint_count() == 0 && Binding::new(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
+    Ok(clip.rig().joint_count() == 0 && has_face(clip)?)
+}
+
+/// Returns whether a clip has the scalars of a face.
+fn has_face(clip: &Clip) -> Result<bool> {
+    Ok(Binding::new(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
 }
 
 /// A face that a clip drives, with a renderer for each view.
@@ -18,19 +24,32 @@ pub struct Cast {
     weights: Weights,
     morph: Morph<VERTICES>,
     looks: Vec<FaceRenderer<VERTICES>>,
+    /// First column of its area.
+    column: i16,
+    side: u16,
 }
 
 impl Cast {
-    /// Sets up a renderer for each view, or returns `None` for a clip that is not a face.
+    /// Sets up a renderer for each view, or returns `None` for a clip that has no face. A clip with a body has its face in the square that
+    /// the firmware gives it.
     pub fn of_clip(clip: &Clip, canvas: Canvas, views: &[pantin_figure::View]) -> Result<Option<Cast>> {
-        if !is_face(clip)? {
+        if !has_face(clip)? {
             return Ok(None);
         }
+        let (canvas, column) = match clip.rig().joint_count() {
+            0 => (canvas, 0),
+            _ => (canvas.with_face().face, canvas.with_face().face_column),
+        };
         let model = Model::new_checked(MODEL)?;
         let view = |view: &pantin_figure::View| FaceView { orbit: view.orbit, tilt: view.tilt };
         let looks = views.iter().map(|seen| FaceRenderer::new(&model, canvas, view(seen))).collect();
         let (binding, weights, morph) = (Binding::new(&clip.rig(), &model), Weights::new(), Morph::new(&model)?);
-        Ok(Some(Cast { model, binding, weights, morph, looks }))
+        Ok(Some(Cast { model, binding, weights, morph, looks, column, side: canvas.width.min(canvas.height) }))
+    }
+
+    /// Pixels of the shorter side of its area.
+    pub fn side(&self) -> u16 {
+        self.side
     }
 
     /// Returns the lines of a pose from the view with index `view`.
@@ -40,7 +59,8 @@ impl Cast {
         let renderer = &mut self.looks[view];
         renderer.project(&self.model, &self.morph);
         let mut lines = Vec::new();
-        renderer.each_line(&self.model, |line| lines.push(line));
+        let moved = |[x, y]: [i16; 2]| [x + (self.column << PIXEL_BITS), y];
+        renderer.each_line(&self.model, |line| lines.push(Line { from: moved(line.from), to: moved(line.to), ..line }));
         lines
     }
 }

@@ -4,30 +4,36 @@ use super::cells::{Dots, Grid};
 use super::picture::Show;
 use super::playback::Playback;
 use super::settings::Settings;
+use crate::face::cast::Cast;
 use crate::render::figure::MOST_PIXELS;
 use crate::render::shades::Shades;
 use anyhow::{Context, Result};
 use pantin::Player;
 use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
 
-/// A clip's figure, its camera set up again when the terminal or the view changes.
+/// A clip's figure, and its face if it has one; their cameras are set up again when the terminal or the view changes.
 pub struct Figure<'a, 'm> {
     playback: Playback<'a, 'm>,
     /// Looks through the clip for the camera, so that the playback keeps its place.
     scout: Player<'a, 'm>,
-    renderer: Option<(Canvas, View, FigureRenderer<RIG_JOINTS>)>,
+    renderer: Option<(Canvas, View, FigureRenderer<RIG_JOINTS>, Option<Cast>)>,
+    /// From where the face is seen straight ahead.
+    ahead: View,
 }
 
 impl<'a, 'm> Figure<'a, 'm> {
     /// Both at the clip's begin.
-    pub fn new(playback: Playback<'a, 'm>, scout: Player<'a, 'm>) -> Figure<'a, 'm> {
-        Figure { playback, scout, renderer: None }
+    pub fn new(playback: Playback<'a, 'm>, scout: Player<'a, 'm>, ahead: View) -> Figure<'a, 'm> {
+        Figure { playback, scout, renderer: None, ahead }
     }
 
     fn set_up(&mut self, canvas: Canvas, view: View) -> Result<()> {
-        if self.renderer.as_ref().is_none_or(|(before, seen, _)| (*before, *seen) != (canvas, view)) {
-            let renderer = FigureRenderer::of_clip(&mut self.scout, canvas, view).context("this figure cannot be drawn")?;
-            self.renderer = Some((canvas, view, renderer));
+        if self.renderer.as_ref().is_none_or(|(before, seen, ..)| (*before, *seen) != (canvas, view)) {
+            let from = View { orbit: view.orbit - self.ahead.orbit, tilt: view.tilt - self.ahead.tilt, ..view };
+            let face = Cast::of_clip(self.scout.clip(), canvas, &[from])?;
+            let body = if face.is_some() { canvas.with_face().body } else { canvas };
+            let renderer = FigureRenderer::of_clip(&mut self.scout, body, view).context("this figure cannot be drawn")?;
+            self.renderer = Some((canvas, view, renderer, face));
         }
         Ok(())
     }
@@ -47,8 +53,11 @@ impl Show for Figure<'_, '_> {
         self.set_up(canvas, settings.view)?;
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
-        if let Some((_, _, renderer)) = &mut self.renderer {
+        if let Some((_, _, renderer, face)) = &mut self.renderer {
             shades.draw(renderer, pose, settings.ground, settings.in_bits());
+            if let Some(cast) = face {
+                shades.draw_lines(&cast.lines(pose.values, 0), settings.in_bits());
+            }
         }
         grid.show(&shades, rows, dots, &settings.palette, settings.coloured());
         Ok(())

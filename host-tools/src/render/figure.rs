@@ -42,7 +42,8 @@ impl PlayerBuffers {
 
 /// What the cameras see.
 enum Shown {
-    Body(Vec<FigureRenderer<RIG_JOINTS>>),
+    /// A body, and its face if the clip has one.
+    Body(Vec<FigureRenderer<RIG_JOINTS>>, Option<Box<Cast>>),
     Face(Box<Cast>),
 }
 
@@ -60,12 +61,18 @@ impl<'a, 'm> Figure<'a, 'm> {
         let factor = size[0].max(size[1]).div_ceil(MOST_PIXELS);
         let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
         let canvas = Canvas { width, height };
-        let shown = match Cast::of_clip(player.clip(), canvas, views)? {
-            Some(cast) => Shown::Face(Box::new(cast)),
-            None => {
+        let has_body = player.clip().rig().joint_count() > 0;
+        // From where a body is seen by default, its face looks straight ahead, as in the firmware.
+        let ahead = |view: &View| (view.orbit, view.tilt) == (View::default().orbit, View::default().tilt);
+        let face_view = |view: &View| if has_body && ahead(view) { View { orbit: 0, tilt: 0, ..*view } } else { *view };
+        let face_views: Vec<View> = views.iter().map(face_view).collect();
+        let shown = match Cast::of_clip(player.clip(), canvas, &face_views)?.map(Box::new) {
+            Some(cast) if !has_body => Shown::Face(cast),
+            face => {
+                let canvas = if face.is_some() { canvas.with_face().body } else { canvas };
                 let renderer =
                     |view: &View| FigureRenderer::of_clip(&mut player, canvas, *view).context("this figure cannot be drawn");
-                Shown::Body(views.iter().map(renderer).collect::<Result<_>>()?)
+                Shown::Body(views.iter().map(renderer).collect::<Result<_>>()?, face)
             }
         };
         Ok(Figure { player, shown, size, factor })
@@ -80,7 +87,12 @@ impl<'a, 'm> Figure<'a, 'm> {
     pub fn scene(&mut self, view: usize) -> Scene {
         let [width, height] = self.size.map(|pixels| pixels as f32);
         match &mut self.shown {
-            Shown::Body(stages) => Scene::of(&mut stages[view], self.player.pose(), self.factor as f32),
+            Shown::Body(stages, None) => Scene::of(&mut stages[view], self.player.pose(), self.factor as f32),
+            Shown::Body(stages, Some(cast)) => {
+                let side = f32::from(cast.side()) * self.factor as f32;
+                let face = Scene::of_face(&cast.lines(self.player.pose().values, view), self.factor as f32, side);
+                Scene::of(&mut stages[view], self.player.pose(), self.factor as f32).with_face(face)
+            }
             Shown::Face(cast) => {
                 Scene::of_face(&cast.lines(self.player.pose().values, view), self.factor as f32, width.min(height))
             }
@@ -95,7 +107,12 @@ impl<'a, 'm> Figure<'a, 'm> {
             LineStyle::Pixels => {
                 let mut shades = Shades::new(width, height);
                 match &mut self.shown {
-                    Shown::Body(stages) => shades.draw(&mut stages[view], self.player.pose(), true, palette.is_mono()),
+                    Shown::Body(stages, face) => {
+                        shades.draw(&mut stages[view], self.player.pose(), true, palette.is_mono());
+                        if let Some(cast) = face {
+                            shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
+                        }
+                    }
                     Shown::Face(cast) => shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono()),
                 }
                 shades.image(palette)

@@ -122,6 +122,14 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// The same with a face over it.
+    pub fn with_face(mut self, face: Scene) -> Scene {
+        self.bones.extend(face.ground);
+        self
+    }
+}
+
 /// Brightness depends on the depth.
 fn width(shade: u8) -> f32 {
     let near = f32::from(shade.saturating_sub(FARTHEST)) / f32::from(NEAREST - FARTHEST);

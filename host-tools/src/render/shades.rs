@@ -70,9 +70,8 @@ impl Shades {
         }
     }
 
-    /// Draws lines in their order, as the firmware does.
+    /// Draws lines in their order, as the firmware does, over what is there.
     pub fn draw_lines(&mut self, lines: &[Line], mono: bool) {
-        self.marks.fill(Mark::DARK);
         if mono {
             let mut bits = Bits(self);
             let mut surface = OnTarget::new(&mut bits);

@@ -229,6 +229,33 @@ fn the_phones_picture_is_the_firmwares_own() {
 }
 
 #[test]
+fn a_clip_with_a_body_and_a_face_shows_both() {
+    let folder = Folder::new("both");
+    let greet = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/greet.ptn");
+    let lit = |more: &[&str]| {
+        let output = folder
+            .pantin(&[&["render", greet.to_str().unwrap(), "-o", "both.png", "--frame", "60", "--scale", "1"], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let ([width, _], pixels) = png(&std::fs::read(folder.0.join("both.png")).unwrap());
+        let row = |row: &[[u8; 3]]| row.iter().map(|pixel| *pixel != [0; 3]).collect::<Vec<bool>>();
+        pixels.chunks(width as usize).map(row).collect::<Vec<_>>()
+    };
+    let count = |rows: &[Vec<bool>], columns: std::ops::Range<usize>| {
+        rows.iter().flat_map(|row| &row[columns.clone()]).filter(|lit| **lit).count()
+    };
+    let rows = lit(&[]);
+    // The body beside the face's square of 64 pixels, as on a display of 128x64.
+    assert!(count(&rows, 0..64) > 100 && count(&rows, 64..128) > 300);
+    // Seen straight ahead, a face is nearly the same on both sides; from the side it is not.
+    let uneven = |rows: &[Vec<bool>]| count(rows, 64..96).abs_diff(count(rows, 96..128));
+    assert!(uneven(&rows) < 40, "{}", uneven(&rows));
+    assert!(uneven(&lit(&["--view", "side"])) > 40);
+    // A display that is not wide has the face in its corner.
+    let tall = lit(&["--size", "100x160"]);
+    assert!(count(&tall[..40], 60..100) > 100 && count(&tall[100..], 0..100) > 20);
+}
+
+#[test]
 fn equal_input_gives_equal_bytes() {
     let folder = Folder::new("equal");
     for (name, size) in [("a.gif", "480x480"), ("a.apng", "64x48"), ("a.png", "480x480"), ("a.svg", "240x240")] {

@@ -7,30 +7,9 @@ use crate::capacity::Renderer;
 use crate::log::{error, info};
 use crate::session::{Outcome, PlayContext};
 use pantin::{Player, Pose};
+use pantin_figure::camera::Areas;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{Canvas, DrawStyle, View};
-
-/// The areas of the display: the body's, and the face's square at the top right.
-struct Areas {
-    body: Canvas,
-    face: Canvas,
-    /// First column of the face's area.
-    face_column: i16,
-}
-
-impl Areas {
-    fn of<L: Layout>() -> Areas {
-        let Canvas { width, height } = whole_display::<L>();
-        let wide = 2 * width >= 3 * height;
-        let side = if wide { height } else { width / 5 * 2 };
-        let body = if wide { width - side } else { width };
-        Areas {
-            body: Canvas { width: body, height },
-            face: Canvas { width: side, height: side },
-            face_column: (width - side) as i16,
-        }
-    }
-}
+use pantin_figure::{DrawStyle, View};
 
 /// A body and its face.
 struct Both<'a, R> {
@@ -62,7 +41,7 @@ pub(super) fn build<B: Board>(
     context: &mut PlayContext<B>,
     then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
-    let areas = Areas::of::<B::Layout>();
+    let areas = whole_display::<B::Layout>().with_face();
     let mut renderer = BoardRenderer::<B>::empty();
     if let Err(error) = renderer.set_up(player, areas.body) {
         error!("the rig is too big: {}", error);

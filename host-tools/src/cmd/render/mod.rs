@@ -23,7 +23,7 @@ const SMOOTH_FROM: usize = 240;
 /// Draw a clip with the firmware's own figure code: as small displays show it, or large and anti-aliased.
 ///
 /// The output's extension selects the kind. .gif and .apng are animations at the clip's own rate (also .png with --animate); .png and .svg are a
-/// sheet of twelve frames, or what --frame or --strip select. A clip without joints is drawn as a face if its scalars have names listed in
+/// sheet of twelve frames, or what --frame or --strip select. A clip with a body and a face shows both. A clip without joints is drawn as a face if its scalars have names listed in
 /// docs/FACE.md, otherwise as a chart of its channels over time (.png).
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
