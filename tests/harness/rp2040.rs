@@ -35,6 +35,8 @@ pub struct Request {
     messages: Option<Vec<Vec<u8>>>,
     servos: usize,
     harm: Option<&'static str>,
+    plugs: Option<Vec<(f64, &'static str)>>,
+    noise: bool,
     cut: Option<u64>,
     seconds: f64,
     save: Option<PathBuf>,
@@ -87,6 +89,15 @@ pub struct Slice {
     pub div: u32,
 }
 
+/// How an SPI bus is set up.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct Spi {
+    /// The SPI mode.
+    pub mode: u32,
+    /// The clock's frequency.
+    pub hz: f64,
+}
+
 /// What came of it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Outcome {
@@ -104,6 +115,11 @@ pub struct Outcome {
     pub answers: Vec<Answered>,
     /// Sectors erased and pages written.
     pub changes: u64,
+    /// The SPI bus of the ST7789 at the end.
+    pub spi: Spi,
+    /// The pins with a pull-up at the end.
+    #[serde(rename = "pulledUp")]
+    pub pulled_up: Vec<u32>,
     /// What the display showed after each frame.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
@@ -127,6 +143,8 @@ impl Request {
             messages: None,
             servos: 0,
             harm: None,
+            plugs: None,
+            noise: false,
             cut: None,
             seconds: 60.0,
             save: None,
@@ -192,6 +210,18 @@ impl Request {
     /// Strikes it after a tenth of a second with a `fault` of the processor, or has it `hang`.
     pub fn harm(mut self, harm: &'static str) -> Request {
         self.harm = Some(harm);
+        self
+    }
+
+    /// What happens to the SSD1306's wires after these seconds: `in`, `out`, or `stuck` where one holds the bus low.
+    pub fn plugs(mut self, plugs: &[(f64, &'static str)]) -> Request {
+        self.plugs = Some(plugs.to_vec());
+        self
+    }
+
+    /// Sends a byte with a framing error before each byte of a message.
+    pub fn noise(mut self) -> Request {
+        self.noise = true;
         self
     }
 

@@ -8,6 +8,8 @@
 //   messages  or such that go over the line while it plays, arrays of bytes at the line's speed: the first after a picture, each other one when
 //             the one before was answered; after the last answer it waits for this number of pictures
 //   servos    how many writes of pulse widths are waited for
+//   plugs     when what happens to the SSD1306's wires, in seconds: [[0.1, "out"], ...], as ssd1306.mjs says; or null
+//   noise     whether a byte with a framing error comes before each byte of a message
 //   harm      "fault", "hang" or null: what strikes after a tenth of a second
 //   cut       the change of the flash, counted from 0, amid which power goes; else null
 //   seconds   of the chip's time at most
@@ -26,6 +28,8 @@ const STRETCHES = 4;
 const COMPARE = 0x0c;
 // Nanoseconds of a byte on the line: ten bits of 115,200 a second.
 const BYTE = 10e9 / 115200;
+// The bit of the port's data register beside a byte.
+const FRAMING_ERROR = 1 << 8;
 
 const request = JSON.parse(readFileSync(process.argv[2]));
 const machine = new Chip(request.images, request.vectors, request.cut);
@@ -33,6 +37,10 @@ const { chip } = machine;
 const [line] = chip.uart;
 const display = request.display && new { ssd1306: Ssd1306, st7789: St7789 }[request.display]();
 if (request.display === 'ssd1306') display.attach(chip, chip.i2c[0], request.timed);
+for (const [seconds, state] of request.plugs ?? []) {
+  if (seconds === 0) display.plug(state);
+  else chip.clock.createAlarm(() => display.plug(state)).schedule(seconds * 1e9);
+}
 if (request.display === 'st7789') display.attach(chip, chip.spi[0], request.timed);
 
 const out = request.out && openSync(request.out, 'w');
@@ -57,6 +65,7 @@ machine.onStretch = (count) => {
 // Sends bytes one after the other.
 const say = ([byte, ...rest]) => {
   const alarm = chip.clock.createAlarm(() => {
+    if (request.noise) line.feedByte(FRAMING_ERROR | (byte ^ 0xff));
     line.feedByte(byte);
     if (rest.length > 0) say(rest);
   });
@@ -114,5 +123,9 @@ if (out) {
 }
 if (request.save) writeFileSync(request.save, chip.flash);
 const { changes } = machine.rom;
+const [bus] = chip.spi;
+// The bits of clock polarity and phase.
+const spi = { mode: (bus.control0 >> 6) & 3, hz: bus.clockFrequency };
+const pulledUp = chip.gpio.flatMap((pin, index) => (pin.pullupEnabled ? [index] : []));
 const slices = chip.pwm.channels.map(({ top, div }) => ({ top, div }));
-console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, printed: Buffer.from(machine.printed).toString() }));
+console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, printed: Buffer.from(machine.printed).toString() }));

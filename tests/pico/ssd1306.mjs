@@ -3,6 +3,10 @@
 const ADDRESS = 0x3c;
 const [WIDTH, PAGES] = [128, 8];
 
+// Registers of the bus: target address, data, enable, the abort's source; the bits of an abort and of the controller being on.
+const [TARGET, DATA_CMD, ABORT_SOURCE] = [0x04, 0x10, 0x80];
+const [ABORTED, ENABLED] = [1 << 6, 1];
+
 // Arguments that follow a command.
 const ARGUMENTS = {
   0x20: 1, 0x21: 2, 0x22: 2, 0x26: 6, 0x27: 6, 0x29: 5, 0x2a: 5, 0x81: 1, 0x8d: 1, 0xa3: 2, 0xa8: 1, 0xd3: 1, 0xd5: 1, 0xd9: 1, 0xda: 1,
@@ -11,16 +15,30 @@ const ARGUMENTS = {
 
 export class Ssd1306 {
   constructor() {
+    this.bytes = 0;
+    this.plugged = true;
+    this.powerOn();
+  }
+
+  powerOn() {
     // It holds anything when it gets power.
     this.memory = Uint8Array.from({ length: WIDTH * PAGES }, (_, index) => (index * 37) & 0xff);
     this.lit = false;
-    this.bytes = 0;
     this.mode = 2;
     [this.page, this.column] = [0, 0];
     [this.columns, this.pages] = [[0, WIDTH - 1], [0, PAGES - 1]];
     this.command = [];
     this.control = null;
-    this.plugged = true;
+  }
+
+  // "in": it gets power. "out": it has none, and nobody answers, as where its wires are swapped. "stuck": nor can anything be sent, since a wire
+  // holds the bus low.
+  plug(state) {
+    this.plugged = state === 'in';
+    this.stuck = state === 'stuck';
+    this.powerOn();
+    if (!this.stuck) this.held?.();
+    this.held = null;
   }
 
   // Puts it on a bus whose bytes take as long as the bus's registers say, or no time.
@@ -30,7 +48,8 @@ export class Ssd1306 {
       if (!timed) return then();
       chip.clock.createAlarm(then).schedule(bits * bit());
     };
-    bus.onStart = () => after(1, () => bus.completeStart());
+    const start = () => after(1, () => bus.completeStart());
+    bus.onStart = () => (this.stuck ? (this.held = start) : start());
     bus.onConnect = (address) => {
       this.control = null;
       this.bytes += 1;
@@ -42,6 +61,15 @@ export class Ssd1306 {
       after(9, () => bus.completeWrite(this.plugged));
     };
     bus.onStop = () => after(1, () => bus.completeStop());
+    // Where the emulator is less strict than the chip (RP2040 data sheet, 4.3.9 and 4.3.17): after an abort the transmit queue drops everything until
+    // the register that clears the abort is read; reading the abort's source does not clear it; the target is set only while the controller is off.
+    const [read, write] = [bus.readUint32.bind(bus), bus.writeUint32.bind(bus)];
+    bus.readUint32 = (offset) => (offset === ABORT_SOURCE ? bus.abortSource : read(offset));
+    bus.writeUint32 = (offset, value) => {
+      if (offset === DATA_CMD && bus.intRaw & ABORTED) return;
+      if (offset === TARGET && bus.enable & ENABLED) throw new Error('the target is set while the controller is on');
+      write(offset, value);
+    };
   }
 
   take(byte) {

@@ -1,8 +1,10 @@
 // An ST7789 of 240x240 pixels, as its data sheet has it take commands and data over SPI.
 
 const SIDE = 240;
-// The pins of select and of data or command.
-const [SELECT, DATA] = [17, 20];
+// The pins of select, of data or command, and of reset.
+const [SELECT, DATA, RESET] = [17, 20, 21];
+// The bits of the bus's clock polarity and phase, both of which a module without select needs.
+const MODE_3 = 0xc0;
 const [COLUMNS, ROWS, WRITE, ON, OFF, SLEEP, WAKE, FORMAT] = [0x2a, 0x2b, 0x2c, 0x29, 0x28, 0x10, 0x11, 0x3a];
 
 export class St7789 {
@@ -21,6 +23,8 @@ export class St7789 {
   attach(chip, bus, timed) {
     bus.onTransmit = (byte) => {
       this.bytes += 1;
+      if ((bus.control0 & MODE_3) !== MODE_3) throw new Error('the bus is not in SPI mode 3');
+      if (chip.gpio[RESET].value === 0) throw new Error('a byte is sent while the panel is being reset');
       // 0 is low.
       if (chip.gpio[SELECT].value === 0) this.take(byte, chip.gpio[DATA].value === 1);
       if (!timed) return bus.completeTransmit(0);

@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use board_drivers::servo::{self, JointAngle, Law, Servo};
 use harness::build::Firmware;
 use harness::display::{Display, Picture};
-use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request};
+use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request, Spi};
 use harness::{clips, paths, screen, setup, simulator};
 use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::TextScreen;
@@ -96,6 +96,70 @@ fn shows_on_the_st7789_what_the_host_shows() {
     let (_folder, image) = image("face,st7789");
     let keys = through_all_clips(12);
     equal(&in_step(Request::new(&image, LCD), &keys), &expected(LCD, &keys));
+}
+
+/// The walk on an SSD1306 to whose wires something happens.
+fn plugged(image: &Path, timed: bool, plugs: &[(f64, &'static str)], pictures: &[(u32, Picture)]) {
+    const SHOWN: usize = 36;
+    let request = Request::new(image, OLED).plugs(plugs).pictures(SHOWN).seconds(1.0);
+    let outcome = if timed { request.timed() } else { request }.run().unwrap();
+    assert_eq!((&*outcome.ended, outcome.pictures.len()), ("done", SHOWN), "{plugs:?}: the program goes on");
+    let state = |nanos: f64| plugs.iter().rev().find(|(seconds, _)| seconds * 1e9 <= nanos).map_or("in", |(_, state)| state);
+    let mut whole = 0;
+    for (index, (shown, frames)) in outcome.pictures.iter().zip(outcome.frames.windows(2)).enumerate() {
+        let Some(begun) = index.checked_sub(1).map(|before| outcome.frames[before].nanos) else { continue };
+        let now = frames[0].nanos;
+        match [begun, now].map(state) {
+            ["in", "in"] => {
+                let found = pictures.iter().any(|(_, picture)| picture == shown);
+                assert!(found, "{plugs:?}: picture {index} is none of the walk");
+                whole += 1;
+            }
+            [_, "out" | "stuck"] => assert!(shown.is_dark(), "picture {index}"),
+            // Plugged in or out amid a picture.
+            _ => {}
+        }
+    }
+    assert!(whole > 10, "{plugs:?}: {whole} pictures");
+}
+
+#[test]
+fn a_display_that_does_not_answer_is_set_up_when_it_does() {
+    if setup::host_only("an unplugged display on the Pico") {
+        return;
+    }
+    let (_folder, image) = image("");
+    let pictures = expected(OLED, &[&b""[..]; 120]);
+    for timed in [false, true] {
+        // Absent, or with its wires swapped, from the start; unplugged while it runs; with a wire that holds the bus low.
+        plugged(&image, timed, &[(0.0, "out"), (0.1, "in")], &pictures);
+        plugged(&image, timed, &[(0.1003, "out"), (0.15, "in")], &pictures);
+        plugged(&image, timed, &[(0.0, "stuck"), (0.1, "in")], &pictures);
+        plugged(&image, timed, &[(0.1003, "stuck"), (0.15, "in")], &pictures);
+    }
+}
+
+#[test]
+fn the_receive_pin_is_pulled_up() {
+    if setup::host_only("the Pico's pins") {
+        return;
+    }
+    let (_folder, image) = image("");
+    let outcome = Request::new(&image, OLED).pictures(2).run().unwrap();
+    // Receive, I2C, buttons.
+    assert_eq!(outcome.pulled_up, [1, 4, 5, 10, 11, 12, 13, 14]);
+}
+
+#[test]
+fn the_st7789_has_a_clock_for_jumper_wires_or_a_fast_one() {
+    if setup::host_only("the Pico's SPI") {
+        return;
+    }
+    for (features, hz) in [("st7789", 31.25e6), ("st7789,fast", 62.5e6)] {
+        let (_folder, image) = image(features);
+        let outcome = Request::new(&image, LCD).pictures(2).run().unwrap();
+        assert_eq!(outcome.spi, Spi { mode: 3, hz });
+    }
 }
 
 #[test]

@@ -8,15 +8,18 @@ use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306, ssd1306::ADDRESS};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
-use stm32f4xx_hal::pac::Peripherals;
+use stm32f4xx_hal::pac::{Peripherals, RCC};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc;
 use stm32f4xx_hal::serial::{Config, Serial};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 const CRYSTAL_HZ: u32 = 25_000_000;
-/// The processor's clock.
-pub const CPU_HZ: u32 = 100_000_000;
+/// The processor's clock: the highest at which the voltage regulator may stay as it is after reset (RM0383, 5.4.1), and that of the STM32F401.
+pub const CPU_HZ: u32 = 84_000_000;
+const _: () = assert!(CPU_HZ <= 84_000_000, "a higher clock needs PWR_CR.VOS, set while the PLL is off");
+/// How often the crystal is asked for: each time takes at least 5 clocks of 16 MHz.
+const CRYSTAL_POLLS: u32 = 300_000;
 const BAUD: u32 = 115_200;
 /// The watchdog resets the board when the program hangs for this time, or down to two thirds of it: its clock is inexact.
 #[cfg(not(feature = "update"))]
@@ -29,9 +32,16 @@ const WATCHDOG_MS: u32 = 7000;
 pub fn new(
     parts: Peripherals,
 ) -> impl Board<Layout = Picture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<PanicPicture> {
-    let mut clocks = parts.RCC.freeze(rcc::Config::hse(CRYSTAL_HZ.Hz()).sysclk(CPU_HZ.Hz()));
+    // First of all: it has its own clock.
+    let mut watchdog = IndependentWatchdog::new(parts.IWDG);
+    watchdog.stop_on_debug(&parts.DBGMCU, true);
+    watchdog.start(WATCHDOG_MS.millis());
+    let source = if crystal_starts(&parts.RCC) { rcc::Config::hse(CRYSTAL_HZ.Hz()) } else { rcc::Config::hsi() };
+    let mut clocks = parts.RCC.freeze(source.sysclk(CPU_HZ.Hz()));
     let (a, b) = (parts.GPIOA.split(&mut clocks), parts.GPIOB.split(&mut clocks));
-    let serial = Serial::new(parts.USART1, (a.pa9, a.pa10), Config::default().baudrate(BAUD.bps()), &mut clocks);
+    // Without an adapter, the pull-up keeps the line idle.
+    let serial =
+        Serial::new(parts.USART1, (a.pa9, a.pa10.internal_pull_up(true)), Config::default().baudrate(BAUD.bps()), &mut clocks);
     let Ok(serial) = serial else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "update")]
     let serial = crate::uart_rx::listen(serial);
@@ -42,7 +52,7 @@ pub fn new(
         Ssd1306::new(parts.I2C1.i2c(pins, 400.kHz(), &mut clocks), ADDRESS)
     };
     #[cfg(feature = "st7789")]
-    let display = crate::st7789::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0), &mut clocks);
+    let display = crate::st7789::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0, b.pb1), &mut clocks);
     // The last one is the board's own.
     let buttons = five_buttons([
         b.pb12.into_pull_up_input().erase(),
@@ -51,8 +61,12 @@ pub fn new(
         b.pb15.into_pull_up_input().erase(),
         a.pa0.into_pull_up_input().erase(),
     ]);
-    let mut watchdog = IndependentWatchdog::new(parts.IWDG);
-    watchdog.stop_on_debug(&parts.DBGMCU, true);
-    watchdog.start(WATCHDOG_MS.millis());
     SharedBoard::new(display, NbSerial(serial), buttons, SysTick::<CPU_HZ>::new(), move || watchdog.feed())
+}
+
+/// Starts the crystal, and returns whether it runs within about 0.1 s; usual ones take 2 ms. Without one the processor runs from its internal
+/// oscillator, whose frequency is exact to 1 %.
+fn crystal_starts(clocks: &RCC) -> bool {
+    clocks.cr().modify(|_, w| w.hseon().set_bit());
+    (0..CRYSTAL_POLLS).any(|_| clocks.cr().read().hserdy().bit_is_set())
 }

@@ -1,12 +1,12 @@
-//! The ST7789: chip select on PA4, clock on PA5, data on PA7, data/command on PB0.
+//! The ST7789: chip select on PA4, clock on PA5, data on PA7, data/command on PB0, reset on PB1.
 
 use crate::board::CPU_HZ;
 use board_common::cortex_m::ClockDelay;
 use board_drivers::{Display, St7789};
-use embedded_hal::spi::MODE_0;
+use embedded_hal::spi::MODE_3;
 use embedded_hal_bus::spi::ExclusiveDevice;
 use pantin_figure::surface::{Gray4Rows, MonoPages};
-use stm32f4xx_hal::gpio::{PA4, PA5, PA7, PB0};
+use stm32f4xx_hal::gpio::{PA4, PA5, PA7, PB0, PB1, Speed};
 use stm32f4xx_hal::pac::SPI1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
@@ -16,18 +16,22 @@ pub type Picture = Gray4Rows<240, 240, 7200>;
 /// The layout of the panic screen: after a panic there may be no RAM for a second picture in greys.
 pub type PanicPicture = MonoPages<240, 240, 7200>;
 
-/// The fastest clock of the bus: half of the chip's.
-const SPI_HZ: u32 = CPU_HZ / 2;
+/// The clock of the bus: a quarter of the chip's, 21 MHz, which jumper wires carry. With the feature `fast` it is half of the chip's, the fastest.
+const SPI_HZ: u32 = CPU_HZ / if cfg!(feature = "fast") { 2 } else { 4 };
 
-/// Sets the display up on the pins for chip select, clock, data out and data/command.
+/// Sets the display up on the pins for chip select, clock, data out, data/command and reset.
 pub fn new(
     spi: SPI1,
-    (select, clock, out, data): (PA4, PA5, PA7, PB0),
+    (select, clock, out, data, reset): (PA4, PA5, PA7, PB0, PB1),
     clocks: &mut Rcc,
 ) -> impl Display<Picture> + Display<PanicPicture> + use<> {
-    let bus = spi.spi((Some(clock), SPI1::NoMiso, Some(out)), MODE_0, SPI_HZ.Hz(), clocks);
-    let Ok(bus) = ExclusiveDevice::new_no_delay(bus, select.into_push_pull_output());
-    match St7789::new(bus, data.into_push_pull_output(), &mut ClockDelay::<CPU_HZ>) {
+    // After reset, pins are at low speed, which is 4 MHz at 50 pF (STM32F411 data sheet, table 56), and the HAL leaves them there.
+    let fast = Speed::VeryHigh;
+    let (clock, out) = (clock.into_alternate::<5>().speed(fast), out.into_alternate::<5>().speed(fast));
+    let (select, data) = (select.into_push_pull_output().speed(fast), data.into_push_pull_output().speed(fast));
+    let bus = spi.spi((Some(clock), SPI1::NoMiso, Some(out)), MODE_3, SPI_HZ.Hz(), clocks);
+    let Ok(bus) = ExclusiveDevice::new_no_delay(bus, select);
+    match St7789::new(bus, data, &mut reset.into_push_pull_output(), &mut ClockDelay::<CPU_HZ>) {
         Some(display) => display,
         None => panic!("the display's bus fails"),
     }

@@ -20,10 +20,11 @@ pub fn listen(mut serial: Serial<USART1>) -> Serial<USART1> {
 fn USART1() {
     // Safety: nothing else reads these registers.
     let uart = unsafe { &*USART1::PTR };
-    // Reading both registers clears the status: a byte was received, or one was lost.
+    // Reading both registers clears the status: a byte was received, or one was lost. Noise on the line, or a line that is low, has a framing
+    // error.
     let status = uart.sr().read();
     let byte = uart.dr().read().dr().bits() as u8;
-    if status.rxne().bit_is_set() {
+    if status.rxne().bit_is_set() && status.fe().bit_is_clear() {
         uart_rx::push(byte);
     }
 }

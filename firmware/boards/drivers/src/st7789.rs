@@ -21,6 +21,10 @@ use pantin_figure::surface::{Cursor, Framebuffer, Layout, Window};
 /// The number of columns, and of rows.
 pub const SIDE: usize = 240;
 
+/// How long the reset pin is low, and the time after that until the panel takes commands.
+const RESET_LOW_US: u32 = 20;
+const RESET_MS: u32 = 120;
+
 /// An error of the display's bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error<S, D> {
@@ -63,9 +67,15 @@ impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> Interface for Wires
 pub struct St7789<S, D>(Wires<S, D>);
 
 impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<S, D> {
-    /// Sets the display up, which takes about 330 ms. The bus has at most 62.5 MHz and SPI mode 0, or mode 3 if the panel has no chip select;
-    /// `data` is the data/command pin. Returns `None` if bus or pin fails.
-    pub fn new(bus: S, data: D, delay: &mut impl DelayNs) -> Option<Self> {
+    /// Sets the display up, which takes about 450 ms. The bus has at most 62.5 MHz and SPI mode 3: modules without a chip select need it, and
+    /// those with one take it too. `data` is the data/command pin, `reset` the pin of a wire to the panel's RES, which may also be absent:
+    /// the panel is reset by a command too. Returns `None` if bus or pin fails.
+    pub fn new(bus: S, data: D, reset: &mut impl OutputPin, delay: &mut impl DelayNs) -> Option<Self> {
+        // At least 10 us low, then 120 ms until the first command (ST7789V data sheet, 7.4.5).
+        reset.set_low().ok()?;
+        delay.delay_us(RESET_LOW_US);
+        reset.set_high().ok()?;
+        delay.delay_ms(RESET_MS);
         // IPS panels show inverted colours by default.
         let builder = Builder::new(ST7789, Wires { bus, data }).invert_colors(ColorInversion::Inverted);
         let display = builder.display_size(SIDE as u16, SIDE as u16).init(delay).ok()?;
@@ -205,6 +215,46 @@ mod tests {
         }
     }
 
+    /// The reset pin, and the time: what happened to both.
+    #[derive(Default)]
+    struct Reset(RefCell<Vec<(&'static str, u32)>>);
+    struct ResetPin<'a>(&'a Reset);
+    struct Time<'a>(&'a Reset);
+
+    impl embedded_hal::digital::ErrorType for ResetPin<'_> {
+        type Error = Infallible;
+    }
+
+    impl OutputPin for ResetPin<'_> {
+        fn set_low(&mut self) -> Result<(), Infallible> {
+            self.0.0.borrow_mut().push(("low", 0));
+            Ok(())
+        }
+
+        fn set_high(&mut self) -> Result<(), Infallible> {
+            self.0.0.borrow_mut().push(("high", 0));
+            Ok(())
+        }
+    }
+
+    impl DelayNs for Time<'_> {
+        fn delay_ns(&mut self, nanoseconds: u32) {
+            if let Some((_, passed)) = self.0.0.borrow_mut().last_mut() {
+                *passed += nanoseconds;
+            }
+        }
+    }
+
+    #[test]
+    fn the_reset_pin_is_low_for_10_us_and_120_ms_pass_before_the_first_command() {
+        let (panel, reset) = (RefCell::new(Panel::new()), Reset::default());
+        St7789::new(Bus(&panel), Pin(&panel), &mut ResetPin(&reset), &mut Time(&reset)).unwrap();
+        let [(first, low), (second, high)] = reset.0.borrow()[..] else { panic!("the pin changes twice") };
+        assert_eq!((first, second), ("low", "high"));
+        assert!((10_000..1_000_000).contains(&low) && high >= 120_000_000);
+        assert_eq!(panel.borrow().commands[0], 0x01, "a module whose RES is not wired is reset by a command");
+    }
+
     struct NoTime;
 
     impl DelayNs for NoTime {
@@ -214,7 +264,7 @@ mod tests {
     /// Shows three pictures of moving squares, and compares the panel's memory with each.
     fn shows<L: Layout<Ink: Into<Rgb565>>>(ink: L::Ink) {
         let panel = RefCell::new(Panel::new());
-        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut NoTime).unwrap();
+        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut ResetPin(&Reset::default()), &mut NoTime).unwrap();
         assert!(panel.borrow().commands.ends_with(&[0x29]), "it is on");
         let mut frame = Box::new(Framebuffer::<L>::new());
         for at in [0, 100, 220] {

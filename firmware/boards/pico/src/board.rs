@@ -10,7 +10,7 @@ use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306, 
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 use rp2040_hal::fugit::{ExtU32, RateExtU32};
-use rp2040_hal::gpio::Pins;
+use rp2040_hal::gpio::{Pins, PullUp};
 use rp2040_hal::pac::Peripherals;
 use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
 use rp2040_hal::{Sio, Watchdog};
@@ -28,17 +28,20 @@ pub fn new(
     clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
     let pins = Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
     let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
-    let serial = UartPeripheral::new(parts.UART0, (pins.gpio0.into_function(), pins.gpio1.into_function()), &mut resets);
+    // Without an adapter, the pull-up keeps the line idle. A line that is low is one break after the other.
+    let (tx, rx) = (pins.gpio0.into_function(), pins.gpio1.into_function().into_pull_type::<PullUp>());
+    let serial = UartPeripheral::new(parts.UART0, (tx, rx), &mut resets);
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "update")]
     let serial = crate::uart_rx::listen(serial);
     #[cfg(not(feature = "st7789"))]
     let display = {
         let (sda, scl) = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-        Ssd1306::new(rp2040_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz()), ADDRESS)
+        let bus = rp2040_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
+        Ssd1306::new(crate::i2c::Bus::new(bus), ADDRESS)
     };
     #[cfg(feature = "st7789")]
-    let display = crate::st7789::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20), &mut resets);
+    let display = crate::st7789::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20, pins.gpio21), &mut resets);
     let buttons = five_buttons([
         pins.gpio10.into_pull_up_input().into_dyn_pin(),
         pins.gpio11.into_pull_up_input().into_dyn_pin(),

@@ -5,6 +5,8 @@ pub mod board;
 mod boot;
 pub mod clocks;
 pub mod flash;
+#[cfg(not(feature = "st7789"))]
+mod i2c;
 mod panic;
 #[cfg(feature = "st7789")]
 mod st7789;

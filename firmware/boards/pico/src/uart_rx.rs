@@ -19,6 +19,10 @@ fn UART0_IRQ() {
     // Safety: nothing else reads the data register.
     let uart = unsafe { &*UART0::PTR };
     while uart.uartfr().read().rxfe().bit_is_clear() {
-        uart_rx::push(uart.uartdr().read().data().bits());
+        let received = uart.uartdr().read();
+        // Noise on the line, or a line that is low, has a framing error.
+        if received.fe().bit_is_clear() && received.be().bit_is_clear() {
+            uart_rx::push(received.data().bits());
+        }
     }
 }
