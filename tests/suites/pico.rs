@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use board_drivers::servo::{self, JointAngle, Law, Servo};
+use board_drivers::servo::{self, JointAngle, Law, Servo, SoftStart};
 use harness::build::Firmware;
 use harness::display::{Display, Picture};
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request, Spi};
@@ -220,9 +220,13 @@ fn follows(path: &Path, count: usize) {
     let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
     let joints = ["left-thigh", "right-thigh", "left-upper-arm", "right-upper-arm"];
     let angles = joints.map(|joint| JointAngle::find(&clip, joint, Axis::X).unwrap());
-    let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: servo::slew(5500, clip.frame_time_ns()) };
+    let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: servo::slew(2500, clip.frame_time_ns()) };
     let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
 
+    // The start takes three seconds, during which the clip stands still.
+    let started = (3e9 / f64::from(clip.frame_time_ns())).ceil() as usize + 1;
+    let count = started + count;
+    let mut start = SoftStart::new(4);
     let (_folder, image) = program("servo", "", &[path.to_owned()]);
     // Four outputs a frame, and what sets them up before.
     let outcome = Request::new(&image, None).servos(4 * (count + 1) + 16).run().unwrap();
@@ -234,15 +238,30 @@ fn follows(path: &Path, count: usize) {
     let frames = rp2040::pulses(&outcome.pulses, [3, 4]);
     assert!(frames.len() >= count, "{} frames", frames.len());
     let mut swing = [u16::MAX, 0];
+    let mut first = [None; 4];
     for (index, (nanos, pulses)) in frames.iter().take(count).enumerate() {
-        let expected: Vec<u16> = servos.iter_mut().zip(&angles).map(|(servo, angle)| servo.follow(angle.at(&player))).collect();
+        let turned = servos.iter_mut().zip(&angles).map(|(servo, angle)| servo.follow(start.ease(angle.at(&player))));
+        let expected: Vec<u16> = (0..).zip(turned).map(|(number, width)| if start.is_on(number) { width } else { 0 }).collect();
         assert_eq!(pulses[..], expected, "frame {index}");
-        swing = [swing[0].min(pulses[0]), swing[1].max(pulses[0])];
+        first.iter_mut().zip(pulses).filter(|(_, width)| **width > 0).for_each(|(first, width)| {
+            first.get_or_insert((*nanos, *width));
+        });
+        if index > started {
+            swing = [swing[0].min(pulses[0]), swing[1].max(pulses[0])];
+        }
         // From the second tick on: the emulator's timer begins with one, while the widths of frame 1 are worked out.
         let due = frames[2].0 + (index as f64 - 2.0) * f64::from(clip.frame_time_ns());
         assert!(index < 2 || (nanos - due).abs() < 1e5, "frame {index} {} ns late", nanos - due);
-        player.step();
+        if start.advance(clip.frame_time_ns() / 1000) {
+            player.step();
+        }
     }
+    let first = first.map(|first| first.unwrap());
+    for (servo, two) in (1..).zip(first.windows(2)) {
+        let apart = (two[1].0 - two[0].0) / 1e6;
+        assert!((apart - 250.0).abs() < 40.0, "servo {servo} starts {apart} ms after the one before");
+    }
+    assert_eq!(first.map(|(_, width)| width), [1500; 4], "each starts at its centre");
     assert!(swing[1] - swing[0] > 300, "the thigh moves: {swing:?}");
 }
 

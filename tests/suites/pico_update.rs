@@ -166,6 +166,17 @@ fn a_clip_comes_over_the_line_while_the_board_draws_and_stays() {
 }
 
 #[test]
+fn bytes_with_framing_errors_are_no_part_of_a_message() {
+    if setup::host_only("noise on the Pico's line") {
+        return;
+    }
+    let bench = &*BENCH;
+    let outcome = bench.sending(&bench.flash).noise().run().unwrap();
+    assert_eq!(outcome.ended, "done");
+    assert_eq!(answered(&outcome, &bench.new), Response::Done { id: bench.new.info.crc });
+}
+
+#[test]
 fn power_that_goes_amid_any_change_leaves_the_old_clip_playing() {
     if setup::host_only("power cuts on the Pico") {
         return;

@@ -10,16 +10,7 @@ pub trait TickSource {
 
     /// Waits until the timer has ticked and returns the number of ticks since the last call: at least 1. Meanwhile it calls `idle` at least
     /// a few times a second.
-    #[inline(always)]
-    fn wait(&mut self, mut idle: impl FnMut()) -> u32 {
-        loop {
-            idle();
-            match self.ticks() {
-                0 => {}
-                ticks => return ticks,
-            }
-        }
-    }
+    fn wait(&mut self, idle: impl FnMut()) -> u32;
 }
 
 /// Returns the counts of a counter of `HZ` in a time: at least 1, and at most 2^32 - 1.
@@ -34,23 +25,26 @@ pub(crate) fn counts<const HZ: u32>(nanoseconds: u32) -> u32 {
 }
 
 /// A timer over a free-running 32-bit counter of `HZ`, which `N` reads. It must be asked for ticks before the counter wraps around twice.
+/// Between ticks it calls `S`, which makes the processor sleep.
 #[derive(Debug)]
-pub struct TickTimer<const HZ: u32, N> {
+pub struct TickTimer<const HZ: u32, N, S> {
     now: N,
+    sleep: S,
     /// Counts in a tick.
     period: u32,
     /// The counter at the last tick that was returned.
     last: u32,
 }
 
-impl<const HZ: u32, N: FnMut() -> u32> TickTimer<HZ, N> {
-    /// Makes a timer over a counter that `now` reads.
-    pub const fn new(now: N) -> Self {
-        TickTimer { now, period: u32::MAX, last: 0 }
+impl<const HZ: u32, N: FnMut() -> u32, S: FnMut()> TickTimer<HZ, N, S> {
+    /// Makes a timer over a counter that `now` reads. `sleep` returns after a time that is short beside a tick, for instance at an interrupt
+    /// every millisecond, since a tick is late by at most this time; `|| {}` does not sleep.
+    pub const fn new(now: N, sleep: S) -> Self {
+        TickTimer { now, sleep, period: u32::MAX, last: 0 }
     }
 }
 
-impl<const HZ: u32, N: FnMut() -> u32> TickSource for TickTimer<HZ, N> {
+impl<const HZ: u32, N: FnMut() -> u32, S: FnMut()> TickSource for TickTimer<HZ, N, S> {
     #[inline(always)]
     fn start(&mut self, period_ns: u32) {
         self.period = counts::<HZ>(period_ns);
@@ -66,5 +60,16 @@ impl<const HZ: u32, N: FnMut() -> u32> TickSource for TickTimer<HZ, N> {
         let ticks = elapsed / self.period;
         self.last = self.last.wrapping_add(ticks * self.period);
         ticks
+    }
+
+    #[inline(always)]
+    fn wait(&mut self, mut idle: impl FnMut()) -> u32 {
+        loop {
+            idle();
+            match self.ticks() {
+                0 => (self.sleep)(),
+                ticks => return ticks,
+            }
+        }
     }
 }

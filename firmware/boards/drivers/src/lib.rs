@@ -4,6 +4,7 @@
 
 mod display;
 pub mod led_matrix;
+pub mod nrf52;
 pub mod servo;
 pub mod ssd1306;
 pub mod st7789;

@@ -58,6 +58,45 @@ fn within([least, most]: [u16; 2], width: i32) -> u16 {
     width.min(most.into()).max(least.into()) as u16
 }
 
+/// The start of several servos. Nobody knows where they stand at power-on, and each turns to its first pulse as fast as it can: they get it one
+/// after the other, at the angle 0, so that only one draws its greatest current. Then they turn gradually to the first frame's angles.
+#[derive(Clone, Copy, Debug)]
+pub struct SoftStart {
+    servos: u32,
+    elapsed_us: u32,
+}
+
+impl SoftStart {
+    /// The time between the first pulses of two servos.
+    pub const STAGGER_US: u32 = 250_000;
+    /// The time in which the servos turn from the angle 0 to the first frame's, after the last one's stagger.
+    pub const EASE_US: u32 = 2_000_000;
+
+    /// Begins the start of a number of servos, at most 1000.
+    pub const fn new(servos: u32) -> Self {
+        SoftStart { servos, elapsed_us: 0 }
+    }
+
+    /// Lets time pass. Returns whether the start is over.
+    pub fn advance(&mut self, microseconds: u32) -> bool {
+        let all = self.servos.saturating_mul(Self::STAGGER_US).saturating_add(Self::EASE_US);
+        self.elapsed_us = self.elapsed_us.saturating_add(microseconds).min(all);
+        self.elapsed_us == all
+    }
+
+    /// Returns whether the servo of a number, counted from 0, gets pulses.
+    pub fn is_on(&self, servo: u32) -> bool {
+        self.elapsed_us >= servo.saturating_mul(Self::STAGGER_US)
+    }
+
+    /// Returns the part of an angle that is due now: nothing, then gradually all of it.
+    pub fn ease(&self, angle: Angle) -> Angle {
+        let eased = self.elapsed_us.saturating_sub(self.servos.saturating_mul(Self::STAGGER_US)).min(Self::EASE_US);
+        // A product of 32 and 21 bits fits in 64; the quotient is no greater than the angle.
+        Angle::from_bits((i64::from(angle.to_bits()) * i64::from(eased) / i64::from(Self::EASE_US)) as i32)
+    }
+}
+
 /// A joint's Euler angle about one axis, which moves a servo.
 #[derive(Clone, Copy, Debug)]
 pub struct JointAngle<'a> {
@@ -153,6 +192,29 @@ mod tests {
     fn a_speed_is_the_same_at_any_rate() {
         assert_eq!([slew(2400, 8_333_333), slew(2400, 33_333_333), slew(2400, 1_000_000_000)], [19, 79, 2400]);
         assert_eq!([slew(0, 0), slew(u32::MAX, u32::MAX)], [1, u16::MAX]);
+    }
+
+    #[test]
+    fn servos_start_one_after_the_other_and_then_turn_gradually() {
+        let (mut start, angle) = (SoftStart::new(4), Angle::from_bits(-90 * DEGREE));
+        let mut first = [None; 4];
+        let (mut last, mut over) = (0, None);
+        for ms in 0..4000 {
+            for (servo, first) in (0..).zip(&mut first) {
+                if start.is_on(servo) {
+                    first.get_or_insert(ms);
+                }
+            }
+            let eased = start.ease(angle).to_bits();
+            assert!(ms > 1000 || eased == 0);
+            assert!((0..=DEGREE / 20).contains(&(last - eased)), "at most 50 degrees a second");
+            last = eased;
+            if start.advance(1000) {
+                over.get_or_insert(ms + 1);
+            }
+        }
+        assert_eq!(first, [Some(0), Some(250), Some(500), Some(750)]);
+        assert_eq!((over, last), (Some(3000), angle.to_bits()));
     }
 
     fn play(bytes: &[u8], mut each: impl FnMut(&Clip, &Player)) {

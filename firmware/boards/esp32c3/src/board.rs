@@ -4,8 +4,11 @@ use board_common::{Capacity, FnSerial, PanicBoard, SharedBoard, TickTimer, five_
 use board_drivers::{Mono128x64, Ssd1306, ssd1306::ADDRESS};
 use esp_hal::gpio::{Input, InputConfig, Pull};
 use esp_hal::i2c::master::{self, I2c};
-use esp_hal::peripherals::Peripherals;
+use esp_hal::interrupt::wait_for_interrupt;
+use esp_hal::peripherals::{Peripherals, SYSTIMER};
 use esp_hal::time::{Duration, Instant, Rate};
+use esp_hal::timer::PeriodicTimer;
+use esp_hal::timer::systimer::SystemTimer;
 use esp_hal::timer::timg::{MwdtStage, TimerGroup};
 use esp_hal::uart::{self, Uart};
 use pantin_app::Board;
@@ -16,6 +19,14 @@ const BAUD: u32 = 115_200;
 const CLOCK_HZ: u32 = 1_000_000;
 /// The watchdog resets the board when the program hangs for this time.
 const WATCHDOG: Duration = Duration::from_secs(2);
+
+/// An interrupt ends the processor's sleep after this time at the latest.
+const WAKE_PERIOD: Duration = Duration::from_millis(1);
+
+#[esp_hal::handler]
+fn on_wake() {
+    SYSTIMER::regs().int_clr().write(|bits| bits.target(0).clear_bit_by_one());
+}
 
 /// Sets the board up.
 pub fn new(
@@ -48,7 +59,16 @@ pub fn new(
         Input::new(parts.GPIO4, pull_up),
         Input::new(parts.GPIO9, pull_up),
     ]);
-    let timer = TickTimer::<CLOCK_HZ, _>::new(|| Instant::now().duration_since_epoch().as_micros() as u32);
+    let mut wake = PeriodicTimer::new(SystemTimer::new(parts.SYSTIMER).alarm0);
+    wake.set_interrupt_handler(on_wake);
+    wake.listen();
+    let Ok(()) = wake.start(WAKE_PERIOD) else { unreachable!("the timer supports this period") };
+    let now = move || {
+        // Held, so that it goes on.
+        let _ = &wake;
+        Instant::now().duration_since_epoch().as_micros() as u32
+    };
+    let timer = TickTimer::<CLOCK_HZ, _, _>::new(now, wait_for_interrupt);
     let mut watchdog = TimerGroup::new(parts.TIMG0).wdt;
     watchdog.set_timeout(MwdtStage::Stage0, WATCHDOG);
     watchdog.enable();

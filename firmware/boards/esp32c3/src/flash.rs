@@ -1,8 +1,8 @@
 //! The flash, written by the chip's boot ROM (`esp-storage`). The slots are mapped into memory after everything that programs are linked to.
 #![allow(unsafe_code)]
 
-use board_common::Register;
 use board_common::nor_flash::{NorFlash, NorFlashError, NorFlashErrorKind};
+use core::ptr;
 use esp_hal::peripherals::FLASH;
 use esp_storage::{FlashStorage, FlashStorageError};
 
@@ -20,6 +20,9 @@ const ENTRIES: usize = 128;
 unsafe extern "C" {
     /// A function of the boot ROM that drops the cached bytes of a range.
     fn Cache_Invalidate_Addr(address: u32, len: u32);
+    /// Turns the cache off. Returns whether it loads ahead, for the other function.
+    fn Cache_Suspend_ICache() -> u32;
+    fn Cache_Resume_ICache(autoload: u32);
 }
 
 /// The flash.
@@ -28,6 +31,26 @@ pub struct Flash;
 fn invalidate(address: usize, len: usize) {
     // Safety: it changes nothing but the cache, whose bytes are those of the flash.
     unsafe { Cache_Invalidate_Addr(address as u32, len as u32) };
+}
+
+/// Maps the slots into memory.
+///
+/// The table must not change while the cache uses it. Without the cache the flash cannot be read: this function lies in RAM, calls only the
+/// boot ROM, and runs with interrupts off.
+#[esp_hal::ram]
+fn map() {
+    // Safety: registers of the chip. The second stage of the boot maps none of these pages.
+    unsafe {
+        let autoload = Cache_Suspend_ICache();
+        let mut page = 0;
+        while page < BYTES / PAGE {
+            let entry = (MAPPED / PAGE + page) % ENTRIES;
+            ptr::with_exposed_provenance_mut::<u32>(TABLE + 4 * entry).write_volatile((OFFSET / PAGE + page) as u32);
+            page += 1;
+        }
+        Cache_Invalidate_Addr(MAPPED as u32, BYTES as u32);
+        Cache_Resume_ICache(autoload);
+    }
 }
 
 /// Runs an operation on the flash, with the offset of an address in it.
@@ -49,12 +72,7 @@ impl board_common::Flash for Flash {
 
     /// Maps the slots into memory.
     fn start() {
-        for page in 0..BYTES / PAGE {
-            let entry = (MAPPED / PAGE + page) % ENTRIES;
-            // Safety: a register of the chip. The second stage of the boot maps none of these pages.
-            unsafe { Register::<u32>::at(TABLE + 4 * entry) }.write((OFFSET / PAGE + page) as u32);
-        }
-        invalidate(MAPPED, BYTES);
+        critical_section::with(|_| map());
     }
 
     unsafe fn erase(address: usize) -> Result<(), NorFlashErrorKind> {

@@ -32,7 +32,9 @@ pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rot
     let buttons = two_buttons([p0.p0_14.into_floating_input().degrade(), p0.p0_23.into_floating_input().degrade()]);
     let mut timer = Timer::periodic(parts.TIMER0);
     timer.start(u32::MAX);
-    SharedBoard::new(display, serial, buttons, TickTimer::<TIMER_HZ, _>::new(move || timer.read()), watchdog::start(parts.WDT))
+    // The interrupt that lights the LEDs ends the sleep every millisecond.
+    let tick_timer = TickTimer::<TIMER_HZ, _, _>::new(move || timer.read(), cortex_m::asm::wfi);
+    SharedBoard::new(display, serial, buttons, tick_timer, watchdog::start(parts.WDT))
 }
 
 /// Sets up the SSD1306 on the edge connector: SCL on P19, SDA on P20. These pins have pull-ups, which keep the bus idle without a display.

@@ -3,6 +3,7 @@
 #![no_main]
 
 mod board;
+mod debug_port;
 mod flash;
 mod leds;
 mod panic;
@@ -17,6 +18,7 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
+    debug_port::open();
     let Some(parts) = Peripherals::take() else { unreachable!("nothing else takes the peripherals") };
     board_common::run_forever::<flash::Flash, _>(CLIPS, board::new(parts))
 }

@@ -23,7 +23,7 @@ pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = 
     timer0::PRESCALER.write(0);
     timer0::START.write(1);
     let display = |framebuffer: &mut Framebuffer<Mono128x64>| frame_stream::send(framebuffer, send);
-    SharedBoard::new(display, FnSerial { send, poll }, NoButtons, TickTimer::<TIMER_HZ, _>::new(now), || {})
+    SharedBoard::new(display, FnSerial { send, poll }, NoButtons, TickTimer::<TIMER_HZ, _, _>::new(now, || {}), || {})
 }
 
 fn now() -> u32 {

@@ -14,7 +14,7 @@ const TRANSMIT_EMPTY: u8 = 1 << 5;
 
 /// Makes the board. The pictures are those of an ESP32-C3 with its SSD1306.
 pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> {
-    let timer = TickTimer::<MTIME_HZ, _>::new(|| MTIME.read());
+    let timer = TickTimer::<MTIME_HZ, _, _>::new(|| MTIME.read(), || {});
     let display = |framebuffer: &mut Framebuffer<Mono128x64>| frame_stream::send(framebuffer, send);
     SharedBoard::new(display, FnSerial { send, poll }, NoButtons, timer, || {})
 }

@@ -23,7 +23,7 @@ pub fn new() -> impl Board<Layout = Lcd, Rotation = Rotation, Capacity = Capacit
     // Clock on, reloaded at 0, started.
     timer1::CONTROL.write(1 << 5 | 1 << 1 | 1 << 0);
     // The timer counts down.
-    let timer = TickTimer::<TIMER_HZ, _>::new(|| !timer1::READ.read());
+    let timer = TickTimer::<TIMER_HZ, _, _>::new(|| !timer1::READ.read(), || {});
     SharedBoard::new(display::show, FnSerial { send, poll }, NoButtons, timer, || {})
 }
 

@@ -4,7 +4,7 @@
 
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, TickSource};
-use board_drivers::servo::{JointAngle, Law, Servo, slew};
+use board_drivers::servo::{JointAngle, Law, Servo, SoftStart, slew};
 use embedded_hal::pwm::SetDutyCycle;
 use pantin::{Axis, Clip, Player};
 use pantin_app::Capacity as _;
@@ -18,8 +18,9 @@ include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// The joints whose rotation about x moves the servos, in the order of the pins.
 const JOINTS: [&str; 4] = ["left-thigh", "right-thigh", "left-upper-arm", "right-upper-arm"];
-/// The fastest change of a pulse width, in microseconds a second: a small servo turns by 60 degrees in 0.12 s.
-const SLEW_US_PER_S: u32 = 5500;
+/// The fastest change of a pulse width, in microseconds a second: less than half of what a small servo can do, which turns by 60 degrees in
+/// 0.12 s (5500).
+const SLEW_US_PER_S: u32 = 2500;
 /// The time from pulse to pulse.
 const PULSE_PERIOD_US: u16 = 20_000;
 
@@ -71,22 +72,31 @@ fn play(mut set: impl FnMut([u16; 4])) -> ! {
     let angles = JOINTS.map(angle);
     let mut timer = SysTick::<CPU_HZ>::new();
     timer.start(clip.frame_time_ns());
-    let mut follow = |player: &Player| {
+    let mut start = SoftStart::new(JOINTS.len() as u32);
+    let mut follow = |player: &Player, start: &SoftStart| {
         let mut widths = [0; 4];
-        for ((width, servo), angle) in widths.iter_mut().zip(&mut servos).zip(&angles) {
-            *width = servo.follow(angle.at(player));
+        for (((number, width), servo), angle) in (0..).zip(&mut widths).zip(&mut servos).zip(&angles) {
+            let followed = servo.follow(start.ease(angle.at(player)));
+            // A width of 0 is no pulse.
+            *width = if start.is_on(number) { followed } else { 0 };
         }
         widths
     };
-    let mut widths = follow(&player);
+    // The clip stays at its first frame while the servos start.
+    let step = |player: &mut Player, start: &mut SoftStart| {
+        if start.advance(clip.frame_time_ns() / 1000) {
+            player.step();
+        }
+    };
+    let mut widths = follow(&player, &start);
     loop {
         set(widths);
         // Worked out before its tick: how long that takes, which depends on the angles, does not delay the pulses.
-        player.step();
-        widths = follow(&player);
+        step(&mut player, &mut start);
+        widths = follow(&player, &start);
         for _ in 1..timer.wait(|| {}) {
-            player.step();
-            widths = follow(&player);
+            step(&mut player, &mut start);
+            widths = follow(&player, &start);
         }
     }
 }
