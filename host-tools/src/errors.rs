@@ -41,7 +41,11 @@ pub fn to_text(report: &Report, motion: &Motion) -> String {
         None => format!("{cm:.4} cm"),
     };
     let (joint, frame) = (&report.worst_joint, report.worst_frame);
-    let joints = format!("error max {} ({joint} at frame {frame}), mean {}", length(report.max_cm), length(report.mean_cm));
+    let joints = format!(
+        "error max {} ({joint} at frame {frame}), mean of the joints {}",
+        length(report.max_cm),
+        length(report.mean_joint_cm)
+    );
     let (scalar, frame) = (&report.worst_scalar, report.worst_scalar_frame);
     let place = if scalar.is_empty() { String::new() } else { format!(" ({scalar} at frame {frame})") };
     let scalars = format!("scalars' error max {:.3} % of full scale{place}", 100.0 * report.max_scalar);

@@ -146,8 +146,38 @@ fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> R
     different_files(&tasks.iter().map(|task| task.output().to_path_buf()).collect::<Vec<_>>())
 }
 
+/// Refuses outputs that are one of the sources by a link, or that are no regular files.
+fn sources_stay(tasks: &[Arguments]) -> Result<()> {
+    let mut sources = HashMap::new();
+    for task in tasks {
+        sources.insert(identity(&task.input), &task.input);
+    }
+    for task in tasks {
+        let output = task.output();
+        let Ok(found) = output.metadata() else { continue };
+        ensure!(found.is_file(), "{}: no regular file; move it away, or choose another folder", output.display());
+        if let Some(source) = sources.get(&identity(output)) {
+            bail!("{}: is the input {} itself; choose another folder for the clips", output.display(), source.display());
+        }
+    }
+    Ok(())
+}
+
+/// What is equal for two names of one file.
+#[cfg(unix)]
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().ok().map(|found| (found.dev(), found.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path) -> Option<PathBuf> {
+    path.canonicalize().ok()
+}
+
 /// Converts all `tasks`, and reports a line for each under its label. Fails if one did.
 fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], others: Option<usize>) -> Result<()> {
+    sources_stay(tasks)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} files {eta} left")?;
     let convert = |task: &Arguments| {

@@ -359,7 +359,9 @@ impl Distance {
     }
 
     fn plan(&self, effort: Level) -> Plan {
-        Plan { mean_cm: self.mean_cm, ..effort.plan(self.max_cm) }
+        // A looser bound than by default saves nothing, and leaves first codes too much room.
+        let max_cm = self.mean_cm.map_or(self.max_cm, |mean| self.max_cm.min(MAX_OF_MEAN * mean));
+        Plan { mean_cm: self.mean_cm, ..effort.plan(max_cm) }
     }
 }
 

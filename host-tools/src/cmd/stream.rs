@@ -1,5 +1,6 @@
 //! `pantin stream`: clips over a line, while they play.
 
+use super::channel_bound::above_zero;
 use crate::budget;
 use crate::cmd::Files;
 use crate::output::{note, report};
@@ -43,10 +44,10 @@ pub struct Arguments {
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0)]
     refresh: f64,
     /// Shortest cycle in which every channel is refreshed, in seconds; longer if the line is too slow
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2, value_parser = above_zero)]
     cycle: f64,
     /// Largest look-ahead, in seconds: the figure starts later by it, and at most 24 packets wait at the receiver
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.5)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.5, value_parser = above_zero)]
     ahead: f64,
     /// Add 8 bytes of parity to each packet, which correct 4 wrong bytes; the receiver must expect them (the board's argument `fec`)
     #[arg(long)]

@@ -91,7 +91,8 @@ impl Costs {
 /// The costs of each joint of [`turning`].
 fn costs_of(motion: &Motion, bound_cm: f64) -> Vec<Costs> {
     let reach = reach_cm(motion);
-    let stride = ((5.0 / 30.0 / motion.frame_time).round() as usize).max(1);
+    // Longer than the clip, it finds no bends.
+    let stride = ((5.0 / 30.0 / motion.frame_time).round() as usize).clamp(1, motion.frames.max(1));
     let of = |turning: &Turning| {
         let kinds = &motion.rig.joints[turning.joint].kinds;
         let scale = 1f64.to_radians() * reach[turning.joint] / (0.5 * bound_cm);

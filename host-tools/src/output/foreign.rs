@@ -18,6 +18,8 @@ pub enum Wanted {
     Model,
     /// A Rust source file.
     Source,
+    /// A list of names, one per line: text.
+    Names,
     /// Anything else that a command checks by itself.
     Other,
 }
@@ -42,9 +44,10 @@ const KINDS: &[(Wanted, &[&str], &str)] = &[
     (Wanted::Source, &["rs"], "`pantin expand` writes Rust modules"),
     (Wanted::Other, &["uf2", "hex", "bin", "elf"], "to write an image for a board use `pantin flash-image`"),
     (Wanted::Other, &["obj"], "`pantin face export` writes .obj"),
+    (Wanted::Names, &["txt"], "that is another kind of file"),
     (
         Wanted::Other,
-        &["txt", "md", "json", "html", "htm", "js", "py", "c", "cpp", "toml", "yaml", "yml", "xml", "log", "zip", "gz"],
+        &["md", "json", "html", "htm", "js", "py", "c", "cpp", "toml", "yaml", "yml", "xml", "log", "zip", "gz"],
         "that is another kind of file",
     ),
 ];
@@ -61,6 +64,7 @@ pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
         Wanted::Picture => "expected a name that ends in .gif, .apng, .png or .svg",
         Wanted::Model => "a model's name ends in .model",
         Wanted::Source => "expected a name that ends in .rs",
+        Wanted::Names => "a list of names ends in .txt, or has no extension",
         Wanted::Other => "expected another name",
     };
     if wanted == Wanted::Motion && *kind == Wanted::Source {

@@ -71,10 +71,12 @@ impl Place {
     }
 
     fn identity(&self) -> Option<Identity> {
-        let Place::File(path) = self else { return None };
+        let (Place::File(path) | Place::Through(path)) = self else { return None };
+        // A name below /proc can be a regular file's.
         if path.is_file() {
             return Handle::from_path(path).ok().map(Identity::Existing);
         }
+        let Place::File(path) = self else { return None };
         Some(Identity::Missing(folder(path).canonicalize().ok()?, path.file_name()?.to_os_string()))
     }
 }

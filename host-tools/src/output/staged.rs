@@ -11,7 +11,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{Arc, Mutex, Once, PoisonError};
 use tempfile::{Builder, NamedTempFile, TempPath};
 
 /// An output that is being written. Dropped before [`commit`], it leaves the file that was there as it was.
@@ -185,11 +185,14 @@ impl Drop for Registered {
 fn remove_on_signals() {
     #[cfg(unix)]
     {
-        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXFSZ};
         static ONCE: Once = Once::new();
         ONCE.call_once(|| {
+            // A file that may not grow is an error of its write, as a full disk is.
+            let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
             let ignored = ignored_signals();
-            let signals = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+            let ending = [SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2];
+            let signals = ending.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
             let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) else { return };
             std::thread::spawn(move || {
                 for signal in signals.forever() {

@@ -13,6 +13,9 @@ use crossterm::{execute, queue, terminal};
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Columns and rows that are used at most, whatever size a terminal claims.
+const LARGEST: [usize; 2] = [1000, 500];
+
 /// Whether it has to be restored.
 static ENTERED: AtomicBool = AtomicBool::new(false);
 
@@ -42,7 +45,7 @@ impl Terminal {
     /// Columns and rows.
     pub fn size(&self) -> Result<[usize; 2]> {
         let (columns, rows) = terminal::size().context("the terminal's size is not known")?;
-        Ok([usize::from(columns), usize::from(rows)])
+        Ok([usize::from(columns).min(LARGEST[0]), usize::from(rows).min(LARGEST[1])])
     }
 
     /// Forgets what it shows: after a resize nobody knows.
@@ -70,8 +73,8 @@ impl Drop for Terminal {
 /// terminal is gone.
 #[cfg(unix)]
 fn leave_by_signals() -> Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGTERM])?;
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGQUIT, SIGTERM])?;
     std::thread::spawn(move || {
         if let Some(signal) = signals.forever().next() {
             // Held to the end, so that no picture follows.

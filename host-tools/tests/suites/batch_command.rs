@@ -166,7 +166,7 @@ fn a_clip_that_leads_to_its_own_source_is_refused() {
     std::fs::create_dir(folder.0.join("out")).unwrap();
     std::os::unix::fs::symlink("../in/a.csv", folder.clip("a.ptn")).unwrap();
     let done = folder.convert(&[]);
-    assert!(!done.status.success() && text(&done.stdout).contains("is the input"), "{}", text(&done.stdout));
+    assert!(!done.status.success() && text(&done.stderr).contains("is the input"), "{}", text(&done.stderr));
     assert_eq!(std::fs::read_to_string(folder.0.join("in/a.csv")).unwrap(), LIGHT);
 }
 

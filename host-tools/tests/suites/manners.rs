@@ -44,6 +44,33 @@ fn object(output: &Output) -> Value {
 }
 
 #[test]
+fn odd_times_are_refused_without_a_panic() {
+    let folder = Folder::new();
+    let mut bvh = String::from(
+        "HIERARCHY\nROOT r\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n",
+    );
+    bvh += "End Site\n{\nOFFSET 0 10 0\n}\n}\nMOTION\nFrames: 10\nFrame Time: 1e-30\n";
+    (0..10).for_each(|frame| bvh += &format!("{frame} 0 0 0 0 0\n"));
+    folder.put("fast.bvh", bvh);
+    let said = folder.refused(&["convert", "fast.bvh"]);
+    assert!(said.contains("frame time"), "{said}");
+    for wrong in ["--cycle=nan", "--cycle=-1", "--ahead=inf"] {
+        let output = folder.run(&["stream", "run.keys", "--to", "tcp:127.0.0.1:1", wrong]);
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {}", err(&output));
+    }
+}
+
+#[test]
+fn a_loose_bound_beside_a_mean_is_no_obstacle() {
+    let folder = Folder::new();
+    for bound in ["2cm", "10000cm"] {
+        folder.done(&["convert", "run.keys", "-o", "run.ptn", "--mean-error", "0.3cm", "--max-error", bound, "--effort", "fast"]);
+    }
+    let said = folder.refused(&["convert", "run.keys", "-o", "run.ptn", "--mean-error", "0.3cm", "--max-error", "0.2cm"]);
+    assert!(said.contains("--mean-error"), "{said}");
+}
+
+#[test]
 fn every_command_takes_the_options_of_all() {
     let folder = prepared();
     for arguments in RUNS {

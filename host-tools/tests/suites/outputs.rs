@@ -67,6 +67,63 @@ pub fn err(output: &Output) -> String {
 }
 
 #[test]
+fn a_faces_names_are_an_output_like_any_other() {
+    let folder = Folder::new();
+    let motion = folder.get("run.keys");
+    folder.refused(&["face", "model", "-o", "face.model", "--names", "run.keys"]);
+    assert_eq!(folder.get("run.keys"), motion);
+    let said = folder.refused(&["face", "model", "-o", "twins", "--names", "./twins"]);
+    assert!(said.contains("both outputs are one file"), "{said}");
+    folder.refused(&["face", "model", "-o", "face.model", "--names", "nowhere/names.txt"]);
+    assert_eq!(folder.names(), ["run.keys"]);
+    folder.done(&["face", "model", "-o", "face.model", "--names", "names.txt"]);
+    assert_eq!(folder.names(), ["face.model", "names.txt", "run.keys"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_batchs_clips_are_no_sources_by_links_and_no_pipes() {
+    let folder = Folder::new();
+    let motion = folder.get("run.keys");
+    folder.put("in/run.keys", &motion);
+    folder.put("in/walk.keys", &motion);
+    std::fs::create_dir(folder.path("out")).unwrap();
+    std::os::unix::fs::symlink("../in/run.keys", folder.path("out/walk.ptn")).unwrap();
+    for inputs in [&["in"][..], &["in/walk.keys", "in/run.keys"]] {
+        let said = folder.refused(&[&["convert"], inputs, &["-o", "out"]].concat());
+        assert!(said.contains("is the input"), "{said}");
+    }
+    assert_eq!(folder.get("in/run.keys"), motion);
+    std::fs::remove_file(folder.path("out/walk.ptn")).unwrap();
+    assert!(Command::new("mkfifo").arg(folder.path("out/walk.ptn")).status().unwrap().success());
+    let said = folder.refused(&["convert", "in", "-o", "out"]);
+    assert!(said.contains("no regular file"), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_input_is_no_output_by_a_name_below_proc() {
+    let folder = Folder::new();
+    let motion = folder.get("run.keys");
+    folder.put("mine.ptn", &motion);
+    let said = folder.refused(&["convert", "mine.ptn", "-o", "/proc/self/cwd/mine.ptn"]);
+    assert!(said.contains("is the input"), "{said}");
+    assert_eq!(folder.get("mine.ptn"), motion);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_may_not_grow_leaves_nothing() {
+    let folder = Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "run.ptn", "--effort", "fast"]);
+    let tool = env!("CARGO_BIN_EXE_pantin");
+    let script = format!("ulimit -f 1; exec '{tool}' render run.ptn -o run.gif");
+    let output = Command::new("sh").args(["-c", &script]).current_dir(folder.path("")).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    assert_eq!(folder.names(), ["run.keys", "run.ptn"]);
+}
+
+#[test]
 fn an_output_is_not_the_input() {
     let folder = Folder::new();
     let before = folder.get("run.keys");

@@ -2,7 +2,7 @@
 
 use crate::face::blueprint::Blueprint;
 use crate::face::{Face, compact, error, outside};
-use crate::output::{Wanted, check, note, refuse_foreign, report, write_whole};
+use crate::output::{Wanted, check, note, refuse_foreign, report, write_together};
 use anyhow::Result;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,12 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     refuse_foreign(&arguments.output, Wanted::Model)?;
     let inputs: Vec<&Path> = arguments.mesh.iter().map(PathBuf::as_path).collect();
-    check(&inputs, &[&arguments.output])?;
+    let outputs: Vec<&Path> =
+        [Some(&arguments.output), arguments.names.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+    if let Some(names) = &arguments.names {
+        refuse_foreign(names, Wanted::Names)?;
+    }
+    check(&inputs, &outputs)?;
     let blueprint: Blueprint = match &arguments.mesh {
         Some(path) => outside::model(path)?,
         None => Face::new()?.blueprint,
@@ -55,8 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     );
     note!("{moved} of {whole} deltas are stored; as floats all of them would take {} bytes", whole * 12);
     note!("greatest error {:.5} units, {:.4} % of the size, over mixtures of weights", error.most, error.part * 100.0);
-    if let Some(path) = &arguments.names {
-        write_whole(path, blueprint.name_list().as_bytes())?;
-    }
-    write_whole(&arguments.output, &bytes)
+    let names = blueprint.name_list();
+    let contents = [&bytes[..], names.as_bytes()];
+    write_together(&outputs.into_iter().zip(contents).collect::<Vec<_>>())
 }
