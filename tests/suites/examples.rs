@@ -37,7 +37,7 @@ fn copied(folder: &Path, example: &str, words: &[(&str, &str)]) -> PathBuf {
         let text = std::fs::read_to_string(from.join(file)).unwrap();
         let text = text.replace("../../decoder", paths::root().join("decoder").to_str().unwrap());
         // Under another name: both packages have one target directory, and may be built at the same time.
-        let text = text.replace(&format!("name = \"{example}\""), &format!("name = \"{example}-copy\""));
+        let text = text.replace(&format!("pantin-example-{example}"), &format!("pantin-example-{example}-copy"));
         let text = words.iter().fold(text, |text, (old, new)| text.replace(old, new));
         std::fs::write(to.join(file), text).unwrap();
     }
