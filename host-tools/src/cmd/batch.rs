@@ -129,7 +129,7 @@ fn names_folder(output: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Refuses tasks that would write one clip, or overwrite one of the sources, before anything is written.
+/// Refuses tasks that would write one clip, before anything is written.
 fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> Result<()> {
     let mut named: HashMap<String, &Arguments> = HashMap::new();
     for task in tasks {
@@ -143,7 +143,7 @@ fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> R
             );
         }
     }
-    different_files(&tasks.iter().map(|task| task.output().to_path_buf()).collect::<Vec<_>>())
+    Ok(())
 }
 
 /// Refuses outputs that are one of the sources by a link, or that are no regular files.
@@ -163,7 +163,7 @@ fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     Ok(())
 }
 
-/// What is equal for two names of one file.
+/// What is equal for two names of one file. Unlike a handle, it keeps none of a thousand files open.
 #[cfg(unix)]
 fn identity(path: &Path) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
@@ -177,6 +177,7 @@ fn identity(path: &Path) -> Option<PathBuf> {
 
 /// Converts all `tasks`, and reports a line for each under its label. Fails if one did.
 fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], others: Option<usize>) -> Result<()> {
+    different_files(tasks)?;
     sources_stay(tasks)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} files {eta} left")?;
@@ -266,7 +267,6 @@ fn tasks(arguments: &Arguments, motions: &[PathBuf]) -> Result<Vec<Arguments>> {
         }
         whole.iter_mut().zip(shared).for_each(|(whole, shared)| *whole |= shared);
     };
-    different_files(&clips)?;
     Ok(motions.iter().zip(clips).map(|(path, clip)| arguments.for_file(path.clone(), clip)).collect())
 }
 
@@ -282,15 +282,16 @@ fn shared(clips: &[PathBuf]) -> Vec<bool> {
 }
 
 /// Refuses links that lead two clips to one file.
-fn different_files(clips: &[PathBuf]) -> Result<()> {
+fn different_files(tasks: &[Arguments]) -> Result<()> {
+    let clips = || tasks.iter().map(Arguments::output);
     let mut files: HashMap<PathBuf, &Path> = HashMap::new();
-    for clip in clips {
+    for clip in clips() {
         if let (true, Ok(file)) = (clip.is_symlink(), clip.canonicalize()) {
             let other = files.insert(file, clip);
             ensure!(other.is_none(), "{} and {}: both outputs are one file", other.unwrap_or(clip).display(), clip.display());
         }
     }
-    for clip in clips.iter().filter(|clip| !clip.is_symlink()) {
+    for clip in clips().filter(|clip| !clip.is_symlink()) {
         let other = clip.canonicalize().ok().and_then(|file| files.get(&file).copied());
         ensure!(other.is_none(), "{} and {}: both outputs are one file", other.unwrap_or(clip).display(), clip.display());
     }

@@ -2,7 +2,7 @@
 
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
-use super::max_error::{self, MaxError};
+use super::joint_error::{self, JointError};
 use super::{batch, check_fit, same_form};
 use crate::channel_error;
 use crate::edit::cut::cut;
@@ -71,12 +71,12 @@ pub struct Arguments {
     /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
     /// with % of the figure's height
     /// [default: 0.5cm, or 6 times --mean-error]
-    #[arg(long, group = "bound", value_parser = max_error::parse)]
-    max_error: Option<MaxError>,
+    #[arg(long, group = "bound", value_parser = joint_error::parse)]
+    max_error: Option<JointError>,
     /// Mean distance of the joints, End Sites left out, from their original positions, in the same units: the clip is as small as its
     /// mean allows, instead of filling --max-error, which still holds for every joint
-    #[arg(long, conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = max_error::parse)]
-    mean_error: Option<MaxError>,
+    #[arg(long, conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = joint_error::parse)]
+    mean_error: Option<JointError>,
     /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
@@ -214,6 +214,12 @@ pub(super) struct Made {
 }
 
 impl Made {
+    /// A clip of `motion`. What was read for it, and what is odd, is for the caller to add.
+    fn new(motion: &Motion, bytes: Vec<u8>, json: serde_json::Value, errors: String, cell: String) -> Made {
+        let (frames, channels) = (motion.frames, motion.rig.channels());
+        Made { bytes, json, errors, cell, frames, channels, read: Vec::new(), warnings: Vec::new() }
+    }
+
     /// Sizes and errors, for the user.
     pub fn sentence(&self, output: &Path) -> String {
         let raw = self.frames * self.channels * 2;
@@ -348,7 +354,7 @@ impl Distance {
         let max_cm = match (arguments.max_error, mean_cm) {
             (Some(max), _) => max.cm(motion)?,
             (None, Some(mean)) => MAX_OF_MEAN * mean,
-            (None, None) => max_error::DEFAULT.cm(motion)?,
+            (None, None) => joint_error::DEFAULT.cm(motion)?,
         };
         ensure!(
             mean_cm.is_none_or(|mean| mean <= max_cm),
@@ -469,18 +475,8 @@ fn by_distance(arguments: &Arguments, prepared: &Prepared, distance: &Distance, 
             "rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame}); --max-rotation-error bounds it"
         );
     }
-    let (json, errors, cell) =
-        (errors::to_json(&report, motion).into(), errors::to_text(&report, motion), errors::to_cell(&report, motion));
-    Ok(Made {
-        bytes,
-        json,
-        errors,
-        cell,
-        frames: motion.frames,
-        channels: motion.rig.channels(),
-        read: Vec::new(),
-        warnings: Vec::new(),
-    })
+    let (errors, cell) = (errors::to_text(&report, motion), errors::to_cell(&report, motion));
+    Ok(Made::new(motion, bytes, errors::to_json(&report, motion).into(), errors, cell))
 }
 
 fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, coding: &Coding) -> Result<Made> {
@@ -509,15 +505,5 @@ fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, codin
             format!("error max {}, a frame^2; drift max {}", worst.sentence(motion), report.drift.sentence(motion))
         }
     };
-    let cell = worst.sentence(motion);
-    Ok(Made {
-        bytes,
-        json,
-        errors,
-        cell,
-        frames: motion.frames,
-        channels: motion.rig.channels(),
-        read: Vec::new(),
-        warnings: Vec::new(),
-    })
+    Ok(Made::new(motion, bytes, json, errors, worst.sentence(motion)))
 }

@@ -8,7 +8,7 @@ pub mod expand;
 pub mod face;
 pub mod flash_image;
 pub mod info;
-mod max_error;
+mod joint_error;
 pub mod play;
 pub mod render;
 mod same_form;

@@ -8,7 +8,6 @@ use crate::output::{noticed, report, take_stdout};
 use crate::play::cells::Dots;
 use crate::play::clock::Clock;
 use crate::play::colours::Colours;
-use crate::play::face::Face;
 use crate::play::figure::Figure;
 use crate::play::meters::Meters;
 use crate::play::picture::{Show, Title, draw};
@@ -127,15 +126,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// Sets up what shows a clip.
 fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Result<T>) -> Result<T> {
-    let face = is_face(clip)?;
-    if clip.rig().joint_count() == 0 && !face {
+    if clip.rig().joint_count() == 0 && !is_face(clip)? {
         return play(&mut Meters::of(expand(clip)?));
     }
     let (mut room, mut memory) = (Room::of(clip), PlayerBuffers::of(clip));
     let playback = Playback::new(*clip, &mut room)?;
-    if face {
-        return play(&mut Face::new(*clip, playback, ahead));
-    }
     play(&mut Figure::new(playback, memory.player(*clip)?, ahead))
 }
 

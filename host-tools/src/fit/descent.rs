@@ -127,7 +127,6 @@ struct Kept {
     price: f64,
     bits: f64,
     codes: Vec<Option<Code>>,
-    values: Vec<Vec<f64>>,
 }
 
 impl<'m> Descent<'m> {
@@ -155,42 +154,42 @@ impl<'m> Descent<'m> {
         if let Some(mean_cm) = self.plan.mean_cm {
             return self.run_to_mean(mean_cm, progress);
         }
-        let channels = self.targets.len();
-        for pass in 0..self.plan.passes {
+        let passes = self.plan.passes;
+        for pass in 0..passes {
             let (first, last) = self.plan.prices;
-            let part = pass as f64 / (self.plan.passes.max(2) - 1) as f64;
+            let part = pass as f64 / (passes.max(2) - 1) as f64;
             let price = self.seconds_a_frame * 30.0 * first * (last / first).powf(part);
-            for i in 0..channels {
-                let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
-                // A channel that nothing helped lately is tried every third pass only.
-                if pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) || pass + 1 == self.plan.passes {
-                    self.improve(channel, price, pass)?;
-                }
-                progress((pass * channels + i + 1) as f64 / (self.plan.passes * channels) as f64);
-            }
+            self.pass(pass, price, pass + 1 == passes, &mut |done| progress((pass as f64 + done) / passes as f64))?;
         }
         Ok(self.codes.into_iter().flatten().collect())
+    }
+
+    /// One pass. A channel that nothing helped lately is tried in every third pass only, unless `every` channel is.
+    fn pass(&mut self, pass: usize, price: f64, every: bool, progress: &mut dyn FnMut(f64)) -> Result<()> {
+        let channels = self.targets.len();
+        for i in 0..channels {
+            let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
+            if every || pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) {
+                self.improve(channel, price, pass)?;
+            }
+            progress((i + 1) as f64 / channels as f64);
+        }
+        Ok(())
     }
 
     /// Passes whose price for a centimetre falls until the mean is reached. A higher price would not undo what a lower one did, so a
     /// pass that goes too far is taken back and the price falls less from there.
     fn run_to_mean(mut self, mean_cm: f64, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
-        let channels = self.targets.len();
         let (passes, mut fall) = (MEAN_PASSES * self.plan.passes, FALL);
         let mut price = FIRST_PRICE * self.seconds_a_frame / mean_cm;
         let mut kept: Option<Kept> = None;
         for pass in 0..passes {
-            for i in 0..channels {
-                let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
-                if pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) {
-                    self.improve(channel, price, pass)?;
-                }
-                progress((pass * channels + i + 1) as f64 / (passes * channels) as f64);
-            }
+            self.pass(pass, price, false, &mut |done| progress((pass as f64 + done) / passes as f64))?;
             let part = self.mean() / mean_cm;
             if part <= 1.0 {
-                let saved = kept.as_ref().is_none_or(|kept| self.bits() < 0.999 * kept.bits);
-                kept = Some(Kept { price, bits: self.bits(), codes: self.codes.clone(), values: self.values.clone() });
+                let bits = self.codes.iter().flatten().map(|code| code.bits).sum();
+                let saved = kept.as_ref().is_none_or(|kept| bits < 0.999 * kept.bits);
+                kept = Some(Kept { price, bits, codes: self.codes.clone() });
                 if part > NEAR_MEAN && !saved {
                     break;
                 }
@@ -199,7 +198,9 @@ impl<'m> Descent<'m> {
                     price *= fall;
                 }
             } else if let Some(kept) = &kept {
-                (self.codes, self.values) = (kept.codes.clone(), kept.values.clone());
+                self.codes.clone_from(&kept.codes);
+                let played = self.codes.iter().zip(self.scales).zip(&mut self.values);
+                played.for_each(|((code, scale), values)| code.iter().for_each(|code| *values = in_units(&code.path, *scale)));
                 self.poses = self.figure.poses(&self.values);
                 fall = fall.sqrt();
                 price = kept.price * fall;
@@ -214,10 +215,6 @@ impl<'m> Descent<'m> {
             bail!("no code with a mean error of {mean_cm} cm was found within {} cm at every joint", self.plan.bound_cm);
         };
         Ok(kept.codes.into_iter().flatten().collect())
-    }
-
-    fn bits(&self) -> f64 {
-        self.codes.iter().flatten().map(|code| code.bits).sum()
     }
 
     /// The mean distance of the joints from where they should be, in cm.
@@ -290,7 +287,7 @@ impl<'m> Descent<'m> {
     /// Puts a path in place and returns the values that it replaces.
     fn set(&mut self, channel: usize, path: &[f64]) -> Vec<f64> {
         let scale = self.scales[channel];
-        let before = std::mem::replace(&mut self.values[channel], path.iter().map(|p| p * scale).collect());
+        let before = std::mem::replace(&mut self.values[channel], in_units(path, scale));
         self.refresh(channel);
         before
     }
@@ -412,6 +409,11 @@ impl<'m> Descent<'m> {
         let cheap = flat || tube.price(&path) < 8.0;
         (inside && cheap).then_some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits: REST_BITS })
     }
+}
+
+/// A path in the motion's units.
+fn in_units(path: &[f64], scale: f64) -> Vec<f64> {
+    path.iter().map(|p| p * scale).collect()
 }
 
 fn objective(code: &Fitted, tube: &Tube) -> f64 {

@@ -1,4 +1,4 @@
-//! The firmware's figure in a terminal.
+//! The firmware's figure and its face in a terminal.
 
 use super::cells::{Dots, Grid};
 use super::picture::Show;
@@ -11,36 +11,47 @@ use anyhow::{Context, Result};
 use pantin::Player;
 use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
 
-/// A clip's figure, and its face if it has one; their cameras are set up again when the terminal or the view changes.
+/// A clip's body, its face, or both; their cameras are set up again when the terminal or the view changes.
 pub struct Figure<'a, 'm> {
     playback: Playback<'a, 'm>,
     /// Looks through the clip for the camera, so that the playback keeps its place.
     scout: Player<'a, 'm>,
-    renderer: Option<(Canvas, View, FigureRenderer<RIG_JOINTS>, Option<Cast>)>,
+    shown: Option<Shown>,
     /// From where the face is seen straight ahead.
     ahead: View,
+}
+
+/// What one view on one canvas shows.
+struct Shown {
+    canvas: Canvas,
+    view: View,
+    body: Option<FigureRenderer<RIG_JOINTS>>,
+    face: Option<Cast>,
 }
 
 impl<'a, 'm> Figure<'a, 'm> {
     /// Both at the clip's begin.
     pub fn new(playback: Playback<'a, 'm>, scout: Player<'a, 'm>, ahead: View) -> Figure<'a, 'm> {
-        Figure { playback, scout, renderer: None, ahead }
+        Figure { playback, scout, shown: None, ahead }
     }
 
     fn set_up(&mut self, canvas: Canvas, view: View) -> Result<()> {
-        if self.renderer.as_ref().is_none_or(|(before, seen, ..)| (*before, *seen) != (canvas, view)) {
+        if self.shown.as_ref().is_none_or(|shown| (shown.canvas, shown.view) != (canvas, view)) {
             let from = View { orbit: view.orbit - self.ahead.orbit, tilt: view.tilt - self.ahead.tilt, ..view };
             let face = Cast::of_clip(self.scout.clip(), canvas, &[from])?;
-            let body = if face.is_some() { canvas.with_face().body } else { canvas };
-            let renderer = FigureRenderer::of_clip(&mut self.scout, body, view).context("this figure cannot be drawn")?;
-            self.renderer = Some((canvas, view, renderer, face));
+            let area = if face.is_some() { canvas.with_face().body } else { canvas };
+            let body = match self.scout.clip().rig().joint_count() {
+                0 => None,
+                _ => Some(FigureRenderer::of_clip(&mut self.scout, area, view).context("this figure cannot be drawn")?),
+            };
+            self.shown = Some(Shown { canvas, view, body, face });
         }
         Ok(())
     }
 }
 
 /// The pixels of a grid's first `rows`, and how they become letters.
-pub(super) fn canvas(settings: &Settings, grid: &Grid, rows: usize) -> (Dots, Canvas) {
+fn canvas(settings: &Settings, grid: &Grid, rows: usize) -> (Dots, Canvas) {
     let dots = settings.dots(rows);
     let [across, down] = dots.pixels();
     let [width, height] = [grid.columns * across, rows * down].map(|pixels| pixels.min(MOST_PIXELS) as u16);
@@ -53,8 +64,10 @@ impl Show for Figure<'_, '_> {
         self.set_up(canvas, settings.view)?;
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
-        if let Some((_, _, renderer, face)) = &mut self.renderer {
-            shades.draw(renderer, pose, settings.ground, settings.in_bits());
+        if let Some(Shown { body, face, .. }) = &mut self.shown {
+            if let Some(renderer) = body {
+                shades.draw(renderer, pose, settings.ground, settings.in_bits());
+            }
             if let Some(cast) = face {
                 shades.draw_lines(&cast.lines(pose.values, 0), settings.in_bits());
             }

@@ -3,7 +3,6 @@
 pub mod cells;
 pub mod clock;
 pub mod colours;
-pub mod face;
 pub mod figure;
 pub mod keys;
 pub mod meters;

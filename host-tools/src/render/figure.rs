@@ -40,17 +40,12 @@ impl PlayerBuffers {
     }
 }
 
-/// What the cameras see.
-enum Shown {
-    /// A body, and its face if the clip has one.
-    Body(Vec<FigureRenderer<RIG_JOINTS>>, Option<Box<Cast>>),
-    Face(Box<Cast>),
-}
-
 /// Draws the figure of one frame after another, each view by its own camera.
 pub struct Figure<'a, 'm> {
     player: Player<'a, 'm>,
-    shown: Shown,
+    /// One for each view; none if the clip has no body.
+    bodies: Vec<FigureRenderer<RIG_JOINTS>>,
+    face: Option<Box<Cast>>,
     size: [usize; 2],
     factor: usize,
 }
@@ -66,16 +61,11 @@ impl<'a, 'm> Figure<'a, 'm> {
         let ahead = |view: &View| (view.orbit, view.tilt) == (View::default().orbit, View::default().tilt);
         let face_view = |view: &View| if has_body && ahead(view) { View { orbit: 0, tilt: 0, ..*view } } else { *view };
         let face_views: Vec<View> = views.iter().map(face_view).collect();
-        let shown = match Cast::of_clip(player.clip(), canvas, &face_views)?.map(Box::new) {
-            Some(cast) if !has_body => Shown::Face(cast),
-            face => {
-                let canvas = if face.is_some() { canvas.with_face().body } else { canvas };
-                let renderer =
-                    |view: &View| FigureRenderer::of_clip(&mut player, canvas, *view).context("this figure cannot be drawn");
-                Shown::Body(views.iter().map(renderer).collect::<Result<_>>()?, face)
-            }
-        };
-        Ok(Figure { player, shown, size, factor })
+        let face = Cast::of_clip(player.clip(), canvas, &face_views)?.map(Box::new);
+        let area = if face.is_some() { canvas.with_face().body } else { canvas };
+        let renderer = |view: &View| FigureRenderer::of_clip(&mut player, area, *view).context("this figure cannot be drawn");
+        let bodies = if has_body { views.iter().map(renderer).collect::<Result<_>>()? } else { Vec::new() };
+        Ok(Figure { player, bodies, face, size, factor })
     }
 
     /// Goes to a frame.
@@ -85,18 +75,15 @@ impl<'a, 'm> Figure<'a, 'm> {
 
     /// The frame as a view's camera sees it.
     pub fn scene(&mut self, view: usize) -> Scene {
-        let [width, height] = self.size.map(|pixels| pixels as f32);
-        match &mut self.shown {
-            Shown::Body(stages, None) => Scene::of(&mut stages[view], self.player.pose(), self.factor as f32),
-            Shown::Body(stages, Some(cast)) => {
-                let side = f32::from(cast.side()) * self.factor as f32;
-                let face = Scene::of_face(&cast.lines(self.player.pose().values, view), self.factor as f32, side);
-                Scene::of(&mut stages[view], self.player.pose(), self.factor as f32).with_face(face)
-            }
-            Shown::Face(cast) => {
-                Scene::of_face(&cast.lines(self.player.pose().values, view), self.factor as f32, width.min(height))
-            }
+        let (factor, pose) = (self.factor as f32, self.player.pose());
+        let mut scene = self.bodies.get_mut(view).map_or_else(Scene::default, |body| Scene::of(body, pose, factor));
+        if let Some(cast) = &mut self.face {
+            // The canvas is rounded up to whole pixels of the display.
+            let [width, height] = self.size.map(|pixels| pixels as f32);
+            let side = (f32::from(cast.side()) * factor).min(width).min(height);
+            scene.add_face(&cast.lines(pose.values, view), factor, side);
         }
+        scene
     }
 
     /// The same as a picture. Pixels are at most [`MOST_PIXELS`] a side.
@@ -106,14 +93,11 @@ impl<'a, 'm> Figure<'a, 'm> {
             LineStyle::Smooth => smooth::draw(&self.scene(view), width, height, palette),
             LineStyle::Pixels => {
                 let mut shades = Shades::new(width, height);
-                match &mut self.shown {
-                    Shown::Body(stages, face) => {
-                        shades.draw(&mut stages[view], self.player.pose(), true, palette.is_mono());
-                        if let Some(cast) = face {
-                            shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
-                        }
-                    }
-                    Shown::Face(cast) => shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono()),
+                if let Some(body) = self.bodies.get_mut(view) {
+                    shades.draw(body, self.player.pose(), true, palette.is_mono());
+                }
+                if let Some(cast) = &mut self.face {
+                    shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
                 }
                 shades.image(palette)
             }

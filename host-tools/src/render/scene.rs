@@ -58,7 +58,7 @@ pub struct Disc {
 }
 
 /// What is drawn, in this order.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The ground as lines.
     pub ground: Vec<Stroke>,
@@ -68,6 +68,8 @@ pub struct Scene {
     pub bones: Vec<Stroke>,
     /// The head, for a rig that names one.
     pub head: Option<Disc>,
+    /// The lines of a face. Later ones lie over earlier ones, and none is set off from those behind it.
+    pub face: Vec<Stroke>,
 }
 
 impl Scene {
@@ -98,17 +100,17 @@ impl Scene {
                 width: (width(head.shade) * height).max(0.75),
                 shade: head.shade,
             }),
+            face: Vec::new(),
         }
     }
 }
 
-/// Width of a face's lines, as a part of the picture's shorter side.
+/// Width of a face's lines, as a part of its area's shorter side.
 const FACE_WIDTH: f32 = 0.0055;
 
 impl Scene {
-    /// The lines of a face, `factor` times as big as they are given, for a picture whose shorter side has `side` pixels. Later ones lie over
-    /// earlier ones, and none is set off from those behind it.
-    pub fn of_face(lines: &[Line], factor: f32, side: f32) -> Scene {
+    /// Adds the lines of a face, `factor` times as big as they are given, in an area whose shorter side has `side` pixels.
+    pub fn add_face(&mut self, lines: &[Line], factor: f32, side: f32) {
         let unit = factor / f32::from(1u8 << PIXEL_BITS);
         let place = |[x, y]: [i16; 2]| [f32::from(x) * unit, f32::from(y) * unit];
         let stroke = |line: &Line| Stroke {
@@ -118,15 +120,7 @@ impl Scene {
             body_part: line.body_part,
             shade: line.shade,
         };
-        Scene { ground: lines.iter().map(stroke).collect(), dots: Vec::new(), bones: Vec::new(), head: None }
-    }
-}
-
-impl Scene {
-    /// The same with a face over it.
-    pub fn with_face(mut self, face: Scene) -> Scene {
-        self.bones.extend(face.ground);
-        self
+        self.face.extend(lines.iter().map(stroke));
     }
 }
 

@@ -26,6 +26,9 @@ pub fn draw(scene: &Scene, width: usize, height: usize, palette: &Palette) -> Im
     if let Some(head) = scene.head {
         circle(&mut pixmap, &head, palette);
     }
+    for stroke in &scene.face {
+        line(&mut pixmap, stroke, palette.ramp(stroke.body_part, stroke.shade), cap(stroke));
+    }
     let pixels = pixmap.data().chunks_exact(4).map(|rgba| [rgba[0], rgba[1], rgba[2]]).collect();
     Image::of(width, pixels)
 }

@@ -44,7 +44,10 @@ fn head([width, height]: [usize; 2]) -> String {
 
 fn push(out: &mut String, scene: &Scene, palette: &Palette) {
     out.push_str("<g class=\"ground\">\n");
-    scene.ground.iter().for_each(|stroke| line(out, stroke, palette.ramp(stroke.body_part, stroke.shade), ""));
+    let lines = |out: &mut String, strokes: &[Stroke]| {
+        strokes.iter().for_each(|stroke| line(out, stroke, palette.ramp(stroke.body_part, stroke.shade), ""));
+    };
+    lines(out, &scene.ground);
     for Disc { centre: [x, y], radius, shade, .. } in &scene.dots {
         let ink = hex(palette.ramp(BodyPart::Ground, *shade));
         let _ = writeln!(out, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"{ink}\"/>");
@@ -61,6 +64,11 @@ fn push(out: &mut String, scene: &Scene, palette: &Palette) {
         let (ink, paper) = (hex(palette.ramp(BodyPart::Middle, shade)), hex(palette.paper()));
         let circle = format!("cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius:.2}\"");
         let _ = writeln!(out, "<circle {circle} fill=\"{paper}\" stroke=\"{ink}\" stroke-width=\"{width:.2}\"/>");
+    }
+    if !scene.face.is_empty() {
+        out.push_str("<g class=\"face\">\n");
+        lines(out, &scene.face);
+        out.push_str("</g>\n");
     }
 }
 
