@@ -1,41 +1,108 @@
-//! A cursor over checked bytes: variable-length integers and names.
+//! One reader for all fields: of a file, of a rig, and of a motion's blocks.
 
 use crate::OpenError;
+use crate::blocks::{Input, behind_crc};
 
-/// Reads fields from the front of a slice.
+/// Reads fields one after the other. It cannot fail: past the end it reads zeros, and [`Reader::check`] reports that and fields out of
+/// bounds once all are read. A `Result` a field would be most of an image's code.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bytes<'a>(pub &'a [u8]);
+pub(crate) struct Reader<'a> {
+    bytes: &'a [u8],
+    /// Where the next field is.
+    pub(crate) position: u32,
+    /// Whether CRCs stand among the bytes, which are passed over.
+    blocks: bool,
+    /// Whether a field was outside its bounds.
+    pub(crate) malformed: bool,
+}
 
-impl<'a> Bytes<'a> {
-    pub fn byte(&mut self) -> Result<u8, OpenError> {
-        let (&first, rest) = self.0.split_first().ok_or(OpenError::Truncated)?;
-        self.0 = rest;
-        Ok(first)
+impl<'a> Reader<'a> {
+    /// Reads from the front of a slice.
+    pub(crate) fn new(bytes: &'a [u8]) -> Reader<'a> {
+        Reader { bytes, position: 0, blocks: false, malformed: false }
     }
 
-    pub fn take(&mut self, len: usize) -> Result<&'a [u8], OpenError> {
-        let (head, rest) = self.0.split_at_checked(len).ok_or(OpenError::Truncated)?;
-        self.0 = rest;
-        Ok(head)
+    /// Reads from a position in blocks.
+    pub(crate) fn of_blocks(input: &Input<'a>, position: u32) -> Reader<'a> {
+        Reader { bytes: input.0, position, blocks: true, malformed: false }
     }
 
-    /// A [`Varint`].
     #[inline(never)]
-    pub fn varint(&mut self) -> Result<u32, OpenError> {
-        let mut varint = Varint::default();
-        while !varint.push(self.byte()?) {}
-        varint.checked()
+    pub(crate) fn byte(&mut self) -> u8 {
+        let byte = self.bytes.get(self.position as usize).copied().unwrap_or(0);
+        self.position = self.position.wrapping_add(1);
+        if self.blocks {
+            self.position = behind_crc(self.position);
+        }
+        byte
+    }
+
+    pub(crate) fn u32(&mut self) -> u32 {
+        (0..4).fold(0, |value, _| value >> 8 | u32::from(self.byte()) << 24)
+    }
+
+    /// LEB128: seven bits a byte, the least significant first, at most five bytes. A number that does not fit 32 bits is malformed,
+    /// and loses its highest bits.
+    #[inline(never)]
+    pub(crate) fn varint(&mut self) -> u32 {
+        let (mut value, mut shift) = (0, 0);
+        loop {
+            let byte = self.byte();
+            value |= u32::from(byte & 0x7f) << shift;
+            if shift == 28 {
+                self.malformed |= byte > 0xf;
+                return value;
+            }
+            if byte & 0x80 == 0 {
+                return value;
+            }
+            shift += 7;
+        }
     }
 
     /// A varint that holds a signed number as 0, -1, 1, -2, ...
-    pub fn zigzag(&mut self) -> Result<i32, OpenError> {
-        Ok(unzigzag(self.varint()?))
+    pub(crate) fn zigzag(&mut self) -> i32 {
+        unzigzag(self.varint())
+    }
+
+    /// The next `len` bytes of a slice.
+    #[inline(never)]
+    pub(crate) fn take(&mut self, len: u32) -> &'a [u8] {
+        let end = self.position.saturating_add(len);
+        let Some(taken) = self.bytes.get(self.position as usize..end as usize) else {
+            // Far enough to stay behind the end.
+            self.position = u32::MAX / 2;
+            return &[];
+        };
+        self.position = end;
+        taken
     }
 
     /// A length in a varint, then that many bytes.
-    pub fn name(&mut self) -> Result<&'a [u8], OpenError> {
-        let len = self.varint()? as usize;
+    pub(crate) fn name(&mut self) -> &'a [u8] {
+        let len = self.varint();
         self.take(len)
+    }
+
+    /// What was not read.
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        self.bytes.get(self.position as usize..).unwrap_or(&[])
+    }
+
+    /// Whether bytes past the end were read.
+    pub(crate) fn overrun(&self) -> bool {
+        self.position as usize > self.bytes.len()
+    }
+
+    /// Whether all that was read was there, and within its bounds.
+    pub(crate) fn check(&self) -> Result<(), OpenError> {
+        if self.malformed {
+            Err(OpenError::Malformed)
+        } else if self.overrun() {
+            Err(OpenError::Truncated)
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -44,11 +111,10 @@ pub(crate) const fn unzigzag(n: u32) -> i32 {
     (n >> 1) as i32 ^ -((n & 1) as i32)
 }
 
-/// A number that arrives byte by byte. LEB128: seven bits a byte, least significant first, at most five bytes.
+/// A number that arrives byte by byte, as [`Reader::varint`] reads it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Varint {
-    /// What has arrived; bits that do not fit are lost.
-    pub value: u32,
+    pub(crate) value: u32,
     shift: u8,
     too_large: bool,
 }

@@ -1,12 +1,12 @@
 //! A clip: bytes checked once. Afterwards playing cannot fail.
 
-use crate::blocks::{self, Input, Reader, STRIDE};
-use crate::bytes::Bytes;
+use crate::blocks::{self, Input, STRIDE, behind_crc};
+use crate::bytes::Reader;
+use crate::channel::ChannelState;
 use crate::entropy::{Cursor, Symbols};
-use crate::form::{CodedKinds, Form};
+use crate::form::{CodedKinds, Form, FormRef};
 use crate::joint::{JointRef, has_choice};
 use crate::layout::*;
-use crate::prefix::Prefix;
 use crate::rig::Rig;
 use crate::scalar::ScalarRef;
 use crate::start::ChannelStarts;
@@ -27,99 +27,151 @@ pub struct Clip<'a> {
 }
 
 /// The fields in front of a motion's symbols.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Head {
     pub(crate) flags: u8,
     pub(crate) length_exponent: i8,
+    /// Where the exponential-map bits are: at 15 at most, so that all are in the first block.
+    exponentials: u8,
+    exponential_bytes: u8,
+    /// Where the events begin.
+    pub(crate) events: u8,
     pub(crate) frames: u32,
     pub(crate) frame_time_ns: u32,
     pub(crate) event_count: u32,
-    /// Where the events begin: at 148 at most. Exponential-map bits stand before them.
-    pub(crate) events: u8,
-    exponentials: u8,
-    exponential_bytes: u8,
 }
 
 /// The parts of a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parts<'a> {
     pub(crate) flags: u8,
-    pub(crate) rig: Option<&'a [u8]>,
+    /// The rig, and how many bytes of the file are its and its length's.
+    pub(crate) rig: &'a [u8],
     pub(crate) rig_len: usize,
-    /// CRC of the magic, version, flags and the motion's length: the first block's CRC goes on from it.
-    pub(crate) seed: u16,
-    /// All that follows, of which `motion_len` bytes are the motion.
+    /// All behind the motion's length.
     pub(crate) rest: &'a [u8],
-    pub(crate) motion_len: usize,
+    pub(crate) motion_len: u32,
 }
 
 impl<'a> Parts<'a> {
+    pub(crate) const NONE: Parts<'a> = Parts { flags: 0, rig: &[], rig_len: 0, rest: &[], motion_len: 0 };
+
     /// Reads the fields in front of the motion.
-    pub(crate) fn split(bytes: &'a [u8]) -> Result<Parts<'a>, OpenError> {
-        let mut reader = Bytes(bytes);
-        let (mut prefix, mut rig, mut rig_len) = (Prefix::default(), None, 0);
-        loop {
-            if let Some(motion_len) = prefix.push(reader.byte()?, None)? {
-                let seed = prefix.seed(motion_len);
-                return Ok(Parts { flags: prefix.flags, rig, rig_len, seed, rest: reader.0, motion_len: motion_len as usize });
-            }
-            if let Some(len) = prefix.rig_len() {
-                rig = Some(reader.take(len as usize)?);
-                prefix.skip_rig();
-                // Behind magic, version and flags.
-                rig_len = bytes.len() - reader.0.len() - 4;
-            }
+    pub(crate) fn split(file: &'a [u8]) -> Result<Parts<'a>, OpenError> {
+        let mut parts = Parts::NONE;
+        parts.read(file)?;
+        Ok(parts)
+    }
+
+    #[inline(never)]
+    fn read(&mut self, file: &'a [u8]) -> Result<(), OpenError> {
+        let mut reader = Reader::new(file);
+        let fixed = [reader.byte(), reader.byte(), reader.byte(), reader.byte()];
+        reader.check()?;
+        check_fixed(fixed)?;
+        self.flags = fixed[3];
+        if self.flags & HAS_RIG != 0 {
+            self.rig = reader.name();
+            self.rig_len = reader.position as usize - fixed.len();
         }
+        self.motion_len = reader.varint();
+        self.rest = reader.rest();
+        reader.check()
+    }
+
+    /// What the first block's CRC continues: that of the magic, version, flags and the motion's length.
+    pub(crate) fn seed(&self) -> u16 {
+        crc::of_prefix(self.flags, self.motion_len)
+    }
+
+    /// The motion, unchecked, and what follows it.
+    pub(crate) fn motion(&self) -> Result<(&'a [u8], &'a [u8]), OpenError> {
+        self.rest.split_at_checked(self.motion_len as usize).ok_or(OpenError::Truncated)
+    }
+
+    /// Checks what follows the motion: snapshots, or nothing.
+    pub(crate) fn index(&self, motion: &[u8], rest: &'a [u8]) -> Result<&'a [u8], OpenError> {
+        let mut index = &[][..];
+        let mut reader = Reader::new(rest);
+        if self.flags & HAS_INDEX != 0 {
+            let len = reader.varint();
+            index = reader.take(len);
+            reader.check()?;
+            let last_crc = motion.last_chunk().copied().map_or(0, u16::from_le_bytes);
+            blocks::check(index, index_seed(last_crc, len))?;
+            index = without_last_crc(index)?;
+        }
+        if reader.rest().is_empty() { Ok(index) } else { Err(OpenError::Malformed) }
     }
 }
 
-impl<'a> Parts<'a> {
-    /// Checks what follows the motion, whose last CRC is `last_crc`: snapshots, or nothing.
-    pub(crate) fn index(&self, rest: &'a [u8], last_crc: u16) -> Result<&'a [u8], OpenError> {
-        let mut index = &[][..];
-        let mut reader = Bytes(rest);
-        if self.flags & HAS_INDEX != 0 {
-            let len = reader.varint()?;
-            index = blocks::check(reader.take(len as usize)?, index_seed(last_crc, len))?.0;
-        }
-        if reader.0.is_empty() { Ok(index) } else { Err(OpenError::Malformed) }
+/// Checks the magic, the version and the flags.
+pub(crate) fn check_fixed([magic0, magic1, version, flags]: [u8; 4]) -> Result<(), OpenError> {
+    if [magic0, magic1] != MAGIC {
+        Err(OpenError::BadMagic)
+    } else if version != VERSION {
+        Err(OpenError::UnsupportedVersion(version))
+    } else if flags & !KNOWN_FLAGS != 0 {
+        Err(OpenError::Malformed)
+    } else {
+        Ok(())
     }
+}
+
+/// Checked blocks without the last CRC: what a decoder reads past the end is zeros.
+fn without_last_crc(blocks: &[u8]) -> Result<&[u8], OpenError> {
+    blocks.split_last_chunk::<CRC_BYTES>().map(|(blocks, _)| blocks).ok_or(OpenError::Malformed)
 }
 
 impl Head {
-    /// Reads the head of a motion that was made for `rig`.
-    pub(crate) fn read(input: &Input<'_>, flags: u8, rig: &Rig<'_>, rig_id: Option<u32>) -> Result<Head, OpenError> {
-        let mut reader = Reader { input, position: 0 };
+    pub(crate) const NONE: Head = Head {
+        flags: 0,
+        length_exponent: 0,
+        exponentials: 0,
+        exponential_bytes: 0,
+        events: 0,
+        frames: 0,
+        frame_time_ns: 0,
+        event_count: 0,
+    };
+
+    /// Reads the head of a motion that was made for `rig`, up to its events.
+    #[inline(never)]
+    pub(crate) fn read(&mut self, input: &Input<'_>, rig: &Rig<'_>) -> Result<(), OpenError> {
+        let mut reader = Reader::of_blocks(input, 0);
         let rate = reader.byte();
-        let frame_time_ns = match FRAME_TIMES_NS.get(usize::from(rate)) {
-            Some(&0) => reader.u32(),
-            Some(&time) => time,
-            None => return Err(OpenError::Malformed),
-        };
-        let frames = reader.varint();
-        let length_exponent = reader.byte() as i8;
-        if frame_time_ns == 0 || frames == 0 || frames > MAX_FRAMES || !(-63..=31).contains(&length_exponent) {
+        // 0 where there is none of this index, and where the time follows.
+        self.frame_time_ns = FRAME_TIMES_NS.get(usize::from(rate)).copied().unwrap_or(0);
+        if rate == 0 {
+            self.frame_time_ns = reader.u32();
+        }
+        self.frames = reader.varint();
+        self.length_exponent = reader.byte() as i8;
+        if self.frame_time_ns == 0 || self.frames.wrapping_sub(1) >= MAX_FRAMES || !(-63..=31).contains(&self.length_exponent) {
             return Err(OpenError::Malformed);
         }
-        if let Some(id) = rig_id
-            && reader.u32() != id
-        {
+        if self.flags & HAS_RIG == 0 && reader.u32() != rig.id() {
             return Err(OpenError::WrongRig);
         }
-        let exponentials = reader.position as u8;
-        // A joint with a choice has three channels: 43 bytes at most.
-        let choices = if flags & HAS_EXPONENTIALS != 0 { rig.joints().filter(has_choice).count() } else { 0 };
-        let exponential_bytes = choices.div_ceil(8) as u8;
-        (0..exponential_bytes).for_each(|_| _ = reader.byte());
-        let event_count = if flags & HAS_EVENTS != 0 { reader.varint() } else { 0 };
-        let events = reader.position as u8;
-        Ok(Head { flags, length_exponent, frames, frame_time_ns, event_count, events, exponentials, exponential_bytes })
+        self.exponentials = reader.position as u8;
+        if self.flags & HAS_EXPONENTIALS != 0 {
+            // A joint with a choice has three channels: 43 bytes at most.
+            self.exponential_bytes = rig.joints().filter(has_choice).count().div_ceil(8) as u8;
+            reader.position += u32::from(self.exponential_bytes);
+        }
+        if self.flags & HAS_EVENTS != 0 {
+            self.event_count = reader.varint();
+        }
+        self.events = reader.position as u8;
+        Ok(())
     }
 
     /// What the values of the clip's poses mean. `input` holds the motion's first block.
-    pub(crate) fn form(&self, input: &Input<'_>, rig_id: u32) -> Form {
-        let mut reader = Reader { input, position: u32::from(self.exponentials) };
-        Form::new(rig_id, self.length_exponent, (0..self.exponential_bytes).map(|_| reader.byte()))
+    pub(crate) fn form<'a>(&self, input: &Input<'a>, rig_id: u32) -> FormRef<'a> {
+        let first = usize::from(self.exponentials);
+        let bits = input.0.get(first..).unwrap_or(&[]);
+        let bits = bits.get(..usize::from(self.exponential_bytes)).unwrap_or(bits);
+        FormRef { rig_id, length_exponent: self.length_exponent, exponentials: bits }
     }
 }
 
@@ -134,52 +186,51 @@ pub struct Event {
 
 impl<'a> Clip<'a> {
     /// Checks a file that holds its rig.
-    #[inline(never)]
-    pub fn new_checked(bytes: &'a [u8]) -> Result<Clip<'a>, OpenError> {
-        let parts = Parts::split(bytes)?;
-        let rig = Rig::new_checked(parts.rig.ok_or(OpenError::WrongRig)?)?;
-        Clip::assemble(&parts, rig, None)
+    pub fn new_checked(file: &'a [u8]) -> Result<Clip<'a>, OpenError> {
+        Clip::with_rig(file, &[])
     }
 
     /// Checks a file without a rig (`pantin convert --rig-out`), with the rig that it was made for.
     /// A file that holds its own is opened with that.
-    pub fn with_rig(bytes: &'a [u8], rig_bytes: &'a [u8]) -> Result<Clip<'a>, OpenError> {
-        let parts = Parts::split(bytes)?;
-        if let Some(own) = parts.rig {
-            return Clip::assemble(&parts, Rig::new_checked(own)?, None);
-        }
-        let rig = Rig::new_checked(rig_bytes)?;
-        Clip::assemble(&parts, rig, Some(rig.id()))
+    pub fn with_rig(file: &'a [u8], rig: &'a [u8]) -> Result<Clip<'a>, OpenError> {
+        let mut clip = Clip::NONE;
+        clip.open(file, rig)?;
+        Ok(clip)
     }
+
+    pub(crate) const NONE: Clip<'a> = Clip { rig: Rig::NONE, motion: &[], rig_len: 0, head: Head::NONE, symbols: 0, index: &[] };
 
     #[inline(never)]
-    fn assemble(parts: &Parts<'a>, rig: Rig<'a>, rig_id: Option<u32>) -> Result<Clip<'a>, OpenError> {
-        let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
-        let (motion, last_crc) = blocks::check(motion, parts.seed)?;
-        let index = parts.index(rest, last_crc)?;
-        Ok(Clip { index, ..Clip::read(parts, rig, rig_id, motion, OpenError::Malformed)? })
+    fn open(&mut self, file: &'a [u8], rig: &'a [u8]) -> Result<(), OpenError> {
+        let parts = Parts::split(file)?;
+        let (motion, rest) = parts.motion()?;
+        blocks::check(motion, parts.seed())?;
+        self.index = parts.index(motion, rest)?;
+        self.read(&parts, rig, motion, OpenError::Malformed)
     }
 
-    /// Reads what stands before the symbols in the front of a motion, without the last CRC; `short` is what it means that its events go on past
-    /// that.
-    pub(crate) fn read(
-        parts: &Parts<'a>,
-        rig: Rig<'a>,
-        rig_id: Option<u32>,
-        motion: &'a [u8],
-        short: OpenError,
-    ) -> Result<Clip<'a>, OpenError> {
-        let input = Input { bytes: motion, base: 0 };
-        let head = Head::read(&input, parts.flags, &rig, rig_id)?;
-        let mut reader = Reader { input: &input, position: u32::from(head.events) };
-        for _ in 0..head.event_count {
+    /// Reads the rig, and the front of a motion before its symbols: `motion` is of checked blocks. `short` is what it means that the events
+    /// go on past them.
+    #[inline(never)]
+    pub(crate) fn read(&mut self, parts: &Parts<'a>, rig: &'a [u8], motion: &'a [u8], short: OpenError) -> Result<(), OpenError> {
+        (self.head.flags, self.rig_len) = (parts.flags, parts.rig_len);
+        let rig = if parts.flags & HAS_RIG != 0 { parts.rig } else { rig };
+        if rig.is_empty() {
+            return Err(OpenError::WrongRig);
+        }
+        self.rig.read(rig)?;
+        self.motion = without_last_crc(motion)?;
+        let input = self.input();
+        self.head.read(&input, &self.rig)?;
+        let mut reader = Reader::of_blocks(&input, u32::from(self.head.events));
+        for _ in 0..self.head.event_count {
             event(&mut reader, 0);
-            if reader.position > input.end() {
+            if reader.position > behind_crc(input.0.len() as u32) {
                 return Err(short);
             }
         }
-        let symbols = reader.position;
-        Ok(Clip { rig, motion, rig_len: parts.rig_len, head, symbols, index: &[] })
+        self.symbols = reader.position;
+        Ok(())
     }
 
     /// All but the bytes.
@@ -187,10 +238,10 @@ impl<'a> Clip<'a> {
         Clip {
             rig: self.rig.with_bytes(&[]),
             motion: &[],
+            index: &[],
             rig_len: self.rig_len,
             head: self.head,
             symbols: self.symbols,
-            index: &[],
         }
     }
 
@@ -200,10 +251,10 @@ impl<'a> Clip<'a> {
         Clip {
             rig: self.rig.with_bytes(body),
             motion: &[],
+            index: &[],
             rig_len: self.rig_len,
             head: self.head,
             symbols: self.symbols,
-            index: &[],
         }
     }
 
@@ -253,14 +304,18 @@ impl<'a> Clip<'a> {
     }
 
     /// What the raw values of the clip's poses mean. Clips of one rig can have different forms.
-    #[inline(never)]
     pub fn form(&self) -> Form {
+        self.form_ref().to_form()
+    }
+
+    /// [`Clip::form`] where it stands.
+    pub fn form_ref(&self) -> FormRef<'a> {
         self.head.form(&self.input(), self.rig.id())
     }
 
     /// Whether the clip codes this joint's three rotation channels as the x, y and z of an exponential map.
     pub fn is_exponential(&self, joint: usize) -> bool {
-        self.form().is_exponential(&self.rig, joint)
+        self.form_ref().is_exponential(&self.rig, joint)
     }
 
     /// The kinds of a joint's channels as the clip codes them; none for a joint that the rig lacks. They differ from the rig's
@@ -305,7 +360,7 @@ impl<'a> Clip<'a> {
         let mut frame = 0;
         (0..self.head.event_count).map(move |_| {
             let input = self.input();
-            let mut reader = Reader { input: &input, position };
+            let mut reader = Reader::of_blocks(&input, position);
             let event = event(&mut reader, frame);
             (position, frame) = (reader.position, event.frame);
             event
@@ -315,9 +370,18 @@ impl<'a> Clip<'a> {
     /// Number of [`crate::ChannelState`]s that a player of this clip needs.
     #[inline(never)]
     pub fn moving(&self) -> usize {
+        self.starts(u32::MAX, &mut [], &mut []).1
+    }
+
+    /// Reads how the channels start, up to the last position at which a start is sure to be whole: where the segments begin, and how many
+    /// channels move, of which as many as fit are in `states`; as many as `usize` holds if not all of them are there.
+    #[inline(never)]
+    pub(crate) fn starts(&self, dry_at: u32, states: &mut [ChannelState], pose: &mut [i32]) -> (Cursor, usize) {
         let input = self.input();
-        ChannelStarts::new(&self.rig, self.head.length_exponent)
-            .count(&mut Symbols { at: Cursor::start(&input, self.symbols), input })
+        let mut starts = ChannelStarts::new(&self.rig, self.head.length_exponent);
+        let mut symbols = Symbols { at: Cursor::start(&input, self.symbols), input };
+        let done = starts.read(&mut symbols, dry_at, states, pose);
+        (symbols.at, if done { usize::from(starts.moving) } else { usize::MAX })
     }
 
     /// Bytes of the snapshots in the file, their CRCs included; 0 if there are none.
@@ -330,11 +394,11 @@ impl<'a> Clip<'a> {
     }
 
     pub(crate) fn index(&self) -> Option<Input<'a>> {
-        if self.index.is_empty() { None } else { Some(Input { bytes: self.index, base: 0 }) }
+        if self.index.is_empty() { None } else { Some(Input(self.index)) }
     }
 
     pub(crate) fn input(&self) -> Input<'a> {
-        Input { bytes: self.motion, base: 0 }
+        Input(self.motion)
     }
 }
 
@@ -344,7 +408,7 @@ pub fn index_seed(motion_crc: u16, len: u32) -> u16 {
 }
 
 /// The event that follows one at frame `before`.
-pub(crate) fn event(reader: &mut Reader<'_, '_>, before: u32) -> Event {
+pub(crate) fn event(reader: &mut Reader<'_>, before: u32) -> Event {
     let frame = before.wrapping_add(reader.varint());
     Event { frame, id: reader.varint() }
 }

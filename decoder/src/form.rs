@@ -9,45 +9,40 @@ use crate::scalar::ScalarRef;
 use crate::turn::{EulerOrder, NO_ROTATION, Turn, about, normalized, of_exponential, product};
 use crate::units::{Angle, Component, Fraction};
 
-/// Words for a bit a joint with a choice: such a joint has three channels at least.
-const WORDS: usize = (MAX_CHANNELS / 3).div_ceil(32);
-
 /// What the raw values of a pose mean: which rig's they are, the unit of positions, and which joints are coded as exponential maps.
 ///
 /// An encoder chooses the unit and the maps clip by clip, so that two clips of one rig can differ in form. Values of one form mean
 /// nothing in another: what draws or mixes poses compares forms first ([`Form::check`]). `pantin convert --same-form` gives a set of
-/// clips one form.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// clips one form. A [`Pose`] refers to its form by a [`FormRef`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     /// [`Rig::id`].
     rig_id: u32,
     length_exponent: i8,
-    /// A hash of all else: forms that differ share it with a probability of 2^-32, and comparing it costs one instruction.
-    hash: u32,
-    /// Bit i % 32 of word i / 32: whether the i-th joint that [`has_choice`] is coded as an exponential map.
-    exponentials: [u32; WORDS],
+    /// Number of bytes up to the last that is not 0.
+    len: u8,
+    /// Bit i % 8 of byte i / 8: whether the i-th joint that [`has_choice`] is coded as an exponential map.
+    exponentials: [u8; Form::EXPONENTIAL_BYTES],
 }
 
 impl Form {
     /// The form of no rig: what stands in memory before a clip is set up.
-    pub const NONE: Form = Form { rig_id: 0, length_exponent: 0, hash: 0, exponentials: [0; WORDS] };
+    pub const NONE: Form = Form { rig_id: 0, length_exponent: 0, len: 0, exponentials: [0; Form::EXPONENTIAL_BYTES] };
 
-    /// Bytes that hold a bit for each joint with a choice, in any rig.
-    pub const EXPONENTIAL_BYTES: usize = 4 * WORDS;
+    /// Bytes that hold a bit for each joint with a choice, in any rig: such a joint has three channels at least.
+    pub const EXPONENTIAL_BYTES: usize = (MAX_CHANNELS / 3).div_ceil(32) * 4;
 
     /// The form of a rig's id, the exponent of its positions' unit, and the exponential bits of FORMAT.md 4, byte by byte; bytes
     /// past [`Form::EXPONENTIAL_BYTES`] are ignored.
     pub fn new(rig_id: u32, length_exponent: i8, exponentials: impl IntoIterator<Item = u8>) -> Form {
-        let mut words = [0; WORDS];
-        for (index, byte) in exponentials.into_iter().enumerate() {
-            if let Some(word) = words.get_mut(index / 4) {
-                *word |= u32::from(byte) << (8 * (index % 4));
+        let mut form = Form { rig_id, length_exponent, ..Form::NONE };
+        for (index, (own, byte)) in (1..).zip(form.exponentials.iter_mut().zip(exponentials)) {
+            *own = byte;
+            if byte != 0 {
+                form.len = index;
             }
         }
-        let hash = words
-            .iter()
-            .fold(rig_id ^ length_exponent as u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(13));
-        Form { rig_id, length_exponent, hash, exponentials: words }
+        form
     }
 
     /// The id of the rig: [`Rig::id`].
@@ -62,12 +57,55 @@ impl Form {
 
     /// The exponential bits of FORMAT.md 4, byte by byte.
     pub fn exponentials(&self) -> impl Iterator<Item = u8> + '_ {
-        self.exponentials.iter().flat_map(|word| word.to_le_bytes())
+        self.exponentials.iter().copied()
+    }
+
+    /// Whether the three rotation channels of this joint of the form's rig hold the x, y and z of an exponential map.
+    pub fn is_exponential(&self, rig: &Rig<'_>, joint: usize) -> bool {
+        FormRef::from(self).is_exponential(rig, joint)
+    }
+
+    /// Compares two forms; the error names the first difference.
+    #[inline]
+    pub fn check<'f>(&self, other: impl Into<FormRef<'f>>) -> Result<(), WrongForm> {
+        FormRef::from(self).check(other.into())
+    }
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Form::NONE
+    }
+}
+
+/// A [`Form`] whose bits stand in a clip, or in a form: 16 bytes on a 32-bit machine instead of 52.
+#[derive(Clone, Copy, Debug)]
+pub struct FormRef<'f> {
+    pub(crate) rig_id: u32,
+    pub(crate) length_exponent: i8,
+    /// As in a form; what is not there is 0.
+    pub(crate) exponentials: &'f [u8],
+}
+
+impl FormRef<'_> {
+    /// The id of the rig: [`Rig::id`].
+    pub fn rig_id(&self) -> u32 {
+        self.rig_id
+    }
+
+    /// The raw value of a position channel times 2^`length_exponent` is in units of the source: -63 to 31.
+    pub fn length_exponent(&self) -> i8 {
+        self.length_exponent
+    }
+
+    /// A form of its own, which outlives the clip.
+    pub fn to_form(&self) -> Form {
+        Form::new(self.rig_id, self.length_exponent, self.exponentials.iter().copied())
     }
 
     /// Whether the joint that stands after `choice` other joints with a choice is coded as an exponential map.
     pub(crate) fn is_exponential_choice(&self, choice: usize) -> bool {
-        self.exponentials.get(choice / 32).is_some_and(|word| word >> (choice % 32) & 1 != 0)
+        self.exponentials.get(choice / 8).is_some_and(|byte| byte >> (choice % 8) & 1 != 0)
     }
 
     /// Whether the three rotation channels of this joint of the form's rig hold the x, y and z of an exponential map.
@@ -77,20 +115,37 @@ impl Form {
     }
 
     /// Compares two forms; the error names the first difference.
-    #[inline]
-    pub fn check(&self, other: &Form) -> Result<(), WrongForm> {
-        if self.hash == other.hash { Ok(()) } else { Err(self.difference(other)) }
-    }
-
     #[inline(never)]
-    fn difference(&self, other: &Form) -> WrongForm {
+    pub fn check(&self, other: FormRef<'_>) -> Result<(), WrongForm> {
         if self.rig_id != other.rig_id {
-            WrongForm::Rig
-        } else if self.length_exponent != other.length_exponent {
-            WrongForm::LengthExponent
-        } else {
-            WrongForm::Exponentials
+            return Err(WrongForm::Rig);
         }
+        if self.length_exponent != other.length_exponent {
+            return Err(WrongForm::LengthExponent);
+        }
+        let (mut own, mut its) = (self.exponentials.iter(), other.exponentials.iter());
+        loop {
+            match (own.next(), its.next()) {
+                (None, None) => return Ok(()),
+                (a, b) if a.unwrap_or(&0) == b.unwrap_or(&0) => {}
+                _ => return Err(WrongForm::Exponentials),
+            }
+        }
+    }
+}
+
+impl PartialEq for FormRef<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.check(*other).is_ok()
+    }
+}
+
+impl Eq for FormRef<'_> {}
+
+impl<'f> From<&'f Form> for FormRef<'f> {
+    fn from(form: &'f Form) -> FormRef<'f> {
+        let bits = form.exponentials.get(..usize::from(form.len)).unwrap_or(&form.exponentials);
+        FormRef { rig_id: form.rig_id, length_exponent: form.length_exponent, exponentials: bits }
     }
 }
 
@@ -133,7 +188,7 @@ pub struct Pose<'p> {
     /// quaternion components in 2^-30, scalars in 2^([`crate::Scalar::exponent`] - 31).
     pub values: &'p [i32],
     /// What the values mean.
-    pub form: &'p Form,
+    pub form: FormRef<'p>,
 }
 
 impl Pose<'_> {

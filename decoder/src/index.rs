@@ -1,6 +1,7 @@
 //! Snapshots in the file (`--index`): after the motion, in blocks of their own. A decoder may leave them out.
 
-use crate::blocks::{Input, Reader};
+use crate::blocks::Input;
+use crate::bytes::Reader;
 use crate::channel::ChannelState;
 use crate::entropy::{Cursor, STATE_BYTES};
 use crate::layout::{START_MODE, segment_type};
@@ -15,14 +16,14 @@ pub(crate) struct Entry {
 
 /// The last snapshot of no later frame than `target`.
 pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
-    let mut reader = Reader { input, position: 0 };
+    let mut reader = Reader::of_blocks(input, 0);
     let spacing = reader.varint();
     let count = reader.varint();
     let mut entry = Entry { frame: 0, position: 0 };
     for _ in 0..count {
         let frame = entry.frame.checked_add(spacing)?;
         // An index that ends before its list does would read zeros for long.
-        if frame > target || spacing == 0 || reader.position as usize > input.bytes.len() {
+        if frame > target || spacing == 0 || reader.overrun() {
             break;
         }
         entry = Entry { frame, position: entry.position.wrapping_add(reader.varint()) };
@@ -32,7 +33,7 @@ pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
 
 /// Goes to where the snapshot was taken. Every channel has its slot and step from its start.
 pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut PlayState, channels: &mut Channels<'_>) {
-    let mut reader = Reader { input, position: entry.position };
+    let mut reader = Reader::of_blocks(input, entry.position);
     let at = reader.varint();
     let state = (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(reader.byte()));
     *position = PlayState { cursor: Cursor::at(at, state), frame: entry.frame, next: 0 };

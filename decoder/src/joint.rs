@@ -1,7 +1,6 @@
 //! The joints of a rig, and the iterator that reads them.
 
-use crate::OpenError;
-use crate::bytes::Bytes;
+use crate::bytes::Reader;
 use crate::kind::{Kind, Kinds};
 use crate::layout::MAX_JOINTS;
 use crate::rig::Rig;
@@ -23,6 +22,10 @@ pub struct Joint<'a> {
 }
 
 impl<'a> Joint<'a> {
+    /// What stands where a joint is read to.
+    pub(crate) const NONE: Joint<'a> =
+        Joint { name: &[], parent: None, offset: [0; 3], end_site: false, first_channel: 0, kinds: Kinds::NONE };
+
     /// Its name; empty for an End Site, and for a name that is not UTF-8 (opening a rig does not look into names).
     pub fn name(&self) -> &'a str {
         core::str::from_utf8(self.name).unwrap_or("")
@@ -99,51 +102,31 @@ pub fn has_choice(joint: &Joint<'_>) -> bool {
 /// Iterates over the joints of a rig.
 #[derive(Clone, Debug)]
 pub struct Joints<'a> {
-    pub(crate) bytes: Bytes<'a>,
+    pub(crate) reader: Reader<'a>,
     pub(crate) left: u16,
     pub(crate) first_channel: u16,
 }
 
 impl<'a> Joints<'a> {
-    pub(crate) fn new(bytes: Bytes<'a>, left: u16) -> Joints<'a> {
-        Joints { bytes, left, first_channel: 0 }
-    }
-
-    fn parse(&mut self) -> Result<Joint<'a>, OpenError> {
-        let first_channel = self.first_channel;
-        let (mut kinds, mut offset) = (Kinds::NONE, [0; 3]);
-        let (name, parent, end_site) = self.fields(&mut kinds, &mut offset)?;
-        Ok(Joint { name, parent, offset, end_site, first_channel, kinds })
-    }
-
-    /// Reads a joint: its kinds and offset to where they belong, for stacks on which a whole joint is much; returns name, parent and
-    /// whether it is an End Site.
+    /// Reads the next joint to where it belongs.
     #[inline(never)]
-    pub(crate) fn fields(
-        &mut self,
-        kinds: &mut Kinds<'a>,
-        offset: &mut [i32; 3],
-    ) -> Result<(&'a [u8], Option<u16>, bool), OpenError> {
-        let head = self.bytes.byte()?;
+    pub(crate) fn read(&mut self, joint: &mut Joint<'a>) {
+        let reader = &mut self.reader;
+        let head = reader.byte();
         let len = head & 0xf;
-        let end_site = head & 0x10 != 0;
-        if head & 0xe0 != 0 || (end_site && len != 0) {
-            return Err(OpenError::Malformed);
+        joint.end_site = head & 0x10 != 0;
+        let parent = reader.varint();
+        reader.malformed |= head & 0xe0 != 0 || (joint.end_site && len != 0) || parent > MAX_JOINTS as u32;
+        joint.parent = (parent as u16).checked_sub(1);
+        joint.kinds = Kinds::new(reader.take(u32::from(len).div_ceil(2)), len);
+        for along in &mut joint.offset {
+            *along = reader.zigzag();
         }
-        let parent = self.bytes.varint()?;
-        if parent > MAX_JOINTS as u32 {
-            return Err(OpenError::Malformed);
-        }
-        let parent = (parent as u16).checked_sub(1);
-        *kinds = Kinds::new(self.bytes.take(usize::from(len).div_ceil(2))?, len);
-        for along in offset {
-            *along = self.bytes.zigzag()?;
-        }
-        let name = if end_site { &[][..] } else { self.bytes.name()? };
+        joint.name = if joint.end_site { &[] } else { reader.name() };
+        joint.first_channel = self.first_channel;
         // At most MAX_JOINTS joints of 15 channels: fits 16 bits.
         self.first_channel = self.first_channel.wrapping_add(u16::from(len));
         self.left = self.left.saturating_sub(1);
-        Ok((name, parent, end_site))
     }
 }
 
@@ -151,6 +134,11 @@ impl<'a> Iterator for Joints<'a> {
     type Item = Joint<'a>;
 
     fn next(&mut self) -> Option<Joint<'a>> {
-        if self.left == 0 { None } else { self.parse().ok() }
+        if self.left == 0 {
+            return None;
+        }
+        let mut joint = Joint::NONE;
+        self.read(&mut joint);
+        Some(joint)
     }
 }

@@ -1,7 +1,5 @@
 //! What a channel drives: the kinds of the format.
 
-use crate::OpenError;
-
 /// What one channel drives. A joint applies its rotations in the order of its list, as BVH does.
 ///
 /// A rig's kinds are those of the source. Where a clip codes three Euler angles as an exponential map, its poses hold the
@@ -88,8 +86,8 @@ impl Kind {
         }
     }
 
-    pub(crate) fn from_code(code: u8) -> Result<Kind, OpenError> {
-        Kind::ALL.get(usize::from(code)).copied().ok_or(OpenError::Malformed)
+    fn from_code(code: u8) -> Option<Kind> {
+        Kind::ALL.get(usize::from(code)).copied()
     }
 }
 
@@ -110,6 +108,19 @@ impl<'a> Kinds<'a> {
     }
 }
 
+impl Kinds<'_> {
+    /// Whether all of them can be a joint's.
+    pub(crate) fn are_of_joint(&mut self) -> bool {
+        // A code that is no kind ends the walk early.
+        for kind in self.by_ref() {
+            if kind == Kind::Scalar {
+                return false;
+            }
+        }
+        self.next == self.len
+    }
+}
+
 impl Iterator for Kinds<'_> {
     type Item = Kind;
 
@@ -120,7 +131,7 @@ impl Iterator for Kinds<'_> {
         let byte = *self.halves.get(usize::from(self.next / 2))?;
         let code = if self.next.is_multiple_of(2) { byte & 0xf } else { byte >> 4 };
         self.next += 1;
-        Kind::from_code(code).ok()
+        Kind::from_code(code)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -87,7 +87,7 @@ pub use channel::ChannelState;
 pub use clip::{Clip, Event};
 pub use clock::Clock;
 pub use error::{Memory, OpenError, TooSmall};
-pub use form::{CodedKinds, Form, Pose, WrongForm};
+pub use form::{CodedKinds, Form, FormRef, Pose, WrongForm};
 pub use history::Undo;
 pub use joint::{Joint, JointRef, Joints};
 pub use kind::{Kind, Kinds};

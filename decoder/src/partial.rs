@@ -6,7 +6,6 @@ use crate::clip::{Clip, Parts};
 use crate::layout::CRC_BYTES;
 use crate::play_state::PlayState;
 use crate::player::{Player, SeekCache};
-use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
 use crate::{OpenError, TooSmall, crc};
 
@@ -26,14 +25,14 @@ impl<'a> PartialClip<'a> {
     #[inline(never)]
     pub fn new(file: &'a [u8]) -> Result<PartialClip<'a>, OpenError> {
         let parts = Parts::split(file)?;
-        let rig = Rig::new_checked(parts.rig.ok_or(OpenError::WrongRig)?)?;
         let (checked, outcome) = check(&parts, 0);
-        let Some(motion) = without_last_crc(&parts, checked) else {
+        if checked == 0 {
             outcome?;
             return Err(OpenError::Truncated);
-        };
-        let short = if checked < parts.motion_len { OpenError::Truncated } else { OpenError::Malformed };
-        let clip = Clip::read(&parts, rig, None, motion, short)?;
+        }
+        let short = if checked < parts.motion_len as usize { OpenError::Truncated } else { OpenError::Malformed };
+        let mut clip = Clip::NONE;
+        clip.read(&parts, &[], parts.rest.get(..checked).unwrap_or(&[]), short)?;
         let dry_at = dry_at(&parts, checked);
         if clip.symbols() > dry_at {
             return Err(OpenError::Truncated);
@@ -55,10 +54,11 @@ impl<'a> PartialClip<'a> {
     /// Checks that `file`, which it was extended by, is whole.
     pub fn finish(&self, file: &'a [u8]) -> Result<(), OpenError> {
         let parts = Parts::split(file)?;
-        let (motion, rest) = parts.rest.split_at_checked(parts.motion_len).ok_or(OpenError::Truncated)?;
-        let last = motion.last_chunk().filter(|_| self.checked == motion.len()).ok_or(OpenError::BadCrc)?;
-        parts.index(rest, u16::from_le_bytes(*last))?;
-        Ok(())
+        let (motion, rest) = parts.motion()?;
+        if self.checked != motion.len() {
+            return Err(OpenError::BadCrc);
+        }
+        parts.index(motion, rest).map(drop)
     }
 
     /// What is known of the clip.
@@ -66,7 +66,7 @@ impl<'a> PartialClip<'a> {
         &self.clip
     }
 
-    /// A player at frame 0; `None` while that has not come. `states` and `pose` need [`Rig::channels`] elements.
+    /// A player at frame 0; `None` while that has not come. `states` and `pose` need [`crate::Rig::channels`] elements.
     pub fn player<'m>(&self, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Option<Player<'a, 'm>>, TooSmall> {
         Player::from_partial(self.clip, self.dry_at, states, pose)
     }
@@ -85,12 +85,12 @@ impl<'a> PartialClip<'a> {
 
 /// Checks the motion's whole blocks from the first one that was not: how many bytes of them are good.
 fn check(parts: &Parts<'_>, mut checked: usize) -> (usize, Result<(), OpenError>) {
-    let motion = parts.rest.get(..parts.motion_len).unwrap_or(parts.rest);
+    let motion = parts.rest.get(..parts.motion_len as usize).unwrap_or(parts.rest);
     for block in motion.get(checked..).unwrap_or(&[]).chunks(STRIDE) {
-        if block.len() < STRIDE && motion.len() < parts.motion_len {
+        if block.len() < STRIDE && motion.len() < parts.motion_len as usize {
             break;
         }
-        let seed = if checked == 0 { parts.seed } else { crc::INITIAL };
+        let seed = if checked == 0 { parts.seed() } else { crc::INITIAL };
         if !is_intact(block, seed) {
             return (checked, Err(OpenError::BadCrc));
         }
@@ -105,7 +105,7 @@ fn without_last_crc<'a>(parts: &Parts<'a>, checked: usize) -> Option<&'a [u8]> {
 }
 
 fn dry_at(parts: &Parts<'_>, checked: usize) -> u32 {
-    if checked < parts.motion_len { (checked as u32).saturating_sub(MAX_SEGMENT_BYTES) } else { u32::MAX }
+    if checked < parts.motion_len as usize { (checked as u32).saturating_sub(MAX_SEGMENT_BYTES) } else { u32::MAX }
 }
 
 /// A [`PartialClip`] and its player without the bytes: while the buffer that holds them grows, nothing borrows it.
@@ -155,7 +155,7 @@ impl PausedClip {
         values: &'m mut [i32],
     ) -> Result<(PartialClip<'a>, Player<'a, 'm>), OpenError> {
         let parts = Parts::split(file)?;
-        let clip = self.clip.with_bytes(parts.rig.ok_or(OpenError::WrongRig)?);
+        let clip = self.clip.with_bytes(parts.rig);
         let mut partial = PartialClip { clip, checked: self.checked, dry_at: 0 };
         partial.extend(file)?;
         let player = Player::resume(partial.clip, self.moving, self.position, states, values).ok_or(OpenError::Truncated)?;

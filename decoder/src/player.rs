@@ -3,15 +3,13 @@
 use crate::channel::ChannelState;
 use crate::clip::Clip;
 use crate::clock::Clock;
-use crate::entropy::{Cursor, Symbols};
 use crate::error::Memory;
-use crate::form::{Form, Pose, WrongForm};
+use crate::form::{Pose, WrongForm};
 use crate::history::{History, Undo};
 use crate::joint::JointRef;
 use crate::play_state::{Channels, PlayState, reads};
 use crate::scalar::ScalarRef;
 use crate::snapshots::{SnapshotPos, Snapshots};
-use crate::start::{ChannelStarts, Opened};
 use crate::turn::Turn;
 use crate::units::Fraction;
 use crate::{TooSmall, index};
@@ -38,7 +36,6 @@ use fixed::types::U0F16;
 #[derive(Debug)]
 pub struct Player<'a, 'm> {
     clip: Clip<'a>,
-    form: Form,
     states: &'m mut [ChannelState],
     pose: &'m mut [i32],
     position: PlayState,
@@ -76,26 +73,14 @@ pub(crate) fn values(values: &mut [i32], needed: usize) -> Result<&mut [i32], To
     values.get_mut(..needed).ok_or(TooSmall { memory: Memory::Values, needed, given })
 }
 
-/// Reads how channels start, up to the last position at which a start is sure to be whole: where the segments begin, and how many channels
-/// move; as many as `usize` holds if there are more than `states`, or if not all of them are there.
-#[inline(never)]
-fn open(clip: &Clip<'_>, dry_at: u32, states: &mut [ChannelState], pose: &mut [i32]) -> (Cursor, usize) {
-    let input = clip.input();
-    let mut starts = ChannelStarts::new(&clip.rig(), clip.length_exponent());
-    let mut symbols = Symbols { at: Cursor::start(&input, clip.symbols()), input };
-    let opened = starts.read(&mut symbols, dry_at, states, pose);
-    (symbols.at, if opened == Opened::Done { usize::from(starts.moving) } else { usize::MAX })
-}
-
 impl<'a, 'm> Player<'a, 'm> {
     /// Starts at frame 0. `states` needs [`Clip::moving`] elements, `pose` needs [`crate::Rig::channels`].
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, TooSmall> {
         let pose = values(pose, clip.rig().channels())?;
-        let (cursor, moving) = open(&clip, u32::MAX, states, pose);
+        let (cursor, moving) = clip.starts(u32::MAX, states, pose);
         let given = states.len();
-        let too_small = || TooSmall { memory: Memory::States, needed: clip.moving(), given };
-        let states = states.get_mut(..moving).ok_or_else(too_small)?;
-        Ok(Player { clip, form: clip.form(), states, pose, position: PlayState { cursor, frame: 0, next: 0 } })
+        let states = states.get_mut(..moving).ok_or(TooSmall { memory: Memory::States, needed: moving, given })?;
+        Ok(Player { clip, states, pose, position: PlayState { cursor, frame: 0, next: 0 } })
     }
 
     /// [`Player::new`], for a clip of which the front alone may be there; `None` while its channels' starts have not come. `states` needs
@@ -110,9 +95,9 @@ impl<'a, 'm> Player<'a, 'm> {
         let pose = values(pose, needed)?;
         let given = states.len();
         let states = states.get_mut(..needed).ok_or(TooSmall { memory: Memory::States, needed, given })?;
-        let (cursor, moving) = open(&clip, dry_at, states, pose);
+        let (cursor, moving) = clip.starts(dry_at, states, pose);
         let Some(states) = states.get_mut(..moving) else { return Ok(None) };
-        Ok(Some(Player { clip, form: clip.form(), states, pose, position: PlayState { cursor, frame: 0, next: 0 } }))
+        Ok(Some(Player { clip, states, pose, position: PlayState { cursor, frame: 0, next: 0 } }))
     }
 
     /// What a player is without the memory that it was lent: the number of moving channels, and where it is.
@@ -129,7 +114,7 @@ impl<'a, 'm> Player<'a, 'm> {
         pose: &'m mut [i32],
     ) -> Option<Self> {
         let (states, pose) = (states.get_mut(..moving)?, pose.get_mut(..clip.rig().channels())?);
-        Some(Player { clip, form: clip.form(), states, pose, position })
+        Some(Player { clip, states, pose, position })
     }
 
     /// Goes on by one frame if its segments are there: those that begin at `dry_at` at the latest.
@@ -163,7 +148,7 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// The pose of this frame, with its form.
     pub fn pose(&self) -> Pose<'_> {
-        Pose { values: self.pose, form: &self.form }
+        Pose { values: self.pose, form: self.clip.form_ref() }
     }
 
     /// The rotation of a joint at this frame, however the clip codes it: [`Pose::turn`].
@@ -191,7 +176,7 @@ impl<'a, 'm> Player<'a, 'm> {
                 *value = value.wrapping_add(((i64::from(state.v) * i64::from(part.to_bits())) >> 16) as i32);
             }
         }
-        Ok(Pose { values: out, form: &self.form })
+        Ok(Pose { values: out, form: self.clip.form_ref() })
     }
 
     /// Lets a time pass on `clock` and goes to the frame that is due. Returns whether that is another frame than before.
@@ -244,7 +229,7 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Goes back to frame 0.
     pub fn rewind(&mut self) {
         // The memory sufficed when the player was made.
-        let (cursor, _) = open(&self.clip, u32::MAX, self.states, self.pose);
+        let (cursor, _) = self.clip.starts(u32::MAX, self.states, self.pose);
         self.position = PlayState { cursor, frame: 0, next: 0 };
     }
 

@@ -2,9 +2,8 @@
 //!
 //! A rig's bytes depend on nothing but the figure, so that clips can share one by its [`Rig::id`].
 
-use crate::bytes::Bytes;
+use crate::bytes::Reader;
 use crate::joint::{Joint, JointRef, Joints};
-use crate::kind::{Kind, Kinds};
 use crate::layout::{MAX_CHANNELS, MAX_JOINTS};
 use crate::scalar::{ScalarRef, Scalars};
 use crate::{OpenError, crc, names};
@@ -27,55 +26,60 @@ pub struct Rig<'a> {
 
 impl<'a> Rig<'a> {
     /// Checks `bytes`, all of them one rig with its CRC.
-    #[inline(never)]
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, OpenError> {
-        let (body, stored) = bytes.split_last_chunk::<2>().ok_or(OpenError::Truncated)?;
+        let mut rig = Rig::NONE;
+        rig.read(bytes)?;
+        Ok(rig)
+    }
+
+    /// No joints and no scalars.
+    pub(crate) const NONE: Rig<'a> = Rig {
+        body: &[],
+        joints_at: 0,
+        joints: 0,
+        scalars: 0,
+        joint_channels: 0,
+        unit_micro_cm: 0,
+        id: Id(names::HASH_OF_NOTHING),
+        length_exponent: 0,
+    };
+
+    /// [`Rig::new_checked`] in place.
+    #[inline(never)]
+    pub(crate) fn read(&mut self, bytes: &'a [u8]) -> Result<(), OpenError> {
+        let Some((body, stored)) = bytes.split_last_chunk::<2>() else { return Err(OpenError::Truncated) };
         // One pass for both: the identity adds two instructions a byte.
-        let (sum, id) = body.iter().fold((crc::INITIAL, Id::default()), |(sum, id), &byte| (crc::push(sum, byte), id.and(byte)));
+        let mut sum = crc::INITIAL;
+        for &byte in body {
+            sum = crc::push(sum, byte);
+            self.id = self.id.and(byte);
+        }
         if sum != u16::from_le_bytes(*stored) {
             return Err(OpenError::BadCrc);
         }
-        let mut reader = Bytes(body);
-        let unit_micro_cm = reader.varint()?;
-        let length_exponent = reader.byte()? as i8;
-        let joints = reader.varint()?;
-        let scalars = reader.varint()?;
-        if unit_micro_cm == 0 || !(-31..=31).contains(&length_exponent) {
+        self.body = body;
+        let mut reader = Reader::new(body);
+        self.unit_micro_cm = reader.varint();
+        self.length_exponent = reader.byte() as i8;
+        let (joints, scalars) = (reader.varint(), reader.varint());
+        let bad = self.unit_micro_cm == 0 || !(-31..=31).contains(&self.length_exponent);
+        if bad || joints > MAX_JOINTS as u32 || scalars > MAX_CHANNELS as u32 {
             return Err(OpenError::Malformed);
         }
-        if joints > MAX_JOINTS as u32 || scalars > MAX_CHANNELS as u32 {
-            return Err(OpenError::Malformed);
+        self.joints_at = reader.position as u8;
+        (self.joints, self.scalars) = (joints as u16, scalars as u16);
+        let (mut walk, mut joint) = (self.joints(), Joint::NONE);
+        for index in 0..self.joints {
+            walk.read(&mut joint);
+            walk.reader.malformed |= joint.parent.map_or(index != 0, |parent| parent >= index) || !joint.kinds.are_of_joint();
         }
-        let mut rig = Rig {
-            body,
-            joints_at: (body.len() - reader.0.len()) as u8,
-            joints: joints as u16,
-            scalars: scalars as u16,
-            joint_channels: 0,
-            unit_micro_cm,
-            id,
-            length_exponent,
-        };
-        let mut walk = rig.joints();
-        for index in 0..rig.joints {
-            let mut kinds = Kinds::NONE;
-            let (_, parent, _) = walk.fields(&mut kinds, &mut [0; 3])?;
-            let len = kinds.len();
-            // A kind that is none ends the walk early; a scalar belongs to no joint.
-            let known = kinds.take_while(|&kind| kind != Kind::Scalar).count() == len;
-            if parent.map_or(index != 0, |parent| parent >= index) || !known {
-                return Err(OpenError::Malformed);
-            }
+        self.joint_channels = walk.first_channel;
+        let mut walk = Scalars::new(walk.reader, self.scalars);
+        for _ in 0..self.scalars {
+            walk.read();
         }
-        rig.joint_channels = walk.first_channel;
-        let mut walk = Scalars::new(walk.bytes, rig.scalars);
-        for _ in 0..rig.scalars {
-            walk.parse()?;
-        }
-        if !walk.bytes.0.is_empty() || rig.channels() > MAX_CHANNELS {
-            return Err(OpenError::Malformed);
-        }
-        Ok(rig)
+        walk.reader.malformed |= !walk.reader.rest().is_empty() || self.channels() > MAX_CHANNELS;
+        walk.reader.check()
     }
 
     /// The same rig in other bytes.
@@ -92,7 +96,9 @@ impl<'a> Rig<'a> {
     /// Joints, End Sites included. The root comes first, and every parent before its children.
     #[inline(never)]
     pub fn joints(&self) -> Joints<'a> {
-        Joints::new(Bytes(self.body.get(usize::from(self.joints_at)..).unwrap_or(&[])), self.joints)
+        let mut reader = Reader::new(self.body);
+        reader.position = u32::from(self.joints_at);
+        Joints { reader, left: self.joints, first_channel: 0 }
     }
 
     /// One of the joints.
@@ -127,7 +133,7 @@ impl<'a> Rig<'a> {
     pub fn scalars(&self) -> Scalars<'a> {
         let mut joints = self.joints();
         joints.by_ref().for_each(drop);
-        Scalars::new(joints.bytes, self.scalars)
+        Scalars::new(joints.reader, self.scalars)
     }
 
     /// Number of joints, End Sites included.
@@ -176,34 +182,32 @@ impl Id {
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelIter<'a> {
     joints: Joints<'a>,
-    kinds: Kinds<'a>,
-    offset: [i32; 3],
+    joint: Joint<'a>,
     scalars: u16,
 }
 
 impl<'a> Rig<'a> {
     pub(crate) fn slots(&self) -> ChannelIter<'a> {
-        let kinds = Kinds::NONE;
-        ChannelIter { joints: self.joints(), kinds, offset: [0; 3], scalars: self.scalars }
+        ChannelIter { joints: self.joints(), joint: Joint::NONE, scalars: self.scalars }
     }
 }
 
 impl Iterator for ChannelIter<'_> {
-    /// A channel's kind and, for positions, the offset that it replaces, in steps of the rig.
-    type Item = (Kind, i32);
+    /// Whether a channel is a position, and the offset that it replaces, in steps of the rig.
+    type Item = (bool, i32);
 
-    fn next(&mut self) -> Option<(Kind, i32)> {
+    fn next(&mut self) -> Option<(bool, i32)> {
         loop {
-            if let Some(kind) = self.kinds.next() {
-                let axis = if kind.is_position() { kind.axis() } else { None };
-                return Some((kind, axis.and_then(|axis| self.offset.get(axis).copied()).unwrap_or(0)));
+            if let Some(kind) = self.joint.kinds.next() {
+                // The first three kinds are positions, in the order of the axes.
+                let offset = self.joint.offset.get(kind as usize).copied();
+                return Some((offset.is_some(), offset.unwrap_or(0)));
             }
             if self.joints.left == 0 {
                 self.scalars = self.scalars.checked_sub(1)?;
-                return Some((Kind::Scalar, 0));
+                return Some((false, 0));
             }
-            // A checked rig's joints can all be read.
-            self.joints.fields(&mut self.kinds, &mut self.offset).ok()?;
+            self.joints.read(&mut self.joint);
         }
     }
 }

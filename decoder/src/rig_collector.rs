@@ -84,7 +84,7 @@ impl<'m> RigCollector<'m> {
                 *place.ok_or(TooSmall { memory: Memory::Rig, needed, given })? = byte;
                 self.len += 1;
             }
-            if self.prefix.push(byte, None)?.is_some() {
+            if self.prefix.push(byte, None)? {
                 return Err(OpenError::WrongRig.into());
             }
             self.complete = left.is_some() && self.prefix.rig_len().is_none();

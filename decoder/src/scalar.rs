@@ -1,8 +1,8 @@
 //! The channels of a rig that move no joint: morph weights, servos, lights.
 
-use crate::bytes::Bytes;
+use crate::bytes::Reader;
 use crate::layout::LISTED;
-use crate::{OpenError, names};
+use crate::names;
 
 /// In place of the index of a name in a list: the rig has the name's bytes.
 const SPELLED: u8 = 255;
@@ -60,7 +60,7 @@ impl ScalarRef {
 /// Iterates over the scalars of a rig.
 #[derive(Clone, Debug)]
 pub struct Scalars<'a> {
-    pub(crate) bytes: Bytes<'a>,
+    pub(crate) reader: Reader<'a>,
     left: u16,
     /// The last one that a list named, and how many after it are named by the list too.
     listed: u8,
@@ -69,38 +69,39 @@ pub struct Scalars<'a> {
 }
 
 impl<'a> Scalars<'a> {
-    pub(crate) fn new(bytes: Bytes<'a>, left: u16) -> Scalars<'a> {
-        Scalars { bytes, left, listed: 0, more: 0, exponent: 0 }
+    pub(crate) fn new(reader: Reader<'a>, left: u16) -> Scalars<'a> {
+        Scalars { reader, left, listed: 0, more: 0, exponent: 0 }
     }
 
     /// Of bytes that [`Scalars::bytes`] gave: of a checked rig, of which no more is at hand.
     pub fn of_bytes(bytes: &'a [u8], count: usize) -> Scalars<'a> {
-        Scalars::new(Bytes(bytes), count as u16)
+        Scalars::new(Reader::new(bytes), count as u16)
     }
 
     /// Where those that are still to come stand in the rig.
     pub fn bytes(&self) -> &'a [u8] {
-        self.bytes.0
+        self.reader.rest()
     }
 
-    pub(crate) fn parse(&mut self) -> Result<Scalar<'a>, OpenError> {
+    #[inline(never)]
+    pub(crate) fn read(&mut self) -> Scalar<'a> {
         self.left = self.left.saturating_sub(1);
         self.listed = self.listed.wrapping_add(1);
         let mut name = &[][..];
         if self.more == 0 {
-            self.exponent = self.bytes.byte()? as i8;
+            self.exponent = self.reader.byte() as i8;
             self.listed = SPELLED;
             if self.exponent == LISTED {
-                self.listed = self.bytes.byte()?;
-                self.more = self.bytes.byte()?;
-                self.exponent = self.bytes.byte()? as i8;
+                self.listed = self.reader.byte();
+                self.more = self.reader.byte();
+                self.exponent = self.reader.byte() as i8;
             } else {
-                name = self.bytes.name()?;
+                name = self.reader.name();
             }
         } else {
             self.more -= 1;
         }
-        Ok(Scalar { name, listed: self.listed, exponent: self.exponent })
+        Scalar { name, listed: self.listed, exponent: self.exponent }
     }
 }
 
@@ -108,6 +109,6 @@ impl<'a> Iterator for Scalars<'a> {
     type Item = Scalar<'a>;
 
     fn next(&mut self) -> Option<Scalar<'a>> {
-        if self.left == 0 { None } else { self.parse().ok() }
+        if self.left == 0 { None } else { Some(self.read()) }
     }
 }

@@ -3,7 +3,6 @@
 use crate::bytes::unzigzag;
 use crate::channel::{ChannelState, step_size};
 use crate::entropy::{Symbols, Table};
-use crate::kind::Kind;
 use crate::layout::{FIRST_STEP, FOLLOW_BITS, MAX_STEP, STEP_BITS, STEP_CHANGES, status};
 use crate::play_state::{self, Channels};
 use crate::rig::{ChannelIter, Rig};
@@ -23,19 +22,20 @@ impl Default for ChannelStart {
 }
 
 impl ChannelStart {
-    /// The next channel's start: its position unless it rests, and velocity and index of its step if it moves. One that follows
-    /// has the index [`MAX_STEP`] + how many of the moving channels before it it goes back.
+    /// Reads the next channel's start: its position to `value` unless it rests or follows, velocity and index of its step to `state` if it
+    /// moves. One that follows has the index [`MAX_STEP`] + how many of the moving channels before it it goes back. Returns whether it moves.
     #[inline(never)]
-    fn read(&mut self, symbols: &mut Symbols<'_>, kind: Kind) -> (Option<i32>, Option<(i32, u8)>) {
+    fn read(&mut self, symbols: &mut Symbols<'_>, is_position: bool, value: &mut i32, state: &mut ChannelState) -> bool {
         let status = symbols.symbol(tables::status(self.status)) as u8;
         self.status = status;
         if status == status::RESTS {
-            return (None, None);
+            return false;
         }
         if status == status::FOLLOWS {
-            return (None, Some((0, MAX_STEP + 1 + symbols.bits(FOLLOW_BITS) as u8)));
+            state.step = MAX_STEP + 1 + symbols.bits(FOLLOW_BITS) as u8;
+            return true;
         }
-        let class = usize::from(kind.is_position());
+        let class = usize::from(is_position);
         let change = symbols.symbol(&tables::STEP_CHANGE);
         let step = if change < STEP_CHANGES {
             self.steps.get(class).copied().unwrap_or(FIRST_STEP).wrapping_add(unzigzag(change) as u8)
@@ -47,12 +47,13 @@ impl ChannelStart {
             *last = step;
         }
         let grid = step_size(step);
-        let p = magnitude(symbols, &tables::POSITION).wrapping_mul((grid >> 1).max(1) as i32);
+        *value = magnitude(symbols, &tables::POSITION).wrapping_mul((grid >> 1).max(1) as i32);
         if status == status::CONSTANT {
-            return (Some(p), None);
+            return false;
         }
-        let v = magnitude(symbols, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
-        (Some(p), Some((v, step)))
+        state.v = magnitude(symbols, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
+        state.step = step;
+        true
     }
 }
 
@@ -62,17 +63,6 @@ fn magnitude(symbols: &mut Symbols<'_>, table: &Table) -> i32 {
     let Some(below) = bits.checked_sub(1) else { return 0 };
     let value = (1 << below.min(31)) | symbols.long_bits(below.min(31)) as i32;
     if symbols.bits(1) == 0 { value } else { value.wrapping_neg() }
-}
-
-/// What became of reading the starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Opened {
-    /// All are read.
-    Done,
-    /// The input ran dry: go on when it holds more.
-    NeedMore,
-    /// There are more moving channels than states.
-    Full,
 }
 
 /// Reads the starts of a rig's channels, one after the other.
@@ -93,38 +83,30 @@ impl<'a> ChannelStarts<'a> {
         ChannelStarts { slots: rig.slots(), opening: ChannelStart::default(), shift, slot: 0, moving: 0 }
     }
 
-    /// Reads on, up to the last position at which a start is sure to be whole. `pose` has a value for every channel.
-    pub(crate) fn read(
-        &mut self,
-        symbols: &mut Symbols<'_>,
-        dry_at: u32,
-        states: &mut [ChannelState],
-        pose: &mut [i32],
-    ) -> Opened {
+    /// Reads on, up to the last position at which a start is sure to be whole, and returns whether that were all. `states` and `pose` take what
+    /// they have room for.
+    #[inline(never)]
+    pub(crate) fn read(&mut self, symbols: &mut Symbols<'_>, dry_at: u32, states: &mut [ChannelState], pose: &mut [i32]) -> bool {
         while symbols.at.position <= dry_at {
-            let Some((kind, rest)) = self.slots.next() else {
+            let Some((is_position, rest)) = self.slots.next() else {
                 let states = states.get_mut(..usize::from(self.moving)).unwrap_or(&mut []);
                 play_state::follow(&mut Channels { states, pose });
-                return Opened::Done;
+                return true;
             };
-            let (p, start) = self.opening.read(symbols, kind);
-            if let Some(value) = pose.get_mut(usize::from(self.slot)) {
-                *value = p.unwrap_or(shifted(rest, self.shift));
-            }
-            if let Some((v, step)) = start {
-                let Some(state) = states.get_mut(usize::from(self.moving)) else { return Opened::Full };
-                *state = ChannelState { v, slot: self.slot, step, ..ChannelState::default() };
+            let mut value = shifted(rest, self.shift);
+            let mut state = ChannelState { slot: self.slot, ..ChannelState::NEW };
+            if self.opening.read(symbols, is_position, &mut value, &mut state) {
+                if let Some(place) = states.get_mut(usize::from(self.moving)) {
+                    *place = state;
+                }
                 self.moving += 1;
+            }
+            if let Some(place) = pose.get_mut(usize::from(self.slot)) {
+                *place = value;
             }
             self.slot += 1;
         }
-        Opened::NeedMore
-    }
-
-    /// Number of moving channels, all starts being at hand.
-    pub(crate) fn count(self, symbols: &mut Symbols<'_>) -> usize {
-        let ChannelStarts { mut opening, slots, .. } = self;
-        slots.filter(|&(kind, _)| opening.read(symbols, kind).1.is_some()).count()
+        false
     }
 }
 

@@ -1,6 +1,7 @@
 //! Plays bytes that are still coming: each block is checked before it is used, and running dry is no error.
 
-use crate::blocks::{Input, Reader, STRIDE, is_intact};
+use crate::blocks::{Input, STRIDE, behind_crc, is_intact};
+use crate::bytes::Reader;
 use crate::channel::ChannelState;
 use crate::clip::{Event, Head, event};
 use crate::crc;
@@ -14,7 +15,7 @@ use crate::player::values;
 use crate::prefix::Prefix;
 use crate::rig::Rig;
 use crate::segment::MAX_SEGMENT_BYTES;
-use crate::start::{ChannelStarts, Opened};
+use crate::start::ChannelStarts;
 use crate::turn::Turn;
 
 /// What a step of a [`Stream`] came to.
@@ -41,7 +42,7 @@ pub enum Progress {
 enum Phase<'a> {
     Prefix(Prefix),
     Head,
-    Events { left: u32, position: u32, frame: u32 },
+    Events { left: u32, frame: u32 },
     Starts(ChannelStarts<'a>),
     Frames,
     Failed(Progress),
@@ -54,8 +55,6 @@ struct Window<'m> {
     /// Bytes in it, and how many of them are of blocks that were checked.
     len: usize,
     checked: usize,
-    /// Where it begins, counted from the motion's first byte.
-    base: u32,
     /// Bytes of the motion that are not yet in it.
     left: u32,
     /// What the next block's CRC goes on from.
@@ -91,18 +90,18 @@ impl Window<'_> {
             if block.len() < STRIDE && self.left > 0 {
                 break;
             }
-            self.damaged = !is_intact(block, self.seed);
-            if !self.damaged {
+            if is_intact(block, self.seed) {
                 self.checked += block.len();
                 self.seed = crc::INITIAL;
+            } else {
+                self.damaged = true;
             }
         }
     }
 
-    /// Drops the blocks before the one that holds `position`.
-    fn drop_before(&mut self, position: u32) {
-        let drop = (position - self.base) as usize & !(STRIDE - 1);
-        let drop = drop.min(self.checked);
+    /// Drops the blocks before the one that holds `position`, which moves with the bytes.
+    fn drop_before(&mut self, position: &mut u32) {
+        let drop = (*position as usize & !(STRIDE - 1)).min(self.checked);
         if drop > 0 {
             for place in 0..self.len - drop {
                 let byte = self.buffer.get(place + drop).copied();
@@ -112,22 +111,19 @@ impl Window<'_> {
             }
             self.len -= drop;
             self.checked -= drop;
-            self.base += drop as u32;
+            *position -= drop as u32;
         }
     }
 
-    fn whole(&self) -> bool {
-        self.left == 0 && self.checked == self.len
-    }
-
-    fn input(&self) -> Input<'_> {
-        let end = if self.whole() { self.len.saturating_sub(CRC_BYTES) } else { self.checked };
-        Input { bytes: self.buffer.get(..end).unwrap_or(&[]), base: self.base }
-    }
-
-    /// The last position at which a segment or a start is sure to be whole.
-    fn dry_at(&self) -> u32 {
-        if self.whole() { u32::MAX } else { (self.base + self.checked as u32).saturating_sub(MAX_SEGMENT_BYTES) }
+    /// The blocks that can be read, and the last position at which a segment or a start is sure to be whole.
+    fn at_hand(&self) -> (Input<'_>, u32) {
+        let whole = self.left == 0 && self.checked == self.len;
+        let (end, dry_at) = if whole {
+            (self.len.saturating_sub(CRC_BYTES), u32::MAX)
+        } else {
+            (self.checked, (self.checked as u32).saturating_sub(MAX_SEGMENT_BYTES))
+        };
+        (Input(self.buffer.get(..end).unwrap_or(&[])), dry_at)
     }
 }
 
@@ -174,18 +170,9 @@ impl<'a, 'm> Stream<'a, 'm> {
         if buffer.len() < Self::BUFFER {
             return Err(TooSmall { memory: Memory::Buffer, needed: Self::BUFFER, given: buffer.len() });
         }
-        let window = Window { buffer, len: 0, checked: 0, base: 0, left: 0, seed: 0, damaged: false };
+        let window = Window { buffer, len: 0, checked: 0, left: 0, seed: 0, damaged: false };
         let phase = Phase::Prefix(prefix);
-        Ok(Stream {
-            rig,
-            states,
-            pose,
-            window,
-            phase,
-            head: Head::default(),
-            form: Form::default(),
-            position: PlayState::default(),
-        })
+        Ok(Stream { rig, states, pose, window, phase, head: Head::NONE, form: Form::NONE, position: PlayState::default() })
     }
 
     /// Takes bytes and returns how many: fewer than all if the buffer is full (then step, and feed the rest) or the motion is
@@ -226,13 +213,13 @@ impl<'a, 'm> Stream<'a, 'm> {
     fn take_prefix(&mut self, bytes: &[u8]) -> usize {
         let mut taken = 0;
         while let Phase::Prefix(prefix) = &mut self.phase {
-            let Some(&byte) = bytes.get(taken) else { return taken };
+            let Some(&byte) = bytes.get(taken) else { break };
             taken += 1;
             match prefix.push(byte, Some(self.rig.id())) {
-                Ok(None) => {}
-                Ok(Some(motion_len)) => {
-                    (self.window.left, self.window.seed) = (motion_len, prefix.seed(motion_len));
-                    self.head.flags = prefix.flags;
+                Ok(false) => {}
+                Ok(true) => {
+                    (self.window.left, self.window.seed) = (prefix.motion_len(), prefix.seed());
+                    self.head.flags = prefix.flags();
                     self.phase = Phase::Head;
                 }
                 Err(error) => self.phase = Phase::Failed(Progress::Damaged(error)),
@@ -243,99 +230,78 @@ impl<'a, 'm> Stream<'a, 'm> {
 
     /// Drops the blocks that have been played.
     fn make_space(&mut self) {
-        let reading = match &self.phase {
-            Phase::Events { position, .. } => *position,
-            Phase::Starts(_) | Phase::Frames => self.position.cursor.position,
-            Phase::Prefix(_) | Phase::Head | Phase::Failed(_) => 0,
-        };
-        self.window.drop_before(reading.max(self.window.base));
+        self.window.drop_before(&mut self.position.cursor.position);
     }
 
     /// Goes on as far as one answer.
     pub fn step(&mut self) -> Progress {
-        match self.phase {
-            Phase::Prefix(_) => Progress::NeedMore,
-            Phase::Head => self.head(),
-            Phase::Events { left, position, frame } => self.event(left, position, frame),
-            Phase::Starts(_) => self.starts(),
-            Phase::Frames => self.frame_on(),
-            Phase::Failed(step) => step,
+        let mut progress = self.try_step();
+        if self.window.damaged && matches!(progress, Progress::NeedMore) {
+            progress = Progress::Damaged(OpenError::BadCrc);
         }
-    }
-
-    /// What it means that the window ran dry.
-    fn dry(&mut self) -> Progress {
-        if self.window.damaged { self.fail(Progress::Damaged(OpenError::BadCrc)) } else { Progress::NeedMore }
-    }
-
-    fn fail(&mut self, step: Progress) -> Progress {
-        self.phase = Phase::Failed(step);
-        step
-    }
-
-    fn head(&mut self) -> Progress {
-        if self.window.checked == 0 {
-            let step = if self.window.left == 0 { Progress::Damaged(OpenError::Malformed) } else { Progress::NeedMore };
-            return if self.window.damaged { self.dry() } else { step };
+        if let Progress::Damaged(_) | Progress::TooSmall = progress {
+            self.phase = Phase::Failed(progress);
         }
-        let flags = self.head.flags;
-        let rig_id = if flags & HAS_RIG == 0 { Some(self.rig.id()) } else { None };
-        match Head::read(&self.window.input(), flags, &self.rig, rig_id) {
-            Err(error) => self.fail(Progress::Damaged(error)),
-            Ok(head) => {
-                self.head = head;
-                self.form = head.form(&self.window.input(), self.rig.id());
-                self.phase = Phase::Events { left: head.event_count, position: u32::from(head.events), frame: 0 };
-                Progress::Opened
+        progress
+    }
+
+    /// [`Stream::step`] up to where the window ran dry.
+    fn try_step(&mut self) -> Progress {
+        let (input, dry_at) = self.window.at_hand();
+        let position = &mut self.position;
+        if let Phase::Events { left, frame } = &mut self.phase {
+            if position.cursor.position > dry_at {
+                return Progress::NeedMore;
             }
-        }
-    }
-
-    fn event(&mut self, left: u32, position: u32, frame: u32) -> Progress {
-        if position > self.window.dry_at() {
-            return self.dry();
-        }
-        let input = self.window.input();
-        if left == 0 {
-            self.position = PlayState { cursor: Cursor::start(&input, position), ..PlayState::default() };
+            if *left > 0 {
+                let mut reader = Reader::of_blocks(&input, position.cursor.position);
+                let event = event(&mut reader, *frame);
+                if reader.position > behind_crc(input.0.len() as u32) {
+                    return Progress::Damaged(OpenError::Malformed);
+                }
+                (*left, *frame) = (*left - 1, event.frame);
+                position.cursor.position = reader.position;
+                return Progress::Event(event);
+            }
+            position.cursor = Cursor::start(&input, position.cursor.position);
             self.phase = Phase::Starts(ChannelStarts::new(&self.rig, self.head.length_exponent));
-            return self.starts();
         }
-        let mut reader = Reader { input: &input, position };
-        let event = event(&mut reader, frame);
-        if reader.position > input.end() {
-            return self.fail(Progress::Damaged(OpenError::Malformed));
-        }
-        self.phase = Phase::Events { left: left - 1, position: reader.position, frame: event.frame };
-        Progress::Event(event)
-    }
-
-    fn starts(&mut self) -> Progress {
-        let Phase::Starts(starts) = &mut self.phase else { return Progress::NeedMore };
-        let (input, dry_at) = (self.window.input(), self.window.dry_at());
-        let mut symbols = Symbols { at: self.position.cursor, input };
-        let opened = starts.read(&mut symbols, dry_at, self.states, self.pose);
-        self.position.cursor = symbols.at;
-        match opened {
-            Opened::NeedMore => self.dry(),
-            Opened::Full => self.fail(Progress::TooSmall),
-            Opened::Done => {
-                let states = core::mem::take(&mut self.states);
-                self.states = states.get_mut(..usize::from(starts.moving)).unwrap_or(&mut []);
-                self.phase = Phase::Frames;
-                Progress::Frame
+        match &mut self.phase {
+            Phase::Failed(progress) => return *progress,
+            Phase::Head if self.window.checked > 0 => {
+                if let Err(error) = self.head.read(&input, &self.rig) {
+                    return Progress::Damaged(error);
+                }
+                self.form = self.head.form(&input, self.rig.id()).to_form();
+                position.cursor.position = u32::from(self.head.events);
+                self.phase = Phase::Events { left: self.head.event_count, frame: 0 };
+                return Progress::Opened;
             }
+            Phase::Head if self.window.left == 0 && !self.window.damaged => return Progress::Damaged(OpenError::Malformed),
+            Phase::Starts(starts) => {
+                let mut symbols = Symbols { at: position.cursor, input };
+                let done = starts.read(&mut symbols, dry_at, self.states, self.pose);
+                position.cursor = symbols.at;
+                if done {
+                    let states = core::mem::take(&mut self.states);
+                    let Some(states) = states.get_mut(..usize::from(starts.moving)) else { return Progress::TooSmall };
+                    self.states = states;
+                    self.phase = Phase::Frames;
+                    return Progress::Frame;
+                }
+            }
+            Phase::Frames => {
+                if position.frame + 1 >= self.head.frames {
+                    return Progress::End;
+                }
+                let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
+                if position.try_step(&mut channels, &input, self.head.frames, dry_at, None) {
+                    return Progress::Frame;
+                }
+            }
+            Phase::Prefix(_) | Phase::Head | Phase::Events { .. } => {}
         }
-    }
-
-    fn frame_on(&mut self) -> Progress {
-        let frame = self.position.frame;
-        if frame + 1 >= self.head.frames {
-            return Progress::End;
-        }
-        let (input, dry_at) = (self.window.input(), self.window.dry_at());
-        let mut channels = Channels { states: &mut *self.states, pose: &mut *self.pose };
-        if self.position.try_step(&mut channels, &input, self.head.frames, dry_at, None) { Progress::Frame } else { self.dry() }
+        Progress::NeedMore
     }
 
     /// The frame that the pose shows.
@@ -345,7 +311,7 @@ impl<'a, 'm> Stream<'a, 'm> {
 
     /// The pose, with its form. It is of one frame also while bytes are missing; before [`Progress::Opened`] it is of no rig's form.
     pub fn pose(&self) -> Pose<'_> {
-        Pose { values: self.pose, form: &self.form }
+        Pose { values: self.pose, form: (&self.form).into() }
     }
 
     /// The rotation of a joint, however the clip codes it: [`Pose::turn`].

@@ -169,7 +169,7 @@ fn pieces_of_any_size_play_as_the_whole() {
                     match step {
                         Progress::Opened => {
                             assert_eq!((stream.frames(), stream.frame_time_ns()), (clip.frames(), clip.frame_time_ns()));
-                            assert_eq!((stream.looped(), *stream.pose().form), (clip.looped(), clip.form()));
+                            assert_eq!((stream.looped(), stream.pose().form), (clip.looped(), clip.form_ref()));
                         }
                         Progress::Event(event) => marks.push(event),
                         Progress::Frame => {

@@ -203,7 +203,7 @@ impl<const N: usize> Skeleton<N> {
     pub fn set_up(&mut self, rig: &Rig, detail: Detail, pose: Pose<'_>, scratch: &mut [JointInfo]) -> Result<(), Error> {
         let position_exponent = pose.form.length_exponent();
         let mut table = JointTable::new(rig, pose.values, position_exponent, scratch)?;
-        copy(pose.form, &mut self.form);
+        copy(&pose.form.to_form(), &mut self.form);
         match detail {
             Detail::Body => table.prune(),
             Detail::Full => table.settle(0),

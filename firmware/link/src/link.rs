@@ -307,7 +307,7 @@ impl<'m, const Q: usize> Link<'m, Q> {
 
     /// One raw value a channel, as it is to be drawn.
     pub fn pose(&self) -> Pose<'_> {
-        Pose { values: self.pose, form: &self.form }
+        Pose { values: self.pose, form: (&self.form).into() }
     }
 
     /// Returns the clip that plays.

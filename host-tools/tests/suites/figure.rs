@@ -57,7 +57,7 @@ impl Case {
     }
 
     fn skeleton(&self, detail: Detail) -> Skeleton<JOINTS> {
-        Skeleton::new(&self.rig(), detail, Pose { values: &self.pose(0), form: &self.form() }).unwrap()
+        Skeleton::new(&self.rig(), detail, Pose { values: &self.pose(0), form: (&self.form()).into() }).unwrap()
     }
 
     /// Every joint as the rig has it, positions in the unit of its offsets.
@@ -100,7 +100,7 @@ impl Case {
         let mut renderer = self.renderer(view);
         let mut worst = 0.0f64;
         for frame in (0..self.motion.frames).step_by(stride) {
-            renderer.set_pose(Pose { values: &self.pose(frame), form: &self.form() }).unwrap();
+            renderer.set_pose(Pose { values: &self.pose(frame), form: (&self.form()).into() }).unwrap();
             let hips = renderer.skeleton().hips;
             let target = renderer.target();
             let truth = self.truth(renderer.skeleton(), frame);
@@ -228,7 +228,8 @@ fn euler_slots_that_hold_an_exponential_map_turn_as_one() {
     let slots = with(&[Kind::Zrotation, Kind::Xrotation, Kind::Yrotation]);
     // The root is the only joint with a choice.
     let form = Form::new(slots.rig().id(), slots.rig().length_exponent(), [1]);
-    let skeleton = Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, Pose { values: &slots.pose(0), form: &form }).unwrap();
+    let skeleton =
+        Skeleton::<JOINTS>::new(&slots.rig(), Detail::Full, Pose { values: &slots.pose(0), form: (&form).into() }).unwrap();
     let mut joints: Kinematics<JOINTS> = Kinematics::new();
     joints.set_pose(&skeleton, &slots.pose(0));
     let error = distance(joints.position(1).map(f64::from), truth.truth(&skeleton, 0)[1]);
@@ -280,7 +281,7 @@ fn a_person_is_drawn_as_a_person() {
     let mut display = MockDisplay::<BinaryColor>::new();
     display.set_allow_overdraw(true);
     display.set_allow_out_of_bounds_drawing(true);
-    renderer.set_pose(Pose { values: &case.pose(0), form: &case.form() }).unwrap();
+    renderer.set_pose(Pose { values: &case.pose(0), form: (&case.form()).into() }).unwrap();
     let mut inside = display.cropped(&Rectangle::new(Point::zero(), Size::new(40, 40)));
     inside.clear(BinaryColor::Off).unwrap();
     let mut surface = OnTarget::new(&mut inside);

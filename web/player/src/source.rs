@@ -37,7 +37,7 @@ impl Table {
     fn pose(&self) -> Pose<'_> {
         let channels = self.rig.channels();
         let first = self.frame as usize * channels;
-        Pose { values: self.values.get(first..first + channels).unwrap_or(&[]), form: &self.form }
+        Pose { values: self.values.get(first..first + channels).unwrap_or(&[]), form: (&self.form).into() }
     }
 }
 
@@ -71,7 +71,7 @@ impl Source {
     pub fn go(&mut self, frame: u32) -> Pose<'_> {
         let frame = frame.min(self.playable().saturating_sub(1));
         match self {
-            Source::Nothing => Pose { values: &[], form: &Form::NONE },
+            Source::Nothing => Pose { values: &[], form: (&Form::NONE).into() },
             Source::Clip(clip) => clip.go(frame),
             Source::Table(table) => {
                 table.frame = frame;
@@ -83,7 +83,7 @@ impl Source {
     /// Returns the current pose.
     pub fn pose(&self) -> Pose<'_> {
         match self {
-            Source::Nothing => Pose { values: &[], form: &Form::NONE },
+            Source::Nothing => Pose { values: &[], form: (&Form::NONE).into() },
             Source::Clip(clip) => clip.player().pose(),
             Source::Table(table) => table.pose(),
         }
