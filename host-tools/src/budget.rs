@@ -76,6 +76,13 @@ pub fn check_numbers(numbers: usize, what: &str) -> Result<()> {
     Ok(())
 }
 
+/// Refuses the bytes of files that are kept in memory together.
+pub fn check_bytes_held(bytes: u64) -> Result<()> {
+    let most = most_bytes();
+    ensure!(bytes <= most, "the files have more than {} together; --max-memory raises the limit", size(most));
+    Ok(())
+}
+
 /// A number of bytes for a person: `1.5 GB`.
 pub fn size(bytes: u64) -> String {
     let units = [("GB", 30), ("MB", 20), ("kB", 10)];

@@ -18,6 +18,7 @@ pub mod facts;
 pub mod fit;
 pub mod fk;
 pub mod import;
+pub mod input;
 pub mod keys;
 #[cfg(feature = "cli")]
 pub mod line;

@@ -4,6 +4,7 @@ use anyhow::{Context, Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use pantin_tools::{budget, cmd, output};
 use serde_json::json;
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -129,10 +130,17 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints help and the version as clap does, and what is wrong with a command line as every other error.
+/// Prints help and the version, and what is wrong with a command line as every other error.
 fn not_understood(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
-        error.exit();
+        return match error.print().and_then(|()| io::stdout().flush()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::from(READER_GONE),
+            Err(error) => {
+                output::fail("", &Error::new(error).context("standard output"));
+                ExitCode::FAILURE
+            }
+        };
     }
     let text = error.to_string();
     if std::env::args_os().any(|argument| argument == "--json") {

@@ -4,7 +4,9 @@
 //! the source, the options and this program. So nothing but clips is written, and whatever loses the time (an edit, a copy) converts again.
 
 use super::convert::{Arguments, Made, convert};
+use super::is_free;
 use crate::import;
+use crate::input;
 use crate::output::{self, note, outln};
 use anyhow::{Context, Result, bail, ensure};
 use rayon::prelude::*;
@@ -36,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut found = Found::default();
     found.look(from, to)?;
     ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", from.display(), found.others);
-    let tasks = tasks(arguments, &found.motions)?;
+    let tasks = with_options_that_apply(arguments, tasks(arguments, &found.motions)?)?;
     let label = |task: &Arguments| task.input.strip_prefix(from).unwrap_or(&task.input).display().to_string();
     let labels: Vec<String> = tasks.iter().map(label).collect();
     convert_all(arguments, &tasks, &labels, Some(found.others))
@@ -57,6 +59,7 @@ pub fn run_several(arguments: &Arguments) -> Result<()> {
         tasks.push(arguments.for_file(input.clone(), output));
     }
     one_clip_each(&tasks, |task| task.input.display().to_string())?;
+    let tasks = with_options_that_apply(arguments, tasks)?;
     let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
     convert_all(arguments, &tasks, &labels, None)
 }
@@ -76,6 +79,7 @@ pub fn run_animations(arguments: &Arguments) -> Result<()> {
             None
         }
     };
+    ensure!(import::takes(input)?[0], "{}: --animation all: the file holds one motion", input.display());
     let (mut tasks, mut names) = (Vec::new(), Vec::new());
     let entries = import::list::list(input, arguments.fps())?;
     for (number, entry) in entries.iter().enumerate() {
@@ -129,6 +133,25 @@ fn names_folder(output: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Leaves `--animation` and `--skeleton` to the motions that they apply to. Fails if there is none: then the option is a mistake.
+fn with_options_that_apply(arguments: &Arguments, mut tasks: Vec<Arguments>) -> Result<Vec<Arguments>> {
+    let given = [arguments.animation.is_some(), arguments.skeleton.is_some()];
+    if given == [false; 2] {
+        return Ok(tasks);
+    }
+    let mut used = [false; 2];
+    for task in &mut tasks {
+        // A pipe is read once, by the conversion, which refuses what does not apply; so is what has no known format.
+        let takes = if task.input.is_file() { import::takes(&task.input).unwrap_or([true; 2]) } else { [true; 2] };
+        task.animation.take_if(|_| !takes[0]);
+        task.skeleton.take_if(|_| !takes[1]);
+        used.iter_mut().zip(takes).for_each(|(used, takes)| *used |= takes);
+    }
+    ensure!(used[0] || !given[0], "--animation: none of these files holds several motions");
+    ensure!(used[1] || !given[1], "--skeleton: none of these files is an .amc");
+    Ok(tasks)
+}
+
 /// Refuses tasks that would write one clip, before anything is written.
 fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> Result<()> {
     let mut named: HashMap<String, &Arguments> = HashMap::new();
@@ -150,8 +173,10 @@ fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> R
 fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     let mut sources = HashMap::new();
     for task in tasks {
-        sources.insert(identity(&task.input), &task.input);
+        sources.insert(identity(&task.input), task.input.clone());
+        sources.extend(import::companions(&task.input).into_iter().map(|path| (identity(&path), path)));
     }
+    sources.remove(&None);
     for task in tasks {
         let output = task.output();
         let Ok(found) = output.metadata() else { continue };
@@ -306,6 +331,11 @@ fn outcome(task: &Arguments) -> Outcome {
         {
             return Ok(Outcome::UpToDate);
         }
+        let output = task.output().display();
+        ensure!(
+            !task.keeps_existing || is_free(task.output()),
+            "{output}: exists; --output FOLDER replaces clips in that folder"
+        );
         if let Some(folder) = task.output().parent() {
             fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
         }
@@ -327,7 +357,7 @@ fn outcome(task: &Arguments) -> Outcome {
 
 /// Whether the clip opens, its checksum included.
 fn is_whole(path: &Path) -> bool {
-    fs::read(path).is_ok_and(|bytes| pantin::Clip::new_checked(&bytes).is_ok())
+    input::read(path).is_ok_and(|bytes| pantin::Clip::new_checked(&bytes).is_ok())
 }
 
 /// The time that a clip carries if it was made of these sources, by these options and this program; and the sources.

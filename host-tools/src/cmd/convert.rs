@@ -3,7 +3,7 @@
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::joint_error::{self, JointError};
-use super::{batch, check_fit, same_form};
+use super::{batch, check_fit, default_output, same_form};
 use crate::channel_error;
 use crate::edit::cut::cut;
 use crate::edit::loop_seam::{self, Closed, Most};
@@ -62,7 +62,7 @@ pub struct Arguments {
     /// what all clips together cost. One figure renderer then plays any of them. All motions need the same rig; --output is a folder
     #[arg(long, requires = "output", conflicts_with_all = ["list", "jobs"])]
     pub(super) same_form: bool,
-    /// The clip to write, or the folder [default: the motion's name, ending in .ptn]
+    /// The clip to write, or the folder [default: the motion's name, ending in .ptn; a file that is there already is kept]
     #[arg(short, long)]
     pub(super) output: Option<PathBuf>,
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
@@ -102,7 +102,7 @@ pub struct Arguments {
     edits: Edits,
     /// The .asf of an .amc, instead of the one found next to it
     #[arg(long)]
-    skeleton: Option<PathBuf>,
+    pub(super) skeleton: Option<PathBuf>,
     /// Store a snapshot of the player's state every N seconds, so that seeking starts from the nearest one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
@@ -119,6 +119,9 @@ pub struct Arguments {
     /// Whether this is one file of a folder, whose messages the folder's table replaces.
     #[arg(skip)]
     silent: bool,
+    /// Whether the output's name is a default: a file that is there is kept, unless it is this clip, up to date.
+    #[arg(skip)]
+    pub(super) keeps_existing: bool,
 }
 
 impl Arguments {
@@ -133,9 +136,7 @@ impl Arguments {
 
     /// The same with a name for the clip: without --output that of the motion, ending in .ptn.
     fn with_output(&self) -> Result<Arguments> {
-        let stdin = self.input.as_os_str() == "-";
-        ensure!(self.output.is_some() || !stdin, "standard input has no name for the clip: --output gives one");
-        let output = self.output.clone().unwrap_or_else(|| self.input.with_extension("ptn"));
+        let output = self.output.clone().map_or_else(|| default_output(&self.input, "ptn"), Ok)?;
         Ok(Arguments { output: Some(output), ..self.clone() })
     }
 
@@ -161,7 +162,7 @@ impl Arguments {
 
     /// The same for one file of a folder, without messages.
     pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
-        Arguments { silent: true, jobs: None, ..self.for_motion(input, output) }
+        Arguments { silent: true, jobs: None, keeps_existing: self.output.is_none(), ..self.for_motion(input, output) }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::expand::{Expanded, expand};
 use crate::export::{self, bvh::Columns};
 use crate::motion::Frames;
 use crate::output::{self, Staged, Wanted, note, refuse_foreign};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
 use pantin::Clip;
 use serde_json::json;
 use std::io::Write;
@@ -63,7 +63,7 @@ impl Arguments {
         refuse_foreign(output, Wanted::Motion)
     }
 
-    /// The name of an output that the user does not name. It may be that of the capture that the clip was made of.
+    /// The name of an output that the user does not name.
     fn default_output(&self, clip: &Clip) -> Result<PathBuf> {
         let format = match self.format {
             Some(Format::Bvh) => "bvh",
@@ -75,7 +75,6 @@ impl Arguments {
             None => "bvh",
         };
         let output = default_output(&self.input, format)?;
-        ensure!(!output.exists(), "{}: exists; --output {0} replaces it, another name keeps it", output.display());
         self.check(&output)?;
         Ok(output)
     }

@@ -25,14 +25,15 @@ The firmware must be built with feature `update`.")]
 pub struct Arguments {
     /// The clip, which must contain its rig
     input: PathBuf,
-    /// The file to write: .bin, .hex or .uf2 [default: the clip's name, ending in what the board's flash tool takes]
+    /// The file to write: .bin, .hex or .uf2 [default: the clip's name, ending in what the board's flash tool takes; a file that is there
+    /// already is kept]
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// The board
+    /// The board; `microbit` is the one that QEMU emulates, for its firmware does not run on a real one
     #[arg(long, value_parser = PossibleValuesParser::new(REGIONS.map(|region| region.board)))]
     board: String,
-    /// The name that the board shows, up to 28 bytes [default: the file's name]
-    #[arg(long)]
+    /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
+    #[arg(long, value_parser = update::board_name)]
     name: Option<String>,
 }
 

@@ -23,7 +23,7 @@ use crate::encode;
 use crate::fit::{descent::Level, fit};
 use crate::import;
 use crate::motion::Motion;
-use crate::output::detail;
+use crate::output::{self, detail};
 use crate::verify::verify;
 use anyhow::{Context, Result, anyhow, ensure};
 use pantin::OpenError;
@@ -34,6 +34,14 @@ pub struct Files {
     path: PathBuf,
     clip: Vec<u8>,
     rig: Vec<u8>,
+    /// Where both were read from, and what belongs to a motion.
+    from: import::Files,
+}
+
+/// Refuses outputs that are one of the files which were read from `files`. Some are known only then: a glTF names its buffers itself.
+fn check_read(files: &import::Files, outputs: &[&Path]) -> Result<()> {
+    let read = files.read_so_far();
+    output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), outputs)
 }
 
 /// Refuses a motion whose fit takes more memory than the limit; `files` are what it was read from.
@@ -42,10 +50,17 @@ fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()>
     budget::check_fit(motion.frames, motion.rig.channels(), level.plan(SHOWN_CM).effort.beam, read)
 }
 
-/// The name of an output that the user does not name: the input's, with another extension.
+/// The name of an output that the user does not name: the input's, with another extension. Fails if there is a file of that name.
 fn default_output(input: &Path, extension: &str) -> Result<PathBuf> {
     ensure!(input.as_os_str() != "-", "standard input has no name for the output: --output gives one");
-    Ok(input.with_extension(extension))
+    let output = input.with_extension(extension);
+    ensure!(is_free(&output), "{}: exists; --output {0} replaces it, another name keeps it", output.display());
+    Ok(output)
+}
+
+/// Whether nothing has the name of an output that the user does not name: a file there may be a capture, or a clip of another motion.
+fn is_free(output: &Path) -> bool {
+    output.symlink_metadata().is_err()
 }
 
 /// The format of an output, by the option --format or by the extension of its name.
@@ -77,7 +92,8 @@ impl Files {
             detail!("read {}: {} bytes", path.display(), bytes.len());
             anyhow::Ok(bytes)
         };
-        Ok(Files { path: clip.into(), clip: read(clip)?, rig: rig.map(read).transpose()?.unwrap_or_default() })
+        let (bytes, rig) = (read(clip)?, rig.map(read).transpose()?.unwrap_or_default());
+        Ok(Files { path: clip.into(), clip: bytes, rig, from: files.clone() })
     }
 
     /// The same for a command that shows clips: a motion file is converted first, quickly and in memory.

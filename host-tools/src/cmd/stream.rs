@@ -3,6 +3,7 @@
 use super::channel_bound::above_zero;
 use crate::budget;
 use crate::cmd::Files;
+use crate::input;
 use crate::output::{note, report};
 use crate::sender::{ByteCounts, Line, Sender, Source};
 use crate::stream::{address::Address, pace};
@@ -14,6 +15,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+/// Most bytes of a file that holds a key: comments have no place in it.
+const KEY_BYTES: u64 = 256;
 
 /// Send clips over a line while they play, each frame a little ahead of its time.
 ///
@@ -40,7 +44,7 @@ pub struct Arguments {
     /// Send the clips again and again
     #[arg(long = "loop")]
     looped: bool,
-    /// Share of the line that refreshes may take, in percent
+    /// Share of the line that refreshes may take, in percent: more than 0
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0)]
     refresh: f64,
     /// Shortest cycle in which every channel is refreshed, in seconds; longer if the line is too slow
@@ -66,7 +70,8 @@ impl Arguments {
             return Ok(Some(key));
         }
         // An error does not print the key.
-        let text = std::fs::read_to_string(key).context("--key: neither 32 hexadecimal digits nor a file that can be read")?;
+        let text = input::read_short_text(Path::new(key), KEY_BYTES)
+            .context("--key: neither 32 hexadecimal digits nor a file with them")?;
         let key =
             TagKey::from_hex(text.trim()).with_context(|| format!("--key {key}: expected 32 hexadecimal digits in the file"))?;
         Ok(Some(key))
@@ -75,8 +80,8 @@ impl Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    if !(0.0..=100.0).contains(&arguments.refresh) {
-        bail!("--refresh {}: expected 0 to 100 percent", arguments.refresh);
+    if !(arguments.refresh > 0.0 && arguments.refresh <= 100.0) {
+        bail!("--refresh {}: expected more than 0, and at most 100 percent", arguments.refresh);
     }
     if let Some(from) = &arguments.live {
         let stop = stopped_by_signal()?;
@@ -140,6 +145,10 @@ fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
         key: arguments.tag_key()?,
     };
     wanted.fitted(source).with_context(|| {
+        if (Line { share: 1.0, ..wanted }).fitted(source).is_some() {
+            let share = arguments.refresh;
+            return format!("{}: refreshes take more than {share} % of the line; a larger --refresh, or a faster line", path.display());
+        }
         format!(
             "{}: too much for {:.0} bytes a second; a faster line, a larger --max-error or --fps 30 when it is converted, or a larger --ahead may do",
             path.display(),

@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let clip = files.open().with_context(|| path.display().to_string())?;
     ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; --live sends faces alone", path.display());
     let form = clip.form();
-    let mut feed = Feed::open(from)?;
+    let mut feed = Feed::open(from, stop)?;
     let names = feed.names();
     let places: Vec<Place> = clip
         .rig()
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let (mut values, mut left) = (vec![0.0; names.len()], Live::delay(&line));
     let mut at = start;
     while !stop.load(Ordering::Relaxed) && left > 0 {
-        match feed.next(at.saturating_duration_since(Instant::now()), &values)? {
+        match feed.next(at.saturating_duration_since(Instant::now()), &values, stop)? {
             Some(next) => values = next,
             // What has been made is still to be shown.
             None => left -= 1,

@@ -63,6 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let files = import::Files::default();
         let motion =
             import::load(path, &import::Options { fps: arguments.fps, files: files.clone(), ..Default::default() })?.motion;
+        super::check_read(&files, &[&arguments.output])?;
         super::check_fit(&motion, TRAINING, &files).with_context(|| path.display().to_string())?;
         let bytes = rig::encode(&motion.rig)?;
         let rig = pantin::Rig::new_checked(&bytes)?;

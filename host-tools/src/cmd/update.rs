@@ -26,8 +26,8 @@ pub struct Arguments {
     /// The board's line: serial:PORT[@BAUD] (default 115200), or tcp:HOST:PORT
     #[arg(long)]
     to: Place,
-    /// The name that the board shows, up to 28 bytes [default: the file's name]
-    #[arg(long)]
+    /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
+    #[arg(long, value_parser = update::board_name)]
     name: Option<String>,
     /// Seconds to wait for an answer before a message is sent again
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]

@@ -3,6 +3,7 @@
 use super::blueprint::{Blueprint, Drive, Shape};
 use super::head::{Vector, cross, minus, plus, unit};
 use super::paper::shape;
+use crate::import::Files;
 use crate::import::gltf::mesh::{self, Mesh};
 use anyhow::{Context, Result, ensure};
 use pantin_face::shape::Interpolation;
@@ -25,12 +26,12 @@ pub fn obj_points(text: &str) -> Result<Vec<Vector>> {
 
 /// Reads the points of a .glb that `pantin face export` wrote, in millimetres.
 pub fn glb_points(path: &Path) -> Result<Vec<Vector>> {
-    Ok(mesh::read(path)?.points.iter().map(|place| place.map(|x| x * 1000.0)).collect())
+    Ok(mesh::read(path, &Files::default())?.points.iter().map(|place| place.map(|x| x * 1000.0)).collect())
 }
 
-/// Returns the first mesh of a glTF that has morph targets, one shape per target. All its points are stored, none is a mirror image.
-pub fn model(path: &Path) -> Result<Blueprint> {
-    let mesh = mesh::read(path)?;
+/// Returns the first mesh of a glTF among `files` that has morph targets, one shape per target. All its points are stored, none is a mirror image.
+pub fn model(path: &Path, files: &Files) -> Result<Blueprint> {
+    let mesh = mesh::read(path, files)?;
     ensure!(!mesh.targets.is_empty(), "{}: no mesh with morph targets", path.display());
     let shapes: Vec<Shape> = mesh.targets.iter().zip(&mesh.names).map(|(ways, name)| of_target(ways, name)).collect();
     let drive = |(index, name): (usize, &String)| Drive { name: name.clone(), shape: index, sides: [true, false], gain: 1.0 };

@@ -24,6 +24,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     words.expect("HIERARCHY", "at the start of a BVH file")?;
     let mut rig = hierarchy(&mut words)?;
     warnings.extend(repeated_names(&rig));
+    warnings.extend(repeated_channels(&rig));
     warnings.extend(ends::complete(&mut rig.joints));
     let header = header(&mut words, options)?;
     let values = rows(&mut words, &header, rig.channels(), &mut warnings)?;
@@ -118,6 +119,10 @@ fn channels(words: &mut Words) -> Result<Vec<Kind>> {
         words.next();
         kinds.push(kind);
     }
+    let twice = |at: &usize| kinds[*at].is_position() && kinds[..*at].contains(&kinds[*at]);
+    if let Some(at) = (1..kinds.len()).find(twice) {
+        return Err(words.error(format!("the joint has the channel {:?} twice", kinds[at])));
+    }
     if kinds.len() != count {
         let after = shown(words.peek());
         return Err(words.error(format!("CHANNELS says {count}, but {} channel names stand before {after}", kinds.len())));
@@ -143,6 +148,20 @@ fn repeated_names(rig: &Rig) -> Option<String> {
     let repeated: Vec<&str> = names.filter(|&name| !seen.insert(name)).collect();
     let first = repeated.first()?;
     Some(format!("{} joint names stand more than once (`{first}` is one); joints are told apart by their place", repeated.len()))
+}
+
+/// Rotations about one axis before and after one about another are a way to turn a joint; other programs may take only the last.
+fn repeated_channels(rig: &Rig) -> Option<String> {
+    let of_joint = |joint: &Joint| {
+        let at = (1..joint.kinds.len()).find(|&at| joint.kinds[..at].contains(&joint.kinds[at]))?;
+        Some((joint.name.clone(), joint.kinds[at]))
+    };
+    let repeated: Vec<(String, Kind)> = rig.joints.iter().filter_map(of_joint).collect();
+    let (name, kind) = repeated.first()?;
+    Some(format!(
+        "{} joints have a rotation twice (`{name}` has {kind:?}); all of a joint's rotations apply, in their order",
+        repeated.len()
+    ))
 }
 
 /// What stands between MOTION and the rows.

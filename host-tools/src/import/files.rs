@@ -1,18 +1,12 @@
 //! Where importers read from: the machine's folders, or files handed over with their names.
 
-use anyhow::{Context, Result, anyhow, ensure};
+use crate::input;
+use anyhow::{Context, Result, anyhow};
 use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Standard input's name.
-const STDIN: &str = "-";
-/// A motion file is not larger: five hours of a whole figure as text.
-pub const MOST_BYTES: u64 = 1 << 30;
-/// What comes through a pipe or from a device is less: some never end, and nothing tells their length beforehand.
-const MOST_STREAM_BYTES: u64 = 256 << 20;
 
 /// Where a motion's files are.
 #[derive(Clone, Debug)]
@@ -51,8 +45,7 @@ impl Disk {
             return Ok(bytes.to_vec());
         }
         self.0.lock().unwrap_or_else(PoisonError::into_inner).read.insert(path.to_path_buf());
-        let file = File::open(path)?;
-        limited(file, MOST_BYTES)
+        input::content(path)
     }
 
     fn head(&self, path: &Path, most: u64) -> Result<Vec<u8>> {
@@ -66,26 +59,17 @@ impl Disk {
 
     /// The content of a pipe, a device or standard input, which is read at its first use and kept; `None` for a regular file.
     fn stream(&self, path: &Path) -> Result<Option<Arc<[u8]>>> {
-        let stdin = path.as_os_str() == STDIN;
-        if !stdin && fs::metadata(path)?.is_file() {
+        if !input::is_stdin(path) && fs::metadata(path)?.is_file() {
             return Ok(None);
         }
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(bytes) = state.streams.get(path) {
             return Ok(Some(bytes.clone()));
         }
-        let most = MOST_STREAM_BYTES;
-        let bytes: Arc<[u8]> = if stdin { limited(io::stdin().lock(), most)? } else { limited(File::open(path)?, most)? }.into();
+        let bytes: Arc<[u8]> = input::content(path)?.into();
         state.streams.insert(path.to_path_buf(), bytes.clone());
         Ok(Some(bytes))
     }
-}
-
-fn limited(file: impl Read, most: u64) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    file.take(most + 1).read_to_end(&mut bytes)?;
-    ensure!(bytes.len() as u64 <= most, "more than {} MB", most >> 20);
-    Ok(bytes)
 }
 
 impl Files {

@@ -89,6 +89,24 @@ struct Format {
     read: fn(&Path, &Options) -> Result<Source>,
 }
 
+impl Format {
+    /// Whether its files may hold several motions.
+    fn takes_animation(&self) -> bool {
+        matches!(self.name, "glTF" | "FBX" | "VRML")
+    }
+
+    /// Whether its files take their skeleton from another one.
+    fn takes_skeleton(&self) -> bool {
+        self.name == "AMC"
+    }
+}
+
+/// Whether `--animation` and `--skeleton` apply to the motion file `path`.
+pub fn takes(path: &Path) -> Result<[bool; 2]> {
+    let format = format_of(path, &Files::default())?;
+    Ok([format.takes_animation(), format.takes_skeleton()])
+}
+
 /// One line a format. Of several with one extension, those that a file's begin tells stand before the one that takes all others.
 const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
@@ -112,9 +130,16 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
         ensure!(fps.is_finite() && fps > 0.0, "--fps {fps}: expected a number above 0");
     }
     let format = format_of(path, &options.files)?;
+    let place = || path.display().to_string();
+    if let Some(animation) = &options.animation {
+        ensure!(format.takes_animation(), "{}: --animation {animation}: a file of {} holds one motion", place(), format.name);
+    }
+    if let Some(skeleton) = &options.skeleton {
+        let (skeleton, name) = (skeleton.display(), format.name);
+        ensure!(format.takes_skeleton(), "{}: --skeleton {skeleton}: only an .amc takes one, and this is {name}", place());
+    }
     let source = (format.read)(path, options)?;
     let Source { mut motion, unit_known, warnings } = source;
-    let place = || path.display().to_string();
     ensure!(
         motion.rig.channels() <= MAX_CHANNELS,
         "{}: {} channels; a rig holds at most {MAX_CHANNELS}",

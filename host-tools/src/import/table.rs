@@ -15,6 +15,11 @@ const JITTER: f64 = 0.3;
 /// Rates that times written with few digits stand for.
 const USUAL: [f64; 16] = [23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60.0, 72.0, 90.0, 100.0, 120.0, 10.0, 15.0, 20.0];
 
+/// A usual rate is an assumption where it is farther from the measured one, as a part of it.
+const ASSUMED: f64 = 5e-3;
+/// Rows at a higher rate are refused: that is a unit of time other than seconds.
+const MOST_FPS: f64 = 1000.0;
+
 /// Whether `head` begins such a file: a second line that begins with a number, and delimiters in the first.
 pub fn begins(head: &[u8]) -> bool {
     let delimiter = delimiter(head);
@@ -138,7 +143,19 @@ impl Rows {
             );
             return Err(sheet.error_in(self.lines[row], self.column, message));
         }
-        Ok((self.filled(&grid), usual_rate(&grid, &self.times), self.gaps(&grid)))
+        let (rate, assumed) = usual_rate(&grid, &self.times);
+        if rate > MOST_FPS {
+            let message =
+                format!("rows {:.3e} s apart are {rate:.0} frames a second; --fps takes the values at a lower rate", grid.period);
+            return Err(sheet.error_in(self.lines[0], self.column, message));
+        }
+        let warning = assumed.then(|| {
+            let measured = grid.period.recip();
+            format!(
+                "{rate} frames a second are assumed, as times have few digits (they give {measured:.3}); --fps gives another rate"
+            )
+        });
+        Ok((self.filled(&grid), rate, self.gaps(&grid).into_iter().chain(warning).collect()))
     }
 
     /// The values on straight lines between the rows, `fps` times a second.
@@ -183,8 +200,9 @@ fn frame_number(sheet: &Sheet, row: &Row, column: usize) -> Result<f64> {
     }
 }
 
-/// The usual rate nearest to the measured one, if it explains every time as far as its digits go; else the measured one.
-fn usual_rate(grid: &Grid, times: &[f64]) -> f64 {
+/// The usual rate nearest to the measured one, if it explains every time as far as its digits go; else the measured one. Returns also
+/// whether it is an assumption: another rate than the times give.
+fn usual_rate(grid: &Grid, times: &[f64]) -> (f64, bool) {
     let measured = grid.period.recip();
     let far = |rate: &f64| (rate / measured - 1.0).abs();
     let rounding = last_digit(times);
@@ -192,12 +210,15 @@ fn usual_rate(grid: &Grid, times: &[f64]) -> f64 {
         let place = |(&time, &frame): (&f64, &usize)| (time - times[0] - frame as f64 / rate).abs();
         times.iter().zip(&grid.frames).all(|row| place(row) <= rounding)
     };
-    USUAL.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).filter(explains).unwrap_or(measured)
+    let rate = USUAL.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).filter(explains).unwrap_or(measured);
+    (rate, far(&rate) > ASSUMED)
 }
 
-/// The place value of the last decimal digit that any of `times` has.
+/// The place value of the last decimal digit that any of `times` has. No two of them are closer.
 fn last_digit(times: &[f64]) -> f64 {
-    let whole = |scale: f64| times.iter().all(|time| (time * scale - (time * scale).round()).abs() < 1e-3);
+    let closest = times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let whole =
+        |scale: f64| closest * scale > 0.5 && times.iter().all(|time| (time * scale - (time * scale).round()).abs() < 1e-3);
     let scales = (0..9).map(|digits| 10f64.powi(digits));
     scales.into_iter().find(|&scale| whole(scale)).unwrap_or(1e9).recip()
 }

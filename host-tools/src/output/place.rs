@@ -33,9 +33,12 @@ impl Place {
             if STDOUT.iter().any(|name| path == Path::new(name)) {
                 return Ok(Place::Stdout);
             }
-            // A link there names an open file, which its target's text does not.
-            if path.starts_with("/proc") || path.starts_with("/dev/fd") {
-                return Ok(Place::Through(path));
+            if is_of_processes(&path) {
+                match outside_of_processes(&path) {
+                    Some(outside) => path = outside,
+                    // A link there names an open file, which its target's text does not.
+                    None => return Ok(Place::Through(path)),
+                }
             }
             let Ok(target) = fs::read_link(&path) else { return Place::unlinked(path, &given.to_string()) };
             path = path.parent().unwrap_or(Path::new("")).join(target);
@@ -79,6 +82,18 @@ impl Place {
         let Place::File(path) = self else { return None };
         Some(Identity::Missing(folder(path).canonicalize().ok()?, path.file_name()?.to_os_string()))
     }
+}
+
+/// Whether the path is below the folders that show processes and their open files.
+fn is_of_processes(path: &Path) -> bool {
+    path.starts_with("/proc") || path.starts_with("/dev/fd")
+}
+
+/// The same file by a name of its own, if a folder's link leads out of there: `/proc/self/cwd/walk.ptn`.
+fn outside_of_processes(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent()?.canonicalize().ok()?;
+    let outside = folder.join(path.file_name()?);
+    (!is_of_processes(&outside)).then_some(outside)
 }
 
 /// A file, whatever path names it.

@@ -5,10 +5,12 @@
 
 use super::terminal;
 use anyhow::{Error, Result};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressFinish, ProgressState, ProgressStyle};
 use serde_json::{Map, Value, json};
+use std::fmt::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
+use std::time::Duration;
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 static VERBOSE: AtomicBool = AtomicBool::new(false);
@@ -86,9 +88,25 @@ pub fn fail(command: &str, error: &Error) {
     let _ = finish(command);
 }
 
-/// A bar that shows how far the command is, with the time that is left; hidden under `-q` and `--json`. `template` is indicatif's.
+/// How often a bar is drawn while nothing is done: its times go on.
+const TICK: Duration = Duration::from_millis(200);
+
+/// A bar that shows how far the command is, with the time that is left; hidden under `-q` and `--json`. `template` is indicatif's; before
+/// anything is done, its `eta` is a question mark.
 pub fn progress(length: u64, template: &str) -> Result<ProgressBar> {
-    let bar = if is_quiet() || is_json() { ProgressBar::hidden() } else { ProgressBar::new(length) };
-    bar.set_style(ProgressStyle::with_template(template)?);
+    if is_quiet() || is_json() {
+        return Ok(ProgressBar::hidden());
+    }
+    let left = |state: &ProgressState, out: &mut dyn Write| {
+        // A line that cannot be formatted is not drawn.
+        let _ = match state.pos() {
+            0 => write!(out, "? s"),
+            _ => write!(out, "{:#}", HumanDuration(state.eta())),
+        };
+    };
+    let bar = ProgressBar::new(length).with_finish(ProgressFinish::AndClear);
+    bar.set_style(ProgressStyle::with_template(template)?.with_key("eta", left));
+    bar.tick();
+    bar.enable_steady_tick(TICK);
     Ok(bar)
 }

@@ -1,5 +1,6 @@
 //! All that is served, by its path.
 
+use crate::input;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::Clip;
 use serde_json::json;
@@ -61,7 +62,7 @@ impl Site {
         self.files.retain(|path, _| !path.starts_with(&format!("/{CLIPS}/")));
         let mut list = vec![];
         for (number, path) in clips.iter().enumerate() {
-            let bytes = fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+            let bytes = input::read(path)?;
             if let Err(error) = Clip::new_checked(&bytes) {
                 bail!("{}: {error}; `pantin convert` makes clips of motions", path.display());
             }
@@ -93,7 +94,7 @@ impl Site {
         for entry in entries {
             let path = entry.with_context(|| folder.display().to_string())?.path();
             if let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|_| path.is_file()) {
-                let bytes = fs::read(&path).with_context(|| format!("{}: cannot be read", path.display()))?;
+                let bytes = input::read(&path)?;
                 self.add(format!("{prefix}{name}"), bytes)?;
             }
         }

@@ -2,10 +2,19 @@
 
 use crate::import::livelink::live_link_name;
 use crate::import::text::shown;
+use crate::input;
 use anyhow::{Context, Result, bail, ensure};
-use std::io::{BufRead, ErrorKind};
+use std::io::{self, BufRead, BufReader, ErrorKind};
 use std::net::UdpSocket;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread;
 use std::time::Duration;
+
+/// Lines that are read before they are asked for.
+const LINES_AHEAD: usize = 64;
+/// How often a feed that waits for a line looks whether it was stopped.
+const STOP_CHECK: Duration = Duration::from_millis(50);
 
 /// Values of a frame by name, in the order of [`Feed::names`].
 pub type Values = Vec<f64>;
@@ -15,7 +24,7 @@ pub enum Feed {
     /// A header, then a line a frame.
     Lines {
         /// What is left to read.
-        lines: Box<dyn Iterator<Item = std::io::Result<String>>>,
+        lines: Receiver<Result<String>>,
         /// Names of the columns behind the first two.
         names: Vec<String>,
     },
@@ -47,10 +56,10 @@ fn parse_datagram(bytes: &[u8]) -> Option<Values> {
 }
 
 impl Feed {
-    /// `-` is stdin, `udp:PORT` the datagrams that come to that port.
-    pub fn open(from: &str) -> Result<Feed> {
+    /// `-` is stdin, `udp:PORT` the datagrams that come to that port. Returns an error if `stop` is set before there is a header.
+    pub fn open(from: &str, stop: &AtomicBool) -> Result<Feed> {
         if from == "-" {
-            return Feed::lines(Box::new(std::io::stdin().lock().lines()));
+            return Feed::lines(BufReader::new(io::stdin()), stop);
         }
         let port = from.strip_prefix("udp:").and_then(|port| port.parse::<u16>().ok());
         let port = port.with_context(|| format!("--live {from}: expected udp:PORT, or - for lines on stdin"))?;
@@ -58,8 +67,9 @@ impl Feed {
         Ok(Feed::Datagrams(socket))
     }
 
-    fn lines(mut lines: Box<dyn Iterator<Item = std::io::Result<String>>>) -> Result<Feed> {
-        let header = lines.next().context("--live -: nothing on stdin; expected a header of Live Link Face")??;
+    fn lines(source: impl BufRead + Send + 'static, stop: &AtomicBool) -> Result<Feed> {
+        let lines = read_lines(source);
+        let header = next_line(&lines, stop)?.context("--live -: nothing on stdin; expected a header of Live Link Face")?;
         let mut cells = header.trim_start_matches('\u{feff}').split(',').map(|cell| cell.trim().to_owned());
         let named = |cell: Option<String>, name: &str| cell.is_some_and(|cell| cell.eq_ignore_ascii_case(name));
         ensure!(
@@ -78,12 +88,11 @@ impl Feed {
         }
     }
 
-    /// The next frame of lines, or the last datagram that came within `wait`; `Ok(None)` at the end.
-    pub fn next(&mut self, wait: Duration, last: &Values) -> Result<Option<Values>> {
+    /// The next frame of lines, or the last datagram that came within `wait`; `Ok(None)` at the end, and where `stop` is set.
+    pub fn next(&mut self, wait: Duration, last: &Values, stop: &AtomicBool) -> Result<Option<Values>> {
         match self {
             Feed::Lines { lines, names } => loop {
-                let Some(line) = lines.next() else { return Ok(None) };
-                let line = line.context("stdin")?;
+                let Some(line) = next_line(lines, stop)? else { return Ok(None) };
                 let cells: Vec<&str> = line.split(',').skip(2).map(str::trim).collect();
                 if line.trim().is_empty() || line.split(',').nth(1).is_some_and(|count| count.trim() == "0") {
                     continue;
@@ -122,6 +131,32 @@ impl Feed {
     }
 }
 
+/// Reads lines in a thread of their own: a read that waits cannot be stopped. The thread ends with the program.
+fn read_lines(mut source: impl BufRead + Send + 'static) -> Receiver<Result<String>> {
+    let (sender, lines) = sync_channel(LINES_AHEAD);
+    thread::spawn(move || {
+        while let Some(line) = input::line(&mut source).transpose() {
+            let failed = line.is_err();
+            if sender.send(line).is_err() || failed {
+                break;
+            }
+        }
+    });
+    lines
+}
+
+/// The next line; `None` at the end, and where `stop` is set.
+fn next_line(lines: &Receiver<Result<String>>, stop: &AtomicBool) -> Result<Option<String>> {
+    while !stop.load(Ordering::Relaxed) {
+        match lines.recv_timeout(STOP_CHECK) {
+            Ok(line) => return line.map(Some).context("--live -: stdin"),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    Ok(None)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -150,10 +185,11 @@ mod tests {
     #[test]
     fn lines_of_its_csv() {
         let text = "Timecode,BlendShapeCount,EyeBlinkLeft,jawOpen\n0:0:0:1.0,2,0.5,0.25\n0:0:0:2.0,0\n0:0:0:3.0,2,x,1\n";
-        let mut feed = Feed::lines(Box::new(std::io::Cursor::new(text).lines())).expect("a header");
+        let stop = AtomicBool::new(false);
+        let mut feed = Feed::lines(text.as_bytes(), &stop).expect("a header");
         assert_eq!(feed.names(), ["EyeBlinkLeft", "JawOpen"]);
-        assert_eq!(feed.next(Duration::ZERO, &vec![]).unwrap(), Some(vec![0.5, 0.25]));
-        assert!(feed.next(Duration::ZERO, &vec![]).unwrap_err().to_string().contains("2 numbers"));
-        assert_eq!(feed.next(Duration::ZERO, &vec![]).unwrap(), None);
+        assert_eq!(feed.next(Duration::ZERO, &vec![], &stop).unwrap(), Some(vec![0.5, 0.25]));
+        assert!(feed.next(Duration::ZERO, &vec![], &stop).unwrap_err().to_string().contains("2 numbers"));
+        assert_eq!(feed.next(Duration::ZERO, &vec![], &stop).unwrap(), None);
     }
 }

@@ -7,19 +7,35 @@ pub mod uf2;
 
 pub use send::{Outcome, RetryPolicy, TransferError, send};
 
+use crate::input;
+use crate::output::{is_hostile, note};
 use anyhow::{Context, Result};
 use pantin::Clip;
 use pantin_store::ClipInfo;
-use std::fs;
+use pantin_store::header::NAME_BYTES;
 use std::path::Path;
 
-/// Reads a clip for a board: one that holds its rig. It is called `name`, or else as its file.
+/// Reads a name for a clip on a board: what fits its header, and what a screen can show.
+pub fn board_name(text: &str) -> Result<String, String> {
+    match text {
+        "" => Err(format!("expected 1 to {NAME_BYTES} bytes")),
+        _ if text.len() > NAME_BYTES => Err(format!("{} bytes, and a board keeps at most {NAME_BYTES}", text.len())),
+        _ if text.chars().any(is_hostile) => Err("expected no control characters".into()),
+        _ => Ok(text.into()),
+    }
+}
+
+/// Reads a clip for a board: one that holds its rig. It is called `name`, or else as its file, as far as a board keeps that.
 pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
     let place = || path.display().to_string();
-    let clip = fs::read(path).with_context(|| format!("{}: cannot be read", place()))?;
+    let clip = input::read(path)?;
     let opened = Clip::new_checked(&clip);
     opened.with_context(|| format!("{}: a board cannot open it (a clip made with --rig-out has no rig in it)", place()))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let info = ClipInfo::of(&clip, name.unwrap_or(&stem)).with_context(|| format!("{}: too long", place()))?;
+    let shown: String = stem.chars().map(|c| if is_hostile(c) { '_' } else { c }).collect();
+    let info = ClipInfo::of(&clip, name.unwrap_or(&shown)).with_context(|| format!("{}: too long", place()))?;
+    if name.is_none() && info.name.as_str() != stem {
+        note!("{}: the board shows it as `{}`; --name chooses another name", place(), info.name.as_str());
+    }
     Ok((clip, info))
 }

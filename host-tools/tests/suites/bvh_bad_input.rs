@@ -207,3 +207,12 @@ fn bad_options_are_refused() {
         assert!(load_bytes("options", GOOD.as_bytes(), &Options { cm_per_unit, fps, ..Options::default() }).is_err());
     }
 }
+
+#[test]
+fn a_channel_that_a_joint_has_twice_is_named() {
+    let text = good_but("Xposition Yposition Zposition", "Xposition Yposition Xposition");
+    refused("position-twice", &text, 5, "the joint has the channel Xposition twice");
+    let loaded = load("rotation-twice", &good_but("Zrotation Xrotation Yrotation", "Zrotation Xrotation Zrotation")).unwrap();
+    let warning = "1 joints have a rotation twice (`hip` has Zrotation)";
+    assert!(loaded.warnings.iter().any(|said| said.contains(warning)), "{:?}", loaded.warnings);
+}

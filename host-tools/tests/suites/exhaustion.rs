@@ -122,11 +122,83 @@ fn too_many_of_anything_is_refused_before_it_takes_time() {
     refused(&folder, &["convert", "b.proc", "-o", "b.ptn"], "names");
 }
 
+/// Every command that reads a file, with a device that never ends in its place.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_device_without_end_is_no_motion() {
+fn a_device_without_end_is_refused() {
     let folder = Folder::new();
-    refused(&folder, &["info", "/dev/zero"], "more than");
+    folder.put("index.html", "");
+    for name in ["zero.ptn", "zero.obj", "zero.glb", "zero.gltf", "zero.keys", "zero.csv", "zero.bin"] {
+        std::os::unix::fs::symlink("/dev/zero", folder.path(name)).unwrap();
+    }
+    let buffer = r#"{"byteLength":4,"uri":"zero.bin"}"#;
+    let accessor = r#"{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3"}"#;
+    folder.put(
+        "mesh.gltf",
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"buffers":[{buffer}],"bufferViews":[{{"buffer":0,"byteLength":4}}],
+            "accessors":[{accessor}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}]}}"#
+        ),
+    );
+    let line = "tcp:127.0.0.1:1";
+    let runs: [&[&str]; 20] = [
+        &["info", "/dev/zero"],
+        &["info", "zero.gltf"],
+        &["convert", "zero.keys", "-o", "a.ptn"],
+        &["convert", "zero.glb", "-o", "a.ptn"],
+        &["convert", "--list", "zero.gltf"],
+        &["convert", "run.keys", "--with", "zero.csv", "-o", "a.ptn"],
+        &["convert", "run.keys", "--retarget", "display", "--map", "zero.obj", "-o", "a.ptn"],
+        &["expand", "zero.ptn", "-o", "a.bvh"],
+        &["render", "zero.ptn", "-o", "a.gif"],
+        &["play", "zero.ptn", "--plain"],
+        &["flash-image", "zero.ptn", "--board", "pico", "-o", "a.uf2"],
+        &["update", "zero.ptn", "--to", line],
+        &["stream", "zero.ptn", "--to", line],
+        &["serve", "zero.ptn", "--site", ".", "--port", "0"],
+        &["train", "zero.keys", "-o", "a.rs", "--note", "a"],
+        &["face", "model", "zero.glb", "-o", "a.model"],
+        &["face", "model", "mesh.gltf", "-o", "a.model"],
+        &["face", "fit", "zero.obj"],
+        &["face", "fit", "zero.glb"],
+        &["face", "fit", "zero.ptn"],
+    ];
+    for arguments in runs {
+        refused(&folder, &[arguments, &["--max-memory", "64MB"]].concat(), "more than");
+    }
+    folder.done(&["convert", "run.keys", "-o", "run.ptn", "--effort", "fast"]);
+    refused(&folder, &["stream", "run.ptn", "--to", line, "--key", "/dev/zero"], "more than");
+    // Without the option, the limit holds too.
+    refused(&folder, &["update", "/dev/zero", "--to", line], "more than");
+}
+
+/// Standard input of `stream --live -`: a line without an end, and none at all until the program is stopped.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_live_line_without_end_is_refused_and_a_silent_one_is_stopped() {
+    use std::process::Stdio;
+    let folder = Folder::new();
+    folder.put("face.csv", "time,JawOpen\n0,0\n0.1,1\n0.2,0\n");
+    folder.done(&["convert", "face.csv", "-o", "face.ptn"]);
+    let listener = std::net::TcpListener::bind(("127.0.0.1", 0)).unwrap();
+    let line = format!("tcp:127.0.0.1:{}", listener.local_addr().unwrap().port());
+    let arguments = ["stream", "face.ptn", "--live", "-", "--to", &line];
+    let endless = std::fs::File::open("/dev/zero").unwrap();
+    let output = folder.command(&arguments).stdin(endless).output().unwrap();
+    assert!(output.status.code() == Some(1) && err(&output).contains("more than"), "{}", err(&output));
+    for begin in ["", "Timecode,BlendshapeCount,JawOpen\n"] {
+        let mut child = folder.command(&arguments).stdin(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut stdin = child.stdin.take().unwrap();
+        std::io::Write::write_all(&mut stdin, begin.as_bytes()).unwrap();
+        // Before its signals are handled, one ends the program at once: that is a stop too.
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        let begun = std::time::Instant::now();
+        while child.try_wait().unwrap().is_none() {
+            assert!(begun.elapsed().as_secs() < 60, "it does not stop");
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+    }
 }
 
 /// The most memory that a command had at a time, in bytes, and whether it succeeded; `None` if it refused.

@@ -133,7 +133,7 @@ fn a_pose_is_taken_apart_into_its_units() {
 fn meshes_from_outside_become_models() {
     for (name, vertices, targets) in [("gltf_khronos_morph-cube.glb", 24, 2), ("gltf_khronos_morph-stress.gltf", 1528, 8)] {
         let Some(path) = data(name) else { continue };
-        let blueprint = outside::model(&path).unwrap();
+        let blueprint = outside::model(&path, &import::Files::default()).unwrap();
         let bytes = pantin_tools::face::compact::encode(&blueprint).unwrap();
         let model = Model::new_checked(&bytes).unwrap();
         assert_eq!((model.vertices(), model.shape_count()), (vertices, targets));

@@ -231,7 +231,7 @@ fn every_animation_of_a_file_becomes_a_clip() {
 }
 
 /// A world of two joints that nothing moves, and two clocks: one drives a number, the other a joint.
-const WORLD: &str = "#VRML V2.0 utf8
+pub const WORLD: &str = "#VRML V2.0 utf8
 PROTO Humanoid [ exposedField SFFloat smile 0 ] { Transform { } }
 DEF Face Humanoid { }
 DEF Hip HAnimJoint { name \"hip\" children [ DEF Arm HAnimJoint { name \"arm\" center 0 1 0 translation 0 1 0 children [ DEF Hand HAnimJoint { name \"hand\" translation 0 1 0 } ] } ] }

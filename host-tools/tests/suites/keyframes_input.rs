@@ -119,3 +119,14 @@ fn what_is_missing_is_named() {
     assert_eq!(motion.values[1], [0.0, 0.5, 1.0]);
     assert_eq!(load("silent", quaternion).unwrap().motion.values[0], [1.0; 3]);
 }
+
+#[test]
+fn lines_of_which_there_is_one_stand_once() {
+    refused("fps-twice", "frames 60 ", "fps 25\nframes 60 ", "a second `fps`");
+    for line in ["fps 30", "frames 60", "loop", "cm-per-unit 1"] {
+        let first = line.split(' ').next().unwrap();
+        let error = load("twice", &example().replacen("\njoint hip", &format!("\n{line}\njoint hip"), 1)).unwrap_err();
+        assert!(format!("{error:#}").contains(&format!("a second `{first}`")), "{error:#}");
+    }
+    refused("channel-twice", "Zposition Xrotation", "Zposition Zposition", "`hip` has the channel Zposition twice");
+}

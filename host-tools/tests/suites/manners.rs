@@ -1,5 +1,6 @@
 //! What all commands have in common: options, errors, exit codes, the report of `--json`, and names of outputs.
 
+use super::interchange::WORLD;
 use super::outputs::{Folder, err};
 use serde_json::Value;
 use std::process::Output;
@@ -229,4 +230,67 @@ fn animations_at_rates_that_viewers_do_not_show_are_resampled_with_a_note() {
     let said = err(&folder.done(&["render", "fast.ptn", "-o", "asked.gif", "--fps", "100"]));
     assert!(said.contains("50 are drawn"), "{said}");
     assert!(err(&folder.done(&["render", "fast.ptn", "-o", "asked.gif", "--fps", "100", "-q"])).is_empty());
+}
+
+#[test]
+fn a_boards_name_for_a_clip_is_not_cut() {
+    let folder = prepared();
+    let image = |name: &str| {
+        let arguments = ["flash-image", "a.ptn", "--board", "pico", "-o", "a.bin", "--name", name];
+        folder.run(&arguments)
+    };
+    let longest = "abcdefghijklmnopqrstuvwxyz12";
+    assert!(image(longest).status.success() && folder.get("a.bin")[16..44] == *longest.as_bytes());
+    for (wrong, why) in [
+        ("abcdefghijklmnopqrstuvwxyz123", "29 bytes"),
+        ("ääääääääääääääü", "30 bytes"),
+        ("a\u{1b}[31m", "control"),
+        ("a\u{202e}b", "control"),
+        ("a\nb", "control"),
+        ("", "1 to 28"),
+    ] {
+        let output = image(wrong);
+        assert!(output.status.code() == Some(2) && err(&output).contains(why), "{wrong:?}: {}", err(&output));
+        let output = folder.run(&["update", "a.ptn", "--to", "tcp:127.0.0.1:1", "--name", wrong]);
+        assert!(output.status.code() == Some(2) && err(&output).contains(why), "{wrong:?}: {}", err(&output));
+    }
+    // A file's own name is cut with a note.
+    let file = format!("{longest}345.ptn");
+    folder.put(&file, folder.get("a.ptn"));
+    let said = err(&folder.done(&["flash-image", &file, "--board", "pico", "-o", "b.bin"]));
+    assert!(said.contains(&format!("shows it as `{longest}`")), "{said}");
+}
+
+#[test]
+fn options_that_do_not_apply_are_refused() {
+    let folder = prepared();
+    let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--animation", "Walk"]);
+    assert!(said.contains("--animation Walk") && said.contains("one motion"), "{said}");
+    let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--animation", "all"]);
+    assert!(said.contains("--animation all") && said.contains("one motion"), "{said}");
+    let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--skeleton", "walk.keys"]);
+    assert!(said.contains("--skeleton walk.keys") && said.contains(".amc"), "{said}");
+    for inputs in [&["in"][..], &["run.keys", "in/light.csv"]] {
+        let said = folder.refused(&[&["convert"], inputs, &["-o", "out", "--animation", "0"]].concat());
+        assert!(said.contains("none of these files"), "{said}");
+        let said = folder.refused(&[&["convert"], inputs, &["-o", "out", "--skeleton", "walk.keys"]].concat());
+        assert!(said.contains("none of these files"), "{said}");
+    }
+    assert!(!folder.path("b.ptn").exists() && !folder.path("out").exists());
+    // Among several motions, they are for those that take them.
+    folder.put("in/world.wrl", WORLD);
+    folder.done(&["convert", "in", "-o", "out", "--animation", "smile"]);
+    folder.done(&["convert", "in/world.wrl", "-o", "smile.ptn", "--animation", "Smile"]);
+    assert!(folder.get("out/world.ptn") == folder.get("smile.ptn") && folder.path("out/light.ptn").exists());
+}
+
+#[test]
+fn a_line_without_room_for_refreshes_is_named() {
+    let folder = prepared();
+    for wrong in ["0", "-1", "101", "nan"] {
+        let said = folder.refused(&["stream", "a.ptn", "--to", "tcp:127.0.0.1:1", &format!("--refresh={wrong}")]);
+        assert!(said.contains("more than 0, and at most 100"), "{wrong}: {said}");
+    }
+    let said = folder.refused(&["stream", "a.ptn", "--to", "tcp:127.0.0.1:1@1000000", "--refresh", "0.0001"]);
+    assert!(said.contains("a larger --refresh"), "{said}");
 }

@@ -111,6 +111,103 @@ fn an_input_is_no_output_by_a_name_below_proc() {
     assert_eq!(folder.get("mine.ptn"), motion);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_new_output_can_have_a_name_below_proc() {
+    let folder = Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "/proc/self/cwd/new.ptn", "--effort", "fast"]);
+    folder.put("old.ptn", "old");
+    folder.done(&["convert", "run.keys", "-o", "/proc/self/cwd/old.ptn", "--effort", "fast"]);
+    assert_eq!(folder.get("new.ptn"), folder.get("old.ptn"));
+    let said = folder.refused(&["convert", "run.keys", "-o", "/proc/self/cwd/a.ptn", "--rig-out", "a.ptn"]);
+    assert!(said.contains("one file") || said.contains("a rig's name"), "{said}");
+    assert_eq!(folder.names(), ["new.ptn", "old.ptn", "run.keys"]);
+}
+
+/// A glTF whose buffer is a file: a node that moves, and a mesh with a morph target.
+fn gltf(buffer: &str) -> String {
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"name":"a","children":[1]}},{{"name":"b","translation":[0,1,0]}}],
+        "buffers":[{{"byteLength":44,"uri":"{buffer}"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":8}},{{"buffer":0,"byteOffset":8,"byteLength":36}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]}},
+        {{"bufferView":1,"componentType":5126,"count":2,"type":"VEC3"}},
+        {{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,1]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":2}},"targets":[{{"POSITION":2}}]}}]}}],
+        "animations":[{{"samplers":[{{"input":0,"output":1}}],"channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}]}}]}}"#
+    )
+}
+
+#[test]
+fn a_gltfs_own_buffer_is_no_output_of_any_command() {
+    let folder = Folder::new();
+    let numbers: [f32; 11] = [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5, 0.25, 1.0, 1.0, 0.0];
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    for (name, arguments) in [
+        ("a.ptn", &["convert", "a.gltf", "-o", "a.ptn"][..]),
+        ("a.png", &["render", "a.gltf", "--frame", "0", "-o", "a.png"]),
+        ("plain", &["render", "a.gltf", "--format", "gif", "-o", "./plain"]),
+        ("plain", &["face", "model", "a.gltf", "-o", "plain"]),
+        ("names", &["face", "model", "a.gltf", "-o", "a.model", "--names", "names"]),
+        ("tables.rs", &["train", "a.gltf", "-o", "tables.rs", "--note", "a"]),
+    ] {
+        folder.put("a.gltf", gltf(name));
+        folder.put(name, &bytes);
+        let said = folder.refused(arguments);
+        assert!(said.contains("is the input"), "{arguments:?}: {said}");
+        assert_eq!(folder.get(name), bytes, "{arguments:?}");
+        std::fs::remove_file(folder.path(name)).unwrap();
+    }
+    // In a batch, it can be the buffer of another motion.
+    folder.put("in/a.gltf", gltf("run.ptn"));
+    folder.put("in/run.ptn", &bytes);
+    folder.put("in/run.keys", folder.get("run.keys"));
+    let said = folder.refused(&["convert", "in/run.keys", "in/a.gltf", "-o", "in"]);
+    assert!(said.contains("is the input") && folder.get("in/run.ptn") == bytes, "{said}");
+    assert_eq!(folder.names(), ["a.gltf", "in", "run.keys"]);
+}
+
+#[test]
+fn a_name_that_the_user_does_not_give_replaces_nothing() {
+    let folder = Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    let runs: [(&str, &[&str]); 7] = [
+        ("run.ptn", &["convert", "run.keys"]),
+        ("a.gif", &["render", "a.ptn"]),
+        ("a.png", &["render", "a.ptn", "--frame", "0"]),
+        ("a.bvh", &["expand", "a.ptn"]),
+        ("a.uf2", &["flash-image", "a.ptn", "--board", "pico"]),
+        ("a.hex", &["flash-image", "a.ptn", "--board", "microbit"]),
+        ("a.bin", &["flash-image", "a.ptn", "--board", "esp32-c3"]),
+    ];
+    for (name, arguments) in runs {
+        folder.put(name, "mine");
+        let said = folder.refused(arguments);
+        assert!(said.contains(&format!("{name}: exists; --output {name} replaces it")), "{arguments:?}: {said}");
+        assert_eq!(folder.get(name), b"mine");
+        folder.done(&[arguments, &["-o", name]].concat());
+        assert_ne!(folder.get(name), b"mine");
+        // A link that leads nowhere is there too.
+        #[cfg(unix)]
+        {
+            std::fs::remove_file(folder.path(name)).unwrap();
+            std::os::unix::fs::symlink("nowhere", folder.path(name)).unwrap();
+            folder.refused(arguments);
+            std::fs::remove_file(folder.path(name)).unwrap();
+        }
+    }
+    // Several motions: a clip that is up to date is not in the way.
+    folder.put("light.csv", "time,a\n0,0\n0.1,1\n0.2,0.5\n");
+    folder.put("lamp.csv", "time,a\n0,0\n0.1,1\n0.2,0.5\n");
+    folder.done(&["convert", "light.csv", "lamp.csv"]);
+    folder.done(&["convert", "light.csv", "lamp.csv"]);
+    let clip = folder.get("lamp.ptn");
+    let said = folder.refused(&["convert", "light.csv", "lamp.csv", "--max-scalar-error", "9", "-q"]);
+    assert!(said.contains("light.ptn: exists; --output FOLDER"), "{said}");
+    assert_eq!(folder.get("lamp.ptn"), clip);
+    folder.done(&["convert", "light.csv", "lamp.csv", "--max-scalar-error", "9", "-o", "."]);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_file_that_may_not_grow_leaves_nothing() {

@@ -341,3 +341,31 @@ fn without_a_terminal_it_says_what_to_do() {
         assert!(!error.contains("panicked"));
     }
 }
+
+#[test]
+fn a_long_conversion_shows_its_progress_and_a_stop_leaves_nothing() {
+    let folder = Folder::new("progress");
+    let motions = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions");
+    std::fs::copy(motions.join("walk.keys"), folder.0.join("walk.keys")).unwrap();
+    let big =
+        "keyframes 1\nfps 30\nframes 100000\njoint hip offset 0 90 0 channels Yposition Zposition Xrotation\nkeys natural hip\n";
+    std::fs::write(folder.0.join("big.keys"), format!("{big}0 0 0 0\n50000 50 20 10\n99999 3 3 3\n")).unwrap();
+    let names = || {
+        let entries = std::fs::read_dir(&folder.0).unwrap();
+        entries.map(|entry| entry.unwrap().file_name()).collect::<std::collections::BTreeSet<_>>()
+    };
+    let before = names();
+    for arguments in [&["convert", "walk.keys", "--exact", "-o", "new.ptn"][..], &["convert", "big.keys", "-o", "new.ptn"]] {
+        let mut seat = Seat::new(&folder.0, env!("CARGO_BIN_EXE_pantin"), arguments);
+        let begun = Instant::now();
+        let shown =
+            || seat.rows().iter().any(|row| row.contains("fitting") && row.contains(" %") && row.trim_end().ends_with(" left"));
+        while !shown() {
+            assert!(begun.elapsed() < PATIENCE, "{:?}", seat.rows());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        seat.press("\x03");
+        seat.wait();
+        assert_eq!(names(), before);
+    }
+}

@@ -80,3 +80,17 @@ fn a_table_is_told_by_its_second_line() {
     assert!(table::begins(b"a,b\n1,2\n") && table::begins(b"a\tb\n-1e3\t2\n"));
     assert!(!table::begins(b"a,b\nc,d\n") && !table::begins(b"a\n1\n") && !table::begins(b""));
 }
+
+#[test]
+fn a_rate_that_few_digits_do_not_tell_is_an_assumption_and_close_times_are_refused() {
+    // Written with two digits, 30 frames a second.
+    let (motion, warnings) = read_with("assumed", "time,a\n0,0\n0.03,1\n", None).unwrap();
+    assert_eq!(motion.frame_time, 1.0 / 30.0);
+    assert!(warnings.iter().any(|warning| warning.contains("30 frames a second are assumed")), "{warnings:?}");
+    let (_, warnings) = read_with("told", "time,a\n0,0\n0.033,1\n0.067,2\n0.1,3\n", None).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    for times in ["0,0\n0.00001,1\n0.00002,2\n", "0,0\n1e-7,1\n", "5,0\n5.0004,1\n5.0008,2\n"] {
+        let error = error("close", &format!("time,a\n{times}"), None);
+        assert!(error.contains("frames a second; --fps"), "{error}");
+    }
+}

@@ -58,6 +58,19 @@ fn a_closed_or_full_output_ends_no_command_with_a_panic() {
         let status = child.wait().unwrap();
         assert!(matches!(status.code(), Some(0 | 1 | 141)), "{arguments:?}, closed: {status}");
     }
+    // What was asked for was not printed.
+    for arguments in [&["--help"][..], &["--version"], &["convert", "-h"], &["help", "render"], &["man"], &["completions", "zsh"]]
+    {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let output = folder.command(arguments).stdout(full).stderr(Stdio::piped()).output().unwrap();
+        let said = err(&output);
+        assert!(output.status.code() == Some(1) && said.starts_with("error: "), "{arguments:?}: {} {said}", output.status);
+        let mut child = folder.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        // A short text may have been written before the reader went away.
+        assert!(matches!(output.status.code(), Some(0 | 141)) && output.stderr.is_empty(), "{arguments:?}: {}", output.status);
+    }
     let mut child = folder.command(&["play", "a.ptn", "--plain"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();

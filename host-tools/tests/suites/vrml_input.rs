@@ -203,3 +203,13 @@ fn worlds_that_would_fill_memory_or_stack_are_refused() {
     let loops = "#VRML V2.0 utf8\nPROTO A [ ] { B { } } PROTO B [ ] { A { } } A { children A { } }";
     assert!(load(loops).unwrap_err().contains("no TimeSensor"));
 }
+
+#[test]
+fn a_cycle_that_is_no_time_is_named() {
+    for (cycle, shown) in [("0", "0"), ("-2", "-2"), ("nan", "no number")] {
+        let leg = load(&LEG.replace("cycleInterval 2", &format!("cycleInterval {cycle}"))).unwrap();
+        let named = |warning: &String| warning.contains(&format!("`T` (line 3) has the cycleInterval {shown}"));
+        assert!(leg.warnings.iter().any(named), "{:?}", leg.warnings);
+    }
+    assert!(!load(LEG).unwrap().warnings.iter().any(|warning| warning.contains("cycleInterval")));
+}

@@ -3,12 +3,12 @@
 use crate::cmd::Files;
 use crate::cmd::render::Moment;
 use crate::face::{Face, fit, outside};
+use crate::input;
 use crate::output::{is_json, outln, report};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{ChannelState, Player};
 use pantin_face::{Binding, Morph, VERTICES, Weights};
 use serde_json::{Map, Value, json};
-use std::fs;
 use std::path::PathBuf;
 
 /// Weights below it are left out of what is printed.
@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let path = &arguments.target;
     let place = || path.display().to_string();
     let target = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("obj") => outside::obj_points(&fs::read_to_string(path).with_context(place)?).with_context(place)?,
+        Some("obj") => outside::obj_points(&String::from_utf8(input::read(path)?).with_context(place)?).with_context(place)?,
         Some("glb" | "gltf") => outside::glb_points(path)?,
         Some("ptn") => frame(arguments, &face)?,
         _ => bail!("{}: expected an .obj, a .glb or a clip (.ptn)", place()),

@@ -1,7 +1,9 @@
 //! `pantin face model`
 
+use crate::cmd::check_read;
 use crate::face::blueprint::Blueprint;
 use crate::face::{Face, compact, error, outside};
+use crate::import::Files;
 use crate::output::{Wanted, check, note, refuse_foreign, report, write_together};
 use anyhow::Result;
 use serde_json::json;
@@ -33,10 +35,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         refuse_foreign(names, Wanted::Names)?;
     }
     check(&inputs, &outputs)?;
+    let files = Files::default();
     let blueprint: Blueprint = match &arguments.mesh {
-        Some(path) => outside::model(path)?,
+        Some(path) => outside::model(path, &files)?,
         None => Face::new()?.blueprint,
     };
+    check_read(&files, &outputs)?;
     let bytes = compact::encode(&blueprint)?;
     let moved: usize = blueprint.shapes.iter().map(|shape| shape.deltas.len()).sum();
     let whole = blueprint.shapes.len() * (blueprint.middles + blueprint.pairs);

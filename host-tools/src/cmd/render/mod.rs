@@ -3,7 +3,7 @@
 mod options;
 mod output;
 
-use super::{Files, default_output, format_of};
+use super::{Files, check_read, default_output, format_of};
 use crate::expand::expand;
 use crate::face::cast::is_face;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
@@ -40,7 +40,8 @@ RRGGBB,RRGGBB,RRGGBB (paper, far, near).")]
 pub struct Arguments {
     /// The clip, or a motion file, which is converted first
     input: PathBuf,
-    /// The picture to write: .gif, .apng, .png or .svg [default: the clip's name, ending in .gif, or in .png for a still or a chart]
+    /// The picture to write: .gif, .apng, .png or .svg [default: the clip's name, ending in .gif, or in .png for a still or a chart; a file
+    /// that is there already is kept]
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// The format, where the output's name does not say it, as in `-o -`
@@ -134,6 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Some(output) => output.clone(),
         None => arguments.default_output(clip.rig().joint_count() == 0 && !face)?,
     };
+    check_read(&files.from, &[output])?;
     let kind = arguments.kind(output)?;
     let mut file = Staged::create(output)?;
     if clip.rig().joint_count() == 0 && !face {

@@ -1,5 +1,6 @@
 //! The container: JSON, and the buffers it names, from a .glb, from data URIs, or from files beside it.
 
+use crate::budget;
 use crate::import::Files;
 pub(crate) use crate::import::one_line;
 use anyhow::{Result, anyhow, bail};
@@ -9,7 +10,7 @@ use gltf::json::accessor::Accessor;
 use gltf::json::animation::{Animation, Channel};
 use gltf::json::validation::Validate;
 use gltf::json::{Index, Path as JsonPath, Root};
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::path::{Component, Path, PathBuf};
 
 /// Parts of the JSON that motion depends on: what is wrong elsewhere (materials, say) does not matter.
@@ -26,6 +27,8 @@ pub struct File {
     files: Files,
     bin: Option<Vec<u8>>,
     buffers: Vec<OnceCell<Vec<u8>>>,
+    /// Bytes of all buffers that were read.
+    held: Cell<u64>,
 }
 
 impl File {
@@ -62,6 +65,7 @@ impl File {
                 path: path.into(),
                 files: files.clone(),
                 bin,
+                held: Cell::new(0),
             }),
         }
     }
@@ -83,6 +87,9 @@ impl File {
         if (bytes.len() as u64) < expected {
             bail!(self.error(&at, format!("{} bytes; expected byteLength, {expected}", bytes.len())));
         }
+        // Any number of buffers may name one file.
+        self.held.set(self.held.get() + bytes.len() as u64);
+        budget::check_bytes_held(self.held.get()).map_err(|error| self.error(&at, error))?;
         Ok(cell.get_or_init(|| bytes))
     }
 

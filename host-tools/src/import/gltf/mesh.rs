@@ -22,10 +22,9 @@ pub struct Mesh {
     pub names: Vec<String>,
 }
 
-/// Reads it. Parts of the mesh follow each other.
-pub fn read(path: &Path) -> Result<Mesh> {
-    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-    let file = File::open(path, &bytes, &Files::default())?;
+/// Reads it from `files`. Parts of the mesh follow each other.
+pub fn read(path: &Path, files: &Files) -> Result<Mesh> {
+    let file = File::open(path, &files.read(path)?, files)?;
     let with_targets = |mesh: &&gltf::json::Mesh| {
         mesh.primitives.iter().any(|part| part.targets.as_ref().is_some_and(|targets| !targets.is_empty()))
     };

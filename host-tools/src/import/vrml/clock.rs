@@ -19,6 +19,8 @@ pub struct Clock {
     pub node: usize,
     /// Seconds of a cycle.
     pub seconds: f64,
+    /// What the file gives as its cycle, if that is no number above 0: then it lasts 1 s, as without a value.
+    pub wrong: Option<String>,
     /// Interpolators with the node and the field that each sets.
     pub drives: Vec<Drive>,
 }
@@ -68,9 +70,12 @@ pub fn clocks(world: &World) -> Result<Vec<Clock>> {
             continue;
         }
         let Some(drives) = targets.get(&target) else { continue };
-        let given = world.field(source, "cycleInterval").and_then(|value| value.numbers.first()).copied();
-        let seconds = given.filter(|&seconds| seconds > 0.0).unwrap_or(1.0);
-        let clock = clocks.entry(source).or_insert_with(|| Clock { node: source, seconds, drives: Vec::new() });
+        let field = world.field(source, "cycleInterval").filter(|value| value.is.is_none());
+        let given = field.and_then(|value| value.numbers.first()).copied();
+        let right = given.filter(|&seconds| seconds > 0.0);
+        let wrong = field.filter(|_| right.is_none()).map(|_| given.map_or("no number".into(), |number| number.to_string()));
+        let seconds = right.unwrap_or(1.0);
+        let clock = clocks.entry(source).or_insert_with(|| Clock { node: source, seconds, wrong, drives: Vec::new() });
         count += drives.len();
         ensure!(count <= MOST_DRIVES, "time sensors drive more than {MOST_DRIVES} fields");
         clock.drives.extend(drives.iter().filter(|drive| drive.place(world).is_some() || drive.scalar(world)).cloned());

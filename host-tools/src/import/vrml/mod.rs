@@ -132,6 +132,12 @@ fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<String> {
         let name = world.name(first.node);
         doubts.push(format!("{count} time sensors; `{name}` with {} s is read; --animation chooses another", first.seconds));
     }
+    for clock in chosen {
+        if let Some(wrong) = &clock.wrong {
+            let (name, line) = (world.name(clock.node), world.nodes[clock.node].line);
+            doubts.push(format!("`{name}` (line {line}) has the cycleInterval {wrong}; expected more than 0, and 1 s is taken"));
+        }
+    }
     let used: HashSet<usize> = clocks.iter().flat_map(|clock| &clock.drives).map(|drive| drive.interpolator).collect();
     let interpolators = (0..world.nodes.len()).filter(|&node| world.kind(node).ends_with("Interpolator"));
     let unused: Vec<usize> = interpolators.filter(|node| !used.contains(node)).collect();

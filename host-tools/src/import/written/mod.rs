@@ -7,6 +7,7 @@ use super::text::{number_in, shown};
 use crate::budget;
 use crate::motion::Rig;
 use anyhow::{Result, anyhow};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Far more than a hand writes, and little enough to sample.
@@ -89,6 +90,8 @@ pub struct Header {
     pub frames: Option<usize>,
     /// Whether frame 0 follows the last frame.
     pub looped: bool,
+    /// Lines so far of which there may be only one, by their first word.
+    given: BTreeSet<String>,
 }
 
 /// First words of a header's lines, as errors list them.
@@ -102,6 +105,9 @@ impl Header {
 
     /// Takes one of its lines.
     pub fn line(&mut self, first: &str, rest: &[&str]) -> Read<()> {
+        if matches!(first, "cm-per-unit" | "fps" | "frames" | "loop") && !self.given.insert(first.into()) {
+            return wrong(format!("a second `{first}`; expected one"));
+        }
         match first {
             "cm-per-unit" => self.cm_per_unit = Some(positive(first, rest)?),
             "fps" => self.fps = Some(positive(first, rest)?),

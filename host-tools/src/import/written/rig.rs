@@ -16,7 +16,12 @@ pub fn joint(rig: &mut Rig, words: &[&str]) -> Read<()> {
     let (offset, rest) = offset(rest)?;
     let kinds = match rest {
         [] => Vec::new(),
-        ["channels", kinds @ ..] => kinds.iter().map(|word| kind(word)).collect::<Read<_>>()?,
+        ["channels", kinds @ ..] => {
+            if let Some(at) = (1..kinds.len()).find(|&at| kinds[..at].contains(&kinds[at])) {
+                return wrong(format!("`{name}` has the channel {} twice", kinds[at]));
+            }
+            kinds.iter().map(|word| kind(word)).collect::<Read<_>>()?
+        }
         [word, ..] => return wrong(format!("expected `channels` or the end of the line, found `{word}`")),
     };
     rig.joints.push(Joint { name: (*name).into(), parent, offset, kinds, end_site: false });
