@@ -19,6 +19,8 @@ pub struct ChannelState {
     pub(crate) step: u8,
     /// Sign of the acceleration that the last new one took over from, 0 if it was small: a context of the next.
     pub(crate) prev_sign: i8,
+    /// While a seek runs: the number of another channel whose segment ends at the same frame. Otherwise 0.
+    pub(crate) next: u16,
 }
 
 impl Default for ChannelState {
@@ -29,7 +31,8 @@ impl Default for ChannelState {
 
 impl ChannelState {
     /// What fills memory before a player takes it: `static STATES: ... = [ChannelState::NEW; N]`.
-    pub const NEW: ChannelState = ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, prev_sign: 0 };
+    pub const NEW: ChannelState =
+        ChannelState { v: 0, w: 0, k: 0, slot: 0, due: 0, mode: START_MODE, step: 0, prev_sign: 0, next: 0 };
 
     /// Becomes `other`, field by field: as a whole it would drag the library's memory move into small images.
     pub(crate) fn become_as(&mut self, other: &ChannelState) {
@@ -84,14 +87,19 @@ impl ChannelState {
     }
 
     /// `n` frames at once, backwards if negative, bit for bit what `n` times the three additions give; |n| < 2^9.
+    #[inline(always)]
     pub(crate) fn hop(&mut self, p: &mut i32, n: i32) {
-        // C(n, 2) < 2^18. C(n, 3) = C(n, 2) (n - 2) / 3 is whole: times the inverse of 3 modulo 2^32, it is divided.
+        // C(n, 2) < 2^18.
         let c2 = (n * (n - 1)) >> 1;
-        let c3 = c2.wrapping_mul(n - 2).wrapping_mul(0xaaaa_aaab_u32 as i32);
         let grow = |a: i32, b: i32, x: i32| a.wrapping_add(b.wrapping_mul(x));
-        *p = grow(grow(grow(*p, n, self.v), c2, self.w), c3, self.k);
-        self.v = grow(grow(self.v, n, self.w), c2, self.k);
-        self.w = grow(self.w, n, self.k);
+        *p = grow(grow(*p, n, self.v), c2, self.w);
+        self.v = grow(self.v, n, self.w);
+        if self.k != 0 {
+            // C(n, 3) = C(n, 2) (n - 2) / 3 is whole: times the inverse of 3 modulo 2^32, it is divided.
+            *p = grow(*p, c2.wrapping_mul(n - 2).wrapping_mul(0xaaaa_aaab_u32 as i32), self.k);
+            self.v = grow(self.v, c2, self.k);
+            self.w = grow(self.w, n, self.k);
+        }
     }
 }
 

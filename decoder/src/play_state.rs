@@ -22,23 +22,43 @@ pub(crate) struct Channels<'p> {
     pub(crate) pose: &'p mut [i32],
 }
 
-/// A segment at frame f first changes the position at f + 2: none starts later than this.
+/// A segment at frame f first changes the position at f + 2: none starts at the last frames.
+const LAST_FRAMES: u32 = 2;
+
+/// Whether segments may start at a frame.
 pub(crate) fn reads(frame: u32, frames: u32) -> bool {
-    frame + 2 < frames
+    frame + LAST_FRAMES < frames
 }
 
-/// How many channels stand before the first whose segment ends now. A seek looks at every channel in every frame: four at a time.
-fn first_due(states: &[ChannelState], now: u8) -> usize {
-    let (fours, _) = states.as_chunks::<4>();
-    let mut before = 0;
-    for [a, b, c, d] in fours {
-        if a.due == now || b.due == now || c.due == now || d.due == now {
-            break;
+/// Lists of channels by the frame at which their segments end, modulo their number, which is more than the frames of any segment: a seek
+/// looks at no channel before its segment ends. An entry is the number of the last channel of its list, from 1, and each channel has that
+/// of the one before; 0 is none.
+type Calendar = [u16; 128];
+
+/// The list of a frame.
+fn list(calendar: &mut Calendar, frame: u8) -> &mut u16 {
+    &mut calendar[usize::from(frame & 127)]
+}
+
+/// Puts a channel into a list whose last one is a later channel.
+#[inline(never)]
+fn put_before(states: &mut [ChannelState], mut later: u16, number: u16) {
+    while let Some(state) = numbered(states, later) {
+        let before = state.next;
+        if before < number {
+            state.next = number;
+            if let Some(state) = numbered(states, number) {
+                state.next = before;
+            }
+            return;
         }
-        before += 4;
+        later = before;
     }
-    let rest = states.get(before..).unwrap_or(&[]);
-    before + rest.iter().take_while(|state| state.due != now).count()
+}
+
+/// The channel of a number from 1.
+fn numbered(states: &mut [ChannelState], number: u16) -> Option<&mut ChannelState> {
+    states.get_mut(usize::from(number).wrapping_sub(1))
 }
 
 /// Makes the channels that follow what their leaders are: all of them stand at the same frame.
@@ -132,8 +152,9 @@ impl PlayState {
     }
 
     /// One frame on, with its segments: what `read_due` and `advance` do, in one loop.
-    pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>) {
-        let now = self.frame as u8;
+    pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32) {
+        // No channel is due at the frame before: to the last frame, none reads a segment.
+        let now = self.frame.wrapping_sub(u32::from(!reads(self.frame, frames))) as u8;
         let mut segments = Segments::at(self.cursor, input);
         for state in channels.states.iter_mut() {
             if state.due == now {
@@ -152,22 +173,35 @@ impl PlayState {
     #[inline(never)]
     pub(crate) fn run_to(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32, target: u32) {
         self.hop_all(channels, true);
+        let mut calendar: Calendar = [0; 128];
+        for (number, state) in (1..).zip(channels.states.iter_mut()) {
+            state.next = core::mem::replace(list(&mut calendar, state.due), number);
+        }
         let mut segments = Segments::at(self.cursor, input);
-        while self.frame < target {
-            if reads(self.frame, frames) {
-                let now = self.frame as u8;
-                let mut rest = &mut *channels.states;
-                while let Some((_, [state, after @ ..])) = rest.split_at_mut_checked(first_due(rest, now)) {
-                    // It stands at the start of its last segment.
-                    if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                        state.hop(p, i32::from(state.segment_frames()));
-                    }
-                    segment::read(state, &mut segments);
-                    rest = after;
+        let end = target.min(frames.saturating_sub(LAST_FRAMES));
+        for frame in self.frame..end {
+            let mut last = core::mem::take(list(&mut calendar, frame as u8));
+            // From the last to the first: turned around, for segments are read in the order of the channels.
+            let mut first = 0;
+            while let Some(state) = numbered(channels.states, last) {
+                (first, last, state.next) = (last, state.next, first);
+            }
+            while let Some(state) = numbered(channels.states, first) {
+                // It stands at the start of its last segment.
+                if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
+                    state.hop(p, i32::from(state.segment_frames()));
+                }
+                segment::read(state, &mut segments);
+                let number = core::mem::replace(&mut first, state.next);
+                let last = list(&mut calendar, state.due);
+                if *last < number {
+                    state.next = core::mem::replace(last, number);
+                } else {
+                    put_before(channels.states, *last, number);
                 }
             }
-            self.frame += 1;
         }
+        self.frame = target;
         self.cursor = segments.symbols.at;
         self.next = 0;
         self.hop_all(channels, false);
@@ -182,7 +216,10 @@ impl PlayState {
                 // -96 to 2: none starts at the last two frames, and a channel that has had none is due at frame 0.
                 let past = i32::from((self.frame as u8).wrapping_sub(state.due) as i8);
                 let run = i32::from(state.segment_frames()) + past;
-                state.hop(p, if back { -run } else { run });
+                if run != 0 {
+                    state.hop(p, if back { -run } else { run });
+                }
+                state.next = 0;
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::error::Memory;
 use crate::form::{Pose, WrongForm};
 use crate::history::{History, Undo};
 use crate::joint::JointRef;
-use crate::play_state::{Channels, PlayState, reads};
+use crate::play_state::{Channels, PlayState};
 use crate::scalar::ScalarRef;
 use crate::snapshots::{SnapshotPos, Snapshots};
 use crate::turn::Turn;
@@ -219,11 +219,7 @@ impl<'a, 'm> Player<'a, 'm> {
         }
         let (input, frames) = (self.clip.input(), self.clip.frames());
         let (position, mut channels) = self.parts();
-        if reads(position.frame, frames) {
-            position.step(&mut channels, &input);
-        } else {
-            position.advance(&mut channels);
-        }
+        position.step(&mut channels, &input, frames);
     }
 
     /// Goes back to frame 0.

@@ -112,7 +112,7 @@ pub(crate) fn read(state: &mut ChannelState, segments: &mut Segments<'_>) {
         let unit = step(length_index, state.step);
         let context = Context::new(length_index, state.w, state.prev_sign, unit);
         state.prev_sign = context.sign;
-        state.w = number(symbols, &context, unit);
+        state.w = number::<true>(symbols, &context, unit);
     }
     state.k = if matches!(kind as u8, segment_type::K | segment_type::WK) { slope(symbols, state) } else { 0 };
 }
@@ -122,17 +122,18 @@ pub(crate) fn read(state: &mut ChannelState, segments: &mut Segments<'_>) {
 fn slope(symbols: &mut Symbols<'_>, state: &ChannelState) -> i32 {
     let which = state.mode & 15 | SLOPE;
     let unit = step(which, state.step);
-    number(symbols, &Context::new(which, state.k, 0, unit), unit)
+    number::<false>(symbols, &Context::new(which, state.k, 0, unit), unit)
 }
 
-/// A new acceleration or slope in raw units.
+/// A new acceleration or slope in raw units, read in line or by calls.
 #[inline(always)]
-fn number(symbols: &mut Symbols<'_>, context: &Context, unit: u32) -> i32 {
-    let next = symbols.symbol_in_line(tables::number(context.index)) + 1;
+fn number<const IN_LINE: bool>(symbols: &mut Symbols<'_>, context: &Context, unit: u32) -> i32 {
+    let table = tables::number(context.index);
+    let next = 1 + if IN_LINE { symbols.symbol_in_line(table) } else { symbols.symbol(table) };
     let mut size = next >> 1;
     if size > DIRECT {
         size = match size - DIRECT {
-            bits @ 1..=GROUPS => group(bits) + symbols.few_bits(bits),
+            bits @ 1..=GROUPS => group(bits) + if IN_LINE { symbols.few_bits(bits) } else { symbols.bits(bits) },
             _ => far(symbols),
         };
     }
