@@ -24,6 +24,8 @@ pub struct Clip<'a> {
     symbols: u32,
     /// Snapshots; empty if there are none.
     index: &'a [u8],
+    /// Names of events, without their CRC.
+    names: &'a [u8],
 }
 
 /// The fields in front of a motion's symbols.
@@ -89,9 +91,9 @@ impl<'a> Parts<'a> {
         self.rest.split_at_checked(self.motion_len as usize).ok_or(OpenError::Truncated)
     }
 
-    /// Checks what follows the motion: snapshots, or nothing.
-    pub(crate) fn index(&self, motion: &[u8], rest: &'a [u8]) -> Result<&'a [u8], OpenError> {
-        let mut index = &[][..];
+    /// Checks what follows the motion: snapshots and names of events, if there are any.
+    pub(crate) fn tail(&self, motion: &[u8], rest: &'a [u8]) -> Result<[&'a [u8]; 2], OpenError> {
+        let (mut index, mut names) = (&[][..], &[][..]);
         let mut reader = Reader::new(rest);
         if self.flags & HAS_INDEX != 0 {
             let len = reader.varint();
@@ -101,7 +103,20 @@ impl<'a> Parts<'a> {
             blocks::check(index, index_seed(last_crc, len))?;
             index = without_last_crc(index)?;
         }
-        if reader.rest().is_empty() { Ok(index) } else { Err(OpenError::Malformed) }
+        if self.flags & HAS_EVENT_NAMES != 0 {
+            names = reader.name();
+            reader.check()?;
+            if !blocks::is_intact(names, crc::INITIAL) {
+                return Err(OpenError::BadCrc);
+            }
+            names = without_last_crc(names)?;
+            let mut walk = Reader::new(names);
+            while !walk.rest().is_empty() {
+                walk.name();
+            }
+            walk.check()?;
+        }
+        if reader.rest().is_empty() { Ok([index, names]) } else { Err(OpenError::Malformed) }
     }
 }
 
@@ -175,12 +190,17 @@ impl Head {
     }
 }
 
-/// A mark in time that a program may react to: a footfall, a sound.
+/// The name of the events at which the left foot begins to bear weight.
+pub const LEFT_FOOT_DOWN: &str = "left_foot_down";
+/// The name of the events at which the right foot begins to bear weight.
+pub const RIGHT_FOOT_DOWN: &str = "right_foot_down";
+
+/// A marker of a moment that a program may react to: a footfall, a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
     /// The frame it stands at.
     pub frame: u32,
-    /// What it means is the program's own affair.
+    /// Selects its name, if it has one ([`Clip::event_name`]); otherwise the application defines what it means.
     pub id: u32,
 }
 
@@ -198,14 +218,15 @@ impl<'a> Clip<'a> {
         Ok(clip)
     }
 
-    pub(crate) const NONE: Clip<'a> = Clip { rig: Rig::NONE, motion: &[], rig_len: 0, head: Head::NONE, symbols: 0, index: &[] };
+    pub(crate) const NONE: Clip<'a> =
+        Clip { rig: Rig::NONE, motion: &[], rig_len: 0, head: Head::NONE, symbols: 0, index: &[], names: &[] };
 
     #[inline(never)]
     fn open(&mut self, file: &'a [u8], rig: &'a [u8]) -> Result<(), OpenError> {
         let parts = Parts::split(file)?;
         let (motion, rest) = parts.motion()?;
         blocks::check(motion, parts.seed())?;
-        self.index = parts.index(motion, rest)?;
+        [self.index, self.names] = parts.tail(motion, rest)?;
         self.read(&parts, rig, motion, OpenError::Malformed)
     }
 
@@ -239,6 +260,7 @@ impl<'a> Clip<'a> {
             rig: self.rig.with_bytes(&[]),
             motion: &[],
             index: &[],
+            names: &[],
             rig_len: self.rig_len,
             head: self.head,
             symbols: self.symbols,
@@ -252,6 +274,7 @@ impl<'a> Clip<'a> {
             rig: self.rig.with_bytes(body),
             motion: &[],
             index: &[],
+            names: &[],
             rig_len: self.rig_len,
             head: self.head,
             symbols: self.symbols,
@@ -352,6 +375,37 @@ impl<'a> Clip<'a> {
     /// Number of event markers.
     pub fn event_count(&self) -> usize {
         self.head.event_count as usize
+    }
+
+    /// The name of the events with this id; `None` if they have none, or one that is not UTF-8.
+    pub fn event_name(&self, id: u32) -> Option<&'a str> {
+        let name = self.event_names().nth(id as usize)?;
+        core::str::from_utf8(name).ok().filter(|name| !name.is_empty())
+    }
+
+    /// The id of the events with this name; `None` if the clip has none.
+    ///
+    /// ```
+    /// # fn find(clip: pantin::Clip) -> Option<()> {
+    /// let left = clip.event_id(pantin::LEFT_FOOT_DOWN)?;
+    /// let steps = clip.events().filter(|event| event.id == left).count();
+    /// # Some(())
+    /// # }
+    /// ```
+    pub fn event_id(&self, name: &str) -> Option<u32> {
+        let id = self.event_names().position(|other| other == name.as_bytes()).filter(|_| !name.is_empty())?;
+        Some(id as u32)
+    }
+
+    /// The names of events as they stand, from id 0 on; those that are empty name nothing.
+    pub fn event_names(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        let mut reader = Reader::new(self.names);
+        core::iter::from_fn(move || if reader.rest().is_empty() { None } else { Some(reader.name()) })
+    }
+
+    /// Bytes of the names of events in the file, their CRC included; 0 if there are none.
+    pub fn event_names_len(&self) -> usize {
+        if self.head.flags & HAS_EVENT_NAMES != 0 { self.names.len() + CRC_BYTES } else { 0 }
     }
 
     /// The event markers, in time order.

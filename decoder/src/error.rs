@@ -17,6 +17,8 @@ pub enum OpenError {
     Malformed,
     /// The clip carries no rig and none was given, or not the one that it was made for.
     WrongRig,
+    /// The bank holds no clip of this name.
+    NoSuchClip,
 }
 
 /// The memory lent to a player is too small for the clip.
@@ -53,6 +55,7 @@ impl core::fmt::Display for OpenError {
             OpenError::Truncated => f.write_str("the clip is truncated"),
             OpenError::BadCrc => f.write_str("a CRC does not match: the clip is damaged"),
             OpenError::Malformed => f.write_str("the clip is malformed"),
+            OpenError::NoSuchClip => f.write_str("the bank has no clip of this name"),
             OpenError::WrongRig => f.write_str("the clip needs another rig"),
         }
     }

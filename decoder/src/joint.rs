@@ -2,7 +2,7 @@
 
 use crate::bytes::Reader;
 use crate::kind::{Kind, Kinds};
-use crate::layout::MAX_JOINTS;
+use crate::layout::{END_SITE, HELPER, JOINT_CHANNELS, MAX_JOINTS};
 use crate::rig::Rig;
 
 /// One joint, or an End Site (a joint without channels that only gives a bone its length).
@@ -15,6 +15,8 @@ pub struct Joint<'a> {
     pub offset: [i32; 3],
     /// Whether this is an End Site.
     pub end_site: bool,
+    /// Whether it only steers other joints, such as the target of an IK chain: neither it nor what hangs on it is a limb.
+    pub helper: bool,
     /// Index of its first channel in a pose.
     pub first_channel: u16,
     /// Its channels.
@@ -24,7 +26,7 @@ pub struct Joint<'a> {
 impl<'a> Joint<'a> {
     /// What stands where a joint is read to.
     pub(crate) const NONE: Joint<'a> =
-        Joint { name: &[], parent: None, offset: [0; 3], end_site: false, first_channel: 0, kinds: Kinds::NONE };
+        Joint { name: &[], parent: None, offset: [0; 3], end_site: false, helper: false, first_channel: 0, kinds: Kinds::NONE };
 
     /// Its name; empty for an End Site, and for a name that is not UTF-8 (opening a rig does not look into names).
     pub fn name(&self) -> &'a str {
@@ -113,10 +115,11 @@ impl<'a> Joints<'a> {
     pub(crate) fn read(&mut self, joint: &mut Joint<'a>) {
         let reader = &mut self.reader;
         let head = reader.byte();
-        let len = head & 0xf;
-        joint.end_site = head & 0x10 != 0;
+        let len = head & JOINT_CHANNELS;
+        (joint.end_site, joint.helper) = (head & END_SITE != 0, head & HELPER != 0);
         let parent = reader.varint();
-        reader.malformed |= head & 0xe0 != 0 || (joint.end_site && len != 0) || parent > MAX_JOINTS as u32;
+        reader.malformed |=
+            head & !(JOINT_CHANNELS | END_SITE | HELPER) != 0 || (joint.end_site && len != 0) || parent > MAX_JOINTS as u32;
         joint.parent = (parent as u16).checked_sub(1);
         joint.kinds = Kinds::new(reader.take(u32::from(len).div_ceil(2)), len);
         for along in &mut joint.offset {

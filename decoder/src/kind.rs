@@ -111,13 +111,15 @@ impl<'a> Kinds<'a> {
 impl Kinds<'_> {
     /// Whether all of them can be a joint's.
     pub(crate) fn are_of_joint(&mut self) -> bool {
-        // A code that is no kind ends the walk early.
+        // A code that is no kind ends the walk early, the last one too.
+        let mut known = 0;
         for kind in self.by_ref() {
             if kind == Kind::Scalar {
                 return false;
             }
+            known += 1;
         }
-        self.next == self.len
+        known == self.len
     }
 }
 

@@ -28,6 +28,8 @@
 //! | to | use |
 //! |---|---|
 //! | open a file in flash | [`Clip::new_checked`] |
+//! | open one of many clips in one file | [`Bank::new_checked`], [`Bank::clip`] |
+//! | know what happens when: footfalls, sounds | [`Clip::events`], [`Clip::event_name`], [`Player::events`] |
 //! | play it frame by frame, seek, rewind | [`Player`], in the memory of a [`Room`] |
 //! | play it by time, at any display rate and speed | [`Clock`] with [`Player::advance`]; [`Player::interpolate`] between frames |
 //! | list a clip's joints | [`Rig::joints`] of [`Clip::rig`] |
@@ -51,6 +53,7 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
+mod bank;
 mod blocks;
 mod bytes;
 mod channel;
@@ -83,8 +86,9 @@ pub mod units;
 
 use codec::{crc, entropy, layout, segment, tables};
 
+pub use bank::{Bank, BankEntry};
 pub use channel::ChannelState;
-pub use clip::{Clip, Event};
+pub use clip::{Clip, Event, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 pub use clock::Clock;
 pub use error::{Memory, OpenError, TooSmall};
 pub use form::{CodedKinds, Form, FormRef, Pose, WrongForm};
@@ -93,7 +97,7 @@ pub use joint::{Joint, JointRef, Joints};
 pub use kind::{Kind, Kinds};
 pub use partial::{PartialClip, PausedClip};
 pub use player::{Player, SeekCache};
-pub use rig::Rig;
+pub use rig::{Rig, Up};
 pub use rig_collector::{CollectError, RigCollector};
 pub use room::Room;
 pub use scalar::{Scalar, ScalarRef, Scalars};

@@ -58,7 +58,7 @@ impl<'a> PartialClip<'a> {
         if self.checked != motion.len() {
             return Err(OpenError::BadCrc);
         }
-        parts.index(motion, rest).map(drop)
+        parts.tail(motion, rest).map(drop)
     }
 
     /// What is known of the clip.

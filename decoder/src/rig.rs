@@ -13,7 +13,7 @@ use crate::{OpenError, crc, names};
 pub struct Rig<'a> {
     /// All bytes but the CRC.
     body: &'a [u8],
-    /// Where the joints begin in them: 12 at most.
+    /// Where the joints begin in them: 17 at most.
     joints_at: u8,
     joints: u16,
     scalars: u16,
@@ -22,6 +22,51 @@ pub struct Rig<'a> {
     unit_micro_cm: u32,
     id: Id,
     length_exponent: i8,
+    up: Up,
+}
+
+/// The direction of the world that is vertical.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Up(u8);
+
+impl Default for Up {
+    fn default() -> Self {
+        Up::Y
+    }
+}
+
+impl Up {
+    /// Y is up, as in glTF.
+    pub const Y: Up = Up(1);
+    const NEGATIVE: u8 = 4;
+
+    /// The direction along an axis, 0 to 2 for x, y, z, or against it; `None` for another axis.
+    pub const fn new(axis: usize, negative: bool) -> Option<Up> {
+        if axis > 2 {
+            return None;
+        }
+        Some(Up(axis as u8 | if negative { Self::NEGATIVE } else { 0 }))
+    }
+
+    /// The direction that a rig's byte states; `None` if it states none.
+    pub const fn from_byte(byte: u8) -> Option<Up> {
+        if byte > 6 { None } else { Up::new((byte & 3) as usize, byte & Self::NEGATIVE != 0) }
+    }
+
+    /// The byte for it in a rig.
+    pub const fn byte(self) -> u8 {
+        self.0
+    }
+
+    /// The axis, 0 to 2 for x, y, z.
+    pub const fn axis(self) -> usize {
+        (self.0 & 3) as usize
+    }
+
+    /// Whether up is against the axis.
+    pub const fn is_negative(self) -> bool {
+        self.0 & Self::NEGATIVE != 0
+    }
 }
 
 impl<'a> Rig<'a> {
@@ -42,6 +87,7 @@ impl<'a> Rig<'a> {
         unit_micro_cm: 0,
         id: Id(names::HASH_OF_NOTHING),
         length_exponent: 0,
+        up: Up::Y,
     };
 
     /// [`Rig::new_checked`] in place.
@@ -61,8 +107,10 @@ impl<'a> Rig<'a> {
         let mut reader = Reader::new(body);
         self.unit_micro_cm = reader.varint();
         self.length_exponent = reader.byte() as i8;
+        let up = Up::from_byte(reader.byte());
         let (joints, scalars) = (reader.varint(), reader.varint());
-        let bad = self.unit_micro_cm == 0 || !(-31..=31).contains(&self.length_exponent);
+        self.up = up.unwrap_or(Up::Y);
+        let bad = up.is_none() || self.unit_micro_cm == 0 || !(-31..=31).contains(&self.length_exponent);
         if bad || joints > MAX_JOINTS as u32 || scalars > MAX_CHANNELS as u32 {
             return Err(OpenError::Malformed);
         }
@@ -84,8 +132,8 @@ impl<'a> Rig<'a> {
 
     /// The same rig in other bytes.
     pub(crate) fn with_bytes<'b>(&self, body: &'b [u8]) -> Rig<'b> {
-        let Rig { joints_at, joints, scalars, joint_channels, unit_micro_cm, id, length_exponent, .. } = *self;
-        Rig { body, joints_at, joints, scalars, joint_channels, unit_micro_cm, id, length_exponent }
+        let Rig { joints_at, joints, scalars, joint_channels, unit_micro_cm, id, length_exponent, up, .. } = *self;
+        Rig { body, joints_at, joints, scalars, joint_channels, unit_micro_cm, id, length_exponent, up }
     }
 
     /// The FNV-1a hash (32 bits) of the rig's bytes, by which a clip without a rig names the one that it needs.
@@ -154,6 +202,11 @@ impl<'a> Rig<'a> {
     /// Length of the source's unit, in millionths of a centimetre.
     pub fn unit_micro_cm(&self) -> u32 {
         self.unit_micro_cm
+    }
+
+    /// The direction of the world that is vertical.
+    pub fn up(&self) -> Up {
+        self.up
     }
 
     /// One step of an offset is 2^`length_exponent` units of the source.

@@ -3,6 +3,7 @@
 use crate::budget;
 use crate::encode::rig;
 use crate::euler;
+use crate::events;
 use crate::fit::raw;
 use crate::fk::from_exponential;
 use crate::motion::{Frames, Joint, Motion, Rig};
@@ -93,7 +94,7 @@ pub(crate) fn expand_made(clip: &Clip<'_>) -> Result<Motion> {
         Ok(())
     })?;
     let (frame_time, keys) = (expanded.frame_time(), vec![None; channels]);
-    Ok(Motion { rig: expanded.rig, frame_time, frames, values, keys, looped: clip.looped() })
+    Ok(Motion { rig: expanded.rig, frame_time, frames, values, keys, looped: clip.looped(), events: events::of_clip(clip) })
 }
 
 /// The rotation channels of a joint that has three of them, its first channel being `first`.

@@ -105,9 +105,9 @@ mod tests {
         let mut bone = [0.0; 3];
         bone[axis] = 1.0;
         let kinds = channels.iter().map(|&(kind, _)| kind).collect();
-        let root = Joint { name: "root".into(), parent: None, offset: [0.0; 3], kinds, end_site: false };
-        let end = Joint { name: String::new(), parent: Some(0), offset: bone, kinds: Vec::new(), end_site: true };
-        let rig = Rig { joints: vec![root, end], scalars: Vec::new(), cm_per_unit: 2.0 };
+        let root = Joint { name: "root".into(), parent: None, offset: [0.0; 3], kinds, end_site: false, helper: false };
+        let end = Joint { name: String::new(), parent: Some(0), offset: bone, kinds: Vec::new(), end_site: true, helper: false };
+        let rig = Rig { joints: vec![root, end], scalars: Vec::new(), cm_per_unit: 2.0, ..Rig::default() };
         let values: Vec<Vec<f64>> = channels.iter().map(|&(_, value)| vec![value]).collect();
         positions(&rig, &values, 0)[1].map(|x| x / 2.0)
     }

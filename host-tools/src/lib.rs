@@ -10,6 +10,7 @@ pub mod edit;
 pub mod encode;
 pub mod errors;
 mod euler;
+pub mod events;
 pub mod expand;
 pub mod export;
 #[cfg(feature = "cli")]

@@ -3,7 +3,7 @@
 //! Units are the source's: degrees for rotations, source units (times `cm_per_unit` gives cm) for positions,
 //! degrees (axis times angle) for exponential maps, 1 for quaternion components.
 
-pub use pantin::Kind;
+pub use pantin::{Kind, Up};
 
 /// A joint, or an End Site.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub struct Joint {
     pub kinds: Vec<Kind>,
     /// Whether this is an End Site: no channels, no name, only a bone's end.
     pub end_site: bool,
+    /// Whether it only steers other joints in the program that made the figure: not drawn, nor what hangs on it.
+    pub helper: bool,
 }
 
 /// A channel that moves no joint.
@@ -38,6 +40,8 @@ pub struct Rig {
     pub scalars: Vec<Scalar>,
     /// Length of the source's unit in cm.
     pub cm_per_unit: f64,
+    /// The direction of the world that is vertical.
+    pub up: Up,
 }
 
 impl Rig {
@@ -186,4 +190,15 @@ pub struct Motion {
     pub keys: Vec<Option<Keys>>,
     /// Whether frame 0 follows the last frame.
     pub looped: bool,
+    /// Markers, in the order of their frames.
+    pub events: Vec<Event>,
+}
+
+/// A marker of a moment: a footfall, a sound.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// The frame it stands at.
+    pub frame: usize,
+    /// Its name. One of digits alone is an id without a name.
+    pub name: String,
 }

@@ -4,7 +4,7 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
-const VERSION = 0xe5, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, BLOCK = 256, CRC_BYTES = 2;
+const VERSION = 0xe5, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, BLOCK = 256, CRC_BYTES = 2;
 const FRAME_RATES = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 const LENGTHS = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 const LENGTH_CLASSES = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];
@@ -51,21 +51,22 @@ class Fields {
 function readRig(bytes, tables) { // [2]
   const end = bytes.length - CRC_BYTES, body = bytes.subarray(0, Math.max(end, 0)), fields = new Fields(body, "rig");
   need(end >= 0 && crc16(body) === (bytes[end] | (bytes[end + 1] << 8)), "The rig's CRC is wrong.");
-  const unit = fields.varint(), offsetExponent = fields.i8(), joints = [], scalars = [], channels = [];
+  const unit = fields.varint(), offsetExponent = fields.i8(), up = fields.u8(), joints = [], scalars = [], channels = [];
   const jointCount = fields.varint(), scalarCount = fields.varint();
   need(unit >= 1 && Math.abs(offsetExponent) <= 31, "The rig's unit is 0, or its offset exponent not from -31 to 31.");
+  need(up < 7 && up % 4 !== 3, "The rig's up is no axis.");
   need(jointCount <= 1023 && scalarCount <= 1023, "The rig has more than 1023 joints or scalars.");
   for (let j = 0; j < jointCount; j++) {
-    const head = fields.u8(), isEnd = head === 16, parent = fields.varint() - 1, kinds = [];
+    const head = fields.u8(), isEnd = (head & 16) !== 0, isHelper = (head & 32) !== 0, parent = fields.varint() - 1, kinds = [];
     need(j === 0 ? parent === -1 : parent >= 0 && parent < j, `Joint ${j}'s parent is not a joint before it.`);
-    need(head <= 16, `Joint ${j}'s head sets bits 5 to 7, or it is an End Site with channels.`);
+    need(head < 64 && !(isEnd && head & 15), `Joint ${j}'s head sets bits 6 or 7, or it is an End Site with channels.`);
     for (let i = 0, byte = 0; i < (head & 15); i++, byte >>= 4) {
       if (i % 2 === 0) byte = fields.u8();
       need((byte & 15) < SCALAR, `Joint ${j} has a channel of a scalar's or of no kind.`);
       kinds.push(byte & 15);
     }
     const offset = [fields.zigzag(), fields.zigzag(), fields.zigzag()];
-    joints.push({ parent, isEnd, kinds, offset, name: isEnd ? "" : fields.name() });
+    joints.push({ parent, isEnd, isHelper, kinds, offset, name: isEnd ? "" : fields.name() });
     channels.push(...kinds.map((kind) => ({ kind, joint: j })));
   }
   while (scalars.length < scalarCount) {
@@ -81,7 +82,7 @@ function readRig(bytes, tables) { // [2]
   channels.push(...scalars.map((_, i) => ({ kind: SCALAR, scalar: i })));
   need(fields.at === end && channels.length <= 1023, "Bytes stand before the rig's CRC, or it has more than 1023 channels.");
   const id = body.reduce((hash, byte) => Math.imul(hash ^ byte, 0x01000193), 0x811c9dc5) >>> 0;
-  return { unit, offsetExponent, joints, scalars, channels, id };
+  return { unit, offsetExponent, up, joints, scalars, channels, id };
 }
 
 /** Checks the CRCs of blocks and takes them out [3]. The first block's goes on from `crc`, over `before`. */
@@ -257,6 +258,13 @@ function readIndex(payload, frames, moving) { // [14]
   });
 }
 
+function readNames(bytes) { // [15]
+  const end = bytes.length - CRC_BYTES, body = bytes.subarray(0, Math.max(end, 0)), fields = new Fields(body, "list of event names"), names = [];
+  need(end >= 0 && crc16(body) === (bytes[end] | (bytes[end + 1] << 8)), "The CRC of the event names is wrong.");
+  while (fields.at < end) names.push(fields.name());
+  return names;
+}
+
 /**
  * Reads and checks a clip [1]. What the vectors' .json files hold has their names; `pose(frame)` gives raw values [11]. With `index: false` it
  * checks the CRCs of the index and leaves its snapshots out [14].
@@ -264,15 +272,16 @@ function readIndex(payload, frames, moving) { // [14]
 export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = true } = {}) {
   const file = new Fields(clipBytes, "file"), before = file.take(4), [P, n, version, flags] = before;
   need(P === 0x50 && n === 0x6e, "The file does not begin with the magic of a clip.");
-  need(version === VERSION && flags < 32, "The file's version, or a flag that it sets, is unknown.");
+  need(version === VERSION && flags < 64, "The file's version, or a flag that it sets, is unknown.");
   const itsRig = flags & HAS_RIG ? file.take(file.varint()) : rigBytes;
   const motion = file.take(file.varint()), index = flags & HAS_INDEX ? file.take(file.varint()) : null;
+  const names = flags & HAS_EVENT_NAMES ? readNames(file.take(file.varint())) : [];
   need(file.at === clipBytes.length, "Bytes follow the last part.");
   need(itsRig, "The clip has no rig of its own, and none was given.");
   const rig = readRig(itsRig, tables), { payload, lastCrc } = readBlocks(motion, [...before, ...u32Bytes(motion.length)], "motion");
   const fields = new Fields(payload, "motion", true), head = readHead(fields, flags, rig);
   const clip = {
-    ...head, looped: (flags & LOOPED) !== 0, joints: rig.joints.length, channels: rig.channels.length,
+    ...head, looped: (flags & LOOPED) !== 0, event_names: names, up: rig.up, helpers: [...rig.joints.keys()].filter((j) => rig.joints[j].isHelper), joints: rig.joints.length, channels: rig.channels.length,
     rig, tables, payload, symbolsAt: fields.at, snapshots: [], player: (snapshot) => new Player(clip, snapshot),
     pose: (frame) => {
       need(Number.isInteger(frame) && frame >= 0 && frame < clip.frames, "The clip has no such frame.");

@@ -24,8 +24,8 @@ fn alike(counts: &Counts) {
 
 /// A rig of one joint that has one channel.
 fn rig(kind: u8) -> Vec<u8> {
-    // Unit, exponent, one joint, no scalars; the joint: one channel, no parent, its kind, offset, no name.
-    let mut rig = vec![1, 0, 1, 0, 1, 0, kind, 0, 0, 0, 0];
+    // Unit, exponent, y is up, one joint, no scalars; the joint: one channel, no parent, its kind, offset, no name.
+    let mut rig = vec![1, 0, 1, 1, 0, 1, 0, kind, 0, 0, 0, 0];
     rig.extend([0; CRC_BYTES]);
     fix::rig(&mut rig);
     rig

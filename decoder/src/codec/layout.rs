@@ -15,9 +15,30 @@ pub const HAS_EXPONENTIALS: u8 = 4;
 pub const HAS_EVENTS: u8 = 8;
 /// Flag: snapshots stand after the motion.
 pub const HAS_INDEX: u8 = 16;
+/// Flag: names of event markers stand at the end of the file.
+pub const HAS_EVENT_NAMES: u8 = 32;
 /// Flags that a decoder knows.
-pub const KNOWN_FLAGS: u8 = 31;
+pub const KNOWN_FLAGS: u8 = 63;
 
+/// First bytes of every bank.
+pub const BANK_MAGIC: [u8; 2] = *b"Pb";
+/// Types of a bank's sections that a decoder knows.
+pub mod section {
+    /// The rig of all clips.
+    pub const RIG: u8 = 1;
+    /// The clips' names and lengths.
+    pub const CONTENTS: u8 = 2;
+    /// The clips, one after the other.
+    pub const CLIPS: u8 = 3;
+    /// How many there are, from 1 on.
+    pub const KNOWN: usize = 3;
+}
+/// Bits of a joint's head: the number of its channels.
+pub const JOINT_CHANNELS: u8 = 0xf;
+/// Bit of a joint's head: it is an End Site.
+pub const END_SITE: u8 = 0x10;
+/// Bit of a joint's head: it only steers other joints, and is not drawn.
+pub const HELPER: u8 = 0x20;
 /// Most joints of a rig, End Sites included.
 pub const MAX_JOINTS: usize = 1023;
 /// Most channels of a pose.

@@ -1,6 +1,7 @@
 //! `--from` and `--to`: a stretch of frames.
 
 use super::curve;
+use crate::events;
 use crate::motion::{Keys, Motion, Piece};
 use anyhow::{Result, ensure};
 
@@ -20,7 +21,8 @@ pub fn cut(motion: &Motion, from: Option<usize>, to: Option<usize>) -> Result<Mo
         let pieces = curve::pieces(keys.as_ref()?, values)?;
         Some(Keys::Pieces(stretch(&pieces, from as f64, to as f64)))
     });
-    Ok(Motion { rig: motion.rig.clone(), frames: to - from + 1, keys: keys.collect(), values, looped: false, ..*motion })
+    let events = events::cut(&motion.events, from, to);
+    Ok(Motion { rig: motion.rig.clone(), frames: to - from + 1, keys: keys.collect(), values, looped: false, events, ..*motion })
 }
 
 /// The pieces of times `from` to `to`, counted from `from`. One that begins before `from` begins there.

@@ -62,16 +62,30 @@ pub(crate) fn body(motion: &Motion, sources: &[usize; 15]) -> Body {
         let offset = parent.map_or([0.0; 3], |parent| subtract(places[index], places[parent]));
         let placing: &[Kind] = if parent.is_none() { &PLACES } else { &[] };
         let kinds = [placing, &TURNS].concat();
-        joints.push(Joint { name: name.into(), parent: parent.map(|parent| indices[parent]), offset, kinds, end_site: false });
+        joints.push(Joint {
+            name: name.into(),
+            parent: parent.map(|parent| indices[parent]),
+            offset,
+            kinds,
+            end_site: false,
+            helper: false,
+        });
         let bone = offset.map(|x| x * STUMP);
         let tip = TIPS.contains(&index).then(|| tip(&motion.rig, &rest, sources[index]));
         // A foot without toes points nowhere that is known.
         let tip = tip.and_then(|tip| tip.or((!name.ends_with("Foot")).then_some(bone)));
         if let Some(offset) = tip {
-            joints.push(Joint { name: String::new(), parent: Some(indices[index]), offset, kinds: Vec::new(), end_site: true });
+            joints.push(Joint {
+                name: String::new(),
+                parent: Some(indices[index]),
+                offset,
+                kinds: Vec::new(),
+                end_site: true,
+                helper: false,
+            });
         }
     }
-    let rig = Rig { joints, scalars: motion.rig.scalars.clone(), cm_per_unit: motion.rig.cm_per_unit };
+    let rig = Rig { joints, scalars: motion.rig.scalars.clone(), cm_per_unit: motion.rig.cm_per_unit, up: motion.rig.up };
     Body { rig, rest: places, turns: sources.map(|source| rest[source].0) }
 }
 

@@ -109,8 +109,9 @@ mod tests {
             offset: [0.0; 3],
             kinds: Vec::new(),
             end_site: false,
+            helper: false,
         };
-        Rig { joints: names.iter().enumerate().map(joint).collect(), scalars: Vec::new(), cm_per_unit: 1.0 }
+        Rig { joints: names.iter().enumerate().map(joint).collect(), scalars: Vec::new(), cm_per_unit: 1.0, ..Rig::default() }
     }
 
     #[test]

@@ -32,7 +32,7 @@ mod tests {
         let scalar = |name: &&str| Scalar { name: (*name).into(), full_scale: 1.0 };
         let rig = Rig { scalars: names.iter().map(scalar).collect(), cm_per_unit: 1.0, ..Rig::default() };
         let values = names.iter().map(|_| (0..frames).map(|frame| frame as f64 / fps).collect()).collect();
-        Motion { rig, frame_time: 1.0 / fps, frames, values, keys: vec![None; names.len()], looped: false }
+        Motion { rig, frame_time: 1.0 / fps, frames, values, keys: vec![None; names.len()], looped: false, events: Vec::new() }
     }
 
     #[test]

@@ -6,6 +6,7 @@
 use super::sides::{Part, counterparts, parts};
 use crate::motion::{Joint, Keys, Kind, Motion, Rig, Scalar};
 use anyhow::{Context, Result, ensure};
+use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 
 /// Mirrors `motion`. Refuses a figure whose names have no sides, or whose sides are not built alike.
 pub fn mirror(motion: &Motion) -> Result<Motion> {
@@ -18,8 +19,13 @@ pub fn mirror(motion: &Motion) -> Result<Motion> {
         pairs.iter().enumerate().any(|(index, &pair)| index != pair) || scalar_parts.iter().any(|part| part.side.is_some());
     ensure!(sided, "--mirror: no names tell left from right, as LeftArm and RightArm, Arm_L and Arm_R or larm and rarm do");
     let firsts = rig.first_channels();
-    let mut out =
-        Motion { rig: Rig { cm_per_unit: rig.cm_per_unit, ..Rig::default() }, values: Vec::new(), keys: Vec::new(), ..*motion };
+    let mut out = Motion {
+        rig: Rig { cm_per_unit: rig.cm_per_unit, up: rig.up, ..Rig::default() },
+        values: Vec::new(),
+        keys: Vec::new(),
+        events: motion.events.clone(),
+        ..*motion
+    };
     for (joint, &pair) in rig.joints.iter().zip(&pairs) {
         let source = &rig.joints[pair];
         let [x, y, z] = source.offset;
@@ -33,6 +39,13 @@ pub fn mirror(motion: &Motion) -> Result<Motion> {
         let pair = scalar_pairs[index].with_context(|| format!("--mirror: the scalar {} has no counterpart", scalar.name))?;
         out.rig.scalars.push(Scalar { full_scale: rig.scalars[pair].full_scale, name: scalar.name.clone() });
         take(motion, &mut out, rig.joint_channels() + pair, turns_sideways(&scalar_parts[pair]));
+    }
+    for event in &mut out.events {
+        event.name = match event.name.as_str() {
+            LEFT_FOOT_DOWN => RIGHT_FOOT_DOWN.into(),
+            RIGHT_FOOT_DOWN => LEFT_FOOT_DOWN.into(),
+            _ => continue,
+        };
     }
     Ok(out)
 }

@@ -3,6 +3,7 @@
 use super::curve;
 use crate::budget;
 use crate::euler::{self, nearest};
+use crate::events;
 use crate::fk::{Matrix, local, product};
 use crate::keys::sample_pieces;
 use crate::motion::{Keys, Kind, Motion};
@@ -58,7 +59,16 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
             values[channel].iter_mut().for_each(|value| *value = value.clamp(-full, full));
         }
     }
-    Ok(Motion { rig: motion.rig.clone(), frame_time: 1.0 / fps, frames: times.len(), values, keys, looped: motion.looped })
+    let events = events::resample(&motion.events, factor, times.len() - 1);
+    Ok(Motion {
+        rig: motion.rig.clone(),
+        frame_time: 1.0 / fps,
+        frames: times.len(),
+        values,
+        keys,
+        looped: motion.looped,
+        events,
+    })
 }
 
 /// Twice as many frames are twice as many, though the file's `0.033333` says a little less.

@@ -53,7 +53,7 @@ pub fn display(motion: &Motion, map: &str) -> Result<Retargeted> {
     values.extend_from_slice(&motion.values[motion.rig.joint_channels()..]);
     let mut keys = vec![None; channels];
     keys.extend_from_slice(&motion.keys[motion.rig.joint_channels()..]);
-    out.motion = Motion { rig: body.rig, values, keys, ..*motion };
+    out.motion = Motion { rig: body.rig, values, keys, events: motion.events.clone(), ..*motion };
     Ok(out)
 }
 

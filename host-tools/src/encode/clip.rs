@@ -70,6 +70,8 @@ pub struct Coded {
     pub channels: Vec<Channel>,
     /// Event markers, in time order.
     pub events: Vec<Event>,
+    /// Names of the events, by id; empty for an id without one.
+    pub event_names: Vec<String>,
     /// Whether frame 0 follows the last frame.
     pub looped: bool,
 }
@@ -114,6 +116,9 @@ fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<
     if index.is_some() {
         flags |= HAS_INDEX;
     }
+    if !coded.event_names.is_empty() {
+        flags |= HAS_EVENT_NAMES;
+    }
     ensure!(coded.events.is_sorted_by_key(|event| event.frame), "event markers must be in the order of their frames");
     if let Some(event) = coded.events.last().filter(|event| event.frame >= coded.frames) {
         bail!("an event marker at frame {}; the last frame is {}", event.frame, coded.frames - 1);
@@ -137,6 +142,13 @@ fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<
         let len = blocks_len(index.len()) as u32;
         varint::put(&mut out, len);
         put_blocks(&mut out, index, pantin::codec::index_seed(last, len));
+    }
+    if flags & HAS_EVENT_NAMES != 0 {
+        let mut names = Vec::new();
+        coded.event_names.iter().for_each(|name| varint::put_name(&mut names, name));
+        names.extend_from_slice(&crc::of(&names).to_le_bytes());
+        varint::put(&mut out, names.len() as u32);
+        out.extend_from_slice(&names);
     }
     Ok(out)
 }

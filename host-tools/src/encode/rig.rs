@@ -45,11 +45,14 @@ pub fn encode(rig: &Rig) -> Result<Vec<u8>> {
     let mut out = Vec::new();
     varint::put(&mut out, micro as u32);
     out.push(exponent as u8);
+    out.push(rig.up.byte());
     varint::put(&mut out, rig.joints.len() as u32);
     varint::put(&mut out, rig.scalars.len() as u32);
     for (index, joint) in rig.joints.iter().enumerate() {
         ensure!(joint.kinds.len() <= 15, "joint {} has {} channels; at most 15 fit", joint.name, joint.kinds.len());
-        out.push(joint.kinds.len() as u8 | u8::from(joint.end_site) << 4);
+        let end_site = if joint.end_site { layout::END_SITE } else { 0 };
+        let helper = if joint.helper { layout::HELPER } else { 0 };
+        out.push(joint.kinds.len() as u8 | end_site | helper);
         match joint.parent {
             None if index == 0 => varint::put(&mut out, 0),
             Some(parent) if parent < index => varint::put(&mut out, parent as u32 + 1),
@@ -106,6 +109,7 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
                 offset: joint.offset.map(|x| f64::from(x) * step),
                 kinds: joint.kinds.collect(),
                 end_site: joint.end_site,
+                helper: joint.helper,
             })
             .collect(),
         scalars: rig
@@ -117,6 +121,7 @@ pub fn decode(rig: &pantin::Rig) -> Rig {
             })
             .collect(),
         cm_per_unit: f64::from(rig.unit_micro_cm()) * 1e-6,
+        up: rig.up(),
     }
 }
 
@@ -132,6 +137,7 @@ mod tests {
             offset,
             kinds: kinds.to_vec(),
             end_site: name.is_empty(),
+            helper: false,
         };
         use Kind::*;
         Rig {
@@ -142,6 +148,7 @@ mod tests {
             ],
             scalars: vec![motion::Scalar { name: "smile".into(), full_scale: 1.0 }],
             cm_per_unit: 2.54,
+            up: motion::Up::new(2, true).unwrap(),
         }
     }
 
@@ -161,7 +168,7 @@ mod tests {
     fn a_face_has_its_names_by_a_list() {
         let named = |names: &[&str]| {
             let scalars = names.iter().map(|&name| Scalar { name: name.into(), full_scale: 1.0 }).collect();
-            Rig { joints: vec![], scalars, cm_per_unit: 1.0 }
+            Rig { joints: vec![], scalars, cm_per_unit: 1.0, ..Rig::default() }
         };
         let all: Vec<&str> = pantin::names::LIVE_LINK.split(' ').collect();
         let mut turned = all.clone();

@@ -171,14 +171,14 @@ mod tests {
     use crate::motion::{Motion, Scalar};
 
     fn joint(name: &str, parent: Option<usize>, kinds: &[Kind], end_site: bool) -> Joint {
-        Joint { name: name.into(), parent, offset: [0.0, 1.5, -0.00000001], kinds: kinds.to_vec(), end_site }
+        Joint { name: name.into(), parent, offset: [0.0, 1.5, -0.00000001], kinds: kinds.to_vec(), end_site, helper: false }
     }
 
     fn motion(joints: Vec<Joint>, values: &[f64]) -> Motion {
-        let rig = Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0 };
+        let rig = Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0, ..Rig::default() };
         let keys = vec![None; values.len()];
         let values = values.iter().map(|&value| vec![value]).collect();
-        Motion { rig, frame_time: 1.0 / 120.0, frames: 1, values, keys, looped: false }
+        Motion { rig, frame_time: 1.0 / 120.0, frames: 1, values, keys, looped: false, events: Vec::new() }
     }
 
     #[test]

@@ -65,11 +65,19 @@ mod tests {
 
     #[test]
     fn every_channel_has_a_column() {
-        let joint = Joint { name: "hip".into(), parent: None, offset: [0.0; 3], kinds: vec![Kind::Xrotation], end_site: false };
+        let joint = Joint {
+            name: "hip".into(),
+            parent: None,
+            offset: [0.0; 3],
+            kinds: vec![Kind::Xrotation],
+            end_site: false,
+            helper: false,
+        };
         let scalars = ["jaw, open", "still"].map(|name| Scalar { name: name.into(), full_scale: 1.0 });
-        let rig = Rig { joints: vec![joint], scalars: scalars.to_vec(), cm_per_unit: 1.0 };
+        let rig = Rig { joints: vec![joint], scalars: scalars.to_vec(), cm_per_unit: 1.0, ..Rig::default() };
         let values = vec![vec![-370.125, 12.0], vec![1.0 / 3.0, -1e-12], vec![0.0; 2]];
-        let motion = Motion { rig, frame_time: 1.0 / 30.0, frames: 2, keys: vec![None; 3], values, looped: false };
+        let motion =
+            Motion { rig, frame_time: 1.0 / 30.0, frames: 2, keys: vec![None; 3], values, looped: false, events: Vec::new() };
         let mut out = Vec::new();
         write(&motion, &mut out).unwrap();
         let expected = "time,hip.Xrotation,\"jaw, open\",still\n0,-370.125,0.3333333,0\n0.033333333,12,0,0\n";

@@ -8,6 +8,7 @@ use super::refusal::amount;
 use super::search::{Effort, Fitted, Tube, in_grids, search};
 use super::{raw, time};
 use crate::encode::clip::{Channel, Coded, Start, position_grid, velocity_grid};
+use crate::events;
 use crate::motion::Motion;
 use anyhow::{Result, bail};
 use pantin::codec::layout::MAX_STEP;
@@ -70,13 +71,15 @@ pub fn fit_exponent(motion: &Motion, bounds: &Bounds, length_exponent: i8, progr
     };
     let codes = (0..motion.values.len()).into_par_iter().map(code).collect::<Result<Vec<_>>>()?;
     let choices = motion.rig.joints.iter().filter(|joint| joint.kinds.iter().filter(|kind| kind.is_rotation()).count() == 3);
+    let (events, event_names) = events::to_clip(&motion.events);
     Ok(Coded {
         frames: motion.frames as u32,
         frame_time_ns,
         length_exponent,
         exponentials: choices.map(|_| false).collect(),
         channels: codes.into_iter().map(|code| Channel { start: code.start, segments: code.segments }).collect(),
-        events: Vec::new(),
+        events,
+        event_names,
         looped: motion.looped,
     })
 }

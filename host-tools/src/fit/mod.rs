@@ -15,6 +15,7 @@ pub mod search;
 
 use crate::encode::clip::{Channel, Coded};
 use crate::encode::rig as rig_bytes;
+use crate::events;
 use crate::motion::Motion;
 use anyhow::{Result, anyhow, ensure};
 use descent::{Descent, Plan};
@@ -77,13 +78,15 @@ pub fn fit_coding(
     }
     let mut codes = codes.ok_or_else(|| failed.unwrap_or_else(|| anyhow!("no attempt was made")))?;
     codes.extend(scalars::fit(&motion.rig, &aims, plan.effort)?);
+    let (events, event_names) = events::to_clip(&motion.events);
     Ok(Coded {
         frames: motion.frames as u32,
         frame_time_ns,
         length_exponent,
         exponentials: coding.exponentials.clone(),
         channels: codes.into_iter().map(|code| Channel { start: code.start, segments: code.segments }).collect(),
-        events: Vec::new(),
+        events,
+        event_names,
         looped: motion.looped,
     })
 }

@@ -174,7 +174,7 @@ mod tests {
         let other = vec![0.0; 200];
         let values: Vec<Vec<f64>> = vec![wave(0.06, 0.0), other, wave(0.05, 0.0), wave(0.06, 0.015), wave(0.06, 0.06)];
         let scalars = (0..values.len()).map(|index| Scalar { name: format!("s{index}"), full_scale: 1.0 }).collect();
-        let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0 };
+        let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
         let raw = |values: &Vec<f64>| values.iter().map(|x| x * RAW).collect();
         let aims: Vec<Aim> = values.iter().map(|values| Aim { target: raw(values), bound: BOUND * RAW }).collect();
         let codes = fit(&rig, &aims, Level::Default.plan(1.0).effort).unwrap();

@@ -79,17 +79,24 @@ pub fn motion(skeleton: &Skeleton, values: &[Vec<f64>], frames: usize, frame_tim
         channels.extend(moves);
         joints.push(rig.joints.len());
         let parent = bone.parent.map(|parent| joints[parent]);
-        rig.joints.push(Joint { name: bone.name.clone(), parent, offset, kinds, end_site: false });
+        rig.joints.push(Joint { name: bone.name.clone(), parent, offset, kinds, end_site: false, helper: false });
         if !bones.iter().any(|other| other.parent == Some(index)) {
             let parent = Some(rig.joints.len() - 1);
-            rig.joints.push(Joint { name: String::new(), parent, offset: bone.vector, kinds: Vec::new(), end_site: true });
+            rig.joints.push(Joint {
+                name: String::new(),
+                parent,
+                offset: bone.vector,
+                kinds: Vec::new(),
+                end_site: true,
+                helper: false,
+            });
         }
         if bone.dofs.contains(&Dof::Length) {
             warnings.push(format!("the bone `{}` changes its length, which is left out", bone.name));
         }
     }
     let keys = vec![None; channels.len()];
-    Motion { rig, frame_time, frames, values: channels, keys, looped: false }
+    Motion { rig, frame_time, frames, values: channels, keys, looped: false, events: Vec::new() }
 }
 
 /// The position channels of a bone that has translations: all three, as they replace its `offset`.

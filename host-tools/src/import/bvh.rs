@@ -29,7 +29,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let header = header(&mut words, options)?;
     let values = rows(&mut words, &header, rig.channels(), &mut warnings)?;
     let keys = vec![None; values.len()];
-    let motion = Motion { rig, frame_time: header.frame_time, frames: header.frames, values, keys, looped: false };
+    let motion =
+        Motion { rig, frame_time: header.frame_time, frames: header.frames, values, keys, looped: false, events: Vec::new() };
     Ok(Source { motion, unit_known: false, warnings })
 }
 
@@ -82,7 +83,7 @@ fn hierarchy(words: &mut Words) -> Result<Rig> {
             words.next();
             Err(words.error("a second ROOT; a clip holds one figure, so split the file"))
         }
-        _ => Ok(Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0 }),
+        _ => Ok(Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0, ..Rig::default() }),
     }
 }
 
@@ -106,7 +107,7 @@ fn begin_joint(words: &mut Words, joints: &mut Vec<Joint>, parent: Option<usize>
     if joints.len() == MAX_JOINTS {
         return Err(words.error(format!("more than {MAX_JOINTS} joints and End Sites, which a rig cannot hold")));
     }
-    joints.push(Joint { name, parent, offset: [0.0; 3], kinds: Vec::new(), end_site });
+    joints.push(Joint { name, parent, offset: [0.0; 3], kinds: Vec::new(), end_site, helper: false });
     Ok(Open { index: joints.len() - 1, line, has_offset: false, has_channels: false })
 }
 

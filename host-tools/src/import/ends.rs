@@ -19,7 +19,7 @@ pub fn complete(joints: &mut Vec<Joint>) -> Option<String> {
             0.0 => [0.0, length, 0.0],
             own => bone.map(|x| x / own * length),
         };
-        joints.push(Joint { name: String::new(), parent: Some(leaf), offset, kinds: Vec::new(), end_site: true });
+        joints.push(Joint { name: String::new(), parent: Some(leaf), offset, kinds: Vec::new(), end_site: true, helper: false });
     }
     Some(format!(
         "{} joints end without an End Site (`{first}` is one): each gets one {length:.4} units away, so that its rotation counts",

@@ -109,22 +109,25 @@ pub fn motion(
         }
         let (kinds, channels): (Vec<Kind>, Vec<Vec<f64>>) = places.into_iter().chain(rotations).unzip();
         values.extend(channels);
-        joints.push(Joint { name: node.name.clone(), parent: node.parent, offset, kinds, end_site: false });
+        joints.push(Joint { name: node.name.clone(), parent: node.parent, offset, kinds, end_site: false, helper: false });
     }
     joints.extend(sites);
     let warning = ends::complete(&mut joints);
     let (scalars, of_scalars): (Vec<_>, Vec<_>) = scalars.into_iter().unzip();
     values.extend(of_scalars);
     let keys = vec![None; values.len()];
-    let rig = Rig { joints, scalars, cm_per_unit };
-    Ok((Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false }, warning))
+    let rig = Rig { joints, scalars, cm_per_unit, ..Rig::default() };
+    Ok((
+        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false, events: Vec::new() },
+        warning,
+    ))
 }
 
 /// An End Site for a joint that turns and carries no other, as a bound on places would not see its rotation: half as far as the bone before
 /// it, in the same direction.
 fn end(parent: usize, bone: [f64; 3]) -> Joint {
     let offset = bone.map(|x| x / 2.0);
-    Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true }
+    Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true, helper: false }
 }
 
 /// Several figures hang from one joint that stands in the middle of the world.

@@ -15,9 +15,9 @@ const LEAST_SCALE: f64 = 1e-6;
 pub fn motion(names: Vec<String>, scales: &[f64], values: Vec<Vec<f64>>, frame_time: f64) -> Motion {
     let scalar = |((name, &scale), values): ((String, &f64), &Vec<f64>)| Scalar { name, full_scale: peak(values).max(scale) };
     let scalars = names.into_iter().zip(scales).zip(&values).map(scalar).collect();
-    let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0 };
+    let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
     let frames = values.first().map_or(0, Vec::len);
-    Motion { rig, frame_time, frames, keys: vec![None; values.len()], values, looped: false }
+    Motion { rig, frame_time, frames, keys: vec![None; values.len()], values, looped: false, events: Vec::new() }
 }
 
 /// The greatest value, whatever its sign, but no less than any full scale may be.

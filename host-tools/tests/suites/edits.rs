@@ -45,6 +45,7 @@ fn arms(frames: usize) -> Motion {
         offset,
         kinds: kinds.to_vec(),
         end_site,
+        helper: false,
     };
     use Kind::{Xposition, Xrotation, Yrotation, Zposition, Zrotation};
     let joints = vec![
@@ -55,7 +56,7 @@ fn arms(frames: usize) -> Motion {
         joint("", Some(3), [-60.0, 0.0, 1.0], &[], true),
     ];
     let scalars = ["smileLeft", "smileRight", "headYaw"].map(|name| Scalar { name: name.into(), full_scale: 1.0 });
-    let rig = Rig { joints, scalars: scalars.into(), cm_per_unit: 1.0 };
+    let rig = Rig { joints, scalars: scalars.into(), cm_per_unit: 1.0, ..Rig::default() };
     let curve = |channel: usize| {
         let value = move |frame: usize| match channel {
             1 => frame as f64 * 5.0,
@@ -65,7 +66,7 @@ fn arms(frames: usize) -> Motion {
         (0..frames).map(value).collect()
     };
     let values: Vec<Vec<f64>> = (0..rig.channels()).map(curve).collect();
-    Motion { keys: vec![None; values.len()], rig, frame_time: 1.0 / 30.0, frames, values, looped: false }
+    Motion { keys: vec![None; values.len()], rig, frame_time: 1.0 / 30.0, frames, values, looped: false, events: Vec::new() }
 }
 
 fn far(a: [f64; 3], b: [f64; 3]) -> f64 {

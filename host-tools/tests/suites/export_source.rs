@@ -114,17 +114,20 @@ fn hostile_clip() -> Vec<u8> {
         offset: [0.0, 1.0, 0.0],
         kinds: vec![pantin_tools::motion::Kind::Xrotation],
         end_site: false,
+        helper: false,
     };
     let scalar = |name: &&str| pantin_tools::motion::Scalar { name: name.to_string(), full_scale: 1.0 };
     let rig = pantin_tools::motion::Rig {
         joints: names.iter().enumerate().map(joint).collect(),
         scalars: names.iter().map(scalar).collect(),
         cm_per_unit: 1.0,
+        ..Default::default()
     };
     let channels = rig.channels();
     let values = vec![vec![0.0, 0.5]; channels];
     let keys = vec![None; channels];
-    let motion = pantin_tools::motion::Motion { rig, frame_time: 0.1, frames: 2, keys, values, looped: false };
+    let motion =
+        pantin_tools::motion::Motion { rig, frame_time: 0.1, frames: 2, keys, values, looped: false, events: Vec::new() };
     let coded = fit(&motion, Level::Fast.plan(1.0), 0.02, &mut |_| ()).unwrap();
     clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
 }

@@ -153,12 +153,12 @@ fn project(renderer: &FigureRenderer<JOINTS>, view: View, hips: [f64; 3], target
 }
 
 fn joint(name: &str, parent: Option<usize>, offset: [f64; 3], kinds: &[Kind]) -> Joint {
-    Joint { name: name.into(), parent, offset, kinds: kinds.to_vec(), end_site: kinds.is_empty() }
+    Joint { name: name.into(), parent, offset, kinds: kinds.to_vec(), end_site: kinds.is_empty(), helper: false }
 }
 
 fn motion(rig: Rig, values: Vec<Vec<f64>>) -> Motion {
     let keys = vec![None; values.len()];
-    Motion { rig, frame_time: 0.04, frames: values[0].len(), values, keys, looped: false }
+    Motion { rig, frame_time: 0.04, frames: values[0].len(), values, keys, looped: false, events: Vec::new() }
 }
 
 /// Numbers in -1 .. 1 from a fixed sequence.

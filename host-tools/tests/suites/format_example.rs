@@ -26,9 +26,10 @@ fn figure() -> Rig {
         offset: [0.0, y, 0.0],
         kinds: kinds.to_vec(),
         end_site: name.is_empty(),
+        helper: false,
     };
     let joints = vec![joint("arm", None, 0.0, &[Kind::Xrotation]), joint("", Some(0), -30.0, &[])];
-    Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0 }
+    Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0, ..Rig::default() }
 }
 
 fn coded() -> Coded {
@@ -40,6 +41,7 @@ fn coded() -> Coded {
         exponentials: Vec::new(),
         channels: vec![Channel { start, segments: SEGMENTS.to_vec() }],
         events: Vec::new(),
+        event_names: Vec::new(),
         looped: false,
     }
 }
@@ -93,13 +95,14 @@ impl Sink for Reads {
 fn dump(bytes: &[u8], rig_len: usize) -> String {
     let before_motion = 5 + rig_len;
     let motion = bytes.len() - before_motion - 1;
-    let fields: [(usize, String); 21] = [
+    let fields: [(usize, String); 22] = [
         (2, "\"Pn\"".into()),
         (1, "version".into()),
         (1, "flags: the rig follows".into()),
         (1, format!("bytes of the rig: {rig_len}")),
         (3, "a unit is 1000000 millionths of a cm".into()),
         (1, "offsets are in 2^-16 units".into()),
+        (1, "y is up".into()),
         (1, "joints".into()),
         (1, "scalars".into()),
         (1, "joint 0: 1 channel, no End Site".into()),

@@ -40,6 +40,9 @@ pub fn crcs(clip: &Clip<'_>) -> Result<Crcs> {
 pub fn of(clip: &Clip<'_>) -> Result<String> {
     let crcs: Vec<String> = crcs(clip)?.stepped.iter().map(|crc| format!("{crc:04x}")).collect();
     let events: Vec<Value> = clip.events().map(|event| json!([event.frame, event.id])).collect();
+    let names: Vec<String> = clip.event_names().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
+    let joints = clip.rig().joints().enumerate();
+    let helpers: Vec<usize> = joints.filter(|(_, joint)| joint.helper).map(|(index, _)| index).collect();
     let exponentials: Vec<usize> = (0..clip.rig().joint_count()).filter(|&joint| clip.is_exponential(joint)).collect();
     Ok(json::text(&[
         ("frames", json!(clip.frames())),
@@ -51,6 +54,9 @@ pub fn of(clip: &Clip<'_>) -> Result<String> {
         ("length_exponent", json!(clip.length_exponent())),
         ("exponential_joints", json!(exponentials)),
         ("events", json!(events)),
+        ("event_names", json!(names)),
+        ("up", json!(clip.rig().up().byte())),
+        ("helpers", json!(helpers)),
         ("poses", json!(poses(clip)?)),
         ("crcs", json!(crcs)),
     ]))

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use pantin::codec::layout::{FIRST_STEP, GROUPS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
-use pantin::{Event, Kind};
+use pantin::{Event, Kind, Up};
 use pantin_tools::encode::clip::{self, Channel, Coded, Start};
 use pantin_tools::encode::rig;
 use pantin_tools::encode::segment::Segment;
@@ -50,11 +50,13 @@ fn figure(joints: &[&[Kind]], scalars: usize) -> Rig {
         offset: [0.0, if index == 0 { 0.0 } else { -10.5 }, 0.25 * index as f64],
         kinds: kinds.to_vec(),
         end_site: false,
+        helper: false,
     };
     Rig {
         joints: joints.iter().enumerate().map(joint).collect(),
         scalars: (0..scalars).map(|index| Scalar { name: format!("s{index}"), full_scale: 1.0 }).collect(),
         cm_per_unit: 1.0,
+        up: Up::Y,
     }
 }
 
@@ -67,6 +69,7 @@ fn motion(frames: u32) -> Coded {
         exponentials: vec![],
         channels: vec![],
         events: vec![],
+        event_names: vec![],
         looped: false,
     }
 }
@@ -268,6 +271,19 @@ fn events() -> Made {
     simple("events", &[&PLACE], 1, coded)
 }
 
+/// Events of which some have names, one of them a name of more bytes than a block, and snapshots before the names; the figure hangs along x,
+/// and a joint of it with what hangs on it is no limb.
+fn event_names() -> Made {
+    let mut coded = motion(40);
+    coded.events = [(0, 0), (7, 3), (7, 1), (30, 9), (39, 0)].map(|(frame, id)| Event { frame, id }).to_vec();
+    coded.event_names = vec![pantin::LEFT_FOOT_DOWN.into(), String::new(), "\u{e9}t\u{e9}".into(), "long ".repeat(60)];
+    let mut made = simple("event-names", &[&PLACE, &EULER, &EULER, &[]], 0, coded);
+    made.rig.up = Up::new(0, true).unwrap_or_default();
+    made.rig.joints[2].helper = true;
+    made.index = 15;
+    made
+}
+
 /// A frame time that is no usual rate's.
 fn odd_rate() -> Made {
     simple("odd-rate", &[&EULER], 0, Coded { frame_time_ns: 41_708_375, ..motion(12) })
@@ -329,6 +345,7 @@ pub fn all() -> Vec<Made> {
         still(),
         exponential_choice(),
         events(),
+        event_names(),
         odd_rate(),
         widest_steps(),
         rests_and_choices(),

@@ -1,9 +1,9 @@
 //! Repairs what the first checks would refuse, and nothing else.
 
 use pantin::codec::crc;
-use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
+use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
 
-/// Makes the CRC of a rig right, if it is long enough to have one.
+/// Makes the CRC of a rig or of event names right, if they are long enough to have one.
 pub fn rig(bytes: &mut [u8]) {
     if let Some((body, stored)) = bytes.split_last_chunk_mut::<CRC_BYTES>() {
         *stored = crc::of(body).to_le_bytes();
@@ -27,12 +27,22 @@ pub fn clip(bytes: &mut Vec<u8>) {
     }
     let Some((len, digits)) = varint(&bytes[at..]) else { return };
     let mut motion = bytes.split_off(at).split_off(digits);
-    let index = if flags & HAS_INDEX != 0 { motion.split_off(len.min(motion.len())) } else { vec![] };
+    // What follows the motion: its bytes, where there are lengths, end where these say.
+    let mut rest = if flags & (HAS_INDEX | HAS_EVENT_NAMES) != 0 { motion.split_off(len.min(motion.len())) } else { vec![] };
     let seed = crc::update(crc::of(&bytes[..4]), &(motion.len() as u32).to_le_bytes());
     let last = put_part(bytes, &motion, seed);
     if flags & HAS_INDEX != 0 {
-        let index = &index[varint(&index).map_or(index.len(), |(_, digits)| digits)..];
-        put_part(bytes, index, pantin::codec::index_seed(last, index.len() as u32));
+        let (len, digits) = varint(&rest).unwrap_or((0, rest.len()));
+        let mut index = rest.split_off(digits);
+        rest = if flags & HAS_EVENT_NAMES != 0 { index.split_off(len.min(index.len())) } else { vec![] };
+        put_part(bytes, &index, pantin::codec::index_seed(last, index.len() as u32));
+    }
+    if flags & HAS_EVENT_NAMES != 0 {
+        let mut names = rest.split_off(varint(&rest).map_or(rest.len(), |(_, digits)| digits));
+        names.resize(names.len().max(CRC_BYTES), 0);
+        rig(&mut names);
+        put_varint(bytes, names.len());
+        bytes.extend_from_slice(&names);
     }
 }
 

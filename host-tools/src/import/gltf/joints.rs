@@ -32,6 +32,7 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
                 offset: [0.0; 3],
                 kinds: Vec::new(),
                 end_site: false,
+                helper: false,
             });
             stretches.push(Stretch::None);
             continue;
@@ -56,9 +57,16 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
             sites.extend(end(file, node, parent.map(|_| offset), &below).map(|offset| (index, offset)));
         }
         stretches.push(below);
-        channels.joints.push(Joint { name, parent: *parent, offset, kinds, end_site: false });
+        channels.joints.push(Joint { name, parent: *parent, offset, kinds, end_site: false, helper: false });
     }
-    let site = |(parent, offset)| Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true };
+    let site = |(parent, offset)| Joint {
+        name: String::new(),
+        parent: Some(parent),
+        offset,
+        kinds: Vec::new(),
+        end_site: true,
+        helper: false,
+    };
     channels.joints.extend(sites.into_iter().map(site));
     channels.warnings.extend(ends::complete(&mut channels.joints));
     Ok(channels)

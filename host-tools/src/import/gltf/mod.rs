@@ -177,9 +177,9 @@ struct Channels {
 impl Channels {
     fn motion(self, grid: &Grid) -> Motion {
         let (scalars, of_scalars): (Vec<_>, Vec<_>) = self.scalars.into_iter().map(scalars::Weight::split).unzip();
-        let rig = Rig { joints: self.joints, scalars, cm_per_unit: CM_PER_UNIT };
+        let rig = Rig { joints: self.joints, scalars, cm_per_unit: CM_PER_UNIT, ..Rig::default() };
         let (values, keys) = self.of_joints.into_iter().chain(of_scalars).map(|entry| (entry.values, entry.keys)).unzip();
-        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false }
+        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false, events: Vec::new() }
     }
 }
 

@@ -24,7 +24,7 @@ pub fn joint(rig: &mut Rig, words: &[&str]) -> Read<()> {
         }
         [word, ..] => return wrong(format!("expected `channels` or the end of the line, found `{word}`")),
     };
-    rig.joints.push(Joint { name: (*name).into(), parent, offset, kinds, end_site: false });
+    rig.joints.push(Joint { name: (*name).into(), parent, offset, kinds, end_site: false, helper: false });
     Ok(())
 }
 
@@ -37,7 +37,7 @@ pub fn end(rig: &mut Rig, words: &[&str]) -> Read<()> {
     if let [word, ..] = rest {
         return wrong(format!("expected the end of the line, found `{word}`"));
     }
-    rig.joints.push(Joint { name: String::new(), parent, offset, kinds: Vec::new(), end_site: true });
+    rig.joints.push(Joint { name: String::new(), parent, offset, kinds: Vec::new(), end_site: true, helper: false });
     Ok(())
 }
 

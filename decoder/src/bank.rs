@@ -1,0 +1,130 @@
+//! A bank: the clips of one rig in one file, by name, opened in place.
+
+use crate::OpenError;
+use crate::blocks;
+use crate::bytes::Reader;
+use crate::clip::Clip;
+use crate::crc;
+use crate::layout::{BANK_MAGIC, CRC_BYTES, VERSION, section};
+use crate::rig::Rig;
+
+/// A checked bank (`pantin pack`). Its clips are checked when they are opened.
+///
+/// ```
+/// # fn play(bytes: &[u8]) -> Result<(), pantin::OpenError> {
+/// let bank = pantin::Bank::new_checked(bytes)?;
+/// let walk = bank.clip("walk")?;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Bank<'a> {
+    rig: Rig<'a>,
+    /// The rig with its CRC.
+    rig_bytes: &'a [u8],
+    /// Names and lengths, without their CRC.
+    contents: &'a [u8],
+    clips: &'a [u8],
+}
+
+/// One clip of a bank, not yet opened.
+#[derive(Clone, Copy, Debug)]
+pub struct BankEntry<'a> {
+    name: &'a [u8],
+    bytes: &'a [u8],
+}
+
+impl<'a> BankEntry<'a> {
+    /// Its name; empty for one that is not UTF-8.
+    pub fn name(&self) -> &'a str {
+        core::str::from_utf8(self.name).unwrap_or("")
+    }
+
+    /// Its file, which has no rig: [`Bank::open`] opens it with the bank's.
+    pub fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+}
+
+impl<'a> Bank<'a> {
+    /// Checks the rig and the contents of a bank.
+    pub fn new_checked(bytes: &'a [u8]) -> Result<Bank<'a>, OpenError> {
+        let mut reader = Reader::new(bytes);
+        let (magic, version) = ([reader.byte(), reader.byte()], reader.byte());
+        reader.check()?;
+        if magic != BANK_MAGIC {
+            return Err(OpenError::BadMagic);
+        }
+        if version != VERSION {
+            return Err(OpenError::UnsupportedVersion(version));
+        }
+        let mut parts = [None; section::KNOWN];
+        while !reader.rest().is_empty() {
+            let kind = reader.byte();
+            let body = reader.name();
+            // What is before the end ends there: this does not go on for ever.
+            reader.check()?;
+            let known = usize::from(kind).checked_sub(1).and_then(|at| parts.get_mut(at));
+            if known.is_some_and(|part| part.replace(body).is_some()) {
+                return Err(OpenError::Malformed);
+            }
+        }
+        let [Some(rig_bytes), Some(contents), Some(clips)] = parts else { return Err(OpenError::Truncated) };
+        if !blocks::is_intact(contents, crc::INITIAL) {
+            return Err(OpenError::BadCrc);
+        }
+        let contents = contents.split_last_chunk::<CRC_BYTES>().map_or(&[][..], |(contents, _)| contents);
+        let (mut walk, mut rest) = (Reader::new(contents), Reader::new(clips));
+        let mut named = !contents.is_empty();
+        while !walk.rest().is_empty() {
+            named &= !walk.name().is_empty();
+            rest.take(walk.varint());
+        }
+        walk.check()?;
+        rest.check()?;
+        if !rest.rest().is_empty() || !named {
+            return Err(OpenError::Malformed);
+        }
+        Ok(Bank { rig: Rig::new_checked(rig_bytes)?, rig_bytes, contents, clips })
+    }
+
+    /// The figure of all clips.
+    pub fn rig(&self) -> Rig<'a> {
+        self.rig
+    }
+
+    /// Number of clips, at least 1.
+    #[allow(clippy::len_without_is_empty, reason = "a bank is never empty")]
+    pub fn len(&self) -> usize {
+        self.entries().count()
+    }
+
+    /// The clips in their order.
+    pub fn entries(&self) -> impl Iterator<Item = BankEntry<'a>> + use<'a> {
+        let (mut contents, mut clips) = (Reader::new(self.contents), Reader::new(self.clips));
+        core::iter::from_fn(move || {
+            if contents.rest().is_empty() {
+                return None;
+            }
+            let name = contents.name();
+            Some(BankEntry { name, bytes: clips.take(contents.varint()) })
+        })
+    }
+
+    /// Finds a clip by its name, of equal names the first. Names are compared byte by byte.
+    pub fn find(&self, name: &str) -> Option<BankEntry<'a>> {
+        self.entries().find(|entry| entry.name == name.as_bytes())
+    }
+
+    /// Checks one of the bank's clips.
+    pub fn open(&self, entry: &BankEntry<'a>) -> Result<Clip<'a>, OpenError> {
+        let clip = Clip::with_rig(entry.bytes, self.rig_bytes)?;
+        // One with a rig of its own would be opened with that.
+        if clip.rig_len() > 0 { Err(OpenError::Malformed) } else { Ok(clip) }
+    }
+
+    /// Finds and checks a clip; [`OpenError::NoSuchClip`] if the bank has none of this name.
+    pub fn clip(&self, name: &str) -> Result<Clip<'a>, OpenError> {
+        self.open(&self.find(name).ok_or(OpenError::NoSuchClip)?)
+    }
+}

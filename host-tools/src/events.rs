@@ -1,0 +1,103 @@
+//! Event markers: names to the ids of a clip and back, and what edits do with them.
+
+use crate::motion::{Event, Motion};
+use anyhow::{Result, ensure};
+
+/// Most bytes of an event's name.
+pub const MOST_NAME_BYTES: usize = 255;
+
+/// Checks a name that a user or a file gave.
+pub fn check_name(name: &str) -> Result<()> {
+    ensure!(!name.is_empty(), "an event without a name");
+    ensure!(name.len() <= MOST_NAME_BYTES, "an event's name of {} bytes; at most {MOST_NAME_BYTES}", name.len());
+    ensure!(!name.chars().any(char::is_control), "an event's name has a control character: {}", name.escape_debug());
+    Ok(())
+}
+
+/// The id that a name of digits alone stands for.
+fn number(name: &str) -> Option<u32> {
+    name.parse().ok().filter(|_| name.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// The events as a clip holds them, in the order of frames, and the names of their ids. Names take the lowest ids that no event has as its number, in
+/// the order in which they first occur.
+pub fn to_clip(events: &[Event]) -> (Vec<pantin::Event>, Vec<String>) {
+    let mut events: Vec<&Event> = events.iter().collect();
+    events.sort_by_key(|event| event.frame);
+    let numbers: Vec<u32> = events.iter().filter_map(|event| number(&event.name)).collect();
+    let mut names: Vec<String> = Vec::new();
+    let mut id_of = |name: &str| {
+        if let Some(id) = number(name) {
+            return id;
+        }
+        let known = names.iter().position(|known| known == name);
+        let id = known.unwrap_or_else(|| {
+            while numbers.contains(&(names.len() as u32)) {
+                names.push(String::new());
+            }
+            names.push(name.into());
+            names.len() - 1
+        });
+        id as u32
+    };
+    let mut coded: Vec<pantin::Event> =
+        events.iter().map(|event| pantin::Event { frame: event.frame as u32, id: id_of(&event.name) }).collect();
+    coded.dedup();
+    (coded, names)
+}
+
+/// The events of a clip.
+pub fn of_clip(clip: &pantin::Clip) -> Vec<Event> {
+    let name = |id: u32| clip.event_name(id).map_or_else(|| id.to_string(), str::to_string);
+    let inside = clip.events().filter(|event| event.frame < clip.frames());
+    inside.map(|event| Event { frame: event.frame as usize, name: name(event.id) }).collect()
+}
+
+impl Motion {
+    /// Adds events, and keeps the order of frames.
+    pub fn add_events(&mut self, events: impl IntoIterator<Item = Event>) {
+        self.events.extend(events);
+        self.events.sort_by_key(|event| event.frame);
+    }
+}
+
+/// The events of frames `from` to `to`, counted from `from`.
+pub fn cut(events: &[Event], from: usize, to: usize) -> Vec<Event> {
+    let inside = events.iter().filter(|event| (from..=to).contains(&event.frame));
+    inside.map(|event| Event { frame: event.frame - from, name: event.name.clone() }).collect()
+}
+
+/// The events of a motion whose frames come `ratio` times as fast, and whose last frame is `last`.
+pub fn resample(events: &[Event], ratio: f64, last: usize) -> Vec<Event> {
+    let frame = |event: &Event| ((event.frame as f64 * ratio).round() as usize).min(last);
+    events.iter().map(|event| Event { frame: frame(event), name: event.name.clone() }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(frame: usize, name: &str) -> Event {
+        Event { frame, name: name.into() }
+    }
+
+    #[test]
+    fn names_take_the_ids_that_numbers_leave() {
+        let (events, names) = to_clip(&[event(9, "clap"), event(3, "0"), event(4, "step"), event(5, "2"), event(9, "step")]);
+        assert_eq!(
+            events.iter().map(|event| (event.frame, event.id)).collect::<Vec<_>>(),
+            [(3, 0), (4, 1), (5, 2), (9, 3), (9, 1)]
+        );
+        assert_eq!(names, ["", "step", "", "clap"]);
+        assert_eq!(to_clip(&[event(1, "4294967295"), event(2, "7")]).1, Vec::<String>::new());
+        // Too large for an id: a name.
+        assert_eq!(to_clip(&[event(1, "4294967296")]).1, ["4294967296"]);
+    }
+
+    #[test]
+    fn cuts_and_rates_move_them() {
+        let events = [event(2, "a"), event(5, "b"), event(9, "c")];
+        assert_eq!(cut(&events, 2, 5), [event(0, "a"), event(3, "b")]);
+        assert_eq!(resample(&events, 0.5, 4), [event(1, "a"), event(3, "b"), event(4, "c")]);
+    }
+}
