@@ -2,6 +2,7 @@
 
 use crate::OpenError;
 use crate::blocks::{Input, behind_crc};
+use crate::entropy::STATE_BYTES;
 
 /// Reads fields one after the other. It cannot fail: past the end it reads zeros, and [`Reader::check`] reports that and fields out of
 /// bounds once all are read. A `Result` a field would be most of an image's code.
@@ -37,8 +38,14 @@ impl<'a> Reader<'a> {
         byte
     }
 
+    #[inline(never)]
     pub(crate) fn u32(&mut self) -> u32 {
         (0..4).fold(0, |value, _| value >> 8 | u32::from(self.byte()) << 24)
+    }
+
+    /// The state of the entropy decoder, the most significant byte first.
+    pub(crate) fn state(&mut self) -> u32 {
+        (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(self.byte()))
     }
 
     /// LEB128: seven bits a byte, the least significant first, at most five bytes. A number that does not fit 32 bits is malformed,
@@ -95,6 +102,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether all that was read was there, and within its bounds.
+    #[inline(never)]
     pub(crate) fn check(&self) -> Result<(), OpenError> {
         if self.malformed {
             Err(OpenError::Malformed)

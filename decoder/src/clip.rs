@@ -43,69 +43,57 @@ pub(crate) struct Head {
     pub(crate) event_count: u32,
 }
 
-/// The parts of a file.
+/// The fields of a file in front of the motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parts<'a> {
     pub(crate) flags: u8,
     /// The rig, and how many bytes of the file are its and its length's.
     pub(crate) rig: &'a [u8],
     pub(crate) rig_len: usize,
-    /// All behind the motion's length.
-    pub(crate) rest: &'a [u8],
-    pub(crate) motion_len: u32,
+    /// Reads what follows: the motion's length.
+    pub(crate) reader: Reader<'a>,
 }
 
 impl<'a> Parts<'a> {
-    pub(crate) const NONE: Parts<'a> = Parts { flags: 0, rig: &[], rig_len: 0, rest: &[], motion_len: 0 };
-
-    /// Reads the fields in front of the motion.
-    pub(crate) fn split(file: &'a [u8]) -> Result<Parts<'a>, OpenError> {
-        let mut parts = Parts::NONE;
-        parts.read(file)?;
-        Ok(parts)
+    /// Before the first field.
+    pub(crate) fn new(file: &'a [u8]) -> Parts<'a> {
+        Parts { flags: 0, rig: &[], rig_len: 0, reader: Reader::new(file) }
     }
 
+    /// Reads the fields.
     #[inline(never)]
-    fn read(&mut self, file: &'a [u8]) -> Result<(), OpenError> {
-        let mut reader = Reader::new(file);
-        let fixed = [reader.byte(), reader.byte(), reader.byte(), reader.byte()];
-        reader.check()?;
+    pub(crate) fn read(&mut self) -> Result<(), OpenError> {
+        let fixed = self.reader.u32().to_le_bytes();
+        self.reader.check()?;
         check_fixed(fixed)?;
         self.flags = fixed[3];
         if self.flags & HAS_RIG != 0 {
-            self.rig = reader.name();
-            self.rig_len = reader.position as usize - fixed.len();
+            self.rig = self.reader.name();
+            self.rig_len = self.reader.position as usize - fixed.len();
         }
-        self.motion_len = reader.varint();
-        self.rest = reader.rest();
-        reader.check()
+        self.reader.check()
     }
 
-    /// What the first block's CRC continues: that of the magic, version, flags and the motion's length.
-    pub(crate) fn seed(&self) -> u16 {
-        crc::of_prefix(self.flags, self.motion_len)
+    /// Reads a length, then that many bytes of blocks, and checks them; `crc` is what their first CRC continues, behind the length.
+    #[inline(never)]
+    fn blocks(&mut self, crc: u16) -> Result<&'a [u8], OpenError> {
+        let len = self.reader.varint();
+        let bytes = self.reader.take(len);
+        self.reader.check()?;
+        blocks::check(bytes, crc::update(crc, &len.to_le_bytes()))?;
+        Ok(bytes)
     }
 
-    /// The motion, unchecked, and what follows it.
-    pub(crate) fn motion(&self) -> Result<(&'a [u8], &'a [u8]), OpenError> {
-        self.rest.split_at_checked(self.motion_len as usize).ok_or(OpenError::Truncated)
-    }
-
-    /// Checks what follows the motion: snapshots and names of events, if there are any.
-    pub(crate) fn tail(&self, motion: &[u8], rest: &'a [u8]) -> Result<[&'a [u8]; 2], OpenError> {
+    /// Checks what follows the motion, to the end of the file: snapshots and names of events, if there are any.
+    pub(crate) fn tail(&mut self, motion: &[u8]) -> Result<[&'a [u8]; 2], OpenError> {
         let (mut index, mut names) = (&[][..], &[][..]);
-        let mut reader = Reader::new(rest);
         if self.flags & HAS_INDEX != 0 {
-            let len = reader.varint();
-            index = reader.take(len);
-            reader.check()?;
             let last_crc = motion.last_chunk().copied().map_or(0, u16::from_le_bytes);
-            blocks::check(index, index_seed(last_crc, len))?;
-            index = without_last_crc(index)?;
+            index = without_last_crc(self.blocks(last_crc)?)?;
         }
         if self.flags & HAS_EVENT_NAMES != 0 {
-            names = reader.name();
-            reader.check()?;
+            names = self.reader.name();
+            self.reader.check()?;
             if !blocks::is_intact(names, crc::INITIAL) {
                 return Err(OpenError::BadCrc);
             }
@@ -116,7 +104,7 @@ impl<'a> Parts<'a> {
             }
             walk.check()?;
         }
-        if reader.rest().is_empty() { Ok([index, names]) } else { Err(OpenError::Malformed) }
+        if self.reader.rest().is_empty() { Ok([index, names]) } else { Err(OpenError::Malformed) }
     }
 }
 
@@ -171,7 +159,11 @@ impl Head {
         self.exponentials = reader.position as u8;
         if self.flags & HAS_EXPONENTIALS != 0 {
             // A joint with a choice has three channels: 43 bytes at most.
-            self.exponential_bytes = rig.joints().filter(has_choice).count().div_ceil(8) as u8;
+            let (mut joints, mut choices) = (rig.joints(), 0usize);
+            while joints.read() {
+                choices += usize::from(has_choice(&joints.joint));
+            }
+            self.exponential_bytes = choices.div_ceil(8) as u8;
             reader.position += u32::from(self.exponential_bytes);
         }
         if self.flags & HAS_EVENTS != 0 {
@@ -223,10 +215,10 @@ impl<'a> Clip<'a> {
 
     #[inline(never)]
     fn open(&mut self, file: &'a [u8], rig: &'a [u8]) -> Result<(), OpenError> {
-        let parts = Parts::split(file)?;
-        let (motion, rest) = parts.motion()?;
-        blocks::check(motion, parts.seed())?;
-        [self.index, self.names] = parts.tail(motion, rest)?;
+        let mut parts = Parts::new(file);
+        parts.read()?;
+        let motion = parts.blocks(crc::of(&[MAGIC[0], MAGIC[1], VERSION, parts.flags]))?;
+        [self.index, self.names] = parts.tail(motion)?;
         self.read(&parts, rig, motion, OpenError::Malformed)
     }
 

@@ -35,7 +35,7 @@ pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
 pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut PlayState, channels: &mut Channels<'_>) {
     let mut reader = Reader::of_blocks(input, entry.position);
     let at = reader.varint();
-    let state = (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(reader.byte()));
+    let state = reader.state();
     *position = PlayState { cursor: Cursor::at(at, state), frame: entry.frame, next: 0 };
     for state in channels.states.iter_mut() {
         let mode = reader.byte();

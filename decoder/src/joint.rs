@@ -24,10 +24,6 @@ pub struct Joint<'a> {
 }
 
 impl<'a> Joint<'a> {
-    /// What stands where a joint is read to.
-    pub(crate) const NONE: Joint<'a> =
-        Joint { name: &[], parent: None, offset: [0; 3], end_site: false, helper: false, first_channel: 0, kinds: Kinds::NONE };
-
     /// Its name; empty for an End Site, and for a name that is not UTF-8 (opening a rig does not look into names).
     pub fn name(&self) -> &'a str {
         core::str::from_utf8(self.name).unwrap_or("")
@@ -105,15 +101,32 @@ pub fn has_choice(joint: &Joint<'_>) -> bool {
 #[derive(Clone, Debug)]
 pub struct Joints<'a> {
     pub(crate) reader: Reader<'a>,
-    pub(crate) left: u16,
+    left: u16,
+    /// The first channel of the next joint.
     pub(crate) first_channel: u16,
+    /// The joint that was read last.
+    pub(crate) joint: Joint<'a>,
 }
 
 impl<'a> Joints<'a> {
-    /// Reads the next joint to where it belongs.
+    pub(crate) fn new(reader: Reader<'a>, left: u16) -> Joints<'a> {
+        let none = Joint {
+            name: &[],
+            parent: None,
+            offset: [0; 3],
+            end_site: false,
+            helper: false,
+            first_channel: 0,
+            kinds: Kinds::NONE,
+        };
+        Joints { reader, left, first_channel: 0, joint: none }
+    }
+
+    /// Reads the next joint; false if there is none.
     #[inline(never)]
-    pub(crate) fn read(&mut self, joint: &mut Joint<'a>) {
-        let reader = &mut self.reader;
+    pub(crate) fn read(&mut self) -> bool {
+        let Some(left) = self.left.checked_sub(1) else { return false };
+        let (reader, joint) = (&mut self.reader, &mut self.joint);
         let head = reader.byte();
         let len = head & JOINT_CHANNELS;
         (joint.end_site, joint.helper) = (head & END_SITE != 0, head & HELPER != 0);
@@ -129,7 +142,8 @@ impl<'a> Joints<'a> {
         joint.first_channel = self.first_channel;
         // At most MAX_JOINTS joints of 15 channels: fits 16 bits.
         self.first_channel = self.first_channel.wrapping_add(u16::from(len));
-        self.left = self.left.saturating_sub(1);
+        self.left = left;
+        true
     }
 }
 
@@ -137,11 +151,6 @@ impl<'a> Iterator for Joints<'a> {
     type Item = Joint<'a>;
 
     fn next(&mut self) -> Option<Joint<'a>> {
-        if self.left == 0 {
-            return None;
-        }
-        let mut joint = Joint::NONE;
-        self.read(&mut joint);
-        Some(joint)
+        if self.read() { Some(self.joint) } else { None }
     }
 }

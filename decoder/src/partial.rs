@@ -24,16 +24,16 @@ impl<'a> PartialClip<'a> {
     /// [`PartialClip::extend`] tells.
     #[inline(never)]
     pub fn new(file: &'a [u8]) -> Result<PartialClip<'a>, OpenError> {
-        let parts = Parts::split(file)?;
-        let (checked, outcome) = check(&parts, 0);
+        let file = Arrived::split(file)?;
+        let (checked, outcome) = file.check(0);
         if checked == 0 {
             outcome?;
             return Err(OpenError::Truncated);
         }
-        let short = if checked < parts.motion_len as usize { OpenError::Truncated } else { OpenError::Malformed };
+        let short = if checked < file.motion_len { OpenError::Truncated } else { OpenError::Malformed };
         let mut clip = Clip::NONE;
-        clip.read(&parts, &[], parts.rest.get(..checked).unwrap_or(&[]), short)?;
-        let dry_at = dry_at(&parts, checked);
+        clip.read(&file.parts, &[], file.rest.get(..checked).unwrap_or(&[]), short)?;
+        let dry_at = file.dry_at(checked);
         if clip.symbols() > dry_at {
             return Err(OpenError::Truncated);
         }
@@ -42,23 +42,26 @@ impl<'a> PartialClip<'a> {
 
     /// Takes a longer beginning of the same file. A damaged block is reported by every call, and the frames before it stay playable.
     pub fn extend(&mut self, file: &'a [u8]) -> Result<(), OpenError> {
-        let parts = Parts::split(file)?;
-        let (checked, outcome) = check(&parts, self.checked);
-        if let Some(motion) = without_last_crc(&parts, checked) {
+        let file = Arrived::split(file)?;
+        let (checked, outcome) = file.check(self.checked);
+        // What a decoder reads past the end is zeros, not the last CRC.
+        if let Some(motion) = checked.checked_sub(CRC_BYTES).and_then(|end| file.rest.get(..end)) {
             self.clip.motion = motion;
         }
-        (self.checked, self.dry_at) = (checked, dry_at(&parts, checked));
+        (self.checked, self.dry_at) = (checked, file.dry_at(checked));
         outcome
     }
 
     /// Checks that `file`, which it was extended by, is whole.
     pub fn finish(&self, file: &'a [u8]) -> Result<(), OpenError> {
-        let parts = Parts::split(file)?;
-        let (motion, rest) = parts.motion()?;
+        let mut parts = Parts::new(file);
+        parts.read()?;
+        let motion = parts.reader.name();
+        parts.reader.check()?;
         if self.checked != motion.len() {
             return Err(OpenError::BadCrc);
         }
-        parts.tail(motion, rest).map(drop)
+        parts.tail(motion).map(drop)
     }
 
     /// What is known of the clip.
@@ -83,29 +86,42 @@ impl<'a> PartialClip<'a> {
     }
 }
 
-/// Checks the motion's whole blocks from the first one that was not: how many bytes of them are good.
-fn check(parts: &Parts<'_>, mut checked: usize) -> (usize, Result<(), OpenError>) {
-    let motion = parts.rest.get(..parts.motion_len as usize).unwrap_or(parts.rest);
-    for block in motion.get(checked..).unwrap_or(&[]).chunks(STRIDE) {
-        if block.len() < STRIDE && motion.len() < parts.motion_len as usize {
-            break;
-        }
-        let seed = if checked == 0 { parts.seed() } else { crc::INITIAL };
-        if !is_intact(block, seed) {
-            return (checked, Err(OpenError::BadCrc));
-        }
-        checked += block.len();
+/// The beginning of a file.
+struct Arrived<'a> {
+    parts: Parts<'a>,
+    /// What has come behind the motion's length, and that length.
+    rest: &'a [u8],
+    motion_len: usize,
+}
+
+impl<'a> Arrived<'a> {
+    fn split(file: &'a [u8]) -> Result<Arrived<'a>, OpenError> {
+        let mut parts = Parts::new(file);
+        parts.read()?;
+        let motion_len = parts.reader.varint() as usize;
+        parts.reader.check()?;
+        Ok(Arrived { rest: parts.reader.rest(), parts, motion_len })
     }
-    (checked, Ok(()))
-}
 
-/// The checked blocks: what a decoder reads past the end is zeros, not the last CRC.
-fn without_last_crc<'a>(parts: &Parts<'a>, checked: usize) -> Option<&'a [u8]> {
-    parts.rest.get(..checked.checked_sub(CRC_BYTES)?)
-}
+    /// Checks the motion's whole blocks from the first one that was not: how many bytes of them are good.
+    fn check(&self, mut checked: usize) -> (usize, Result<(), OpenError>) {
+        let motion = self.rest.get(..self.motion_len).unwrap_or(self.rest);
+        for block in motion.get(checked..).unwrap_or(&[]).chunks(STRIDE) {
+            if block.len() < STRIDE && motion.len() < self.motion_len {
+                break;
+            }
+            let seed = if checked == 0 { crc::of_prefix(self.parts.flags, self.motion_len as u32) } else { crc::INITIAL };
+            if !is_intact(block, seed) {
+                return (checked, Err(OpenError::BadCrc));
+            }
+            checked += block.len();
+        }
+        (checked, Ok(()))
+    }
 
-fn dry_at(parts: &Parts<'_>, checked: usize) -> u32 {
-    if checked < parts.motion_len as usize { (checked as u32).saturating_sub(MAX_SEGMENT_BYTES) } else { u32::MAX }
+    fn dry_at(&self, checked: usize) -> u32 {
+        if checked < self.motion_len { (checked as u32).saturating_sub(MAX_SEGMENT_BYTES) } else { u32::MAX }
+    }
 }
 
 /// A [`PartialClip`] and its player without the bytes: while the buffer that holds them grows, nothing borrows it.
@@ -154,8 +170,7 @@ impl PausedClip {
         states: &'m mut [ChannelState],
         values: &'m mut [i32],
     ) -> Result<(PartialClip<'a>, Player<'a, 'm>), OpenError> {
-        let parts = Parts::split(file)?;
-        let clip = self.clip.with_bytes(parts.rig);
+        let clip = self.clip.with_bytes(Arrived::split(file)?.parts.rig);
         let mut partial = PartialClip { clip, checked: self.checked, dry_at: 0 };
         partial.extend(file)?;
         let player = Player::resume(partial.clip, self.moving, self.position, states, values).ok_or(OpenError::Truncated)?;

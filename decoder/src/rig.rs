@@ -94,15 +94,10 @@ impl<'a> Rig<'a> {
     #[inline(never)]
     pub(crate) fn read(&mut self, bytes: &'a [u8]) -> Result<(), OpenError> {
         let Some((body, stored)) = bytes.split_last_chunk::<2>() else { return Err(OpenError::Truncated) };
-        // One pass for both: the identity adds two instructions a byte.
-        let mut sum = crc::INITIAL;
-        for &byte in body {
-            sum = crc::push(sum, byte);
-            self.id = self.id.and(byte);
-        }
-        if sum != u16::from_le_bytes(*stored) {
+        if crc::of(body) != u16::from_le_bytes(*stored) {
             return Err(OpenError::BadCrc);
         }
+        self.id = Id(names::hash(body));
         self.body = body;
         let mut reader = Reader::new(body);
         self.unit_micro_cm = reader.varint();
@@ -116,10 +111,12 @@ impl<'a> Rig<'a> {
         }
         self.joints_at = reader.position as u8;
         (self.joints, self.scalars) = (joints as u16, scalars as u16);
-        let (mut walk, mut joint) = (self.joints(), Joint::NONE);
-        for index in 0..self.joints {
-            walk.read(&mut joint);
+        let mut walk = self.joints();
+        let mut index = 0;
+        while walk.read() {
+            let joint = &mut walk.joint;
             walk.reader.malformed |= joint.parent.map_or(index != 0, |parent| parent >= index) || !joint.kinds.are_of_joint();
+            index += 1;
         }
         self.joint_channels = walk.first_channel;
         let mut walk = Scalars::new(walk.reader, self.scalars);
@@ -146,7 +143,7 @@ impl<'a> Rig<'a> {
     pub fn joints(&self) -> Joints<'a> {
         let mut reader = Reader::new(self.body);
         reader.position = u32::from(self.joints_at);
-        Joints { reader, left: self.joints, first_channel: 0 }
+        Joints::new(reader, self.joints)
     }
 
     /// One of the joints.
@@ -235,13 +232,12 @@ impl Id {
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelIter<'a> {
     joints: Joints<'a>,
-    joint: Joint<'a>,
     scalars: u16,
 }
 
 impl<'a> Rig<'a> {
     pub(crate) fn slots(&self) -> ChannelIter<'a> {
-        ChannelIter { joints: self.joints(), joint: Joint::NONE, scalars: self.scalars }
+        ChannelIter { joints: self.joints(), scalars: self.scalars }
     }
 }
 
@@ -251,16 +247,15 @@ impl Iterator for ChannelIter<'_> {
 
     fn next(&mut self) -> Option<(bool, i32)> {
         loop {
-            if let Some(kind) = self.joint.kinds.next() {
+            if let Some(kind) = self.joints.joint.kinds.next() {
                 // The first three kinds are positions, in the order of the axes.
-                let offset = self.joint.offset.get(kind as usize).copied();
+                let offset = self.joints.joint.offset.get(kind as usize).copied();
                 return Some((offset.is_some(), offset.unwrap_or(0)));
             }
-            if self.joints.left == 0 {
+            if !self.joints.read() {
                 self.scalars = self.scalars.checked_sub(1)?;
                 return Some((false, 0));
             }
-            self.joints.read(&mut self.joint);
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Any bytes decode to some symbols: nothing behind it can fail. One multiplication a symbol, no division.
 
 use crate::blocks::Input;
+use crate::bytes::Reader;
 
 /// Probabilities are multiples of 2^-12.
 pub const SCALE_BITS: u32 = 12;
@@ -34,12 +35,10 @@ pub(crate) struct Cursor {
 
 impl Cursor {
     /// Starts at `position`.
-    pub(crate) fn start(input: &Input<'_>, mut position: u32) -> Cursor {
-        let mut state = 0;
-        for _ in 0..STATE_BYTES {
-            state = (state << 8) | u32::from(input.byte(&mut position));
-        }
-        Cursor::at(position, state)
+    pub(crate) fn start(input: &Input<'_>, position: u32) -> Cursor {
+        let mut reader = Reader::of_blocks(input, position);
+        let state = reader.state();
+        Cursor::at(reader.position, state)
     }
 
     /// Goes on where another reader was.
