@@ -348,11 +348,14 @@ mod tests {
         matrix.rows.map(|row| row.map(|x| x.to_num::<f64>()))
     }
 
+    /// Miri takes a thousand times as long.
+    const ROUNDS: usize = if cfg!(miri) { 60 } else { 20_000 };
+
     #[test]
     fn any_rotation_in_any_order_is_the_same_rotation() {
         let mut next = random();
         let (mut worst, mut worst_matrix) = (0.0f64, 0.0f64);
-        for round in 0..20_000 {
+        for round in 0..ROUNDS {
             // Small, large and greatest maps and angles.
             let shift = round % 24;
             let angles = [next() >> shift, next() >> shift, next() >> shift].map(Angle::from_bits);
@@ -376,7 +379,7 @@ mod tests {
     #[test]
     fn the_whole_angle_of_a_map_is_its_length() {
         let mut next = random();
-        for round in 0..20_000 {
+        for round in 0..ROUNDS {
             let map = [next(), next(), next()].map(|x| Angle::from_bits(x >> (2 + round % 24)));
             let length = map.map(radians).iter().map(|x| x * x).sum::<f64>().sqrt();
             let folded = if length > std::f64::consts::PI { std::f64::consts::TAU - length } else { length };
@@ -404,7 +407,7 @@ mod tests {
     #[test]
     fn quaternions_of_any_length_are_normalized() {
         let mut next = random();
-        for round in 0..20_000 {
+        for round in 0..ROUNDS {
             let q = [next(), next(), next(), next()].map(|x| x >> (round % 27));
             let length = q.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>().sqrt();
             let unit = normalized(q);

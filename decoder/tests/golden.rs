@@ -136,7 +136,7 @@ fn bytes_in_pieces_give_the_recorded_poses() {
     for vector in vectors().into_iter().flatten() {
         let (clip, crcs) = (vector.open(), vector.crcs());
         let channels = clip.rig().channels();
-        for size in [13, 255, 256, 257, 100_000] {
+        for size in if cfg!(miri) { [13, 257].as_slice() } else { &[13, 255, 256, 257, 100_000] }.iter().copied() {
             let (mut states, mut pose, mut buffer) = (vec![ChannelState::NEW; channels], vec![0; channels], [0; Stream::BUFFER]);
             let mut stream = Stream::new(clip.rig(), &mut buffer, &mut states, &mut pose).unwrap();
             let (mut rest, mut frame, mut events) = (&vector.clip[..], 0, vec![]);

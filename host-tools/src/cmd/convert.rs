@@ -66,7 +66,7 @@ pub struct Arguments {
     #[arg(short, long)]
     pub(super) output: Option<PathBuf>,
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
     /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
     /// with % of the figure's height
@@ -84,8 +84,9 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value = "by-cost")]
     rotations: Rotations,
     /// Largest error of channels that move no joint, in percent of their full scale
-    #[arg(long, value_name = "PERCENT", default_value = "2", value_parser = above_zero)]
-    max_scalar_error: f64,
+    /// [default: 2]
+    #[arg(long, value_name = "PERCENT", value_parser = above_zero)]
+    max_scalar_error: Option<f64>,
     /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = above_zero)]
     max_rotation_error: Option<f64>,
@@ -153,6 +154,20 @@ impl Arguments {
         output::check(&inputs, &outputs)?;
         self.rig_out.iter().try_for_each(|path| refuse_foreign(path, Wanted::Rig))?;
         refuse_foreign(self.output(), Wanted::Clip)
+    }
+
+    /// Bounds that were given and bound nothing in this motion, a sentence each.
+    fn without_effect(&self, motion: &Motion) -> Vec<String> {
+        let of_joints = [
+            ("--max-error", self.max_error.is_some()),
+            ("--mean-error", self.mean_error.is_some()),
+            ("--max-rotation-error", self.max_rotation_error.is_some()),
+            ("--cm-per-unit", self.cm_per_unit.is_some()),
+        ];
+        let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
+        let given = of_joints.into_iter().filter(|(_, given)| *given && no_joints).map(|(name, _)| (name, "joints"));
+        let of_scalars = (self.max_scalar_error.is_some() && no_scalars).then_some(("--max-scalar-error", "scalars"));
+        given.chain(of_scalars).map(|(name, what)| format!("{name} has no effect: the motion has no {what}")).collect()
     }
 
     /// The same for one of several motions.
@@ -284,6 +299,7 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     let read = options.files.read_so_far();
     read.iter().for_each(|path| detail!("read {}", path.display()));
     edited.said.iter().for_each(|sentence| say(sentence));
+    arguments.without_effect(&edited.motion).iter().for_each(|sentence| say(sentence));
     let mut motion = edited.motion;
     check_fit(&motion, arguments.effort, &options.files).with_context(place)?;
     let mut bound = match arguments.channels.bounds(&motion)? {
@@ -346,6 +362,8 @@ struct Distance {
     scalar_part: f64,
 }
 
+/// The bound of scalars without an option, in percent of full scale.
+const MAX_SCALAR_PERCENT: f64 = 2.0;
 /// The bound of every joint, relative to the mean.
 const MAX_OF_MEAN: f64 = 6.0;
 
@@ -362,7 +380,7 @@ impl Distance {
             "--mean-error {} cm is more than --max-error, {max_cm} cm",
             mean_cm.unwrap_or_default()
         );
-        Ok(Distance { max_cm, mean_cm, scalar_part: arguments.max_scalar_error / 100.0 })
+        Ok(Distance { max_cm, mean_cm, scalar_part: arguments.max_scalar_error.unwrap_or(MAX_SCALAR_PERCENT) / 100.0 })
     }
 
     fn plan(&self, effort: Level) -> Plan {

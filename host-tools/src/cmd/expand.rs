@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let place = || arguments.input.display().to_string();
-    let clip = files.open().with_context(place)?;
+    let clip = files.open_alone().with_context(place)?;
     let output = &match &arguments.output {
         Some(output) => output.clone(),
         None => arguments.default_output(&clip)?,

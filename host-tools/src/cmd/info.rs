@@ -4,7 +4,7 @@ use super::Files;
 use crate::facts::{self, Channel, MemoryNeeds, Track};
 use crate::import::list;
 use crate::output::{self, clean, outln};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
 use pantin_store::BLOCK_BYTES;
 use pantin_store::region::{REGIONS, Region};
@@ -28,10 +28,11 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     if list::chooses(&arguments.input) {
+        ensure!(arguments.rig.is_none(), "{}: --rig is for clips, and this is a motion", arguments.input.display());
         return animations(&arguments.input);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
-    let clip = files.open().with_context(|| arguments.input.display().to_string())?;
+    let clip = files.open_alone().with_context(|| arguments.input.display().to_string())?;
     let rig = clip.rig();
     let file = files.clip_len();
     let memory = MemoryNeeds::of(&clip)?;

@@ -137,6 +137,13 @@ impl Files {
         })
     }
 
+    /// The same for a command that takes one clip: a rig that the clip does not need is a mistake.
+    pub fn open_alone(&self) -> Result<pantin::Clip<'_>> {
+        let clip = self.open()?;
+        ensure!(self.rig.is_empty() || clip.rig_len() == 0, "--rig: the clip has its own rig in it");
+        Ok(clip)
+    }
+
     /// The clip's bytes.
     pub fn clip(&self) -> &[u8] {
         &self.clip

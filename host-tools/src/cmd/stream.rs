@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FROM", conflicts_with_all = ["looped", "refresh", "cycle", "ahead"])]
     live: Option<String>,
     /// Largest error of --live, in percent of full scale
-    #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 2.0, requires = "live")]
     pub(super) max_scalar_error: f64,
     /// The rig of clips without one (`pantin convert --rig-out`)
     #[arg(long)]

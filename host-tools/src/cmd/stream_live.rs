@@ -26,7 +26,7 @@ struct Place {
 pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Result<()> {
     let [path] = &arguments.clips[..] else { anyhow::bail!("--live: expected one clip, of the face that the other end has") };
     let files = Files::read(path, arguments.rig.as_deref())?;
-    let clip = files.open().with_context(|| path.display().to_string())?;
+    let clip = files.open_alone().with_context(|| path.display().to_string())?;
     ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; --live sends faces alone", path.display());
     let form = clip.form();
     let mut feed = Feed::open(from, stop)?;

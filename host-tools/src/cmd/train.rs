@@ -1,5 +1,6 @@
 //! `pantin train`.
 
+use super::channel_bound::above_zero;
 use crate::encode::rig;
 use crate::fit::{descent::Level, fit};
 use crate::import;
@@ -27,11 +28,11 @@ pub struct Arguments {
     #[arg(long)]
     note: String,
     /// Bounds in cm
-    #[arg(long, value_delimiter = ',', default_value = "0.3,1,3")]
+    #[arg(long, value_delimiter = ',', default_value = "0.3,1,3", value_parser = above_zero)]
     bounds: Vec<f64>,
     /// Use every frame, every second, every fourth, ...
-    #[arg(long, value_delimiter = ',', default_value = "1,2,4")]
-    strides: Vec<usize>,
+    #[arg(long, value_delimiter = ',', default_value = "1,2,4", value_parser = clap::value_parser!(u32).range(1..))]
+    strides: Vec<u32>,
     /// Frames per second, for sources that do not state them
     #[arg(long)]
     fps: Option<f64>,
@@ -68,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let bytes = rig::encode(&motion.rig)?;
         let rig = pantin::Rig::new_checked(&bytes)?;
         for &stride in &arguments.strides {
-            let motion = decimated(&motion, stride);
+            let motion = decimated(&motion, stride as usize);
             for &bound_cm in &arguments.bounds {
                 let coded =
                     fit(&motion, TRAINING.plan(bound_cm), 0.02, &mut |_| ()).with_context(|| path.display().to_string())?;

@@ -1,18 +1,25 @@
 //! Parses poses written as sums, `joy=0.5,blink_left=1`.
 
 use super::blueprint::{Blueprint, Drive};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use pantin_face::{FULL_WEIGHT, Target, Weights};
 
 /// A pair of weights for each shape.
 pub type Pairs = Vec<[f64; 2]>;
 
-/// Parses a sum of names, each with a value (default 1). Fails on unknown names.
+/// Far more than any face shows.
+const MOST_WEIGHT: f64 = 100.0;
+
+/// Parses a sum of names, each with a value (default 1). Fails on unknown names, and for values that are no number from -100 to 100.
 pub fn parse(face: &Blueprint, sum: &str) -> Result<Pairs> {
     let mut pairs = vec![[0.0; 2]; face.shapes.len()];
     for term in sum.split([',', '+']).map(str::trim).filter(|term| !term.is_empty()) {
         let (name, value) = term.split_once('=').unwrap_or((term, "1"));
         let value: f64 = value.trim().parse().with_context(|| format!("{term}: expected name=number"))?;
+        ensure!(
+            value.abs() <= MOST_WEIGHT,
+            "{term}: expected a weight from -{MOST_WEIGHT} to {MOST_WEIGHT}; 1 is the whole unit"
+        );
         add(face, name.trim(), value, &mut pairs)?;
     }
     Ok(pairs)

@@ -277,6 +277,55 @@ fn options_that_do_not_apply_are_refused() {
         assert!(said.contains("none of these files"), "{said}");
     }
     assert!(!folder.path("b.ptn").exists() && !folder.path("out").exists());
+    // A chart is drawn as it is.
+    folder.done(&["convert", "in/light.csv", "-o", "light.ptn"]);
+    let of_figures: [&[&str]; 13] = [
+        &["--size", "99x99"],
+        &["--scale", "2"],
+        &["--palette", "dusk"],
+        &["--pixels"],
+        &["--smooth"],
+        &["--view", "side"],
+        &["--tilt", "5"],
+        &["--up", "x"],
+        &["--fixed"],
+        &["--from", "1"],
+        &["--to", "1"],
+        &["--frame", "1"],
+        &["--strip", "2"],
+    ];
+    for option in of_figures {
+        let said = folder.refused(&[&["render", "light.ptn", "-o", "light.png"], option].concat());
+        assert!(said.contains(option[0]) && said.contains("chart"), "{said}");
+    }
+    // A bound that bounds nothing is named.
+    for option in ["--max-error", "--mean-error", "--max-rotation-error", "--cm-per-unit"] {
+        let said = err(&folder.done(&["convert", "in/light.csv", "-o", "light.ptn", option, "1"]));
+        assert!(said.contains(&format!("{option} has no effect: the motion has no joints")), "{said}");
+    }
+    let said = err(&folder.done(&["convert", "run.keys", "-o", "run.ptn", "--max-scalar-error", "1", "--effort", "fast"]));
+    assert!(said.contains("--max-scalar-error has no effect: the motion has no scalars"), "{said}");
+    // A rig that nothing needs.
+    folder.done(&["convert", "run.keys", "-o", "apart.ptn", "--rig-out", "run.rig", "--effort", "fast"]);
+    for arguments in [&["info", "a.ptn"][..], &["expand", "a.ptn", "-o", "a.bvh"], &["render", "a.ptn", "-o", "a.gif"]] {
+        let said = folder.refused(&[arguments, &["--rig", "run.rig"]].concat());
+        assert!(said.contains("the clip has its own rig"), "{said}");
+    }
+    folder.done(&["info", "apart.ptn", "--rig", "run.rig"]);
+    assert!(folder.refused(&["face", "fit", "face.obj", "--frame", "3"]).contains("--frame is for clips"));
+    // Numbers that mean nothing.
+    for weight in ["nan", "1e300", "-101"] {
+        let said = folder.refused(&["face", "export", "-o", "joy.obj", "--pose", &format!("joy={weight}")]);
+        assert!(said.contains("expected a weight"), "{said}");
+    }
+    for wrong in [
+        &["train", "run.keys", "-o", "a.rs", "--note", "a", "--strides", "0"][..],
+        &["train", "run.keys", "-o", "a.rs", "--note", "a", "--bounds", "nan"],
+        &["convert", "--list", "run.keys", "-o", "b.ptn"],
+        &["stream", "a.ptn", "--to", "tcp:127.0.0.1:1", "--max-scalar-error", "1"],
+    ] {
+        assert_eq!(folder.run(wrong).status.code(), Some(2), "{wrong:?}");
+    }
     // Among several motions, they are for those that take them.
     folder.put("in/world.wrl", WORLD);
     folder.done(&["convert", "in", "-o", "out", "--animation", "smile"]);

@@ -24,9 +24,9 @@ const LEAST: f64 = 0.005;
 pub struct Arguments {
     /// The face: .obj, .glb or a clip
     target: PathBuf,
-    /// The frame of a clip: a number, or seconds as in 1.5s
-    #[arg(long, value_name = "MOMENT", default_value = "0")]
-    frame: Moment,
+    /// The frame of a clip: a number, or seconds as in 1.5s [default: 0]
+    #[arg(long, value_name = "MOMENT")]
+    frame: Option<Moment>,
     /// The rig of a clip that was made with --rig-out
     #[arg(long)]
     rig: Option<PathBuf>,
@@ -37,7 +37,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let face = Face::new()?;
     let path = &arguments.target;
     let place = || path.display().to_string();
-    let target = match path.extension().and_then(|extension| extension.to_str()) {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let of_clips = arguments.frame.map(|_| "--frame").or(arguments.rig.as_ref().map(|_| "--rig"));
+    if let Some(option) = of_clips.filter(|_| extension != Some("ptn")) {
+        bail!("{}: {option} is for clips (.ptn)", place());
+    }
+    let target = match extension {
         Some("obj") => outside::obj_points(&String::from_utf8(input::read(path)?).with_context(place)?).with_context(place)?,
         Some("glb" | "gltf") => outside::glb_points(path)?,
         Some("ptn") => frame(arguments, &face)?,
@@ -75,8 +80,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 fn frame(arguments: &Arguments, face: &Face) -> Result<Vec<[f64; 3]>> {
     let place = || arguments.target.display().to_string();
     let files = Files::read(&arguments.target, arguments.rig.as_deref())?;
-    let clip = files.open().with_context(place)?;
-    let frame = arguments.frame.frame(clip.frames(), f64::from(clip.frame_time_ns()) * 1e-9).with_context(place)?;
+    let clip = files.open_alone().with_context(place)?;
+    let frame = arguments
+        .frame
+        .unwrap_or(Moment::Frame(0))
+        .frame(clip.frames(), f64::from(clip.frame_time_ns()) * 1e-9)
+        .with_context(place)?;
     let model = face.model()?;
     let binding = Binding::new(&clip.rig(), &model);
     ensure!(binding.driving() > 0, "{}: no channel bears a name that the face knows; docs/FACE.md lists them", place());

@@ -19,6 +19,10 @@ use std::path::{Path, PathBuf};
 
 /// Pixels on the shorter side from which lines are smooth by default.
 const SMOOTH_FROM: usize = 240;
+/// Columns and rows of a picture without --size.
+const SIZE: &str = "128x64";
+/// Colours without --palette.
+const PALETTE: &str = "grey";
 
 /// Draw a clip with the firmware's own figure code: as small displays show it, or large and anti-aliased.
 ///
@@ -51,13 +55,13 @@ pub struct Arguments {
     #[arg(long)]
     rig: Option<PathBuf>,
     /// Columns and rows of a picture
-    #[arg(long, value_name = "COLUMNSxROWS", default_value = "128x64")]
+    #[arg(long, value_name = "COLUMNSxROWS", default_value = SIZE)]
     size: Size,
     /// Magnify each pixel N times [default: chosen for the picture's size]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
     scale: Option<u16>,
     /// Colours: a name, or paper and ink [see below]
-    #[arg(long, default_value = "grey")]
+    #[arg(long, default_value = PALETTE)]
     palette: Palette,
     /// Draw lines of whole pixels, as the firmware does [default below 240 pixels]
     #[arg(long, conflicts_with = "smooth")]
@@ -129,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         format_of(output, arguments.format)?;
     }
     let files = Files::read_to_show(&arguments.input, arguments.rig.as_deref())?;
-    let clip = files.open().with_context(|| arguments.input.display().to_string())?;
+    let clip = files.open_alone().with_context(|| arguments.input.display().to_string())?;
     let face = is_face(&clip)?;
     let output = &match &arguments.output {
         Some(output) => output.clone(),
@@ -141,6 +145,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if clip.rig().joint_count() == 0 && !face {
         if kind != Kind::Png {
             bail!("{}: a clip without joints has no figure to draw; a name that ends in .png gives a chart", output.display());
+        }
+        if let Some(option) = arguments.option_of_figures() {
+            bail!("{}: {option} does not apply to a clip without joints, which is drawn as a chart", arguments.input.display());
         }
         chart::write(&mut file, &expand(&clip)?)?;
     } else {
@@ -181,6 +188,26 @@ impl Arguments {
         let output = default_output(&self.input, extension)?;
         self.check(&output)?;
         Ok(output)
+    }
+
+    /// An option that was given and that a chart does not follow.
+    fn option_of_figures(&self) -> Option<&'static str> {
+        let given = [
+            ("--size", SIZE.parse().is_ok_and(|size: Size| self.size != size)),
+            ("--scale", self.scale.is_some()),
+            ("--palette", PALETTE.parse().is_ok_and(|palette: Palette| self.palette != palette)),
+            ("--pixels", self.pixels),
+            ("--smooth", self.smooth),
+            ("--view", !self.view.is_empty()),
+            ("--tilt", self.tilt.is_some()),
+            ("--up", self.up.is_some()),
+            ("--fixed", self.fixed),
+            ("--from", self.from.is_some()),
+            ("--to", self.to.is_some()),
+            ("--frame", self.frame.is_some()),
+            ("--strip", self.strip.is_some()),
+        ];
+        given.into_iter().find_map(|(name, given)| given.then_some(name))
     }
 
     fn kind(&self, output: &Path) -> Result<Kind> {
