@@ -17,15 +17,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
     content(path).map_err(|error| anyhow!("{}: cannot be read: {error:#}", path.display()))
 }
 
-/// Returns the content of a file that has at most `most` bytes, as text.
+/// Returns the content of a file that has at most `most` bytes, as text. Errors do not name the path, which may be a secret.
 pub fn read_short_text(path: &Path, most: u64) -> Result<String> {
-    let text = || {
-        let mut bytes = Vec::new();
-        File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-        ensure!(bytes.len() as u64 <= most, "more than {most} bytes");
-        Ok(String::from_utf8(bytes)?)
-    };
-    text().map_err(|error| anyhow!("{}: cannot be read: {error:#}", path.display()))
+    let bytes = up_to(File::open(path)?, most)?;
+    Ok(String::from_utf8(bytes.ok_or_else(|| anyhow!("more than {most} bytes"))?)?)
 }
 
 /// The same as [`read`]; errors do not name the path.

@@ -334,6 +334,14 @@ fn options_that_do_not_apply_are_refused() {
 }
 
 #[test]
+fn a_mistyped_key_is_not_printed() {
+    let folder = prepared();
+    let key = "0123456789abcdef0123456789abcde";
+    let said = folder.refused(&["stream", "a.ptn", "--to", "tcp:127.0.0.1:1", "--key", key]);
+    assert!(said.contains("neither 32 hexadecimal digits nor a file") && !said.contains("456789"), "{said}");
+}
+
+#[test]
 fn a_line_without_room_for_refreshes_is_named() {
     let folder = prepared();
     for wrong in ["0", "-1", "101", "nan"] {
