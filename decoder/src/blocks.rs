@@ -44,3 +44,16 @@ pub(crate) fn check(bytes: &[u8], mut seed: u16) -> Result<(), OpenError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_without_room_for_its_crc_is_truncated() {
+        assert_eq!(check(&[], crc::INITIAL), Ok(()));
+        assert_eq!(check(&[1], crc::INITIAL), Err(OpenError::Truncated));
+        assert_eq!(check(&[1, 2], crc::INITIAL), Err(OpenError::BadCrc));
+        assert_eq!(check(&[1, 2, 3], crc::INITIAL), Err(OpenError::BadCrc));
+    }
+}
