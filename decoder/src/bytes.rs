@@ -143,3 +143,34 @@ impl Varint {
         if self.too_large { Err(OpenError::Malformed) } else { Ok(self.value) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_varint_has_32_bits() {
+        for (last, number, malformed) in [(0x0e, 0xefff_ffff, false), (0x0f, u32::MAX, false), (0x10, 0x0fff_ffff, true)] {
+            let bytes = [0xff, 0xff, 0xff, 0xff, last];
+            let mut reader = Reader::new(&bytes);
+            assert_eq!((reader.varint(), reader.malformed), (number, malformed), "{last}");
+            let mut pieces = Varint::default();
+            let lasts: Vec<bool> = bytes.into_iter().map(|byte| pieces.push(byte)).collect();
+            assert_eq!(lasts, [false, false, false, false, true]);
+            assert_eq!(pieces.checked(), if malformed { Err(OpenError::Malformed) } else { Ok(number) }, "{last}");
+        }
+        let mut reader = Reader::new(&[0x80, 0x80, 0x80, 0x80, 0x10, 1]);
+        assert_eq!((reader.varint(), reader.varint(), reader.malformed), (0, 1, true));
+    }
+    #[test]
+    fn bytes_past_the_end_are_zeros_and_reported() {
+        let mut reader = Reader::new(&[1, 2]);
+        assert_eq!((reader.byte(), reader.byte(), reader.check()), (1, 2, Ok(())));
+        assert_eq!((reader.byte(), reader.check()), (0, Err(OpenError::Truncated)));
+        let mut reader = Reader::new(&[1, 2, 3]);
+        assert_eq!((reader.take(2), reader.rest(), reader.check()), (&[1, 2][..], &[3][..], Ok(())));
+        assert_eq!((reader.take(2), reader.rest(), reader.check()), (&[][..], &[][..], Err(OpenError::Truncated)));
+        reader.malformed = true;
+        assert_eq!(reader.check(), Err(OpenError::Malformed));
+    }
+}
