@@ -43,6 +43,35 @@ impl MemoryNeeds {
     }
 }
 
+/// Segments that a seek from frame 0 to the last frame passes.
+pub fn segments(clip: &Clip<'_>) -> Result<usize> {
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; clip.rig().channels()];
+    let mut player = Player::new(*clip, &mut states, &mut pose)?;
+    let mut due: Vec<u8> = player.states().iter().map(ChannelState::due).collect();
+    let mut segments = 0;
+    while !player.ended() {
+        player.step();
+        for (due, state) in due.iter_mut().zip(player.states()) {
+            // A channel that follows reads none: it copies its leader's.
+            segments += usize::from(*due != state.due() && state.follows().is_none());
+            *due = state.due();
+        }
+    }
+    Ok(segments)
+}
+
+/// Time of a seek for each segment that it passes, on a Cortex-M0 of 48 MHz at one instruction a cycle: 360 instructions (docs/BENCHMARKS.md).
+pub const SEEK_MS_PER_SEGMENT: f64 = 360.0 / 48_000.0;
+/// Most segments that a seek should pass: they take that processor a frame's time at 30 frames a second.
+const SEEK_SEGMENTS: usize = 4444;
+
+/// The greatest spacing of snapshots, in seconds, with which no seek passes more than [`SEEK_SEGMENTS`]; `None` for a clip that needs none.
+pub fn index_spacing(seconds: f64, segments: usize) -> Option<f64> {
+    let spacing = seconds * SEEK_SEGMENTS as f64 / segments as f64;
+    (segments > SEEK_SEGMENTS).then(|| ((spacing * 10.0).floor() / 10.0).max(0.1))
+}
+
 /// What a channel of a pose is and does.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
@@ -105,4 +134,17 @@ pub fn positions(kinds: &[Kind]) -> String {
 
 fn axis(kind: Kind) -> Option<char> {
     ['X', 'Y', 'Z'].get(kind.axis()?).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clips_in_which_seeks_pass_many_segments_need_an_index() {
+        assert_eq!([0, SEEK_SEGMENTS].map(|segments| index_spacing(60.0, segments)), [None; 2]);
+        assert_eq!(index_spacing(60.0, 3 * SEEK_SEGMENTS), Some(20.0));
+        assert_eq!(index_spacing(60.0, 14_000), Some(19.0));
+        assert_eq!(index_spacing(0.2, 100 * SEEK_SEGMENTS), Some(0.1));
+    }
 }
