@@ -15,6 +15,7 @@ pub(crate) struct Entry {
 }
 
 /// The last snapshot of no later frame than `target`.
+#[inline(never)]
 pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
     let mut reader = Reader::of_blocks(input, 0);
     let spacing = reader.varint();
@@ -32,6 +33,7 @@ pub(crate) fn nearest(input: &Input<'_>, target: u32) -> Option<Entry> {
 }
 
 /// Goes to where the snapshot was taken. Every channel has its slot and step from its start.
+#[inline(never)]
 pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut PlayState, channels: &mut Channels<'_>) {
     let mut reader = Reader::of_blocks(input, entry.position);
     let at = reader.varint();

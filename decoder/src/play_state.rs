@@ -30,14 +30,16 @@ pub(crate) fn reads(frame: u32, frames: u32) -> bool {
     frame + LAST_FRAMES < frames
 }
 
-/// Lists of channels by the frame at which their segments end, modulo their number, which is more than the frames of any segment: a seek
-/// looks at no channel before its segment ends. An entry is the number of the last channel of its list, from 1, and each channel has that
-/// of the one before; 0 is none.
-type Calendar = [u16; 128];
+/// Lists of channels by the frame at which their segments end, modulo [`LISTS`]: a seek looks at no channel before its segment ends, but at
+/// those of segments of 96 frames once, after 32. An entry is the number of the last channel of its list, from 1, and each channel has that of
+/// the one before; 0 is none. More lists would take more stack.
+type Calendar = [u16; LISTS];
+
+const LISTS: usize = 64;
 
 /// The list of a frame.
 fn list(calendar: &mut Calendar, frame: u8) -> &mut u16 {
-    &mut calendar[usize::from(frame & 127)]
+    &mut calendar[usize::from(frame) % LISTS]
 }
 
 /// Puts a channel into a list whose last one is a later channel.
@@ -173,25 +175,28 @@ impl PlayState {
     #[inline(never)]
     pub(crate) fn run_to(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32, target: u32) {
         self.hop_all(channels, true);
-        let mut calendar: Calendar = [0; 128];
+        let mut calendar: Calendar = [0; LISTS];
         for (number, state) in (1..).zip(channels.states.iter_mut()) {
             state.next = core::mem::replace(list(&mut calendar, state.due), number);
         }
         let mut segments = Segments::at(self.cursor, input);
         let end = target.min(frames.saturating_sub(LAST_FRAMES));
         for frame in self.frame..end {
-            let mut last = core::mem::take(list(&mut calendar, frame as u8));
+            let now = frame as u8;
+            let mut last = core::mem::take(list(&mut calendar, now));
             // From the last to the first: turned around, for segments are read in the order of the channels.
             let mut first = 0;
             while let Some(state) = numbered(channels.states, last) {
                 (first, last, state.next) = (last, state.next, first);
             }
             while let Some(state) = numbered(channels.states, first) {
-                // It stands at the start of its last segment.
-                if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
-                    state.hop(p, i32::from(state.segment_frames()));
+                if state.due == now {
+                    // It stands at the start of its last segment.
+                    if let Some(p) = channels.pose.get_mut(usize::from(state.slot)) {
+                        state.hop(p, i32::from(state.segment_frames()));
+                    }
+                    segment::read(state, &mut segments);
                 }
-                segment::read(state, &mut segments);
                 let number = core::mem::replace(&mut first, state.next);
                 let last = list(&mut calendar, state.due);
                 if *last < number {

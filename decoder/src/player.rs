@@ -229,8 +229,9 @@ impl<'a, 'm> Player<'a, 'm> {
         self.position = PlayState { cursor, frame: 0, next: 0 };
     }
 
-    /// Goes to `frame`, or to the last one if there are fewer. Forward it costs a hop a segment on the way; backward it
-    /// starts from the file's last snapshot before it (`pantin convert --index`), or from frame 0.
+    /// Goes to `frame`, or to the last one if there are fewer. It starts from this frame or, if that is later, from frame 0, or from the file's
+    /// last snapshot before `frame` (`pantin convert --index`) if that is closer. Each segment on the way takes about 330 instructions on a
+    /// Cortex-M0; `pantin info` suggests an index for clips that have many.
     pub fn seek(&mut self, frame: u32) {
         self.go::<true>(frame, None);
     }

@@ -78,6 +78,8 @@ pub(crate) struct ChannelStarts<'a> {
 }
 
 impl<'a> ChannelStarts<'a> {
+    /// In a function of its own, so that a second copy is not on the stack while the starts are read.
+    #[inline(never)]
     pub(crate) fn new(rig: &Rig<'a>, length_exponent: i8) -> ChannelStarts<'a> {
         let shift = i32::from(rig.length_exponent()) - i32::from(length_exponent);
         ChannelStarts { slots: rig.slots(), opening: ChannelStart::default(), shift, slot: 0, moving: 0 }

@@ -35,6 +35,7 @@ pub(crate) struct Cursor {
 
 impl Cursor {
     /// Starts at `position`.
+    #[inline(never)]
     pub(crate) fn start(input: &Input<'_>, position: u32) -> Cursor {
         let mut reader = Reader::of_blocks(input, position);
         let state = reader.state();
@@ -122,6 +123,7 @@ impl Symbols<'_> {
     }
 
     /// The next `count` bits, 32 at most, the least significant first.
+    #[inline(always)]
     pub(crate) fn long_bits(&mut self, count: u32) -> u32 {
         let mut value = 0;
         let mut shift = 0;
