@@ -118,3 +118,40 @@ pub const fn step_size(index: u8) -> u32 {
 pub(crate) const fn mantissa(index: u8) -> u32 {
     2 | (index & 1) as u32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STATE: ChannelState =
+        ChannelState { v: 3, w: -5, k: 70, slot: 9, due: 11, mode: 0x23, step: 4, prev_sign: -1, next: 17 };
+
+    #[test]
+    fn a_state_says_what_it_holds() {
+        assert_eq!((STATE.slot(), STATE.rates(), STATE.mode(), STATE.due()), (9, [3, -5, 70], 0x23, 11));
+        assert_eq!((STATE.segment_frames(), ChannelState::NEW.segment_frames()), (LENGTHS[3], 0));
+        for (step, index, follows) in [(0, Some(0), None), (MAX_STEP, Some(MAX_STEP), None), (MAX_STEP + 3, None, Some(3))] {
+            let state = ChannelState { step, ..STATE };
+            assert_eq!((state.step_index(), state.follows()), (index, follows), "{step}");
+        }
+        let mut other = ChannelState::default();
+        other.become_as(&STATE);
+        assert_eq!(other, ChannelState { next: 0, ..STATE });
+        assert_eq!([0, 1, 2, 3, 4, 5, 6, 7].map(step_size), [1, 1, 2, 3, 4, 6, 8, 12]);
+    }
+
+    #[test]
+    fn a_hop_is_that_many_additions_and_back() {
+        for k in [0, 70, i32::MIN + 1] {
+            for n in [0, 1, 2, 3, 100, 511] {
+                let (mut hopped, mut added) = (ChannelState { k, slot: 0, ..STATE }, ChannelState { k, slot: 0, ..STATE });
+                let (mut p, mut pose) = (-1000, [-1000]);
+                hopped.hop(&mut p, n);
+                (0..n).for_each(|_| added.add(&mut pose));
+                assert_eq!((hopped, p), (added, pose[0]), "{n} frames, k {k}");
+                hopped.hop(&mut p, -n);
+                assert_eq!((hopped, p), (ChannelState { k, slot: 0, ..STATE }, -1000), "{n} frames back, k {k}");
+            }
+        }
+    }
+}
