@@ -38,6 +38,7 @@ use std::path::{Path, PathBuf};
   pantin convert motions/walk.keys -o walk.ptn --exact
   pantin convert walk.bvh -o walk.ptn --index 2
   pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5
+  pantin convert walk.bvh -o walk.ptn --footsteps --event clap@12 --event 'door opens@1.5s'
   pantin convert face.csv -o face.ptn --max-scalar-error 2
   pantin convert servos.tsv -o servos.ptn --fps 50
   pantin convert --list fox.glb
@@ -310,6 +311,9 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
         let closed = bound.close(&motion).with_context(place)?;
         closed_sentences(&closed, &motion).iter().for_each(|sentence| say(sentence));
         motion = closed.motion;
+    }
+    if let Some(sentence) = arguments.edits.add_footsteps(&mut motion).with_context(place)? {
+        say(&sentence);
     }
     let rig = rig::encode(&motion.rig)?;
     Ok(Prepared { motion, rig, read, warnings: imported.warnings, bound, retarget_max_cm: edited.retarget_max_cm })

@@ -1,13 +1,15 @@
 //! The flags of `pantin convert` that change the motion before it is fitted.
 
 use super::render::Moment;
-use crate::edit::{cut::cut, join::join, mirror::mirror, pick::pick, resample::resample, retarget};
+use crate::edit::{cut::cut, footsteps::footsteps, join::join, mirror::mirror, pick::pick, resample::resample, retarget};
+use crate::events;
 use crate::import;
-use crate::motion::Motion;
+use crate::motion::{Event, Motion};
 use anyhow::{Context, Result};
+use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use std::path::{Path, PathBuf};
 
-/// Changes of the motion. They apply in this order: --fps, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop.
+/// Changes of the motion. They apply in this order: --fps, --event, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop, --footsteps.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Edits {
     /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (case-insensitive). A joint that is not kept is
@@ -17,6 +19,13 @@ pub struct Edits {
     /// Drop the joints and scalars whose names match, in the same way
     #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
     drop: Vec<String>,
+    /// Add an event marker: a name, or a number that is its id, @ a frame or a time, as in clap@12 or 'door opens@1.5s'. Frames count from 0
+    /// after --fps and before --from. May be given several times
+    #[arg(long = "event", value_name = "NAME@MOMENT", value_parser = marker)]
+    events: Vec<Marker>,
+    /// Find the frames at which a foot begins to bear weight, and mark them as the events left_foot_down and right_foot_down
+    #[arg(long)]
+    footsteps: bool,
     /// First frame to convert, counted from 0 after --fps: a number, or seconds as in 1.5s
     #[arg(long, value_name = "MOMENT")]
     from: Option<Moment>,
@@ -40,6 +49,19 @@ pub struct Edits {
     pub looped: bool,
 }
 
+/// An event marker as the user gives it.
+#[derive(Clone, Debug)]
+struct Marker {
+    name: String,
+    moment: Moment,
+}
+
+fn marker(text: &str) -> Result<Marker> {
+    let (name, moment) = text.rsplit_once('@').context("expected NAME@FRAME or NAME@SECONDSs, as in clap@12 or clap@1.5s")?;
+    events::check_name(name)?;
+    Ok(Marker { name: name.into(), moment: moment.parse()? })
+}
+
 /// A body that motions can be put on.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Body {
@@ -58,6 +80,18 @@ pub struct Edited {
 }
 
 impl Edits {
+    /// Adds the footsteps, if they are asked for, to a motion after all other edits; a sentence about them.
+    pub fn add_footsteps(&self, motion: &mut Motion) -> Result<Option<String>> {
+        if !self.footsteps {
+            return Ok(None);
+        }
+        let steps = footsteps(motion)?;
+        let count = |name: &str| steps.iter().filter(|step| step.name == name).count();
+        let sentence = format!("footsteps: {} left, {} right", count(LEFT_FOOT_DOWN), count(RIGHT_FOOT_DOWN));
+        motion.add_events(steps);
+        Ok(Some(sentence))
+    }
+
     /// The files that the edits read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.map.iter().chain(&self.with).map(PathBuf::as_path)
@@ -73,6 +107,11 @@ impl Edits {
             if (before.1 / fps - 1.0).abs() > 1e-3 {
                 said.push(format!("{} frames at {:.3} a second became {} at {fps}", before.0, before.1, motion.frames));
             }
+        }
+        for Marker { name, moment } in &self.events {
+            let frame =
+                moment.frame(motion.frames as u32, motion.frame_time).with_context(|| format!("--event {name}"))? as usize;
+            motion.add_events([Event { frame, name: name.clone() }]);
         }
         if self.from.is_some() || self.to.is_some() {
             let frame = |moment: Moment| moment.nearest(motion.frame_time);

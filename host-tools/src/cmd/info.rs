@@ -1,8 +1,10 @@
 //! `pantin info`.
 
 use super::Files;
+use crate::events;
 use crate::facts::{self, Channel, MemoryNeeds, Track};
 use crate::import::list;
+use crate::motion::Event;
 use crate::output::{self, clean, note, outln};
 use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
@@ -60,6 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("index_bytes", json!(clip.index_len())),
         ("segments", json!(segments)),
         ("suggested_index_seconds", json!(spacing)),
+        ("event_names_bytes", json!(clip.event_names_len())),
         ("per_frame_bytes", json!(clip.frames() as usize * rig.channels() * 2)),
         ("player_channel_states", json!(memory.moving)),
         ("player_pose_values", json!(memory.channels)),
@@ -72,8 +75,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let fields = fields.into_iter().chain([("boards", json!(built_in)), ("boards_by_update", json!(by_update))]);
     let fields: Vec<(&str, Value)> = fields.collect();
     let channels = facts::channels(&clip)?;
+    let events = events::of_clip(&clip);
+    let seconds = |frame: usize| (frame as f64 * f64::from(clip.frame_time_ns()) / 1e6).round() / 1000.0;
     if output::is_json() {
         let mut object: serde_json::Map<String, Value> = fields.into_iter().map(|(name, value)| (name.into(), value)).collect();
+        let event = |event: &Event| json!({"frame": event.frame, "seconds": seconds(event.frame), "name": event.name});
+        object.insert("event_markers".into(), events.iter().map(event).collect());
         object.insert("rig".into(), rig_json(&clip, &channels));
         output::report(Value::Object(object));
     } else {
@@ -90,6 +97,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             note!(
                 "a seek passes up to {segments} segments ({ms:.0} ms on a Cortex-M0 at 48 MHz): `pantin convert --index {seconds}` adds snapshots to seek from"
             );
+        }
+        if !events.is_empty() {
+            outln!("\n{:>7} {:>9}  event", "frame", "seconds")?;
+        }
+        for event in &events {
+            outln!("{:7} {:9.3}  {}", event.frame, seconds(event.frame), clean(&event.name))?;
         }
     }
     Ok(())

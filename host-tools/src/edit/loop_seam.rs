@@ -71,6 +71,10 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     out.values.iter_mut().for_each(|values| values.truncate(motion.frames - 1));
     out.keys.iter_mut().for_each(|keys| *keys = None);
     out.frames -= 1;
+    // The frame that is left out is frame 0 again.
+    out.events.iter_mut().filter(|event| event.frame == out.frames).for_each(|event| event.frame = 0);
+    out.events.sort_by_key(|event| event.frame);
+    out.events.dedup();
     out.looped = true;
     let moved = steps.iter().map(|step| step.abs() / 2.0).collect();
     let named = travel.into_iter().map(|(channel, way)| (motion.rig.channel_name(channel), way)).collect();

@@ -50,7 +50,7 @@ impl written::Reader for Reader {
         }
     }
 
-    fn finish(self, options: &Options) -> Read<Source> {
+    fn finish(mut self, options: &Options) -> Read<Source> {
         let Header { cm_per_unit, looped, .. } = self.header;
         let (frames, fps) = self.header.timing(options)?;
         let mut values = self.header.at_rest(frames);
@@ -63,8 +63,9 @@ impl written::Reader for Reader {
                 keys[channel] = Some(within(curve, block.interpolation, &values[channel]));
             }
         }
+        let events = self.header.events();
         let rig = Rig { cm_per_unit: cm_per_unit.unwrap_or(1.0), ..self.header.rig };
-        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events: Vec::new() };
+        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events };
         Ok(Source { motion, unit_known: cm_per_unit.is_some(), warnings: Vec::new() })
     }
 }

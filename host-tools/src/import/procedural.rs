@@ -66,8 +66,9 @@ impl written::Reader for Reader {
             values[channel] = curve;
         }
         let keys = vec![None; values.len()];
+        let events = self.header.events();
         let rig = Rig { cm_per_unit: cm_per_unit.unwrap_or(1.0), ..self.header.rig };
-        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events: Vec::new() };
+        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events };
         Ok(Source { motion, unit_known: cm_per_unit.is_some(), warnings: Vec::new() })
     }
 }

@@ -7,6 +7,8 @@
 use super::scalars::{self, Grid};
 use super::sheet::{Row, Sheet, delimiter};
 use super::{Options, Source};
+use crate::events;
+use crate::motion::Event;
 use anyhow::Result;
 use std::path::Path;
 
@@ -37,9 +39,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     if let Some(column) = (clock.columns..sheet.header.len()).find(|&column| sheet.header[column].is_empty()) {
         return Err(sheet.error_in(1, column, "expected a name"));
     }
-    let names: Vec<String> = sheet.header[clock.columns..].to_vec();
+    let channels: Vec<usize> = (clock.columns..sheet.header.len()).filter(|&column| !is_events(&sheet.header[column])).collect();
+    let names: Vec<String> = channels.iter().map(|&column| sheet.header[column].clone()).collect();
     scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
-    let rows = Rows::read(&mut sheet, &clock)?;
+    let rows = Rows::read(&mut sheet, &clock, &channels)?;
     let (values, fps, warnings) = match (clock.time, options.fps) {
         (Some(_), Some(fps)) => (rows.at_rate(&sheet, fps)?, fps, Vec::new()),
         (Some(_), None) => rows.timed(&sheet)?,
@@ -50,7 +53,16 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         (None, None) => return Err(sheet.error(1, "no column of times (`time`, in seconds); --fps gives the frames a second")),
     };
     let scales = vec![0.0; values.len()];
-    Ok(Source { motion: scalars::motion(names, &scales, values, 1.0 / fps), unit_known: false, warnings })
+    let mut motion = scalars::motion(names, &scales, values, 1.0 / fps);
+    let per_second = if clock.time.is_some() { fps } else { 1.0 };
+    let frame = |time: f64| (((time - rows.times[0]) * per_second).round() as usize).min(motion.frames - 1);
+    motion.events = rows.events.iter().map(|(time, name)| Event { frame: frame(*time), name: name.clone() }).collect();
+    Ok(Source { motion, unit_known: false, warnings })
+}
+
+/// Whether a column of this name holds names of events.
+fn is_events(name: &str) -> bool {
+    ["event", "events"].iter().any(|known| name.eq_ignore_ascii_case(known))
 }
 
 /// What the first columns say about time.
@@ -90,14 +102,20 @@ struct Rows {
     column: usize,
     /// `values[channel][row]`.
     values: Vec<Vec<f64>>,
+    /// Time and name.
+    events: Vec<(f64, String)>,
 }
 
 impl Rows {
-    fn read(sheet: &mut Sheet, clock: &Clock) -> Result<Rows> {
-        let channels = sheet.header.len() - clock.columns;
+    fn read(sheet: &mut Sheet, clock: &Clock, channels: &[usize]) -> Result<Rows> {
         let column = clock.time.map(|(column, _)| column).or(clock.frame);
-        let mut rows =
-            Rows { lines: Vec::new(), times: Vec::new(), column: column.unwrap_or(0), values: vec![Vec::new(); channels] };
+        let mut rows = Rows {
+            lines: Vec::new(),
+            times: Vec::new(),
+            column: column.unwrap_or(0),
+            values: vec![Vec::new(); channels.len()],
+            events: Vec::new(),
+        };
         while let Some(row) = sheet.next()? {
             sheet.whole(&row)?;
             let time = match (clock.time, column) {
@@ -110,8 +128,15 @@ impl Rows {
             }
             rows.times.push(time);
             rows.lines.push(row.line);
-            for (channel, values) in rows.values.iter_mut().enumerate() {
-                values.push(sheet.number(&row, clock.columns + channel)?);
+            for (&channel, values) in channels.iter().zip(&mut rows.values) {
+                values.push(sheet.number(&row, channel)?);
+            }
+            for column in (clock.columns..sheet.header.len()).filter(|&column| is_events(&sheet.header[column])) {
+                let names = String::from_utf8_lossy(row.cell(column)).into_owned();
+                for name in names.split('|').map(str::trim).filter(|name| !name.is_empty()) {
+                    events::check_name(name).map_err(|error| sheet.error_in(row.line, column, error))?;
+                    rows.events.push((time, name.into()));
+                }
             }
         }
         if rows.times.is_empty() {

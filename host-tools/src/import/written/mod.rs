@@ -5,7 +5,8 @@ pub mod rig;
 use super::Options;
 use super::text::{number_in, shown};
 use crate::budget;
-use crate::motion::Rig;
+use crate::events;
+use crate::motion::{Event, Rig};
 use anyhow::{Result, anyhow};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -90,12 +91,14 @@ pub struct Header {
     pub frames: Option<usize>,
     /// Whether frame 0 follows the last frame.
     pub looped: bool,
+    /// Markers, in the order of the lines.
+    events: Vec<Event>,
     /// Lines so far of which there may be only one, by their first word.
     given: BTreeSet<String>,
 }
 
 /// First words of a header's lines, as errors list them.
-pub const HEADINGS: &str = "cm-per-unit, fps, frames, loop, joint, end, scalar";
+pub const HEADINGS: &str = "cm-per-unit, fps, frames, loop, event, joint, end, scalar";
 
 impl Header {
     /// Whether a line that begins so is part of the header.
@@ -119,12 +122,37 @@ impl Header {
                 self.frames = Some(frames as usize);
             }
             "loop" if rest.is_empty() => self.looped = true,
+            "event" => self.event(rest)?,
             "joint" => rig::joint(&mut self.rig, rest)?,
             "end" => rig::end(&mut self.rig, rest)?,
             "scalar" => rig::scalar(&mut self.rig, rest)?,
             _ => return wrong(format!("expected the end of the line after `{first}`, found `{}`", rest.join(" "))),
         }
         Ok(())
+    }
+
+    /// `event NAME FRAME...`
+    fn event(&mut self, words: &[&str]) -> Read<()> {
+        let [name, frames @ ..] = words else { return wrong("expected `event NAME FRAME...`") };
+        if frames.is_empty() {
+            return wrong("expected frames after the event's name");
+        }
+        events::check_name(name).map_err(|error| Wrong::from(error.to_string()))?;
+        let Some(count) = self.frames else { return wrong("expected `frames NUMBER` before the first `event`") };
+        for word in frames {
+            match word.parse::<usize>() {
+                Ok(frame) if frame < count => self.events.push(Event { frame, name: (*name).into() }),
+                _ => return wrong(format!("expected a frame of 0 to {}, found {}", count - 1, shown(Some(word.as_bytes())))),
+            }
+        }
+        Ok(())
+    }
+
+    /// The markers in the order of their frames.
+    pub fn events(&mut self) -> Vec<Event> {
+        let mut events = std::mem::take(&mut self.events);
+        events.sort_by_key(|event| event.frame);
+        events
     }
 
     /// Frames and frames a second, if the figure has what can move and samples fit the memory.
