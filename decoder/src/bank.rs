@@ -93,6 +93,11 @@ impl<'a> Bank<'a> {
         self.rig
     }
 
+    /// The rig's bytes, as a clip that is kept apart from its rig needs them.
+    pub fn rig_bytes(&self) -> &'a [u8] {
+        self.rig_bytes
+    }
+
     /// Number of clips, at least 1.
     #[allow(clippy::len_without_is_empty, reason = "a bank is never empty")]
     pub fn len(&self) -> usize {

@@ -57,17 +57,20 @@ enum Command {
     Face(cmd::face::Arguments),
     FlashImage(cmd::flash_image::Arguments),
     Info(cmd::info::Arguments),
+    List(cmd::bank::List),
     /// Print the manual page of pantin, or of one of its commands
     #[command(after_help = "Examples:\n  pantin man > pantin.1\n  pantin man convert | man -l -")]
     Man {
         /// The command
         command: Option<String>,
     },
+    Pack(cmd::bank::Pack),
     Play(cmd::play::Arguments),
     Render(Box<cmd::render::Arguments>),
     Serve(cmd::serve::Arguments),
     Stream(cmd::stream::Arguments),
     Train(cmd::train::Arguments),
+    Unpack(cmd::bank::Unpack),
     Update(cmd::update::Arguments),
 }
 
@@ -81,12 +84,15 @@ impl Command {
             Command::Face(_) => "face",
             Command::FlashImage(_) => "flash-image",
             Command::Info(_) => "info",
+            Command::List(_) => "list",
             Command::Man { .. } => "man",
+            Command::Pack(_) => "pack",
             Command::Play(_) => "play",
             Command::Render(_) => "render",
             Command::Serve(_) => "serve",
             Command::Stream(_) => "stream",
             Command::Train(_) => "train",
+            Command::Unpack(_) => "unpack",
             Command::Update(_) => "update",
         }
     }
@@ -109,12 +115,15 @@ fn main() -> ExitCode {
         Command::Face(arguments) => cmd::face::run(&arguments),
         Command::FlashImage(arguments) => cmd::flash_image::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
+        Command::List(arguments) => cmd::bank::list(&arguments),
         Command::Man { command } => manual(command.as_deref()),
+        Command::Pack(arguments) => cmd::bank::pack(&arguments),
         Command::Play(arguments) => cmd::play::run(&arguments),
         Command::Render(arguments) => cmd::render::run(&arguments),
         Command::Serve(arguments) => cmd::serve::run(&arguments),
         Command::Stream(arguments) => cmd::stream::run(&arguments),
         Command::Train(arguments) => cmd::train::run(&arguments),
+        Command::Unpack(arguments) => cmd::bank::unpack(&arguments),
         Command::Update(arguments) => cmd::update::run(&arguments),
     };
     match result.and_then(|()| output::finish(name)) {

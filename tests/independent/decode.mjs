@@ -296,6 +296,41 @@ export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = tru
   return clip;
 }
 
+/** Reads a bank [16]: its rig, and its clips in their order, each with the bytes of its file. */
+export function decodeBank(bytes, tables) {
+  const file = new Fields(bytes, "bank"), [P, b, version] = file.take(3), sections = new Map();
+  need(P === 0x50 && b === 0x62, "The file does not begin with the magic of a bank.");
+  need(version === VERSION, "The bank's version is unknown.");
+  while (file.at < bytes.length) {
+    const type = file.u8(), body = file.take(file.varint());
+    need(!sections.has(type) || type < 1 || type > 3, "The bank has two sections of one type.");
+    sections.set(type, body);
+  }
+  need([1, 2, 3].every((type) => sections.has(type)), "The bank lacks its rig, its contents or its clips.");
+  const contents = sections.get(2), end = contents.length - CRC_BYTES, body = contents.subarray(0, Math.max(end, 0));
+  need(end >= 0 && crc16(body) === (contents[end] | (contents[end + 1] << 8)), "The CRC of the bank's contents is wrong.");
+  const entries = new Fields(body, "bank's contents"), clips = new Fields(sections.get(3), "clips of the bank"), found = [];
+  while (entries.at < end) {
+    const name = entries.name(), clip = clips.take(entries.varint());
+    need(name !== "", "A clip of the bank has no name.");
+    need(!(clip[3] & HAS_RIG), "A clip of the bank holds a rig.");
+    found.push({ name, bytes: clip, clip: decode(clip, tables, sections.get(1)) });
+  }
+  need(found.length > 0 && clips.at === sections.get(3).length, "The bank is empty, or its clips are longer than its contents say.");
+  return { rig: readRig(sections.get(1), tables), clips: found };
+}
+
+/** What differs from a bank's .json: name, bytes, frames, loop and the CRC of each pose of its clips. */
+export function compareBank(bank, expected) {
+  const crcs = (clip) => {
+    const player = clip.player(), all = [];
+    for (; player.frame < clip.frames; player.step()) all.push(crc16(player.pose().flatMap(u32Bytes)).toString(16).padStart(4, "0"));
+    return all;
+  };
+  const clips = bank.clips.map(({ name, bytes, clip }) => [name, bytes.length, clip.frames, clip.looped, crcs(clip)]);
+  return JSON.stringify({ joints: bank.rig.joints.length, clips }) === JSON.stringify(expected) ? [] : ["the clips of the bank"];
+}
+
 /** What differs from a vector's .json, whose `crcs` are of each pose's raw values as i32; also checks the snapshots. */
 export function compare(clip, expected) {
   const same = (a, b) => JSON.stringify(a) === JSON.stringify(b), { poses, crcs, ...plain } = expected, player = clip.player();
@@ -315,10 +350,12 @@ function checkFolder(folder) {
   const read = (name) => readFileSync(`${folder}/${name}`), tables = JSON.parse(read("tables.json"));
   const rigOf = (name) => (existsSync(`${folder}/${name}.rig`) ? read(`${name}.rig`) : undefined);
   const check = (name) => {
-    try { return compare(decode(read(`${name}.ptn`), tables, rigOf(name)), JSON.parse(read(`${name}.json`))); }
-    catch (error) { return [error.message]; }
+    try {
+      if (existsSync(`${folder}/${name}.ptb`)) return compareBank(decodeBank(read(`${name}.ptb`), tables), JSON.parse(read(`${name}.json`)));
+      return compare(decode(read(`${name}.ptn`), tables, rigOf(name)), JSON.parse(read(`${name}.json`)));
+    } catch (error) { return [error.message]; }
   };
-  const names = readdirSync(folder).filter((name) => name.endsWith(".ptn")).map((name) => name.slice(0, -4)).sort();
+  const names = readdirSync(folder).filter((name) => /\.pt[nb]$/.test(name)).map((name) => name.slice(0, -4)).sort();
   const results = names.map((name) => {
     const differs = check(name);
     console.log(`${name}: ${differs.slice(0, 8).join(", ") || "ok"}${differs.length > 8 ? ` and ${differs.length - 8} more` : ""}`);

@@ -70,6 +70,11 @@ fn rigs() {
 }
 
 #[test]
+fn banks() {
+    holds("bank_open", CLIPS);
+}
+
+#[test]
 fn clips_in_pieces() {
     holds("stream_play", CLIPS);
 }

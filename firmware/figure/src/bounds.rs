@@ -1,10 +1,11 @@
-//! What a clip asks of the camera: how far the figure gets, which way is up, where it faces. Gathered from some of its poses.
+//! What a clip asks of the camera: how far the figure gets and where it faces. Gathered from some of its poses.
 
 use crate::kinematics::Kinematics;
 use crate::root::direction;
 use crate::rotation::{RotationBackend, Vector, vector};
-use crate::skeleton::{Part, Skeleton};
+use crate::skeleton::Skeleton;
 use crate::trig::ONE;
+use pantin::Up;
 
 /// Gathers what a clip's poses show, axis by axis. Lengths are figure units.
 #[derive(Clone, Copy, Debug)]
@@ -13,8 +14,6 @@ pub struct Bounds {
     pub low: Vector,
     /// Greatest coordinates of any joint.
     pub high: Vector,
-    /// Sum over the poses of crown minus feet, or of the extent along y and z where the rig names no head and feet.
-    upright: Vector,
     /// Sum over the poses of left minus right.
     leftward: Vector,
 }
@@ -41,33 +40,19 @@ const SUM_SHIFT: u32 = 6;
 impl Bounds {
     /// Nothing seen yet.
     pub const fn new() -> Self {
-        Bounds { low: [i32::MAX; 3], high: [i32::MIN; 3], upright: [0; 3], leftward: [0; 3] }
+        Bounds { low: [i32::MAX; 3], high: [i32::MIN; 3], leftward: [0; 3] }
     }
 
     /// Takes in a pose.
     pub fn include<const N: usize, R: RotationBackend>(&mut self, skeleton: &Skeleton<N>, joints: &Kinematics<N, R>) {
         let mut low = [i32::MAX; 3];
         let mut high = [i32::MIN; 3];
-        let (mut crown, mut feet, mut footed) = (None, [0i32; 3], 0);
-        for (index, (bone, &position)) in skeleton.bones.iter().zip(joints.positions()).enumerate() {
-            if index >= skeleton.hips {
-                low = vector(|axis| low[axis].min(position[axis]));
-                high = vector(|axis| high[axis].max(position[axis]));
-            }
-            if bone.foot {
-                feet = vector(|axis| feet[axis].wrapping_add(position[axis] >> 4));
-                footed += 1;
-            }
-            if bone.part == Part::Crown {
-                crown = Some(position);
-            }
+        for &position in joints.positions().iter().take(skeleton.bones.len()).skip(skeleton.hips) {
+            low = vector(|axis| low[axis].min(position[axis]));
+            high = vector(|axis| high[axis].max(position[axis]));
         }
         if let Some([left, right]) = skeleton.sides {
             add(&mut self.leftward, joints.position(usize::from(left)), joints.position(usize::from(right)));
-        }
-        match crown {
-            Some(crown) if footed > 0 => add(&mut self.upright, crown, feet.map(|x| x.checked_div(footed).unwrap_or(0) * 16)),
-            _ => add(&mut self.upright, [0, high[1], high[2]], [0, low[1], low[2]]),
         }
         self.low = vector(|axis| low[axis].min(self.low[axis]));
         self.high = vector(|axis| high[axis].max(self.high[axis]));
@@ -84,17 +69,12 @@ impl Bounds {
         (self.high[axis] >> 1).saturating_sub(self.low[axis] >> 1)
     }
 
-    /// Up and facing. Up is one of the axes, `given` or found; a figure that names no left and right is taken to look along z, or against
-    /// y if z is up.
-    pub fn orientation(&self, given: Option<u8>) -> Orientation {
-        let size = |axis: usize| self.upright[axis].unsigned_abs();
-        let mut axis = if size(2) > size(1) { 2 } else { 1 };
-        if size(0) > size(axis) {
-            axis = 0;
-        }
-        let axis = given.map_or(axis, |given| usize::from(given).min(2));
+    /// Up, as the rig states it, and facing: a figure that names no left and right is taken to look along z, or against y if z is up.
+    pub fn orientation(&self, rig_up: Up) -> Orientation {
+        // At most 2 already; this keeps the checks out of the image.
+        let axis = rig_up.axis() % 3;
         let mut up = [0; 3];
-        up[axis] = if self.upright[axis] < 0 { -ONE } else { ONE };
+        up[axis] = if rig_up.is_negative() { -ONE } else { ONE };
         let mut level = self.leftward;
         level[axis] = 0;
         let ahead = if axis == 2 { [0, -ONE, 0] } else { [0, 0, ONE] };

@@ -3,6 +3,7 @@
 use crate::bounds::{Bounds, Orientation, cross};
 use crate::rotation::{Rotation, Vector};
 use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, sin_cos, table};
+use pantin::Up;
 
 /// Fraction bits of a pixel in projected places.
 pub const PIXEL_BITS: u32 = 4;
@@ -60,9 +61,8 @@ pub struct View {
     pub tilt: i16,
     /// What it looks at.
     pub track: Track,
-    /// The axis that is vertical, in place of the one along which the figure has its head farthest from its feet: animals
-    /// have it ahead.
-    pub up: Option<u8>,
+    /// The direction that is vertical, in place of the one that the rig states.
+    pub up: Option<Up>,
 }
 
 impl View {

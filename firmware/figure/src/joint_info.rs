@@ -115,13 +115,31 @@ impl<'w> JointTable<'w> {
             let parent = joint.parent.map_or(NO_PARENT, |parent| parent as u8);
             *info =
                 JointInfo { bone, length: length(bone.map(i32::from)) as u16, parent, flags: flag::KEPT, ..JointInfo::default() };
+            if joint.helper {
+                // It counts neither for the size nor as a limb.
+                (info.bone, info.length) = ([0; 3], 0);
+                info.set(flag::KEPT, false);
+            }
             info.set(flag::PLACEMENT, index <= hips);
             info.set(flag::END_SITE, joint.end_site);
             info.set(flag::HEAD, head);
         }
         let mut table = JointTable { table, exponent, size: NO_SIZE, hips };
+        table.drop_below_helpers();
         table.measure();
         Ok(table)
+    }
+
+    /// Drops what hangs on a joint that is not kept.
+    fn drop_below_helpers(&mut self) {
+        for index in 0..self.table.len() {
+            let parent = self.table.get(index).and_then(|info| self.table.get(usize::from(info.parent)));
+            let dropped = parent.is_some_and(|parent| !parent.is(flag::KEPT));
+            if let Some(info) = self.table.get_mut(index).filter(|_| dropped) {
+                info.length = 0;
+                info.set(flag::KEPT, false);
+            }
+        }
     }
 
     /// Reaches, from the ends of the limbs upwards, and the size.
@@ -157,7 +175,8 @@ impl<'w> JointTable<'w> {
             let short = parent.finger == NO_FINGER || i32::from(parent.finger) < eighths / 25;
             let shows = finger == NO_FINGER || (longest && short);
             let Some(info) = self.table.get_mut(index) else { return };
-            info.set(flag::KEPT, parent.is(flag::KEPT) && !parent.is(flag::HEAD) && shows);
+            let kept = info.is(flag::KEPT) && parent.is(flag::KEPT) && !parent.is(flag::HEAD) && shows;
+            info.set(flag::KEPT, kept);
             info.finger = if finger == NO_FINGER { NO_FINGER } else { finger.saturating_add(info.length / 8).min(NO_FINGER - 1) };
         }
         self.settle(self.size / 64);
@@ -212,7 +231,7 @@ impl<'w> JointTable<'w> {
 /// The last joint of the chain that only places the figure: the root, and an only child of it that has its own three
 /// positions in place of an offset, as rigs with a joint on the floor above the hips do.
 fn placement_end(rig: &Rig) -> usize {
-    let only_child = rig.joints().filter(|joint| joint.parent == Some(0)).count() == 1;
+    let only_child = rig.joints().filter(|joint| joint.parent == Some(0) && !joint.helper).count() == 1;
     let placed = rig.joints().nth(1).is_some_and(|joint| {
         let positions = joint.kinds.filter(|kind| kind.is_position()).count();
         positions == 3 && joint.offset == [0; 3]

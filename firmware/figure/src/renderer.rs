@@ -111,7 +111,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
             self.joints.set_pose(&self.skeleton, pose);
             bounds.include(&self.skeleton, &self.joints);
         });
-        let orientation = bounds.orientation(view.up);
+        let orientation = bounds.orientation(view.up.unwrap_or(self.skeleton.up));
         let size = self.skeleton.size;
         let set_camera = |renderer: &mut Self, scale| {
             renderer.camera = Camera::new(&bounds, orientation, size, view, scale);

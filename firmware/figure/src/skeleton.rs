@@ -2,11 +2,11 @@
 
 use crate::ink::BodyPart;
 use crate::joint_info::{JointInfo, JointTable, flag, length};
-use crate::names::{contains, is_left_of};
+use crate::names::is_left_of;
 use crate::rotation::{Vector, shift_right};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
-use pantin::{Form, Joint, Kind, Pose, Rig};
+use pantin::{Form, Joint, Kind, Pose, Rig, Up};
 
 /// One channel, or group of channels, at work on a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,8 +110,6 @@ pub struct Bone {
     pub slot: u8,
     /// Where its parent's is; [`NOWHERE`] for the root's.
     pub parent_slot: u8,
-    /// A joint that has a foot's name.
-    pub foot: bool,
     /// Whether it has position channels.
     pub moves: bool,
 }
@@ -146,6 +144,8 @@ pub struct Skeleton<const N: usize> {
     pub size: i32,
     /// The joint that the camera follows: the hips of a person.
     pub hips: usize,
+    /// The direction of the world that is vertical.
+    pub up: Up,
     /// A joint of the left side and its counterpart: across them the figure faces forward.
     pub sides: Option<[u8; 2]>,
     /// Radius of the head.
@@ -181,6 +181,7 @@ impl<const N: usize> Skeleton<N> {
             exponent: 0,
             size: 1,
             hips: 0,
+            up: Up::Y,
             sides: None,
             head_radius: 0,
         }
@@ -209,6 +210,7 @@ impl<const N: usize> Skeleton<N> {
             Detail::Full => table.settle(0),
         }
         self.clear(&table, table.exponent - i32::from(position_exponent));
+        self.up = rig.up();
         let mut before = None;
         while let Some(index) = table.after(before) {
             self.add(rig, detail, &mut table, index, pose.form.is_exponential(rig, index))?;
@@ -249,7 +251,6 @@ impl<const N: usize> Skeleton<N> {
             drives,
             slot: NOWHERE,
             parent_slot: NOWHERE,
-            foot: contains(joint.name_bytes(), b"foot") || contains(joint.name_bytes(), b"ankle"),
             moves: { joint.kinds }.any(|kind| kind.is_position()),
         };
         let at = self.push(bone)?;
@@ -259,7 +260,7 @@ impl<const N: usize> Skeleton<N> {
         if head && detail == Detail::Body {
             let offset = crown(table, index, &info);
             self.head_radius = (length(offset.map(i32::from)) / 2).max(table.size / 22).min(table.size / 14);
-            self.push(Bone { offset, parent: Some(at), part: Part::Crown, drives: 0, foot: false, moves: false, ..bone })?;
+            self.push(Bone { offset, parent: Some(at), part: Part::Crown, drives: 0, moves: false, ..bone })?;
         }
         Ok(())
     }

@@ -106,7 +106,7 @@ pub fn run_animations(arguments: &Arguments) -> Result<()> {
 
 /// `PREFIX-NAME.ptn`, or `NAME.ptn` in a folder. What a file system or a shell would read as more than a letter becomes `_`; an
 /// animation without a name has its number.
-fn file_name(prefix: Option<&OsStr>, name: &str, number: usize) -> OsString {
+pub(super) fn file_name(prefix: Option<&OsStr>, name: &str, number: usize) -> OsString {
     let safe = |c: char| if c.is_alphanumeric() || "-_+=() .".contains(c) { c } else { '_' };
     let mut clean: String = name.chars().map(safe).take(LONGEST_NAME).collect::<String>().trim_matches([' ', '.', '-']).into();
     if clean.is_empty() {
@@ -239,6 +239,14 @@ fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], ot
     note!("{done} converted, {fresh} up to date, {refused} refused{others}");
     ensure!(refused == 0, "{refused} of {} files could not be converted", outcomes.len());
     Ok(())
+}
+
+/// The motion files in and below a folder, in the order of names.
+pub(super) fn motions(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Found::default();
+    found.look(folder, Path::new(""))?;
+    ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", folder.display(), found.others);
+    Ok(found.motions)
 }
 
 /// What a folder holds.

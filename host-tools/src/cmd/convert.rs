@@ -3,9 +3,10 @@
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::joint_error::{self, JointError};
-use super::{batch, check_fit, default_output, same_form};
+use super::{bank, batch, check_fit, convert_bank, default_output, same_form, up_axis};
 use crate::channel_error;
 use crate::edit::cut::cut;
+use crate::edit::find_loop::{self, Cut};
 use crate::edit::loop_seam::{self, Closed, Most};
 use crate::encode::{clip, rig};
 use crate::errors;
@@ -16,10 +17,11 @@ use crate::fit::parametrize::{Coding, Rotations};
 use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
-use crate::output::{self, Wanted, detail, note, refuse_foreign};
+use crate::output::{self, Wanted, detail, note, outln, refuse_foreign};
 use crate::verify::{compare, verify};
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
+use pantin::Up;
 use pantin::codec::layout::MAX_FRAMES;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -29,7 +31,8 @@ use std::path::{Path, PathBuf};
 /// The bound is verified: before anything is written, the device's own decoder plays the clip, and every joint (or channel) is compared
 /// with the motion at every frame. If the bound cannot be met, nothing is written.
 ///
-/// If the input is a folder, all motions in it and its subfolders are converted into the folder --output; clips that are up to date are skipped.
+/// If the input is a folder, all motions in it and its subfolders are converted into the folder --output; clips that are up to date are skipped. If
+/// --output ends in .ptb, the clips, which must have one rig, go into one file, a bank.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:
   pantin convert walk.bvh -o walk.ptn
@@ -44,13 +47,16 @@ use std::path::{Path, PathBuf};
   pantin convert --list fox.glb
   pantin convert fox.glb -o walk.ptn --animation Walk --cm-per-unit 1
   pantin convert walk.bvh -o walk.ptn --fps 30 --from 40 --to 71 --loop
+  pantin convert walk.bvh --find-loop
+  pantin convert cycle.bvh -o cycle.ptn --close-loop --rate 25
   pantin convert walk.bvh -o legs.ptn --joints '*Leg,*Foot'
   pantin convert walk.bvh -o walk.ptn --drop '*Thumb*,*Finger*' --mirror
   pantin convert walk.bvh -o walk.ptn --retarget display --map names.txt
   pantin convert fox.glb --animation all -o clips
   pantin convert walk.bvh bow.bvh -o clips -j 2
   pantin convert captures -o clips --jobs 4 --max-error 0.5%
-  pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips")]
+  pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips
+  pantin convert captures -o moves.ptb")]
 pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
@@ -69,6 +75,9 @@ pub struct Arguments {
     /// Write nothing; list the animations of a glTF or FBX file, or a VRML world
     #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
+    /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
+    #[arg(long, conflicts_with_all = ["list", "same_form", "more"])]
+    find_loop: bool,
     /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
     /// with % of the figure's height
     /// [default: 0.5cm, or 6 times --mean-error]
@@ -96,6 +105,9 @@ pub struct Arguments {
     /// Length of the source's unit in cm, instead of a guess
     #[arg(long)]
     cm_per_unit: Option<f64>,
+    /// The direction that is vertical, instead of what the file says or of a guess: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", value_parser = up_axis, allow_hyphen_values = true)]
+    up: Option<Up>,
     /// Frames per second of the clip: a file that states its rate, or has keys or times, is resampled; one without a rate (.amc, a
     /// table without times) gets this one
     #[arg(long)]
@@ -129,6 +141,24 @@ pub struct Arguments {
 impl Arguments {
     pub(super) fn output(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// How the source is read.
+    fn import_options(&self) -> import::Options {
+        import::Options {
+            cm_per_unit: self.cm_per_unit,
+            up: self.up,
+            // At its own rate first, so that --rate means the frames of the file.
+            fps: self.fps.filter(|_| self.edits.rate.is_none()),
+            skeleton: self.skeleton.clone(),
+            animation: self.animation.clone(),
+            files: import::Files::default(),
+        }
+    }
+
+    /// Whether the user says which way is up.
+    pub(super) fn up_is_given(&self) -> bool {
+        self.up.is_some()
     }
 
     /// The rate of the clips, if the user gives one.
@@ -187,6 +217,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if arguments.list {
         return super::info::animations(&arguments.input);
     }
+    if arguments.find_loop {
+        return find_loop(arguments);
+    }
+    if arguments.output.as_deref().is_some_and(bank::is_bank_name) {
+        return convert_bank::run(arguments);
+    }
     if arguments.same_form {
         return same_form::run(arguments);
     }
@@ -208,6 +244,34 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     output::report(made.json.clone());
     output::report(json!({"frames": made.frames, "bytes": made.bytes.len(), "warnings": made.warnings}));
     note!("{}", made.sentence(arguments.output()));
+    Ok(())
+}
+
+/// Prints proposals for --from and --to.
+fn find_loop(arguments: &Arguments) -> Result<()> {
+    let place = || arguments.input.display().to_string();
+    let options = arguments.import_options();
+    let imported = import::load(&arguments.input, &options)?;
+    imported.warnings.iter().for_each(|warning| note!("warning: {warning}"));
+    let motion = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?.motion;
+    let cuts = find_loop::find(&motion).with_context(place)?;
+    let seconds = |cut: &Cut| (cut.to - cut.from) as f64 * motion.frame_time;
+    if output::is_json() {
+        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "joint": cut.joint, "seconds": seconds(cut)});
+        output::report(json!({"loops": cuts.iter().map(object).collect::<Vec<_>>()}));
+        return Ok(());
+    }
+    for cut in &cuts {
+        let (frames, joint) = (cut.to - cut.from, output::clean(&cut.joint));
+        outln!(
+            "--from {} --to {} --loop: {frames} frames, {:.2} s, seam {:.3} cm ({joint})",
+            cut.from,
+            cut.to,
+            seconds(cut),
+            cut.seam_cm
+        )?;
+    }
+    ensure!(!cuts.is_empty(), "{}: no stretch looks like a cycle", place());
     Ok(())
 }
 
@@ -280,13 +344,7 @@ pub(super) struct Prepared {
 
 /// Imports one file and applies the edits.
 pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
-    let options = import::Options {
-        cm_per_unit: arguments.cm_per_unit,
-        fps: arguments.fps,
-        skeleton: arguments.skeleton.clone(),
-        animation: arguments.animation.clone(),
-        files: import::Files::default(),
-    };
+    let options = arguments.import_options();
     let imported = import::load(&arguments.input, &options)?;
     let say = |sentence: &str| {
         if !arguments.silent {
@@ -320,6 +378,13 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
 }
 
 impl Prepared {
+    /// States another direction as up.
+    pub fn set_up(&mut self, up: Up) -> Result<()> {
+        self.motion.rig.up = up;
+        self.rig = rig::encode(&self.motion.rig)?;
+        Ok(())
+    }
+
     /// The cheapest coding for this motion alone.
     fn coding(&self, arguments: &Arguments) -> Coding {
         shared_coding(std::slice::from_ref(self), arguments)
@@ -445,9 +510,10 @@ fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
     let joint = if closed.joint.is_empty() { String::new() } else { format!(" ({})", closed.joint) };
     let travel =
         closed.travel.iter().map(|(name, way)| format!("loop: {name} goes {way:.3} units on each time round, which stays"));
+    let seam = format!("loop: the greatest seam is {:.4} cm ({})", closed.seam_cm, closed.seam_joint);
     let moved =
         format!("loop: closing the seam moved joints by up to {:.4} cm{joint}; {} frames", closed.moved_cm, closed.motion.frames);
-    std::iter::once(moved).chain(travel).collect()
+    (!closed.seam_joint.is_empty()).then_some(seam).into_iter().chain([moved]).chain(travel).collect()
 }
 
 fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {

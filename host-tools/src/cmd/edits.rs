@@ -1,7 +1,10 @@
 //! The flags of `pantin convert` that change the motion before it is fitted.
 
+use super::channel_bound::above_zero;
 use super::render::Moment;
-use crate::edit::{cut::cut, footsteps::footsteps, join::join, mirror::mirror, pick::pick, resample::resample, retarget};
+use crate::edit::{
+    cut::cut, footsteps::footsteps, join::join, loop_seam, mirror::mirror, pick::pick, resample::resample, retarget,
+};
 use crate::events;
 use crate::import;
 use crate::motion::{Event, Motion};
@@ -9,7 +12,7 @@ use anyhow::{Context, Result};
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use std::path::{Path, PathBuf};
 
-/// Changes of the motion. They apply in this order: --fps, --event, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop, --footsteps.
+/// Changes of the motion. They apply in this order: --rate, --fps, --event, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop, --footsteps.
 #[derive(clap::Args, Clone, Debug)]
 pub struct Edits {
     /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (case-insensitive). A joint that is not kept is
@@ -19,6 +22,9 @@ pub struct Edits {
     /// Drop the joints and scalars whose names match, in the same way
     #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
     drop: Vec<String>,
+    /// Frames per second that the frames have, instead of what the file states: all frames stay, and the motion gets slower or faster
+    #[arg(long, value_name = "FPS", value_parser = above_zero)]
+    pub rate: Option<f64>,
     /// Add an event marker: a name, or a number that is its id, @ a frame or a time, as in clap@12 or 'door opens@1.5s'. Frames count from 0
     /// after --fps and before --from. May be given several times
     #[arg(long = "event", value_name = "NAME@MOMENT", value_parser = marker)]
@@ -47,6 +53,9 @@ pub struct Edits {
     /// Make a loop: the last frame leads into the first one. Their difference, which must be within the bound, is spread over the clip
     #[arg(long = "loop", conflicts_with_all = ["exact", "max_accel_error"])]
     pub looped: bool,
+    /// Make a loop of a motion that is one cycle without its first frame again at the end: frame 0 follows the last frame
+    #[arg(long, conflicts_with = "looped")]
+    close_loop: bool,
 }
 
 /// An event marker as the user gives it.
@@ -101,6 +110,14 @@ impl Edits {
     pub fn apply(&self, motion: Motion, fps: Option<f64>, files: &import::Files) -> Result<Edited> {
         let mut said = Vec::new();
         let mut motion = motion;
+        if let Some(rate) = self.rate {
+            said.push(format!(
+                "rate: {} frames, {:.3} a second by the file, are now {rate} a second",
+                motion.frames,
+                1.0 / motion.frame_time
+            ));
+            motion.frame_time = 1.0 / rate;
+        }
         if let Some(fps) = fps {
             let before = (motion.frames, 1.0 / motion.frame_time);
             motion = resample(&motion, fps)?;
@@ -141,6 +158,15 @@ impl Edits {
             let other = import::load(path, &import::Options { files: files.clone(), ..Default::default() })?.motion;
             motion = join(&motion, &other).with_context(|| format!("--with {}", path.display()))?;
             said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));
+        }
+        if self.close_loop && motion.looped {
+            said.push("loop: it is one already".into());
+        } else if self.close_loop {
+            let (closed, seam, inside) = loop_seam::join_ends(&motion)?;
+            motion = closed;
+            said.push(format!(
+                "loop: from the last frame to the first, joints go up to {seam:.4} cm; within the clip up to {inside:.4} cm a frame"
+            ));
         }
         Ok(Edited { motion, retarget_max_cm, said })
     }

@@ -1,9 +1,9 @@
 //! `pantin info`.
 
-use super::Files;
+use super::{Files, bank};
 use crate::events;
 use crate::facts::{self, Channel, MemoryNeeds, Track};
-use crate::import::list;
+use crate::import::{list, up};
 use crate::motion::Event;
 use crate::output::{self, clean, note, outln};
 use anyhow::{Context, Result, ensure};
@@ -13,7 +13,7 @@ use pantin_store::region::{REGIONS, Region};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Print what a clip holds and how its bytes are used, or which animations a glTF, FBX or VRML file holds.
+/// Print what a clip or a bank holds and how its bytes are used, or which animations a glTF, FBX or VRML file holds.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin info walk.ptn
@@ -34,6 +34,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return animations(&arguments.input);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
+    if bank::is_bank(files.clip()) {
+        return bank::print(&arguments.input, files.clip());
+    }
     let clip = files.open_alone().with_context(|| arguments.input.display().to_string())?;
     let rig = clip.rig();
     let file = files.clip_len();
@@ -52,6 +55,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("moving_channels", json!(clip.moving())),
         ("exponential_joints", json!((0..rig.joint_count()).filter(|&joint| clip.is_exponential(joint)).count())),
         ("events", json!(clip.event_count())),
+        ("up", json!(up::text(rig.up()))),
+        ("helpers", json!(rig.joints().filter(|joint| joint.helper).count())),
         ("cm_per_unit", json!(f64::from(rig.unit_micro_cm()) * 1e-6)),
         ("length_exponent", json!(clip.length_exponent())),
         ("file_bytes", json!(file)),

@@ -1,8 +1,10 @@
 //! One file a command; its arguments' doc comment is the manual.
 
+pub mod bank;
 mod batch;
 mod channel_bound;
 pub mod convert;
+mod convert_bank;
 mod edits;
 pub mod expand;
 pub mod face;
@@ -28,6 +30,11 @@ use crate::verify::verify;
 use anyhow::{Context, Result, anyhow, ensure};
 use pantin::OpenError;
 use std::path::{Path, PathBuf};
+
+/// A direction of the world.
+fn up_axis(text: &str) -> Result<pantin::Up> {
+    import::up::parse(text).context("expected x, y, z, -x, -y or -z")
+}
 
 /// A clip and, if it was made without one, its rig.
 pub struct Files {
@@ -131,6 +138,9 @@ impl Files {
                     "a motion, not a clip; `pantin convert {path} -o {}` makes one",
                     self.path.with_extension("ptn").display()
                 )
+            }
+            OpenError::BadMagic if bank::is_bank(&self.clip) => {
+                anyhow!("a bank of several clips; `pantin list` prints their names, `pantin unpack` writes them as files")
             }
             OpenError::WrongRig if self.rig.is_empty() => anyhow!("{error}; --rig FILE names the one that --rig-out wrote"),
             error => error.into(),

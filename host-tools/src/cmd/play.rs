@@ -1,7 +1,8 @@
 //! `pantin play`
 
 use super::Files;
-use super::render::{Axis, Side, Size};
+use super::render::{Side, Size};
+use super::up_axis;
 use crate::expand::expand;
 use crate::face::cast::is_face;
 use crate::output::{noticed, report, take_stdout};
@@ -19,6 +20,7 @@ use crate::render::figure::PlayerBuffers;
 use crate::render::palette::Palette;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
+use pantin::Up;
 use pantin_figure::{Track, View};
 use serde_json::json;
 use std::io::{IsTerminal, Write, stdin, stdout};
@@ -57,9 +59,9 @@ pub struct Arguments {
     /// [default: quarter; a face: front]
     #[arg(long, value_name = "SIDE", allow_hyphen_values = true)]
     view: Option<Side>,
-    /// The vertical axis, for figures whose clip does not show which way is up
-    #[arg(long, value_enum, value_name = "AXIS")]
-    up: Option<Axis>,
+    /// The direction that is vertical, instead of the one that the clip states: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", value_parser = up_axis, allow_hyphen_values = true)]
+    up: Option<Up>,
     /// Start with a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
@@ -148,7 +150,7 @@ impl Arguments {
         let view = View {
             orbit: self.view.as_ref().map_or(View::default().orbit, |side| side.orbit),
             track,
-            up: self.up.map(|axis| axis as u8),
+            up: self.up,
             ..View::default()
         };
         Settings { view, ground: true, dots, colours, palette: self.palette.clone(), help: false }

@@ -1,6 +1,7 @@
 //! `pantin convert A B C --same-form -o FOLDER`: clips of one rig which one figure renderer plays in turn.
 
 use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
+use super::convert_bank::agree_on_up;
 use crate::encode::same_rig::difference;
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
@@ -16,7 +17,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ensure!(!folder.is_file(), "{}: a file; --same-form needs a folder", folder.display());
     arguments.rig_out.iter().try_for_each(|path| refuse_foreign(path, Wanted::Rig))?;
     let tasks = tasks(arguments)?;
-    let prepared = tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?;
+    let mut prepared = tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?;
+    agree_on_up(&mut prepared, arguments.up_is_given())?;
     for (task, other) in tasks.iter().zip(&prepared).skip(1) {
         let place = || task.input.display().to_string();
         if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(place)? {

@@ -15,6 +15,10 @@ use anyhow::{Result, bail, ensure};
 pub struct Closed {
     /// Marked as a loop.
     pub motion: Motion,
+    /// The farthest that a joint in the last frame was from where it is in the first, in cm, and that joint.
+    pub seam_cm: f64,
+    /// The joint of the greatest seam.
+    pub seam_joint: String,
     /// The farthest that a joint was moved, in cm.
     pub moved_cm: f64,
     /// The joint.
@@ -43,6 +47,8 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     if motion.looped {
         return Ok(Closed {
             motion: motion.clone(),
+            seam_cm: 0.0,
+            seam_joint: String::new(),
             moved_cm: 0.0,
             joint: String::new(),
             moved: vec![0.0; motion.values.len()],
@@ -53,6 +59,8 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     let mut steps = differences(motion);
     let travel = travel(motion, &mut steps, most);
     check(motion, &steps, &travel, most)?;
+    let (seam_cm, seam_joint) = seam(motion, &travel);
+    let seam_joint = if motion.rig.joints.is_empty() { String::new() } else { motion.rig.joint_name(seam_joint) };
     let last = (motion.frames - 1) as f64;
     let part = |frame: usize| frame as f64 / last - 0.5;
     let mut out = motion.clone();
@@ -78,7 +86,37 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     out.looped = true;
     let moved = steps.iter().map(|step| step.abs() / 2.0).collect();
     let named = travel.into_iter().map(|(channel, way)| (motion.rig.channel_name(channel), way)).collect();
-    Ok(Closed { motion: out, moved_cm, joint, moved, travel: named })
+    Ok(Closed { motion: out, seam_cm, seam_joint, moved_cm, joint, moved, travel: named })
+}
+
+/// Makes a loop of a motion that is one cycle without its first frame again at the end: frame 0 follows the last frame. Returns also the farthest that a joint
+/// goes in that step, in cm, and the farthest that one goes in any other; but for the way of the root.
+pub fn join_ends(motion: &Motion) -> Result<(Motion, f64, f64)> {
+    ensure!(motion.frames > 2, "--close-loop: {} frames are no loop; expected 3 or more", motion.frames);
+    let mut out = motion.clone();
+    out.looped = true;
+    out.keys.iter_mut().for_each(|keys| *keys = None);
+    let kinds = motion.rig.channel_kinds();
+    let ways: Vec<usize> = (0..kinds.len()).filter(|&channel| places_root(motion, kinds[channel])).collect();
+    let still: Vec<Vec<f64>> = motion
+        .values
+        .iter()
+        .enumerate()
+        .map(|(channel, values)| if ways.contains(&channel) { vec![values[0]; values.len()] } else { values.clone() })
+        .collect();
+    let step = |from: usize, to: usize| {
+        let (a, b) = (positions(&motion.rig, &still, from), positions(&motion.rig, &still, to));
+        greatest(a.into_iter().zip(b).map(|(a, b)| distance(a, b))).0
+    };
+    let inside = (1..motion.frames).map(|frame| step(frame - 1, frame)).fold(0.0, f64::max);
+    Ok((out, step(motion.frames - 1, 0), inside))
+}
+
+/// Whether a channel moves the whole figure from place to place.
+fn places_root(motion: &Motion, (joint, kind): (Option<usize>, Kind)) -> bool {
+    let above = |joint: usize| &motion.rig.joints[..joint];
+    let placing = |joint: usize| above(joint).iter().all(|above| above.kinds.iter().all(|kind| kind.is_position()));
+    kind.is_position() && joint.is_some_and(placing)
 }
 
 /// What takes each channel's last value to the first one's pose: angles to the nearest that turn alike.
@@ -106,15 +144,13 @@ fn differences(motion: &Motion) -> Vec<f64> {
 /// Places of the root that are farther apart than the bound are a way that the figure goes: they stay, and are no part of the seam.
 fn travel(motion: &Motion, steps: &mut [f64], most: Most) -> Vec<(usize, f64)> {
     let kinds = motion.rig.channel_kinds();
-    let placing = |joint: usize| motion.rig.joints[..joint].iter().all(|above| above.kinds.iter().all(|kind| kind.is_position()));
     let mut found = Vec::new();
     for (channel, step) in steps.iter_mut().enumerate() {
-        let (Some(joint), kind) = kinds[channel] else { continue };
         let limit = match most {
             Most::Distance(cm, _) => cm / motion.rig.cm_per_unit,
             Most::Channels(bounds) => bounds.greatest[channel],
         };
-        if kind.is_position() && placing(joint) && step.abs() > limit {
+        if places_root(motion, kinds[channel]) && step.abs() > limit {
             found.push((channel, -*step));
             *step = 0.0;
         }

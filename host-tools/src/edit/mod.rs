@@ -4,6 +4,7 @@ pub mod curve;
 pub mod cut;
 pub mod display;
 mod display_names;
+pub mod find_loop;
 pub mod footsteps;
 pub mod join;
 pub mod loop_seam;

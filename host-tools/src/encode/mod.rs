@@ -1,5 +1,6 @@
 //! Bytes of a clip, part by part: mirrors of the decoder's files.
 
+pub mod bank;
 pub mod clip;
 pub mod entropy;
 pub mod index;

@@ -17,6 +17,10 @@ pub fn difference(one: &Rig, other: &Rig) -> Result<Option<String>> {
     Ok(Some(
         in_joints(&held, &other_held)
             .or_else(|| in_scalars(&held, &other_held))
+            .or_else(|| {
+                let text = crate::import::up::text;
+                (held.up != other_held.up).then(|| format!("{} is up instead of {}", text(other_held.up), text(held.up)))
+            })
             .unwrap_or_else(|| format!("its unit is {} cm instead of {} cm", other_held.cm_per_unit, held.cm_per_unit)),
     ))
 }
@@ -36,6 +40,9 @@ fn in_joints(one: &Rig, other: &Rig) -> Option<String> {
         }
         if a.kinds != b.kinds {
             return Some(format!("joint `{name}` has the channels {} instead of {}", kinds(&b.kinds), kinds(&a.kinds)));
+        }
+        if a.helper != b.helper {
+            return Some(format!("joint `{name}` is {} helper", if b.helper { "a" } else { "no" }));
         }
         if a.offset != b.offset {
             return Some(format!("joint `{name}` has the offset {} instead of {}", offset(b.offset), offset(a.offset)));

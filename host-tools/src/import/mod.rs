@@ -22,6 +22,7 @@ pub mod gltf;
 #[path = "gltf_absent.rs"]
 pub mod gltf;
 mod grid;
+mod helpers;
 pub mod keyframes;
 pub mod list;
 pub mod livelink;
@@ -32,11 +33,12 @@ pub mod table;
 pub mod text;
 mod timecode;
 pub mod units;
+pub mod up;
 pub mod vrml;
 mod written;
 
 use crate::budget;
-use crate::motion::Motion;
+use crate::motion::{Motion, Up};
 use anyhow::{Context, Result, bail, ensure};
 pub use files::Files;
 use pantin::codec::layout::MAX_CHANNELS;
@@ -47,6 +49,8 @@ use std::path::{Path, PathBuf};
 pub struct Options {
     /// Length of the source's unit in cm, instead of a guess.
     pub cm_per_unit: Option<f64>,
+    /// The direction that is vertical, instead of what the source says or of a guess.
+    pub up: Option<Up>,
     /// Frames a second, for a source that does not say or says nonsense, and at which one with keys or times is sampled. A source of frames
     /// that states its rate keeps it: [`crate::edit::resample`] changes that.
     pub fps: Option<f64>,
@@ -153,6 +157,12 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
     let known = unit_known.then_some(motion.rig.cm_per_unit);
     let unit = units::settle(&motion, options.cm_per_unit, known).with_context(|| path.display().to_string())?;
     motion.rig.cm_per_unit = unit.cm_per_unit;
+    // These formats state that y is up, or are turned so that it is; they come from programs whose rigs have joints to steer by.
+    let stated = matches!(format.name, "glTF" | "FBX" | "VRML");
+    motion.rig.up = options.up.unwrap_or_else(|| if stated { Up::Y } else { up::guess(&motion) });
+    if stated {
+        helpers::mark(&mut motion.rig);
+    }
     unwrap_angles(&mut motion);
     Ok(Imported { motion, units: unit.sentence, warnings })
 }

@@ -8,6 +8,8 @@ use std::path::Path;
 pub enum Wanted {
     /// A clip.
     Clip,
+    /// Clips of one rig.
+    Bank,
     /// A rig that is kept apart from its clips.
     Rig,
     /// A motion, or source text.
@@ -27,6 +29,7 @@ pub enum Wanted {
 /// Kinds of file, their extensions, and which command writes them.
 const KINDS: &[(Wanted, &[&str], &str)] = &[
     (Wanted::Clip, &["ptn"], "`pantin convert` writes clips"),
+    (Wanted::Bank, &["ptb"], "`pantin pack` and `pantin convert FOLDER` write banks"),
     (Wanted::Rig, &["rig"], "`pantin convert --rig-out` writes rigs"),
     (Wanted::Motion, &["bvh", "glb", "csv", "h"], "to write a motion or source text use `pantin expand`"),
     (
@@ -59,6 +62,7 @@ pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
     let Some((kind, _, hint)) = found.filter(|(kind, ..)| *kind != wanted) else { return Ok(()) };
     let expected = match wanted {
         Wanted::Clip => "a clip's name ends in .ptn",
+        Wanted::Bank => "a bank's name ends in .ptb",
         Wanted::Rig => "a rig's name ends in .rig",
         Wanted::Motion => "expected a name that ends in .bvh, .glb, .csv, .h or .rs",
         Wanted::Picture => "expected a name that ends in .gif, .apng, .png or .svg",

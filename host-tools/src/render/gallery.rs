@@ -45,8 +45,8 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Draws `clip`. `up` is the axis that is vertical by the source's format, where that says.
-    pub fn of(clip: &Clip, up: Option<u8>, label: String) -> Result<Cell> {
+    /// Draws `clip`.
+    pub fn of(clip: &Clip, label: String) -> Result<Cell> {
         let rig = clip.rig();
         let mut depths: Vec<usize> = Vec::new();
         for joint in rig.joints() {
@@ -54,7 +54,7 @@ impl Cell {
             depths.push(above + 1);
         }
         // The root is where a figure stands, and no part of a limb.
-        let pixels = if depths.iter().any(|&depth| depth > LIMB) { figure(clip, up)? } else { chart(&expand(clip)?) };
+        let pixels = if depths.iter().any(|&depth| depth > LIMB) { figure(clip)? } else { chart(&expand(clip)?) };
         Ok(Cell { label, pixels })
     }
 
@@ -64,8 +64,8 @@ impl Cell {
     }
 }
 
-fn figure(clip: &Clip, up: Option<u8>) -> Result<Vec<u8>> {
-    let view = View { up, ..View::default() };
+fn figure(clip: &Clip) -> Result<Vec<u8>> {
+    let view = View::default();
     let frames = TIMES.map(|part| (f64::from(clip.frames() - 1) * part) as u32);
     let shown: Vec<Vec<u8>> = pictures(clip, view, frames)?.iter().map(|picture| picture.enlarged(SCALE)).collect();
     let row = |row: usize| {

@@ -3,6 +3,7 @@
 mod amc_bad_input;
 mod amc_real_clips;
 mod angles;
+mod banks;
 mod batch_command;
 mod bvh_bad_input;
 mod bvh_real_clips;
@@ -11,6 +12,7 @@ mod cli_reference;
 mod convert_laws;
 mod documents;
 mod edits;
+mod events;
 mod exhaustion;
 mod export_source;
 mod face_laws;

@@ -1,5 +1,6 @@
 //! Golden vectors: clips, each with what a decoder must make of it, in `tests/vectors`.
 
+pub mod bank;
 pub mod constants;
 pub mod coverage;
 mod json;

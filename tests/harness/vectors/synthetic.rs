@@ -332,6 +332,22 @@ fn followers() -> Made {
     Made { name: "followers", rig, coded, apart: false, index: 13 }
 }
 
+/// The clips of the vector of a bank.
+pub fn in_bank() -> Vec<Made> {
+    let joints: [&[Kind]; 2] = [&PLACE, &EULER];
+    let mut stepping = motion(30);
+    stepping.looped = true;
+    stepping.events = [(3, 0), (18, 1)].map(|(frame, id)| Event { frame, id }).to_vec();
+    stepping.event_names = vec![pantin::LEFT_FOOT_DOWN.into(), pantin::RIGHT_FOOT_DOWN.into()];
+    let mut walk = simple("walk", &joints, 1, stepping);
+    walk.index = 8;
+    let mut long = simple("a longer one", &joints, 1, motion(200));
+    long.coded.frame_time_ns = 41_708_375;
+    let mut last = simple("wave", &joints, 1, motion(9));
+    last.apart = true;
+    vec![walk, long, last]
+}
+
 /// All of them.
 pub fn all() -> Vec<Made> {
     let mut apart = simple("rig-apart", &[&PLACE, &EULER, &EULER], 0, motion(20));

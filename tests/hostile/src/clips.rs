@@ -1,6 +1,6 @@
 //! Clips and rigs: an error or poses, in bounded time, the same whether stepping, seeking, reversing or streaming.
 
-use pantin::{ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
+use pantin::{Bank, ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 
 use crate::fix;
 use crate::noise::Noise;
@@ -49,6 +49,28 @@ fn walk(bytes: &[u8]) -> bool {
     assert_eq!(rig.scalars().count() + channels, rig.channels());
     rig.scalars().for_each(|scalar| assert!(scalar.name().len() <= bytes.len().max(20)));
     assert_eq!(rig.id(), Rig::new_checked(bytes).map_or(0, |again| again.id()));
+    true
+}
+
+/// Opens a bank, as it is and with its CRCs mended, and every clip in it.
+pub fn bank_open(bytes: &[u8]) -> bool {
+    bank(bytes);
+    let mut bytes = bytes.to_vec();
+    fix::bank(&mut bytes);
+    bank(&bytes)
+}
+
+fn bank(bytes: &[u8]) -> bool {
+    let Ok(bank) = Bank::new_checked(bytes) else { return false };
+    assert!(bank.len() > 0 && bank.len() == bank.entries().count());
+    for entry in bank.entries() {
+        assert!(entry.bytes().len() <= bytes.len() && entry.name().len() <= bytes.len());
+        assert!(entry.name().is_empty() || bank.find(entry.name()).is_some());
+        if let Ok(clip) = bank.open(&entry) {
+            assert_eq!((clip.rig().id(), clip.rig_len()), (bank.rig().id(), 0));
+            play(clip, entry.bytes());
+        }
+    }
     true
 }
 

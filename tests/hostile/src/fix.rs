@@ -1,12 +1,28 @@
 //! Repairs what the first checks would refuse, and nothing else.
 
 use pantin::codec::crc;
-use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION};
+use pantin::codec::layout::{
+    BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION, section,
+};
 
 /// Makes the CRC of a rig or of event names right, if they are long enough to have one.
 pub fn rig(bytes: &mut [u8]) {
     if let Some((body, stored)) = bytes.split_last_chunk_mut::<CRC_BYTES>() {
         *stored = crc::of(body).to_le_bytes();
+    }
+}
+
+/// Makes a bank's magic, version and CRCs right, as far as its sections can be told; the clips stay as they are.
+pub fn bank(bytes: &mut [u8]) {
+    let Some((front, mut rest)) = bytes.split_at_mut_checked(3) else { return };
+    front.copy_from_slice(&[BANK_MAGIC[0], BANK_MAGIC[1], VERSION]);
+    while let Some((&mut kind, after)) = rest.split_first_mut() {
+        let Some((len, digits)) = varint(after) else { return };
+        let Some((body, behind)) = after[digits..].split_at_mut_checked(len) else { return };
+        if matches!(kind, section::RIG | section::CONTENTS) {
+            rig(body);
+        }
+        rest = behind;
     }
 }
 

@@ -28,10 +28,11 @@ pub struct FuzzTarget {
 const CLIPS: &[&str] = &["ptn"];
 
 /// All entry points.
-pub const FUZZ_TARGETS: [FuzzTarget; 19] = [
+pub const FUZZ_TARGETS: [FuzzTarget; 20] = [
     FuzzTarget { name: "open_play", run: clips::open_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "crc_fixed_play", run: clips::crc_fixed_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "rig_open", run: clips::rig_open, words: &[], vectors: &["rig"], made: Vec::new },
+    FuzzTarget { name: "bank_open", run: clips::bank_open, words: &[], vectors: &["ptb"], made: Vec::new },
     FuzzTarget { name: "stream_play", run: streams::stream_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "link_receive", run: lines::link_receive, words: &[], vectors: &[], made: lines::streams },
     FuzzTarget { name: "store_open", run: lines::store_open, words: &[], vectors: CLIPS, made: Vec::new },

@@ -18,8 +18,7 @@ use pantin_tools::verify::compare;
 use xtask::steps::say;
 
 /// What a file's name begins with, and the axis that its format has upwards.
-const KINDS: [(&str, Option<u8>); 7] =
-    [("bvh_", None), ("amc_", None), ("gltf_", Some(1)), ("fbx_", None), ("vrml_", Some(1)), ("face_", None), ("fap_", None)];
+const KINDS: [&str; 7] = ["bvh_", "amc_", "gltf_", "fbx_", "vrml_", "face_", "fap_"];
 /// Endings of what lies beside motions: skeletons.
 const BESIDE: [&str; 1] = ["asf"];
 /// A figure of another height is no person in a known unit, in cm.
@@ -59,14 +58,13 @@ impl Gallery {
         let out = paths::root().join(&self.out);
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let tool = build::host_tool()?;
-        let wide = files.iter().map(|(path, _)| name(path).len()).max().unwrap_or(0);
+        let wide = files.iter().map(|path| name(path).len()).max().unwrap_or(0);
         println!("{:wide$} {:>7} {:>8} {:>8}  {:44} ok", "file", "frames", "channels", "bytes", "greatest error");
         let mut cells = Vec::new();
         let mut failed = 0;
-        for (path, up) in &files {
+        for path in &files {
             let file = name(path);
-            let made =
-                if import::is_motion(path) { one(&tool, path, *up, &out) } else { Err(anyhow::anyhow!("no importer for it")) };
+            let made = if import::is_motion(path) { one(&tool, path, &out) } else { Err(anyhow::anyhow!("no importer for it")) };
             match made {
                 Ok(row) => {
                     println!("{file:wide$} {:7} {:8} {:8}  {:44} yes", row.frames, row.channels, row.bytes, row.error);
@@ -87,16 +85,13 @@ impl Gallery {
         Ok(())
     }
 
-    fn files(&self, data: &Path) -> Result<Vec<(PathBuf, Option<u8>)>> {
+    fn files(&self, data: &Path) -> Result<Vec<PathBuf>> {
         let mut paths: Vec<PathBuf> = fs::read_dir(data)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
         paths.sort();
         paths.retain(|path| !BESIDE.iter().any(|ending| path.extension().is_some_and(|extension| extension == *ending)));
         let wanted = |path: &PathBuf| self.only.as_ref().is_none_or(|part| name(path).contains(part));
-        let kind = |path: PathBuf| {
-            let &(_, up) = KINDS.iter().find(|(begin, _)| name(&path).starts_with(begin))?;
-            Some((path, up))
-        };
-        Ok(paths.into_iter().filter(wanted).filter_map(kind).collect())
+        let known = |path: &PathBuf| KINDS.iter().any(|begin| name(path).starts_with(begin));
+        Ok(paths.into_iter().filter(wanted).filter(known).collect())
     }
 }
 
@@ -105,7 +100,7 @@ fn name(path: &Path) -> String {
 }
 
 /// Converts by the program, expands by the library, and compares with what the importer reads.
-fn one(tool: &Path, path: &Path, up: Option<u8>, out: &Path) -> Result<Row> {
+fn one(tool: &Path, path: &Path, out: &Path) -> Result<Row> {
     let motion = import::load(path, &import::Options::default())?.motion;
     let height = units::figure_height_cm(&motion);
     let (bound, text) = match height {
@@ -130,6 +125,6 @@ fn one(tool: &Path, path: &Path, up: Option<u8>, out: &Path) -> Result<Row> {
     let error = errors.join(", ");
     ensure!(report.max_cm <= bound && 100.0 * report.max_scalar <= SCALAR_PERCENT, "expanded, it is off by {error}");
     let label = format!("{}  {} frames, {} bytes, {error}", name(path), motion.frames, bytes.len());
-    let cell = Cell::of(&opened, up, label)?;
+    let cell = Cell::of(&opened, label)?;
     Ok(Row { frames: motion.frames, channels: motion.rig.channels(), bytes: bytes.len(), error, cell })
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use harness::vectors::{self, Vector, constants, coverage, own, record, synthetic};
+use harness::vectors::{self, Vector, bank, constants, coverage, own, record, synthetic};
 use pantin::codec::layout::VERSION;
 use pantin_tools::output::write_whole;
 
@@ -34,7 +34,7 @@ impl Vectors {
         std::fs::create_dir_all(&folder)?;
         for entry in std::fs::read_dir(&folder)? {
             let path = entry?.path();
-            if path.extension().is_some_and(|extension| ["ptn", "rig", "json"].iter().any(|ours| extension == *ours)) {
+            if path.extension().is_some_and(|extension| ["ptn", "ptb", "rig", "json"].iter().any(|ours| extension == *ours)) {
                 std::fs::remove_file(path)?;
             }
         }
@@ -42,6 +42,11 @@ impl Vectors {
         for vector in &all {
             total += write(&folder, vector)?;
         }
+        let bank = bank::bytes()?;
+        let record = bank::record(&bank)?;
+        write_whole(&folder.join(bank::NAME).with_extension("ptb"), &bank)?;
+        write_whole(&folder.join(bank::NAME).with_extension("json"), record.as_bytes())?;
+        total += bank.len() + record.len();
         let tables = constants::text();
         write_whole(&folder.join("tables.json"), tables.as_bytes())?;
         println!("{} vectors, {} bytes with tables.json", all.len(), total + tables.len());

@@ -3,7 +3,7 @@
 mod options;
 mod output;
 
-use super::{Files, check_read, default_output, format_of};
+use super::{Files, check_read, default_output, format_of, up_axis};
 use crate::expand::expand;
 use crate::face::cast::is_face;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
@@ -13,6 +13,7 @@ use crate::render::palette::Palette;
 use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
+use pantin::Up;
 use pantin_figure::{Track, View};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -76,9 +77,9 @@ pub struct Arguments {
     /// Degrees of the camera above the horizon [default: 12; a face: 0]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = clap::value_parser!(i16).range(-90..=90))]
     tilt: Option<i16>,
-    /// The vertical axis, for figures whose clip does not show which way is up
-    #[arg(long, value_enum, value_name = "AXIS")]
-    up: Option<Axis>,
+    /// The direction that is vertical, instead of the one that the clip states: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", value_parser = up_axis, allow_hyphen_values = true)]
+    up: Option<Up>,
     /// Use a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
@@ -100,17 +101,6 @@ pub struct Arguments {
     /// Write the .png as an animation
     #[arg(long, conflicts_with_all = ["strip", "frame"])]
     animate: bool,
-}
-
-/// An axis of the world.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Axis {
-    /// The x axis.
-    X,
-    /// The y axis.
-    Y,
-    /// The z axis.
-    Z,
 }
 
 /// What the file is, by its extension.
@@ -246,8 +236,7 @@ impl Arguments {
 
     fn views(&self, sides: &[Side], face: bool) -> Vec<View> {
         let track = if self.fixed { Track::Fixed } else { Track::Follow };
-        let up = self.up.map(|axis| axis as u8);
         let tilt = self.tilt.unwrap_or(if face { 0 } else { View::default().tilt });
-        sides.iter().map(|side| View { orbit: side.orbit, tilt, track, up }).collect()
+        sides.iter().map(|side| View { orbit: side.orbit, tilt, track, up: self.up }).collect()
     }
 }

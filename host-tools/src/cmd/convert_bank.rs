@@ -1,0 +1,125 @@
+//! `pantin convert FOLDER -o moves.ptb`: motions of one rig as one bank.
+
+use super::bank::said;
+use super::batch;
+use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
+use crate::encode::bank::{self, Named};
+use crate::encode::same_rig::difference;
+use crate::import::{self, list};
+use crate::output::{self, Wanted, note, outln, refuse_foreign};
+use anyhow::{Context, Result, bail, ensure};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// One clip of the bank to be.
+struct Task {
+    name: String,
+    label: String,
+    arguments: Arguments,
+}
+
+/// Converts all motions and writes the bank. Writes nothing if any of them cannot be converted.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let output = arguments.output();
+    refuse_foreign(output, Wanted::Bank)?;
+    ensure!(arguments.rig_out.is_none(), "--rig-out: a bank holds its rig");
+    let tasks = tasks(arguments)?;
+    let inputs: Vec<&Path> = tasks.iter().flat_map(|task| task.arguments.inputs()).collect();
+    output::check(&inputs, &[output])?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
+    let prepare = |task: &Task| prepare(&task.arguments);
+    let mut prepared: Vec<Prepared> =
+        pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
+    agree_on_up(&mut prepared, arguments.up_is_given())?;
+    for (task, other) in tasks.iter().zip(&prepared).skip(1) {
+        if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(|| task.label.clone())? {
+            bail!("{}: another rig than {}: {difference}; a bank holds clips of one rig", task.label, tasks[0].label);
+        }
+    }
+    let shared = arguments.same_form.then(|| shared_coding(&prepared, arguments));
+    let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} clips {eta} left")?;
+    let code = |(task, prepared): (&Task, &Prepared)| {
+        let own = || shared_coding(std::slice::from_ref(prepared), arguments);
+        let made = prepared.code(&task.arguments, &shared.clone().unwrap_or_else(own)).with_context(|| task.label.clone());
+        bar.inc(1);
+        made
+    };
+    let made: Vec<Made> = pool.install(|| {
+        tasks.par_iter().with_max_len(1).zip(prepared.par_iter().with_max_len(1)).map(code).collect::<Result<Vec<_>>>()
+    })?;
+    bar.finish_and_clear();
+    let read: Vec<PathBuf> = prepared.iter().flat_map(|prepared| prepared.read.clone()).collect();
+    output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[output])?;
+    let named = |((task, made), prepared): ((&Task, &Made), &Prepared)| Named {
+        name: task.name.clone(),
+        place: task.label.clone(),
+        clip: made.bytes.clone(),
+        rig: prepared.rig.clone(),
+    };
+    let clips: Vec<Named> = tasks.iter().zip(&made).zip(&prepared).map(named).collect();
+    let bytes = bank::encode(&clips)?;
+    output::write_together(&[(output, &bytes)])?;
+    if !output::is_json() && !output::is_quiet() {
+        for (task, made) in tasks.iter().zip(&made) {
+            outln!("{}: {} frames, {} bytes, {}", task.name, made.frames, made.bytes.len(), made.cell)?;
+        }
+    }
+    for (task, prepared) in tasks.iter().zip(&prepared) {
+        prepared.warnings.iter().for_each(|warning| note!("{}: warning: {warning}", task.label));
+    }
+    said(output, &bytes, &clips);
+    Ok(())
+}
+
+/// A guess of which way is up may fail for a motion on the floor: those of one figure share that of most of them.
+pub fn agree_on_up(prepared: &mut [Prepared], given: bool) -> Result<()> {
+    let count = |up| prepared.iter().filter(|prepared| prepared.motion.rig.up == up).count();
+    let most = prepared.iter().map(|prepared| prepared.motion.rig.up).max_by_key(|&up| (count(up), std::cmp::Reverse(up.byte())));
+    let Some(most) = most.filter(|&up| !given && count(up) < prepared.len()) else { return Ok(()) };
+    let others = prepared.len() - count(most);
+    note!("up: {others} of {} motions look as if another axis were up; all take {}", prepared.len(), import::up::text(most));
+    for prepared in prepared {
+        prepared.set_up(most)?;
+    }
+    Ok(())
+}
+
+/// The clips: of a folder's motions, of several files, or of a file's animations.
+fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
+    let task = |input: PathBuf, name: String, label: String| {
+        let arguments = arguments.for_file(input, arguments.output().to_path_buf());
+        Task { name, label, arguments }
+    };
+    let input = &arguments.input;
+    if arguments.animation.as_deref() == Some("all") {
+        ensure!(arguments.more.is_empty() && !input.is_dir(), "--animation all takes one file");
+        let entries = list::list(input, arguments.fps())?;
+        let moving = entries.into_iter().enumerate().filter(|(_, entry)| entry.frames > 0);
+        let tasks = moving.map(|(number, entry)| {
+            let name = entry.name.filter(|name| !name.is_empty()).unwrap_or_else(|| number.to_string());
+            let label = format!("{}: animation {name}", input.display());
+            let mut task = task(input.clone(), name, label);
+            task.arguments.animation = Some(number.to_string());
+            task
+        });
+        let tasks: Vec<Task> = tasks.collect();
+        ensure!(!tasks.is_empty(), "{}: no animation, so nothing moves", input.display());
+        return Ok(tasks);
+    }
+    let (base, inputs) = if input.is_dir() {
+        ensure!(arguments.more.is_empty(), "{}: a folder; convert a folder in a command of its own", input.display());
+        (Some(input), batch::motions(input)?)
+    } else {
+        (None, std::iter::once(input).chain(&arguments.more).cloned().collect())
+    };
+    let named = |path: PathBuf| {
+        let label = path.display().to_string();
+        let name = match base {
+            // Folders below are part of a name.
+            Some(base) => path.strip_prefix(base).unwrap_or(&path).with_extension("").to_string_lossy().replace('\\', "/"),
+            None => super::bank::name_of(&path)?,
+        };
+        Ok(task(path, name, label))
+    };
+    inputs.into_iter().map(named).collect()
+}

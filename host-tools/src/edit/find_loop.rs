@@ -1,0 +1,102 @@
+//! `--find-loop`: the stretches of a motion that make the best loops.
+//!
+//! A cut from one frame to another loops well if the poses of both are alike, and those of the frames after them. The way that the figure goes on the ground does not count: a loop keeps
+//! it. A stretch in which less happens than in the whole motion is no candidate: standing still is a perfect loop.
+
+use crate::fk::positions;
+use crate::motion::Motion;
+use anyhow::{Result, ensure};
+
+/// A proposal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cut {
+    /// The first frame.
+    pub from: usize,
+    /// The last frame, at which the pose is that of the first one again.
+    pub to: usize,
+    /// The farthest that a joint is in one pose from where it is in the other, in cm.
+    pub seam_cm: f64,
+    /// The joint.
+    pub joint: String,
+}
+
+/// Proposals that are returned at most.
+const CUTS: usize = 3;
+/// Seconds: a shorter stretch is no cycle.
+const SHORTEST: f64 = 0.4;
+/// Part of the mean movement a frame below which a stretch is too still.
+const LIVELY: f64 = 0.6;
+/// Poses that are compared with each other at most; of a longer motion, every few frames, and then the frames beside the best.
+const POSES: usize = 1200;
+
+/// The best cuts, the best first.
+pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
+    let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
+    ensure!(!motion.rig.joints.is_empty(), "--find-loop: the motion has no joints");
+    ensure!(motion.frames > shortest + 1, "--find-loop: {} frames; expected more than {}", motion.frames, shortest + 1);
+    let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| on_the_spot(motion, frame)).collect();
+    let apart = |a: usize, b: usize| greatest(&poses[a], &poses[b]);
+    // The movement up to each frame.
+    let mut moved = vec![0.0; motion.frames];
+    for frame in 1..motion.frames {
+        moved[frame] = moved[frame - 1] + mean(&poses[frame - 1], &poses[frame]);
+    }
+    let still = LIVELY * moved[motion.frames - 1] / (motion.frames - 1) as f64;
+    let lively = |from: usize, to: usize| moved[to] - moved[from] >= still * (to - from) as f64;
+    // Alike in the pose and in where it goes.
+    let cost = |from: usize, to: usize| {
+        let next = if to + 1 < motion.frames { apart(from + 1, to + 1).0 } else { apart(from.saturating_sub(1), to - 1).0 };
+        apart(from, to).0.max(next)
+    };
+    let stride = motion.frames.div_ceil(POSES);
+    let mut found: Vec<(f64, usize, usize)> = Vec::new();
+    for from in (0..motion.frames).step_by(stride) {
+        // Of each begin the best end, so that the list stays short.
+        let ends = (from + shortest..motion.frames).step_by(stride).filter(|&to| lively(from, to));
+        found.extend(ends.map(|to| (cost(from, to), from, to)).min_by(|a, b| a.0.total_cmp(&b.0)));
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let near = |a: usize, b: usize| a.abs_diff(b) < shortest / 2 + stride;
+    let mut cuts: Vec<(usize, usize)> = Vec::new();
+    for (_, from, to) in found {
+        if cuts.len() < CUTS && !cuts.iter().any(|&(other, end)| near(from, other) && near(to, end)) {
+            cuts.push((from, to));
+        }
+    }
+    let around = |frame: usize| frame.saturating_sub(stride - 1)..=(frame + stride - 1).min(motion.frames - 1);
+    let refined = cuts.into_iter().filter_map(|(from, to)| {
+        let pairs = around(from).flat_map(|from| around(to).map(move |to| (from, to)));
+        let pairs = pairs.filter(|&(from, to)| to >= from + shortest && lively(from, to));
+        pairs.min_by(|a, b| cost(a.0, a.1).total_cmp(&cost(b.0, b.1)))
+    });
+    let cut = |(from, to): (usize, usize)| {
+        let (seam_cm, joint) = apart(from, to);
+        Cut { from, to, seam_cm, joint: motion.rig.joint_name(joint) }
+    };
+    let mut cuts: Vec<Cut> = refined.map(cut).collect();
+    cuts.sort_by(|a, b| a.seam_cm.total_cmp(&b.seam_cm));
+    Ok(cuts)
+}
+
+/// The pose at a frame in cm, with the first joint that has a place of its own at 0 on the ground.
+fn on_the_spot(motion: &Motion, frame: usize) -> Vec<[f64; 3]> {
+    let mut pose = positions(&motion.rig, &motion.values, frame);
+    let placed = motion.rig.joints.iter().position(|joint| joint.kinds.iter().any(|kind| kind.is_position())).unwrap_or(0);
+    let mut place = pose[placed];
+    place[motion.rig.up.axis()] = 0.0;
+    pose.iter_mut().for_each(|at| (0..3).for_each(|axis| at[axis] -= place[axis]));
+    pose
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+}
+
+fn greatest(a: &[[f64; 3]], b: &[[f64; 3]]) -> (f64, usize) {
+    let apart = a.iter().zip(b).map(|(a, b)| distance(a, b)).enumerate();
+    apart.map(|(joint, cm)| (cm, joint)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
+}
+
+fn mean(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| distance(a, b)).sum::<f64>() / a.len().max(1) as f64
+}
