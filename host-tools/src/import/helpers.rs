@@ -19,9 +19,9 @@ pub fn mark(rig: &mut Rig) -> usize {
     }
     // An End Site goes with the joint that it ends.
     let mut count = 0;
-    for joint in 0..rig.joints.len() {
-        rig.joints[joint].helper = helpers[joint] && !rig.joints[joint].end_site;
-        count += usize::from(rig.joints[joint].helper);
+    for (joint, helper) in rig.joints.iter_mut().zip(helpers) {
+        joint.helper = helper && !joint.end_site;
+        count += usize::from(joint.helper);
     }
     // Nothing would be left to draw.
     let drawn = rig.joints.iter().skip(1).any(|joint| !joint.helper && !joint.end_site);

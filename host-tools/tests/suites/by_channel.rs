@@ -16,15 +16,14 @@ fn own(name: &str) -> Motion {
 
 /// A motion of one block of keys.
 fn keyed(interpolation: &str, looped: bool) -> Motion {
-    let path = std::env::temp_dir().join(format!("pantin-by-channel-{interpolation}-{looped}-{}.keys", std::process::id()));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("motion.keys");
     let head = "keyframes 1\nfps 30\nframes 61\ncm-per-unit 1\njoint hip offset 0 90 0 channels Yposition Xrotation\n";
     let tail = "joint knee parent hip offset 0 -45 0 channels Xrotation\nscalar smile scale 1\n";
     let rows = "0 90 -20 5 0\n13 88.5 14 40 0.5\n14 88.25 15 41 0.6\n42 93 200 10 -0.25\n60 91 340 5 0\n";
     let keys = format!("keys {interpolation} hip knee smile\n{rows}");
     std::fs::write(&path, format!("{head}{tail}{}{keys}", if looped { "loop\n" } else { "" })).unwrap();
-    let loaded = import::load(&path, &Options::default());
-    std::fs::remove_file(&path).unwrap();
-    loaded.unwrap().motion
+    import::load(&path, &Options::default()).unwrap().motion
 }
 
 /// Bytes of the motion apart from its rig, and the errors; a broken bound fails the test.
