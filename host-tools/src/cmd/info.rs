@@ -92,6 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         for (name, value) in fields.into_iter().filter(|(_, value)| !value.is_null()) {
             let value = match &value {
                 Value::Array(names) => names.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", "),
+                Value::String(text) => text.clone(),
                 value => value.to_string(),
             };
             outln!("{:22} {value}", name.replace('_', " "))?;

@@ -3,6 +3,7 @@
 //! A cut from one frame to another loops well if the poses of both are alike, and those of the frames after them. The way that the figure goes on the ground does not count: a loop keeps
 //! it. A stretch in which less happens than in the whole motion is no candidate: standing still is a perfect loop.
 
+use super::loop_seam::places_root;
 use crate::fk::positions;
 use crate::motion::Motion;
 use anyhow::{Result, ensure};
@@ -34,7 +35,8 @@ pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
     ensure!(!motion.rig.joints.is_empty(), "--find-loop: the motion has no joints");
     ensure!(motion.frames > shortest + 1, "--find-loop: {} frames; expected more than {}", motion.frames, shortest + 1);
-    let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| on_the_spot(motion, frame)).collect();
+    let values = on_the_spot(motion);
+    let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| positions(&motion.rig, &values, frame)).collect();
     let apart = |a: usize, b: usize| greatest(&poses[a], &poses[b]);
     // The movement up to each frame.
     let mut moved = vec![0.0; motion.frames];
@@ -78,14 +80,13 @@ pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     Ok(cuts)
 }
 
-/// The pose at a frame in cm, with the first joint that has a place of its own at 0 on the ground.
-fn on_the_spot(motion: &Motion, frame: usize) -> Vec<[f64; 3]> {
-    let mut pose = positions(&motion.rig, &motion.values, frame);
-    let placed = motion.rig.joints.iter().position(|joint| joint.kinds.iter().any(|kind| kind.is_position())).unwrap_or(0);
-    let mut place = pose[placed];
-    place[motion.rig.up.axis()] = 0.0;
-    pose.iter_mut().for_each(|at| (0..3).for_each(|axis| at[axis] -= place[axis]));
-    pose
+/// The motion without the way of the root on the ground.
+fn on_the_spot(motion: &Motion) -> Vec<Vec<f64>> {
+    let kinds = motion.rig.channel_kinds();
+    let goes = |channel: usize| kinds[channel].1.axis() != Some(motion.rig.up.axis()) && places_root(motion, kinds[channel]);
+    let still =
+        |(channel, values): (usize, &Vec<f64>)| if goes(channel) { vec![values[0]; values.len()] } else { values.clone() };
+    motion.values.iter().enumerate().map(still).collect()
 }
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {

@@ -112,11 +112,15 @@ pub fn join_ends(motion: &Motion) -> Result<(Motion, f64, f64)> {
     Ok((out, step(motion.frames - 1, 0), inside))
 }
 
-/// Whether a channel moves the whole figure from place to place.
-fn places_root(motion: &Motion, (joint, kind): (Option<usize>, Kind)) -> bool {
-    let above = |joint: usize| &motion.rig.joints[..joint];
-    let placing = |joint: usize| above(joint).iter().all(|above| above.kinds.iter().all(|kind| kind.is_position()));
-    kind.is_position() && joint.is_some_and(placing)
+/// Whether a channel moves the whole figure from place to place: a position of a joint below nothing that turns.
+pub(super) fn places_root(motion: &Motion, (joint, kind): (Option<usize>, Kind)) -> bool {
+    let firsts = motion.rig.first_channels();
+    let stands = |values: &[f64]| values.iter().all(|value| *value == values[0]);
+    let turns = |above: usize| {
+        let kinds = motion.rig.joints[above].kinds.iter().enumerate();
+        kinds.into_iter().any(|(slot, kind)| !kind.is_position() && !stands(&motion.values[firsts[above] + slot]))
+    };
+    kind.is_position() && joint.is_some_and(|joint| !(0..joint).any(turns))
 }
 
 /// What takes each channel's last value to the first one's pose: angles to the nearest that turn alike.

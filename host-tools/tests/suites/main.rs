@@ -41,6 +41,7 @@ mod own_motions;
 #[cfg(unix)]
 mod play_command;
 mod procedural_input;
+mod rates_and_loops;
 mod real;
 mod render_command;
 mod same_form;

@@ -1,0 +1,97 @@
+//! `--rate`, `--up`, `--close-loop` and `--find-loop` of `pantin convert`.
+
+use pantin::{Clip, Up};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn own(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions").join(name).with_extension("keys")
+}
+
+fn convert(motion: &Path, options: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pantin"))
+        .arg("convert")
+        .arg(motion)
+        .args(["--effort", "fast"])
+        .args(options)
+        .output()
+        .unwrap()
+}
+
+/// Converts into `folder`; the clip's bytes.
+fn clip(folder: &Path, motion: &Path, options: &[&str]) -> Vec<u8> {
+    let path = folder.join("clip.ptn");
+    let output = convert(motion, &[&["-o", path.to_str().unwrap()], options].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    std::fs::read(path).unwrap()
+}
+
+#[test]
+fn a_rate_keeps_the_frames_and_fps_after_it_resamples_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let walk = own("walk");
+    let timed = |options: &[&str]| {
+        let bytes = clip(folder.path(), &walk, options);
+        let clip = Clip::new_checked(&bytes).unwrap();
+        (clip.frames(), clip.frame_time_ns())
+    };
+    assert_eq!(timed(&[]), (160, 8_333_333));
+    assert_eq!(timed(&["--rate", "60"]), (160, 16_666_667));
+    assert_eq!(timed(&["--rate", "60", "--fps", "30"]), (80, 33_333_333));
+    assert!(!convert(&walk, &["--rate", "0"]).status.success());
+}
+
+#[test]
+fn up_is_what_the_figure_shows_or_what_the_user_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let up = |motion: &Path, options: &[&str]| Clip::new_checked(&clip(folder.path(), motion, options)).unwrap().rig().up();
+    assert_eq!(up(&own("walk"), &[]), Up::Y);
+    assert_eq!(up(&own("walk"), &["--up", "-z"]), Up::new(2, true).unwrap());
+    let lying = folder.path().join("z.keys");
+    let text = "keyframes 1\nfps 10\nframes 3\ncm-per-unit 1\njoint hips offset 0 0 90 channels Xrotation\n\
+        joint head parent hips offset 0 0 60\njoint foot parent hips offset 0 5 -85\nkeys linear hips\n 0 0\n 2 9\n";
+    std::fs::write(&lying, text).unwrap();
+    assert_eq!(up(&lying, &[]), Up::new(2, false).unwrap());
+    assert!(!convert(&own("walk"), &["--up", "w"]).status.success());
+}
+
+#[test]
+fn a_cycle_is_closed_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let cycle = folder.path().join("cycle.keys");
+    let rows: String = (0..20).map(|frame| format!(" {frame} {}\n", 30.0 * (frame as f64 * 18.0).to_radians().sin())).collect();
+    let figure = "joint hips offset 0 90 0 channels Xrotation\nend parent hips offset 0 60 0\n";
+    std::fs::write(&cycle, format!("keyframes 1\nfps 20\nframes 20\ncm-per-unit 1\n{figure}keys linear hips\n{rows}")).unwrap();
+    let bytes = clip(folder.path(), &cycle, &["--close-loop"]);
+    let clip = Clip::new_checked(&bytes).unwrap();
+    assert!(clip.looped());
+    assert_eq!(clip.frames(), 20);
+    assert!(!convert(&cycle, &["--close-loop", "--loop"]).status.success());
+}
+
+#[test]
+fn the_best_loop_of_a_motion_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = folder.path().join("swing.keys");
+    // Waves of 25 frames on a way along x, after a begin that is unlike them.
+    let rows: String = (0..80)
+        .map(|frame: i32| {
+            let turn = if frame < 20 { 60 - 3 * frame } else { 0 };
+            let wave = 30.0 * (f64::from(frame) * 360.0 / 25.0).to_radians().sin();
+            format!(" {frame} {} {}\n", 2 * frame, f64::from(turn) + wave)
+        })
+        .collect();
+    let figure = "joint hips offset 0 90 0 channels Xposition Zrotation\nend parent hips offset 0 60 0\n";
+    std::fs::write(&motion, format!("keyframes 1\nfps 30\nframes 80\ncm-per-unit 1\n{figure}keys linear hips\n{rows}")).unwrap();
+    let output = convert(&motion, &["--find-loop", "--json"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let best = &found["loops"][0];
+    let (from, to) = (best["from"].as_u64().unwrap(), best["to"].as_u64().unwrap());
+    assert!(from >= 20 && (to - from) % 25 == 0, "{best}");
+    assert!(best["seam_cm"].as_f64().unwrap() < 0.01, "{best}");
+    assert!(!motion.with_extension("ptn").exists(), "nothing is written");
+    let cut = ["--from", &from.to_string(), "--to", &to.to_string(), "--loop"].map(str::to_string);
+    let bytes = clip(folder.path(), &motion, &cut.each_ref().map(String::as_str));
+    assert_eq!(u64::from(Clip::new_checked(&bytes).unwrap().frames()), to - from);
+}
