@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Bytes that a value of a channel at a frame takes on its way from a file to a clip, with all copies that exist at a time.
 const BYTES_A_VALUE: u64 = 192;
+/// Bytes that a joint at a frame takes in a fit: its rotations and its place, where it is and where it should be.
+const POSE_BYTES_A_JOINT: u64 = 400;
 /// Bytes that a frame takes whatever the number of channels: its time, its row, and how it was filled.
 const BYTES_A_FRAME: u64 = 192;
 /// Bytes that the search for a channel's code takes for each frame: always, and for each hypothesis that it extends from a frame.
@@ -42,14 +44,15 @@ pub fn check(frames: usize, channels: usize) -> Result<()> {
 
 /// Refuses a motion whose fit takes more memory than the limit. Each thread searches a channel and extends `beam` hypotheses from each
 /// frame; the motion was read from `read` bytes of files.
-pub fn check_fit(frames: usize, channels: usize, beam: usize, read: u64) -> Result<()> {
+pub fn check_fit(frames: usize, [joints, channels]: [usize; 2], beam: usize, read: u64) -> Result<()> {
     let searches = channels.min(rayon::current_num_threads()) as u64;
     let search = SEARCH_BYTES + SEARCH_BYTES_A_HYPOTHESIS * beam as u64;
     let most = match most_bytes() {
         DEFAULT => DEFAULT.max(read.saturating_mul(FIT_BYTES_A_BYTE_READ)),
         asked => asked,
     };
-    check_bytes(frames, channels, channels as u64 * BYTES_A_VALUE + searches * search, most)
+    let a_frame = channels as u64 * BYTES_A_VALUE + joints as u64 * POSE_BYTES_A_JOINT + searches * search;
+    check_bytes(frames, channels, a_frame, most)
 }
 
 /// Refuses frames that take more than `most` bytes, each `a_frame` and what every frame takes.

@@ -66,7 +66,7 @@ pub const SEEK_MS_PER_SEGMENT: f64 = 360.0 / 48_000.0;
 /// Most segments that a seek should pass: they take that processor a frame's time at 30 frames a second.
 const SEEK_SEGMENTS: usize = 4444;
 
-/// The greatest spacing of snapshots, in seconds, with which no seek passes more than [`SEEK_SEGMENTS`]; `None` for a clip that needs none.
+/// The greatest spacing of snapshots, in seconds, with which no seek passes more than `SEEK_SEGMENTS`; `None` for a clip that needs none.
 pub fn index_spacing(seconds: f64, segments: usize) -> Option<f64> {
     let spacing = seconds * SEEK_SEGMENTS as f64 / segments as f64;
     (segments > SEEK_SEGMENTS).then(|| ((spacing * 10.0).floor() / 10.0).max(0.1))

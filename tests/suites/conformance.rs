@@ -64,5 +64,8 @@ fn a_decoder_written_from_the_format_alone_agrees() {
     let output = Command::new(setup::emulator("node").unwrap()).arg(script).arg(vectors::folder()).output().unwrap();
     let told = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(told.lines().count(), vectors::load(&vectors::folder()).unwrap().len());
+    let banks = std::fs::read_dir(vectors::folder()).unwrap();
+    let banks =
+        banks.filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "ptb")).count();
+    assert_eq!(told.lines().count(), vectors::load(&vectors::folder()).unwrap().len() + banks);
 }

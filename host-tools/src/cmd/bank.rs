@@ -1,11 +1,13 @@
 //! `pantin pack`, `pantin unpack` and `pantin list`: many clips of one rig in one file.
 
+use crate::budget;
 use crate::encode::bank::{self, Named};
 use crate::input;
 use crate::output::{self, Wanted, clean, note, outln, refuse_foreign};
 use anyhow::{Context, Result, ensure};
 use pantin::Bank;
 use serde_json::json;
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -73,6 +75,7 @@ pub fn pack(arguments: &Pack) -> Result<()> {
     output::check(&inputs, &[&arguments.output])?;
     let apart = arguments.rig.as_deref().map(input::read).transpose()?;
     let mut clips = Vec::new();
+    let mut needed = false;
     for path in &arguments.inputs {
         let place = path.display().to_string();
         let bytes = input::read(path)?;
@@ -83,9 +86,11 @@ pub fn pack(arguments: &Pack) -> Result<()> {
             Some(_) => place.clone(),
         })?;
         let own = bank::rig_of(&bytes)?;
+        needed |= own.is_empty();
         let rig = if own.is_empty() { apart.clone().unwrap_or_default() } else { own };
         clips.push(Named { name: name_of(path)?, place, clip: bytes, rig });
     }
+    ensure!(needed || apart.is_none(), "--rig has no effect: every clip has its own");
     let bytes = bank::encode(&clips)?;
     output::write_together(&[(&arguments.output, &bytes)])?;
     said(&arguments.output, &bytes, &clips);
@@ -115,17 +120,23 @@ pub fn unpack(arguments: &Unpack) -> Result<()> {
     for name in &arguments.clips {
         ensure!(bank.find(name).is_some(), "{}: no clip `{name}`; `pantin list` prints the names", place());
     }
+    let chosen =
+        |entry: &pantin::BankEntry| arguments.clips.is_empty() || arguments.clips.iter().any(|name| name == entry.name());
+    // Each file has the rig again.
+    let bytes_of = |entry: &pantin::BankEntry| entry.bytes().len() as u64 + bank.rig_bytes().len() as u64;
+    let all: u64 = bank.entries().filter(chosen).map(|entry| bytes_of(&entry)).sum();
+    output::check_size(&arguments.output, all)?;
+    budget::check_bytes_held(all).with_context(place)?;
     let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    for (number, entry) in bank.entries().enumerate() {
-        if !arguments.clips.is_empty() && !arguments.clips.iter().any(|name| name == entry.name()) {
-            continue;
-        }
+    let mut lower = HashSet::new();
+    for (number, entry) in bank.entries().enumerate().filter(|(_, entry)| chosen(entry)) {
         let context = || format!("{}: clip {}", place(), clean(entry.name()));
         bank.open(&entry).with_context(context)?;
         let clip = bank::with_rig(entry.bytes(), bank.rig_bytes()).with_context(context)?;
-        let file = arguments.output.join(super::batch::file_name(None, entry.name(), number));
-        let same = |other: &Path| other.to_string_lossy().to_lowercase() == file.to_string_lossy().to_lowercase();
-        ensure!(!files.iter().any(|(other, _)| same(other)), "{}: another clip is written to {} too", context(), file.display());
+        let file = arguments.output.join(super::batch::file_name(None, entry.name(), &number.to_string()));
+        super::batch::regular(&file)?;
+        let new = lower.insert(file.to_string_lossy().to_lowercase());
+        ensure!(new, "{}: another clip is written to {} too", context(), file.display());
         files.push((file, clip));
     }
     fs::create_dir_all(&arguments.output).with_context(|| arguments.output.display().to_string())?;

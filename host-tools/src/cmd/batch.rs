@@ -82,35 +82,25 @@ pub fn run_animations(arguments: &Arguments) -> Result<()> {
     ensure!(import::takes(input)?[0], "{}: --animation all: the file holds one motion", input.display());
     let (mut tasks, mut names) = (Vec::new(), Vec::new());
     let entries = import::list::list(input, arguments.fps())?;
-    for (number, entry) in entries.iter().enumerate() {
-        let name = entry.name.clone().unwrap_or_default();
-        let label = if name.is_empty() { number.to_string() } else { format!("{number} ({name})") };
-        if entry.frames == 0 {
-            note!("{}: warning: animation {label} moves nothing that a clip holds: left out", input.display());
-            continue;
-        }
-        let chosen = number.to_string();
-        let ambiguous = entries.iter().any(|other| other.name.as_ref() == Some(&chosen));
-        ensure!(!ambiguous, "{}: an animation has the name `{chosen}`, which is another one's number", input.display());
-        let file = file_name(prefix.as_deref(), &name, number);
+    for (number, name) in chosen_animations(input, &entries)? {
+        let file = file_name(prefix.as_deref(), &name, &number);
         let output = if prefix.is_some() { output.with_file_name(file) } else { output.join(file) };
         let mut task = arguments.for_file(input.clone(), output);
-        task.animation = Some(chosen);
+        names.push(animation_label(&number, &name));
+        task.animation = Some(number);
         tasks.push(task);
-        names.push(label);
     }
-    ensure!(!tasks.is_empty(), "{}: no animation, so nothing moves", input.display());
     one_clip_each(&tasks, |task| format!("animation {}", task.animation.as_deref().unwrap_or_default()))?;
     convert_all(arguments, &tasks, &names, None)
 }
 
 /// `PREFIX-NAME.ptn`, or `NAME.ptn` in a folder. What a file system or a shell would read as more than a letter becomes `_`; an
 /// animation without a name has its number.
-pub(super) fn file_name(prefix: Option<&OsStr>, name: &str, number: usize) -> OsString {
+pub(super) fn file_name(prefix: Option<&OsStr>, name: &str, number: &str) -> OsString {
     let safe = |c: char| if c.is_alphanumeric() || "-_+=() .".contains(c) { c } else { '_' };
     let mut clean: String = name.chars().map(safe).take(LONGEST_NAME).collect::<String>().trim_matches([' ', '.', '-']).into();
     if clean.is_empty() {
-        clean = number.to_string();
+        clean = number.into();
     }
     let device = ["con", "prn", "aux", "nul"].contains(&clean.to_lowercase().as_str())
         || ["com", "lpt"].iter().any(|port| clean.to_lowercase().strip_prefix(port).is_some_and(|rest| rest.len() == 1));
@@ -169,6 +159,35 @@ fn one_clip_each(tasks: &[Arguments], label: impl Fn(&Arguments) -> String) -> R
     Ok(())
 }
 
+/// Refuses an output of many that is there and is no regular file: a pipe would wait for a reader.
+pub(super) fn regular(output: &Path) -> Result<()> {
+    let regular = output.metadata().map_or(true, |found| found.is_file());
+    ensure!(regular, "{}: no regular file; move it away, or choose another folder", output.display());
+    Ok(())
+}
+
+fn animation_label(number: &str, name: &str) -> String {
+    if name.is_empty() { number.into() } else { format!("{number} ({name})") }
+}
+
+/// The animations of a file that move something, by number and name. Fails if a name is another one's number, which would choose it.
+pub(super) fn chosen_animations(input: &Path, entries: &[import::list::Entry]) -> Result<Vec<(String, String)>> {
+    let mut chosen = Vec::new();
+    for (number, entry) in entries.iter().enumerate() {
+        let (number, name) = (number.to_string(), entry.name.clone().unwrap_or_default());
+        if entry.frames == 0 {
+            let label = animation_label(&number, &name);
+            note!("{}: warning: animation {label} moves nothing that a clip holds: left out", input.display());
+            continue;
+        }
+        let ambiguous = entries.iter().any(|other| other.name.as_ref() == Some(&number));
+        ensure!(!ambiguous, "{}: an animation has the name `{number}`, which is another one's number", input.display());
+        chosen.push((number, name));
+    }
+    ensure!(!chosen.is_empty(), "{}: no animation, so nothing moves", input.display());
+    Ok(chosen)
+}
+
 /// Refuses outputs that are one of the sources by a link, or that are no regular files.
 fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     let mut sources = HashMap::new();
@@ -179,8 +198,10 @@ fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     sources.remove(&None);
     for task in tasks {
         let output = task.output();
-        let Ok(found) = output.metadata() else { continue };
-        ensure!(found.is_file(), "{}: no regular file; move it away, or choose another folder", output.display());
+        if output.metadata().is_err() {
+            continue;
+        }
+        regular(output)?;
         if let Some(source) = sources.get(&identity(output)) {
             bail!("{}: is the input {} itself; choose another folder for the clips", output.display(), source.display());
         }

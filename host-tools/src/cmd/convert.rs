@@ -249,12 +249,19 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// Prints proposals for --from and --to.
 fn find_loop(arguments: &Arguments) -> Result<()> {
+    ensure!(
+        arguments.output.is_none() && arguments.rig_out.is_none(),
+        "--find-loop writes no file: leave --output and --rig-out out"
+    );
     let place = || arguments.input.display().to_string();
     let options = arguments.import_options();
     let imported = import::load(&arguments.input, &options)?;
     imported.warnings.iter().for_each(|warning| note!("warning: {warning}"));
     let motion = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?.motion;
-    let cuts = find_loop::find(&motion).with_context(place)?;
+    let mut cuts = find_loop::find(&motion).with_context(place)?;
+    // Frames count as those of --from and --to do: before the cut.
+    let first = arguments.edits.first_frame(motion.frame_time);
+    cuts.iter_mut().for_each(|cut| (cut.from, cut.to) = (cut.from + first, cut.to + first));
     let seconds = |cut: &Cut| (cut.to - cut.from) as f64 * motion.frame_time;
     if output::is_json() {
         let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "joint": cut.joint, "seconds": seconds(cut)});

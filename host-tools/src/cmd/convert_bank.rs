@@ -3,6 +3,7 @@
 use super::bank::said;
 use super::batch;
 use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
+use crate::budget;
 use crate::encode::bank::{self, Named};
 use crate::encode::same_rig::difference;
 use crate::import::{self, list};
@@ -10,6 +11,7 @@ use crate::output::{self, Wanted, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One clip of the bank to be.
 struct Task {
@@ -27,7 +29,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let inputs: Vec<&Path> = tasks.iter().flat_map(|task| task.arguments.inputs()).collect();
     output::check(&inputs, &[output])?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
-    let prepare = |task: &Task| prepare(&task.arguments);
+    let held = AtomicUsize::new(0);
+    let prepare = |task: &Task| {
+        let prepared = prepare(&task.arguments)?;
+        let values = prepared.motion.frames * (prepared.motion.rig.channels() + 1);
+        budget::check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
+        Ok(prepared)
+    };
     let mut prepared: Vec<Prepared> =
         pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
     agree_on_up(&mut prepared, arguments.up_is_given())?;
@@ -94,17 +102,14 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
     if arguments.animation.as_deref() == Some("all") {
         ensure!(arguments.more.is_empty() && !input.is_dir(), "--animation all takes one file");
         let entries = list::list(input, arguments.fps())?;
-        let moving = entries.into_iter().enumerate().filter(|(_, entry)| entry.frames > 0);
-        let tasks = moving.map(|(number, entry)| {
-            let name = entry.name.filter(|name| !name.is_empty()).unwrap_or_else(|| number.to_string());
+        let tasks = batch::chosen_animations(input, &entries)?.into_iter().map(|(number, name)| {
+            let name = if name.is_empty() { number.clone() } else { name };
             let label = format!("{}: animation {name}", input.display());
             let mut task = task(input.clone(), name, label);
-            task.arguments.animation = Some(number.to_string());
+            task.arguments.animation = Some(number);
             task
         });
-        let tasks: Vec<Task> = tasks.collect();
-        ensure!(!tasks.is_empty(), "{}: no animation, so nothing moves", input.display());
-        return Ok(tasks);
+        return Ok(tasks.collect());
     }
     let (base, inputs) = if input.is_dir() {
         ensure!(arguments.more.is_empty(), "{}: a folder; convert a folder in a command of its own", input.display());

@@ -89,6 +89,11 @@ pub struct Edited {
 }
 
 impl Edits {
+    /// The frame from which the motion is kept.
+    pub fn first_frame(&self, frame_time: f64) -> usize {
+        self.from.map_or(0, |moment| moment.nearest(frame_time))
+    }
+
     /// Adds the footsteps, if they are asked for, to a motion after all other edits; a sentence about them.
     pub fn add_footsteps(&self, motion: &mut Motion) -> Result<Option<String>> {
         if !self.footsteps {
@@ -132,7 +137,12 @@ impl Edits {
         }
         if self.from.is_some() || self.to.is_some() {
             let frame = |moment: Moment| moment.nearest(motion.frame_time);
+            let before = motion.events.len();
             motion = cut(&motion, self.from.map(frame), self.to.map(frame))?;
+            let left_out = before - motion.events.len();
+            if left_out > 0 {
+                said.push(format!("events: {left_out} of {before} are not between --from and --to"));
+            }
         }
         if !self.joints.is_empty() || !self.drop.is_empty() {
             motion = pick(&motion, &self.joints, &self.drop)?;

@@ -108,6 +108,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Format::Bvh | Format::Csv => 2 * values,
     };
     output::check_size(output, least)?;
+    if clip.event_count() > 0 && !matches!(format, Format::H | Format::Rs) {
+        note!("{}: {} events are left out: this kind of file holds none here", output.display(), clip.event_count());
+    }
     let mut out = Staged::create(output)?;
     match format {
         Format::Bvh => export::bvh::write(&expanded, Columns::ThreeRotations, &mut out).with_context(place)?,

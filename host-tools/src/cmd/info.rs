@@ -105,7 +105,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             );
         }
         if !events.is_empty() {
-            outln!("\n{:>7} {:>9}  event", "frame", "seconds")?;
+            outln!("")?;
+            outln!("{:>7} {:>9}  event", "frame", "seconds")?;
         }
         for event in &events {
             outln!("{:7} {:9.3}  {}", event.frame, seconds(event.frame), clean(&event.name))?;

@@ -54,7 +54,8 @@ fn check_read(files: &import::Files, outputs: &[&Path]) -> Result<()> {
 /// Refuses a motion whose fit takes more memory than the limit; `files` are what it was read from.
 fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()> {
     let read = files.read_so_far().iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
-    budget::check_fit(motion.frames, motion.rig.channels(), level.plan(SHOWN_CM).effort.beam, read)
+    let size = [motion.rig.joints.len(), motion.rig.channels()];
+    budget::check_fit(motion.frames, size, level.plan(SHOWN_CM).effort.beam, read)
 }
 
 /// The name of an output that the user does not name: the input's, with another extension. Fails if there is a file of that name.

@@ -4,6 +4,7 @@
 //! it. A stretch in which less happens than in the whole motion is no candidate: standing still is a perfect loop.
 
 use super::loop_seam::places_root;
+use crate::budget;
 use crate::fk::positions;
 use crate::motion::Motion;
 use anyhow::{Result, ensure};
@@ -35,6 +36,7 @@ pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
     ensure!(!motion.rig.joints.is_empty(), "--find-loop: the motion has no joints");
     ensure!(motion.frames > shortest + 1, "--find-loop: {} frames; expected more than {}", motion.frames, shortest + 1);
+    budget::check_numbers(3 * motion.frames * motion.rig.joints.len(), "the places of all joints")?;
     let values = on_the_spot(motion);
     let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| positions(&motion.rig, &values, frame)).collect();
     let apart = |a: usize, b: usize| greatest(&poses[a], &poses[b]);

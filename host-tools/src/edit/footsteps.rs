@@ -5,6 +5,7 @@
 //! its points is planted, but for moments shorter than a person can step.
 
 use super::sides::{Side, parts};
+use crate::budget;
 use crate::fk::positions;
 use crate::motion::{Event, Motion};
 use anyhow::{Result, ensure};
@@ -33,6 +34,7 @@ pub fn footsteps(motion: &Motion) -> Result<Vec<Event>> {
         left.is_some() || right.is_some(),
         "--footsteps: no joint is named as a left or a right foot, ankle or toe, as in LeftFoot, Foot_L or lfoot"
     );
+    budget::check_numbers(3 * motion.frames * motion.rig.joints.len(), "the places of all joints")?;
     let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| positions(&motion.rig, &motion.values, frame)).collect();
     let mut events = Vec::new();
     let feet: Vec<(usize, &str)> = left

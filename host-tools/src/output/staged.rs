@@ -114,6 +114,8 @@ pub fn commit(staged: Vec<Staged>) -> Result<()> {
         }
         whole.push((path, bytes, file, _name));
     }
+    // A signal waits until all of them are in place, and the second names of those before are gone.
+    let _together = IN_PLACE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut done: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
     for (path, bytes, file, _name) in whole {
         let replaced = (|| {
@@ -165,6 +167,9 @@ fn roll_back(done: Vec<(PathBuf, Option<TempPath>)>) {
 /// Temporary names that exist now.
 static NAMES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
+/// Held while outputs that belong together replace those before them.
+static IN_PLACE: Mutex<()> = Mutex::new(());
+
 /// A temporary name that a signal removes.
 struct Registered(PathBuf);
 
@@ -196,6 +201,7 @@ fn remove_on_signals() {
             let Ok(mut signals) = signal_hook::iterator::Signals::new(signals) else { return };
             std::thread::spawn(move || {
                 for signal in signals.forever() {
+                    let _whole = IN_PLACE.lock().unwrap_or_else(PoisonError::into_inner);
                     for name in NAMES.lock().unwrap_or_else(PoisonError::into_inner).iter() {
                         // Nobody is left to be told.
                         let _ = fs::remove_file(name);

@@ -154,3 +154,50 @@ fn motions_become_a_bank_in_one_step() {
     assert!(wrong.contains("another rig than") || wrong.contains("walk.keys"), "{wrong}");
     assert_eq!(std::fs::read(folder.path().join("moves.ptb")).unwrap(), before);
 }
+
+#[test]
+fn unpacking_refuses_what_is_too_much_and_what_would_wait() {
+    let cuts = cuts();
+    let folder = cuts.path();
+    succeeds(folder, &["pack", "begin.ptn", "middle.ptn", "end.ptn", "-o", "moves.ptb"]);
+    // Each clip is shorter, all of them together are not.
+    let wrong = refusal(folder, &["unpack", "moves.ptb", "-o", "clips", "--max-output", "1000"]);
+    assert!(wrong.contains("--max-output") && !folder.join("clips").exists(), "{wrong}");
+    let wrong = refusal(folder, &["pack", "begin.ptn", "--rig", "middle.ptn", "-o", "again.ptb"]);
+    assert!(!folder.join("again.ptb").exists(), "{wrong}");
+    if cfg!(unix) {
+        std::fs::create_dir(folder.join("clips")).unwrap();
+        assert!(Command::new("mkfifo").arg(folder.join("clips/middle.ptn")).status().unwrap().success());
+        let wrong = refusal(folder, &["unpack", "moves.ptb", "-o", "clips"]);
+        assert!(wrong.contains("no regular file") && !folder.join("clips/begin.ptn").exists(), "{wrong}");
+    }
+}
+
+#[test]
+fn an_animation_named_as_another_ones_number_makes_no_bank() {
+    let folder = tempfile::tempdir().unwrap();
+    let animation = |name: &str, node: u32| {
+        format!(
+            r#"{{"name":"{name}","samplers":[{{"input":0,"output":1}}],"channels":[{{"sampler":0,"target":{{"node":{node},"path":"translation"}}}}]}}"#
+        )
+    };
+    // Two times and two places.
+    let mut bytes: Vec<u8> = [0.0f32, 1.0].iter().flat_map(|time| time.to_le_bytes()).collect();
+    bytes.extend([0.0f32, 0.0, 0.0, 9.0, 0.0, 0.0].iter().flat_map(|x| x.to_le_bytes()));
+    std::fs::write(folder.path().join("a.bin"), bytes).unwrap();
+    let gltf = |names: [&str; 2]| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"name":"a","children":[1]}},{{"name":"b","translation":[0,50,0]}}],
+            "buffers":[{{"uri":"a.bin","byteLength":32}}],"bufferViews":[{{"buffer":0,"byteLength":8}},{{"buffer":0,"byteOffset":8,"byteLength":24}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]}},
+            {{"bufferView":1,"componentType":5126,"count":2,"type":"VEC3"}}],"animations":[{},{}]}}"#,
+            animation(names[0], 0),
+            animation(names[1], 0)
+        )
+    };
+    std::fs::write(folder.path().join("a.gltf"), gltf(["x", "y"])).unwrap();
+    succeeds(folder.path(), &["convert", "a.gltf", "--animation", "all", "-o", "a.ptb"]);
+    std::fs::write(folder.path().join("a.gltf"), gltf(["1", "0"])).unwrap();
+    let wrong = refusal(folder.path(), &["convert", "a.gltf", "--animation", "all", "-o", "b.ptb"]);
+    assert!(wrong.contains("another one's number"), "{wrong}");
+}

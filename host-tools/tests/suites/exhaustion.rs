@@ -249,12 +249,21 @@ fn what_is_admitted_takes_no_more_than_the_limit() {
         let (mask, values) = (["1"; 68].join(" "), ["1"; 76].join(" "));
         format!("2.1 x 25 {frames}\n{mask}\n0 {values}\n").into_bytes()
     };
-    let cases: [(&str, u32, Make); 5] = [
+    // Joints without channels have places too.
+    let bones = |frames: u32| {
+        let mut text = proc(frames, 1);
+        let at = text.find("j0.").unwrap();
+        let bones: String = (1..150).map(|joint| format!("joint j{joint} parent j{} offset 0 1 0\n", joint - 1)).collect();
+        text.insert_str(at, &bones);
+        text.into_bytes()
+    };
+    let cases: [(&str, u32, Make); 6] = [
         ("a.csv", 4096, Box::new(row)),
         ("a.fap", 512, Box::new(fap)),
         ("scalar.proc", 2048, Box::new(|frames| proc(frames, 0).into_bytes())),
         ("joint.proc", 2048, Box::new(|frames| proc(frames, 1).into_bytes())),
         ("joints.proc", 256, Box::new(|frames| proc(frames, 8).into_bytes())),
+        ("bones.proc", 32, Box::new(bones)),
     ];
     for (name, least, make) in cases {
         for effort in ["fast", "default"] {

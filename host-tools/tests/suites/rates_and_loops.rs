@@ -91,6 +91,12 @@ fn the_best_loop_of_a_motion_is_found() {
     assert!(from >= 20 && (to - from) % 25 == 0, "{best}");
     assert!(best["seam_cm"].as_f64().unwrap() < 0.01, "{best}");
     assert!(!motion.with_extension("ptn").exists(), "nothing is written");
+    // Of a cut, frames count as --from and --to do.
+    let output = convert(&motion, &["--find-loop", "--json", "--from", "20"]);
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (later, end) = (found["loops"][0]["from"].as_u64().unwrap(), found["loops"][0]["to"].as_u64().unwrap());
+    assert!(later >= 20 && (end - later) % 25 == 0, "{found}");
+    assert!(!convert(&motion, &["--find-loop", "-o", "a.ptn"]).status.success(), "an output that is not written is refused");
     let cut = ["--from", &from.to_string(), "--to", &to.to_string(), "--loop"].map(str::to_string);
     let bytes = clip(folder.path(), &motion, &cut.each_ref().map(String::as_str));
     assert_eq!(u64::from(Clip::new_checked(&bytes).unwrap().frames()), to - from);
