@@ -1,10 +1,23 @@
 //! Forward kinematics in floating point: where a motion puts every joint.
 
+use crate::budget;
 use crate::motion::{Joint, Kind, Rig};
+use anyhow::Result;
 
 pub(crate) type Matrix = [[f64; 3]; 3];
 
 pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// World positions of all joints at every frame; refused where they take more memory than the limit.
+pub fn all_positions(rig: &Rig, values: &[Vec<f64>], frames: usize) -> Result<Vec<Vec<[f64; 3]>>> {
+    budget::check_numbers(3 * frames * rig.joints.len(), "the places of all joints")?;
+    Ok((0..frames).map(|frame| positions(rig, values, frame)).collect())
+}
+
+/// The distance between two places.
+pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+}
 
 /// World positions in cm of all joints, End Sites included, at `frame`. `values[channel][frame]` are in the rig's units.
 ///

@@ -194,6 +194,19 @@ pub struct Motion {
     pub events: Vec<Event>,
 }
 
+impl Motion {
+    /// The motion without joints, scalars and their values, for an edit that adds those it keeps.
+    pub fn without_figure(&self) -> Motion {
+        Motion {
+            rig: Rig { cm_per_unit: self.rig.cm_per_unit, up: self.rig.up, ..Rig::default() },
+            values: Vec::new(),
+            keys: Vec::new(),
+            events: self.events.clone(),
+            ..*self
+        }
+    }
+}
+
 /// A marker of a moment: a footfall, a sound.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {

@@ -35,9 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ensure!(arguments.output.is_some(), "{}: a folder; --output names the folder for its clips", from.display());
     ensure!(arguments.rig_out.is_none(), "--rig-out names one file, so it goes with one motion");
     ensure!(!to.is_file(), "{}: a file; a folder's clips need a folder", to.display());
-    let mut found = Found::default();
-    found.look(from, to)?;
-    ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", from.display(), found.others);
+    let found = Found::below(from, to)?;
     let tasks = with_options_that_apply(arguments, tasks(arguments, &found.motions)?)?;
     let label = |task: &Arguments| task.input.strip_prefix(from).unwrap_or(&task.input).display().to_string();
     let labels: Vec<String> = tasks.iter().map(label).collect();
@@ -198,9 +196,6 @@ fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     sources.remove(&None);
     for task in tasks {
         let output = task.output();
-        if output.metadata().is_err() {
-            continue;
-        }
         regular(output)?;
         if let Some(source) = sources.get(&identity(output)) {
             bail!("{}: is the input {} itself; choose another folder for the clips", output.display(), source.display());
@@ -264,10 +259,7 @@ fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], ot
 
 /// The motion files in and below a folder, in the order of names.
 pub(super) fn motions(folder: &Path) -> Result<Vec<PathBuf>> {
-    let mut found = Found::default();
-    found.look(folder, Path::new(""))?;
-    ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", folder.display(), found.others);
-    Ok(found.motions)
+    Ok(Found::below(folder, Path::new(""))?.motions)
 }
 
 /// What a folder holds.
@@ -278,6 +270,14 @@ struct Found {
 }
 
 impl Found {
+    /// What is in and below `folder`, but for the folder `to` that is written. Fails if that is no motion.
+    fn below(folder: &Path, to: &Path) -> Result<Found> {
+        let mut found = Found::default();
+        found.look(folder, to)?;
+        ensure!(!found.motions.is_empty(), "{}: no motion files in it; {} others", folder.display(), found.others);
+        Ok(found)
+    }
+
     /// Looks in `folder` and below it, in the order of names; not in `skip`, where the clips go, nor behind links to folders.
     fn look(&mut self, folder: &Path, skip: &Path) -> Result<()> {
         let entries = fs::read_dir(folder).with_context(|| folder.display().to_string())?;

@@ -39,11 +39,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut prepared: Vec<Prepared> =
         pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
     agree_on_up(&mut prepared, arguments.up_is_given())?;
-    for (task, other) in tasks.iter().zip(&prepared).skip(1) {
-        if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(|| task.label.clone())? {
-            bail!("{}: another rig than {}: {difference}; a bank holds clips of one rig", task.label, tasks[0].label);
-        }
-    }
+    let labels: Vec<String> = tasks.iter().map(|task| task.label.clone()).collect();
+    of_one_rig(&prepared, &labels, "a bank holds clips of one rig")?;
     let shared = arguments.same_form.then(|| shared_coding(&prepared, arguments));
     let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} clips {eta} left")?;
     let code = |(task, prepared): (&Task, &Prepared)| {
@@ -88,6 +85,16 @@ pub fn agree_on_up(prepared: &mut [Prepared], given: bool) -> Result<()> {
     note!("up: {others} of {} motions look as if another axis were up; all take {}", prepared.len(), import::up::text(most));
     for prepared in prepared {
         prepared.set_up(most)?;
+    }
+    Ok(())
+}
+
+/// Refuses motions of different rigs; `why` says what needs one.
+pub fn of_one_rig(prepared: &[Prepared], labels: &[String], why: &str) -> Result<()> {
+    for (label, other) in labels.iter().zip(prepared).skip(1) {
+        if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(|| label.clone())? {
+            bail!("{label}: another rig than {}: {difference}; {why}", labels[0]);
+        }
     }
     Ok(())
 }

@@ -1,8 +1,7 @@
 //! `pantin convert A B C --same-form -o FOLDER`: clips of one rig which one figure renderer plays in turn.
 
 use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
-use super::convert_bank::agree_on_up;
-use crate::encode::same_rig::difference;
+use super::convert_bank::{agree_on_up, of_one_rig};
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::{Value, json};
@@ -19,12 +18,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let tasks = tasks(arguments)?;
     let mut prepared = tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?;
     agree_on_up(&mut prepared, arguments.up_is_given())?;
-    for (task, other) in tasks.iter().zip(&prepared).skip(1) {
-        let place = || task.input.display().to_string();
-        if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(place)? {
-            bail!("{}: another rig than {}: {difference}; --same-form needs one rig", place(), tasks[0].input.display());
-        }
-    }
+    let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
+    of_one_rig(&prepared, &labels, "--same-form needs one rig")?;
     let coding = shared_coding(&prepared, arguments);
     let code = |(task, prepared): (&Arguments, &Prepared)| prepared.code(task, &coding);
     let made = tasks.iter().zip(&prepared).map(code).collect::<Result<Vec<_>>>()?;

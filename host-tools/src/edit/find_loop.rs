@@ -4,8 +4,7 @@
 //! it. A stretch in which less happens than in the whole motion is no candidate: standing still is a perfect loop.
 
 use super::loop_seam::places_root;
-use crate::budget;
-use crate::fk::positions;
+use crate::fk::{all_positions, distance};
 use crate::motion::Motion;
 use anyhow::{Result, ensure};
 
@@ -36,9 +35,7 @@ pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
     ensure!(!motion.rig.joints.is_empty(), "--find-loop: the motion has no joints");
     ensure!(motion.frames > shortest + 1, "--find-loop: {} frames; expected more than {}", motion.frames, shortest + 1);
-    budget::check_numbers(3 * motion.frames * motion.rig.joints.len(), "the places of all joints")?;
-    let values = on_the_spot(motion);
-    let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| positions(&motion.rig, &values, frame)).collect();
+    let poses = all_positions(&motion.rig, &on_the_spot(motion), motion.frames)?;
     let apart = |a: usize, b: usize| greatest(&poses[a], &poses[b]);
     // The movement up to each frame.
     let mut moved = vec![0.0; motion.frames];
@@ -91,15 +88,11 @@ fn on_the_spot(motion: &Motion) -> Vec<Vec<f64>> {
     motion.values.iter().enumerate().map(still).collect()
 }
 
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
-}
-
 fn greatest(a: &[[f64; 3]], b: &[[f64; 3]]) -> (f64, usize) {
-    let apart = a.iter().zip(b).map(|(a, b)| distance(a, b)).enumerate();
+    let apart = a.iter().zip(b).map(|(a, b)| distance(*a, *b)).enumerate();
     apart.map(|(joint, cm)| (cm, joint)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
 fn mean(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| distance(a, b)).sum::<f64>() / a.len().max(1) as f64
+    a.iter().zip(b).map(|(a, b)| distance(*a, *b)).sum::<f64>() / a.len().max(1) as f64
 }

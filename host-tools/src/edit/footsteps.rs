@@ -5,8 +5,7 @@
 //! its points is planted, but for moments shorter than a person can step.
 
 use super::sides::{Side, parts};
-use crate::budget;
-use crate::fk::positions;
+use crate::fk::{all_positions, distance};
 use crate::motion::{Event, Motion};
 use anyhow::{Result, ensure};
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
@@ -34,8 +33,7 @@ pub fn footsteps(motion: &Motion) -> Result<Vec<Event>> {
         left.is_some() || right.is_some(),
         "--footsteps: no joint is named as a left or a right foot, ankle or toe, as in LeftFoot, Foot_L or lfoot"
     );
-    budget::check_numbers(3 * motion.frames * motion.rig.joints.len(), "the places of all joints")?;
-    let poses: Vec<Vec<[f64; 3]>> = (0..motion.frames).map(|frame| positions(&motion.rig, &motion.values, frame)).collect();
+    let poses = all_positions(&motion.rig, &motion.values, motion.frames)?;
     let mut events = Vec::new();
     let feet: Vec<(usize, &str)> = left
         .into_iter()
@@ -158,10 +156,6 @@ fn starts(motion: &Motion, down: &[bool]) -> Vec<usize> {
         frame => down[frame - 1],
     };
     (0..down.len()).filter(|&frame| down[frame] && !before(frame)).collect()
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 
 use crate::euler;
 use crate::fit::bounds::Bounds;
-use crate::fk::{local, positions};
+use crate::fk::{distance, local, positions};
 use crate::motion::{Kind, Motion};
 use anyhow::{Result, bail, ensure};
 
@@ -173,10 +173,6 @@ fn seam(motion: &Motion, travel: &[(usize, f64)]) -> (f64, usize) {
 fn greatest(distances: impl Iterator<Item = f64>) -> (f64, usize) {
     let indexed = distances.enumerate().map(|(index, distance)| (distance, index));
     indexed.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
 fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) -> Result<()> {

@@ -19,13 +19,7 @@ pub fn mirror(motion: &Motion) -> Result<Motion> {
         pairs.iter().enumerate().any(|(index, &pair)| index != pair) || scalar_parts.iter().any(|part| part.side.is_some());
     ensure!(sided, "--mirror: no names tell left from right, as LeftArm and RightArm, Arm_L and Arm_R or larm and rarm do");
     let firsts = rig.first_channels();
-    let mut out = Motion {
-        rig: Rig { cm_per_unit: rig.cm_per_unit, up: rig.up, ..Rig::default() },
-        values: Vec::new(),
-        keys: Vec::new(),
-        events: motion.events.clone(),
-        ..*motion
-    };
+    let mut out = motion.without_figure();
     for (joint, &pair) in rig.joints.iter().zip(&pairs) {
         let source = &rig.joints[pair];
         let [x, y, z] = source.offset;

@@ -11,13 +11,7 @@ pub fn pick(motion: &Motion, keep: &[String], drop: &[String]) -> Result<Motion>
     let rig = &motion.rig;
     let kept = Choice::new(rig, keep, drop)?;
     let needed = needed(rig, &kept.joints);
-    let mut out = Motion {
-        rig: Rig { cm_per_unit: rig.cm_per_unit, up: rig.up, ..Rig::default() },
-        values: Vec::new(),
-        keys: Vec::new(),
-        events: motion.events.clone(),
-        ..*motion
-    };
+    let mut out = motion.without_figure();
     let mut places = vec![None; rig.joints.len()];
     let firsts = rig.first_channels();
     for (index, joint) in rig.joints.iter().enumerate().filter(|&(index, _)| needed[index]) {

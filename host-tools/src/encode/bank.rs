@@ -1,6 +1,6 @@
 //! Banks: clips of one rig in one file (decoder/FORMAT.md section 16), and clips with and without their rig.
 
-use super::clip::{blocks_len, put_blocks};
+use super::clip::assembled;
 use super::{index, same_rig, varint};
 use crate::encode::rig;
 use anyhow::{Context, Result, bail, ensure};
@@ -148,19 +148,7 @@ fn converted(file: &[u8], rig: &[u8], whole: bool) -> Result<Vec<u8>> {
     let spacing = (!parts.index.is_empty()).then(|| number(&payload(parts.index))).flatten().map(|(spacing, _)| spacing);
     let flags = parts.flags & !(HAS_RIG | HAS_INDEX) | if whole { HAS_RIG } else { 0 };
     let file = |flags: u8, index: Option<&[u8]>| {
-        let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
-        if whole {
-            varint::put(&mut out, rig.len() as u32);
-            out.extend_from_slice(rig);
-        }
-        let len = blocks_len(motion.len()) as u32;
-        varint::put(&mut out, len);
-        let last = put_blocks(&mut out, &motion, crc::of_prefix(flags, len));
-        if let Some(index) = index {
-            let len = blocks_len(index.len()) as u32;
-            varint::put(&mut out, len);
-            put_blocks(&mut out, index, pantin::codec::index_seed(last, len));
-        }
+        let mut out = assembled(flags, rig, &motion, index);
         out.extend_from_slice(parts.names);
         out
     };

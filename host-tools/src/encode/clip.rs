@@ -129,20 +129,7 @@ fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<
     let mut gathered = Symbols::default();
     symbols(coded, &parsed, &mut gathered);
     payload.extend(gathered.finish());
-    let len = blocks_len(payload.len());
-
-    let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
-    if !apart {
-        varint::put(&mut out, rig.len() as u32);
-        out.extend_from_slice(rig);
-    }
-    varint::put(&mut out, len as u32);
-    let last = put_blocks(&mut out, &payload, crc::of_prefix(flags, len as u32));
-    if let Some(index) = index {
-        let len = blocks_len(index.len()) as u32;
-        varint::put(&mut out, len);
-        put_blocks(&mut out, index, pantin::codec::index_seed(last, len));
-    }
+    let mut out = assembled(flags, rig, &payload, index);
     if flags & HAS_EVENT_NAMES != 0 {
         let mut names = Vec::new();
         coded.event_names.iter().for_each(|name| varint::put_name(&mut names, name));
@@ -151,6 +138,24 @@ fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<
         out.extend_from_slice(&names);
     }
     Ok(out)
+}
+
+/// A file up to its names of events: the rig is part of it if the flags say so, motion and index are payloads.
+pub fn assembled(flags: u8, rig: &[u8], motion: &[u8], index: Option<&[u8]>) -> Vec<u8> {
+    let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
+    if flags & HAS_RIG != 0 {
+        varint::put(&mut out, rig.len() as u32);
+        out.extend_from_slice(rig);
+    }
+    let len = blocks_len(motion.len()) as u32;
+    varint::put(&mut out, len);
+    let last = put_blocks(&mut out, motion, crc::of_prefix(flags, len));
+    if let Some(index) = index {
+        let len = blocks_len(index.len()) as u32;
+        varint::put(&mut out, len);
+        put_blocks(&mut out, index, pantin::codec::index_seed(last, len));
+    }
+    out
 }
 
 /// Bytes of `payload` bytes in blocks.
