@@ -3,29 +3,30 @@
 #![no_std]
 #![no_main]
 
+#[path = "../measured.rs"]
+#[macro_use]
+mod measured;
+
 use core::hint::black_box;
 
-use pantin::{ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
+use measured::lent;
+use pantin::{ChannelState, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     loop {
-        play(black_box(&[]), black_box(&mut []), black_box(&mut []));
-        stream(black_box(&[]), black_box(&mut []), black_box(&mut []), black_box(&mut []));
+        play(lent(), lent(), lent());
+        stream(lent(), lent(), lent(), lent());
     }
 }
 
-#[inline(never)]
-fn play(bytes: &[u8], states: &mut [ChannelState], pose: &mut [i32]) {
-    let Ok(clip) = Clip::new_checked(bytes) else { return };
-    let Ok(mut player) = Player::new(clip, states, pose) else { return };
-    let (undo, marks): (&mut [Undo], &mut [SnapshotPos]) = (black_box(&mut []), black_box(&mut []));
-    let mut memory = SeekCache::new(&player, undo, marks, black_box(&mut []), black_box(&mut []));
+play! { player:
+    let (undo, marks): (&mut [Undo], &mut [SnapshotPos]) = (lent(), lent());
+    let mut memory = SeekCache::new(&player, undo, marks, lent(), lent());
     player.step();
     player.seek(black_box(7));
     player.step_with(&mut memory);
     player.step_back(&mut memory);
-    black_box(player.pose().values);
 }
 
 #[inline(never)]
@@ -36,9 +37,4 @@ fn stream(bytes: &[u8], buffer: &mut [u8], states: &mut [ChannelState], pose: &m
         black_box(stream.feed(bytes));
     }
     black_box(stream.pose().values);
-}
-
-#[panic_handler]
-fn panic(_info: &core::panic::PanicInfo) -> ! {
-    loop {}
 }

@@ -2,26 +2,19 @@
 #![no_std]
 #![no_main]
 
-use core::hint::black_box;
+#[path = "../measured.rs"]
+#[macro_use]
+mod measured;
 
-use pantin::{ChannelState, Clip, Player};
+use measured::lent;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     loop {
-        play(black_box(&[]), black_box(&mut []), black_box(&mut []));
+        play(lent(), lent(), lent());
     }
 }
 
-#[inline(never)]
-fn play(bytes: &[u8], states: &mut [ChannelState], pose: &mut [i32]) {
-    let Ok(clip) = Clip::new_checked(bytes) else { return };
-    let Ok(mut player) = Player::new(clip, states, pose) else { return };
+play! { player:
     player.step();
-    black_box(player.pose().values);
-}
-
-#[panic_handler]
-fn panic(_info: &core::panic::PanicInfo) -> ! {
-    loop {}
 }
