@@ -92,6 +92,24 @@ pub(crate) fn from_quaternion(components: [f64; 4]) -> Matrix {
     ]
 }
 
+/// x, y, z, w of a rotation, of length 1.
+pub(crate) fn quaternion(m: &Matrix) -> [f64; 4] {
+    let trace = m[0][0] + m[1][1] + m[2][2];
+    let squares = [2.0 * m[0][0] - trace, 2.0 * m[1][1] - trace, 2.0 * m[2][2] - trace, trace];
+    let largest = (0..4).max_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(3);
+    let anti = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
+    let mut q = [0.0; 4];
+    q[largest] = 1.0 + squares[largest];
+    for i in (0..3).filter(|&i| i != largest) {
+        q[i] = if largest == 3 { anti[i] } else { m[largest][i] + m[i][largest] };
+    }
+    if largest < 3 {
+        q[3] = anti[largest];
+    }
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    q.map(|x| x / length)
+}
+
 /// Axis times angle in radians.
 pub(crate) fn from_exponential(vector: [f64; 3]) -> Matrix {
     let angle = vector.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -16,8 +16,8 @@ pub struct ChannelBound {
     /// rotations and in percent per frame^2 for all others. Positions and rotations drift; the command prints by how much
     #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
     max_accel_error: Option<f64>,
-    /// Instead of --max-error: code channels with keys (.keys, glTF's translations and weights) exactly except for rounding: at most 0.006 degrees, or
-    /// 2^-16 of the range that --max-channel-error refers to
+    /// Instead of --max-error: code channels with keys (.keys; glTF's translations and weights, and its CUBICSPLINE rotations as quaternions) exactly except for
+    /// rounding: at most 0.006 degrees, or 2^-16 of the range that --max-channel-error refers to
     #[arg(long, group = "bound")]
     exact: bool,
 }
@@ -31,6 +31,11 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl ChannelBound {
+    /// Whether curves are coded as they are.
+    pub fn is_exact(&self) -> bool {
+        self.exact
+    }
+
     /// The bounds that the flags ask for, if any.
     pub fn bounds(&self, motion: &Motion) -> Result<Option<Bounds>> {
         Ok(match (self.max_channel_error, self.max_accel_error) {

@@ -13,7 +13,7 @@ use crate::errors;
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Constraint;
 use crate::fit::descent::{Level, Plan};
-use crate::fit::parametrize::{Coding, Rotations};
+use crate::fit::parametrize::{Coding, Rotations, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
@@ -151,6 +151,7 @@ impl Arguments {
             // At its own rate first, so that --rate means the frames of the file.
             fps: self.fps.filter(|_| self.edits.rate.is_none()),
             skeleton: self.skeleton.clone(),
+            quaternions: self.channels.is_exact() || self.rotations == Rotations::Quaternion,
             animation: self.animation.clone(),
             files: import::Files::default(),
         }
@@ -367,10 +368,15 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     edited.said.iter().for_each(|sentence| say(sentence));
     arguments.without_effect(&edited.motion).iter().for_each(|sentence| say(sentence));
     let mut motion = edited.motion;
+    if arguments.rotations == Rotations::Quaternion {
+        motion = quaternions(&motion);
+    }
     check_fit(&motion, arguments.effort, &options.files).with_context(place)?;
     let mut bound = match arguments.channels.bounds(&motion)? {
         Some(bounds) => Bound::Channels(bounds),
-        None => Bound::Distance(Distance::of(arguments, &motion).with_context(place)?),
+        None => {
+            Bound::Distance(Distance::of(arguments, &motion).and_then(|bound| bound.less(imported.error_cm)).with_context(place)?)
+        }
     };
     if arguments.edits.looped {
         let closed = bound.close(&motion).with_context(place)?;
@@ -457,6 +463,16 @@ impl Distance {
             mean_cm.unwrap_or_default()
         );
         Ok(Distance { max_cm, mean_cm, scalar_part: arguments.max_scalar_error.unwrap_or(MAX_SCALAR_PERCENT) / 100.0 })
+    }
+
+    /// What is left of the bound for a motion whose joints are `error_cm` from where the file has them: no joint is farther than all of it from the
+    /// file.
+    fn less(self, error_cm: f64) -> Result<Distance> {
+        ensure!(
+            error_cm == 0.0 || error_cm < 0.5 * self.mean_cm.unwrap_or(self.max_cm),
+            "the file is only known within {error_cm:e} cm, which is too much of the bound"
+        );
+        Ok(Distance { max_cm: self.max_cm - error_cm, mean_cm: self.mean_cm.map(|mean| mean - error_cm), ..self })
     }
 
     fn plan(&self, effort: Level) -> Plan {

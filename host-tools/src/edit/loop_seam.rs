@@ -141,6 +141,15 @@ fn differences(motion: &Motion) -> Vec<f64> {
             let near = euler::near(&turn, [axes[0], axes[1], axes[2]], before);
             (0..3).for_each(|n| steps[first + slots[n]] = near[n] - before[n]);
         }
+        // A quaternion turns like its opposite: to the nearer one.
+        let ends = |slot: usize| [0, last].map(|frame| motion.values[first + slot][frame]);
+        let parts = (0..joint.kinds.len()).filter(|&slot| joint.kinds[slot].is_quaternion());
+        let parts: Vec<usize> = parts.collect();
+        let along: f64 = parts.iter().map(|&slot| ends(slot)[0] * ends(slot)[1]).sum();
+        for slot in parts.into_iter().filter(|_| along < 0.0) {
+            let [from, to] = ends(slot);
+            steps[first + slot] = -from - to;
+        }
     }
     steps
 }

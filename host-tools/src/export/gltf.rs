@@ -3,8 +3,7 @@
 //! Lengths are metres, as glTF has it. A skin names the joints, so that readers make an armature of them. Scalars become the morph weights of a mesh of one point, whose targets bear their names: any
 //! reader of morph weights finds them. End Sites are nodes called like their parents, with `/end` behind.
 
-use crate::fk::local;
-use crate::import::gltf::quaternion;
+use crate::fk::{local, quaternion};
 use crate::motion::Motion;
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};

@@ -34,7 +34,7 @@ impl Bounds {
             let still = values.iter().all(|value| *value == values[0]);
             ensure!(
                 still || keys.is_some(),
-                "channel {} moves and has no keys; exact coding needs a source with keys for every moving channel (.keys, or glTF without sampled rotations)",
+                "channel {} moves and has no keys; exact coding needs a source with keys for every moving channel (.keys, or glTF whose rotations are CUBICSPLINE or STEP)",
                 motion.rig.channel_name(channel)
             );
         }

@@ -2,7 +2,7 @@
 
 use super::figure::exponential_near;
 use super::raw;
-use crate::fk::local;
+use crate::fk::{local, quaternion};
 use crate::motion::{Joint, Kind, Motion, Rig};
 
 /// How joints with three Euler angles about three axes are coded.
@@ -15,12 +15,45 @@ pub enum Rotations {
     Euler,
     /// Use exponential maps where they stay within half a turn
     Exponential,
+    /// Use quaternions, four channels a joint; the rig has them instead of the angles
+    Quaternion,
 }
 
 /// Exponential maps are chosen where they seem this much cheaper.
 const WORTHWHILE: f64 = 0.9;
 /// Their components stay inside half a turn, which an angle holds without wrapping.
 const LARGEST_DEGREES: f64 = 179.0;
+
+/// The same motion with quaternions instead of Euler angles at all joints with three of them, and a sign that keeps each component from jumping.
+pub fn quaternions(motion: &Motion) -> Motion {
+    const KINDS: [Kind; 4] = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion];
+    let mut out = Motion { values: Vec::new(), keys: Vec::new(), ..motion.clone() };
+    let firsts = motion.rig.first_channels();
+    let turning = turning(&motion.rig);
+    for (index, joint) in motion.rig.joints.iter().enumerate() {
+        let turning = turning.iter().find(|turning| turning.joint == index);
+        let mut kinds = Vec::new();
+        for (slot, &kind) in joint.kinds.iter().enumerate() {
+            match turning.filter(|turning| turning.slots.contains(&slot)) {
+                None => {
+                    kinds.push(kind);
+                    out.values.push(motion.values[firsts[index] + slot].clone());
+                    out.keys.push(motion.keys[firsts[index] + slot].clone());
+                }
+                Some(turning) if turning.slots[0] == slot => {
+                    kinds.extend(KINDS);
+                    out.values.extend(turning.quaternions(motion));
+                    out.keys.extend([const { None }; 4]);
+                }
+                Some(_) => {}
+            }
+        }
+        out.rig.joints[index].kinds = kinds;
+    }
+    out.values.extend_from_slice(&motion.values[motion.rig.joint_channels()..]);
+    out.keys.extend_from_slice(&motion.keys[motion.rig.joint_channels()..]);
+    out
+}
 
 /// How a clip codes the values of its rig. One figure renderer plays all clips whose rigs and codings are equal.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -81,7 +114,7 @@ impl Costs {
     fn choose(&self, rotations: Rotations) -> bool {
         let wanted = match rotations {
             Rotations::ByCost => self.exponential < WORTHWHILE * self.euler,
-            Rotations::Euler => false,
+            Rotations::Euler | Rotations::Quaternion => false,
             Rotations::Exponential => true,
         };
         wanted && self.possible
@@ -127,6 +160,21 @@ fn turning(rig: &Rig) -> Vec<Turning> {
 }
 
 impl Turning {
+    /// The joint's rotation at every frame as a quaternion w, x, y, z; of the two that turn alike, the one nearer to that of the frame before.
+    fn quaternions(&self, motion: &Motion) -> [Vec<f64>; 4] {
+        let joint = &motion.rig.joints[self.joint];
+        let mut before = [1.0, 0.0, 0.0, 0.0];
+        let mut out: [Vec<f64>; 4] = Default::default();
+        for frame in 0..motion.frames {
+            let (turn, _) = local(joint, |channel| motion.values[self.first + channel][frame]);
+            let [x, y, z, w] = quaternion(&turn);
+            let along = [w, x, y, z].iter().zip(&before).map(|(a, b)| a * b).sum::<f64>();
+            before = [w, x, y, z].map(|component| if along < 0.0 { -component } else { component });
+            (0..4).for_each(|component| out[component].push(before[component]));
+        }
+        out
+    }
+
     /// The joint's rotation at every frame as an exponential map in degrees.
     fn exponentials(&self, motion: &Motion) -> [Vec<f64>; 3] {
         let joint = &motion.rig.joints[self.joint];

@@ -44,7 +44,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         USUAL_FPS
     });
     let motion = acclaim::motion(&skeleton, &reader.values, reader.frames, 1.0 / fps, &mut warnings);
-    Ok(Source { motion, unit_known: skeleton.cm_per_unit.is_some(), warnings })
+    Ok(Source { motion, unit_known: skeleton.cm_per_unit.is_some(), error: 0.0, warnings })
 }
 
 /// The skeletons in the folder of the motion `path`.

@@ -6,8 +6,8 @@ use crate::motion::Kind;
 
 /// The orders, the usual one first: of equally good ones it is taken.
 const ORDERS: [[usize; 3]; 6] = [[2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 1, 2], [1, 2, 0], [0, 2, 1]];
-/// Angles smaller than this, in degrees, are 0: rotations written as f32 are not better known.
-const NOTHING: f64 = 1e-4;
+/// Angles smaller than this, in degrees, are 0: the step of f32 near 1 turns a quaternion by as much.
+const NOTHING: f64 = 1e-5;
 
 /// Channels of `turns`, a rotation a frame: kinds and angles in degrees that run on past half a turn.
 pub fn channels(turns: &[Matrix]) -> Vec<(Kind, Vec<f64>)> {

@@ -31,7 +31,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let keys = vec![None; values.len()];
     let motion =
         Motion { rig, frame_time: header.frame_time, frames: header.frames, values, keys, looped: false, events: Vec::new() };
-    Ok(Source { motion, unit_known: false, warnings })
+    Ok(Source { motion, unit_known: false, error: 0.0, warnings })
 }
 
 /// A joint whose closing brace is still to come.

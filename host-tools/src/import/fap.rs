@@ -38,7 +38,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     if !reader.given.contains(&true) {
         return Err(reader.error("no mask sets a parameter, so nothing can move"));
     }
-    Ok(Source { motion: reader.motion(header.fps)?, unit_known: false, warnings })
+    Ok(Source { motion: reader.motion(header.fps)?, unit_known: false, error: 0.0, warnings })
 }
 
 struct Header {

@@ -1,21 +1,31 @@
 //! Joints out of a node tree that something else has evaluated: world transforms on the frames become rotations and places.
 //!
 //! A rig's joints turn and move but do not stretch. A node's rotation is the one nearest to its linear part with columns of length 1, so
-//! scales go into the places of the joints below, and every joint stands where the evaluation puts it.
+//! scales go into the places of the joints below, and every joint stands where the evaluation puts it. A scale that changes becomes scalars, too.
 
 use super::grid::Grid;
-use super::{angles, ends};
+use super::{angles, ends, scales};
 use crate::budget;
-use crate::fk::{IDENTITY, Matrix, apply, product};
+use crate::fk::{IDENTITY, Matrix, apply, distance, positions, product};
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar};
 use anyhow::{Result, anyhow, ensure};
 use pantin::codec::layout::MAX_JOINTS;
+
+/// Part of the figure's extent by which a place may waver and still be constant: places are written in f32, whose steps are up to 1.2e-7 of them.
+const STANDS: f64 = 2e-7;
 
 /// Three rows; the last column is the place.
 pub type Affine = [[f64; 4]; 3];
 
 /// Changes nothing.
 pub const UNMOVED: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+
+/// The transform `own` in what `above` transforms.
+pub fn chained(above: &Affine, own: &Affine) -> Affine {
+    let entry =
+        |i: usize, j: usize| (0..3).map(|k| above[i][k] * own[k][j]).sum::<f64>() + if j == 3 { above[i][3] } else { 0.0 };
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}
 
 /// No place of a real figure comes near it.
 const LARGEST: f64 = 1e9;
@@ -69,6 +79,18 @@ pub struct Node {
     pub parent: Option<usize>,
     /// World transform at each frame.
     pub worlds: Vec<Affine>,
+    /// Its own scale at each frame, if something changes it, else nothing.
+    pub scales: Vec<[f64; 3]>,
+}
+
+/// What node trees become.
+pub struct Figure {
+    /// The motion.
+    pub motion: Motion,
+    /// The greatest distance of a joint from where its node's world transform has it, in the source's unit.
+    pub error: f64,
+    /// What was odd, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
@@ -79,20 +101,18 @@ pub fn check_size(joints: usize, scalars: usize, grid: &Grid) -> Result<()> {
         .map_err(|error| anyhow!("{} frames are too many for this figure: {error}; --fps takes fewer", grid.frames))
 }
 
-/// The motion of `nodes` (parents before children) and `scalars`, and what is odd about it. Places that waver by less than `stands` of the figure's extent stand still.
-pub fn motion(
-    nodes: Vec<Node>,
-    scalars: Vec<(Scalar, Vec<f64>)>,
-    grid: &Grid,
-    cm_per_unit: f64,
-    stands: f64,
-) -> Result<(Motion, Option<String>)> {
+/// The motion of `nodes` (parents before children) and `scalars`.
+pub fn motion(nodes: Vec<Node>, mut scalars: Vec<(Scalar, Vec<f64>)>, grid: &Grid) -> Result<Figure> {
     for node in &nodes {
         let sound = node.worlds.iter().flatten().flatten().all(|x| x.abs() <= LARGEST);
         ensure!(sound, "`{}` is moved beyond {LARGEST:e}", node.name);
     }
     let nodes = joined(nodes, grid.frames);
-    let wavers = stands * extent(&nodes);
+    let scaled: Vec<&Node> = nodes.iter().filter(|node| !scales::changing(&node.scales).is_empty()).collect();
+    scalars.extend(scaled.iter().flat_map(|node| scales::scalars(&node.name, &node.scales)));
+    let scaled: Vec<&str> = scaled.into_iter().map(|node| node.name.as_str()).collect();
+    let mut warnings: Vec<String> = scales::warning(&scaled).into_iter().collect();
+    let wavers = STANDS * extent(&nodes);
     let turns: Vec<Vec<Matrix>> = nodes.iter().map(|node| rotations(&node.worlds)).collect();
     let mut joints = Vec::new();
     let mut values = Vec::new();
@@ -112,15 +132,28 @@ pub fn motion(
         joints.push(Joint { name: node.name.clone(), parent: node.parent, offset, kinds, end_site: false, helper: false });
     }
     joints.extend(sites);
-    let warning = ends::complete(&mut joints);
+    warnings.extend(ends::complete(&mut joints));
     let (scalars, of_scalars): (Vec<_>, Vec<_>) = scalars.into_iter().unzip();
     values.extend(of_scalars);
     let keys = vec![None; values.len()];
-    let rig = Rig { joints, scalars, cm_per_unit, ..Rig::default() };
-    Ok((
-        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false, events: Vec::new() },
-        warning,
-    ))
+    let rig = Rig { joints, scalars, cm_per_unit: 1.0, ..Rig::default() };
+    let motion =
+        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false, events: Vec::new() };
+    let error = error(&motion, &nodes.iter().map(|node| node.worlds.as_slice()).collect::<Vec<_>>());
+    Ok(Figure { motion, error, warnings })
+}
+
+/// The greatest distance of the first joints of `motion` from the places of `worlds`, in the motion's unit.
+pub fn error(motion: &Motion, worlds: &[&[Affine]]) -> f64 {
+    let at = |frame: usize| {
+        let places = positions(&motion.rig, &motion.values, frame);
+        let far = worlds.iter().zip(places).map(|(worlds, found)| {
+            let expected = place(&worlds[frame]).map(|x| x * motion.rig.cm_per_unit);
+            distance(found, expected)
+        });
+        far.fold(0.0, f64::max)
+    };
+    (0..motion.frames).map(at).fold(0.0, f64::max) / motion.rig.cm_per_unit
 }
 
 /// An End Site for a joint that turns and carries no other, as a bound on places would not see its rotation: half as far as the bone before
@@ -134,7 +167,7 @@ fn end(parent: usize, bone: [f64; 3]) -> Joint {
 fn joined(mut nodes: Vec<Node>, frames: usize) -> Vec<Node> {
     if nodes.iter().filter(|node| node.parent.is_none()).count() > 1 {
         nodes.iter_mut().for_each(|node| node.parent = Some(node.parent.map_or(0, |parent| parent + 1)));
-        nodes.insert(0, Node { name: "root".into(), parent: None, worlds: vec![UNMOVED; frames] });
+        nodes.insert(0, Node { name: "root".into(), parent: None, worlds: vec![UNMOVED; frames], scales: Vec::new() });
     }
     nodes
 }
@@ -269,8 +302,10 @@ mod tests {
             name: joint.to_string(),
             parent: joint.checked_sub(1),
             worlds: (0..grid.frames).map(|frame| world(frame, joint)).collect(),
+            scales: Vec::new(),
         };
-        let (motion, _) = motion((0..3).map(node).collect(), Vec::new(), &grid, 1.0, 0.0).unwrap();
+        let Figure { motion, error, .. } = motion((0..3).map(node).collect(), Vec::new(), &grid).unwrap();
+        assert!(error < 1e-10, "{error}");
         for frame in 0..grid.frames {
             for (joint, found) in positions(&motion.rig, &motion.values, frame)[..3].iter().enumerate() {
                 let expected = place(&world(frame, joint));

@@ -66,7 +66,7 @@ impl written::Reader for Reader {
         let events = self.header.events();
         let rig = Rig { cm_per_unit: cm_per_unit.unwrap_or(1.0), ..self.header.rig };
         let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events };
-        Ok(Source { motion, unit_known: cm_per_unit.is_some(), warnings: Vec::new() })
+        Ok(Source { motion, unit_known: cm_per_unit.is_some(), error: 0.0, warnings: Vec::new() })
     }
 }
 

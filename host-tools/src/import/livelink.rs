@@ -42,7 +42,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     }
     let values: Vec<Vec<f64>> = rows.values.iter().map(|values| grid.fill(values)).collect();
     let motion = scalars::motion(names, &vec![FULL_SCALE; values.len()], values, 1.0 / fps);
-    Ok(Source { motion, unit_known: false, warnings })
+    Ok(Source { motion, unit_known: false, error: 0.0, warnings })
 }
 
 /// `eyeBlinkLeft` and `eyeBlink_L` as `EyeBlinkLeft`.

@@ -28,6 +28,7 @@ pub mod list;
 pub mod livelink;
 pub mod procedural;
 mod scalars;
+mod scales;
 mod sheet;
 pub mod table;
 pub mod text;
@@ -56,6 +57,8 @@ pub struct Options {
     pub fps: Option<f64>,
     /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
     pub skeleton: Option<PathBuf>,
+    /// Whether rotations on a glTF's CUBICSPLINE keys become the four curves of a quaternion, which convert without a fit, instead of Euler angles.
+    pub quaternions: bool,
     /// Which animation of a file that holds several: its name, or its number from 0, instead of the first.
     pub animation: Option<String>,
     /// Where the source and what belongs to it is read from.
@@ -69,6 +72,9 @@ pub struct Source {
     pub motion: Motion,
     /// Whether the format or the file states its unit of length.
     pub unit_known: bool,
+    /// The greatest distance, in the source's unit, of a joint of the motion from where the file has it: places that waver by less than numbers are
+    /// rounded to count as constant.
+    pub error: f64,
     /// What was odd or could not be used, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -78,6 +84,9 @@ pub struct Source {
 pub struct Imported {
     /// The motion; angles run on past half a turn instead of jumping.
     pub motion: Motion,
+    /// The greatest distance in cm of a joint of the motion from where the file has it, over all frames: a bound against the file is a bound against
+    /// the motion less this.
+    pub error_cm: f64,
     /// Where its unit of length comes from, as a sentence for the user.
     pub units: String,
     /// What was odd or could not be used, a sentence each.
@@ -143,7 +152,7 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
         ensure!(format.takes_skeleton(), "{}: --skeleton {skeleton}: only an .amc takes one, and this is {name}", place());
     }
     let source = (format.read)(path, options)?;
-    let Source { mut motion, unit_known, warnings } = source;
+    let Source { mut motion, unit_known, error, warnings } = source;
     ensure!(
         motion.rig.channels() <= MAX_CHANNELS,
         "{}: {} channels; a rig holds at most {MAX_CHANNELS}",
@@ -164,7 +173,7 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
         helpers::mark(&mut motion.rig);
     }
     unwrap_angles(&mut motion);
-    Ok(Imported { motion, units: unit.sentence, warnings })
+    Ok(Imported { error_cm: error * motion.rig.cm_per_unit, motion, units: unit.sentence, warnings })
 }
 
 /// Whether `bytes`, the content of `path`, are of a format that [`load`] knows, by their name or by how they begin.

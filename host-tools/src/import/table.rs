@@ -57,7 +57,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let per_second = if clock.time.is_some() { fps } else { 1.0 };
     let frame = |time: f64| (((time - rows.times[0]) * per_second).round() as usize).min(motion.frames - 1);
     motion.events = rows.events.iter().map(|(time, name)| Event { frame: frame(*time), name: name.clone() }).collect();
-    Ok(Source { motion, unit_known: false, warnings })
+    Ok(Source { motion, unit_known: false, error: 0.0, warnings })
 }
 
 /// Whether a column of this name holds names of events.

@@ -131,7 +131,7 @@ fn near(found: [f64; 3], expected: [f64; 3]) {
 
 #[test]
 fn a_good_pair_is_read() {
-    let Imported { motion, warnings, units } = load(ASF, AMC).unwrap();
+    let Imported { motion, warnings, units, .. } = load(ASF, AMC).unwrap();
     assert_eq!((motion.frames, motion.frame_time), (2, 1.0 / 120.0));
     assert_eq!(warnings, ["the format states no frame rate, so 120 a second; --fps overrides"]);
     assert_eq!(units, "units: 5.08 cm, as the file says");

@@ -38,7 +38,7 @@ fn clips() -> impl Iterator<Item = (&'static str, PathBuf, usize, Imported)> {
 
 #[test]
 fn people_stand_on_the_ground() {
-    for (name, _, frames, Imported { motion, units, warnings }) in clips() {
+    for (name, _, frames, Imported { motion, units, warnings, .. }) in clips() {
         assert_eq!(motion.frames, frames, "{name}");
         assert!((motion.rig.cm_per_unit - 5.6444).abs() < 1e-4, "{name}: {units}");
         assert!(warnings.iter().any(|warning| warning.contains("120 a second")), "{name}: {warnings:?}");

@@ -46,6 +46,75 @@ fn a_leg_in_metres_and_z_up_is_turned_to_cm_and_y_up() {
     assert!(leg.warnings.iter().any(|warning| warning.contains("1 cameras")), "{:?}", leg.warnings);
 }
 
+/// [`LEG`] with one more curve of two keys: an axis of a property of a node.
+fn with_curve(file: &str, id: u32, node: u32, property: &str, axis: &str, keys: &str) -> String {
+    let default = u8::from(property == "Lcl Scaling");
+    let defaults: String =
+        ["X", "Y", "Z"].map(|axis| format!("\t\t\tP: \"d|{axis}\", \"Number\", \"\", \"A\",{default}\n")).concat();
+    let objects = format!(
+        "\tAnimationCurveNode: {id}, \"AnimCurveNode::N\", \"\" {{\n\t\tProperties70:  {{\n{defaults}\t\t}}\n\t}}\n\tAnimationCurve: {}, \"AnimCurve::\", \"\" {{\n\t\tDefault: 0\n\t\tKeyVer: 4008\n\
+         \t\tKeyTime: *2 {{\n\t\t\ta: 0,46186158000\n\t\t}}\n\t\tKeyValueFloat: *2 {{\n\t\t\ta: {keys}\n\t\t}}\n\t\tKeyAttrFlags: *1 {{\n\t\t\ta: 4\n\t\t}}\n\
+         \t\tKeyAttrDataFloat: *4 {{\n\t\t\ta: 0,0,0,0\n\t\t}}\n\t\tKeyAttrRefCount: *1 {{\n\t\t\ta: 2\n\t\t}}\n\t}}\n",
+        id + 1
+    );
+    let connections =
+        format!("\tC: \"OO\",{id},21\n\tC: \"OP\",{id},{node}, \"{property}\"\n\tC: \"OP\",{},{id}, \"d|{axis}\"\n", id + 1);
+    let file = file.replacen("}\nConnections:  {\n", &format!("{objects}}}\nConnections:  {{\n{connections}"), 1);
+    assert!(file.contains(&connections));
+    file
+}
+
+/// Where the hip, the knee and the foot of a leg whose z scales by `scale` and whose knee is `down` from the hip are, in metres and y up, by the file's own numbers.
+fn leg(angle: f64, scale: f64, down: f64) -> [[f64; 3]; 3] {
+    let turn = angle + std::f64::consts::FRAC_PI_2;
+    let below = |y: f64, z: f64| {
+        let (y, z) = (y * turn.cos() - scale * z * turn.sin(), y * turn.sin() + scale * z * turn.cos());
+        [0.0, 1.0 + z, -y]
+    };
+    [[0.0, 1.0, 0.0], below(0.0, -down), below(0.1, -down - 0.5)]
+}
+
+#[test]
+fn a_scale_that_changes_moves_the_joints_below_and_becomes_scalars() {
+    let imported = load(&with_curve(LEG, 60, 1, "Lcl Scaling", "Z", "1,3")).unwrap();
+    let motion = &imported.motion;
+    for frame in 0..25 {
+        let part = frame as f64 / 24.0;
+        let expected = leg(part * std::f64::consts::FRAC_PI_2, 1.0 + 2.0 * part, 0.5);
+        let places = fk::positions(&motion.rig, &motion.values, frame);
+        (0..3).for_each(|joint| near(places[joint], expected[joint].map(|x| 100.0 * x)));
+    }
+    let scalar = motion.rig.scalars.iter().position(|scalar| scalar.name == "hip.scale.z").unwrap();
+    assert!((motion.values[motion.rig.joint_channels() + scalar][12] - 2.0).abs() < 1e-9);
+    assert!(imported.warnings.iter().any(|warning| warning.contains("the scale of `hip` changes")), "{:?}", imported.warnings);
+}
+
+#[test]
+fn a_bound_is_kept_against_the_file() {
+    // The hip turns by as little, and the knee moves by as little, as would pass for rounding in a large figure, in units of 1 cm to 1 km.
+    for unit in ["1", "100", "100000"] {
+        let cm: f64 = unit.parse().unwrap();
+        let file =
+            LEG.replace("\"Number\", \"\",100\n", &format!("\"Number\", \"\",{unit}\n")).replace("a: 0,90", "a: 0,0.00009");
+        let file = with_curve(&file, 60, 2, "Lcl Translation", "Z", "-0.5,-0.500006");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("leg.fbx");
+        std::fs::write(&path, &file).unwrap();
+        let bound = 2e-6 * cm;
+        let back = crate::source_places::converted(&path, bound);
+        let mut worst = 0f64;
+        for frame in 0..25 {
+            let part = frame as f64 / 24.0;
+            let [f, t] = [0.5f32, 0.500006f32].map(f64::from);
+            let expected = leg((part * f64::from(0.00009f32)).to_radians(), 1.0, f + (t - f) * part);
+            let places = fk::positions(&back.rig, &back.values, frame);
+            worst = (0..3).fold(worst, |worst, joint| worst.max(fk::distance(places[joint], expected[joint].map(|x| cm * x))));
+        }
+        println!("unit {unit} cm: {worst} of {bound}");
+        assert!(worst <= bound, "unit {unit} cm: {worst}, the bound is {bound}");
+    }
+}
+
 #[test]
 fn stacks_are_chosen_by_name_or_number() {
     for choice in ["kick", "0"] {

@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// A file in the making: accessors over one buffer.
-struct Builder {
-    root: Value,
+pub struct Builder {
+    pub root: Value,
     bytes: Vec<u8>,
 }
 
 impl Builder {
     /// These nodes, the first of which is the scene's only root.
-    fn new(nodes: Value) -> Builder {
+    pub fn new(nodes: Value) -> Builder {
         let root = json!({
             "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes,
             "accessors": [], "bufferViews": [], "buffers": [{"byteLength": 0}],
@@ -50,7 +50,7 @@ impl Builder {
         self.raw(&bytes, 5126, kind, numbers.len() / components)
     }
 
-    fn animate(&mut self, node: usize, path: &str, interpolation: &str, times: &[f32], values: &[f32]) {
+    pub fn animate(&mut self, node: usize, path: &str, interpolation: &str, times: &[f32], values: &[f32]) {
         let input = self.floats("SCALAR", times);
         let kind = match path {
             "rotation" => "VEC4",
@@ -66,7 +66,7 @@ impl Builder {
         animation["channels"].as_array_mut().unwrap().push(channel);
     }
 
-    fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut root = self.root.clone();
         let data = base64::engine::general_purpose::STANDARD.encode(&self.bytes);
         root["buffers"][0]["byteLength"] = json!(self.bytes.len());
@@ -160,6 +160,47 @@ fn steps_convert_without_a_fit_and_turn_on_their_frame() {
 }
 
 #[test]
+fn cubic_rotations_convert_without_a_fit_as_quaternions() {
+    // The figure lies on its side in what carries it; keys are mostly between frames.
+    let mut builder = Builder::new(json!([
+        {"rotation": [0.6, 0, 0, 0.8], "children": [1]}, {"name": "hips", "children": [2]}, {"name": "head", "translation": [0, 0.75, 0]},
+    ]));
+    // In tangent, value, out tangent; the values are not of length 1, nor is what lies between.
+    let turns = [
+        [0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [1.0, 0.5, 0.0, 0.0],
+        [0.5, 0.0, 1.0, -1.0],
+        [0.5, 0.25, 0.25, 0.75],
+        [0.0, -1.0, 0.25, 0.0],
+        [0.0, 0.0, 0.5, 0.0],
+        [-0.25, 0.5, 0.0, 0.5],
+        [0.0, 0.0, 0.0, 0.0],
+    ];
+    builder.animate(1, "rotation", "CUBICSPLINE", &[0.0, 0.71, 2.0], turns.as_flattened());
+    builder.animate(2, "rotation", "LINEAR", &[0.0, 2.0], &[0.0, 0.0, 0.6, 0.8, 0.0, 0.0, 0.6, 0.8]);
+    let options = Options { quaternions: true, ..Options::default() };
+    let motion = load("quaternions", &builder.text(), &options).unwrap().motion;
+    let kinds = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion];
+    assert_eq!(motion.rig.joints[0].kinds, kinds);
+    let bounds = Bounds::exact(&motion).unwrap();
+    let rig = encode::rig::encode(&motion.rig).unwrap();
+    let bytes = encode::clip::encode(&channelwise::fit(&motion, &bounds, &|| ()).unwrap(), &rig, true).unwrap();
+    channel_error::verify(&bytes, &rig, &motion, &bounds).unwrap();
+    println!("{} bytes", bytes.len());
+    // 61 frames of 4 components take 488 bytes at 16 bits.
+    assert!(bytes.len() < 150, "{} bytes", bytes.len());
+    // Both ways to read the file put the head at the same place.
+    let angles = load("angles", &builder.text(), &Options::default()).unwrap().motion;
+    assert!(Bounds::exact(&angles).unwrap_err().to_string().contains("CUBICSPLINE or STEP"));
+    for frame in 0..61 {
+        let [a, b] = [&motion, &angles].map(|motion| fk::positions(&motion.rig, &motion.values, frame));
+        let far = a.iter().zip(&b).map(|(a, b)| fk::distance(*a, *b)).fold(0.0, f64::max);
+        assert!(far < 1e-6, "{far} cm at {frame}");
+    }
+}
+
+#[test]
 fn scales_move_the_joints_below() {
     // Twice as large, then stretched along x by 3, and y grows from 1 to 2 in one second.
     let mut builder = Builder::new(json!([
@@ -170,7 +211,8 @@ fn scales_move_the_joints_below() {
     ]));
     builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 0.0, 5.0]);
     builder.animate(2, "scale", "LINEAR", &[0.0, 1.0], &[1.0, 1.0, 1.0, 1.0, 2.0, 1.0]);
-    let motion = builder.load("scales").motion;
+    let Imported { motion, warnings, .. } = builder.load("scales");
+    assert!(warnings.iter().any(|warning| warning.contains("the scale of `b` changes")), "{warnings:?}");
     assert_eq!(motion.rig.joints.len(), 3, "what only carries the figure is one joint with it");
     let last = fk::positions(&motion.rig, &motion.values, motion.frames - 1).map_each();
     let first = fk::positions(&motion.rig, &motion.values, 0).map_each();
@@ -203,7 +245,7 @@ fn several_roots_get_one_above_them() {
     builder.root["scenes"] = json!([{"nodes": [0, 1, 2]}]);
     builder.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
     builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    let Imported { motion, warnings, units } = builder.load("roots");
+    let Imported { motion, warnings, units, .. } = builder.load("roots");
     let names: Vec<&str> = motion.rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(names, ["root", "left", "right"]);
     assert_eq!(units, "units: 100 cm, as the file says");

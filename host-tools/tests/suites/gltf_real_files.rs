@@ -30,7 +30,7 @@ fn motions() -> Vec<(PathBuf, usize, Motion)> {
 }
 
 /// Keys of a node's translation, rotation or scale, read by the gltf crate.
-struct Track {
+pub struct Track {
     times: Vec<f32>,
     interpolation: Interpolation,
     values: Vec<Vec<f64>>,
@@ -74,7 +74,7 @@ impl Track {
 }
 
 /// Tracks of an animation by node and path (0 translation, 1 rotation, 2 scale), and its first time.
-fn tracks(document: &gltf::Document, buffers: &[Vec<u8>], animation: usize) -> (HashMap<(usize, usize), Track>, f64) {
+pub fn tracks(document: &gltf::Document, buffers: &[Vec<u8>], animation: usize) -> (HashMap<(usize, usize), Track>, f64) {
     let mut tracks = HashMap::new();
     let mut first = f64::MAX;
     for channel in document.animations().nth(animation).unwrap().channels() {
@@ -99,7 +99,7 @@ fn tracks(document: &gltf::Document, buffers: &[Vec<u8>], animation: usize) -> (
     (tracks, first)
 }
 
-type Affine = [[f64; 4]; 3];
+pub type Affine = [[f64; 4]; 3];
 
 fn product(a: &Affine, b: &Affine) -> Affine {
     std::array::from_fn(|i| {
@@ -127,7 +127,7 @@ fn affine(node: &gltf::Node, tracks: &HashMap<(usize, usize), Track>, time: f64,
 }
 
 /// World matrices of all nodes by the name that their joint has.
-fn worlds(
+pub fn worlds(
     document: &gltf::Document,
     tracks: &HashMap<(usize, usize), Track>,
     time: f64,
@@ -145,7 +145,7 @@ fn worlds(
     worlds
 }
 
-fn buffers(path: &Path, document: &gltf::Document, blob: Option<Vec<u8>>) -> Vec<Vec<u8>> {
+pub fn buffers(path: &Path, document: &gltf::Document, blob: Option<Vec<u8>>) -> Vec<Vec<u8>> {
     use base64::Engine as _;
     let read = |buffer: gltf::Buffer| match buffer.source() {
         gltf::buffer::Source::Bin => blob.clone().unwrap(),

@@ -44,7 +44,7 @@ fn keys<'a>(motion: &'a Motion, name: &str) -> &'a [(usize, f64)] {
 
 #[test]
 fn the_documents_example_is_read() {
-    let Imported { motion, units, warnings } = load("example", &example()).unwrap();
+    let Imported { motion, units, warnings, .. } = load("example", &example()).unwrap();
     assert!(warnings.is_empty());
     assert_eq!(units, "units: 1 cm, as the file says");
     assert_eq!((motion.frames, motion.frame_time, motion.looped), (60, 1.0 / 30.0, true));

@@ -47,6 +47,7 @@ mod render_command;
 mod same_form;
 mod scalars_command;
 mod serve;
+mod source_places;
 mod table_input;
 mod terminal;
 mod update_command;

@@ -72,6 +72,29 @@ fn a_leg_moves_as_its_interpolators_say() {
 }
 
 #[test]
+fn a_scale_that_changes_moves_the_joints_below_and_becomes_scalars() {
+    // The knee, turned by a right angle about z, grows from 1 to 3 along its own y.
+    let world = LEG
+        .replace("DEF S Scalar", "DEF G PositionInterpolator { key [ 0, 1 ] keyValue [ 1 1 1, 1 3 1 ] }\nDEF S Scalar")
+        .replace("DEF knee Transform { center 0 -5 0 rotation 1 0 0 0", "DEF knee Transform { rotation 0 0 1 1.57079632679")
+        .replace(
+            "ROUTE O.value_changed TO knee.rotation",
+            "ROUTE T.fraction_changed TO G.set_fraction\nROUTE G.value_changed TO knee.scale",
+        );
+    let leg = load(&world).unwrap();
+    for frame in [0, 15, 60] {
+        let part = frame as f64 / 60.0;
+        near(place(&leg, "knee", frame), [4.0 * part, 10.0, 0.0]);
+        near(place(&leg, "foot", frame), [4.0 * part + 9.0 * (1.0 + 2.0 * part), 10.0, 0.0]);
+    }
+    let scale = leg.motion.rig.scalars.iter().position(|scalar| scalar.name == "knee.scale.y").unwrap();
+    let values = &leg.motion.values[leg.motion.rig.joint_channels() + scale];
+    assert!((values[15] - 1.5).abs() < 1e-12 && leg.motion.rig.scalars[scale].full_scale == 3.0);
+    assert!(leg.warnings.iter().any(|warning| warning.contains("the scale of `knee` changes")), "{:?}", leg.warnings);
+    assert!(leg.error_cm < 1e-9, "{}", leg.error_cm);
+}
+
+#[test]
 fn x3d_in_its_classic_encoding_is_the_same() {
     let header = "#X3D V3.2 utf8\nPROFILE Immersive\nCOMPONENT H-Anim:1\nMETA \"title\" \"leg\"\nUNIT length inch 0.0254\n";
     let world = LEG.replace("#VRML V2.0 utf8\n", header).replace("eventIn", "inputOnly").replace("eventOut", "outputOnly");

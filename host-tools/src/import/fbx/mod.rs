@@ -5,7 +5,7 @@
 
 mod nodes;
 
-use super::from_transforms::{self, Affine, Node};
+use super::from_transforms::{self, Affine, Figure, Node};
 use super::grid::{self, Grid};
 use super::list::{self, Entry};
 use super::{Files, Options, Source, one_line};
@@ -23,8 +23,6 @@ const MOST_WORK: usize = 1 << 30;
 const DEEPEST: u32 = 1000;
 /// Frames a second where the file does not say.
 const PLAIN_FPS: f64 = 30.0;
-/// Part of the figure by which a place may waver and still stand: curves are written in f32, and turns multiply their rounding.
-const STANDS: f64 = 5e-6;
 
 /// Whether `head` begins an FBX file, binary or text.
 pub fn begins(head: &[u8]) -> bool {
@@ -38,19 +36,19 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let stack = chosen(&scene, options.animation.as_deref()).with_context(place)?;
     let moves = Moves::of(&scene, stack);
     let grid = grid(&scene, stack, options.fps).with_context(place)?;
-    let (motion, left_out, warning) = motion(&scene, stack, &grid).with_context(place)?;
+    let (figure, left_out) = motion(&scene, stack, &grid).with_context(place)?;
     let mut warnings = vec![grid.sentence];
     let stacks = scene.anim_stacks.len();
     if options.animation.is_none() && stacks > 1 {
         let name = one_line(&stack.element.name);
         warnings.push(format!("stack `{name}` of {stacks}; --animation takes another, --list shows all"));
     }
-    warnings.extend(warning);
+    warnings.extend(figure.warnings);
     if moves.none() {
         warnings.push(format!("stack `{}` moves nothing: a pose", one_line(&stack.element.name)));
     }
-    warnings.extend(nodes::unused(&scene, left_out, &moves));
-    Ok(Source { motion, unit_known: true, warnings })
+    warnings.extend(nodes::unused(&scene, left_out));
+    Ok(Source { motion: figure.motion, unit_known: true, error: figure.error, warnings })
 }
 
 /// All stacks of the FBX file `path`.
@@ -113,12 +111,13 @@ fn grid(scene: &Scene, stack: &AnimStack, fps: Option<f64>) -> Result<Grid> {
     grid::over(first, last, fps, why)
 }
 
-/// The motion, how many nodes are no part of it, and what is odd about it.
-fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motion::Motion, usize, Option<String>)> {
+/// The motion, and how many nodes are no part of it.
+fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(Figure, usize)> {
     let order = nodes::depth_first(scene);
     let kept: Vec<usize> = from_transforms::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
     let weights = nodes::weights(scene);
-    from_transforms::check_size(kept.len(), weights.len(), grid)?;
+    let scaled = Moves::of(scene, stack).scaled;
+    from_transforms::check_size(kept.len(), weights.len() + 3 * scaled.iter().filter(|scaled| **scaled).count(), grid)?;
     ensure!(
         scene.elements.len().saturating_mul(grid.frames) <= MOST_WORK,
         "{} frames are too many for this scene; --fps takes fewer",
@@ -129,21 +128,26 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(crate::motio
     for (joint, &node) in kept.iter().enumerate() {
         joint_of[node] = Some(joint);
         let parent = scene.nodes[node].parent.as_ref().and_then(|parent| joint_of[parent.element.typed_id as usize]);
-        joints.push(Node { name: nodes::name(scene, node), parent, worlds: Vec::with_capacity(grid.frames) });
+        joints.push(Node { name: nodes::name(scene, node), parent, worlds: Vec::with_capacity(grid.frames), scales: Vec::new() });
     }
     let mut scalars: Vec<Vec<f64>> = vec![Vec::with_capacity(grid.frames); weights.len()];
     for frame in 0..grid.frames {
         let time = grid.first + frame as f64 * grid.frame_time;
         let now = ufbx::evaluate_scene(scene, &stack.anim, time, ufbx::EvaluateOpts::default())
             .map_err(|error| anyhow!("frame {frame}: {}", one_line(&error.description)))?;
-        joints.iter_mut().zip(&kept).for_each(|(joint, &node)| joint.worlds.push(affine(&now.nodes[node].node_to_world)));
+        for (joint, &node) in joints.iter_mut().zip(&kept) {
+            joint.worlds.push(affine(&now.nodes[node].node_to_world));
+            if scaled[node] {
+                let scale = &now.nodes[node].local_transform.scale;
+                joint.scales.push([scale.x, scale.y, scale.z]);
+            }
+        }
         scalars.iter_mut().zip(&weights).for_each(|(values, &channel)| values.push(now.blend_channels[channel].weight));
     }
     let scalars = weights.iter().zip(scalars).map(|(&channel, values)| scalar(scene, channel, values)).collect::<Result<_>>()?;
     // The root of all, which is ufbx's own, is no node of the file.
     let left_out = scene.nodes.len() - 1 - kept.len().min(scene.nodes.len() - 1);
-    let (motion, warning) = from_transforms::motion(joints, scalars, grid, 1.0, STANDS)?;
-    Ok((motion, left_out, warning))
+    Ok((from_transforms::motion(joints, scalars, grid)?, left_out))
 }
 
 /// A weight of 1 is the whole shape; full scale is more where a weight goes beyond.

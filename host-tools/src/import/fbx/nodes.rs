@@ -19,7 +19,7 @@ pub struct Moves {
     /// How many curves do that.
     pub curves: usize,
     /// Nodes whose scale changes.
-    pub scaled: usize,
+    pub scaled: Vec<bool>,
 }
 
 impl Moves {
@@ -28,8 +28,9 @@ impl Moves {
         let mut moves = Moves {
             nodes: vec![false; scene.nodes.len()],
             shifted: vec![false; scene.nodes.len()],
+            scaled: vec![false; scene.nodes.len()],
             weights: vec![false; scene.blend_channels.len()],
-            ..Moves::default()
+            curves: 0,
         };
         for property in properties(stack) {
             let count = curves(property).filter(|curve| varies(curve)).count();
@@ -45,10 +46,11 @@ impl Moves {
             if let Some(slot) = slot {
                 *slot = true;
                 moves.curves += count;
-                if &*property.prop_name == "Lcl Translation" {
-                    moves.shifted[index] = true;
+                match &*property.prop_name {
+                    "Lcl Translation" => moves.shifted[index] = true,
+                    "Lcl Scaling" => moves.scaled[index] = true,
+                    _ => {}
                 }
-                moves.scaled += usize::from(&*property.prop_name == "Lcl Scaling");
             }
         }
         moves
@@ -152,8 +154,8 @@ pub fn name(scene: &Scene, node: usize) -> String {
     if name.trim().is_empty() { format!("node{node}") } else { name }
 }
 
-/// Sentences about what motion does not need, or cannot hold.
-pub fn unused(scene: &Scene, left_out: usize, moves: &Moves) -> Vec<String> {
+/// One sentence about what motion does not need.
+pub fn unused(scene: &Scene, left_out: usize) -> Option<String> {
     let counts = [
         (left_out, "nodes that carry no joint"),
         (scene.meshes.len(), "meshes"),
@@ -166,12 +168,5 @@ pub fn unused(scene: &Scene, left_out: usize, moves: &Moves) -> Vec<String> {
     ];
     let present = counts.iter().filter(|(count, _)| *count > 0);
     let words: Vec<String> = present.map(|(count, what)| format!("{count} {what}")).collect();
-    let mut sentences = Vec::new();
-    if moves.scaled > 0 {
-        sentences.push(format!("the scale of {} nodes changes; only the places below them show it", moves.scaled));
-    }
-    if !words.is_empty() {
-        sentences.push(format!("not used: {}", words.join(", ")));
-    }
-    sentences
+    (!words.is_empty()).then(|| format!("not used: {}", words.join(", ")))
 }

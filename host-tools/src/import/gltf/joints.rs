@@ -1,29 +1,32 @@
 //! The channels of the joints: every node's local place and rotation on the frames.
 
 use super::file::File;
-use super::place::{Base, Rest, Stretch, settled};
+use super::place::{Base, Rest, Stretch, affine, settled};
 use super::scalars::Weight;
 use super::track::Track;
 use super::tree::Tree;
 use super::{Channels, POSITIONS, Target, Tracks, Values};
-use crate::fk::{Matrix, apply, from_quaternion, product};
+use crate::fk::{self, Matrix, apply, from_quaternion, product};
+use crate::import::from_transforms::{Affine, UNMOVED, chained};
 use crate::import::grid::Grid;
-use crate::import::{angles, ends};
+use crate::import::{angles, ends, scales};
 use crate::keys::sample_pieces;
 use crate::motion::{Joint, Keys, Kind, Piece};
 use anyhow::Result;
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
 
-/// Part of a place's largest coordinate by which it may waver and still stand: what f32 writes, and what exporters compute with it.
-const STANDS: f64 = 1e-5;
+/// Part of a place's largest coordinate by which it may waver and still be constant: the steps of f32 are up to 1.2e-7 of it.
+const STANDS: f64 = 2e-7;
 
 /// The joints of `tree` with their channels, and a scalar for each scale that changes.
-pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<Channels> {
+pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid, quaternions: bool) -> Result<Channels> {
     let mut channels = Channels::default();
     let mut stretches: Vec<Stretch> = Vec::new();
     let mut sites = Vec::new();
+    let mut scaled = Vec::new();
     let under = tree.under.iter().map(|&node| rest(file, node)).collect::<Result<Vec<_>>>()?;
+    let below_all = under.iter().fold(UNMOVED, |above, rest| chained(&above, &rest.affine()));
     for (node, parent) in tree.nodes.iter().zip(&tree.parents) {
         let Some(node) = *node else {
             channels.joints.push(Joint {
@@ -35,6 +38,7 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
                 helper: false,
             });
             stretches.push(Stretch::None);
+            channels.worlds.push(vec![UNMOVED; grid.frames]);
             continue;
         };
         let moving = Moving::new(file, node, tracks, grid)?;
@@ -46,11 +50,20 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
             kinds.push(POSITIONS[axis]);
             channels.of_joints.push(place);
         }
-        for (kind, values) in moving.rotations(&base, grid) {
+        let rotations = match moving.curves.filter(|_| quaternions) {
+            Some(track) => quaternion(track, &base, grid),
+            None => moving.rotations(&base, grid),
+        };
+        for (kind, values) in rotations {
             kinds.push(kind);
             channels.of_joints.push(values);
         }
-        channels.scalars.extend(moving.scales(&name, grid));
+        let scales = moving.scales(&name, grid);
+        scaled.extend((!scales.is_empty()).then(|| name.clone()));
+        channels.scalars.extend(scales);
+        let above = |frame: usize| parent.map_or(below_all, |parent| channels.worlds[parent][frame]);
+        let worlds = (0..grid.frames).map(|frame| chained(&above(frame), &moving.local(frame))).collect();
+        channels.worlds.push(worlds);
         let below = base.stretch.below(&moving.turns, &moving.scale, grid.frames);
         let index = channels.joints.len();
         if moving.turns.len() > 1 && !tree.parents.contains(&Some(index)) {
@@ -69,6 +82,7 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid) -> Result<
     };
     channels.joints.extend(sites.into_iter().map(site));
     channels.warnings.extend(ends::complete(&mut channels.joints));
+    channels.warnings.extend(scales::warning(&scaled.iter().map(String::as_str).collect::<Vec<_>>()));
     Ok(channels)
 }
 
@@ -111,6 +125,10 @@ fn rest(file: &File, node: usize) -> Result<Rest> {
 struct Moving<'t> {
     rest: Rest,
     translation: Option<&'t Track>,
+    /// Its place in what carries it, where a track moves it.
+    own: Vec<[f64; 3]>,
+    /// The track of its rotation, if that is one of four curves.
+    curves: Option<&'t Track>,
     scaled: Option<&'t Track>,
     turns: Vec<Matrix>,
     scale: Vec<[f64; 3]>,
@@ -133,7 +151,21 @@ impl<'t> Moving<'t> {
         };
         let scaled = scaled.filter(|_| scale.len() > 1);
         let steps = turned.is_some_and(Track::steps);
-        Ok(Moving { rest, translation: tracks.get(&Target::Translation(node)), scaled, turns, scale, steps })
+        let translation = tracks.get(&Target::Translation(node));
+        let own = translation.map_or_else(Vec::new, |track| vectors(&[0, 1, 2].map(|i| sampled(track, i, grid))));
+        let curves = turned.filter(|track| track.is_cubic());
+        Ok(Moving { rest, translation, own, curves, scaled, turns, scale, steps })
+    }
+
+    /// Its place at a frame in what carries it.
+    fn place(&self, frame: usize) -> [f64; 3] {
+        self.own.get(frame).copied().unwrap_or(self.rest.translation)
+    }
+
+    /// Its transform at a frame in what carries it.
+    fn local(&self, frame: usize) -> Affine {
+        let (turn, scale) = (&self.turns[frame.min(self.turns.len() - 1)], self.scale[frame.min(self.scale.len() - 1)]);
+        affine(turn, scale, self.place(frame))
     }
 
     /// The offset, and the axes along which the place moves.
@@ -142,11 +174,7 @@ impl<'t> Moving<'t> {
         if curves.is_none() && base.stretch.is_still() {
             return (base.at(0, self.rest.translation), Vec::new());
         }
-        let own = match &curves {
-            Some(curves) => vectors(&[0, 1, 2].map(|i| sample_pieces(&curves[i], grid.frames))),
-            None => vec![self.rest.translation; grid.frames],
-        };
-        let places: Vec<[f64; 3]> = own.iter().enumerate().map(|(frame, &place)| base.at(frame, place)).collect();
+        let places: Vec<[f64; 3]> = (0..grid.frames).map(|frame| base.at(frame, self.place(frame))).collect();
         let largest = places.iter().flatten().fold(0f64, |largest, x| largest.max(x.abs()));
         let moves = |axis: &usize| places.iter().any(|place| (place[*axis] - places[0][*axis]).abs() > STANDS * largest);
         let channel = |axis: usize| {
@@ -174,10 +202,33 @@ impl<'t> Moving<'t> {
     /// Scalars for the axes along which the scale changes.
     fn scales(&self, name: &str, grid: &Grid) -> Vec<Weight> {
         let Some(track) = self.scaled else { return Vec::new() };
-        let changes = |axis: &usize| self.scale.iter().any(|scale| scale[*axis] != self.scale[0][*axis]);
-        let axes = (0..3).filter(changes);
-        axes.map(|axis| Weight::new(format!("{name}.scale.{}", ["x", "y", "z"][axis]), name, track, axis, 0.0, grid)).collect()
+        let axes = scales::changing(&self.scale).into_iter();
+        axes.map(|axis| Weight::new(scales::name(name, axis), name, track, axis, 0.0, grid)).collect()
     }
+}
+
+/// The four curves of a quaternion. What carries the joint stands still, so it mixes them at every time alike.
+fn quaternion(track: &Track, base: &Base, grid: &Grid) -> Vec<(Kind, Values)> {
+    const KINDS: [Kind; 4] = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion];
+    let curves = [3, 0, 1, 2].map(|component| track.pieces(component, grid.first, grid.frame_time));
+    let [x, y, z, w] = fk::quaternion(&base.turn);
+    let mixed = [[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]];
+    let turned = |row: usize| -> Vec<Piece> {
+        let mix = |n: usize, part: fn(&Piece) -> f64| (0..4).map(|i| mixed[row][i] * part(&curves[i][n])).sum::<f64>();
+        let piece = |n: usize| Piece {
+            start: curves[row][n].start,
+            p: mix(n, |piece| piece.p),
+            c: mix(n, |piece| piece.c),
+            w: mix(n, |piece| piece.w),
+            k: mix(n, |piece| piece.k),
+        };
+        (0..curves[row].len()).map(piece).collect()
+    };
+    let channel = |row: usize| {
+        let pieces = turned(row);
+        (KINDS[row], Values { values: sample_pieces(&pieces, grid.frames), keys: Some(Keys::Pieces(pieces)) })
+    };
+    (0..4).map(channel).collect()
 }
 
 fn sampled(track: &Track, component: usize, grid: &Grid) -> Vec<f64> {

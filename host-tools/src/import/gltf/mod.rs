@@ -1,7 +1,8 @@
 //! glTF 2.0, .gltf and .glb: one animation of a file as a motion of its nodes and morph weights.
 //!
 //! LINEAR, STEP and CUBICSPLINE tracks of places, weights and scales stay curves in time, which convert without a fit;
-//! rotations are sampled and become Euler angles. Scales that change become scalars, and in any case move the joints below.
+//! rotations are sampled and become Euler angles, or, if that is asked for and they are CUBICSPLINE, the four curves of a quaternion. Scales that change
+//! become scalars, and in any case move the joints below.
 
 mod accessor;
 mod file;
@@ -13,8 +14,7 @@ mod scalars;
 mod track;
 mod tree;
 
-pub(crate) use place::quaternion;
-
+use super::from_transforms::{self, Affine};
 use super::grid::{self, Grid};
 use super::{Files, Options, Source, units};
 use crate::budget;
@@ -70,13 +70,15 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     warnings.push(grid.sentence.clone());
     let tree = tree::tree(&file)?;
     check_size(&tracks, &tree, &grid).map_err(|error| file.error(&format!("animations[{number}]"), error))?;
-    let mut channels = joints::joints(&file, &tree, &tracks, &grid)?;
+    let mut channels = joints::joints(&file, &tree, &tracks, &grid, options.quaternions)?;
     channels.scalars.extend(scalars::weights(&file, &tracks, &grid)?);
     scalars::tell_apart(&mut channels.scalars);
     warnings.append(&mut channels.warnings);
+    let worlds = std::mem::take(&mut channels.worlds);
     let motion = channels.motion(&grid);
+    let error = from_transforms::error(&motion, &worlds.iter().map(Vec::as_slice).collect::<Vec<_>>());
     warnings.extend(doubts(&file, &tree, &motion, options));
-    Ok(Source { motion, unit_known: true, warnings })
+    Ok(Source { motion, unit_known: true, error, warnings })
 }
 
 /// The animation that the user names, by name or by number from 0, or the first.
@@ -151,7 +153,7 @@ fn check_keys(file: &File, animation: &gltf::json::Animation) -> Result<()> {
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
 fn check_size(tracks: &Tracks, tree: &tree::Tree, grid: &Grid) -> Result<()> {
     let stretches = tracks.keys().any(|target| matches!(target, Target::Scale(_)));
-    let of_joint = if stretches { 15 } else { 6 };
+    let of_joint = if stretches { 27 } else { 18 };
     let of_tracks: usize = tracks.values().map(|track| 3 * track.components).sum();
     let numbers = (of_tracks + of_joint * tree.nodes.len()).saturating_mul(grid.frames);
     let frames = grid.frames;
@@ -171,6 +173,8 @@ struct Channels {
     joints: Vec<crate::motion::Joint>,
     of_joints: Vec<Values>,
     scalars: Vec<scalars::Weight>,
+    /// World transforms of the first joints on the frames, as the file has them.
+    worlds: Vec<Vec<Affine>>,
     warnings: Vec<String>,
 }
 

@@ -5,11 +5,12 @@
 //! the node D becomes transposed(R) D R S. Without scales D is 1; a uniform one commutes with R.
 
 use super::track::unit;
-use crate::fk::{IDENTITY, Matrix, apply, from_quaternion, product};
+use crate::fk::{IDENTITY, Matrix, apply, from_quaternion, product, quaternion};
+use crate::import::from_transforms::Affine;
 use gltf::json::Node;
 
-/// Scales nearer to 1, and to each other, than this are equal: f32 writes them within 1e-7, exporters compute them a little worse.
-const SAME_SCALE: f64 = 1e-5;
+/// Scales nearer to each other than this part of them are equal: the steps of f32 are up to 1.2e-7 of a number.
+const SAME_SCALE: f64 = 2e-7;
 
 /// What a node says of itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +38,17 @@ impl Rest {
         let numbers = rest.translation.iter().chain(&rest.rotation).chain(&rest.scale);
         numbers.into_iter().all(|x| x.abs() <= 1e9).then_some(rest)
     }
+
+    /// Its transform.
+    pub fn affine(&self) -> Affine {
+        let [x, y, z, w] = self.rotation;
+        affine(&from_quaternion([w, x, y, z]), self.scale, self.translation)
+    }
+}
+
+/// The transform that scales, then turns, then moves.
+pub fn affine(turn: &Matrix, scale: [f64; 3], place: [f64; 3]) -> Affine {
+    std::array::from_fn(|i| [turn[i][0] * scale[0], turn[i][1] * scale[1], turn[i][2] * scale[2], place[i]])
 }
 
 /// A matrix of columns; a mirrored one has a negative first scale, and columns of length 0 turn nothing.
@@ -52,23 +64,6 @@ fn from_matrix(m: [f64; 16]) -> Rest {
         .all(|x| x.abs() > 1e-12)
         .then(|| -> Matrix { std::array::from_fn(|row| std::array::from_fn(|i| [a, b, c][i][row] / scale[i])) });
     Rest { translation: [m[12], m[13], m[14]], rotation: turn.map_or([0.0, 0.0, 0.0, 1.0], |turn| quaternion(&turn)), scale }
-}
-
-/// x, y, z, w of a rotation.
-pub fn quaternion(m: &Matrix) -> [f64; 4] {
-    let trace = m[0][0] + m[1][1] + m[2][2];
-    let squares = [2.0 * m[0][0] - trace, 2.0 * m[1][1] - trace, 2.0 * m[2][2] - trace, trace];
-    let largest = (0..4).max_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(3);
-    let anti = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
-    let mut q = [0.0; 4];
-    q[largest] = 1.0 + squares[largest];
-    for i in (0..3).filter(|&i| i != largest) {
-        q[i] = if largest == 3 { anti[i] } else { m[largest][i] + m[i][largest] };
-    }
-    if largest < 3 {
-        q[3] = anti[largest];
-    }
-    unit(q)
 }
 
 /// D of the module's text.
@@ -94,7 +89,7 @@ impl Stretch {
 
     /// Below a node with rotation `turn` (one, or one a frame) and scale `scale` (likewise).
     pub fn below(&self, turn: &[Matrix], scale: &[[f64; 3]], frames: usize) -> Stretch {
-        let one = |vector: &[f64; 3]| vector.iter().all(|x| (x - 1.0).abs() < SAME_SCALE);
+        let one = |vector: &[f64; 3]| *vector == [1.0; 3];
         if matches!(self, Stretch::None) && scale.iter().all(one) {
             return Stretch::None;
         }

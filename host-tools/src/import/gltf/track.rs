@@ -48,6 +48,11 @@ impl Track {
         self.interpolation == Interpolation::Step
     }
 
+    /// Whether the track is made of cubics.
+    pub fn is_cubic(&self) -> bool {
+        self.interpolation == Interpolation::CubicSpline
+    }
+
     fn key(&self, key: usize) -> &[f64] {
         let place = if self.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key };
         &self.values[place * self.components..(place + 1) * self.components]

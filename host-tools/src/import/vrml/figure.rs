@@ -4,7 +4,7 @@ use super::lexer::Words;
 use super::track::{Track, quaternion};
 use super::world::{World, children, is_joint, is_transform};
 use crate::fk::{Matrix, from_quaternion};
-use crate::import::from_transforms::{Affine, Role, UNMOVED};
+use crate::import::from_transforms::{Affine, Role, UNMOVED, chained};
 use anyhow::{Result, bail};
 use std::collections::HashMap;
 
@@ -68,6 +68,9 @@ impl Walk<'_> {
 pub const FIELDS: [(&str, usize); 5] =
     [("translation", 3), ("rotation", 4), ("scale", 3), ("scaleOrientation", 4), ("center", 3)];
 
+/// Index of [`FIELDS`] of the scale.
+pub const SCALE: usize = 2;
+
 /// The tracks that move nodes, by node and index of [`FIELDS`].
 pub type Moves = HashMap<(usize, usize), Track>;
 
@@ -124,7 +127,7 @@ pub fn evaluate(stands: &[Needed], moves: &Moves, time: f64) -> Vec<Affine> {
     let mut worlds: Vec<Affine> = Vec::with_capacity(stands.len());
     for stand in stands {
         let above = stand.parent.map_or(UNMOVED, |parent| worlds[parent]);
-        worlds.push(product(&above, &local(stand, moves, time)));
+        worlds.push(chained(&above, &local(stand, moves, time)));
     }
     worlds
 }
@@ -144,9 +147,4 @@ fn local(stand: &Needed, moves: &Moves, time: f64) -> Affine {
     let linear = crate::fk::product(&rotation, &stretch);
     let from = crate::fk::apply(&linear, [center[0], center[1], center[2]]);
     std::array::from_fn(|i| [linear[i][0], linear[i][1], linear[i][2], place[i] + center[i] - from[i]])
-}
-
-fn product(a: &Affine, b: &Affine) -> Affine {
-    let entry = |i: usize, j: usize| (0..3).map(|k| a[i][k] * b[k][j]).sum::<f64>() + if j == 3 { a[i][3] } else { 0.0 };
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }

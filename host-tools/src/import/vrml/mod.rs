@@ -9,20 +9,17 @@ mod parse;
 mod track;
 mod world;
 
-use super::from_transforms::{self, Node};
+use super::from_transforms::{self, Figure, Node};
 use super::grid::{self, Grid};
 use super::list::{self, Entry};
 use super::{Options, Source, one_line, read_bytes};
-use crate::motion::{Motion, Scalar};
+use crate::motion::Scalar;
 use anyhow::{Context, Result, anyhow, bail};
 use clock::{Clock, Tracks};
 use lexer::Words;
 use std::collections::HashSet;
 use std::path::Path;
 use world::World;
-
-/// Part of the figure by which a place may waver and still stand. The four digits of most exporters waver by more, and are kept.
-const STANDS: f64 = 2e-5;
 
 /// Whether `head` begins a world.
 pub fn begins(head: &[u8]) -> bool {
@@ -42,11 +39,11 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         bail!("{}: the interpolators have no keys, so nothing moves", place());
     }
     let grid = frames(&tracks, chosen[0], options.fps).with_context(place)?;
-    let (motion, warning) = motion(&world, &clocks, &tracks, &grid, &words).with_context(place)?;
+    let figure = motion(&world, &clocks, &tracks, &grid, &words).with_context(place)?;
     let mut warnings = vec![grid.sentence.clone()];
-    warnings.extend(warning);
+    warnings.extend(figure.warnings);
     warnings.extend(doubts(&world, &clocks, &chosen));
-    Ok(Source { motion, unit_known: false, warnings })
+    Ok(Source { motion: figure.motion, unit_known: false, error: figure.error, warnings })
 }
 
 /// The time sensors of the world `path` that move anything.
@@ -96,22 +93,28 @@ fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Resul
     })
 }
 
-fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words) -> Result<(Motion, Option<String>)> {
+fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words) -> Result<Figure> {
     let stands = figure::stands(world, words)?;
     // The figure is the same for every clock.
     let drives = clocks.iter().flat_map(|clock| &clock.drives);
     let moved: HashSet<usize> = drives.filter(|drive| drive.place(world).is_some()).map(|drive| drive.target).collect();
     let kept = from_transforms::figure(&figure::roles(world, &stands, |node| moved.contains(&node)))?;
-    from_transforms::check_size(kept.len(), tracks.scalars.len(), grid)?;
+    let scales = tracks.moves.keys().filter(|(_, field)| *field == figure::SCALE).count();
+    from_transforms::check_size(kept.len(), tracks.scalars.len() + 3 * scales, grid)?;
+    let seconds = |frame: usize| grid.first + frame as f64 * grid.frame_time;
+    let vector = |value: &[f64]| std::array::from_fn(|axis| value.get(axis).copied().unwrap_or(0.0));
     let mut joint_of = vec![None; stands.len()];
     let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
     for (joint, &stand) in kept.iter().enumerate() {
         joint_of[stand] = Some(joint);
         let parent = stands[stand].parent.and_then(|parent| joint_of[parent]);
-        joints.push(Node { name: world.name(stands[stand].node), parent, worlds: Vec::with_capacity(grid.frames) });
+        let node = stands[stand].node;
+        let scale = tracks.moves.get(&(node, figure::SCALE));
+        let scales = scale.map(|track| (0..grid.frames).map(|frame| vector(&track.at(seconds(frame)))).collect());
+        let worlds = Vec::with_capacity(grid.frames);
+        joints.push(Node { name: world.name(node), parent, worlds, scales: scales.unwrap_or_default() });
     }
     let stands = figure::needed(world, &stands, &kept);
-    let seconds = |frame: usize| grid.first + frame as f64 * grid.frame_time;
     for frame in 0..if joints.is_empty() { 0 } else { grid.frames } {
         let worlds = figure::evaluate(&stands, &tracks.moves, seconds(frame));
         joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, world)| joint.worlds.push(*world));
@@ -121,7 +124,7 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
         let full_scale = values.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
         (Scalar { name: name.clone(), full_scale }, values)
     };
-    from_transforms::motion(joints, tracks.scalars.iter().map(scalar).collect(), grid, 1.0, STANDS)
+    from_transforms::motion(joints, tracks.scalars.iter().map(scalar).collect(), grid)
 }
 
 /// Which clock runs, and what is not used.

@@ -1,7 +1,7 @@
 //! How near places must be to the file's.
 
-/// Part of the figure's height by which places may differ from the file's.
-pub const SAME: f64 = 1e-4;
+/// Part of the figure's height by which imported places may differ from the file's: a hundredth of what the tightest bounds leave.
+pub const SAME: f64 = 2e-6;
 
 /// Between two places.
 pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {

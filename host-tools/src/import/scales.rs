@@ -1,0 +1,56 @@
+//! Scales that change. A rig has none, so every joint below gets position channels that put it where the source has it, and the scale itself becomes scalars.
+
+use crate::motion::Scalar;
+
+/// Part of a scale by which it may waver and still be constant. The joints below follow smaller changes, too.
+const CONSTANT: f64 = 1e-5;
+
+/// The axes along which a scale changes.
+pub fn changing(scales: &[[f64; 3]]) -> Vec<usize> {
+    let Some(first) = scales.first() else { return Vec::new() };
+    let changes = |axis: &usize| scales.iter().any(|scale| (scale[*axis] - first[*axis]).abs() > CONSTANT * first[*axis].abs());
+    (0..3).filter(changes).collect()
+}
+
+/// The name of a joint's scale along an axis.
+pub fn name(joint: &str, axis: usize) -> String {
+    format!("{joint}.scale.{}", ["x", "y", "z"][axis])
+}
+
+/// Scalars for the axes along which the scale of `joint` changes.
+pub fn scalars(joint: &str, scales: &[[f64; 3]]) -> Vec<(Scalar, Vec<f64>)> {
+    let of_axis = |axis: usize| {
+        let values: Vec<f64> = scales.iter().map(|scale| scale[axis]).collect();
+        let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        (Scalar { name: name(joint, axis), full_scale: if largest > 0.0 { largest } else { 1.0 } }, values)
+    };
+    changing(scales).into_iter().map(of_axis).collect()
+}
+
+/// What the user should know about the joints whose scales change.
+pub fn warning(joints: &[&str]) -> Option<String> {
+    let first = joints.first()?;
+    let others = match joints.len() - 1 {
+        0 => String::new(),
+        1 => " (and of 1 other joint)".into(),
+        count => format!(" (and of {count} other joints)"),
+    };
+    Some(format!(
+        "the scale of `{first}`{others} changes: the joints below keep their exact places, in position channels; the scale itself becomes \
+         scalars such as `{first}.scale.y`, which --drop '*.scale.*' leaves out"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_axes_that_change_become_scalars() {
+        let scales = [[1.0, 2.0, -3.0], [1.000_001, 2.0, -3.0], [1.0, 2.5, -6.0]];
+        let found = scalars("a", &scales);
+        assert_eq!(found.iter().map(|(scalar, _)| scalar.name.as_str()).collect::<Vec<_>>(), ["a.scale.y", "a.scale.z"]);
+        assert_eq!((found[1].0.full_scale, found[1].1.as_slice()), (6.0, &[-3.0, -3.0, -6.0][..]));
+        assert!(warning(&[]).is_none() && warning(&["a", "b", "c"]).unwrap().contains("`a` (and of 2 other joints)"));
+    }
+}
