@@ -5,6 +5,7 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 use pantin_tools::fk;
 use pantin_tools::import::{self, Options};
+use pantin_tools::motion::{Joint, Motion, Rig};
 
 /// Distances in cm over all frames.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,7 +16,12 @@ pub struct Distance {
     pub joints: f64,
     /// Mean at joints alone.
     pub mean: f64,
+    /// Greatest at the points [`SHELL_CM`] from each joint along its own axes, as ACL measures: how the last joints turn counts, too.
+    pub shell: f64,
 }
+
+/// The distance of ACL's shell from a joint, in cm.
+pub const SHELL_CM: f64 = 3.0;
 
 /// Compares two motion files of one figure.
 pub fn between(original: &Path, other: &Path, cm_per_unit: Option<f64>) -> Result<Distance> {
@@ -24,11 +30,17 @@ pub fn between(original: &Path, other: &Path, cm_per_unit: Option<f64>) -> Resul
     other.rig.cm_per_unit = original.rig.cm_per_unit;
     ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
     ensure!(original.rig.joints.len() == other.rig.joints.len(), "the figure has other joints than before");
+    Ok(of(&original, &other))
+}
+
+/// Compares two motions of one figure and length.
+fn of(original: &Motion, other: &Motion) -> Distance {
     let mut distance = Distance::default();
+    let [shell, other_shell] = [original, other].map(|motion| with_shell(&motion.rig));
     let (mut sum, mut count) = (0.0, 0);
     for frame in 0..original.frames {
-        let places = fk::positions(&original.rig, &original.values, frame);
-        let others = fk::positions(&other.rig, &other.values, frame);
+        let places = fk::positions(&shell, &original.values, frame);
+        let others = fk::positions(&other_shell, &other.values, frame);
         for (joint, (p, q)) in original.rig.joints.iter().zip(places.iter().zip(&others)) {
             let off = (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum::<f64>().sqrt();
             distance.greatest = distance.greatest.max(off);
@@ -37,7 +49,55 @@ pub fn between(original: &Path, other: &Path, cm_per_unit: Option<f64>) -> Resul
                 (sum, count) = (sum + off, count + 1);
             }
         }
+        for (p, q) in places.iter().zip(&others).skip(original.rig.joints.len()) {
+            distance.shell = distance.shell.max(fk::distance(*p, *q));
+        }
     }
     distance.mean = sum / f64::from(count.max(1));
-    Ok(distance)
+    distance
+}
+
+/// The rig with three more End Sites at each joint.
+fn with_shell(rig: &Rig) -> Rig {
+    let mut shell = rig.clone();
+    let end = |parent: usize, axis: usize| {
+        let mut offset = [0.0; 3];
+        offset[axis] = SHELL_CM / rig.cm_per_unit;
+        Joint { name: String::new(), parent: Some(parent), offset, kinds: Vec::new(), end_site: true, helper: false }
+    };
+    let joints = (0..rig.joints.len()).filter(|&joint| !rig.joints[joint].end_site);
+    shell.joints.extend(joints.flat_map(|joint| (0..3).map(move |axis| end(joint, axis))));
+    shell
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pantin_tools::motion::Kind;
+
+    #[test]
+    fn the_last_joints_turn_is_in_the_shell_alone() {
+        let joint = |parent: Option<usize>, kinds: &[Kind]| Joint {
+            name: "joint".into(),
+            parent,
+            offset: [0.0, 10.0, 0.0],
+            kinds: kinds.to_vec(),
+            end_site: false,
+            helper: false,
+        };
+        let rig = Rig { joints: vec![joint(None, &[]), joint(Some(0), &[Kind::Zrotation])], cm_per_unit: 2.0, ..Rig::default() };
+        let turned = |angle: f64| Motion {
+            rig: rig.clone(),
+            frame_time: 0.1,
+            frames: 1,
+            values: vec![vec![angle]],
+            keys: vec![None],
+            looped: false,
+            events: vec![],
+        };
+        let distance = of(&turned(0.0), &turned(60.0));
+        assert_eq!((distance.greatest, distance.joints, distance.mean), (0.0, 0.0, 0.0));
+        // The chord of 60 degrees is as long as the radius.
+        assert!((distance.shell - SHELL_CM).abs() < 1e-12, "{}", distance.shell);
+    }
 }

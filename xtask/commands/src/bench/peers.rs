@@ -8,6 +8,9 @@ use anyhow::{Context, Result};
 /// The second-difference coder's zero-order entropy, without header or model: no coder can be made of it.
 pub const IDEAL: &str = "delta2-entropy-estimate";
 
+/// ACL with its own settings.
+const ACL: &str = "acl-default";
+
 /// Errors in cm and bytes of one peer on one clip.
 pub type Curve = Vec<(f64, f64)>;
 
@@ -22,6 +25,8 @@ pub struct Clip {
     pub greatest: BTreeMap<String, Curve>,
     /// Bytes against the mean error of joints, by peer.
     pub mean: BTreeMap<String, Curve>,
+    /// The mean error of joints in cm, and bytes, of ACL by default, by the precision that it was asked for.
+    pub acl: BTreeMap<String, (f64, f64)>,
 }
 
 /// Bytes of the peers at one error.
@@ -57,7 +62,11 @@ pub fn read(path: &Path) -> Result<Option<BTreeMap<String, Clip>>> {
         (clip.cm_per_unit, clip.seconds) = (number("cm_per_unit")?, number("frames")? / number("fps")?);
         let (peer, bytes) = (field("peer")?, number("bytes")?);
         clip.greatest.entry(peer.to_owned()).or_default().push((number("max_joint_cm")?, bytes));
-        clip.mean.entry(peer.to_owned()).or_default().push((number("mean_joint_cm")?, bytes));
+        let mean = number("mean_joint_cm")?;
+        clip.mean.entry(peer.to_owned()).or_default().push((mean, bytes));
+        if peer == ACL {
+            clip.acl.insert(field("setting")?.to_owned(), (mean, bytes));
+        }
     }
     Ok(Some(clips))
 }

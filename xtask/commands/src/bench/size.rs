@@ -17,6 +17,11 @@ use xtask::steps::say;
 const LEVELS: [(f64, [f64; 4]); 3] =
     [(0.3, [0.36, 0.20, 0.70, 0.45]), (1.0, [0.27, 0.15, 0.55, 0.33]), (3.0, [0.21, 0.12, 0.45, 0.20])];
 
+/// The precisions in cm that ACL was asked for, and at each the goal for the bytes at ACL's own mean error, relative to ACL's (geometric mean).
+const PRECISIONS: [(&str, f64); 3] = [("0.1", 0.27), ("0.3", 0.20), ("1", 0.15)];
+/// A mean within this part of what was asked for is held.
+const HELD: f64 = 1.02;
+
 /// One clip at one bound.
 struct Row {
     clip: String,
@@ -52,7 +57,52 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let broken = rows.iter().filter(|row| row.got.greatest > row.bound * 1.000_001).count();
     let mut goals: Vec<_> = LEVELS.iter().flat_map(|level| goals(&rows, level)).collect();
     goals.push(Goal::at_most("bounds broken, or clips refused", (broken + failed) as f64, 0.0, 0, ""));
+    goals.extend(at_means(setting, &clips)?);
     Ok(goals)
+}
+
+/// Bytes at the mean error that ACL has, clip by clip.
+fn at_means(setting: &Setting, clips: &[Reference]) -> Result<Vec<Goal>> {
+    let (mut goals, mut lines, mut missed) = (vec![], vec![], 0);
+    for (precision, most) in PRECISIONS {
+        let mut ratios: Vec<f64> = vec![];
+        for clip in clips {
+            let Some(&(mean, bytes)) = clip.peers.as_ref().and_then(|peers| peers.acl.get(precision)) else { continue };
+            match measure_mean(setting, clip, precision, mean) {
+                Ok((ours, got)) => {
+                    let held = got.mean <= HELD * mean;
+                    missed += usize::from(!held);
+                    ratios.push(ours / bytes);
+                    let mut line = vec![clip.name.clone(), precision.to_owned()];
+                    line.extend([mean, got.mean, got.greatest, got.shell].map(|cm| format!("{cm:.4}")));
+                    line.extend([format!("{ours:.0}"), format!("{bytes:.0}"), format!("{:.3}", ours / bytes)]);
+                    lines.push(line);
+                }
+                Err(error) => {
+                    say(&format!("   {} at a mean of {mean} cm FAILED: {error:#}", clip.name));
+                    missed += 1;
+                }
+            }
+        }
+        let what = format!("bytes at the mean error that ACL has at {precision} cm, relative to ACL");
+        let worst = ratios.iter().copied().reduce(f64::max);
+        goals.extend(geometric_mean(&ratios).map(|ratio| Goal::at_most(format!("{what}, geometric mean"), ratio, most, 3, "")));
+        goals.extend(worst.map(|ratio| Goal::told(format!("{what}, worst clip"), format!("{ratio:.3}"))));
+    }
+    if !lines.is_empty() {
+        table::print(&["clip", "ACL's p", "mean asked", "mean", "greatest", "shell", "bytes", "ACL's", "/ACL"], &lines);
+        goals.push(Goal::at_most("mean errors missed, or clips refused", missed as f64, 0.0, 0, ""));
+    }
+    Ok(goals)
+}
+
+fn measure_mean(setting: &Setting, clip: &Reference, precision: &str, mean: f64) -> Result<(f64, Distance)> {
+    let unit = clip.cm_per_unit();
+    let name = format!("{}-mean-{precision}", clip.name);
+    let made = setting.tool.convert(&clip.path, &name, &tool::mean_options(mean, unit))?;
+    let back = tempfile::Builder::new().suffix(".bvh").tempfile()?;
+    setting.tool.expand(&made.clip, back.path())?;
+    Ok((made.info.motion_bytes, error::between(&clip.path, back.path(), unit)?))
 }
 
 fn measure(setting: &Setting, clip: &Reference, bound: f64) -> Result<Row> {
@@ -82,7 +132,8 @@ impl Row {
 }
 
 fn print(rows: &[Row]) {
-    let header = ["clip", "asked", "got", "joints", "bytes", "B/s", "/ideal", "/ACL", "/real", "/mean", "encode s", "x real"];
+    let header =
+        ["clip", "asked", "got", "joints", "shell", "bytes", "B/s", "/ideal", "/ACL", "/real", "/mean", "encode s", "x real"];
     let lines: Vec<_> = rows
         .iter()
         .map(|row| {
@@ -91,6 +142,7 @@ fn print(rows: &[Row]) {
                 row.bound.to_string(),
                 format!("{:.3}", row.got.greatest),
                 format!("{:.3}", row.got.joints),
+                format!("{:.3}", row.got.shell),
                 row.bytes.to_string(),
                 format!("{:.0}", row.bytes / row.seconds),
             ];
@@ -118,6 +170,14 @@ fn goals(rows: &[Row], (bound, most): &(f64, [f64; 4])) -> Vec<Goal> {
         .into_iter()
         .filter_map(|(what, value, most)| value.map(|value| Goal::at_most(what, value, most, 3, "")))
         .collect();
+    let shells: Vec<f64> = rows.iter().map(|row| row.got.shell).collect();
+    if let (Some(mean), Some(worst)) = (geometric_mean(&shells), worst(&shells)) {
+        let what = format!(
+            "greatest error at {bound} cm of points {} cm from the joints, geometric mean and worst clip",
+            error::SHELL_CM
+        );
+        goals.push(Goal::told(what, format!("{mean:.2} cm, {worst:.2} cm")));
+    }
     let (bytes, seconds): (f64, f64) = rows.iter().fold((0.0, 0.0), |sum, row| (sum.0 + row.bytes, sum.1 + row.seconds));
     if seconds > 0.0 {
         goals.push(Goal::told(of(&format!("per second of motion ({} clips)", rows.len())), format!("{:.0}", bytes / seconds)));

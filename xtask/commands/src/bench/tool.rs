@@ -35,6 +35,8 @@ pub struct Info {
     pub moving: f64,
     /// The file without its rig.
     pub motion_bytes: f64,
+    /// The file.
+    pub file_bytes: f64,
 }
 
 impl Info {
@@ -81,12 +83,6 @@ impl Tool {
         self.run(Command::new(&self.program).arg("expand").arg(clip).arg("-o").arg(bvh)).map(drop)
     }
 
-    /// Whether a command of the tool has an option.
-    pub fn has_option(&self, command: &str, option: &str) -> Result<bool> {
-        let help = self.run(Command::new(&self.program).args([command, "--help"]))?;
-        Ok(String::from_utf8_lossy(&help).split_whitespace().any(|word| word == option))
-    }
-
     fn info(&self, clip: &Path) -> Result<Info> {
         let text = self.run(Command::new(&self.program).args(["info", "--json"]).arg(clip))?;
         let json: Value = serde_json::from_slice(&text).context("`pantin info --json` prints no JSON")?;
@@ -96,6 +92,7 @@ impl Tool {
             fps: number("fps")?,
             moving: number("moving_channels")?,
             motion_bytes: number("motion_bytes")?,
+            file_bytes: clip.metadata().with_context(|| clip.display().to_string())?.len() as f64,
         })
     }
 
@@ -112,6 +109,17 @@ impl Tool {
 /// The options of a conversion: the bound, and the unit where it is known.
 pub fn options(bound_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
     let mut options = vec!["--max-error".to_owned(), format!("{bound_cm}cm")];
-    options.extend(cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]));
+    options.extend(unit(cm_per_unit));
     options
+}
+
+/// The options of a conversion that keeps a mean error.
+pub fn mean_options(mean_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
+    let mut options = vec!["--mean-error".to_owned(), format!("{mean_cm}cm")];
+    options.extend(unit(cm_per_unit));
+    options
+}
+
+fn unit(cm_per_unit: Option<f64>) -> Vec<String> {
+    cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]).collect()
 }
