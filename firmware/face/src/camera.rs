@@ -31,8 +31,8 @@ pub(crate) struct Camera {
     pub middle: Vector,
 }
 
-/// The height of the picture is 64 parts, that of the face down to the end of its neck is this many: the end of the neck may lie outside.
-const FILLED: i32 = 65;
+/// The height of the picture is 64 parts, that of the face down to the end of its neck is this many: there is room for a jaw that opens.
+const FILLED: i32 = 60;
 /// Parts above the face.
 const ABOVE: i32 = 1;
 /// Heights of the face in pixels from which on details 1, 2 and 3 apply.

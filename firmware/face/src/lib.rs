@@ -89,5 +89,5 @@ pub static MODEL: &[u8] = include_bytes!("../face.model");
 /// ```
 pub static NAMES: &str = include_str!("../face.names");
 
-/// Number of vertices for which [`Morph`] and [`FaceRenderer`] need space to hold Pantin's own face (it has 215). Other models may need more.
-pub const VERTICES: usize = 216;
+/// Number of vertices for which [`Morph`] and [`FaceRenderer`] need space to hold Pantin's own face (it has 239). Other models may need more.
+pub const VERTICES: usize = 240;

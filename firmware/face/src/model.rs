@@ -2,6 +2,7 @@
 
 use crate::bytes::Bytes;
 use crate::target::Target;
+use crate::vertex::{self, Vertex};
 
 pub use crate::error::ModelError;
 pub use crate::format::{NAME_LEN, NO_SHAPE, SHAPES, VERSION, WIDE};
@@ -93,6 +94,13 @@ impl<'a> Model<'a> {
     #[inline(always)]
     pub(crate) fn image(&self) -> Image {
         Image { middles: self.middles, pairs: self.pairs }
+    }
+
+    /// The neutral position of a vertex.
+    pub(crate) fn neutral(&self, index: u16) -> Vertex {
+        let stored = if usize::from(index) < self.middles() + self.pairs() { index } else { self.mirror(index) };
+        let [x, y, z] = self.points.as_chunks::<6>().0.get(usize::from(stored)).map_or([0; 3], |&point| vertex::of_bytes(point));
+        [if stored == index { x } else { x.wrapping_neg() }, y, z]
     }
 
     /// Exponent of a step: a coordinate of 1 is 2^exponent of the model's unit of length (millimetres for Pantin's own face).

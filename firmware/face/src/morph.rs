@@ -4,7 +4,7 @@ use crate::error::ModelError;
 use crate::model::Model;
 use crate::opening_clip::clip_members;
 use crate::rotate::{SideWeights, rotate};
-use crate::shape::{Run, Shape, ShapeKind, eased};
+use crate::shape::{Arc, Run, Shape, ShapeKind, eased};
 use crate::vertex::{self, Vertex};
 use crate::weights::Weights;
 
@@ -116,6 +116,9 @@ fn add_deltas(model: &Model, shape: &Shape, pair: [i32; 2], vertices: &mut [Vert
     if !shape.has_deltas() {
         return;
     }
+    if let Some(arc) = shape.arc {
+        return add_along_arc(model, shape, arc, pair, vertices);
+    }
     // Q15 times Q8 to Q8: at most 2^16.
     let factor = |weight| (eased(shape.interpolation, weight) * i32::from(shape.scale)) >> 15;
     let stored = factor(pair[0]);
@@ -129,6 +132,30 @@ fn add_deltas(model: &Model, shape: &Shape, pair: [i32; 2], vertices: &mut [Vert
         }
         if mirrored.abs() >= MIN_FACTOR {
             add_run(run, model.mirror(run.first), [-mirrored, mirrored], vertices);
+        }
+    }
+}
+
+/// Adds a spherical shape's deltas, and moves their vertices away from the centre of the arc. In a function of its own, because few shapes need it.
+#[inline(never)]
+fn add_along_arc(model: &Model, shape: &Shape, arc: Arc, pair: [i32; 2], vertices: &mut [Vertex]) {
+    for (side, weight) in pair.into_iter().enumerate().filter(|entry| entry.1 != 0) {
+        let [away, along] = arc.parts(weight);
+        // A part of the delta of at most 2: below 2^17.
+        let factor = (along * i32::from(shape.scale >> 1)) >> 14;
+        let (mirrored, sign) = (side == 1, if side == 1 { -1 } else { 1 });
+        let centre = [sign * i32::from(arc.centre[0]), i32::from(arc.centre[1]), i32::from(arc.centre[2])];
+        for run in shape.runs() {
+            let first = if mirrored { model.mirror(run.first) } else { run.first };
+            for index in first..first.saturating_add(run.deltas.len() as u16) {
+                let from = model.neutral(index);
+                let Some(vertex) = vertices.get_mut(usize::from(index)) else { continue };
+                for axis in 0..3 {
+                    let pushed = (i32::from(from[axis]) - centre[axis]).wrapping_mul(away).wrapping_add(1 << 14) >> 15;
+                    vertex[axis] = vertex[axis].wrapping_add(pushed as i16);
+                }
+            }
+            add_run(run, first, [sign * factor, factor], vertices);
         }
     }
 }

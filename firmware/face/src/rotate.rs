@@ -3,7 +3,7 @@
 //! Let r be the vector from the axis to a vertex, e the vector that r becomes after the whole angle W, and n the vector that it becomes after
 //! a quarter turn. Then e = cos W r + sin W n, and any mix a r + b e has the form c r + s n:
 //! - spherical, a = sin((1-t)W) / sin W and b = sin(tW) / sin W: c = cos tW, s = sin tW, without a division or a special case near W = 0;
-//! - linear and eased, a = 1 - t and b = t: c = 1 + t (cos W - 1), s = t sin W.
+//! - linear, improved linear and eased, a = 1 - t and b = t: c = 1 + t (cos W - 1), s = t sin W.
 
 use crate::shape::{AxisRotation, Interpolation, eased};
 use crate::vertex::Vertex;

@@ -10,11 +10,28 @@ use pantin_figure::trig::{ONE, sin_cos};
 pub enum Interpolation {
     /// In proportion to the weight.
     Linear,
-    /// Eased at both ends: (1 - cos(pi w)) / 2 of the distance at weight w.
-    Cosine,
-    /// On the arc of a rotation. Deltas, which have no axis, move in proportion to the weight.
+    /// An ease of Pantin's own, slow at both ends: (1 - cos(pi w)) / 2 of the distance at weight w.
+    Eased,
+    /// On the arc of a circle: of a rotation about its axis, of deltas about the [`Arc`] of their shape.
     Spherical,
+    /// The paper's improved linear interpolation, fast at first and slow at the end: cos(pi (1 - w) / 2) of the distance at weight w.
+    ImprovedLinear,
 }
+
+/// What the spherical interpolation of a shape's deltas needs: about which point, and by which angle.
+///
+/// A vertex goes from s to e, both seen from the centre, by sin((1 - w) W) / sin W s + sin(w W) / sin W e. If W is the angle between s and e, this is an arc of a
+/// great circle; a larger W bends it more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arc {
+    /// In steps; x is negated for the mirror image.
+    pub centre: [i16; 3],
+    /// The angle W, in 2^-16 turns: 1 to [`MOST_ANGLE`].
+    pub angle: i16,
+}
+
+/// The largest angle of an [`Arc`]: 120 degrees. Near 180 degrees, sin W vanishes.
+pub const MOST_ANGLE: i16 = 21_845;
 
 /// The range of a shape's weights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +54,8 @@ pub struct Shape<'a> {
     pub kind: ShapeKind,
     /// Movement of a delta of 1 at full weight, in 256ths of a step.
     pub scale: u16,
+    /// The arc of the deltas of a spherical shape.
+    pub arc: Option<Arc>,
     pub(crate) deltas: &'a [u8],
     rotations: &'a [u8],
     wide: bool,
@@ -81,9 +100,9 @@ impl<'a> Shape<'a> {
         let [head, a, b, c, d, e, f] = bytes.array()?;
         let interpolation = match head & 3 {
             0 => Interpolation::Linear,
-            1 => Interpolation::Cosine,
+            1 => Interpolation::Eased,
             2 => Interpolation::Spherical,
-            _ => return Err(ModelError::Malformed),
+            _ => Interpolation::ImprovedLinear,
         };
         let kind = match head >> 2 {
             0 => ShapeKind::Unsigned,
@@ -92,14 +111,12 @@ impl<'a> Shape<'a> {
             _ => return Err(ModelError::Malformed),
         };
         let (scale, deltas, rotations) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
-        Ok(Shape {
-            interpolation,
-            kind,
-            scale,
-            deltas: bytes.take(usize::from(deltas))?,
-            rotations: bytes.take(usize::from(rotations))?,
-            wide,
-        })
+        let mut moved = Bytes(bytes.take(usize::from(deltas))?);
+        let arc = match interpolation {
+            Interpolation::Spherical if deltas > 0 => Some(arc(&mut moved)?),
+            _ => None,
+        };
+        Ok(Shape { interpolation, kind, scale, arc, deltas: moved.0, rotations: bytes.take(usize::from(rotations))?, wide })
     }
 
     /// Walks its deltas.
@@ -125,6 +142,12 @@ fn run<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<Run<'a>, ModelError> {
     let first = bytes.index(wide)?;
     let count = bytes.u8()?;
     Ok(Run { first, deltas: bytes.take(usize::from(count) * 3)?.as_chunks().0 })
+}
+
+fn arc(bytes: &mut Bytes) -> Result<Arc, ModelError> {
+    let [x, y, z, angle] = [(); 4].map(|()| bytes.i16());
+    let arc = Arc { centre: [x?, y?, z?], angle: angle? };
+    if (1..=MOST_ANGLE).contains(&arc.angle) { Ok(arc) } else { Err(ModelError::Malformed) }
 }
 
 fn rotation<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<AxisRotation<'a>, ModelError> {
@@ -193,11 +216,29 @@ impl<'a> Iterator for Shapes<'a> {
 
 /// The part of its distance that a vertex has moved at a weight; both in Q15.
 pub(crate) fn eased(interpolation: Interpolation, weight: i32) -> i32 {
-    if interpolation != Interpolation::Cosine {
-        return weight;
+    match interpolation {
+        // A full weight is half a turn.
+        Interpolation::Eased => {
+            let (_, cos) = sin_cos(weight.wrapping_shl(16));
+            let part = (ONE - cos) >> 1;
+            if weight < 0 { -part } else { part }
+        }
+        // cos(pi (1 - w) / 2) is sin(pi w / 2): a full weight is a quarter turn. Negative weights go the opposite way.
+        Interpolation::ImprovedLinear => sin_cos(weight.wrapping_shl(15)).0,
+        Interpolation::Linear | Interpolation::Spherical => weight,
     }
-    // A full weight is half a turn.
-    let (_, cos) = sin_cos(weight.wrapping_shl(16));
-    let part = (ONE - cos) >> 1;
-    if weight < 0 { -part } else { part }
+}
+
+impl Arc {
+    /// For a weight (Q15): by which part of its distance from the centre a vertex is moved away from it, and of its delta along it, both Q15.
+    /// The first is sin((1 - w) W) / sin W + sin(w W) / sin W - 1.
+    pub(crate) fn parts(&self, weight: i32) -> [i32; 2] {
+        let angle = i32::from(self.angle);
+        let sin = |weight: i32| sin_cos((angle * weight).wrapping_shl(1)).0;
+        let whole = sin(ONE).max(1);
+        // Sines are at most 2^15, products at most 2^30. One division for each shape and frame.
+        let part = |sin: i32| (sin << 15) / whole;
+        let (from, to) = (part(sin(ONE - weight)), part(sin(weight)));
+        [from + to - ONE, to]
+    }
 }

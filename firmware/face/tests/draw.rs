@@ -83,6 +83,56 @@ fn weights_by_name_move_what_they_name() {
     assert!(!columns.is_empty() && columns.iter().all(|&x| x >= WIDTH / 2), "the face's left eye is on the right: {columns:?}");
 }
 
+/// For each unit of the paper, the columns and the rows of a display of 128x64 pixels that it may change, and how many pixels it changes at least.
+type Region = (&'static str, [usize; 2], [usize; 2], usize);
+const REGIONS: [Region; 7] = [
+    ("open_mouth", [46, 81], [40, 62], 120),
+    ("smile", [54, 73], [38, 48], 45),
+    ("wide_smile", [44, 83], [36, 48], 55),
+    ("lower_corners", [54, 73], [40, 49], 25),
+    ("brow_inner_lower", [48, 79], [15, 23], 16),
+    ("brow_outer_raise", [48, 79], [15, 23], 18),
+    ("puff_cheeks", [42, 85], [30, 50], 45),
+];
+
+#[test]
+fn each_unit_of_the_paper_shows_where_it_acts_and_nowhere_else() {
+    let neutral = drawn(&[]);
+    for (unit, columns, rows, least) in REGIONS {
+        let moved = drawn(&[(unit, "1")]);
+        let mut changed = 0;
+        for y in 0..HEIGHT {
+            for x in (0..WIDTH).filter(|&x| moved[y][x] != neutral[y][x]) {
+                assert!((columns[0]..=columns[1]).contains(&x) && (rows[0]..=rows[1]).contains(&y), "{unit} changes {x}, {y}");
+                changed += 1;
+            }
+        }
+        assert!(changed >= least, "{unit} changes {changed} pixels");
+        // Both sides alike.
+        for side in ["left", "right"].iter().filter(|_| unit != "open_mouth") {
+            let one = drawn(&[(&format!("{unit}_{side}"), "1")]);
+            assert!(one != neutral && one != moved, "{unit}_{side}");
+        }
+    }
+}
+
+#[test]
+fn the_picture_keeps_room_for_an_open_jaw() {
+    let model = Model::new_checked(MODEL).unwrap();
+    for (width, height) in [(128, 64), (240, 240), (64, 64), (128, 160)] {
+        for names in [&["open_mouth"][..], &["surprise"], &["surprise_printed"]] {
+            let mut weights = Weights::new();
+            names.iter().for_each(|name| weights.set(&model, name, Weight::ONE).unwrap());
+            let mut morph = Morph::<VERTICES>::new(&model).unwrap();
+            let mut renderer = FaceRenderer::<VERTICES>::new(&model, Canvas { width, height }, FaceView::default());
+            morph.apply(&model, &weights);
+            renderer.project(&model, &morph);
+            let lowest = renderer.points().iter().map(|point| point[1]).max().unwrap();
+            assert!(i32::from(lowest) < i32::from(height) * 16, "{names:?} reach {lowest} sixteenths of {width}x{height}");
+        }
+    }
+}
+
 #[test]
 fn names_are_found_as_written_or_with_a_capital_letter() {
     let model = Model::new_checked(MODEL).unwrap();

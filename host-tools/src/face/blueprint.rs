@@ -17,6 +17,22 @@ pub struct Turn {
     pub members: Vec<(usize, f64)>,
 }
 
+/// The centre and the angle about which the spherical interpolation moves deltas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc {
+    /// The centre.
+    pub centre: Vector,
+    /// The angle in degrees, [`Arc::LEAST`] to [`Arc::MOST`].
+    pub degrees: f64,
+}
+
+impl Arc {
+    /// The least angle in degrees: on the device, the sine of a smaller one has too few steps.
+    pub const LEAST: f64 = 2.0;
+    /// The largest angle in degrees.
+    pub const MOST: f64 = 120.0;
+}
+
 /// What a weight moves. Its other weight moves the mirror image.
 #[derive(Clone, Debug)]
 pub struct Shape {
@@ -32,6 +48,8 @@ pub struct Shape {
     pub deltas: Vec<(usize, Vector)>,
     /// Its rotations.
     pub turns: Vec<Turn>,
+    /// About what the spherical interpolation moves its deltas; without it, deltas cannot be spherical.
+    pub arc: Option<Arc>,
 }
 
 /// A name, and the sides of a shape that a channel with this name drives.

@@ -1,7 +1,7 @@
 //! Encodes a blueprint as a model (firmware/face/MODEL.md).
 
-use super::blueprint::{Blueprint, Shape, Turn};
-use anyhow::{Result, ensure};
+use super::blueprint::{Arc, Blueprint, Shape, Turn};
+use anyhow::{Context, Result, ensure};
 use pantin_face::model::{self, NO_SHAPE, VERSION, WIDE};
 use pantin_face::shape::{Interpolation, ShapeKind};
 
@@ -140,8 +140,9 @@ impl Writer {
     fn shape(&mut self, blueprint: &Blueprint, shape: &Shape, step: f64) -> Result<()> {
         let interpolation = match shape.interpolation {
             Interpolation::Linear => 0,
-            Interpolation::Cosine => 1,
+            Interpolation::Eased => 1,
             Interpolation::Spherical => 2,
+            Interpolation::ImprovedLinear => 3,
         };
         let kind = match shape.kind {
             ShapeKind::Unsigned => 0,
@@ -155,7 +156,26 @@ impl Writer {
             shape.name
         );
         let mut moved = Writer { bytes: Vec::new(), wide: self.wide };
-        moved.runs(blueprint, &deltas(shape, step));
+        let deltas = deltas(shape, step);
+        if shape.interpolation == Interpolation::Spherical && !deltas.is_empty() {
+            let arc = shape.arc.with_context(|| {
+                format!(
+                    "the unit {} moves points without an axis: spherical interpolation needs a centre and an angle",
+                    shape.name
+                )
+            })?;
+            ensure!(
+                (Arc::LEAST..=Arc::MOST).contains(&arc.degrees),
+                "the unit {}: expected an angle from {} to {} degrees, not {}",
+                shape.name,
+                Arc::LEAST,
+                Arc::MOST,
+                arc.degrees
+            );
+            moved.place(arc.centre.map(|x| x * step))?;
+            moved.number((arc.degrees / 360.0 * 65536.0).floor())?;
+        }
+        moved.runs(blueprint, &deltas);
         let mut turns = Writer { bytes: Vec::new(), wide: self.wide };
         for turn in &shape.turns {
             turns.turn(blueprint, turn, step)?;

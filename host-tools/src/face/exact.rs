@@ -1,18 +1,16 @@
 //! Evaluates a blueprint in full precision: the reference for the device's arithmetic.
 
 use super::blueprint::{Blueprint, Shape};
-use super::head::{Vector, dot, minus, plus};
+use super::head::{Vector, minus, plus};
 use pantin_face::shape::{Interpolation, ShapeKind};
 use std::f64::consts::PI;
-
-/// The centre of the head. In the comparison of interpolations, points without an axis of rotation move about it.
-const CENTRE: Vector = [0.0, -14.0, 4.0];
 
 /// The part of its displacement that a point has moved at a weight.
 pub fn eased(interpolation: Interpolation, weight: f64) -> f64 {
     match interpolation {
-        Interpolation::Cosine => weight.signum() * (1.0 - (PI * weight).cos()) / 2.0,
-        _ => weight,
+        Interpolation::Eased => weight.signum() * (1.0 - (PI * weight).cos()) / 2.0,
+        Interpolation::ImprovedLinear => (PI * weight / 2.0).sin(),
+        Interpolation::Linear | Interpolation::Spherical => weight,
     }
 }
 
@@ -20,21 +18,40 @@ pub fn eased(interpolation: Interpolation, weight: f64) -> f64 {
 /// rotate.
 pub fn places(face: &Blueprint, weights: &[[f64; 2]]) -> Vec<Vector> {
     let mut places = face.neutral();
+    let neutral = places.clone();
     let moved = |shape: &Shape, pair: [f64; 2]| shape.kind != ShapeKind::Head && pair != [0.0; 2];
     let whole =
         |shape: &Shape, pair: [f64; 2]| if shape.kind == ShapeKind::Unsigned { pair.map(|weight| weight.max(0.0)) } else { pair };
     for (shape, &pair) in face.shapes.iter().zip(weights).filter(|(shape, pair)| moved(shape, **pair)) {
-        let [stored, mirrored] = whole(shape, pair).map(|weight| eased(shape.interpolation, weight));
+        let pair = whole(shape, pair);
+        let [stored, mirrored] = pair.map(|weight| eased(shape.interpolation, weight));
+        let arc = shape.arc.filter(|_| shape.interpolation == Interpolation::Spherical);
         for &(index, way) in &shape.deltas {
-            places[index] = plus(places[index], way, stored);
             let image = face.mirror(index);
-            places[image] = plus(places[image], [-way[0], way[1], way[2]], mirrored);
+            let reversed = [-way[0], way[1], way[2]];
+            if let Some(arc) = arc {
+                let centre = arc.centre;
+                let other = [-centre[0], centre[1], centre[2]];
+                places[index] = plus(places[index], on_arc(minus(neutral[index], centre), way, arc.degrees, pair[0]), 1.0);
+                places[image] = plus(places[image], on_arc(minus(neutral[image], other), reversed, arc.degrees, pair[1]), 1.0);
+            } else {
+                places[index] = plus(places[index], way, stored);
+                places[image] = plus(places[image], reversed, mirrored);
+            }
         }
     }
     for (shape, &pair) in face.shapes.iter().zip(weights).filter(|(shape, pair)| moved(shape, **pair)) {
         turn(face, shape, whole(shape, pair), &mut places);
     }
     places
+}
+
+/// How far a point moves by the paper's spherical formula, from `start` to `start + way`, both seen from the centre.
+fn on_arc(start: Vector, way: Vector, degrees: f64, weight: f64) -> Vector {
+    let angle = degrees.to_radians();
+    let [from, to] = [((1.0 - weight) * angle).sin() / angle.sin(), (weight * angle).sin() / angle.sin()];
+    let end = plus(start, way, 1.0);
+    minus(plus(start.map(|x| x * from), end, to), start)
 }
 
 fn turn(face: &Blueprint, shape: &Shape, [stored, mirrored]: [f64; 2], places: &mut [Vector]) {
@@ -77,18 +94,4 @@ pub fn turned(place: Vector, centre: Vector, axis: usize, degrees: f64, interpol
     out[b] = centre[b] + from * start[0] + to * end[0];
     out[c] = centre[c] + from * start[1] + to * end[1];
     out
-}
-
-/// Spherical interpolation of points about the centre of the head, each by the angle between its start and its end.
-pub fn about_head(from: &[Vector], to: &[Vector], weight: f64) -> Vec<Vector> {
-    let mix = |(&from, &to): (&Vector, &Vector)| {
-        let (s, e) = (minus(from, CENTRE), minus(to, CENTRE));
-        let angle = (dot(s, e) / (dot(s, s) * dot(e, e)).sqrt()).clamp(-1.0, 1.0).acos();
-        if angle < 1e-6 {
-            return plus(from, minus(to, from), weight);
-        }
-        let [a, b] = [((1.0 - weight) * angle).sin() / angle.sin(), (weight * angle).sin() / angle.sin()];
-        plus(plus(CENTRE, s, a), e, b)
-    };
-    from.iter().zip(to).map(mix).collect()
 }

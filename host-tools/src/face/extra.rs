@@ -3,6 +3,7 @@
 use super::blueprint::{Shape, Turn};
 use super::head::{Head, Vector};
 use super::paper::{follow, jaw_region, shape};
+use super::subject::Subject;
 use anyhow::{Context, Result, bail};
 use pantin_face::shape::{Interpolation, ShapeKind};
 
@@ -20,6 +21,14 @@ pub const HEAD: [f64; 3] = [30.0, 45.0, 30.0];
 const JAW: [f64; 2] = [8.0, 7.0];
 /// The angle of the lid's crease as a part of the lid's angle.
 const CREASE: f64 = 0.12;
+
+/// Points of the lips between two others, with which they move where a unit does not name them.
+const BETWEEN: [(&str, [&str; 2]); 4] = [
+    ("lip-upper-out", ["lip-corner", "lip-upper"]),
+    ("lip-lower-out", ["lip-corner", "lip-lower"]),
+    ("inner-upper-in", ["inner-upper", "inner-top"]),
+    ("inner-lower-in", ["inner-lower", "inner-bottom"]),
+];
 
 /// Points whose surrounding skin follows, and the radius in mm.
 type Leaders = Vec<(usize, f64)>;
@@ -44,7 +53,7 @@ pub fn table(head: &Head, table: &str) -> Result<Vec<Shape>> {
             [] => {}
             [name, sides] => {
                 let sided = sides == "sided";
-                units.push((shape(name, Interpolation::Cosine, sided), sides == "whole", Vec::new()));
+                units.push((shape(name, Interpolation::Eased, sided), sides == "whole", Vec::new()));
             }
             [point, x, y, z, ref reach @ ..] => {
                 let (shape, _, leaders) = units.last_mut().context("a row before the first unit")?;
@@ -62,6 +71,15 @@ pub fn table(head: &Head, table: &str) -> Result<Vec<Shape>> {
 
 /// Adds the skin that follows, and gives each side its part of the points in the middle.
 fn finish(head: &Head, mut shape: Shape, whole: bool, leaders: &[(usize, f64)]) -> Shape {
+    let way = |deltas: &[(usize, Vector)], index| deltas.iter().find(|entry| entry.0 == index).map_or([0.0; 3], |entry| entry.1);
+    for (between, ends) in BETWEEN {
+        let find = |name: &str| head.find(name).expect("a point of the lips");
+        let [a, b] = ends.map(|name| way(&shape.deltas, find(name)));
+        let mean = [0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0);
+        if mean != [0.0; 3] && !shape.deltas.iter().any(|entry| entry.0 == find(between)) {
+            shape.deltas.push((find(between), mean));
+        }
+    }
     shape.deltas = follow(head, shape.deltas, leaders);
     if whole {
         // The table gives the left half; the right half moves in the same direction.
@@ -118,12 +136,12 @@ fn head_turns() -> [Shape; 3] {
 
 /// The region that unit 1 rotates, moved to the side and forwards: FACS 30 and 29, ARKit jawLeft and jawForward.
 fn jaw(head: &Head) -> [Shape; 2] {
-    let region = jaw_region(head);
+    let region = jaw_region(&Subject::of_head(head));
     // In proportion to a point's distance below the axis, because the joints do not move.
     let (axis, chin) = (head.at("2.13")[1], head.at("2.1")[1]);
     let depth = |index: usize| ((axis - head.points[index][1]) / (axis - chin) * 1.5).clamp(0.0, 1.0);
     let moved = |way: Vector| region.iter().map(|&index| (index, way.map(|x| x * depth(index)))).collect();
-    let aside = Shape { deltas: moved([JAW[0], 0.0, 0.0]), ..shape("jaw_side", Interpolation::Cosine, false) };
-    let ahead = Shape { deltas: moved([0.0, 0.0, JAW[1]]), ..shape("jaw_forward", Interpolation::Cosine, false) };
+    let aside = Shape { deltas: moved([JAW[0], 0.0, 0.0]), ..shape("jaw_side", Interpolation::Eased, false) };
+    let ahead = Shape { deltas: moved([0.0, 0.0, JAW[1]]), ..shape("jaw_forward", Interpolation::Eased, false) };
     [finish(head, aside, true, &[]), finish(head, ahead, false, &[])]
 }

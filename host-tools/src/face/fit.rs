@@ -95,7 +95,8 @@ fn pairs(face: &Blueprint, unknowns: &[Unknown], ways: &[f64]) -> Pairs {
     let mut pairs = vec![[0.0; 2]; face.shapes.len()];
     for (unknown, &way) in unknowns.iter().zip(ways) {
         let weight = match face.shapes[unknown.shape].interpolation {
-            Interpolation::Cosine => way.signum() * (1.0 - 2.0 * way.abs().min(1.0)).acos() / PI,
+            Interpolation::Eased => way.signum() * (1.0 - 2.0 * way.abs().min(1.0)).acos() / PI,
+            Interpolation::ImprovedLinear => way.clamp(-1.0, 1.0).asin() * 2.0 / PI,
             _ => way,
         };
         for (slot, driven) in pairs[unknown.shape].iter_mut().zip(unknown.sides) {

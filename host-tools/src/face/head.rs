@@ -207,6 +207,14 @@ impl Head {
         self.names.get(name).copied().with_context(|| format!("no point is called {name}"))
     }
 
+    /// The feature points: MPEG-4 number and index.
+    pub fn features(&self) -> impl Iterator<Item = (&str, usize)> {
+        let numbered = |name: &str| {
+            name.split_once('.').is_some_and(|(group, number)| [group, number].iter().all(|part| part.parse::<u8>().is_ok()))
+        };
+        self.names.iter().filter(move |(name, _)| numbered(name)).map(|(name, &index)| (name.as_str(), index))
+    }
+
     /// The position of a point by name. Panics if there is none.
     pub fn at(&self, name: &str) -> Vector {
         self.points[self.find(name).expect("a point of head.txt")]
@@ -274,6 +282,7 @@ impl Row {
         };
         let place = [x.parse()?, y.parse()?, z.parse()?];
         let features = [features.0.to_string(), features.1.to_string()];
+        let skin = skin && !rest.contains(&"loose");
         Ok(Row { name: name.to_string(), features, place, normal, fixed: rest.contains(&"fixed"), skin })
     }
 }

@@ -19,6 +19,7 @@ pub mod paper;
 pub mod pose;
 pub mod sheet;
 mod skin;
+pub mod subject;
 
 use anyhow::Result;
 use blueprint::Blueprint;

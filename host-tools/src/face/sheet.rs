@@ -49,7 +49,7 @@ pub fn write(out: impl Write, cells: &[Cell], columns: usize, [width, height]: [
 const COLUMNS: usize = 8;
 const SIZE: [usize; 2] = [160, 160];
 
-/// The pictures of the sheet: label, pose, and degrees of the view's orbit.
+/// The pictures of the sheet: label, pose, and degrees of the view's orbit. A label without a weight shows the whole unit.
 const POSES: [(&str, &str, i16); 64] = [
     ("neutral", "", 0),
     ("three quarters", "", 35),
@@ -59,7 +59,7 @@ const POSES: [(&str, &str, i16); 64] = [
     ("sadness = 3 + 4b", "sadness_outer", 0),
     ("surprise = 4b + 1", "surprise", 0),
     ("as printed: 3 + 1", "surprise_printed", 0),
-    ("1 open the mouth", "open_mouth=0.6", 0),
+    ("1 open the mouth", "open_mouth", 0),
     ("2 smile", "smile", 0),
     ("2 left", "smile_left", 0),
     ("3 lower the corners", "lower_corners", 0),
@@ -72,14 +72,14 @@ const POSES: [(&str, &str, i16); 64] = [
     ("widen", "widen", 0),
     ("squint", "squint", 0),
     ("look_left", "look_left", 0),
-    ("look_right", "look_right", 0),
+    ("2 wider smile", "wide_smile", 0),
     ("look_up", "look_up", 0),
     ("look_down", "look_down", 0),
-    ("turn_left", "turn_left=0.7", 0),
-    ("turn_right", "turn_right=0.7", 0),
-    ("nod", "nod=0.7", 0),
-    ("raise_head", "raise_head=0.7", 0),
-    ("tilt_left", "tilt_left=0.7", 0),
+    ("turn_left 0.7", "turn_left=0.7", 0),
+    ("turn_right 0.7", "turn_right=0.7", 0),
+    ("nod 0.7", "nod=0.7", 0),
+    ("raise_head 0.7", "raise_head=0.7", 0),
+    ("tilt_left 0.7", "tilt_left=0.7", 0),
     ("brow_inner_up", "brow_inner_up", 0),
     ("brow_lower", "brow_lower", 0),
     ("brow_raise", "brow_raise", 0),
@@ -100,9 +100,9 @@ const POSES: [(&str, &str, i16); 64] = [
     ("mouth_left", "mouth_left", 0),
     ("jaw_left", "jaw_left", 0),
     ("jaw_forward, from aside", "jaw_forward", -60),
-    ("1 and mouth_close", "open_mouth=0.25,mouth_close=0.5", 0),
-    ("tongue_out", "open_mouth=0.3,tongue_out", 0),
-    ("tongue_up", "open_mouth=0.3,tongue_up", 0),
+    ("1 0.25, mouth_close 0.5", "open_mouth=0.25,mouth_close=0.5", 0),
+    ("1 0.3, tongue_out", "open_mouth=0.3,tongue_out", 0),
+    ("1 0.3, tongue_up", "open_mouth=0.3,tongue_up", 0),
     ("p, b, m", "viseme_pp", 0),
     ("f, v", "viseme_ff", 0),
     ("th", "viseme_th", 0),
@@ -114,7 +114,7 @@ const POSES: [(&str, &str, i16); 64] = [
     ("i", "viseme_i", 0),
     ("o", "viseme_o", 0),
     ("u", "viseme_u", 0),
-    ("laugh", "corner_up=0.9,open_mouth=0.35,cheek_raise,squint=0.6", -20),
+    ("laugh, from aside", "corner_up=0.9,open_mouth=0.35,cheek_raise,squint=0.6", -20),
 ];
 
 /// Writes the sheet of all units and emotions.

@@ -1,14 +1,18 @@
 //! `pantin face compare`
 
 use super::face_picture;
-use crate::face::compare::{ACTIONS, Jaw, METHODS, deviation, jaw, write};
+use crate::face::compare::{Compared, Jaw, METHODS, TABLES, jaw, pictures, write};
+use crate::face::subject::Subject;
 use crate::face::{Face, paper};
 use crate::output::{check, is_json, outln, report, write_whole};
 use anyhow::Result;
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Draw each of the paper's actions at 20, 50 and 80 % under the three interpolations, and measure how they differ.
+/// Draw the paper's tables 3 and 4: each action at 20, 50 and 80 % under linear, improved linear and spherical interpolation, with the start, the end, and how far
+/// the pictures differ from linear.
+///
+/// The numbers are those of the vertices that are drawn.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  pantin face compare -o compare.png")]
 pub struct Arguments {
@@ -25,34 +29,35 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let face = Face::new()?;
     let jaws = METHODS.iter().map(|&(method, name)| Ok((name, jaw(&face, method)?))).collect::<Result<Vec<_>>>()?;
-    let of_action = |&(label, action)| {
-        let pairs = [[0, 1], [0, 2], [1, 2]].map(|pair| pair.map(|index| METHODS[index].0));
-        let cells = pairs.into_iter().map(|pair| deviation(&face, action, pair)).collect::<Result<Vec<_>>>()?;
-        Ok((label, cells))
-    };
-    let actions = ACTIONS.iter().map(of_action).collect::<Result<Vec<_>>>()?;
-    let angle = paper::opening_angle(&face.head);
+    let rows = TABLES.iter().flat_map(|table| table.actions.iter().map(move |action| (table, action)));
+    let rows = rows.map(|(table, action)| Ok((table, action, pictures(&face, action)?.cells))).collect::<Result<Vec<_>>>()?;
+    let angle = paper::opening_angle(&Subject::of_head(&face.head));
     if is_json() {
         let jaw = |(name, jaw): &(_, Jaw)| json!({"method": name, "shortest": jaw.shortest, "longest": jaw.longest});
-        let action = |(label, cells): &(_, Vec<(f64, f64)>)| {
-            let cell = |cell: usize| json!({"mm": cells[cell].0, "weight": cells[cell].1});
-            json!({"action": label, "linear_cosine": cell(0), "linear_spherical": cell(1), "cosine_spherical": cell(2)})
+        let cell = |cell: &Compared| {
+            let method = METHODS[cell.method].1;
+            json!({"weight": cell.weight, "method": method, "mm": cell.deviation.mm, "pixels": cell.deviation.pixels})
         };
+        let row = |(table, action, cells): &(&crate::face::compare::Table, &crate::face::compare::Action, Vec<Compared>)| json!({"table": table.title, "action": action.label, "from_linear": cells.iter().map(cell).collect::<Vec<_>>()});
         report(json!({
             "mouth_degrees": angle,
             "jaw_lengths": jaws.iter().map(jaw).collect::<Vec<_>>(),
-            "distances": actions.iter().map(action).collect::<Vec<_>>(),
+            "rows": rows.iter().map(row).collect::<Vec<_>>(),
         }));
     } else {
-        outln!("the mouth opens by {angle:.1} degrees; length of the jaw on the way, of that at rest:")?;
+        outln!("the mouth opens by {angle:.1} degrees; length of the jaw while it opens, of that at rest:")?;
         for (name, jaw) in &jaws {
-            outln!("  {name:10} {:6.2} to {:6.2} %", jaw.shortest * 100.0, jaw.longest * 100.0)?;
+            outln!("  {name:15} {:6.2} to {:6.2} %", jaw.shortest * 100.0, jaw.longest * 100.0)?;
         }
-        outln!("greatest distance of a point between two interpolations, mm (at the weight):")?;
-        outln!("  {:10} {:>18} {:>18} {:>18}", "action", "linear-cosine", "linear-spherical", "cosine-spherical")?;
-        for (label, cells) in &actions {
-            let cells: Vec<String> = cells.iter().map(|(most, weight)| format!("{most:11.2} ({weight:.2})")).collect();
-            outln!("  {label:10} {}", cells.join(" "))?;
+        outln!("largest distance of a drawn vertex from linear interpolation, mm (pixels of the picture):")?;
+        outln!("  {:7}  {:16} {:>4}  {:>15} {:>15}", "", "action", "%", METHODS[1].1, METHODS[2].1)?;
+        for (table, action, cells) in &rows {
+            for three in cells.chunks(METHODS.len()) {
+                let number = |cell: &Compared| format!("{:.2} ({:.1})", cell.deviation.mm, cell.deviation.pixels);
+                let [improved, spherical] = [&three[1], &three[2]].map(number);
+                let percent = three[0].weight * 100.0;
+                outln!("  {:7}  {:16} {percent:4.0}  {improved:>15} {spherical:>15}", table.title, action.label)?;
+            }
         }
     }
     let Some(output) = &arguments.output else { return Ok(()) };
