@@ -123,9 +123,7 @@ impl<'a> Bank<'a> {
 
     /// Checks one of the bank's clips.
     pub fn open(&self, entry: &BankEntry<'a>) -> Result<Clip<'a>, OpenError> {
-        let clip = Clip::with_rig(entry.bytes, self.rig_bytes)?;
-        // One with a rig of its own would be opened with that.
-        if clip.rig_len() > 0 { Err(OpenError::Malformed) } else { Ok(clip) }
+        Clip::with_checked_rig(entry.bytes, self.rig)
     }
 
     /// Finds and checks a clip; [`OpenError::NoSuchClip`] if the bank has none of this name.

@@ -15,9 +15,9 @@ pub fn check_name(name: &str) -> Result<()> {
     Ok(())
 }
 
-/// The id that a name of digits alone stands for.
+/// The id that a name stands for which is a number as programs write it: `007` is a name.
 fn number(name: &str) -> Option<u32> {
-    name.parse().ok().filter(|_| name.bytes().all(|byte| byte.is_ascii_digit()))
+    name.parse().ok().filter(|id: &u32| id.to_string() == name)
 }
 
 /// The events as a clip holds them, in the order of frames, and the names of their ids. Names take the lowest ids that no event has as its number, in
@@ -92,6 +92,7 @@ mod tests {
         );
         assert_eq!(names, ["", "step", "", "clap"]);
         assert_eq!(to_clip(&[event(1, "4294967295"), event(2, "7")]).1, Vec::<String>::new());
+        assert_eq!(to_clip(&[event(1, "007"), event(2, "+7")]).1, ["007", "+7"]);
         // Too large for an id: a name.
         assert_eq!(to_clip(&[event(1, "4294967296")]).1, ["4294967296"]);
     }

@@ -43,22 +43,39 @@ impl MemoryNeeds {
     }
 }
 
-/// Segments that a seek from frame 0 to the last frame passes.
-pub fn segments(clip: &Clip<'_>) -> Result<usize> {
+/// Segments of a clip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segments {
+    /// Those that a seek from frame 0 to the last frame of `frames` passes.
+    pub count: usize,
+    /// Frames in which they were counted: the clip's, or fewer of a clip that takes too long to play.
+    pub frames: u32,
+}
+
+/// Most values of moving channels that are played to count segments: about half a second.
+const MOST_COUNTED: u64 = 1 << 26;
+
+/// Counts the segments of a clip: in all of its frames, or in as many as take half a second.
+pub fn segments(clip: &Clip<'_>) -> Result<Segments> {
+    segments_within(clip, MOST_COUNTED)
+}
+
+fn segments_within(clip: &Clip<'_>, most: u64) -> Result<Segments> {
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(*clip, &mut states, &mut pose)?;
     let mut due: Vec<u8> = player.states().iter().map(ChannelState::due).collect();
-    let mut segments = 0;
-    while !player.ended() {
+    let frames = (most / (due.len() as u64 + 1)).clamp(1, clip.frames().into()) as u32;
+    let mut count = 0;
+    for _ in 1..frames {
         player.step();
         for (due, state) in due.iter_mut().zip(player.states()) {
             // A channel that follows reads none: it copies its leader's.
-            segments += usize::from(*due != state.due() && state.follows().is_none());
+            count += usize::from(*due != state.due() && state.follows().is_none());
             *due = state.due();
         }
     }
-    Ok(segments)
+    Ok(Segments { count, frames })
 }
 
 /// Time of a seek for each segment that it passes, on a Cortex-M0 of 48 MHz at one instruction a cycle: 360 instructions (docs/BENCHMARKS.md).

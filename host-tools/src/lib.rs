@@ -24,6 +24,9 @@ pub mod keys;
 #[cfg(feature = "cli")]
 pub mod line;
 pub mod motion;
+pub mod number;
+#[cfg(feature = "cli")]
+pub mod open;
 #[cfg(feature = "cli")]
 pub mod output;
 #[cfg(feature = "cli")]

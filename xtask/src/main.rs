@@ -27,7 +27,11 @@ const LIST: [(&str, Place, &str); 23] = [
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("blender", COMMANDS, "Imports exports of our clips into Blender (bpy), and validates the glTF files"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
-    ("coverage", COMMANDS, "Prints the line coverage of decoder, link and store by their own tests; needs cargo-llvm-cov"),
+    (
+        "coverage",
+        COMMANDS,
+        "Prints the line coverage of decoder, link and store by their own tests and the sender's; needs cargo-llvm-cov",
+    ),
     ("firmware", COMMANDS, "Builds every board's images into target/firmware, and prints how to flash them"),
     ("docs", Place::Here(publish::docs), "Builds the documentation of the published crates, with warnings as errors"),
     ("fuzz", COMMANDS, "Fuzzes the entry points for untrusted input; needs a nightly Rust and cargo-fuzz"),

@@ -1,15 +1,18 @@
 //! `pantin pack`, `pantin unpack` and `pantin list`: many clips of one rig in one file.
 
 use crate::budget;
-use crate::encode::bank::{self, Named};
+use crate::encode::bank::{self, CheckedRig, Named};
 use crate::input;
-use crate::output::{self, Wanted, clean, note, outln, refuse_foreign};
-use anyhow::{Context, Result, ensure};
-use pantin::Bank;
+use crate::open::is_bank;
+use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
+use anyhow::{Context, Result, bail, ensure};
+use pantin::{Bank, BankEntry};
 use serde_json::json;
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Put clips of one rig into one file, a bank, from which a program opens them by name.
 ///
@@ -35,6 +38,8 @@ pub struct Pack {
 }
 
 /// Write the clips of a bank as files, each with its rig.
+///
+/// Each clip goes into NAME.ptn. Characters that are no part of a file's name everywhere become _, and the command prints which names change.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin unpack moves.ptb -o clips
@@ -58,11 +63,6 @@ pub struct List {
     input: PathBuf,
 }
 
-/// Whether the file is a bank by its content.
-pub fn is_bank(bytes: &[u8]) -> bool {
-    bytes.starts_with(&pantin::codec::layout::BANK_MAGIC)
-}
-
 /// Whether an output is to be a bank, by its name.
 pub fn is_bank_name(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ptb"))
@@ -74,11 +74,12 @@ pub fn pack(arguments: &Pack) -> Result<()> {
     let inputs: Vec<&Path> = arguments.inputs.iter().chain(&arguments.rig).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&arguments.output])?;
     let apart = arguments.rig.as_deref().map(input::read).transpose()?;
-    let mut clips = Vec::new();
-    let mut needed = false;
+    let mut clips: Vec<Named> = Vec::new();
+    let (mut needed, mut held) = (false, 0);
     for path in &arguments.inputs {
         let place = path.display().to_string();
         let bytes = input::read(path)?;
+        ensure!(!is_bank(&bytes), "{place}: a bank already; `pantin unpack {place} -o FOLDER` writes its clips as files");
         // With its own rig, or the one given.
         let opened = pantin::Clip::with_rig(&bytes, apart.as_deref().unwrap_or(&[]));
         opened.with_context(|| match &apart {
@@ -87,8 +88,13 @@ pub fn pack(arguments: &Pack) -> Result<()> {
         })?;
         let own = bank::rig_of(&bytes)?;
         needed |= own.is_empty();
-        let rig = if own.is_empty() { apart.clone().unwrap_or_default() } else { own };
-        clips.push(Named { name: name_of(path)?, place, clip: bytes, rig });
+        let rig = if own.is_empty() { apart.as_deref().unwrap_or_default() } else { &own };
+        // Clips of one figure share its bytes.
+        let rig = clips.last().map(|clip| &clip.rig).filter(|last| last[..] == *rig).map_or_else(|| Arc::from(rig), Arc::clone);
+        let clip = bank::without_rig(&bytes, &CheckedRig::new(&rig)?).with_context(|| place.clone())?;
+        held += clip.len() as u64;
+        budget::check_bytes_held(held)?;
+        clips.push(Named { name: name_of(path)?, place, clip, rig });
     }
     ensure!(needed || apart.is_none(), "--rig has no effect: every clip has its own");
     let bytes = bank::encode(&clips)?;
@@ -101,51 +107,103 @@ pub fn pack(arguments: &Pack) -> Result<()> {
 pub fn said(path: &Path, bytes: &[u8], clips: &[Named]) {
     let rig = clips.first().map_or(0, |clip| clip.rig.len());
     let (count, len) = (clips.len(), bytes.len());
+    let mut files: HashMap<String, &str> = HashMap::new();
+    for (number, Named { name, .. }) in clips.iter().enumerate() {
+        let file = file_name(name, number);
+        if let Some(other) = files.insert(file.to_lowercase(), name) {
+            note!(
+                "warning: the clips `{other}` and `{name}` would both be unpacked to {file}: `pantin unpack --clip` writes one of them"
+            );
+        }
+    }
     output::report(json!({"clips_in_bank": count, "bytes": len, "rig_bytes": rig}));
     note!("{}: {count} clips, {len} bytes, of which {rig} are the rig", path.display());
 }
 
 /// The name of a clip in a bank.
 pub fn name_of(path: &Path) -> Result<String> {
-    let name = path.file_stem().filter(|_| path.as_os_str() != "-").map(|name| name.to_string_lossy().into_owned());
-    name.with_context(|| format!("{}: no file name, so the clip has no name in the bank", path.display()))
+    let stem = path.file_stem().filter(|_| path.as_os_str() != "-");
+    let stem = stem.with_context(|| format!("{}: no file name, so the clip has no name in the bank", path.display()))?;
+    let name = stem.to_string_lossy().into_owned();
+    if stem.to_str().is_none() {
+        note!("warning: {}: its name is not UTF-8; the bank has the clip as `{name}`", path.display());
+    }
+    Ok(name)
+}
+
+/// A clip's name as it is shown.
+fn shown<'a>(entry: &BankEntry<'a>) -> &'a str {
+    if entry.name().is_empty() { "(a name that is not UTF-8)" } else { entry.name() }
+}
+
+/// The file into which a clip is unpacked.
+fn file_name(name: &str, number: usize) -> String {
+    super::batch::file_name(None, name, &number.to_string()).to_string_lossy().into_owned()
+}
+
+/// The clips to unpack and their files. Fails for two clips that have one file.
+fn files<'a>(arguments: &Unpack, bank: &Bank<'a>) -> Result<Vec<(BankEntry<'a>, PathBuf)>> {
+    let place = || arguments.input.display().to_string();
+    for name in &arguments.clips {
+        ensure!(bank.find(name).is_some(), "{}: no clip `{name}`; `pantin list` prints the names", place());
+    }
+    let chosen = |entry: &BankEntry| arguments.clips.is_empty() || arguments.clips.iter().any(|name| name == entry.name());
+    let mut files = Vec::new();
+    let mut lower: HashMap<String, &str> = HashMap::new();
+    for (number, entry) in bank.entries().enumerate().filter(|(_, entry)| chosen(entry)) {
+        let name = file_name(entry.name(), number);
+        // Some file systems ignore the case of letters.
+        if let Some(other) = lower.insert(name.to_lowercase(), shown(&entry)) {
+            bail!(
+                "{}: the clips `{other}` and `{}` would both be written to {name}; --clip writes one of them, into a folder of its own",
+                place(),
+                shown(&entry)
+            );
+        }
+        files.push((entry, arguments.output.join(name)));
+    }
+    Ok(files)
 }
 
 /// Runs `pantin unpack`.
 pub fn unpack(arguments: &Unpack) -> Result<()> {
-    let place = || arguments.input.display().to_string();
+    let (place, folder) = (|| arguments.input.display().to_string(), &arguments.output);
+    ensure!(folder.as_os_str() != "-", "-o -: a bank has several clips, and standard output takes one; name a folder");
     let bytes = input::read(&arguments.input)?;
     let bank = open(&arguments.input, &bytes)?;
-    ensure!(!arguments.output.is_file(), "{}: a file; the clips need a folder", arguments.output.display());
-    for name in &arguments.clips {
-        ensure!(bank.find(name).is_some(), "{}: no clip `{name}`; `pantin list` prints the names", place());
-    }
-    let chosen =
-        |entry: &pantin::BankEntry| arguments.clips.is_empty() || arguments.clips.iter().any(|name| name == entry.name());
+    ensure!(!folder.is_file(), "{}: a file; the clips need a folder", folder.display());
+    let files = files(arguments, &bank)?;
     // Each file has the rig again.
-    let bytes_of = |entry: &pantin::BankEntry| entry.bytes().len() as u64 + bank.rig_bytes().len() as u64;
-    let all: u64 = bank.entries().filter(chosen).map(|entry| bytes_of(&entry)).sum();
-    output::check_size(&arguments.output, all)?;
-    budget::check_bytes_held(all).with_context(place)?;
-    let mut files: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    let mut lower = HashSet::new();
-    for (number, entry) in bank.entries().enumerate().filter(|(_, entry)| chosen(entry)) {
-        let context = || format!("{}: clip {}", place(), clean(entry.name()));
-        bank.open(&entry).with_context(context)?;
-        let clip = bank::with_rig(entry.bytes(), bank.rig_bytes()).with_context(context)?;
-        let file = arguments.output.join(super::batch::file_name(None, entry.name(), &number.to_string()));
-        super::batch::regular(&file)?;
-        let new = lower.insert(file.to_string_lossy().to_lowercase());
-        ensure!(new, "{}: another clip is written to {} too", context(), file.display());
-        files.push((file, clip));
+    let all: u64 = files.iter().map(|(entry, _)| entry.bytes().len() as u64 + bank.rig_bytes().len() as u64).sum();
+    output::check_size(folder, all)?;
+    let context = |entry: &BankEntry| format!("{}: clip {}", place(), shown(entry));
+    for (entry, file) in &files {
+        bank.open(entry).with_context(|| context(entry))?;
+        super::batch::regular(file)?;
     }
-    fs::create_dir_all(&arguments.output).with_context(|| arguments.output.display().to_string())?;
-    let outputs: Vec<(&Path, &[u8])> = files.iter().map(|(path, clip)| (path.as_path(), clip.as_slice())).collect();
-    output::check(&[&arguments.input], &outputs.iter().map(|(path, _)| *path).collect::<Vec<_>>())?;
-    output::write_together(&outputs)?;
-    let written: Vec<_> = files.iter().map(|(path, _)| path.display().to_string()).collect();
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    output::check(&[&arguments.input], &files.iter().map(|(_, path)| path.as_path()).collect::<Vec<_>>())?;
+    let (rig, mut staged) = (CheckedRig::of(&bank), Vec::with_capacity(files.len()));
+    let bar = output::progress(files.len() as u64, "{wide_bar} {pos} of {len} clips {eta} left")?;
+    for (entry, path) in &files {
+        let clip = bank::with_rig(entry.bytes(), &rig).with_context(|| context(entry))?;
+        let mut file = Staged::create(path)?;
+        file.write_all(&clip).with_context(|| format!("{}: cannot be written", path.display()))?;
+        file.close()?;
+        staged.push(file);
+        bar.inc(1);
+    }
+    output::commit(staged)?;
+    bar.finish_and_clear();
+    for (entry, path) in &files {
+        let name = path.file_name().unwrap_or_default();
+        if name != &*format!("{}.ptn", entry.name()) {
+            note!("the clip `{}` has another name as a file: {}", shown(entry), name.display());
+        }
+    }
+    let written: Vec<_> = files.iter().map(|(_, path)| path.display().to_string()).collect();
     output::report(json!({"written": written}));
-    note!("{}: {} clips written to {}", place(), files.len(), arguments.output.display());
+    note!("{}: {} clips written to {}", place(), files.len(), folder.display());
     Ok(())
 }
 
@@ -166,7 +224,7 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
     let bank = open(path, bytes)?;
     let mut rows = Vec::new();
     for entry in bank.entries() {
-        let clip = bank.open(&entry).with_context(|| format!("{}: clip {}", path.display(), clean(entry.name())))?;
+        let clip = bank.open(&entry).with_context(|| format!("{}: clip {}", path.display(), shown(&entry)))?;
         rows.push((entry, clip));
     }
     let fps = |clip: &pantin::Clip| (1e11 / f64::from(clip.frame_time_ns())).round() / 100.0;
@@ -187,11 +245,11 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
         output::report(json!({"clips": clips, "rig_bytes": bank.rig_bytes().len(), "file_bytes": bytes.len()}));
         return Ok(());
     }
-    let wide = rows.iter().map(|(entry, _)| clean(entry.name()).chars().count()).max().unwrap_or(0).max(4);
+    let wide = rows.iter().map(|(entry, _)| clean(shown(entry)).chars().count()).max().unwrap_or(0).max(4);
     outln!("{:wide$} {:>7} {:>7} {:>9} {:>7} {:>9}", "clip", "frames", "fps", "seconds", "events", "bytes")?;
     for (entry, clip) in &rows {
         let looped = if clip.looped() { "  loop" } else { "" };
-        let (name, frames, events, len) = (clean(entry.name()), clip.frames(), clip.event_count(), entry.bytes().len());
+        let (name, frames, events, len) = (clean(shown(entry)), clip.frames(), clip.event_count(), entry.bytes().len());
         outln!("{name:wide$} {frames:7} {:7} {:9.3} {events:7} {len:9}{looped}", fps(clip), seconds(clip))?;
     }
     outln!("{} clips, {} bytes, of which {} are the rig", rows.len(), bytes.len(), bank.rig_bytes().len())?;

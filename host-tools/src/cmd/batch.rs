@@ -3,7 +3,7 @@
 //! A clip that is up to date carries its source's modification time in seconds, and in the microseconds beside them a fingerprint of
 //! the source, the options and this program. So nothing but clips is written, and whatever loses the time (an edit, a copy) converts again.
 
-use super::convert::{Arguments, Made, convert};
+use super::convert::{Arguments, Made, convert, say_of_each};
 use super::is_free;
 use crate::import;
 use crate::input;
@@ -24,7 +24,7 @@ const LONGEST_NAME: usize = 60;
 
 /// A file's outcome.
 enum Outcome {
-    Converted { frames: usize, bytes: usize, error: String, seconds: f64, warnings: Vec<String> },
+    Converted { made: Box<Made>, seconds: f64 },
     UpToDate,
     Refused(String),
 }
@@ -190,30 +190,18 @@ pub(super) fn chosen_animations(input: &Path, entries: &[import::list::Entry]) -
 fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     let mut sources = HashMap::new();
     for task in tasks {
-        sources.insert(identity(&task.input), task.input.clone());
-        sources.extend(import::companions(&task.input).into_iter().map(|path| (identity(&path), path)));
+        sources.insert(output::file_id(&task.input), task.input.clone());
+        sources.extend(import::companions(&task.input).into_iter().map(|path| (output::file_id(&path), path)));
     }
     sources.remove(&None);
     for task in tasks {
         let output = task.output();
         regular(output)?;
-        if let Some(source) = sources.get(&identity(output)) {
+        if let Some(source) = sources.get(&output::file_id(output)) {
             bail!("{}: is the input {} itself; choose another folder for the clips", output.display(), source.display());
         }
     }
     Ok(())
-}
-
-/// What is equal for two names of one file. Unlike a handle, it keeps none of a thousand files open.
-#[cfg(unix)]
-fn identity(path: &Path) -> Option<(u64, u64)> {
-    use std::os::unix::fs::MetadataExt;
-    path.metadata().ok().map(|found| (found.dev(), found.ino()))
-}
-
-#[cfg(not(unix))]
-fn identity(path: &Path) -> Option<PathBuf> {
-    path.canonicalize().ok()
 }
 
 /// Converts all `tasks`, and reports a line for each under its label. Fails if one did.
@@ -239,8 +227,8 @@ fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], ot
     }
     for (file, outcome) in labels.iter().zip(&outcomes) {
         match outcome {
-            Outcome::Converted { warnings, .. } => {
-                warnings.iter().for_each(|warning| note!("{file}: warning: {warning}"));
+            Outcome::Converted { made, .. } => {
+                made.warnings.iter().for_each(|warning| note!("{file}: warning: {warning}"));
             }
             // The table and the JSON name them; without either, somebody must.
             Outcome::Refused(why) if output::is_quiet() && !output::is_json() => {
@@ -249,6 +237,10 @@ fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], ot
             _ => {}
         }
     }
+    say_of_each(labels.iter().zip(&outcomes).filter_map(|(file, outcome)| match outcome {
+        Outcome::Converted { made, .. } => Some((file.as_str(), made.notes.as_slice())),
+        _ => None,
+    }));
     let fresh = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::UpToDate)).count();
     let done = outcomes.len() - refused - fresh;
     let others = others.map_or_else(String::new, |others| format!(", {others} other files passed over"));
@@ -373,9 +365,7 @@ fn outcome(task: &Arguments) -> Outcome {
         if made.read.iter().all(|path| taken.contains(path)) {
             File::options().write(true).open(task.output())?.set_modified(stamp).context("cannot set the clip's time")?;
         }
-        let seconds = begun.elapsed().as_secs_f64();
-        let Made { frames, bytes, cell: error, warnings, .. } = made;
-        Ok(Outcome::Converted { frames, bytes: bytes.len(), error, seconds, warnings })
+        Ok(Outcome::Converted { made: Box::new(made.without_bytes()), seconds: begun.elapsed().as_secs_f64() })
     };
     match catch_unwind(AssertUnwindSafe(convert)) {
         Ok(Ok(outcome)) => outcome,
@@ -428,8 +418,12 @@ impl Outcome {
 
     fn fields(&self) -> Map<String, Value> {
         let fields = match self {
-            Outcome::Converted { frames, bytes, error, seconds, warnings } => {
-                json!({"frames": frames, "bytes": bytes, "error": error, "seconds": seconds, "warnings": warnings})
+            Outcome::Converted { made, seconds } => {
+                let mut fields = made.fields();
+                fields.insert("error".into(), made.cell.as_str().into());
+                fields.insert("seconds".into(), json!(seconds));
+                fields.insert("notes".into(), json!(made.notes));
+                fields.into()
             }
             Outcome::UpToDate => json!({"up_to_date": true}),
             Outcome::Refused(why) => json!({"refused": why}),
@@ -444,8 +438,8 @@ fn table(names: &[String], outcomes: &[Outcome]) -> Vec<String> {
     let mut out = vec![format!("{:wide$} {:>7} {:>9}  {:26} {:>7}", "file", "frames", "bytes", "greatest error", "s")];
     for (name, outcome) in names.iter().zip(outcomes) {
         out.push(match outcome {
-            Outcome::Converted { frames, bytes, error, seconds, .. } => {
-                format!("{name:wide$} {frames:7} {bytes:9}  {error:26} {seconds:7.1}")
+            Outcome::Converted { made, seconds } => {
+                format!("{name:wide$} {:7} {:9}  {:26} {seconds:7.1}", made.frames, made.len, made.cell)
             }
             Outcome::UpToDate => format!("{name:wide$} up to date"),
             Outcome::Refused(why) => format!("{name:wide$} REFUSED: {why}"),

@@ -17,13 +17,15 @@ use crate::fit::parametrize::{Coding, Rotations, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
+use crate::number::Number;
 use crate::output::{self, Wanted, detail, note, outln, refuse_foreign};
 use crate::verify::{compare, verify};
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
 use pantin::Up;
 use pantin::codec::layout::MAX_FRAMES;
-use serde_json::json;
+use serde_json::{Map, Value, json};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Turn a motion file into a clip.
@@ -76,7 +78,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
     /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
-    #[arg(long, conflicts_with_all = ["list", "same_form", "more"])]
+    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
     find_loop: bool,
     /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
     /// with % of the figure's height
@@ -195,6 +197,7 @@ impl Arguments {
             ("--mean-error", self.mean_error.is_some()),
             ("--max-rotation-error", self.max_rotation_error.is_some()),
             ("--cm-per-unit", self.cm_per_unit.is_some()),
+            ("--up", self.up.is_some()),
         ];
         let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
         let given = of_joints.into_iter().filter(|(_, given)| *given && no_joints).map(|(name, _)| (name, "joints"));
@@ -242,8 +245,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let arguments = &arguments.with_output()?;
     arguments.check_outputs(&[])?;
     let made = convert(arguments)?;
-    output::report(made.json.clone());
-    output::report(json!({"frames": made.frames, "bytes": made.bytes.len(), "warnings": made.warnings}));
+    output::report(made.fields().into());
     note!("{}", made.sentence(arguments.output()));
     Ok(())
 }
@@ -258,7 +260,9 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     let options = arguments.import_options();
     let imported = import::load(&arguments.input, &options)?;
     imported.warnings.iter().for_each(|warning| note!("warning: {warning}"));
-    let motion = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?.motion;
+    let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
+    edited.said.iter().for_each(|sentence| note!("{sentence}"));
+    let motion = edited.motion;
     let mut cuts = find_loop::find(&motion).with_context(place)?;
     // Frames count as those of --from and --to do: before the cut.
     let first = arguments.edits.first_frame(motion.frame_time);
@@ -289,7 +293,9 @@ const TOLD_DEGREES: f64 = 0.01;
 /// A clip that keeps its bound.
 pub(super) struct Made {
     pub bytes: Vec<u8>,
-    pub json: serde_json::Value,
+    /// Number of its bytes, which outlives them.
+    pub len: usize,
+    pub json: Value,
     /// The errors as a clause for the user.
     errors: String,
     /// The same for a table's column.
@@ -300,13 +306,40 @@ pub(super) struct Made {
     pub read: Vec<PathBuf>,
     /// What is odd about the motion, a sentence each.
     pub warnings: Vec<String>,
+    /// What else the user should know, a sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Made {
     /// A clip of `motion`. What was read for it, and what is odd, is for the caller to add.
-    fn new(motion: &Motion, bytes: Vec<u8>, json: serde_json::Value, errors: String, cell: String) -> Made {
+    fn new(motion: &Motion, bytes: Vec<u8>, json: Value, errors: String, cell: String, notes: Notes) -> Made {
         let (frames, channels) = (motion.frames, motion.rig.channels());
-        Made { bytes, json, errors, cell, frames, channels, read: Vec::new(), warnings: Vec::new() }
+        Made {
+            len: bytes.len(),
+            bytes,
+            json,
+            errors,
+            cell,
+            frames,
+            channels,
+            read: Vec::new(),
+            warnings: Vec::new(),
+            notes: notes.said,
+        }
+    }
+
+    /// The same after its bytes were written: a report of many keeps them no longer.
+    pub fn without_bytes(self) -> Made {
+        Made { bytes: Vec::new(), ..self }
+    }
+
+    /// The fields of a report.
+    pub fn fields(&self) -> Map<String, Value> {
+        let mut fields = self.json.as_object().cloned().unwrap_or_default();
+        fields.insert("frames".into(), json!(self.frames));
+        fields.insert("bytes".into(), json!(self.len));
+        fields.insert("warnings".into(), json!(self.warnings));
+        fields
     }
 
     /// Sizes and errors, for the user.
@@ -324,12 +357,54 @@ impl Made {
     }
 }
 
+/// What a conversion says: at once, or kept for the report of many.
+struct Notes {
+    silent: bool,
+    said: Vec<String>,
+}
+
+impl Notes {
+    fn of(arguments: &Arguments) -> Notes {
+        Notes { silent: arguments.silent, said: Vec::new() }
+    }
+
+    fn say(&mut self, sentence: String) {
+        if !self.silent {
+            note!("{sentence}");
+        }
+        self.said.push(sentence);
+    }
+}
+
+/// Prints what the conversions of several motions say, each under its label. What several of them say alike is said once.
+pub(super) fn say_of_each<'a>(all: impl Iterator<Item = (&'a str, &'a [String])>) {
+    let mut sentences: Vec<(&str, &str, usize)> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
+    let mut motions = 0;
+    for (label, said) in all {
+        motions += 1;
+        for sentence in said {
+            let place = *places.entry(sentence).or_insert(sentences.len());
+            match sentences.get_mut(place) {
+                Some((.., count)) => *count += 1,
+                None => sentences.push((sentence, label, 1)),
+            }
+        }
+    }
+    for (sentence, label, count) in sentences {
+        match count {
+            1 => note!("{label}: {sentence}"),
+            _ if count == motions => note!("all {count}: {sentence}"),
+            _ => note!("{label} and {} others: {sentence}", count - 1),
+        }
+    }
+}
+
 /// Converts one file and writes the clip.
 pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
     let prepared = prepare(arguments)?;
     arguments.check_outputs(&prepared.read)?;
-    let mut made = prepared.code(arguments, &prepared.coding(arguments))?;
-    (made.read, made.warnings) = (prepared.read.clone(), prepared.warnings.clone());
+    let made = prepared.code(arguments, &prepared.coding(arguments))?;
     // A clip opens with its own rig alone: a new one beside an old one would be lost.
     let rig = arguments.rig_out.as_deref().map(|path| (path, prepared.rig.as_slice()));
     let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
@@ -345,7 +420,8 @@ pub(super) struct Prepared {
     /// Every file that was read for it.
     pub read: Vec<PathBuf>,
     /// What is odd about the motion, a sentence each.
-    pub warnings: Vec<String>,
+    warnings: Vec<String>,
+    notes: Vec<String>,
     bound: Bound,
     retarget_max_cm: Option<f64>,
 }
@@ -354,19 +430,16 @@ pub(super) struct Prepared {
 pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     let options = arguments.import_options();
     let imported = import::load(&arguments.input, &options)?;
-    let say = |sentence: &str| {
-        if !arguments.silent {
-            note!("{sentence}");
-        }
-    };
-    imported.warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
-    say(&imported.units);
+    let mut notes = Notes::of(arguments);
+    if !arguments.silent {
+        imported.warnings.iter().for_each(|warning| note!("warning: {warning}"));
+    }
+    notes.say(imported.units);
     let place = || arguments.input.display().to_string();
     let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
     let read = options.files.read_so_far();
     read.iter().for_each(|path| detail!("read {}", path.display()));
-    edited.said.iter().for_each(|sentence| say(sentence));
-    arguments.without_effect(&edited.motion).iter().for_each(|sentence| say(sentence));
+    edited.said.into_iter().chain(arguments.without_effect(&edited.motion)).for_each(|sentence| notes.say(sentence));
     let mut motion = edited.motion;
     if arguments.rotations == Rotations::Quaternion {
         motion = quaternions(&motion);
@@ -380,14 +453,15 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     };
     if arguments.edits.looped {
         let closed = bound.close(&motion).with_context(place)?;
-        closed_sentences(&closed, &motion).iter().for_each(|sentence| say(sentence));
+        closed_sentences(&closed, &motion).into_iter().for_each(|sentence| notes.say(sentence));
         motion = closed.motion;
     }
     if let Some(sentence) = arguments.edits.add_footsteps(&mut motion).with_context(place)? {
-        say(&sentence);
+        notes.say(sentence);
     }
     let rig = rig::encode(&motion.rig)?;
-    Ok(Prepared { motion, rig, read, warnings: imported.warnings, bound, retarget_max_cm: edited.retarget_max_cm })
+    let (warnings, notes) = (imported.warnings, notes.said);
+    Ok(Prepared { motion, rig, read, warnings, notes, bound, retarget_max_cm: edited.retarget_max_cm })
 }
 
 impl Prepared {
@@ -412,6 +486,8 @@ impl Prepared {
         if let (Some(cm), Some(fields)) = (self.retarget_max_cm, made.json.as_object_mut()) {
             fields.insert("retarget_max_cm".into(), json!(cm));
         }
+        (made.read, made.warnings) = (self.read.clone(), self.warnings.clone());
+        made.notes.splice(0..0, self.notes.iter().cloned());
         Ok(made)
     }
 }
@@ -547,18 +623,20 @@ fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
 }
 
 /// The clip's bytes, with the index that was asked for; says what it costs.
-fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8]) -> Result<Vec<u8>> {
+fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8], notes: &mut Notes) -> Result<Vec<u8>> {
     let apart = arguments.rig_out.is_some();
     let plain = clip::encode(coded, rig, apart)?;
     let Some(seconds) = arguments.index else { return Ok(plain) };
     let spacing = (seconds * 1e9 / f64::from(coded.frame_time_ns)).round();
-    ensure!((1.0..=f64::from(MAX_FRAMES)).contains(&spacing), "--index {seconds}: expected a frame's time or more, in seconds");
+    ensure!(
+        (1.0..=f64::from(MAX_FRAMES)).contains(&spacing),
+        "--index {}: expected a frame's time or more, in seconds",
+        Number(seconds)
+    );
     let bytes = clip::encode_with_index(coded, rig, apart, spacing as u32)?;
-    if !arguments.silent {
-        let cost = bytes.len() - plain.len();
-        let part = 100.0 * cost as f64 / plain.len() as f64;
-        note!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)");
-    }
+    let cost = bytes.len() - plain.len();
+    let part = 100.0 * cost as f64 / plain.len() as f64;
+    notes.say(format!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)"));
     Ok(bytes)
 }
 
@@ -568,7 +646,8 @@ fn by_distance(arguments: &Arguments, prepared: &Prepared, distance: &Distance, 
     let bar = bar(arguments, 1000)?;
     let coded = fit_coding(motion, coding, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
     bar.finish_and_clear();
-    let bytes = file(arguments, &coded, rig)?;
+    let mut notes = Notes::of(arguments);
+    let bytes = file(arguments, &coded, rig, &mut notes)?;
     let not_written = || format!("{}: not written", arguments.output().display());
     let report = verify(&bytes, rig, motion, distance.max_cm, part).with_context(not_written)?;
     if let Some(mean_cm) = distance.mean_cm {
@@ -582,13 +661,13 @@ fn by_distance(arguments: &Arguments, prepared: &Prepared, distance: &Distance, 
             not_written()
         );
     }
-    if degrees > TOLD_DEGREES && !arguments.silent {
-        note!(
+    if degrees > TOLD_DEGREES {
+        notes.say(format!(
             "rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame}); --max-rotation-error bounds it"
-        );
+        ));
     }
     let (errors, cell) = (errors::to_text(&report, motion), errors::to_cell(&report, motion));
-    Ok(Made::new(motion, bytes, errors::to_json(&report, motion).into(), errors, cell))
+    Ok(Made::new(motion, bytes, errors::to_json(&report, motion).into(), errors, cell, notes))
 }
 
 fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, coding: &Coding) -> Result<Made> {
@@ -600,7 +679,8 @@ fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, codin
     let not_written = || format!("{}: not written", arguments.output().display());
     let coded = channelwise::fit_exponent(motion, bounds, coding.length_exponent, &|| bar.inc(1)).with_context(not_written)?;
     bar.finish_and_clear();
-    let bytes = file(arguments, &coded, rig)?;
+    let mut notes = Notes::of(arguments);
+    let bytes = file(arguments, &coded, rig, &mut notes)?;
     let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;
     let worst = &report.worst;
     let json = json!({
@@ -617,5 +697,5 @@ fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, codin
             format!("error max {}, a frame^2; drift max {}", worst.sentence(motion), report.drift.sentence(motion))
         }
     };
-    Ok(Made::new(motion, bytes, json, errors, worst.sentence(motion)))
+    Ok(Made::new(motion, bytes, json, errors, worst.sentence(motion), notes))
 }

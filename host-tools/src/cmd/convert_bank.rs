@@ -2,7 +2,7 @@
 
 use super::bank::said;
 use super::batch;
-use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
+use super::convert::{Arguments, Made, Prepared, prepare, say_of_each, shared_coding};
 use crate::budget;
 use crate::encode::bank::{self, Named};
 use crate::encode::same_rig::difference;
@@ -10,7 +10,9 @@ use crate::import::{self, list};
 use crate::output::{self, Wanted, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One clip of the bank to be.
@@ -55,13 +57,19 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     bar.finish_and_clear();
     let read: Vec<PathBuf> = prepared.iter().flat_map(|prepared| prepared.read.clone()).collect();
     output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[output])?;
-    let named = |((task, made), prepared): ((&Task, &Made), &Prepared)| Named {
+    // Equal bytes, or `encode` refuses them.
+    let mut rigs: Vec<Arc<[u8]>> = Vec::new();
+    for prepared in &prepared {
+        let same = rigs.last().filter(|last| last[..] == prepared.rig[..]).map(Arc::clone);
+        rigs.push(same.unwrap_or_else(|| Arc::from(prepared.rig.as_slice())));
+    }
+    let named = |((task, made), rig): ((&Task, &Made), &Arc<[u8]>)| Named {
         name: task.name.clone(),
         place: task.label.clone(),
         clip: made.bytes.clone(),
-        rig: prepared.rig.clone(),
+        rig: Arc::clone(rig),
     };
-    let clips: Vec<Named> = tasks.iter().zip(&made).zip(&prepared).map(named).collect();
+    let clips: Vec<Named> = tasks.iter().zip(&made).zip(&rigs).map(named).collect();
     let bytes = bank::encode(&clips)?;
     output::write_together(&[(output, &bytes)])?;
     if !output::is_json() && !output::is_quiet() {
@@ -69,9 +77,18 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             outln!("{}: {} frames, {} bytes, {}", task.name, made.frames, made.bytes.len(), made.cell)?;
         }
     }
-    for (task, prepared) in tasks.iter().zip(&prepared) {
-        prepared.warnings.iter().for_each(|warning| note!("{}: warning: {warning}", task.label));
+    for (task, made) in tasks.iter().zip(&made) {
+        made.warnings.iter().for_each(|warning| note!("{}: warning: {warning}", task.label));
     }
+    say_of_each(tasks.iter().zip(&made).map(|(task, made)| (task.label.as_str(), made.notes.as_slice())));
+    let object = |(task, made): (&Task, &Made)| {
+        let mut fields = made.fields();
+        fields.insert("name".into(), task.name.as_str().into());
+        fields.insert("file".into(), task.arguments.input.display().to_string().into());
+        fields.insert("notes".into(), json!(made.notes));
+        Value::Object(fields)
+    };
+    output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
     said(output, &bytes, &clips);
     Ok(())
 }

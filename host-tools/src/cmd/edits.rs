@@ -1,6 +1,5 @@
 //! The flags of `pantin convert` that change the motion before it is fitted.
 
-use super::channel_bound::above_zero;
 use super::render::Moment;
 use crate::edit::{
     cut::cut, footsteps::footsteps, join::join, loop_seam, mirror::mirror, pick::pick, resample::resample, retarget,
@@ -8,6 +7,7 @@ use crate::edit::{
 use crate::events;
 use crate::import;
 use crate::motion::{Event, Motion};
+use crate::number::Number;
 use anyhow::{Context, Result};
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ pub struct Edits {
     #[arg(long, value_name = "GLOB,...", value_delimiter = ',')]
     drop: Vec<String>,
     /// Frames per second that the frames have, instead of what the file states: all frames stay, and the motion gets slower or faster
-    #[arg(long, value_name = "FPS", value_parser = above_zero)]
+    #[arg(long, value_name = "FPS", value_parser = rate)]
     pub rate: Option<f64>,
     /// Add an event marker: a name, or a number that is its id, @ a frame or a time, as in clap@12 or 'door opens@1.5s'. Frames count from 0
     /// after --fps and before --from. May be given several times
@@ -63,6 +63,12 @@ pub struct Edits {
 struct Marker {
     name: String,
     moment: Moment,
+}
+
+/// Frames per second that a clip can have: its frame time takes 32 bits of nanoseconds.
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.trim().parse().ok().filter(|rate| (0.24..=1e9).contains(rate));
+    rate.ok_or_else(|| "expected 0.24 to 1e9 frames a second".into())
 }
 
 fn marker(text: &str) -> Result<Marker> {
@@ -117,9 +123,10 @@ impl Edits {
         let mut motion = motion;
         if let Some(rate) = self.rate {
             said.push(format!(
-                "rate: {} frames, {:.3} a second by the file, are now {rate} a second",
+                "rate: {} frames, {:.3} a second by the file, are now {} a second",
                 motion.frames,
-                1.0 / motion.frame_time
+                1.0 / motion.frame_time,
+                Number(rate)
             ));
             motion.frame_time = 1.0 / rate;
         }
@@ -127,7 +134,7 @@ impl Edits {
             let before = (motion.frames, 1.0 / motion.frame_time);
             motion = resample(&motion, fps)?;
             if (before.1 / fps - 1.0).abs() > 1e-3 {
-                said.push(format!("{} frames at {:.3} a second became {} at {fps}", before.0, before.1, motion.frames));
+                said.push(format!("{} frames at {:.3} a second became {} at {}", before.0, before.1, motion.frames, Number(fps)));
             }
         }
         for Marker { name, moment } in &self.events {
@@ -172,11 +179,18 @@ impl Edits {
         if self.close_loop && motion.looped {
             said.push("loop: it is one already".into());
         } else if self.close_loop {
-            let (closed, seam, inside) = loop_seam::join_ends(&motion)?;
-            motion = closed;
-            said.push(format!(
-                "loop: from the last frame to the first, joints go up to {seam:.4} cm; within the clip up to {inside:.4} cm a frame"
-            ));
+            let joined = loop_seam::join_ends(&motion)?;
+            motion = joined.motion;
+            if let Some([seam, inside]) = joined.joints_cm {
+                said.push(format!(
+                    "loop: from the last frame to the first, joints go up to {seam:.4} cm; within the clip up to {inside:.4} cm a frame"
+                ));
+            }
+            if let Some([seam, inside]) = joined.scalars.map(|parts| parts.map(|part| 100.0 * part)) {
+                said.push(format!(
+                    "loop: from the last frame to the first, scalars change by up to {seam:.2} % of full scale; within the clip by up to {inside:.2} % a frame"
+                ));
+            }
         }
         Ok(Edited { motion, retarget_max_cm, said })
     }

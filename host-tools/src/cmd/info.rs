@@ -5,6 +5,7 @@ use crate::events;
 use crate::facts::{self, Channel, MemoryNeeds, Track};
 use crate::import::{list, up};
 use crate::motion::Event;
+use crate::open::is_bank;
 use crate::output::{self, clean, note, outln};
 use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
@@ -34,14 +35,22 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return animations(&arguments.input);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
-    if bank::is_bank(files.clip()) {
+    if is_bank(files.clip()) {
+        ensure!(
+            arguments.rig.is_none(),
+            "{}: --rig is for clips without one, and a bank holds its rig",
+            arguments.input.display()
+        );
         return bank::print(&arguments.input, files.clip());
     }
     let clip = files.open_alone().with_context(|| arguments.input.display().to_string())?;
     let rig = clip.rig();
     let file = files.clip_len();
     let memory = MemoryNeeds::of(&clip)?;
-    let segments = facts::segments(&clip)?;
+    let counted = facts::segments(&clip)?;
+    // A clip that is too long to be played is taken to go on as it begins.
+    let whole = counted.frames == clip.frames();
+    let segments = (counted.count as f64 * f64::from(clip.frames()) / f64::from(counted.frames)).round() as usize;
     let spacing = facts::index_spacing(clip.duration_ns() as f64 * 1e-9, segments).filter(|_| clip.index_len() == 0);
     let fields = [
         ("frames", json!(clip.frames())),
@@ -66,6 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("crc_bytes", json!(clip.crc_len())),
         ("index_bytes", json!(clip.index_len())),
         ("segments", json!(segments)),
+        ("segments_counted_in_frames", if whole { Value::Null } else { json!(counted.frames) }),
         ("suggested_index_seconds", json!(spacing)),
         ("event_names_bytes", json!(clip.event_names_len())),
         ("per_frame_bytes", json!(clip.frames() as usize * rig.channels() * 2)),

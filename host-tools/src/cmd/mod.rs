@@ -25,6 +25,7 @@ use crate::encode;
 use crate::fit::{descent::Level, fit};
 use crate::import;
 use crate::motion::Motion;
+use crate::open::no_clip;
 use crate::output::{self, detail};
 use crate::verify::verify;
 use anyhow::{Context, Result, anyhow, ensure};
@@ -56,6 +57,13 @@ fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()>
     let read = files.read_so_far().iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
     let size = [motion.rig.joints.len(), motion.rig.channels()];
     budget::check_fit(motion.frames, size, level.plan(SHOWN_CM).effort.beam, read)
+}
+
+/// Refuses a rig for clips that all have their own.
+fn rig_is_needed(rig: Option<&Path>, clips: &[pantin::Clip]) -> Result<()> {
+    let needed = rig.is_none() || clips.iter().any(|clip| clip.rig_len() == 0);
+    ensure!(needed, "--rig has no effect: every clip has its own");
+    Ok(())
 }
 
 /// The name of an output that the user does not name: the input's, with another extension. Fails if there is a file of that name.
@@ -133,18 +141,8 @@ impl Files {
             false => pantin::Clip::with_rig(&self.clip, &self.rig),
         };
         opened.map_err(|error| match error {
-            OpenError::BadMagic if self.is_motion() => {
-                let path = self.path.display();
-                anyhow!(
-                    "a motion, not a clip; `pantin convert {path} -o {}` makes one",
-                    self.path.with_extension("ptn").display()
-                )
-            }
-            OpenError::BadMagic if bank::is_bank(&self.clip) => {
-                anyhow!("a bank of several clips; `pantin list` prints their names, `pantin unpack` writes them as files")
-            }
             OpenError::WrongRig if self.rig.is_empty() => anyhow!("{error}; --rig FILE names the one that --rig-out wrote"),
-            error => error.into(),
+            error => no_clip(&self.path, &self.clip, error),
         })
     }
 

@@ -1,8 +1,8 @@
 //! `pantin play`
 
-use super::Files;
 use super::render::{Side, Size};
 use super::up_axis;
+use super::{Files, rig_is_needed};
 use crate::expand::expand;
 use crate::face::cast::is_face;
 use crate::output::{noticed, report, take_stdout};
@@ -97,6 +97,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let opened =
         files.iter().zip(&arguments.inputs).map(|(file, input)| file.open().with_context(|| input.display().to_string()));
     let clips: Vec<Clip> = opened.collect::<Result<_>>()?;
+    rig_is_needed(arguments.rig.as_deref(), &clips)?;
+    let joints = clips.iter().any(|clip| clip.rig().joint_count() > 0);
+    ensure!(joints || arguments.up.is_none(), "--up has no effect: no clip has joints");
     // Pictures are all that is printed there.
     take_stdout();
     let shown = |(clip, input): (&Clip, &PathBuf)| json!({"file": input.display().to_string(), "frames": clip.frames(), "seconds": clip.duration_ns() as f64 * 1e-9});

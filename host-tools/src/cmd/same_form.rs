@@ -33,11 +33,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     output::write_together(&outputs)?;
     if output::is_json() {
         let object = |(task, made): (&Arguments, &Made)| {
-            let mut object = json!({"file": task.input.display().to_string(), "bytes": made.bytes.len()});
-            if let (Value::Object(all), Value::Object(errors)) = (&mut object, &made.json) {
-                all.extend(errors.clone());
-            }
-            object
+            let mut fields = made.fields();
+            fields.insert("file".into(), task.input.display().to_string().into());
+            fields.insert("notes".into(), json!(made.notes));
+            Value::Object(fields)
         };
         output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
     }

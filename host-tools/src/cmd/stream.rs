@@ -2,12 +2,13 @@
 
 use super::channel_bound::above_zero;
 use crate::budget;
-use crate::cmd::Files;
+use crate::cmd::{Files, rig_is_needed};
 use crate::input;
 use crate::output::{note, report};
 use crate::sender::{ByteCounts, Line, Sender, Source};
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
+use pantin::Clip;
 use pantin_link::packet::TagKey;
 use serde_json::json;
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -87,7 +88,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let stop = stopped_by_signal()?;
         return super::stream_live::run(arguments, from, &stop);
     }
-    let sources = arguments.clips.iter().map(|path| source(arguments, path)).collect::<Result<Vec<_>>>()?;
+    let files = arguments.clips.iter().map(|path| Files::read(path, arguments.rig.as_deref())).collect::<Result<Vec<_>>>()?;
+    let clips = files.iter().zip(&arguments.clips).map(|(files, path)| files.open().with_context(|| path.display().to_string()));
+    let clips = clips.collect::<Result<Vec<_>>>()?;
+    rig_is_needed(arguments.rig.as_deref(), &clips)?;
+    let sources = clips.iter().zip(&arguments.clips).map(|(clip, path)| source(clip, path)).collect::<Result<Vec<_>>>()?;
     let lines =
         sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
     let mut line = arguments.to.open()?;
@@ -125,12 +130,10 @@ pub(super) fn sender() -> Sender {
     Sender::new(RandomState::new().build_hasher().finish() as u16)
 }
 
-fn source(arguments: &Arguments, path: &Path) -> Result<Source> {
-    let files = Files::read(path, arguments.rig.as_deref())?;
-    let clip = files.open().with_context(|| format!("{}: not a clip that plays; `pantin convert` makes one", path.display()))?;
+fn source(clip: &Clip, path: &Path) -> Result<Source> {
     // The sender keeps the state of every channel at every frame.
     budget::check(clip.frames() as usize, clip.rig().channels()).with_context(|| path.display().to_string())?;
-    Source::new(&clip)
+    Source::new(clip)
         .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
 }
 

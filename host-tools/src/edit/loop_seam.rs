@@ -89,9 +89,20 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     Ok(Closed { motion: out, seam_cm, seam_joint, moved_cm, joint, moved, travel: named })
 }
 
-/// Makes a loop of a motion that is one cycle without its first frame again at the end: frame 0 follows the last frame. Returns also the farthest that a joint
-/// goes in that step, in cm, and the farthest that one goes in any other; but for the way of the root.
-pub fn join_ends(motion: &Motion) -> Result<(Motion, f64, f64)> {
+/// A loop of a motion that was one cycle already.
+#[derive(Clone, Debug)]
+pub struct Joined {
+    /// Marked as a loop.
+    pub motion: Motion,
+    /// The farthest that a joint goes from the last frame to the first, in cm, and the farthest that one goes in any other step; but for
+    /// the way of the root. `None` without joints.
+    pub joints_cm: Option<[f64; 2]>,
+    /// The same of scalars, as a part of full scale. `None` without scalars.
+    pub scalars: Option<[f64; 2]>,
+}
+
+/// Makes a loop of a motion that is one cycle without its first frame again at the end: frame 0 follows the last frame.
+pub fn join_ends(motion: &Motion) -> Result<Joined> {
     ensure!(motion.frames > 2, "--close-loop: {} frames are no loop; expected 3 or more", motion.frames);
     let mut out = motion.clone();
     out.looped = true;
@@ -104,12 +115,23 @@ pub fn join_ends(motion: &Motion) -> Result<(Motion, f64, f64)> {
         .enumerate()
         .map(|(channel, values)| if ways.contains(&channel) { vec![values[0]; values.len()] } else { values.clone() })
         .collect();
-    let step = |from: usize, to: usize| {
+    let joints = |from: usize, to: usize| {
         let (a, b) = (positions(&motion.rig, &still, from), positions(&motion.rig, &still, to));
         greatest(a.into_iter().zip(b).map(|(a, b)| distance(a, b))).0
     };
-    let inside = (1..motion.frames).map(|frame| step(frame - 1, frame)).fold(0.0, f64::max);
-    Ok((out, step(motion.frames - 1, 0), inside))
+    let scalars = |from: usize, to: usize| {
+        let values = motion.rig.scalars.iter().zip(&motion.values[motion.rig.joint_channels()..]);
+        values.map(|(scalar, values)| (values[to] - values[from]).abs() / scalar.full_scale).fold(0.0, f64::max)
+    };
+    let steps = |step: &dyn Fn(usize, usize) -> f64| {
+        let inside = (1..motion.frames).map(|frame| step(frame - 1, frame)).fold(0.0, f64::max);
+        [step(motion.frames - 1, 0), inside]
+    };
+    Ok(Joined {
+        motion: out,
+        joints_cm: (!motion.rig.joints.is_empty()).then(|| steps(&joints)),
+        scalars: (!motion.rig.scalars.is_empty()).then(|| steps(&scalars)),
+    })
 }
 
 /// Whether a channel moves the whole figure from place to place: a position of a joint below nothing that turns.

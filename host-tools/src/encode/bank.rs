@@ -7,9 +7,14 @@ use anyhow::{Context, Result, bail, ensure};
 use pantin::codec::crc;
 use pantin::codec::layout::*;
 use pantin::{Bank, Clip, Rig};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Most bytes of a clip's name.
 pub const MOST_NAME_BYTES: usize = 255;
+
+/// Most values of channels at frames that are played to make a clip's snapshots again: a few seconds.
+const MOST_REPLAYED: u64 = 1 << 30;
 
 /// A clip for a bank.
 #[derive(Clone, Debug)]
@@ -20,39 +25,62 @@ pub struct Named {
     pub place: String,
     /// Its file, with or without its rig.
     pub clip: Vec<u8>,
-    /// Its rig.
-    pub rig: Vec<u8>,
+    /// Its rig. Clips of one bank share it.
+    pub rig: Arc<[u8]>,
+}
+
+/// A rig that was checked, and its bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct CheckedRig<'a> {
+    bytes: &'a [u8],
+    rig: Rig<'a>,
+}
+
+impl<'a> CheckedRig<'a> {
+    /// Checks `bytes`, all of them one rig with its CRC.
+    pub fn new(bytes: &'a [u8]) -> Result<CheckedRig<'a>> {
+        Ok(CheckedRig { bytes, rig: Rig::new_checked(bytes)? })
+    }
+
+    /// The rig of a bank.
+    pub fn of(bank: &Bank<'a>) -> CheckedRig<'a> {
+        CheckedRig { bytes: bank.rig_bytes(), rig: bank.rig() }
+    }
 }
 
 /// The bank of these clips, which must have one rig and different names.
 pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
     let Some(first) = clips.first() else { bail!("a bank holds at least one clip") };
+    let rig = CheckedRig::new(&first.rig).with_context(|| first.place.clone())?;
     let (mut contents, mut bodies) = (Vec::new(), Vec::new());
-    for (index, named) in clips.iter().enumerate() {
-        let Named { name, place, clip, rig } = named;
+    let mut named = HashMap::new();
+    for Named { name, place, clip, rig: own } in clips {
         ensure!(!name.is_empty(), "{place}: a clip of a bank needs a name");
         ensure!(name.len() <= MOST_NAME_BYTES, "{place}: a name of {} bytes; at most {MOST_NAME_BYTES}", name.len());
-        if let Some(other) = clips[..index].iter().find(|other| other.name == *name) {
-            bail!("{} and {place}: both would be `{name}` in the bank", other.place);
+        if let Some(other) = named.insert(name, place) {
+            bail!("{other} and {place}: both would be `{name}` in the bank");
         }
-        if let Some(difference) = difference(&first.rig, rig).with_context(|| place.clone())? {
+        if let Some(difference) = difference(&first.rig, own).with_context(|| place.clone())? {
             bail!("{place}: another rig than {}: {difference}; a bank holds clips of one rig", first.place);
         }
-        let body = without_rig(clip, rig).with_context(|| place.clone())?;
+        let body = without_rig(clip, &rig).with_context(|| place.clone())?;
         varint::put_name(&mut contents, name);
         varint::put(&mut contents, body.len() as u32);
         bodies.extend(body);
     }
     contents.extend(crc::of(&contents).to_le_bytes());
     let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], VERSION];
-    for (kind, body) in [(section::RIG, &first.rig), (section::CONTENTS, &contents), (section::CLIPS, &bodies)] {
+    for (kind, body) in [(section::RIG, &first.rig[..]), (section::CONTENTS, &contents), (section::CLIPS, &bodies)] {
         out.push(kind);
         varint::put(&mut out, u32::try_from(body.len()).context("a section of 4 GiB or more")?);
         out.extend_from_slice(body);
     }
     let bank = Bank::new_checked(&out).context("the bank that was just made does not open")?;
-    for named in clips {
-        bank.clip(&named.name).with_context(|| format!("the bank that was just made does not open `{}`", named.name))?;
+    ensure!(bank.len() == clips.len(), "the bank that was just made has {} clips, not {}", bank.len(), clips.len());
+    for (named, entry) in clips.iter().zip(bank.entries()) {
+        let name = &named.name;
+        ensure!(entry.name() == name, "the bank that was just made has `{}` in place of `{name}`", entry.name());
+        bank.open(&entry).with_context(|| format!("the bank that was just made does not open `{name}`"))?;
     }
     Ok(out)
 }
@@ -72,12 +100,12 @@ pub fn rig_of(clip: &[u8]) -> Result<Vec<u8>> {
 }
 
 /// The clip without its rig, which a decoder then needs beside it. One without a rig stays as it is.
-pub fn without_rig(clip: &[u8], rig: &[u8]) -> Result<Vec<u8>> {
+pub fn without_rig(clip: &[u8], rig: &CheckedRig) -> Result<Vec<u8>> {
     converted(clip, rig, false)
 }
 
 /// The clip with its rig.
-pub fn with_rig(clip: &[u8], rig: &[u8]) -> Result<Vec<u8>> {
+pub fn with_rig(clip: &[u8], rig: &CheckedRig) -> Result<Vec<u8>> {
     converted(clip, rig, true)
 }
 
@@ -129,12 +157,16 @@ fn payload(blocks: &[u8]) -> Vec<u8> {
 }
 
 /// The same motion with the rig in the file, or with its id in the motion's head. Snapshots are made again, as they say where in the motion they go on.
-fn converted(file: &[u8], rig: &[u8], whole: bool) -> Result<Vec<u8>> {
-    Clip::with_rig(file, rig)?;
+fn converted(file: &[u8], rig: &CheckedRig, whole: bool) -> Result<Vec<u8>> {
     let parts = Parts::of(file)?;
+    match parts.flags & HAS_RIG {
+        0 => Clip::with_checked_rig(file, rig.rig)?,
+        _ => Clip::new_checked(file)?,
+    };
     if (parts.flags & HAS_RIG != 0) == whole {
         return Ok(file.to_vec());
     }
+    ensure!(whole || parts.rig == rig.bytes, "the clip has another rig");
     let mut motion = payload(parts.motion);
     let times = if motion.first() == Some(&0) { 5 } else { 1 };
     let (_, frames) = motion.get(times..).and_then(number).context("the clip is truncated")?;
@@ -142,23 +174,32 @@ fn converted(file: &[u8], rig: &[u8], whole: bool) -> Result<Vec<u8>> {
     if whole {
         motion.drain(id_at..id_at + 4);
     } else {
-        let id = Rig::new_checked(parts.rig)?.id().to_le_bytes();
-        motion.splice(id_at..id_at, id);
+        motion.splice(id_at..id_at, rig.rig.id().to_le_bytes());
     }
     let spacing = (!parts.index.is_empty()).then(|| number(&payload(parts.index))).flatten().map(|(spacing, _)| spacing);
     let flags = parts.flags & !(HAS_RIG | HAS_INDEX) | if whole { HAS_RIG } else { 0 };
     let file = |flags: u8, index: Option<&[u8]>| {
-        let mut out = assembled(flags, rig, &motion, index);
+        let mut out = assembled(flags, rig.bytes, &motion, index);
         out.extend_from_slice(parts.names);
         out
     };
     let plain = file(flags, None);
-    let clip = Clip::with_rig(&plain, rig).context("the clip with its rig moved does not open")?;
+    let clip = match whole {
+        true => Clip::new_checked(&plain),
+        false => Clip::with_checked_rig(&plain, rig.rig),
+    };
+    let clip = clip.context("the clip with its rig moved does not open")?;
     match spacing {
         None => Ok(plain),
         Some(spacing) => {
+            // What a file asks for is as much as it has itself: a snapshot takes a byte or more.
+            let (frames, channels) = (u64::from(clip.frames()), clip.moving() as u64 + 1);
+            ensure!(
+                frames / u64::from(spacing.max(1)) <= parts.index.len() as u64 && frames * channels <= MOST_REPLAYED,
+                "the clip has {frames} frames and an index that is not of them, or takes too long to make again"
+            );
             let bytes = file(flags | HAS_INDEX, Some(&index::payload(clip, spacing)?));
-            index::check(&bytes, rig)?;
+            index::check(&bytes, rig.bytes, spacing)?;
             Ok(bytes)
         }
     }

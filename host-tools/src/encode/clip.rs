@@ -97,7 +97,7 @@ pub fn encode_with_index(coded: &Coded, rig: &[u8], apart: bool, spacing: u32) -
     let plain = encode(coded, rig, apart)?;
     let clip = pantin::Clip::with_rig(&plain, rig).context("the clip that was just made does not open")?;
     let bytes = file(coded, rig, apart, Some(&index::payload(clip, spacing)?))?;
-    index::check(&bytes, rig)?;
+    index::check(&bytes, rig, spacing)?;
     Ok(bytes)
 }
 

@@ -2,6 +2,7 @@
 
 use super::clip::blocks_len;
 use super::varint;
+use crate::budget;
 use anyhow::{Context, Result, ensure};
 use pantin::{ChannelState, Clip, Player};
 
@@ -11,13 +12,15 @@ pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(clip, &mut states, &mut pose)?;
-    let mut snapshots = Vec::new();
+    let (mut snapshots, mut held) = (Vec::new(), 0);
     // One without segments has no state to store.
     while clip.frames() > 2 && !player.ended() {
         player.step();
         if player.frame().is_multiple_of(spacing) {
             let mut snapshot = Vec::new();
             pantin::codec::write_snapshot(&player, &mut |byte| snapshot.push(byte));
+            held += snapshot.len() as u64;
+            budget::check_bytes_held(held).context("the snapshots")?;
             snapshots.push(snapshot);
         }
     }
@@ -53,8 +56,8 @@ fn place(index: usize) -> u32 {
     (blocks_len(index + 1) - pantin::codec::layout::CRC_BYTES - 1) as u32
 }
 
-/// Plays the clip from its index: every frame after a snapshot must be what stepping gives.
-pub fn check(bytes: &[u8], rig: &[u8]) -> Result<()> {
+/// Plays the clip from each snapshot to the next: every frame must be what stepping from frame 0 gives.
+pub fn check(bytes: &[u8], rig: &[u8], spacing: u32) -> Result<()> {
     let clip = Clip::with_rig(bytes, rig).context("the clip with its index does not open")?;
     let mut memory = [(); 2].map(|()| (vec![ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]));
     let [(states, pose), (other_states, other_pose)] = &mut memory;
@@ -62,8 +65,12 @@ pub fn check(bytes: &[u8], rig: &[u8]) -> Result<()> {
     let mut sought = Player::new(clip, other_states, other_pose)?;
     while !stepped.ended() {
         stepped.step();
-        sought.rewind();
-        sought.seek(stepped.frame());
+        if stepped.frame().is_multiple_of(spacing) {
+            sought.rewind();
+            sought.seek(stepped.frame());
+        } else {
+            sought.step();
+        }
         ensure!(sought.pose().values == stepped.pose().values, "frame {} differs when it is sought", stepped.frame());
     }
     Ok(())

@@ -17,6 +17,7 @@ use crate::encode::clip::{Channel, Coded};
 use crate::encode::rig as rig_bytes;
 use crate::events;
 use crate::motion::Motion;
+use crate::number::Number;
 use anyhow::{Result, anyhow, ensure};
 use descent::{Descent, Plan};
 use figure::Figure;
@@ -107,7 +108,8 @@ fn time(motion: &Motion) -> Result<u32> {
     let ns = (exact * 1e9).round();
     ensure!(
         (1.0..=f64::from(u32::MAX)).contains(&ns),
-        "a frame time of {seconds} s; a clip holds 1 ns to {} s: state the rate by --fps",
+        "a frame time of {} s; a clip holds 1 ns to {} s: state the rate by --fps",
+        Number(seconds),
         f64::from(u32::MAX) * 1e-9
     );
     Ok(ns as u32)

@@ -3,6 +3,7 @@
 //! Rule: of the usual units, the one that makes the figure's rest height come nearest, as a ratio, to `ADULT_CM`.
 
 use crate::motion::{Joint, Motion};
+use crate::number::Number;
 use anyhow::{Result, ensure};
 
 /// Height that the guess aims at. Bones end below the crown, and above the sole: figures of adults measure 130 to 180 cm.
@@ -26,14 +27,14 @@ pub struct Unit {
 /// The unit of `motion`: as the user says, else as the source says, else as guessed.
 pub fn settle(motion: &Motion, user: Option<f64>, source: Option<f64>) -> Result<Unit> {
     if let Some(cm) = user {
-        ensure!(cm.is_finite() && cm > 0.0, "--cm-per-unit {cm}: expected a number above 0");
-        return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {cm} cm, as given") });
+        ensure!(cm.is_finite() && cm > 0.0, "--cm-per-unit {}: expected a number above 0", Number(cm));
+        return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {} cm, as given", Number(cm)) });
     }
     if motion.rig.joints.is_empty() {
         return Ok(Unit { cm_per_unit: 1.0, sentence: "units: no joints, so none of length".into() });
     }
     if let Some(cm) = source {
-        return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {cm} cm, as the file says") });
+        return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {} cm, as the file says", Number(cm)) });
     }
     Ok(guess(rest_height(motion)))
 }

@@ -17,7 +17,7 @@ mod staged;
 mod terminal;
 
 pub use foreign::{Wanted, refuse_foreign};
-pub use place::{Place, check};
+pub use place::{Place, check, file_id};
 pub use report::{fail, finish, is_json, is_quiet, is_verbose, progress, report, set_reporting, take_stdout};
 pub use staged::{Staged, check_size, commit, set_most_bytes};
 pub use terminal::{clean, is_hostile, print_detail, print_error, print_error_text, print_line, print_note, reader_gone};
@@ -38,6 +38,7 @@ pub fn write_together(outputs: &[(&Path, &[u8])]) -> Result<()> {
     for (path, bytes) in outputs {
         let mut output = Staged::create(path)?;
         output.write_all(bytes).with_context(|| format!("{}: cannot be written", path.display()))?;
+        output.close()?;
         staged.push(output);
     }
     commit(staged)

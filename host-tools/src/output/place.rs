@@ -1,7 +1,7 @@
 //! What an output's path names: a file to replace, a pipe or device to write through, or standard output.
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
-use same_file::Handle;
+use anyhow::{Context, Result, bail, ensure};
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ const MOST_LINKS: usize = 40;
 const STDOUT: [&str; 3] = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 
 /// What an output's path names.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
     /// Standard output: `-`.
     Stdout,
@@ -62,14 +62,16 @@ impl Place {
         }
     }
 
-    /// Fails if the place cannot be written: a file that is read-only, or a folder that takes no files.
-    fn ready(&self) -> Result<()> {
+    /// Fails if the place cannot be written: a file that is read-only, or a folder that takes no files and is not among the `ready` ones.
+    fn ready<'a>(&'a self, ready: &mut HashSet<&'a Path>) -> Result<()> {
         let Place::File(path) = self else { return Ok(()) };
         if path.exists() {
             File::options().append(true).open(path).with_context(|| format!("{}: cannot be written", path.display()))?;
         }
         let folder = folder(path);
-        tempfile::tempfile_in(folder).with_context(|| format!("{}: no file can be written there", folder.display()))?;
+        if ready.insert(folder) {
+            tempfile::tempfile_in(folder).with_context(|| format!("{}: no file can be written there", folder.display()))?;
+        }
         Ok(())
     }
 
@@ -77,7 +79,7 @@ impl Place {
         let (Place::File(path) | Place::Through(path)) = self else { return None };
         // A name below /proc can be a regular file's.
         if path.is_file() {
-            return Handle::from_path(path).ok().map(Identity::Existing);
+            return file_id(path).map(Identity::Existing);
         }
         let Place::File(path) = self else { return None };
         Some(Identity::Missing(folder(path).canonicalize().ok()?, path.file_name()?.to_os_string()))
@@ -96,12 +98,34 @@ fn outside_of_processes(path: &Path) -> Option<PathBuf> {
     (!is_of_processes(&outside)).then_some(outside)
 }
 
+/// What is equal for all names of one file. It keeps no file open: a command may have thousands of outputs.
+#[cfg(unix)]
+pub type FileId = (u64, u64);
+/// What is equal for all names of one file.
+#[cfg(not(unix))]
+pub type FileId = same_file::Handle;
+
+/// The identity of a file that is there.
+#[cfg(unix)]
+pub fn file_id(path: &Path) -> Option<FileId> {
+    use std::os::unix::fs::MetadataExt;
+    path.metadata().ok().map(|found| (found.dev(), found.ino()))
+}
+
+/// The identity of a file that is there.
+#[cfg(not(unix))]
+pub fn file_id(path: &Path) -> Option<FileId> {
+    same_file::Handle::from_path(path).ok()
+}
+
 /// A file, whatever path names it.
-#[derive(PartialEq)]
+#[derive(PartialEq, Eq, Hash)]
 enum Identity {
-    Existing(Handle),
+    Existing(FileId),
     /// Its folder and its name.
     Missing(PathBuf, std::ffi::OsString),
+    /// A pipe or a device, or standard output.
+    Through(Place),
 }
 
 /// The folder of the file `path`.
@@ -111,24 +135,24 @@ pub(super) fn folder(path: &Path) -> &Path {
 
 /// Checks outputs before any work is done: each can be written, none is one of the `inputs`, and no two are one file.
 pub fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
-    let mut places: Vec<(Place, &Path, Option<Identity>)> = Vec::with_capacity(outputs.len());
-    for &output in outputs {
-        let place = Place::of(output)?;
+    let mut sources = HashMap::new();
+    for &input in inputs {
+        if let Some(identity) = Place::of(input).ok().and_then(|input| input.identity()) {
+            sources.entry(identity).or_insert(input);
+        }
+    }
+    let mut named: HashMap<Identity, &Path> = HashMap::new();
+    let places = outputs.iter().map(|output| Place::of(output)).collect::<Result<Vec<_>>>()?;
+    let mut ready = HashSet::new();
+    for (place, &output) in places.iter().zip(outputs) {
         let identity = place.identity();
-        for &input in inputs {
-            let same = identity.is_some() && Place::of(input).ok().and_then(|input| input.identity()) == identity;
-            ensure!(!same, "{}: is the input {} itself; choose another name for the output", output.display(), input.display());
+        if let Some(input) = identity.as_ref().and_then(|identity| sources.get(identity)) {
+            bail!("{}: is the input {} itself; choose another name for the output", output.display(), input.display());
         }
-        for &(ref other, path, ref other_identity) in &places {
-            let same = match identity {
-                Some(_) => identity == *other_identity,
-                None => place == *other,
-            };
-            let error = || anyhow!("{} and {}: both outputs are one file", path.display(), output.display());
-            (!same).then_some(()).ok_or_else(error)?;
+        if let Some(other) = named.insert(identity.unwrap_or_else(|| Identity::Through(place.clone())), output) {
+            bail!("{} and {}: both outputs are one file", other.display(), output.display());
         }
-        place.ready()?;
-        places.push((place, output, identity));
+        place.ready(&mut ready)?;
     }
     Ok(())
 }

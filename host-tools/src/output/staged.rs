@@ -39,7 +39,17 @@ pub fn check_size(path: &Path, bytes: u64) -> Result<()> {
 }
 
 enum To {
-    Replace { bytes: BufWriter<NamedTempFile>, file: PathBuf, _name: Registered },
+    Replace {
+        bytes: BufWriter<NamedTempFile>,
+        file: PathBuf,
+        name: Registered,
+    },
+    /// All bytes are in the temporary file, which is closed.
+    Whole {
+        bytes: TempPath,
+        file: PathBuf,
+        _name: Registered,
+    },
     Through(BufWriter<File>),
     Stdout(BufWriter<Stdout>),
 }
@@ -59,10 +69,33 @@ impl Staged {
                 remove_on_signals();
                 let bytes = temporary().tempfile_in(folder(&file)).context("cannot be written")?;
                 let name = Registered::new(bytes.path());
-                Ok(To::Replace { bytes: BufWriter::new(bytes), file, _name: name })
+                Ok(To::Replace { bytes: BufWriter::new(bytes), file, name })
             }
         });
         Ok(Staged { path: path.to_path_buf(), to: to.with_context(|| path.display().to_string())?, written: 0 })
+    }
+
+    /// Ends the output: its bytes are on the disk, and its file is closed. Only [`commit`] may follow. Where many outputs belong together, each is closed before
+    /// the next one begins, for a process may have few files open at a time.
+    pub fn close(&mut self) -> Result<()> {
+        self.end().with_context(|| format!("{}: cannot be written", self.path.display()))
+    }
+
+    fn end(&mut self) -> io::Result<()> {
+        self.flush()?;
+        self.to = match std::mem::replace(&mut self.to, To::Stdout(BufWriter::new(io::stdout()))) {
+            To::Replace { bytes, file, name } => {
+                let bytes = bytes.into_inner().map_err(io::IntoInnerError::into_error)?;
+                // A full disk may be reported no earlier.
+                bytes.as_file().sync_data()?;
+                if let Ok(found) = fs::metadata(&file) {
+                    bytes.as_file().set_permissions(found.permissions())?;
+                }
+                To::Whole { bytes: bytes.into_temp_path(), file, _name: name }
+            }
+            other => other,
+        };
+        Ok(())
     }
 }
 
@@ -71,6 +104,7 @@ impl Write for Staged {
         check_size(&self.path, self.written.saturating_add(bytes.len() as u64)).map_err(io::Error::other)?;
         let taken = match &mut self.to {
             To::Replace { bytes: file, .. } => file.write(bytes),
+            To::Whole { .. } => Err(io::Error::other("the output was closed")),
             To::Through(file) => noticed(file.write(bytes)),
             To::Stdout(out) => noticed(out.write(bytes)),
         }?;
@@ -81,6 +115,7 @@ impl Write for Staged {
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.to {
             To::Replace { bytes, .. } => bytes.flush(),
+            To::Whole { .. } => Ok(()),
             To::Through(file) => noticed(file.flush()),
             To::Stdout(out) => noticed(out.flush()),
         }
@@ -102,17 +137,10 @@ pub fn commit(staged: Vec<Staged>) -> Result<()> {
     let sizes: Vec<_> = staged.iter().map(|output| (output.path.display().to_string(), output.written)).collect();
     let mut whole = Vec::new();
     for mut output in staged {
-        let path = output.path.clone();
-        let failed = || format!("{}: cannot be written", path.display());
-        output.flush().with_context(failed)?;
-        let To::Replace { bytes, file, _name } = output.to else { continue };
-        let bytes = bytes.into_inner().map_err(io::IntoInnerError::into_error).with_context(failed)?;
-        // A full disk may be reported no earlier.
-        bytes.as_file().sync_data().with_context(failed)?;
-        if let Ok(found) = fs::metadata(&file) {
-            bytes.as_file().set_permissions(found.permissions()).with_context(failed)?;
+        output.close()?;
+        if let To::Whole { bytes, file, _name } = output.to {
+            whole.push((output.path, bytes, file, _name));
         }
-        whole.push((path, bytes, file, _name));
     }
     // A signal waits until all of them are in place, and the second names of those before are gone.
     let _together = IN_PLACE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,7 +1,8 @@
 //! All that is served, by its path.
 
 use crate::input;
-use anyhow::{Context, Result, bail, ensure};
+use crate::open::no_clip;
+use anyhow::{Context, Result, ensure};
 use pantin::Clip;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -64,7 +65,7 @@ impl Site {
         for (number, path) in clips.iter().enumerate() {
             let bytes = input::read(path)?;
             if let Err(error) = Clip::new_checked(&bytes) {
-                bail!("{}: {error}; `pantin convert` makes clips of motions", path.display());
+                return Err(no_clip(path, &bytes, error).context(path.display().to_string()));
             }
             // A name of the server's own needs no escapes.
             let file = format!("{CLIPS}/{number}.ptn");

@@ -8,9 +8,10 @@ pub mod uf2;
 pub use send::{Outcome, RetryPolicy, TransferError, send};
 
 use crate::input;
+use crate::open::no_clip;
 use crate::output::{is_hostile, note};
-use anyhow::{Context, Result};
-use pantin::Clip;
+use anyhow::{Context, Result, anyhow};
+use pantin::{Clip, OpenError};
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
@@ -29,8 +30,10 @@ pub fn board_name(text: &str) -> Result<String, String> {
 pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
     let place = || path.display().to_string();
     let clip = input::read(path)?;
-    let opened = Clip::new_checked(&clip);
-    opened.with_context(|| format!("{}: a board cannot open it (a clip made with --rig-out has no rig in it)", place()))?;
+    Clip::new_checked(&clip).map_err(|error| match error {
+        OpenError::WrongRig => anyhow!("{}: a clip without its rig (--rig-out), which a board cannot open", place()),
+        error => no_clip(path, &clip, error).context(format!("{}: a board cannot open it", place())),
+    })?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let shown: String = stem.chars().map(|c| if is_hostile(c) { '_' } else { c }).collect();
     let info = ClipInfo::of(&clip, name.unwrap_or(&shown)).with_context(|| format!("{}: too long", place()))?;

@@ -201,3 +201,178 @@ fn an_animation_named_as_another_ones_number_makes_no_bank() {
     let wrong = refusal(folder.path(), &["convert", "a.gltf", "--animation", "all", "-o", "b.ptb"]);
     assert!(wrong.contains("another one's number"), "{wrong}");
 }
+
+#[test]
+fn a_rig_without_effect_is_refused_by_every_command() {
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    folder.done(&["convert", "run.keys", "-o", "b.ptn", "--rig-out", "b.rig", "--effort", "fast"]);
+    folder.done(&["pack", "a.ptn", "-o", "moves.ptb"]);
+    let runs: [&[&str]; 4] = [
+        &["play", "a.ptn", "--rig", "b.rig", "--plain", "--once"],
+        &["stream", "a.ptn", "--rig", "b.rig", "--to", "tcp:127.0.0.1:1"],
+        &["info", "moves.ptb", "--rig", "b.rig"],
+        &["pack", "a.ptn", "--rig", "b.rig", "-o", "c.ptb"],
+    ];
+    for arguments in runs {
+        let said = folder.refused(arguments);
+        assert!(said.contains("--rig"), "{arguments:?}: {said}");
+    }
+    folder.done(&["play", "a.ptn", "b.ptn", "--rig", "b.rig", "--plain", "--frames", "1"]);
+}
+
+#[test]
+fn a_bank_in_place_of_a_clip_is_named_with_the_next_command() {
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    folder.done(&["pack", "a.ptn", "-o", "moves.ptb"]);
+    folder.put("site/index.html", "");
+    let runs: [&[&str]; 8] = [
+        &["update", "moves.ptb", "--to", "tcp:127.0.0.1:1"],
+        &["flash-image", "moves.ptb", "--board", "pico", "-o", "a.uf2"],
+        &["render", "moves.ptb", "-o", "a.png"],
+        &["play", "moves.ptb", "--plain"],
+        &["stream", "moves.ptb", "--to", "tcp:127.0.0.1:1"],
+        &["expand", "moves.ptb", "-o", "a.bvh"],
+        &["pack", "moves.ptb", "-o", "b.ptb"],
+        &["serve", "moves.ptb", "--site", "site", "--port", "0"],
+    ];
+    for arguments in runs {
+        let said = folder.refused(arguments);
+        assert!(said.contains("`pantin unpack moves.ptb -o FOLDER`"), "{arguments:?}: {said}");
+    }
+    let said = folder.refused(&["flash-image", "run.keys", "--board", "pico", "-o", "a.uf2"]);
+    assert!(said.contains("`pantin convert run.keys"), "{said}");
+}
+
+#[test]
+fn names_that_change_are_named_and_those_that_meet_are_refused() {
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a_b.ptn", "--effort", "fast"]);
+    let long = "long ".repeat(20) + "name";
+    for name in ["a@b", &long] {
+        folder.put(&format!("{name}.ptn"), folder.get("a_b.ptn"));
+    }
+    let long = format!("{long}.ptn");
+    folder.done(&["pack", "a@b.ptn", &long, "-o", "moves.ptb"]);
+    let said = super::outputs::err(&folder.done(&["unpack", "moves.ptb", "-o", "out"]));
+    assert!(said.contains("`a@b` has another name as a file: a_b.ptn") && said.contains("long name` has another name"), "{said}");
+    assert!(folder.path("out/a_b.ptn").exists());
+    let said = super::outputs::err(&folder.done(&["pack", "a@b.ptn", "a_b.ptn", "-o", "moves.ptb"]));
+    assert!(said.contains("warning: the clips `a@b` and `a_b` would both be unpacked to a_b.ptn"), "{said}");
+    let said = folder.refused(&["unpack", "moves.ptb", "-o", "both"]);
+    assert!(said.contains("--clip writes one of them") && !folder.path("both").exists(), "{said}");
+    folder.done(&["unpack", "moves.ptb", "-o", "both", "--clip", "a@b"]);
+    let said = folder.refused(&["unpack", "moves.ptb", "-o", "-"]);
+    assert!(said.contains("-o -: a bank has several clips"), "{said}");
+    #[cfg(target_os = "linux")]
+    {
+        use std::os::unix::ffi::OsStringExt;
+        let odd = std::ffi::OsString::from_vec(b"odd\xff.ptn".to_vec());
+        std::fs::copy(folder.path("a_b.ptn"), folder.path("").join(&odd)).unwrap();
+        let output = folder.command(&["pack", "-o", "moves.ptb"]).arg(&odd).output().unwrap();
+        let said = super::outputs::err(&output);
+        assert!(output.status.success() && said.contains("its name is not UTF-8"), "{said}");
+    }
+}
+
+/// What one conversion reports, those of many report too.
+#[test]
+fn banks_and_folders_report_what_one_conversion_does() {
+    let folder = super::outputs::Folder::new();
+    std::fs::copy(own("walk.keys"), folder.path("walk.keys")).unwrap();
+    folder.put("in/walk.keys", folder.get("walk.keys"));
+    let options =
+        ["--index", "1", "--event", "x@3", "--to", "30", "--rate", "50", "--max-scalar-error", "1", "--effort", "fast", "--json"];
+    let report = |arguments: &[&str]| -> serde_json::Value {
+        let output = folder.done(&[arguments, &options].concat());
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let mut one = report(&["convert", "walk.keys", "-o", "a.ptn"]);
+    let one = one.as_object_mut().unwrap();
+    one.remove("command");
+    one.remove("outputs");
+    // The last one is the sentence in place of which many clips have a table.
+    let mut notes = one.remove("notes").unwrap().as_array().unwrap().clone();
+    notes.pop();
+    assert!(notes.len() > 3, "{notes:?}");
+    let many = [
+        report(&["convert", "in", "-o", "out"])["files"].clone(),
+        report(&["convert", "walk.keys", "-o", "moves.ptb"])["clips"].clone(),
+        report(&["convert", "walk.keys", "--same-form", "-o", "same"])["clips"].clone(),
+    ];
+    for clips in many {
+        for (name, value) in &*one {
+            let other = &clips[0][name];
+            // A clip that goes into a bank has its rig there.
+            assert!(other == value, "{name}: {other}, not {value}");
+        }
+        assert_eq!(clips[0]["notes"].as_array().unwrap(), &notes);
+    }
+    folder.put("in/run.keys", folder.get("run.keys"));
+    let said = super::outputs::err(&folder.done(&[
+        "convert",
+        "in",
+        "-o",
+        "out",
+        "--rate",
+        "40",
+        "--max-scalar-error",
+        "1",
+        "--effort",
+        "fast",
+    ]));
+    assert!(said.contains("all 2: --max-scalar-error has no effect") && said.contains("walk.keys: rate: 160 frames"), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn unpacking_needs_few_open_files() {
+    use pantin_tools::encode::bank::{Named, encode, rig_of};
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    let clip = folder.get("a.ptn");
+    let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
+    let named = |number| Named { name: format!("c{number}"), place: String::new(), clip: clip.clone(), rig: rig.clone() };
+    folder.put("moves.ptb", encode(&(0..200).map(named).collect::<Vec<_>>()).unwrap());
+    // The second time all files are there already.
+    for _ in 0..2 {
+        let mut command = Command::new("sh");
+        command.args(["-c", "ulimit -n 40; \"$0\" unpack moves.ptb -o out", env!("CARGO_BIN_EXE_pantin")]);
+        let output = command.current_dir(folder.path("")).output().unwrap();
+        assert!(output.status.success(), "{}", super::outputs::err(&output));
+    }
+    assert!((0..200).all(|number| folder.get(&format!("out/c{number}.ptn")) == clip));
+    assert_eq!(std::fs::read_dir(folder.path("out")).unwrap().count(), 200);
+}
+
+/// A signal waits until all files that belong together are in place.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_leaves_all_or_none_of_what_belongs_together() {
+    use pantin_tools::encode::bank::{Named, encode, rig_of};
+    use std::os::unix::fs::MetadataExt;
+    const CLIPS: usize = 1500;
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    let clip = folder.get("a.ptn");
+    let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
+    let named = |number| Named { name: format!("c{number}"), place: String::new(), clip: clip.clone(), rig: rig.clone() };
+    folder.put("moves.ptb", encode(&(0..CLIPS).map(named).collect::<Vec<_>>()).unwrap());
+    let path = |number: usize| folder.path("out").join(format!("c{number}.ptn"));
+    std::fs::create_dir(folder.path("out")).unwrap();
+    (0..CLIPS).for_each(|number| std::fs::write(path(number), "before").unwrap());
+    let inode = |number| path(number).metadata().unwrap().ino();
+    let before: Vec<u64> = (0..CLIPS).map(inode).collect();
+    let mut child = folder.command(&["unpack", "moves.ptb", "-o", "out", "-q"]).spawn().unwrap();
+    // In the midst of it: the first is in place.
+    while inode(0) == before[0] {
+        assert!(child.try_wait().unwrap().is_none_or(|status| status.success()));
+    }
+    let _ = Command::new("kill").arg(child.id().to_string()).status().unwrap();
+    child.wait().unwrap();
+    let new = (0..CLIPS).filter(|&number| inode(number) != before[number]).count();
+    assert_eq!(new, CLIPS);
+    assert!((0..CLIPS).all(|number| std::fs::read(path(number)).unwrap() == clip));
+    assert_eq!(std::fs::read_dir(folder.path("out")).unwrap().count(), CLIPS, "a temporary file is left");
+}

@@ -293,3 +293,64 @@ fn what_is_admitted_takes_no_more_than_the_limit() {
         }
     }
 }
+
+/// The clip with another number of frames: its symbols end, and what a player reads then is zeros.
+fn with_frames(clip: &[u8], frames: u32) -> Vec<u8> {
+    let opened = pantin::Clip::new_checked(clip).unwrap();
+    let blocks = &clip[clip.len() - opened.motion_len()..];
+    let mut payload: Vec<u8> = blocks.chunks(256).flat_map(|block| &block[..block.len() - 2]).copied().collect();
+    // The rate is in the table, so that the frames, below 128, follow it in a byte.
+    assert!(payload[0] != 0 && u32::from(payload[1]) == opened.frames());
+    let varint = (0..4).map(|digit| (frames >> (7 * digit)) as u8 & 0x7f | if digit < 3 { 0x80 } else { 0 });
+    payload.splice(1..2, varint);
+    let rig = pantin_tools::encode::bank::rig_of(clip).unwrap();
+    pantin_tools::encode::clip::assembled(clip[3], &rig, &payload, None)
+}
+
+#[test]
+fn a_clip_that_lasts_for_ever_is_described_soon() {
+    let folder = Folder::new();
+    let mut scalars = String::from("procedural 1\nfps 30\nframes 3\n");
+    (0..300).for_each(|scalar| scalars += &format!("scalar s{scalar} scale 1\n"));
+    (0..300).for_each(|scalar| scalars += &format!("s{scalar} = 0.5 + 0.5 * sin(t * {scalar})\n"));
+    let mut joints = String::from("procedural 1\nfps 30\nframes 3\njoint j0 offset 0 90 0 channels Xrotation\n");
+    (1..100).for_each(|joint| joints += &format!("joint j{joint} parent j{} offset 0 9 0 channels Xrotation\n", joint - 1));
+    (0..100).for_each(|joint| joints += &format!("j{joint}.Xrotation = 40 * sin(t * {joint} + {joint})\n"));
+    for (name, text) in [("scalars", scalars), ("joints", joints)] {
+        folder.put("a.proc", text);
+        folder.done(&["convert", "a.proc", "-o", "a.ptn"]);
+        let clip = folder.get("a.ptn");
+        assert!(pantin::Clip::new_checked(&with_frames(&clip, 3)).is_ok_and(|clip| clip.frames() == 3));
+        folder.put("long.ptn", with_frames(&clip, 1 << 24));
+        let (output, time) = limited(&folder, &["info", "long.ptn", "--json"]);
+        assert!(output.status.success(), "{name}: {}", err(&output));
+        assert!(time.is_none_or(|time| time < SOON), "{name}: {time:?} s");
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let counted = report["segments_counted_in_frames"].as_u64().unwrap();
+        assert!((100..1 << 24).contains(&counted), "{name}: {report}");
+        assert!(report["segments"].as_u64().unwrap() > 100 * (1 << 24) / 96 / 2, "{name}: {report}");
+    }
+}
+
+#[test]
+fn a_bank_of_many_clips_with_a_large_rig_is_listed_and_written_soon() {
+    use pantin_tools::encode::bank::{Named, encode, rig_of};
+    let folder = Folder::new();
+    let mut text = String::from("procedural 1\nfps 30\nframes 3\n");
+    (0..300).for_each(|scalar| text += &format!("scalar s{scalar}{} scale 1\n", "x".repeat(200)));
+    text += &format!("s0{} = t\n", "x".repeat(200));
+    folder.put("a.proc", text);
+    folder.done(&["convert", "a.proc", "-o", "a.ptn"]);
+    let clip = folder.get("a.ptn");
+    let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
+    assert!(rig.len() > 50_000);
+    let apart =
+        pantin_tools::encode::bank::without_rig(&clip, &pantin_tools::encode::bank::CheckedRig::new(&rig).unwrap()).unwrap();
+    let named = |number| Named { name: format!("clip {number}"), place: String::new(), clip: apart.clone(), rig: rig.clone() };
+    let begun = std::time::Instant::now();
+    folder.put("moves.ptb", encode(&(0..4000).map(named).collect::<Vec<_>>()).unwrap());
+    assert!(begun.elapsed().as_secs_f64() < 5.0, "{:?}", begun.elapsed());
+    let (output, time) = limited(&folder, &["list", "moves.ptb"]);
+    assert_eq!(String::from_utf8_lossy(&output.stdout).lines().count(), 4002, "{}", err(&output));
+    assert!(time.is_none_or(|time| time < SOON), "{time:?} s");
+}

@@ -101,3 +101,37 @@ fn the_best_loop_of_a_motion_is_found() {
     let bytes = clip(folder.path(), &motion, &cut.each_ref().map(String::as_str));
     assert_eq!(u64::from(Clip::new_checked(&bytes).unwrap().frames()), to - from);
 }
+
+#[test]
+fn options_without_effect_are_named_or_refused() {
+    let folder = super::outputs::Folder::new();
+    folder.put("a.csv", "time,a,b\n0,0,1\n0.1,0.5,1\n0.2,1,1\n0.3,0.25,1\n");
+    let said = super::outputs::err(&folder.done(&["convert", "a.csv", "-o", "a.ptn", "--up", "z"]));
+    assert!(said.contains("--up has no effect: the motion has no joints"), "{said}");
+    let commands: [&[&str]; 2] = [&["play", "a.ptn", "--plain"], &["render", "a.ptn", "-o", "a.png"]];
+    for arguments in commands {
+        let said = folder.refused(&[arguments, &["--up", "z"]].concat());
+        assert!(said.contains("--up"), "{said}");
+    }
+    // Scalars have no distances.
+    let said = super::outputs::err(&folder.done(&["convert", "a.csv", "-o", "b.ptn", "--close-loop"]));
+    assert!(said.contains("scalars change by up to 25.00 % of full scale; within the clip by up to 75.00 %"), "{said}");
+    assert!(!said.contains(" cm"), "{said}");
+    for options in [
+        &["--footsteps"][..],
+        &["--index", "1"],
+        &["--max-error", "1"],
+        &["--exact"],
+        &["--loop"],
+        &["--close-loop"],
+        &["--event", "a@1"],
+    ] {
+        let output = folder.run(&[&["convert", "run.keys", "--find-loop"], options].concat());
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {}", super::outputs::err(&output));
+    }
+    for rate in ["1e-300", "1e300"] {
+        let output = folder.run(&["convert", "run.keys", "-o", "c.ptn", "--rate", rate]);
+        let said = super::outputs::err(&output);
+        assert!(!output.status.success() && said.len() < 300 && said.contains("--rate"), "{said}");
+    }
+}

@@ -20,7 +20,7 @@ pub fn bytes() -> Result<Vec<u8>> {
         .into_iter()
         .map(|made| {
             let (name, rig) = (made.name.to_string(), pantin_tools::encode::rig::encode(&made.rig)?);
-            Ok(Named { place: name.clone(), name, clip: made.vector()?.clip, rig })
+            Ok(Named { place: name.clone(), name, clip: made.vector()?.clip, rig: rig.into() })
         })
         .collect::<Result<_>>()?;
     let mut bytes = bank::encode(&clips)?;

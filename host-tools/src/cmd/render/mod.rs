@@ -141,6 +141,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         }
         chart::write(&mut file, &expand(&clip)?)?;
     } else {
+        let joints = clip.rig().joint_count() > 0;
+        ensure!(joints || arguments.up.is_none(), "{}: --up does not apply to a clip without joints", arguments.input.display());
         let look = arguments.look(kind)?;
         let mut memory = PlayerBuffers::of(&clip);
         let sides = arguments.sides(face);
