@@ -25,7 +25,7 @@ pub struct Clip<'a> {
     /// Snapshots; empty if there are none.
     index: &'a [u8],
     /// Names of events, without their CRC.
-    names: &'a [u8],
+    pub(crate) names: &'a [u8],
 }
 
 /// The fields in front of a motion's symbols.

@@ -9,7 +9,7 @@ use crate::player::{Player, SeekCache};
 use crate::segment::MAX_SEGMENT_BYTES;
 use crate::{OpenError, TooSmall, crc};
 
-/// The front of a file that holds its rig: as much of a [`Clip`] as is there. For bytes that are not kept there is [`crate::Stream`].
+/// The front of a file: as much of a [`Clip`] as is there. For bytes that are not kept there is [`crate::Stream`].
 #[derive(Clone, Copy, Debug)]
 pub struct PartialClip<'a> {
     clip: Clip<'a>,
@@ -22,8 +22,14 @@ pub struct PartialClip<'a> {
 impl<'a> PartialClip<'a> {
     /// Reads the head of what has come of a file. After [`OpenError::Truncated`] it may be tried again with more. That a later block is damaged,
     /// [`PartialClip::extend`] tells.
-    #[inline(never)]
     pub fn new(file: &'a [u8]) -> Result<PartialClip<'a>, OpenError> {
+        PartialClip::with_rig(file, &[])
+    }
+
+    /// Reads the head of what has come of a file without a rig, such as one of a bank, with the rig that it was made for. A file that holds its own is
+    /// opened with that. It cannot be paused.
+    #[inline(never)]
+    pub fn with_rig(file: &'a [u8], rig: &'a [u8]) -> Result<PartialClip<'a>, OpenError> {
         let file = Arrived::split(file)?;
         let (checked, outcome) = file.check(0);
         if checked == 0 {
@@ -32,7 +38,7 @@ impl<'a> PartialClip<'a> {
         }
         let short = if checked < file.motion_len { OpenError::Truncated } else { OpenError::Malformed };
         let mut clip = Clip::NONE;
-        clip.read(&file.parts, &[], file.rest.get(..checked).unwrap_or(&[]), short)?;
+        clip.read(&file.parts, rig, file.rest.get(..checked).unwrap_or(&[]), short)?;
         let dry_at = file.dry_at(checked);
         if clip.symbols() > dry_at {
             return Err(OpenError::Truncated);
@@ -52,8 +58,8 @@ impl<'a> PartialClip<'a> {
         outcome
     }
 
-    /// Checks that `file`, which it was extended by, is whole.
-    pub fn finish(&self, file: &'a [u8]) -> Result<(), OpenError> {
+    /// Checks that `file`, which it was extended by, is whole. From then on, events have their names.
+    pub fn finish(&mut self, file: &'a [u8]) -> Result<(), OpenError> {
         let mut parts = Parts::new(file);
         parts.read()?;
         let motion = parts.reader.name();
@@ -61,7 +67,9 @@ impl<'a> PartialClip<'a> {
         if self.checked != motion.len() {
             return Err(OpenError::BadCrc);
         }
-        parts.tail(motion).map(drop)
+        let [_, names] = parts.tail(motion)?;
+        self.clip.names = names;
+        Ok(())
     }
 
     /// What is known of the clip.

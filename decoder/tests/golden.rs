@@ -171,7 +171,7 @@ fn bytes_in_pieces_give_the_recorded_poses() {
                         Some((partial, player))
                     }),
                 };
-                let Some((partial, mut player)) = started else { continue };
+                let Some((mut partial, mut player)) = started else { continue };
                 while frame + 1 < crcs.len() && partial.step(&mut player) {
                     frame += 1;
                     assert_eq!(crc_of(player.pose().values), crcs[frame], "{}, frame {frame} of a growing buffer", vector.name);

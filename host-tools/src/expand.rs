@@ -6,7 +6,7 @@ use crate::euler;
 use crate::events;
 use crate::fit::raw;
 use crate::fk::from_exponential;
-use crate::motion::{Frames, Joint, Motion, Rig};
+use crate::motion::{Event, Frames, Joint, Motion, Rig};
 use anyhow::Result;
 use pantin::{ChannelState, Clip, Player};
 
@@ -44,6 +44,10 @@ impl Frames for Expanded<'_> {
 
     fn frames(&self) -> usize {
         self.clip.frames() as usize
+    }
+
+    fn events(&self) -> Vec<Event> {
+        events::of_clip(&self.clip)
     }
 
     fn each(&self, each: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {

@@ -107,6 +107,9 @@ pub trait Frames {
     /// Number of frames.
     fn frames(&self) -> usize;
 
+    /// The markers, in the order of their frames.
+    fn events(&self) -> Vec<Event>;
+
     /// Calls `each` with the values of all channels at every frame, in order.
     fn each(&self, each: &mut dyn FnMut(&[f64]) -> anyhow::Result<()>) -> anyhow::Result<()>;
 }
@@ -122,6 +125,10 @@ impl Frames for Motion {
 
     fn frames(&self) -> usize {
         self.frames
+    }
+
+    fn events(&self) -> Vec<Event> {
+        self.events.clone()
     }
 
     fn each(&self, each: &mut dyn FnMut(&[f64]) -> anyhow::Result<()>) -> anyhow::Result<()> {

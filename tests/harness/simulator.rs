@@ -40,7 +40,7 @@ pub fn play<R: RotationBackend>(
     keys: &[&[u8]],
 ) -> Result<Vec<(u32, Picture)>> {
     let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
-    let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes }).collect();
+    let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes, rig: &[] }).collect();
     let options = Options::parse(words.iter().copied().chain([sync::ARGUMENT]));
     let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     wishes.push_back(pantin_app::QUIT);
@@ -56,7 +56,7 @@ pub fn play<R: RotationBackend>(
 /// The pictures of the OLED while `line` brings the motion of the clip's figure: the first, then one after each of the line's stretches.
 pub fn link(clip: &Path, words: &[&str], line: &[Vec<u8>]) -> Result<Vec<(u32, Picture)>> {
     let file = File::read(clip)?;
-    let entries = [Entry { name: &file.name, bytes: &file.bytes }];
+    let entries = [Entry { name: &file.name, bytes: &file.bytes, rig: &[] }];
     let options = Options::parse(words.iter().copied().chain(["link", sync::ARGUMENT]));
     let ticks = line.iter().flat_map(|bytes| bytes.iter().copied().chain(sync::letter(pantin_app::NEXT)));
     let wishes = ticks.chain(sync::letter(pantin_app::QUIT)).collect();

@@ -205,7 +205,7 @@ fn arrive(
         match PartialClip::new(bytes) {
             Err(OpenError::Truncated) if !last => continue,
             Err(error) => return (0, Err(error)),
-            Ok(front) => {
+            Ok(mut front) => {
                 let channels = front.clip().rig().channels();
                 let (states, pose) = (vec![ChannelState::default(); channels].leak(), vec![0; channels].leak());
                 match front.player(states, pose).unwrap() {

@@ -52,6 +52,13 @@ pub trait Board {
         }
     }
 
+    /// Hears an event of the clip when its frame is shown: a footfall, a sound. By default the serial line sends it as a line of text,
+    /// `event FRAME NAME`. There are no events in [`Mode::Sync`](crate::Mode::Sync).
+    #[cfg(feature = "events")]
+    fn event(&mut self, event: crate::HeardEvent) {
+        event.send(|bytes| self.send(bytes));
+    }
+
     /// Returns the command of a button that was pressed since the last call.
     fn button(&mut self) -> Option<Command> {
         None

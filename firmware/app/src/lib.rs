@@ -8,7 +8,9 @@
 //! - `run_stored` (feature `update`) also plays a clip from flash, which `pantin update` replaces over the serial line;
 //! - [`multi`](multi()) plays several clips side by side.
 //!
-//! With the feature `link`, [`run`](run()) can play poses that arrive over the serial line instead of a clip's.
+//! With the feature `link`, [`run`](run()) can play poses that arrive over the serial line instead of a clip's. With the feature `events`,
+//! `Board::event` hears footfalls, sounds and other events when their frames are shown. With the feature `bank`, `run_stored` plays all clips of a
+//! bank in flash; a program can be built with the clips of a bank without it ([`Entry::rig`]).
 //!
 //! # A minimal board
 //!
@@ -50,7 +52,7 @@
 //!
 //! # const WALK: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../motions/walk.ptn"));
 //! // const WALK: &[u8] = include_bytes!("walk.ptn");
-//! let clips = [Entry { name: "walk", bytes: WALK }];
+//! let clips = [Entry { name: "walk", bytes: WALK, rig: &[] }];
 //! // `Mode::Play` never ends.
 //! let options = Options { mode: Mode::Frames(30), ..Options::parse([]) };
 //! let mut board = MyBoard { lit: 0 };
@@ -63,7 +65,7 @@
 //!
 //! A frame passes through them in this order: a *source* (clip or link) gives a pose, a *content* (body, face or both) draws it on the
 //! framebuffer, and the board presents that. [`run`](run()) holds the only loop over frames. Modules import only modules that stand
-//! before them here: `commands`, `capacity`, `board`, `options`, `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
+//! before them here: `commands`, `capacity`, `events`, `board`, `options`, `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
 //! `multi`, `stored`.
 //!
 //! A function that needs a large workspace or buffer keeps it in a stack frame of its own and is marked `#[inline(never)]`: the stack then
@@ -75,6 +77,8 @@ mod board;
 mod capacity;
 pub mod commands;
 mod content;
+#[cfg(feature = "events")]
+mod events;
 pub mod frame_stream;
 mod hud;
 mod log;
@@ -92,6 +96,8 @@ mod view_state;
 pub use board::{Board, Exit};
 pub use capacity::{Capacity, MaxClip, RIG, Renderer};
 pub use commands::Command;
+#[cfg(feature = "events")]
+pub use events::HeardEvent;
 pub use multi::{FIGURES, FigureBuffers, multi};
 #[cfg(feature = "key")]
 pub use options::Key;

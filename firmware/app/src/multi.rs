@@ -69,7 +69,7 @@ fn play_from<B: Board>(
     let mut figures: Vec<(&str, Player, &mut BoardRenderer<B>), FIGURES> = Vec::new();
     let entries = entries.iter().cycle().skip(first);
     for (index, (buffers, entry)) in buffers.iter_mut().zip(entries).take(count).enumerate() {
-        let clip = match Clip::new_checked(entry.bytes) {
+        let clip = match Clip::with_rig(entry.bytes, entry.rig) {
             Ok(clip) => clip,
             Err(error) => {
                 error!("a clip cannot be opened: {}", error);

@@ -57,7 +57,7 @@ pub(crate) enum Task {
 
 /// Opens a clip, builds its content and plays it.
 pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: &mut PlayContext<B>) -> Outcome {
-    let clip = match Clip::new_checked(entry.bytes) {
+    let clip = match Clip::with_rig(entry.bytes, entry.rig) {
         Ok(clip) => clip,
         Err(error) => {
             error!("the clip cannot be opened: {}", error);
@@ -136,6 +136,8 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         board.start_timer(view_state.tick_ns(frame_ns));
     }
     loop {
+        #[cfg(feature = "events")]
+        let before = actors.first().map_or(0, |first| first.source.frame());
         advance(actors, frames, board);
         set_poses(actors, board);
         draw(actors, view_state, framebuffer, board);
@@ -148,6 +150,12 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
             hud::draw(view_state, first.name, &first.source.status(), framebuffer);
         }
         present(framebuffer, board);
+        // Between the pictures of `Sync`, the line has its own protocol.
+        #[cfg(feature = "events")]
+        if mode != Mode::Sync {
+            let from = if shown == 0 { crate::events::From::Start } else { crate::events::From::Frame(before) };
+            first.source.hear(from, frames, &mut |event| board.event(event));
+        }
         shown = shown.wrapping_add(1);
         listener.frame_shown();
         let ticks = match mode {

@@ -13,6 +13,8 @@ pub struct Entry<'a> {
     pub name: &'a str,
     /// The clip's file.
     pub bytes: &'a [u8],
+    /// The rig, for a clip whose file has none, as those of a bank; otherwise empty.
+    pub rig: &'a [u8],
 }
 
 /// What a clip is played with.

@@ -1,4 +1,5 @@
-//! The program of a board with a store: the stored clip comes before the built-in ones, and can be replaced over the serial line.
+//! The program of a board with a store: what is stored comes before the built-in clips, and can be replaced over the serial line. It is a clip, or with the
+//! feature `bank` also a bank.
 
 use crate::board::{Board, Exit};
 use crate::log::{error, info};
@@ -10,7 +11,7 @@ use crate::view_state::ViewState;
 use pantin_figure::surface::Framebuffer;
 use pantin_store::{Slot, Store, StoredClip, Update};
 
-/// Plays the stored clip, then the built-in ones, as [`run`](crate::run()) does. A clip that arrives over the serial line is stored and played
+/// Plays the stored clip, or the clips of the stored bank, then the built-in ones, as [`run`](crate::run()) does. A clip that arrives over the serial line is stored and played
 /// from its first frame. One that this board cannot play is refused, and the current clip plays on.
 pub fn run_stored<B: Board, S: Slot>(
     store: &mut Store<S>,
@@ -45,8 +46,24 @@ impl<B: Board> StoredContext<'_, B> {
     }
 }
 
-fn entry<'a>(stored: &'a StoredClip) -> Entry<'a> {
-    Entry { name: stored.info.name.as_str(), bytes: stored.bytes }
+/// Returns a stored clip: there is one, or as many as the bank has.
+fn entry<'a>(stored: &'a StoredClip, at: usize) -> Option<Entry<'a>> {
+    #[cfg(feature = "bank")]
+    if let Ok(bank) = pantin::Bank::new_checked(stored.bytes) {
+        let clip = bank.entries().nth(at)?;
+        return Some(Entry { name: clip.name(), bytes: clip.bytes(), rig: bank.rig_bytes() });
+    }
+    (at == 0).then_some(Entry { name: stored.info.name.as_str(), bytes: stored.bytes, rig: &[] })
+}
+
+/// Returns the number of clips that are stored.
+fn count(stored: &StoredClip) -> usize {
+    #[cfg(feature = "bank")]
+    if let Ok(bank) = pantin::Bank::new_checked(stored.bytes) {
+        return bank.len();
+    }
+    let _ = stored;
+    1
 }
 
 /// Plays until the program ends. Returns `None` if a new clip was stored.
@@ -56,13 +73,16 @@ fn until_replaced<B: Board, S: Slot>(
     entries: &[Entry],
     mut stored_context: StoredContext<B>,
 ) -> Option<Exit> {
-    let mut own = stored.as_ref().map(entry);
-    let (mut at, mut from) = (0, 0);
-    while let Some(entry) = own.as_ref().into_iter().chain(entries).nth(at) {
+    let mut own = stored.as_ref().map_or(0, count);
+    let (mut at, mut from) = (0usize, 0);
+    while let Some(entry) = match at.checked_sub(own) {
+        Some(at) => entries.get(at).copied(),
+        None => stored.as_ref().and_then(|stored| entry(stored, at)),
+    } {
         let mut context = stored_context.lend(Listener { update: Some(update) });
-        match open(entry, Task::Play { from }, &mut context) {
+        match open(&entry, Task::Play { from }, &mut context) {
             Outcome::Clip(steps) => {
-                let count = (entries.len() + usize::from(own.is_some())) as i32;
+                let count = (entries.len() + own) as i32;
                 (at, from) = ((at as i32 + steps).checked_rem_euclid(count)? as usize, 0);
             }
             Outcome::Received(frame) => {
@@ -75,7 +95,7 @@ fn until_replaced<B: Board, S: Slot>(
                 from = frame;
             }
             // Flash may have been written with a clip that is too big for the board, which then plays its own.
-            Outcome::Exit(Exit::BadClip) if at == 0 && own.is_some() => own = None,
+            Outcome::Exit(Exit::BadClip) if at < own => (own, at) = (0, 0),
             Outcome::Exit(exit) => return Some(exit),
             Outcome::Playable => {}
         }
@@ -83,9 +103,15 @@ fn until_replaced<B: Board, S: Slot>(
     Some(Exit::Done)
 }
 
-/// Returns whether the board can play the clip that arrived, by setting it up.
+/// Returns whether the board can play what arrived, by setting every clip up.
 #[inline(never)]
 fn is_playable<B: Board, S: Slot>(update: &Update<S>, stored_context: &mut StoredContext<B>) -> bool {
     let Some(candidate) = update.candidate() else { return false };
-    matches!(open(&entry(&candidate), Task::Check, &mut stored_context.lend(Listener::default())), Outcome::Playable)
+    let mut is_playable = |at: usize| {
+        let entry = entry(&candidate, at);
+        entry.is_some_and(|entry| {
+            matches!(open(&entry, Task::Check, &mut stored_context.lend(Listener::default())), Outcome::Playable)
+        })
+    };
+    (0..count(&candidate)).all(&mut is_playable)
 }

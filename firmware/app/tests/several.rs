@@ -65,7 +65,7 @@ impl Board for Mock {
 fn play(mut board: Mock, mode: Mode) -> Mock {
     let options = Options { mode, ..Options::parse([]) };
     let mut buffers = [FigureBuffers::empty(), FigureBuffers::empty()];
-    let entries = [Entry { name: "walk", bytes: WALK }];
+    let entries = [Entry { name: "walk", bytes: WALK, rig: &[] }];
     assert_eq!(multi(&entries, options, &mut buffers, &mut Framebuffer::new(), &mut board), Exit::Done);
     board
 }

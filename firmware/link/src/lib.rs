@@ -28,6 +28,7 @@
 
 mod channel;
 mod cobs;
+mod event;
 mod head;
 mod link;
 mod message;
@@ -39,6 +40,7 @@ pub mod tables;
 mod tag;
 
 pub use channel::Channel;
+pub use event::{EVENT_NAME_BYTES, EventQueue, LineEvent, MAX_EVENT};
 pub use head::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace, read_starts};
 pub use link::{ClipMismatch, Counts, Link, MAX_PACKET, MAX_PAYLOAD, QUEUE_PACKETS};
 pub use message::{Message, Messages, Refresh, units};

@@ -363,6 +363,6 @@ fn near(low: u16, about: u32) -> u32 {
 }
 
 /// Returns whether `a` comes before `b`; frames may wrap.
-fn before(a: u32, b: u32) -> bool {
+pub(crate) fn before(a: u32, b: u32) -> bool {
     (a.wrapping_sub(b) as i32) < 0
 }

@@ -38,6 +38,8 @@ pub mod kind {
     pub const MOTION: u8 = 0x02;
     /// Describes the channels: LINK.md 4.
     pub const STARTS: u8 = 0x03;
+    /// An event of the clip: LINK.md 5a. It has the sequence of the packet before it.
+    pub const EVENT: u8 = 0x04;
     /// Messages of a clip update: `pantin-store`.
     pub const UPDATES: RangeInclusive<u8> = 0x10..=0x1f;
 }

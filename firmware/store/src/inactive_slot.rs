@@ -4,7 +4,6 @@ use crate::BLOCK_BYTES;
 use crate::header::{ClipInfo, Header, crc_32};
 use crate::message::Refusal;
 use crate::slot::{self, Slot};
-use pantin::Clip;
 
 /// The slot that does not play. Once [`seal`](InactiveSlot::seal) has succeeded, its clip is the newest of the store.
 #[derive(Debug)]
@@ -63,7 +62,7 @@ impl<'a, S: Slot> InactiveSlot<'a, S> {
         if crc_32(bytes) != info.crc {
             return Err(Refusal::BadCrc);
         }
-        Clip::new_checked(bytes).map(|_| bytes).map_err(Refusal::Clip)
+        slot::check(bytes).map(|()| bytes).map_err(Refusal::Clip)
     }
 
     /// Checks the clip and writes its header: the clip is the newest from the moment that the header's last word is written.

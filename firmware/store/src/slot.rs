@@ -2,6 +2,7 @@
 
 use crate::BLOCK_BYTES;
 use embedded_storage::nor_flash::NorFlash;
+use pantin::{Clip, OpenError};
 
 /// Flash for one clip, which the processor reads as memory. Offsets count from its start.
 ///
@@ -20,4 +21,13 @@ pub(crate) const fn fits<S: Slot>() {
 /// Returns the clip in a slot's bytes, or `None` if `length` exceeds the slot.
 pub(crate) fn clip(slot: &[u8], length: u32) -> Option<&[u8]> {
     slot.get(BLOCK_BYTES..)?.get(..length as usize)
+}
+
+/// Checks that the decoder can open a file: a clip with its rig, or with the feature `bank` a bank and all of its clips.
+pub(crate) fn check(file: &[u8]) -> Result<(), OpenError> {
+    #[cfg(feature = "bank")]
+    if let Ok(bank) = pantin::Bank::new_checked(file) {
+        return bank.entries().try_for_each(|entry| bank.open(&entry).map(drop));
+    }
+    Clip::new_checked(file).map(drop)
 }

@@ -3,7 +3,6 @@
 use crate::header::{ClipInfo, Header, crc_32};
 use crate::inactive_slot::InactiveSlot;
 use crate::slot::{self, Slot};
-use pantin::Clip;
 
 /// Two slots of flash.
 #[derive(Debug)]
@@ -14,7 +13,7 @@ pub struct Store<S> {
 /// A valid clip in flash.
 #[derive(Clone, Copy, Debug)]
 pub struct StoredClip<'a> {
-    /// The file of the clip, for [`Clip::new_checked`].
+    /// The file of the clip, for [`pantin::Clip::new_checked`], or with the feature `bank` that of a bank.
     pub bytes: &'a [u8],
     /// What the header states.
     pub info: ClipInfo,
@@ -51,6 +50,6 @@ impl<S: Slot> Store<S> {
 fn read(slot: &[u8]) -> Option<(Header, StoredClip<'_>)> {
     let header = Header::read(slot)?;
     let bytes = slot::clip(slot, header.info.length)?;
-    let right = crc_32(bytes) == header.info.crc && Clip::new_checked(bytes).is_ok();
+    let right = crc_32(bytes) == header.info.crc && slot::check(bytes).is_ok();
     right.then_some((header, StoredClip { bytes, info: header.info }))
 }

@@ -21,9 +21,9 @@ use std::path::PathBuf;
   pantin flash-image walk.ptn --board esp32-c3 -o clips.bin --name \"my walk\"
   espflash write-bin 0x3e0000 clips.bin
 
-The firmware must be built with feature `update`.")]
+The firmware must be built with feature `update`, and for a bank with feature `bank`.")]
 pub struct Arguments {
-    /// The clip, which must contain its rig
+    /// The clip, which must contain its rig, or a bank, whose clips the board plays one after the other
     input: PathBuf,
     /// The file to write: .bin, .hex or .uf2 [default: the clip's name, ending in what the board's flash tool takes; a file that is there
     /// already is kept]

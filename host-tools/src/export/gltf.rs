@@ -1,7 +1,7 @@
 //! glTF out, as .glb: a node a joint, and one animation with a key at every frame.
 //!
 //! Lengths are metres, as glTF has it. A skin names the joints, so that readers make an armature of them. Scalars become the morph weights of a mesh of one point, whose targets bear their names: any
-//! reader of morph weights finds them. End Sites are nodes called like their parents, with `/end` behind.
+//! reader of morph weights finds them. Events stand in the animation's `extras`, as `{"events": [{"time": 0.5, "name": "step"}]}`. End Sites are nodes called like their parents, with `/end` behind.
 
 use crate::fk::{local, quaternion};
 use crate::motion::Motion;
@@ -22,6 +22,7 @@ pub fn write(motion: &Motion) -> Result<Vec<u8>> {
     joints(motion, times, &mut file);
     skin(motion, &mut file);
     scalars(motion, times, &mut file);
+    file.events = motion.events.iter().map(|event| json!({"time": seconds[event.frame], "name": event.name})).collect();
     file.finish()
 }
 
@@ -36,6 +37,8 @@ struct Writer {
     skins: Vec<Value>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
+    /// Events of the animation, which glTF has no place for but `extras`.
+    events: Vec<Value>,
 }
 
 impl Writer {
@@ -75,6 +78,9 @@ impl Writer {
             "bufferViews": self.views,
             "buffers": [{"byteLength": self.bytes.len()}],
         });
+        if !self.events.is_empty() {
+            root["animations"][0]["extras"] = json!({"events": self.events});
+        }
         if !self.meshes.is_empty() {
             root["meshes"] = json!(self.meshes);
         }

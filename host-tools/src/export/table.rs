@@ -9,11 +9,16 @@ use std::io::Write;
 const DIGITS: i32 = 7;
 
 /// Writes `motion` as CSV: `time` in seconds, joints' channels as `hip.Xrotation` in their units, scalars by their names. A name that
-/// stands there already gets a number behind it, so that the table can be read again.
+/// stands there already gets a number behind it, so that the table can be read again. A motion with events gets a last column of their names, with `|`
+/// between those of one frame.
 pub fn write(motion: &impl Frames, out: impl Write) -> Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_field("time")?;
     names(motion.rig()).iter().try_for_each(|name| writer.write_field(name))?;
+    let events = motion.events();
+    if !events.is_empty() {
+        writer.write_field(EVENTS)?;
+    }
     writer.write_record(None::<&[u8]>)?;
     let mut peaks = vec![0f64; motion.rig().channels()];
     motion.each(&mut |pose| {
@@ -27,15 +32,22 @@ pub fn write(motion: &impl Frames, out: impl Write) -> Result<()> {
         for (&value, &decimals) in pose.iter().zip(&decimals) {
             writer.write_field(number(value, decimals))?;
         }
+        if !events.is_empty() {
+            let here = events.iter().filter(|event| event.frame == frame as usize);
+            writer.write_field(here.map(|event| event.name.as_str()).collect::<Vec<_>>().join("|"))?;
+        }
         frame += 1;
         Ok(writer.write_record(None::<&[u8]>)?)
     })?;
     Ok(writer.flush()?)
 }
 
-/// A name for every channel, all different from each other and from the column of times.
+/// The name of the column of events.
+const EVENTS: &str = "events";
+
+/// A name for every channel, all different from each other and from the columns of times and events.
 fn names(rig: &Rig) -> Vec<String> {
-    let mut taken: HashSet<String> = HashSet::from(["time".into()]);
+    let mut taken: HashSet<String> = HashSet::from(["time".into(), "event".into(), EVENTS.into()]);
     let mut name = |channel: usize| {
         let plain = rig.channel_name(channel);
         let plain = if plain.trim().is_empty() { format!("channel{channel}") } else { plain };
@@ -61,7 +73,7 @@ fn number(value: f64, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{Joint, Kind, Motion, Scalar};
+    use crate::motion::{Event, Joint, Kind, Motion, Scalar};
 
     #[test]
     fn every_channel_has_a_column() {
@@ -81,6 +93,11 @@ mod tests {
         let mut out = Vec::new();
         write(&motion, &mut out).unwrap();
         let expected = "time,hip.Xrotation,\"jaw, open\",still\n0,-370.125,0.3333333,0\n0.033333333,12,0,0\n";
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
+        let event = |name: &str| Event { frame: 1, name: name.into() };
+        let mut out = Vec::new();
+        write(&Motion { events: vec![event("step"), event("clap")], ..motion }, &mut out).unwrap();
+        let expected = "time,hip.Xrotation,\"jaw, open\",still,events\n0,-370.125,0.3333333,0,\n0.033333333,12,0,0,step|clap\n";
         assert_eq!(String::from_utf8(out).unwrap(), expected);
     }
 }

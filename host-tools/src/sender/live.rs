@@ -64,7 +64,7 @@ impl Source {
             ChannelKind::Moving { step, pace }
         };
         let head = Head { form, frames: MAX_FRAMES, frame_time_ns, channels: making.len() as u16, ..Head::default() };
-        Source { head, starts: making.iter().map(start).collect(), tracks: vec![] }
+        Source { head, starts: making.iter().map(start).collect(), tracks: vec![], events: vec![] }
     }
 }
 

@@ -4,8 +4,8 @@ use super::announce::{write_head, write_starts};
 use super::pack::{MotionPacket, pack};
 use super::plan::round;
 use super::source::Source;
-use pantin_link::Head;
 use pantin_link::packet::{self, TagKey, kind};
+use pantin_link::{Head, LineEvent};
 use pantin_link::{MAX_PAYLOAD, QUEUE_PACKETS};
 use std::collections::VecDeque;
 
@@ -91,6 +91,8 @@ pub struct Schedule<'s> {
     /// Seconds of a frame.
     frame: f64,
     batches: VecDeque<MotionPacket>,
+    /// Events, each with the line frame of the motion that it goes before.
+    events: VecDeque<(u32, LineEvent)>,
     /// The last frames of packets that may still wait at the receiver.
     waiting: VecDeque<u32>,
     rounds: u32,
@@ -116,6 +118,7 @@ impl<'s> Schedule<'s> {
             line,
             frame: f64::from(head.frame_time_ns) / 1e9,
             batches: VecDeque::new(),
+            events: VecDeque::new(),
             waiting: VecDeque::new(),
             rounds: 0,
             left: rounds,
@@ -142,6 +145,15 @@ impl<'s> Schedule<'s> {
         }
         let begin = self.head.begin + self.rounds * self.head.frames;
         self.batches.extend(pack(&round(self.source, self.line.cycle), begin));
+        // Twice: packets are lost.
+        let again = (self.line.ahead / 2).max(1);
+        let mut events: Vec<(u32, LineEvent)> = self.events.drain(..).collect();
+        for (frame, id, name) in &self.source.events {
+            let event = LineEvent::new(begin + frame, *id, name);
+            events.extend([(event.frame, event.clone()), (event.frame + again, event)]);
+        }
+        events.sort_by_key(|(before, _)| *before);
+        self.events = events.into();
         self.rounds += 1;
         self.left = self.left.map(|left| left - 1);
         if self.left == Some(0) {
@@ -188,10 +200,12 @@ impl<'s> Schedule<'s> {
 
     fn leave(&mut self, at: f64, kind: u8, payload: &[u8]) -> TimedPacket {
         let mut bytes = vec![0; packet::tagged_line_len(payload.len())];
+        // Events do not count: receivers that do not know them would miss a packet.
+        let sequence = self.sequence.wrapping_sub(u8::from(kind == kind::EVENT));
         let len = match (&self.line.key, self.line.parity) {
-            (Some(key), parity) => packet::encode_with_tag(kind, self.sequence, payload, key, parity, &mut bytes),
-            (None, true) => packet::encode_with_parity(kind, self.sequence, payload, &mut bytes),
-            (None, false) => packet::encode(kind, self.sequence, payload, &mut bytes),
+            (Some(key), parity) => packet::encode_with_tag(kind, sequence, payload, key, parity, &mut bytes),
+            (None, true) => packet::encode_with_parity(kind, sequence, payload, &mut bytes),
+            (None, false) => packet::encode(kind, sequence, payload, &mut bytes),
         };
         let len = len.unwrap_or(0);
         let parity = if self.line.parity { packet::PARITY as f64 } else { 0.0 };
@@ -200,13 +214,21 @@ impl<'s> Schedule<'s> {
             // The zero before it has just been sent.
             bytes.remove(0);
         }
-        self.sequence = self.sequence.wrapping_add(1);
+        self.sequence = self.sequence.wrapping_add(u8::from(kind != kind::EVENT));
         self.free = at + bytes.len() as f64 / self.line.rate;
         self.bytes.line += bytes.len() as f64;
         self.bytes.framing += (bytes.len() - payload.len()) as f64 - parity;
         self.bytes.parity += parity;
         self.bytes.packets += 1;
         TimedPacket { at, bytes }
+    }
+
+    fn leave_event(&mut self, at: f64) -> Option<TimedPacket> {
+        let (_, event) = self.events.pop_front()?;
+        let payload = event.payload(&self.head);
+        let timed = self.leave(at, kind::EVENT, &payload);
+        self.bytes.announced += payload.len() as f64;
+        Some(timed)
     }
 
     fn announce(&mut self, at: f64) -> TimedPacket {
@@ -234,7 +256,10 @@ impl Iterator for Schedule<'_> {
         if self.batches.is_empty() {
             self.refill();
         }
-        let base = self.batches.front()?.base;
+        let Some(base) = self.batches.front().map(|batch| batch.base) else {
+            // Second copies of the last events.
+            return self.leave_event(self.free);
+        };
         let due = self.time_of(base) - f64::from(self.line.ahead) * self.frame;
         let mut at = self.free.max(due);
         if let Some(&last) = self.waiting.len().checked_sub(SENT).and_then(|first| self.waiting.get(first)) {
@@ -242,6 +267,9 @@ impl Iterator for Schedule<'_> {
         }
         if self.credit > 0.0 {
             return Some(self.announce(self.free));
+        }
+        if self.events.front().is_some_and(|(before, _)| *before <= base) {
+            return self.leave_event(at);
         }
         let batch = self.batches.pop_front()?;
         self.waiting.push_back(batch.last);

@@ -33,6 +33,8 @@ pub struct Source {
     pub(crate) head: Head,
     pub(crate) starts: Vec<ChannelKind>,
     pub(crate) tracks: Vec<Track>,
+    /// Frame, id and name of each event.
+    pub(crate) events: Vec<(u32, u32, String)>,
 }
 
 /// Why a clip cannot be sent.
@@ -80,7 +82,9 @@ impl Source {
         for track in &tracks {
             starts[usize::from(track.channel)] = ChannelKind::Moving { step: track.step, pace: track.pace(join) };
         }
-        Ok(Source { head: head_of(clip)?, starts, tracks })
+        let events = clip.events().filter(|event| event.frame < clip.frames());
+        let events = events.map(|event| (event.frame, event.id, clip.event_name(event.id).unwrap_or_default().to_owned()));
+        Ok(Source { head: head_of(clip)?, starts, tracks, events: events.collect() })
     }
 
     /// Frames of the clip.

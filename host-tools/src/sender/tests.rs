@@ -1,7 +1,7 @@
 use super::*;
 use pantin::Clip;
 use pantin_link::packet::Receiver;
-use pantin_link::{Channel, Link, MAX_PACKET};
+use pantin_link::{Channel, EventQueue, LineEvent, Link, MAX_PACKET};
 use proptest::prelude::*;
 
 const CLIPS: [&[u8]; 5] = [
@@ -63,6 +63,55 @@ fn play(timed_packets: impl Iterator<Item = TimedPacket>, (source, line): (&Sour
 fn line(source: &Source, rate: f64) -> Line {
     let ahead = (1e9 / f64::from(source.head.frame_time_ns)) as u32;
     Line { rate, ahead, share: 1.0, cycle: 4, parity: false, key: None }.fitted(source).expect("it fits")
+}
+
+#[test]
+fn events_are_heard_at_their_frames_although_packets_are_lost() {
+    let source = source(include_bytes!("../../../tests/vectors/event-names.ptn"));
+    assert_eq!(source.events.len(), 5);
+    let line = line(&source, 3840.0);
+    let short = |name: &str| LineEvent::new(0, 0, name).name().unwrap_or_default().to_owned();
+    // All first copies are lost, or all second ones.
+    for lost in [None, Some(true), Some(false)] {
+        let (mut states, mut pose) = (vec![Channel::default(); source.channels()], vec![0; source.channels()]);
+        let mut link = Link::<64>::new(source.form(), &mut states, &mut pose);
+        let mut receiver = Receiver::<MAX_PACKET>::new();
+        let (mut queue, mut heard, mut count) = (EventQueue::default(), vec![], 0);
+        let (mut clock, mut seen) = (None, std::collections::HashSet::new());
+        let packets: Vec<TimedPacket> = Sender::new(9).clip(&source, line, Some(2)).collect();
+        let end = packets.last().expect("packets").at + 2.0 * source.seconds() + 2.0;
+        let idle = TimedPacket { at: end, bytes: vec![] };
+        for timed in packets.into_iter().chain([idle]) {
+            let clock = clock.get_or_insert(timed.at);
+            while *clock + source.frame_seconds() <= timed.at {
+                *clock += source.frame_seconds();
+                link.step();
+                while let Some(event) = link.now().and_then(|now| queue.take(now)) {
+                    heard.push((link.now().unwrap() - BEGIN, event.id, event.name().unwrap_or_default().to_owned()));
+                }
+            }
+            for byte in timed.bytes {
+                let Some(packet) = receiver.push(byte) else { continue };
+                link.receive(&packet).expect("the rig is its own");
+                let event = link.head().and_then(|head| LineEvent::read(&packet, head));
+                if let Some(event) = event {
+                    count += 1;
+                    let first = seen.insert((event.frame, event.id));
+                    if lost.is_none_or(|lost| first != lost) {
+                        queue.push(event, link.now().unwrap_or(BEGIN - 1));
+                    }
+                }
+            }
+        }
+        let frames = source.frames();
+        let mut expected: Vec<(u32, u32, String)> = (0..2)
+            .flat_map(|round| source.events.iter().map(move |(frame, id, name)| (round * frames + frame, *id, short(name))))
+            .collect();
+        heard.sort();
+        expected.sort();
+        assert_eq!(heard, expected, "{lost:?}");
+        assert_eq!((count, link.counts().missing, link.counts().rejected), (4 * source.events.len(), 0, 0));
+    }
 }
 
 /// A wave that is never still, and a step.

@@ -9,9 +9,10 @@ pub use send::{Outcome, RetryPolicy, TransferError, send};
 
 use crate::input;
 use crate::open::no_clip;
-use crate::output::{is_hostile, note};
+use crate::output::{clean, is_hostile, note};
 use anyhow::{Context, Result, anyhow};
-use pantin::{Clip, OpenError};
+use pantin::codec::layout::BANK_MAGIC;
+use pantin::{Bank, Clip, OpenError};
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
@@ -26,14 +27,22 @@ pub fn board_name(text: &str) -> Result<String, String> {
     }
 }
 
-/// Reads a clip for a board: one that holds its rig. It is called `name`, or else as its file, as far as a board keeps that.
+/// Reads a clip for a board, one that holds its rig, or a bank. It is called `name`, or else as its file, as far as a board keeps that.
 pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
     let place = || path.display().to_string();
     let clip = input::read(path)?;
-    Clip::new_checked(&clip).map_err(|error| match error {
-        OpenError::WrongRig => anyhow!("{}: a clip without its rig (--rig-out), which a board cannot open", place()),
-        error => no_clip(path, &clip, error).context(format!("{}: a board cannot open it", place())),
-    })?;
+    if clip.starts_with(&BANK_MAGIC) {
+        let bank = Bank::new_checked(&clip).with_context(place)?;
+        for entry in bank.entries() {
+            bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
+        }
+        note!("{}: a bank of {} clips, for firmware that is built with feature `bank`", place(), bank.len());
+    } else {
+        Clip::new_checked(&clip).map_err(|error| match error {
+            OpenError::WrongRig => anyhow!("{}: a clip without its rig (--rig-out), which a board cannot open", place()),
+            error => no_clip(path, &clip, error).context(format!("{}: a board cannot open it", place())),
+        })?;
+    }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let shown: String = stem.chars().map(|c| if is_hostile(c) { '_' } else { c }).collect();
     let info = ClipInfo::of(&clip, name.unwrap_or(&shown)).with_context(|| format!("{}: too long", place()))?;

@@ -227,9 +227,7 @@ fn a_bank_in_place_of_a_clip_is_named_with_the_next_command() {
     folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
     folder.done(&["pack", "a.ptn", "-o", "moves.ptb"]);
     folder.put("site/index.html", "");
-    let runs: [&[&str]; 8] = [
-        &["update", "moves.ptb", "--to", "tcp:127.0.0.1:1"],
-        &["flash-image", "moves.ptb", "--board", "pico", "-o", "a.uf2"],
+    let runs: [&[&str]; 6] = [
         &["render", "moves.ptb", "-o", "a.png"],
         &["play", "moves.ptb", "--plain"],
         &["stream", "moves.ptb", "--to", "tcp:127.0.0.1:1"],
@@ -243,6 +241,20 @@ fn a_bank_in_place_of_a_clip_is_named_with_the_next_command() {
     }
     let said = folder.refused(&["flash-image", "run.keys", "--board", "pico", "-o", "a.uf2"]);
     assert!(said.contains("`pantin convert run.keys"), "{said}");
+}
+
+#[test]
+fn a_flash_image_holds_a_bank() {
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    folder.done(&["pack", "a.ptn", "-o", "moves.ptb"]);
+    let said = super::outputs::err(&folder.done(&["flash-image", "moves.ptb", "--board", "pico", "-o", "a.bin"]));
+    assert!(said.contains("a bank of 1 clips, for firmware that is built with feature `bank`"), "{said}");
+    let (bank, image) = (folder.get("moves.ptb"), folder.get("a.bin"));
+    assert!(image.windows(bank.len()).any(|part| part == bank));
+    let half = bank[..bank.len() / 2].to_vec();
+    folder.put("half.ptb", half);
+    assert!(folder.refused(&["flash-image", "half.ptb", "--board", "pico", "-o", "b.bin"]).contains("half.ptb"));
 }
 
 #[test]

@@ -501,6 +501,22 @@ fn a_clip_expands_to_glb() {
 }
 
 #[test]
+fn events_stand_in_the_extras_of_an_animation() {
+    let mut builder = spline();
+    builder.root["animations"][0]["extras"] = json!({
+        "events": [{"time": 1.0, "name": "step"}, {"time": 0.5, "name": "clap"}, {"time": 9.0, "name": "late"}, {"name": "never"}, 7],
+        "markers": [{"time": 2.0, "name": "end"}],
+    });
+    let motion = builder.load("events").motion;
+    let found = |motion: &Motion| motion.events.iter().map(|event| (event.frame, event.name.clone())).collect::<Vec<_>>();
+    assert_eq!(found(&motion), [(15, "clap".into()), (30, "step".into()), (60, "end".into())]);
+    let path = std::env::temp_dir().join(format!("pantin-gltf-events-back-{}.glb", std::process::id()));
+    std::fs::write(&path, export::gltf::write(&motion).unwrap()).unwrap();
+    assert_eq!(found(&import::load(&path, &Options::default()).unwrap().motion), found(&motion));
+    std::fs::remove_file(&path).unwrap();
+}
+
+#[test]
 fn a_mesh_whose_points_are_missing_is_refused() {
     let text = json!({
         "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 3}}]}],

@@ -32,6 +32,11 @@ impl Source for Player<'_, '_> {
         self.clip().frame_time_ns()
     }
 
+    #[cfg(feature = "events")]
+    fn hear(&mut self, from: crate::events::From, frames: i32, heard: &mut dyn FnMut(crate::HeardEvent)) {
+        crate::events::passed(self.clip(), from, frames, Player::frame(self), heard);
+    }
+
     fn status(&self) -> Status {
         Status::Clip { frame: Player::frame(self), frames: self.clip().frames() }
     }

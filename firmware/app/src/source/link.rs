@@ -11,8 +11,12 @@ use crate::log::{error, info};
 use crate::options::Key;
 use crate::session::Outcome;
 use pantin::{Player, Pose};
+#[cfg(feature = "events")]
+use pantin_link::packet::Packet;
 use pantin_link::packet::Receiver;
 use pantin_link::{ClipMismatch, Link, MAX_PACKET, QUEUE_PACKETS, fits};
+#[cfg(feature = "events")]
+use pantin_link::{EventQueue, Head, LineEvent};
 
 /// What the packets of a line have.
 pub(crate) struct Line {
@@ -30,6 +34,8 @@ pub(crate) struct LinkSource<'m, 'p, 'c, 'b> {
     receiver: Receiver<MAX_PACKET>,
     link: Link<'m, QUEUE_PACKETS>,
     refusal: Option<ClipMismatch>,
+    #[cfg(feature = "events")]
+    events: EventQueue,
     /// Whether letters are commands: they have no tag, so that with a key anybody could send them.
     #[cfg(feature = "key")]
     letters: bool,
@@ -62,9 +68,24 @@ pub(crate) fn open<B: Board>(player: &mut Player, line: Line, then: impl FnOnce(
         receiver,
         link,
         refusal: None,
+        #[cfg(feature = "events")]
+        events: EventQueue::default(),
         #[cfg(feature = "key")]
         letters: line.sync || line.key == Key::None,
     })
+}
+
+/// Keeps an event for its frame; `before` is the clip that played before this packet.
+#[cfg(feature = "events")]
+fn keep_event(events: &mut EventQueue, link: &Link<'_, QUEUE_PACKETS>, before: Option<Head>, packet: &Packet<'_>) {
+    if before.as_ref() != link.head() {
+        events.clear();
+    }
+    let now = link.now().or(link.head().map(|head| head.begin.wrapping_sub(1)));
+    let event = link.head().and_then(|head| LineEvent::read(packet, head));
+    if let (Some(event), Some(now)) = (event, now) {
+        events.push(event, now);
+    }
 }
 
 impl LinkSource<'_, '_, '_, '_> {
@@ -105,6 +126,14 @@ impl Source for LinkSource<'_, '_, '_, '_> {
         self.link.head().map_or(self.player.clip().frame_time_ns(), |head| head.frame_time_ns)
     }
 
+    #[cfg(feature = "events")]
+    fn hear(&mut self, _from: crate::events::From, _frames: i32, heard: &mut dyn FnMut(crate::HeardEvent)) {
+        let Some(now) = self.link.now() else { return };
+        while let Some(event) = self.events.take(now) {
+            heard(crate::HeardEvent { frame: self.link.frame().unwrap_or(0), id: event.id, name: event.name() });
+        }
+    }
+
     fn status(&self) -> Status {
         Status::Link(self.link_status())
     }
@@ -115,7 +144,11 @@ impl Source for LinkSource<'_, '_, '_, '_> {
 
     fn receive(&mut self, byte: u8) -> Option<u8> {
         if let Some(packet) = self.receiver.push(byte) {
+            #[cfg(feature = "events")]
+            let before = self.link.head().copied();
             self.refusal = self.link.receive(&packet).err();
+            #[cfg(feature = "events")]
+            keep_event(&mut self.events, &self.link, before, &packet);
         }
         let letter = self.receiver.take_key();
         #[cfg(feature = "key")]

@@ -29,6 +29,10 @@ pub(crate) trait Source {
     /// Passes on the player of the clip from which rig and camera are set up.
     fn with_player<T>(&mut self, then: impl FnOnce(&mut Player) -> T) -> T;
 
+    /// Passes on the events since the last picture, after a move by a number of frames, or back.
+    #[cfg(feature = "events")]
+    fn hear(&mut self, from: crate::events::From, frames: i32, heard: &mut dyn FnMut(crate::HeardEvent));
+
     /// Takes a byte from the serial line, and returns the letter of a command that it completes.
     fn receive(&mut self, byte: u8) -> Option<u8> {
         Some(byte)

@@ -45,7 +45,8 @@ pub fn link(arguments: &[&str]) {
     arguments.iter().for_each(|argument| println!("cargo::rustc-link-arg-bins={argument}"));
 }
 
-/// Writes `clips.rs`, which defines `CLIPS`: the clips that `PANTIN_CLIP` lists (absolute paths, separated as in PATH), or the default ones.
+/// Writes `clips.rs`, which defines `CLIPS`: the clips and all clips of the banks that `PANTIN_CLIP` lists (absolute paths, separated as in PATH), or the
+/// default ones.
 /// Returns the largest number of channels, of moving channels, and of joints of the figure.
 pub fn clips() -> [usize; 3] {
     println!("cargo::rerun-if-env-changed=PANTIN_CLIP");
@@ -57,7 +58,7 @@ pub fn clips() -> [usize; 3] {
             names.map(|name| Path::new(ROOT).join("motions").join(name).with_extension("ptn")).collect()
         }
     };
-    let mut list = String::new();
+    let (mut list, mut banks) = (String::new(), String::new());
     let mut largest = [0; 3];
     for (index, path) in paths.iter().enumerate() {
         println!("cargo::rerun-if-changed={}", path.display());
@@ -66,12 +67,31 @@ pub fn clips() -> [usize; 3] {
             let advice = "set PANTIN_CLIP to absolute paths of clips; `cargo pantin convert IN -o OUT.ptn` makes one";
             println!("cargo::error={}: {error}: {advice}", path.display());
         }
-        let size = fs::read(&copy).ok().and_then(|bytes| size(&bytes)).unwrap_or_default();
+        let bytes = fs::read(&copy).unwrap_or_default();
+        if let Ok(bank) = pantin::Bank::new_checked(&bytes) {
+            let part = |part: &[u8]| {
+                let from = part.as_ptr() as usize - bytes.as_ptr() as usize;
+                format!("part(BANK_{index}, {from}, {})", part.len())
+            };
+            let _ = writeln!(banks, "static BANK_{index}: &[u8] = include_bytes!({copy:?});");
+            for entry in bank.entries() {
+                let size = bank.open(&entry).map(|clip| size(&clip)).unwrap_or_default();
+                largest = std::array::from_fn(|kind| size[kind].max(largest[kind]));
+                let (name, bytes, rig) = (entry.name(), part(entry.bytes()), part(bank.rig_bytes()));
+                let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: {bytes}, rig: {rig} }},");
+            }
+            continue;
+        }
+        let size = pantin::Clip::new_checked(&bytes).map(|clip| size(&clip)).unwrap_or_default();
         largest = std::array::from_fn(|kind| size[kind].max(largest[kind]));
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}) }},");
+        let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}), rig: &[] }},");
     }
-    let clips = format!("/// The clips that this program was built with.\nstatic CLIPS: &[pantin_app::Entry] = &[\n{list}];\n");
+    if !banks.is_empty() {
+        banks += "const fn part(bank: &'static [u8], from: usize, len: usize) -> &'static [u8] {\n    bank.split_at(from).1.split_at(len).0\n}\n";
+    }
+    let clips =
+        format!("{banks}/// The clips that this program was built with.\nstatic CLIPS: &[pantin_app::Entry] = &[\n{list}];\n");
     fs::write(out().join("clips.rs"), clips).expect("OUT_DIR is writable");
     largest
 }
@@ -97,9 +117,8 @@ pub fn feature(name: &str) -> bool {
 
 /// Returns a clip's channels, moving channels, and joints of the figure with the crown that it may get. The program itself reports what is
 /// no clip.
-fn size(bytes: &[u8]) -> Option<[usize; 3]> {
-    let clip = pantin::Clip::new_checked(bytes).ok()?;
-    Some([clip.rig().channels(), clip.moving(), clip.rig().joint_count() + 1])
+fn size(clip: &pantin::Clip) -> [usize; 3] {
+    [clip.rig().channels(), clip.moving(), clip.rig().joint_count() + 1]
 }
 
 fn out() -> PathBuf {

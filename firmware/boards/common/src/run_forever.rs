@@ -44,7 +44,7 @@ fn options<B: Board>(board: &mut B) -> Options {
 #[inline(never)]
 fn show_error<B: Board>(clips: &[Entry], framebuffer: &mut Framebuffer<B::Layout>, board: &mut B) {
     let mut screen = TextScreen::new(framebuffer);
-    let bad = clips.iter().find_map(|entry| Some((entry.name, Clip::new_checked(entry.bytes).err()?)));
+    let bad = clips.iter().find_map(|entry| Some((entry.name, Clip::with_rig(entry.bytes, entry.rig).err()?)));
     // Writing on a text screen cannot fail.
     let _ = match bad {
         Some((name, error)) => write!(screen, "{name}\ncannot be played:\n{error}"),

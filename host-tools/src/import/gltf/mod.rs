@@ -18,7 +18,8 @@ use super::from_transforms::{self, Affine};
 use super::grid::{self, Grid};
 use super::{Files, Options, Source, units};
 use crate::budget;
-use crate::motion::{Keys, Kind, Motion, Rig};
+use crate::events;
+use crate::motion::{Event, Keys, Kind, Motion, Rig};
 use anyhow::{Result, anyhow, bail};
 use file::{File, one_line};
 use gltf::json::Root;
@@ -75,7 +76,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     scalars::tell_apart(&mut channels.scalars);
     warnings.append(&mut channels.warnings);
     let worlds = std::mem::take(&mut channels.worlds);
-    let motion = channels.motion(&grid);
+    let mut motion = channels.motion(&grid);
+    motion.add_events(events(&file.root.animations[number], &grid, motion.frames));
     let error = from_transforms::error(&motion, &worlds.iter().map(Vec::as_slice).collect::<Vec<_>>());
     warnings.extend(doubts(&file, &tree, &motion, options));
     Ok(Source { motion, unit_known: true, error, warnings })
@@ -98,6 +100,21 @@ fn chosen(file: &File, path: &Path, options: &Options) -> Result<usize> {
 
 fn named(number: usize, name: &Option<String>) -> String {
     name.as_ref().map_or_else(|| number.to_string(), |name| format!("{number} ({name})"))
+}
+
+/// Events in an animation's `extras`: `events` or `markers`, a list of objects with `time` in seconds and `name`. Others are left out: what an exporter keeps
+/// there is its own.
+fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize) -> Vec<Event> {
+    let extras = animation.extras.as_ref().and_then(|extras| serde_json::from_str::<serde_json::Value>(extras.get()).ok());
+    let Some(extras) = extras else { return Vec::new() };
+    let lists = ["events", "markers"].into_iter().filter_map(|key| extras[key].as_array());
+    let event = |entry: &serde_json::Value| {
+        let (time, name) = (entry["time"].as_f64()?, entry["name"].as_str()?);
+        let frame = ((time - grid.first) / grid.frame_time).round();
+        let fits = (0.0..frames as f64).contains(&frame) && events::check_name(name).is_ok();
+        fits.then(|| Event { frame: frame as usize, name: name.into() })
+    };
+    lists.flatten().filter_map(event).collect()
 }
 
 /// What moves a node or a mesh's weights.

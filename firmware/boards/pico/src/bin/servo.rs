@@ -60,7 +60,7 @@ fn pulses<S: SliceId>(mut slice: Slice<S, FreeRunning>) -> Slice<S, FreeRunning>
 
 /// Plays the clip forever, and passes the servos' pulse widths to `set` with each frame.
 fn play(mut set: impl FnMut([u16; 4])) -> ! {
-    let clip = CLIPS.first().map(|entry| Clip::new_checked(entry.bytes));
+    let clip = CLIPS.first().map(|entry| Clip::with_rig(entry.bytes, entry.rig));
     let Some(Ok(clip)) = clip else { panic!("there is no clip, or it cannot be opened") };
     let mut states = Capacity::states();
     let mut pose = Capacity::pose();
