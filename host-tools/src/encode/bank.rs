@@ -171,6 +171,8 @@ fn converted(file: &[u8], rig: &CheckedRig, whole: bool) -> Result<Vec<u8>> {
     let times = if motion.first() == Some(&0) { 5 } else { 1 };
     let (_, frames) = motion.get(times..).and_then(number).context("the clip is truncated")?;
     let id_at = times + frames + 1;
+    // A head may end behind the payload: a decoder reads zeros there.
+    motion.resize(motion.len().max(id_at + if whole { 4 } else { 0 }), 0);
     if whole {
         motion.drain(id_at..id_at + 4);
     } else {
@@ -201,6 +203,31 @@ fn converted(file: &[u8], rig: &CheckedRig, whole: bool) -> Result<Vec<u8>> {
             let bytes = file(flags | HAS_INDEX, Some(&index::payload(clip, spacing)?));
             index::check(&bytes, rig.bytes, spacing)?;
             Ok(bytes)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{self, Scalar};
+
+    #[test]
+    fn a_head_that_ends_behind_the_payload_is_no_fault() {
+        let scalars = vec![Scalar { name: "a".into(), full_scale: 1.0 }];
+        let figure = motion::Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, up: pantin::Up::Y };
+        let bytes = rig::encode(&figure).unwrap();
+        let checked = CheckedRig::new(&bytes).unwrap();
+        // A rate of the table and a frame: the exponent and all symbols are the zeros behind the end.
+        for payload in [&[1, 1][..], &[1, 1, 0], &[1, 1, 0, 0]] {
+            let whole = assembled(HAS_RIG, &bytes, payload, None);
+            let opened = Clip::new_checked(&whole);
+            let apart = without_rig(&whole, &checked);
+            assert_eq!(apart.is_ok(), opened.is_ok());
+            if let Ok(apart) = apart {
+                assert!(Clip::with_checked_rig(&apart, checked.rig).is_ok());
+                assert!(Clip::new_checked(&with_rig(&apart, &checked).unwrap()).is_ok());
+            }
         }
     }
 }

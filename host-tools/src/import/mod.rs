@@ -195,6 +195,8 @@ fn format_of(path: &Path, files: &Files) -> Result<&'static Format> {
     ensure!(!head.is_empty(), "{}: the file is empty; expected a motion file", place());
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let of_extension = || FORMATS.iter().filter(|format| format.extensions.contains(&extension.as_str()));
+    let clip = head.starts_with(&pantin::codec::layout::MAGIC) || head.starts_with(&pantin::codec::layout::BANK_MAGIC);
+    ensure!(!clip, "{}: a clip or a bank, not a motion; `pantin expand` turns a clip back into one", place());
     let by_extension = of_extension().find(|format| (format.begins)(&head)).or_else(|| of_extension().next_back());
     let Some(format) = by_extension.or_else(|| FORMATS.iter().find(|format| (format.begins)(&head))) else {
         let known: Vec<String> =

@@ -67,8 +67,7 @@ impl Staged {
             ))),
             Place::File(file) => {
                 remove_on_signals();
-                let bytes = temporary().tempfile_in(folder(&file)).context("cannot be written")?;
-                let name = Registered::new(bytes.path());
+                let (bytes, name) = Registered::create(folder(&file)).context("cannot be written")?;
                 Ok(To::Replace { bytes: BufWriter::new(bytes), file, name })
             }
         });
@@ -202,9 +201,13 @@ static IN_PLACE: Mutex<()> = Mutex::new(());
 struct Registered(PathBuf);
 
 impl Registered {
-    fn new(path: &Path) -> Registered {
-        NAMES.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_path_buf());
-        Registered(path.to_path_buf())
+    /// Makes a temporary file in `folder`. A signal sees it once it is known, or prevents it.
+    fn create(folder: &Path) -> io::Result<(NamedTempFile, Registered)> {
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        let file = temporary().tempfile_in(folder)?;
+        names.insert(file.path().to_path_buf());
+        let name = Registered(file.path().to_path_buf());
+        Ok((file, name))
     }
 }
 
@@ -230,7 +233,9 @@ fn remove_on_signals() {
             std::thread::spawn(move || {
                 for signal in signals.forever() {
                     let _whole = IN_PLACE.lock().unwrap_or_else(PoisonError::into_inner);
-                    for name in NAMES.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+                    // Held to the end: no other thread makes a new one.
+                    let names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+                    for name in names.iter() {
                         // Nobody is left to be told.
                         let _ = fs::remove_file(name);
                     }

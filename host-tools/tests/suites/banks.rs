@@ -358,6 +358,28 @@ fn unpacking_needs_few_open_files() {
     assert_eq!(std::fs::read_dir(folder.path("out")).unwrap().count(), 200);
 }
 
+/// Many outputs are begun one after the other: a signal between two of them leaves none.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_leaves_no_temporary_file_of_many() {
+    use pantin_tools::encode::bank::{Named, encode, rig_of};
+    let folder = super::outputs::Folder::new();
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    let clip = folder.get("a.ptn");
+    let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
+    let named = |number| Named { name: format!("c{number}"), place: String::new(), clip: clip.clone(), rig: rig.clone() };
+    folder.put("moves.ptb", encode(&(0..2000).map(named).collect::<Vec<_>>()).unwrap());
+    let files = |name: &str| std::fs::read_dir(folder.path(name)).map_or(0, Iterator::count);
+    for round in 0..15 {
+        let out = format!("out{round}");
+        let mut child = folder.command(&["unpack", "moves.ptb", "-o", &out, "-q"]).spawn().unwrap();
+        while files(&out) < 1 + 20 * round && child.try_wait().unwrap().is_none() {}
+        let _ = Command::new("kill").arg(child.id().to_string()).status().unwrap();
+        child.wait().unwrap();
+        assert!([0, 2000].contains(&files(&out)), "round {round}: {} files are left", files(&out));
+    }
+}
+
 /// A signal waits until all files that belong together are in place.
 #[cfg(target_os = "linux")]
 #[test]

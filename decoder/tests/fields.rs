@@ -1,0 +1,105 @@
+//! The fields in front of a motion's symbols: each rule of FORMAT.md is checked, and a clip reports what the file holds.
+
+use pantin::codec::crc;
+use pantin::codec::layout::*;
+use pantin::{Clip, Form, OpenError};
+
+static WALK: &[u8] = include_bytes!("walk.ptn");
+
+/// One of the repository's vectors; `None` where the package has none.
+fn vector(name: &str) -> Option<Vec<u8>> {
+    std::fs::read(format!("{}/../tests/vectors/{name}.ptn", env!("CARGO_MANIFEST_DIR"))).ok()
+}
+
+fn varint(mut number: usize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
+    }
+    bytes.push(number as u8);
+    bytes
+}
+
+/// A file with the rig of `WALK`, these flags beside the rig's, and a motion of one block.
+fn file(flags: u8, payload: &[u8]) -> Vec<u8> {
+    let clip = Clip::new_checked(WALK).unwrap();
+    let flags = flags | HAS_RIG;
+    assert!(payload.len() < BLOCK_BYTES);
+    let len = payload.len() + CRC_BYTES;
+    let crc = crc::update(crc::of_prefix(flags, len as u32), payload);
+    let rig = &WALK[4..4 + clip.rig_len()];
+    [&[MAGIC[0], MAGIC[1], VERSION, flags], rig, &varint(len), payload, &crc.to_le_bytes()].concat()
+}
+
+fn opens(payload: &[u8]) -> Result<(), OpenError> {
+    Clip::new_checked(&file(0, payload)).map(drop)
+}
+
+#[test]
+fn each_rule_of_a_head_is_checked() {
+    let rates = FRAME_TIMES_NS.len() as u8;
+    let head = |rate: &[u8], frames: u32, exponent: i8| [rate, &varint(frames as usize), &[exponent as u8]].concat();
+    for good in [head(&[1], 1, 0), head(&[rates - 1], MAX_FRAMES, 31), head(&[1], 1, -63), head(&[0, 1, 0, 0, 0], 1, 0)] {
+        assert_eq!(opens(&good), Ok(()), "{good:?}");
+    }
+    for bad in [
+        // No time from one frame to the next: stated, and of no entry of the table.
+        head(&[0, 0, 0, 0, 0], 1, 0),
+        head(&[rates], 1, 0),
+        head(&[255], 1, 0),
+        head(&[1], 0, 0),
+        head(&[1], MAX_FRAMES + 1, 0),
+        head(&[1], 1, 32),
+        head(&[1], 1, -64),
+    ] {
+        assert_eq!(opens(&bad), Err(OpenError::Malformed), "{bad:?}");
+    }
+}
+
+#[test]
+fn events_end_in_the_payload() {
+    // A rate, ten frames, an exponent, two events: at frame 1 with id 300, at frame 3 with id 5.
+    let whole = [1, 10, 0, 2, 1, 0xac, 2, 2, 5];
+    let bytes = file(HAS_EVENTS, &whole);
+    let clip = Clip::new_checked(&bytes).unwrap();
+    let events: Vec<_> = clip.events().map(|event| (event.frame, event.id)).collect();
+    assert_eq!(events, [(1, 300), (3, 5)]);
+    assert_eq!((clip.head_len(), clip.event_count()), (whole.len(), 2));
+    for len in 4..whole.len() {
+        let cut = Clip::new_checked(&file(HAS_EVENTS, &whole[..len])).map(drop);
+        assert_eq!(cut, Err(OpenError::Malformed), "{len} bytes");
+    }
+}
+
+#[test]
+fn the_parts_of_a_file_add_up_to_the_byte() {
+    let (Some(names), Some(index), Some(scalars)) = (vector("event-names"), vector("index"), vector("scalars")) else { return };
+    assert!(Clip::new_checked(&names).unwrap().event_names_len() > 0);
+    assert!(Clip::new_checked(&index).unwrap().index_len() > 0);
+    for bytes in [WALK, &names, &index, &scalars] {
+        let clip = Clip::new_checked(bytes).unwrap();
+        let part = |len: usize| if len > 0 { varint(len).len() + len } else { 0 };
+        let parts = [clip.motion_len(), clip.index_len(), clip.event_names_len()].map(part);
+        assert_eq!(4 + clip.rig_len() + parts.iter().sum::<usize>(), bytes.len());
+    }
+}
+
+#[test]
+fn a_clip_knows_its_form_scalars_and_names_of_events() {
+    let clip = Clip::new_checked(WALK).unwrap();
+    assert_eq!(clip.form(), clip.form_ref().to_form());
+    assert_eq!((clip.form().rig_id(), clip.form().length_exponent()), (clip.rig().id(), clip.length_exponent()));
+    assert_ne!(clip.form(), Form::default());
+    assert_eq!((clip.event_name(0), clip.event_id(""), clip.event_id("left_foot_down")), (None, None, None));
+    let (Some(scalars), Some(names)) = (vector("scalars"), vector("event-names")) else { return };
+    let clip = Clip::new_checked(&scalars).unwrap();
+    for scalar in clip.rig().scalars() {
+        assert!(clip.find_scalar(scalar.name()).is_some());
+    }
+    let clip = Clip::new_checked(&names).unwrap();
+    assert_eq!([0, 1, 2].map(|id| clip.event_name(id)), [Some(pantin::LEFT_FOOT_DOWN), None, Some("été")]);
+    assert!(clip.event_name(3).is_some_and(|name| name.starts_with("long long")) && clip.event_name(4).is_none());
+    assert_eq!([pantin::LEFT_FOOT_DOWN, "", "été", "clap"].map(|name| clip.event_id(name)), [Some(0), None, Some(2), None]);
+    assert_eq!(clip.event_names().count(), 4);
+}
