@@ -2,7 +2,7 @@
 
 use pantin::codec::crc;
 use pantin::codec::layout::*;
-use pantin::{Clip, Form, OpenError};
+use pantin::{ChannelState, Clip, Form, OpenError, PartialClip, Player};
 
 static WALK: &[u8] = include_bytes!("walk.ptn");
 
@@ -21,15 +21,25 @@ fn varint(mut number: usize) -> Vec<u8> {
     bytes
 }
 
-/// A file with the rig of `WALK`, these flags beside the rig's, and a motion of one block.
+/// Bytes in blocks with their CRCs, the first of which goes on from `seed`.
+fn blocks(payload: &[u8], mut seed: u16) -> Vec<u8> {
+    let mut out = Vec::new();
+    for block in payload.chunks(BLOCK_BYTES) {
+        out.extend(block);
+        out.extend(crc::update(seed, block).to_le_bytes());
+        seed = crc::INITIAL;
+    }
+    out
+}
+
+/// A file with the rig of `WALK`, these flags beside the rig's, and a motion.
 fn file(flags: u8, payload: &[u8]) -> Vec<u8> {
     let clip = Clip::new_checked(WALK).unwrap();
     let flags = flags | HAS_RIG;
-    assert!(payload.len() < BLOCK_BYTES);
-    let len = payload.len() + CRC_BYTES;
-    let crc = crc::update(crc::of_prefix(flags, len as u32), payload);
+    let len = payload.len() + payload.len().div_ceil(BLOCK_BYTES) * CRC_BYTES;
     let rig = &WALK[4..4 + clip.rig_len()];
-    [&[MAGIC[0], MAGIC[1], VERSION, flags], rig, &varint(len), payload, &crc.to_le_bytes()].concat()
+    let motion = blocks(payload, crc::of_prefix(flags, len as u32));
+    [&[MAGIC[0], MAGIC[1], VERSION, flags], rig, &varint(len), &motion].concat()
 }
 
 fn opens(payload: &[u8]) -> Result<(), OpenError> {
@@ -102,4 +112,61 @@ fn a_clip_knows_its_form_scalars_and_names_of_events() {
     assert!(clip.event_name(3).is_some_and(|name| name.starts_with("long long")) && clip.event_name(4).is_none());
     assert_eq!([pantin::LEFT_FOOT_DOWN, "", "été", "clap"].map(|name| clip.event_id(name)), [Some(0), None, Some(2), None]);
     assert_eq!(clip.event_names().count(), 4);
+}
+
+#[test]
+fn symbols_that_may_not_all_be_there_wait_for_the_next_block() {
+    // A head that ends a few bytes in front of the first block's end.
+    let events = 120;
+    let head = [&[1, 10, 0, events][..], &[0, 1].repeat(events.into())].concat();
+    let payload = [&head[..], &[0; BLOCK_BYTES]].concat();
+    let bytes = file(HAS_EVENTS, &payload);
+    let clip = Clip::new_checked(&bytes).unwrap();
+    assert_eq!(clip.head_len(), head.len());
+    let first = bytes.len() - clip.motion_len() + BLOCK_BYTES + CRC_BYTES;
+    assert_eq!(PartialClip::new(&bytes[..first]).err(), Some(OpenError::Truncated));
+    assert!(PartialClip::new(&bytes).is_ok());
+}
+
+#[test]
+fn seeking_goes_on_from_the_files_snapshots() {
+    let Some(bytes) = vector("index") else { return };
+    let clip = Clip::new_checked(&bytes).unwrap();
+    let (motion, index) = (clip.motion_len(), clip.index_len());
+    let at = bytes.len() - index;
+    let motion_end = at - varint(index).len();
+    let last: [u8; 2] = bytes[motion_end - CRC_BYTES..motion_end].try_into().unwrap();
+    assert!(motion_end > motion);
+    let seed = pantin::codec::index_seed(u16::from_le_bytes(last), index as u32);
+    let strides = bytes[at..].chunks(BLOCK_BYTES + CRC_BYTES);
+    let payload: Vec<u8> = strides.flat_map(|block| &block[..block.len() - CRC_BYTES]).copied().collect();
+    assert!(blocks(&payload, seed) == bytes[at..], "the CRCs of the index go on from the motion's last");
+    // What the snapshots say is what a seek shows: with another value in one, another pose.
+    let seeks = |bytes: &[u8]| {
+        let clip = Clip::new_checked(bytes).unwrap();
+        let (mut states, mut values) = (vec![ChannelState::NEW; clip.moving()], vec![0; clip.rig().channels()]);
+        let mut player = Player::new(clip, &mut states, &mut values).unwrap();
+        let mut poses = Vec::new();
+        for frame in (0..clip.frames()).rev() {
+            player.seek(frame);
+            poses.push(player.pose().values.to_vec());
+        }
+        poses
+    };
+    let mut other = payload.clone();
+    let end = other.len() - 3;
+    other[end] ^= 0x10;
+    let lie = [&bytes[..at], &blocks(&other, seed)].concat();
+    assert_ne!(seeks(&lie), seeks(&bytes));
+}
+
+#[test]
+fn a_slow_clock_loses_no_part_of_a_nanosecond() {
+    // A thousand frames of 100 ns.
+    let bytes = file(0, &[&[0, 100, 0, 0, 0][..], &varint(1000), &[0]].concat());
+    let mut clock = pantin::Clock::new(&Clip::new_checked(&bytes).unwrap());
+    clock.set_speed(fixed::types::I16F16::DELTA);
+    // 2^16 times a microsecond at 2^-16 of the speed.
+    (0..1 << 16).for_each(|_| clock.advance(1));
+    assert_eq!(clock.frame(), 10);
 }
