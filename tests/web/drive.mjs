@@ -114,6 +114,35 @@ const cases = {
     assert.equal(await page.locator("#trouble").textContent(), "");
   },
 
+  // A bank's clips are chosen by name; events are heard once each when their frames are passed.
+  async bank(page) {
+    await page.locator("#files").setInputFiles(args.bank);
+    await page.waitForFunction(() => player.clips.length === 3 && player.playable === 30);
+    await page.locator("#of-bank").selectOption("a longer one");
+    await page.waitForFunction(() => player.playable === 200);
+    assert.equal(await page.locator("#of-bank").inputValue(), "a longer one");
+    await page.locator("#files").setInputFiles(args.events);
+    await page.waitForFunction(() => player.events.length === 5 && player.playable === 40);
+    assert.equal(await page.locator("#bank").isVisible(), false);
+    await page.evaluate(() => {
+      window.heard = [];
+      player.addEventListener("heard", ({ detail }) => window.heard.push([detail.frame, detail.id]));
+      player.pause();
+      player.loop = false;
+      player.seek(6);
+      window.heard = [];
+      player.step(1);
+    });
+    assert.deepEqual(await page.evaluate(() => window.heard.splice(0)), [[7, 3], [7, 1]]);
+    await page.evaluate(() => (player.seek(0), (player.speed = 4), player.play()));
+    await page.waitForFunction(() => player.paused && player.frame === 39);
+    assert.deepEqual(await page.evaluate(() => window.heard.splice(0)), [[0, 0], [7, 3], [7, 1], [30, 9], [39, 0]]);
+    await page.evaluate(() => ((player.backwards = true), player.play()));
+    await page.waitForFunction(() => player.paused && player.frame === 0);
+    assert.deepEqual(await page.evaluate(() => window.heard.splice(0)), [[39, 0], [30, 9], [7, 1], [7, 3], [0, 0]]);
+    assert.match(await page.locator("#facts").textContent(), /5; last: left_foot_down at frame 0/);
+  },
+
   // Who wants less motion gets none before asking.
   async quiet(page, browser) {
     const still = await opened(browser, { reducedMotion: "reduce", colorScheme: "dark" });

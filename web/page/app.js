@@ -23,6 +23,7 @@ function table(list, rows) {
 function told() {
   const { frames, playable, frameTime, channels, moving, rigBytes, motionBytes } = player.facts;
   const seconds = (frames * frameTime) / 1e9;
+  const last = heard ? `; last: ${heard.name || heard.id} at frame ${heard.frame}` : "";
   table($("facts"), [
     ["received", player.total > player.received ? `${player.received.toLocaleString("en")} of ${bytes(player.total)}` : bytes(player.received)],
     ["frames playable", `${playable.toLocaleString("en")} of ${frames.toLocaleString("en")}`],
@@ -30,8 +31,16 @@ function told() {
     moving && ["channels moving", `${moving} of ${channels}`],
     moving && ["motion, rig", `${motionBytes} + ${rigBytes} bytes`],
     moving && ["motion a second", `${(motionBytes / seconds).toFixed(0)} bytes`],
+    player.events.length > 0 && ["events", player.events.length + last],
   ]);
+  const names = player.clips;
+  $("bank").hidden = names.length < 2;
+  if ([...$("of-bank").options].map((option) => option.value).join("\n") !== names.join("\n"))
+    $("of-bank").replaceChildren(...names.map((name) => new Option(name, name)));
 }
+
+// The event that was passed last.
+let heard = null;
 
 function changed() {
   $("backwards").setAttribute("aria-pressed", player.backwards);
@@ -42,6 +51,8 @@ function changed() {
 
 ["progress", "ready", "error"].forEach((name) => player.addEventListener(name, told));
 player.addEventListener("change", changed);
+player.addEventListener("heard", ({ detail }) => ((heard = detail), told()));
+$("of-bank").onchange = () => show(current, $("of-bank").value);
 const button = (id, act) => ($(id).onclick = () => (act(), changed()));
 button("backwards", () => (player.backwards = !player.backwards));
 button("loop", () => (player.loop = !player.loop));
@@ -69,15 +80,15 @@ function slowed(response, baud) {
   return new Response(response.body.pipeThrough(slow), { headers: response.headers, status: response.status });
 }
 
-async function show(clip) {
+async function show(clip, name = null) {
   if (!clip) return;
-  current = clip;
+  [current, heard] = [clip, null];
   document.querySelectorAll("#clips [aria-current]").forEach((other) => other.removeAttribute("aria-current"));
   clip.button?.setAttribute("aria-current", "true");
   const baud = +$("link").value;
   try {
     const what = clip.data ?? clip.file;
-    await player.load(baud ? slowed(clip.data ? new Response(clip.data) : await fetch(clip.file), baud) : what);
+    await player.load(baud ? slowed(clip.data ? new Response(clip.data) : await fetch(clip.file), baud) : what, name);
   } catch {
     // The player says what is wrong.
   }
@@ -138,7 +149,7 @@ async function take(files) {
   if (size > MOST) return trouble(`${first.name}: ${bytes(size)}; the page reads motions of at most ${bytes(MOST)}. \`pantin convert\` takes any.`);
   const empty = files.find((file) => !file.size);
   if (empty) return trouble(`${empty.name}: the file is empty; expected a motion.`);
-  if (/\.ptn$/i.test(first.name)) {
+  if (/\.pt[nb]$/i.test(first.name)) {
     scrollTo({ top: 0, behavior: "smooth" });
     return show({ name: first.name, data: await first.arrayBuffer() });
   }

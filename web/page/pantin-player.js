@@ -1,12 +1,16 @@
 // <pantin-player src="walk.ptn" autoplay loop look="oled|lines" speed="1"></pantin-player>: plays a Pantin clip while its bytes arrive.
 //
-// Properties: frame, frames, playable, received, total, paused, backwards, speed, orbit, tilt, facts. Methods: load(what), play(), pause(), seek(frame),
-// step(by), grey(). `what` is a URL, a Response, a ReadableStream, bytes, or a table { rig, poses, frames, frameTime, lengthExponent }. Events:
-// progress, frame, ready, error, change.
+// Properties: frame, frames, playable, received, total, paused, backwards, speed, orbit, tilt, facts, events, clips. Methods: load(what, clip), play(), pause(),
+// seek(frame), step(by), grey(). `what` is a URL, a Response, a ReadableStream, bytes, or a table { rig, poses, frames, frameTime, lengthExponent }; of a bank
+// (.ptb), `clip` or the URL's #fragment names the clip, and `clips` then lists the names of all. Events: progress, frame, ready, error, change, and heard with
+// detail { frame, id, name } for each of the clip's `events` that playing or stepping passes.
 // Keys: space plays, arrows step (with shift they turn the view), Home, End, R backwards, L look, + and - speed, 0 the usual view.
 
 const MOST = 64 << 20;
-const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars", "scalarsAt", "scalarsLength", "pose"];
+const BANK = [0x50, 0x62];
+const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars", "scalarsAt", "scalarsLength", "pose", "eventFrame", "eventId", "eventNameAt", "eventNameLength"];
+// Events of a clip that are heard, at most.
+const MOST_EVENTS = 4096;
 // Bytes of a stroke, and how many of them there is room for.
 const [STROKE, STROKES] = [12, 4096];
 const TROUBLES = [
@@ -49,6 +53,39 @@ p { margin: .3em 0 0; min-height: 1.4em; }
 <div class="bar" part="bar"><button type="button" aria-label="Play"><svg viewBox="0 0 10 10" width="14" height="14" fill="currentColor" aria-hidden="true"><path/></svg></button><input type="range" min="0" max="0" step="1" value="0" aria-label="Frame"><output></output></div>
 <p role="status"></p>`;
 
+// The clips of a bank (decoder/FORMAT.md 16): its rig, and each clip's name and file.
+function bankOf(file) {
+  let at = 3;
+  const number = () => {
+    for (let value = 0, shift = 0; shift < 35; shift += 7) {
+      if (at >= file.length) break;
+      const byte = file[at++];
+      value += (byte & 127) * 2 ** shift;
+      if (byte < 128) return value;
+    }
+    throw new Error("the bank ends early");
+  };
+  const take = (length) => {
+    if (at + length > file.length) throw new Error("the bank ends early");
+    return file.subarray(at, (at += length));
+  };
+  const sections = {};
+  while (at < file.length) sections[file[at++]] = take(number());
+  const [rig, contents, clips] = [1, 2, 3].map((kind) => sections[kind]);
+  if (!rig || !contents || !clips) throw new Error("the bank ends early");
+  const found = [];
+  let next = 0;
+  file = contents;
+  // The last two bytes are a checksum; each clip has its own.
+  for (at = 0; at < contents.length - 2; ) {
+    const name = new TextDecoder().decode(take(number()));
+    const length = number();
+    found.push({ name, file: clips.subarray(next, (next += length)) });
+  }
+  return { rig, clips: found };
+}
+const isBank = (file) => file[0] === BANK[0] && file[1] === BANK[1];
+
 const mix = (paper, ink, part) => `rgb(${paper.map((value, index) => Math.round(value + (ink[index] - value) * part))})`;
 
 export class PantinPlayer extends HTMLElement {
@@ -68,6 +105,8 @@ export class PantinPlayer extends HTMLElement {
   total = 0;
   orbit = HOME.orbit;
   tilt = HOME.tilt;
+  events = [];
+  clips = [];
   facts = Object.fromEntries(WORDS.map((word) => [word, 0]));
 
   constructor() {
@@ -117,12 +156,13 @@ export class PantinPlayer extends HTMLElement {
   get loop() { return this.hasAttribute("loop"); }
   set loop(loop) { this.toggleAttribute("loop", loop); }
 
-  // Loads a clip in place of the one before; resolves when all of it is there, and rejects with what is wrong with it.
-  async load(what) {
+  // Loads a clip in place of the one before, or one of a bank's; resolves when all of it is there, and rejects with what is wrong with it.
+  async load(what, clip = null) {
     this.#abort?.abort();
     const abort = (this.#abort = new AbortController());
     this.pause();
-    Object.assign(this, { received: 0, total: 0, trouble: "" });
+    Object.assign(this, { received: 0, total: 0, trouble: "", events: [], clips: [] });
+    if (typeof what === "string") clip ??= decodeURIComponent(new URL(what, document.baseURI).hash.slice(1)) || null;
     this.#at = 0;
     // Clip and module come at the same time.
     const { signal } = abort;
@@ -134,7 +174,7 @@ export class PantinPlayer extends HTMLElement {
       this.#wasm = wasm;
       this.#face = null;
       this.#aim();
-      await (what.poses ? this.#table(what) : this.#receive(await coming, signal));
+      await (what.poses ? this.#table(what) : this.#receive(await coming, signal, clip));
       if (!signal.aborted) this.#tell("ready");
     } catch (error) {
       if (signal.aborted) return;
@@ -170,7 +210,7 @@ export class PantinPlayer extends HTMLElement {
     this.#aim();
   }
 
-  async #receive(what, signal) {
+  async #receive(what, signal, clip) {
     if (what instanceof Response) {
       if (!what.ok) throw new Error(`the clip cannot be fetched: ${what.status} ${what.statusText}`);
       // With an encoding, it is the length of something else.
@@ -180,10 +220,21 @@ export class PantinPlayer extends HTMLElement {
     if (!(what instanceof ReadableStream)) what = new Blob([what]).stream();
     if (this.total > MOST) throw new Error(`the file has ${this.total} bytes; a clip may have ${MOST} here`);
     const reader = what.getReader();
-    let trouble = 0;
+    let [trouble, whole] = [0, null];
     for (;;) {
-      const { done, value } = await reader.read().catch(() => ({ done: true }));
+      let { done, value } = await reader.read().catch(() => ({ done: true }));
       if (signal.aborted) return reader.cancel();
+      if (!this.received && value && isBank(value)) whole = [];
+      if (whole) {
+        // A bank's clips may lie anywhere in it.
+        if (!done) {
+          whole.push(value);
+          if (whole.reduce((sum, part) => sum + part.length, 0) > MOST) throw new Error(`a bank may have ${MOST} bytes here`);
+          continue;
+        }
+        value = this.#chosen(new Uint8Array(await new Blob(whole).arrayBuffer()), clip);
+        [done, whole] = [false, null];
+      }
       if (done) break;
       const place = this.#wasm.room(this.received + value.length);
       if (!place) {
@@ -202,10 +253,44 @@ export class PantinPlayer extends HTMLElement {
       if (trouble && !this.frames && !this.playable) break;
     }
     if (!trouble || this.playable) trouble = this.#wasm.finish() || trouble;
+    this.events = this.#events();
     reader.cancel().catch(() => {});
     this.total ||= this.received;
     this.#shown();
     this.#check(trouble);
+  }
+
+  // Puts a bank's rig into the module's memory, and returns the clip that was asked for, or the first, behind it.
+  #chosen(file, name) {
+    const { rig, clips } = bankOf(file);
+    this.clips = clips.map((clip) => clip.name);
+    const clip = name === null ? clips[0] : clips.find((clip) => clip.name === name);
+    const names = this.clips.join(", ");
+    if (!clip) throw new Error(`the bank has no clip ${name}; it has ${names}`);
+    this.#wasm.apart(rig.length);
+    const both = new Uint8Array(rig.length + clip.file.length);
+    both.set(rig);
+    both.set(clip.file, rig.length);
+    this.total = both.length;
+    return both;
+  }
+
+  // The clip's events, in the order of their frames.
+  #events() {
+    const [wasm, events] = [this.#wasm, []];
+    while (events.length < MOST_EVENTS && wasm.event(events.length)) {
+      const { eventFrame, eventId, eventNameAt, eventNameLength } = this.#known();
+      events.push({ frame: eventFrame, id: eventId, name: new TextDecoder().decode(bytes(wasm, eventNameAt, eventNameLength)) });
+    }
+    return events;
+  }
+
+  // Reports the events from one frame on, which was shown, to another, which is.
+  #hear(from, to, backwards) {
+    const count = this.playable || 1;
+    const way = (frame) => (((backwards ? from - frame : frame - from) + 2 * count - 1) % count) + 1;
+    const passed = this.events.filter(({ frame }) => way(frame) <= way(to));
+    (backwards ? passed.reverse() : passed).sort((a, b) => way(a.frame) - way(b.frame)).forEach((event) => this.#tell("heard", event));
   }
 
   #check(code) {
@@ -246,7 +331,9 @@ export class PantinPlayer extends HTMLElement {
 
   step(by) {
     this.pause();
+    const before = this.frame;
     this.seek((this.frame + by + this.playable) % (this.playable || 1));
+    this.#hear(before, this.frame, by < 0);
   }
 
   play() {
@@ -259,6 +346,8 @@ export class PantinPlayer extends HTMLElement {
     this.#request = requestAnimationFrame((now) => this.#tick(now));
     this.#told();
     this.#tell("change");
+    // What happens at the first frame happens when it begins.
+    if (this.frame === (this.backwards ? last : 0)) this.events.filter(({ frame }) => frame === this.frame).forEach((event) => this.#tell("heard", event));
   }
 
   pause() {
@@ -280,15 +369,18 @@ export class PantinPlayer extends HTMLElement {
       if (this.loop) at = ((at % playable) + playable) % playable;
       else {
         const end = at < 0 ? 0 : playable - 1;
-        if (this.frame !== end) this.seek(end);
+        const before = this.frame;
+        if (before !== end) this.seek(end), this.#hear(before, end, this.backwards);
         return this.pause();
       }
     }
     this.#at = at;
     if (Math.floor(at) !== this.frame) {
+      const before = this.frame;
       this.#wasm.go(Math.floor(at));
       this.#shown();
       this.#tell("frame");
+      this.#hear(before, this.frame, this.backwards);
     }
     this.#request = requestAnimationFrame((next) => this.#tick(next));
   }

@@ -37,7 +37,7 @@ fn number(value: u32, send: &mut impl FnMut(&[u8])) {
 
 /// Where the figure was at the last picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum From {
+pub(crate) enum Since {
     /// Nowhere: this is the first picture.
     Start,
     /// At this frame.
@@ -45,16 +45,16 @@ pub(crate) enum From {
 }
 
 /// Calls `heard` for the events of a clip that a move by `frames` frames, or back, passed, in the clip's order, and for those of the frame `shown` at the start.
-pub(crate) fn passed(clip: &Clip, from: From, frames: i32, shown: u32, heard: &mut dyn FnMut(HeardEvent)) {
+pub(crate) fn passed(clip: &Clip, since: Since, frames: i32, shown: u32, heard: &mut dyn FnMut(HeardEvent)) {
     let count = clip.frames();
     for event in clip.events() {
-        let way = match from {
-            From::Start => u32::from(event.frame != shown),
-            From::Frame(from) => ahead(from, event.frame, frames < 0, count),
+        let way = match since {
+            Since::Start => u32::from(event.frame != shown),
+            Since::Frame(from) => ahead(from, event.frame, frames < 0, count),
         };
-        let most = match from {
-            From::Start => 0,
-            From::Frame(_) => frames.unsigned_abs(),
+        let most = match since {
+            Since::Start => 0,
+            Since::Frame(_) => frames.unsigned_abs(),
         };
         if way <= most {
             heard(HeardEvent { frame: event.frame, id: event.id, name: clip.event_name(event.id) });

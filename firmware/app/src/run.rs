@@ -153,8 +153,8 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         // Between the pictures of `Sync`, the line has its own protocol.
         #[cfg(feature = "events")]
         if mode != Mode::Sync {
-            let from = if shown == 0 { crate::events::From::Start } else { crate::events::From::Frame(before) };
-            first.source.hear(from, frames, &mut |event| board.event(event));
+            let since = if shown == 0 { crate::events::Since::Start } else { crate::events::Since::Frame(before) };
+            first.source.hear(since, frames, &mut |event| board.event(event));
         }
         shown = shown.wrapping_add(1);
         listener.frame_shown();

@@ -48,7 +48,11 @@ pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dy
     said.push(imported.units);
     let mut motion = imported.motion;
     // The bound is one against the file.
-    ensure!(imported.error_cm < 0.5 * cm, "the file is only known within {:e} cm, which is too much of the bound", imported.error_cm);
+    ensure!(
+        imported.error_cm < 0.5 * cm,
+        "the file is only known within {:e} cm, which is too much of the bound",
+        imported.error_cm
+    );
     let cm = cm - imported.error_cm;
     if let Some(fps) = fps {
         motion = resample(&motion, fps)?;

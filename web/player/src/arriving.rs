@@ -16,10 +16,10 @@ pub struct Arriving {
 }
 
 impl Arriving {
-    /// Opens the received beginning of a file; `None` while frame 0 has not arrived. Must not be called again after it succeeded.
+    /// Opens the received beginning of a file, whose rig is `rig` if it has none; `None` while frame 0 has not arrived. Must not be called again after it succeeded.
     #[inline(never)]
-    pub fn new(file: &'static [u8]) -> Result<Option<Arriving>, Trouble> {
-        let front = match PartialClip::new(file) {
+    pub fn new(file: &'static [u8], rig: &'static [u8]) -> Result<Option<Arriving>, Trouble> {
+        let front = match PartialClip::with_rig(file, rig) {
             Err(pantin::OpenError::Truncated) => return Ok(None),
             front => front?,
         };

@@ -29,6 +29,11 @@ pub struct Facts {
     pub scalars_at: usize,
     pub scalars_len: usize,
     pub pose: usize,
+    /// The event that was asked for: its frame and its id, and the address and the length of its name.
+    pub event_frame: u32,
+    pub event_id: u32,
+    pub event_name_at: usize,
+    pub event_name_len: usize,
 }
 
 impl Facts {
@@ -48,6 +53,10 @@ impl Facts {
         scalars_at: 0,
         scalars_len: 0,
         pose: 0,
+        event_frame: 0,
+        event_id: 0,
+        event_name_at: 0,
+        event_name_len: 0,
     };
 }
 

@@ -3,7 +3,9 @@
 //! ```text
 //! room(bytes)          -> address for the file; the page writes the received bytes there
 //! arrived(bytes)       reports the number of received bytes: frames become playable while the rest is loading
+//! apart(rig)           says, before anything else, that a rig of that many bytes comes before a file without one
 //! finish()             reports the end of the file: the whole clip is checked
+//! event(n)             -> 1 if the clip has an n-th event, which `facts` then has; names are there after `finish`
 //! aim(w, h, o, t)      sets the picture in pixels and the view in degrees
 //! go(frame)            moves to exactly that frame, forwards or backwards
 //! strokes()            -> number of strokes of the frame; the page may append those of a face
@@ -52,6 +54,18 @@ extern "C" fn room(bytes: usize) -> *mut u8 {
 #[unsafe(no_mangle)]
 extern "C" fn arrived(bytes: usize) -> u32 {
     with(|world| code(world.arrived(written(bytes))))
+}
+
+/// Handles that the first `rig` bytes are the rig of the file that follows.
+#[unsafe(no_mangle)]
+extern "C" fn apart(rig: usize) {
+    with(|world| world.apart(rig));
+}
+
+/// Looks an event up by its place. Returns 0 after the last one.
+#[unsafe(no_mangle)]
+extern "C" fn event(index: usize) -> u32 {
+    with(|world| world.event(index).into())
 }
 
 /// Handles the end of the file.

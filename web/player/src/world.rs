@@ -14,6 +14,8 @@ pub struct World {
     source: Source,
     actor: Actor,
     file: &'static [u8],
+    /// Number of bytes in front of the file that are its rig.
+    rig_len: usize,
     canvas: Canvas,
     view: Option<View>,
     /// Number of playable frames when the camera was set up.
@@ -28,6 +30,7 @@ impl World {
         source: Source::Nothing,
         actor: Actor::NOBODY,
         file: &[],
+        rig_len: 0,
         canvas: DISPLAY,
         view: None,
         surveyed: 0,
@@ -40,9 +43,10 @@ impl World {
         if self.finished {
             return Ok(());
         }
+        let (rig, file) = file.split_at_checked(self.rig_len).unwrap_or((&[], &[]));
         self.file = file;
         if matches!(self.source, Source::Nothing)
-            && let Some(clip) = Arriving::new(file)?
+            && let Some(clip) = Arriving::new(file, rig)?
         {
             self.source = Source::Clip(clip);
         }
@@ -52,6 +56,23 @@ impl World {
             self.look()?;
         }
         outcome
+    }
+
+    /// Takes the first bytes for a rig, and what follows for a file without one.
+    pub fn apart(&mut self, rig_len: usize) {
+        self.rig_len = rig_len;
+    }
+
+    /// Looks an event up by its place; false after the last one.
+    pub fn event(&mut self, index: usize) -> bool {
+        let Source::Clip(arriving) = &self.source else { return false };
+        let clip = arriving.clip();
+        let Some(event) = clip.events().nth(index) else { return false };
+        let name = clip.event_name(event.id).unwrap_or_default();
+        let facts = &mut self.facts;
+        (facts.event_frame, facts.event_id) = (event.frame, event.id);
+        (facts.event_name_at, facts.event_name_len) = (name.as_ptr() as usize, name.len());
+        true
     }
 
     /// Checks the whole file. If it is damaged, the playable frames stay playable.

@@ -33,8 +33,8 @@ impl Source for Player<'_, '_> {
     }
 
     #[cfg(feature = "events")]
-    fn hear(&mut self, from: crate::events::From, frames: i32, heard: &mut dyn FnMut(crate::HeardEvent)) {
-        crate::events::passed(self.clip(), from, frames, Player::frame(self), heard);
+    fn hear(&mut self, since: crate::events::Since, frames: i32, heard: &mut dyn FnMut(crate::HeardEvent)) {
+        crate::events::passed(self.clip(), since, frames, Player::frame(self), heard);
     }
 
     fn status(&self) -> Status {

@@ -127,7 +127,7 @@ impl Source for LinkSource<'_, '_, '_, '_> {
     }
 
     #[cfg(feature = "events")]
-    fn hear(&mut self, _from: crate::events::From, _frames: i32, heard: &mut dyn FnMut(crate::HeardEvent)) {
+    fn hear(&mut self, _since: crate::events::Since, _frames: i32, heard: &mut dyn FnMut(crate::HeardEvent)) {
         let Some(now) = self.link.now() else { return };
         while let Some(event) = self.events.take(now) {
             heard(crate::HeardEvent { frame: self.link.frame().unwrap_or(0), id: event.id, name: event.name() });

@@ -31,7 +31,7 @@ pub(crate) trait Source {
 
     /// Passes on the events since the last picture, after a move by a number of frames, or back.
     #[cfg(feature = "events")]
-    fn hear(&mut self, from: crate::events::From, frames: i32, heard: &mut dyn FnMut(crate::HeardEvent));
+    fn hear(&mut self, since: crate::events::Since, frames: i32, heard: &mut dyn FnMut(crate::HeardEvent));
 
     /// Takes a byte from the serial line, and returns the letter of a command that it completes.
     fn receive(&mut self, byte: u8) -> Option<u8> {
