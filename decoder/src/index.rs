@@ -71,7 +71,7 @@ pub(crate) fn write(position: &PlayState, states: &[ChannelState], pose: &[i32],
 }
 
 fn has_slope(mode: u8) -> bool {
-    matches!(mode >> 4, segment_type::K | segment_type::WK)
+    mode >> 4 != segment_type::W
 }
 
 fn varint(mut value: u32, put: &mut dyn FnMut(u8)) {

@@ -4,6 +4,7 @@
 
 use crate::bytes::Reader;
 use crate::joint::{Joint, JointRef, Joints};
+use crate::kind::Kind;
 use crate::layout::{MAX_CHANNELS, MAX_JOINTS};
 use crate::scalar::{ScalarRef, Scalars};
 use crate::{OpenError, crc, names};
@@ -242,19 +243,19 @@ impl<'a> Rig<'a> {
 }
 
 impl Iterator for ChannelIter<'_> {
-    /// Whether a channel is a position, and the offset that it replaces, in steps of the rig.
-    type Item = (bool, i32);
+    /// A channel's kind, and for a position the offset that it replaces, in steps of the rig.
+    type Item = (Kind, i32);
 
-    fn next(&mut self) -> Option<(bool, i32)> {
+    fn next(&mut self) -> Option<(Kind, i32)> {
         loop {
             if let Some(kind) = self.joints.joint.kinds.next() {
                 // The first three kinds are positions, in the order of the axes.
                 let offset = self.joints.joint.offset.get(kind as usize).copied();
-                return Some((offset.is_some(), offset.unwrap_or(0)));
+                return Some((kind, offset.unwrap_or(0)));
             }
             if !self.joints.read() {
                 self.scalars = self.scalars.checked_sub(1)?;
-                return Some((false, 0));
+                return Some((Kind::Scalar, 0));
             }
         }
     }

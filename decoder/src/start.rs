@@ -3,6 +3,7 @@
 use crate::bytes::unzigzag;
 use crate::channel::{ChannelState, step_size};
 use crate::entropy::{Symbols, Table};
+use crate::kind::Kind;
 use crate::layout::{FIRST_STEP, FOLLOW_BITS, MAX_STEP, STEP_BITS, STEP_CHANGES, status};
 use crate::play_state::{self, Channels};
 use crate::rig::{ChannelIter, Rig};
@@ -11,13 +12,13 @@ use crate::tables;
 /// What the channels read so far tell about the next one.
 #[derive(Clone, Copy, Debug)]
 struct ChannelStart {
-    status: u8,
+    statuses: Statuses,
     steps: [u8; 2],
 }
 
 impl Default for ChannelStart {
     fn default() -> Self {
-        ChannelStart { status: 0, steps: [FIRST_STEP; 2] }
+        ChannelStart { statuses: Statuses::default(), steps: [FIRST_STEP; 2] }
     }
 }
 
@@ -25,9 +26,9 @@ impl ChannelStart {
     /// Reads the next channel's start: its position to `value` unless it rests or follows, velocity and index of its step to `state` if it
     /// moves. One that follows has the index [`MAX_STEP`] + how many of the moving channels before it it goes back. Returns whether it moves.
     #[inline(never)]
-    fn read(&mut self, symbols: &mut Symbols<'_>, is_position: bool, value: &mut i32, state: &mut ChannelState) -> bool {
-        let status = symbols.symbol(tables::status(self.status)) as u8;
-        self.status = status;
+    fn read(&mut self, symbols: &mut Symbols<'_>, kind: Kind, value: &mut i32, state: &mut ChannelState) -> bool {
+        let status = symbols.symbol(tables::status(self.statuses.context(kind))) as u8;
+        self.statuses.put(kind, status);
         if status == status::RESTS {
             return false;
         }
@@ -35,7 +36,7 @@ impl ChannelStart {
             state.step = MAX_STEP + 1 + symbols.bits(FOLLOW_BITS) as u8;
             return true;
         }
-        let class = usize::from(is_position);
+        let class = usize::from(kind.is_position());
         let change = symbols.symbol(&tables::STEP_CHANGE);
         let step = if change < STEP_CHANGES {
             self.steps.get(class).copied().unwrap_or(FIRST_STEP).wrapping_add(unzigzag(change) as u8)
@@ -54,6 +55,29 @@ impl ChannelStart {
         state.v = magnitude(symbols, &tables::VELOCITY).wrapping_mul((grid >> 2).max(1) as i32);
         state.step = step;
         true
+    }
+}
+
+/// The statuses so far, as far as they tell about the next one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Statuses {
+    last: u8,
+    /// Of the last channel of each kind, two bits each.
+    of_kinds: u32,
+}
+
+impl Statuses {
+    /// Which of a status's [`STATUS_CONTEXTS`] a channel of this kind has.
+    pub fn context(&self, kind: Kind) -> u8 {
+        let of_kind = (self.of_kinds >> (2 * kind as u32)) as u8 & 3;
+        (u8::from(kind.is_position()) << 4) | (self.last << 2) | of_kind
+    }
+
+    /// Notes the channel's status.
+    pub fn put(&mut self, kind: Kind, status: u8) {
+        let shift = 2 * kind as u32;
+        self.of_kinds = self.of_kinds & !(3 << shift) | u32::from(status & 3) << shift;
+        self.last = status & 3;
     }
 }
 
@@ -90,14 +114,14 @@ impl<'a> ChannelStarts<'a> {
     #[inline(never)]
     pub(crate) fn read(&mut self, symbols: &mut Symbols<'_>, dry_at: u32, states: &mut [ChannelState], pose: &mut [i32]) -> bool {
         while symbols.at.position <= dry_at {
-            let Some((is_position, rest)) = self.slots.next() else {
+            let Some((kind, rest)) = self.slots.next() else {
                 let states = states.get_mut(..usize::from(self.moving)).unwrap_or(&mut []);
                 play_state::follow(&mut Channels { states, pose });
                 return true;
             };
             let mut value = shifted(rest, self.shift);
             let mut state = ChannelState { slot: self.slot, ..ChannelState::NEW };
-            if self.opening.read(symbols, is_position, &mut value, &mut state) {
+            if self.opening.read(symbols, kind, &mut value, &mut state) {
                 if let Some(place) = states.get_mut(usize::from(self.moving)) {
                     *place = state;
                 }

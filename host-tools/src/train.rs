@@ -3,14 +3,16 @@
 use crate::encode::clip::{Coded, symbols};
 use crate::encode::entropy::{Alphabet, Sink, sizes};
 use pantin::codec::entropy::{SCALE_BITS, SIXTEENTH};
-use pantin::codec::layout::{STATUSES, status};
-use pantin::codec::segment::{CONTEXTS, DIRECT_MODES};
+use pantin::codec::layout::{START_MODE, STATUS_CONTEXTS, STATUSES, status};
+use pantin::codec::segment::{CONTEXTS, DIRECT_MODES, MODE_CONTEXTS};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Tables of modes, and of numbers: with the rest they stay within 2 KiB of flash.
 const MODE_TABLES: usize = 8;
 const NUMBER_TABLES: usize = 16;
+/// Tables of statuses.
+const STATUS_TABLES: usize = 8;
 /// How much a table of all contexts counts in each: a symbol never seen must still have a code.
 const PRIOR: f64 = 12.0;
 
@@ -22,10 +24,16 @@ const FOLLOWING: [f64; STATUSES] = [1.0 / 128.0, 1.0 / 64.0, 1.0 / 32.0, 3.0 / 8
 pub struct Counts {
     counts: BTreeMap<Alphabet, Vec<f64>>,
     weight: f64,
+    /// Whether segments after the first are left out.
+    starts: bool,
 }
 
 impl Sink for Counts {
     fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
+        let first = Alphabet::Mode(START_MODE);
+        if self.starts && alphabet != first && matches!(alphabet, Alphabet::Mode(_) | Alphabet::Number(_) | Alphabet::Far) {
+            return;
+        }
         let row = self.counts.entry(alphabet).or_insert_with(|| vec![0.0; sizes(alphabet.table()).count()]);
         row[symbol as usize] += self.weight;
     }
@@ -36,7 +44,13 @@ impl Sink for Counts {
 impl Counts {
     /// Adds a clip's symbols, each counted `weight` times.
     pub fn add(&mut self, coded: &Coded, rig: &pantin::Rig<'_>, weight: f64) {
-        self.weight = weight;
+        (self.weight, self.starts) = (weight, false);
+        symbols(coded, rig, self);
+    }
+
+    /// Adds the symbols with which a clip's channels start.
+    pub fn add_starts(&mut self, coded: &Coded, rig: &pantin::Rig<'_>, weight: f64) {
+        (self.weight, self.starts) = (weight, true);
         symbols(coded, rig, self);
     }
 
@@ -44,19 +58,21 @@ impl Counts {
         self.counts.get(&alphabet).cloned().unwrap_or_else(|| vec![0.0; sizes(alphabet.table()).count()])
     }
 
-    /// What comes after a channel of a status.
-    fn status(&self, after: u8) -> Vec<f64> {
-        let mut row = self.row(Alphabet::Status(after.min(status::MOVES)));
-        let part = FOLLOWING[usize::from(after)];
+    /// The statuses in a context: those of the motions' channels, with a part that follow.
+    fn status(&self, context: u8) -> Vec<f64> {
+        let (last, of_kind) = (context >> 2 & 3, context & 3);
+        let body = context & 16 | last.min(status::MOVES) << 2 | of_kind.min(status::MOVES);
+        let mut row = self.row(Alphabet::Status(body));
+        let part = FOLLOWING[usize::from(last)];
         row[usize::from(status::FOLLOWS)] = row.iter().sum::<f64>() * part / (1.0 - part);
         row
     }
 
     /// The text of `decoder/src/codec/tables.rs`.
     pub fn tables(&self, trained_on: &str) -> String {
-        let modes = (0..64).map(|after| self.row(Alphabet::Mode(after))).collect();
+        let modes = (0..MODE_CONTEXTS as u8).map(|after| self.row(Alphabet::Mode(after))).collect();
         let numbers = (0..CONTEXTS as u8).map(|context| self.row(Alphabet::Number(context))).collect();
-        let (mode_after, mode) = join(modes, MODE_TABLES, &|i| if i >= DIRECT_MODES as usize { 0.002 } else { 0.01 });
+        let (mut mode_after, mode) = join(modes, MODE_TABLES, &|i| if i >= DIRECT_MODES as usize { 0.002 } else { 0.01 });
         let number_prior = |i: usize| 0.5f64.powi(i.div_ceil(2) as i32).max(0.004);
         let (mut number_in, number) = join(numbers, NUMBER_TABLES, &number_prior);
 
@@ -64,7 +80,13 @@ impl Counts {
         let mut item = |doc: &str, name: &str, kind: String, value: String| {
             let _ = writeln!(out, "/// {doc}\n{name}: {kind} = {value};\n");
         };
-        item("Which of [`MODE`] follows a mode.", "const MODE_AFTER", "[u8; 64]".into(), format!("{mode_after:?}"));
+        mode_after.resize(128, 0);
+        item(
+            "Which of [`MODE`] follows a mode; then that of second symbols.",
+            "const MODE_AFTER",
+            "[u8; 128]".into(),
+            format!("{mode_after:?}"),
+        );
         item(
             "Modes 0 to 31, then those of the other types together.",
             "static MODE",
@@ -75,9 +97,12 @@ impl Counts {
         item("Which of [`NUMBER`] a context has.", "const NUMBER_IN", "[u8; 128]".into(), format!("{number_in:?}"));
         let doc = "Accelerations and slopes in their steps, by index of magnitude: 0, -1, 1, -2, ...";
         item(doc, "static NUMBER", format!("[[u16; {}]; {}]", number[0].len(), number.len()), format!("{number:?}"));
-        let status: Vec<Entries> = (0..STATUSES as u8).map(|after| rounded(&self.status(after), &|_| 0.1)).collect();
-        let doc = "Rest, constant, moving, following: after a channel that rests, is constant, moves, follows.";
-        item(doc, "static STATUS", format!("[[u16; {STATUSES}]; {STATUSES}]"), format!("{status:?}"));
+        let statuses = (0..STATUS_CONTEXTS as u8).map(|context| self.status(context)).collect();
+        let (status_in, status) = join(statuses, STATUS_TABLES, &|_| 0.1);
+        let doc = "Which of [`STATUS`] a context has.";
+        item(doc, "const STATUS_IN", format!("[u8; {STATUS_CONTEXTS}]"), format!("{status_in:?}"));
+        let doc = "Rest, constant, moving, following.";
+        item(doc, "static STATUS", format!("[[u16; {STATUSES}]; {STATUS_TABLES}]"), format!("{status:?}"));
         let bell = |i: usize| 0.8f64.powi((i as i32 - 6).abs()).max(0.01);
         for (alphabet, name, doc, prior) in [
             (
@@ -88,6 +113,7 @@ impl Counts {
             ),
             (Alphabet::Position, "POSITION", "Bits of a first position, in half channel steps.", &bell),
             (Alphabet::Velocity, "VELOCITY", "Bits of a first velocity, in quarter channel steps.", &bell),
+            (Alphabet::Far, "FAR", "Bits of a number beyond all groups.", &|i: usize| 0.8f64.powi((i as i32 - 8).abs())),
         ] {
             let table = rounded(&self.row(alphabet), prior);
             item(doc, &format!("pub static {name}"), format!("[u16; {}]", table.len()), format!("{table:?}"));
@@ -172,7 +198,7 @@ use crate::entropy::Table;
 const TAIL: &str = "/// The modes' table after a segment of this mode.
 #[inline(always)]
 pub fn mode(after: u8) -> &'static Table {
-    &MODE[usize::from(MODE_AFTER[usize::from(after & 63)] & 7)]
+    &MODE[usize::from(MODE_AFTER[usize::from(after & 127)] & 7)]
 }
 
 /// The numbers' table in this context.
@@ -181,8 +207,8 @@ pub fn number(context: u8) -> &'static Table {
     &NUMBER[usize::from(NUMBER_IN[usize::from(context & 127)] & 15)]
 }
 
-/// The table of a channel's status after a channel of that status.
-pub fn status(after: u8) -> &'static Table {
-    STATUS.get(usize::from(after)).map_or(&[], |table| table)
+/// The table of a channel's status in this context.
+pub fn status(context: u8) -> &'static Table {
+    &STATUS[usize::from(STATUS_IN[usize::from(context & 31)] & 7)]
 }
 ";

@@ -9,7 +9,7 @@ const FRAME_RATES = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 const LENGTHS = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 const LENGTH_CLASSES = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];
 const RESTS = 0, CONSTANT = 1, FOLLOWS = 3, LISTED = 127, TYPE_W = 0, TYPE_K = 1, TYPE_WK = 2;
-const START_MODE = 63, FIRST_STEP = 44, STEP_CHANGES = 24, MAX_STEP = 59, LOW = 2 ** 16;
+const START_MODE = 63, SECOND = 64, FIRST_STEP = 44, STEP_CHANGES = 24, MAX_STEP = 59, LOW = 2 ** 16;
 const SCALAR = 13, isPosition = (kind) => kind <= 2, isEuler = (kind) => kind >= 3 && kind <= 5;
 
 const need = (holds, sentence) => { if (!holds) throw new Error(sentence); };
@@ -153,7 +153,7 @@ class Symbols {
   }
   number(tables, { context, flipped }) { // [9]
     const s = this.symbol(tables.number[tables.number_in[context]]), index = (s + 1) >> 1;
-    const n = index === 13 ? this.bits(5) : index - 6; // FAR, or GROUPS
+    const n = index === 13 ? this.symbol(tables.far) : index - 6; // FAR_NUMBER, or GROUPS
     const size = index <= 6 ? index : (index === 13 ? 132 : 5) + (1 << n) + this.bits(n);
     return (s % 2 === 1) !== flipped ? -size : size;
   }
@@ -172,9 +172,11 @@ function restValue(rig, { kind, joint }, clipExponent) {
 
 function readStarts(symbols, tables, rig, clipExponent, moving) { // [8]
   let status = RESTS, lastStep = [FIRST_STEP, FIRST_STEP]; // of either class
+  const statusOf = Array(16).fill(RESTS); // of the last channel of each kind
   const moves = (channel) => { moving.push(channel); return channel; };
   return rig.channels.map((channel) => {
-    status = symbols.symbol(tables.status[status]);
+    const { kind } = channel, context = 16 * isPosition(kind) + 4 * status + statusOf[kind];
+    status = statusOf[kind] = symbols.symbol(tables.status[tables.status_in[context]]);
     const rests = { p: restValue(rig, channel, clipExponent) };
     if (status === RESTS) return rests;
     if (status === FOLLOWS) {
@@ -202,14 +204,15 @@ function contextOf(slope, now, prevSign, unit, lengthIndex) { // [9]
 
 function readSegment(symbols, tables, channel, frame) { // [9]
   const m = symbols.symbol(tables.mode[tables.mode_after[channel.mode]]);
-  const mode = m < 32 ? m : Math.min(32 + symbols.bits(5), 62);
+  const mode = m < 32 ? m : Math.min(32 + symbols.symbol(tables.mode[tables.mode_after[SECOND]]), 62);
   const index = mode & 15, L = LENGTHS[index], W = unitW(channel.step, L), K = unitK(channel.step, L);
   if (hasNewW(mode)) {
     const context = contextOf(0, channel.w, channel.prevSign, W, index);
     channel.w = Math.imul(symbols.number(tables, context), W);
     channel.prevSign = context.saw;
   }
-  channel.k = hasNewK(mode) ? Math.imul(symbols.number(tables, contextOf(1, channel.k, 0, K, index)), K) : 0;
+  if (hasNewK(mode)) channel.k = Math.imul(symbols.number(tables, contextOf(1, channel.k, 0, K, index)), K);
+  else if (mode >> 4 === TYPE_W) channel.k = 0;
   Object.assign(channel, { mode, ends: frame + L });
 }
 
@@ -252,7 +255,7 @@ function readIndex(payload, frames, moving) { // [14]
       const head = fields.u8(), mode = head & 63, prevSign = (head >> 6) - 1;
       need(mode <= 62 && prevSign <= 1, "A snapshot's mode or sign is out of bounds.");
       const ends = frame + fields.i8(), p = fields.zigzag(), v = fields.zigzag(), w = fields.zigzag();
-      return { mode, prevSign, ends, p, v, w, k: hasNewK(mode) ? fields.zigzag() : 0 };
+      return { mode, prevSign, ends, p, v, w, k: mode >> 4 === TYPE_W ? 0 : fields.zigzag() };
     });
     return { frame, at, x, channels };
   });

@@ -100,10 +100,10 @@ pub mod segment_type {
     pub const K: u8 = 1;
     /// A new acceleration and a new slope.
     pub const WK: u8 = 2;
-    /// The acceleration carries on and stays constant.
-    pub const NONE: u8 = 3;
+    /// Acceleration and slope carry on.
+    pub const CARRY: u8 = 3;
 }
-/// The mode of a channel that has had no segment yet. No segment has it: type NONE ends at length index 14.
+/// The mode of a channel that has had no segment yet. No segment has it: type CARRY ends at length index 14.
 pub const START_MODE: u8 = 63;
 
 /// Magnitudes of w or k up to this have a symbol of their own.
@@ -111,9 +111,7 @@ pub const DIRECT: u32 = 6;
 /// The magnitudes behind them come in groups of 2, 4, 8, ..., this many: a symbol and as many bits as its place among them.
 pub const GROUPS: u32 = 6;
 /// Index of the last magnitude symbol: the number of bits follows, then the bits.
-pub const FAR: u32 = DIRECT + GROUPS + 1;
-/// Bits of a far number's count of bits.
-pub const FAR_BITS: u32 = 5;
+pub const FAR_NUMBER: u32 = DIRECT + GROUPS + 1;
 
 /// Returns the first magnitude of the group whose members have `bits` more bits.
 pub const fn group(bits: u32) -> u32 {
@@ -133,6 +131,8 @@ pub mod status {
 }
 /// How many statuses there are.
 pub const STATUSES: usize = 4;
+/// Contexts of a status: whether the channel is a position, the status before, and that of the last channel of its kind.
+pub const STATUS_CONTEXTS: usize = 32;
 /// Bits that say how many moving channels back, less one, the channel stands that one follows.
 pub const FOLLOW_BITS: u32 = 5;
 

@@ -10,3 +10,4 @@ pub use crate::channel::{segment_frames, step_size};
 pub use crate::clip::index_seed;
 pub use crate::joint::has_choice;
 pub use crate::player::write_snapshot;
+pub use crate::start::Statuses;

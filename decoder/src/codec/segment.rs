@@ -3,17 +3,19 @@
 use crate::blocks::Input;
 use crate::channel::{ChannelState, mantissa, segment_frames};
 use crate::entropy::{Cursor, Symbols};
-use crate::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
+use crate::layout::{DIRECT, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, STEPS, STEPS_SHIFT, group, segment_type};
 use crate::tables;
 
-/// Bytes that one segment takes at most, CRC included: a mode's symbol and 4 bits, then twice a number's symbol, 5 bits and
+/// Bytes that one segment takes at most, CRC included: two symbols of the mode, then twice a number's symbol, its length's, and
 /// 31 bits in four parts; no symbol or part takes more than two bytes.
 pub(crate) const MAX_SEGMENT_BYTES: u32 = 32;
 
-/// Symbols of the mode's alphabet that are modes, of type W or K; one more says that a mode of type WK or NONE follows in bits.
+/// Symbols of the mode's alphabet that are modes, of type W or K; one more says that a mode of type WK or CARRY follows.
 pub const DIRECT_MODES: u32 = 32;
-/// Bits of a mode that follows.
-pub const MODE_BITS: u32 = 5;
+/// The context of the symbol that follows: its mode, less [`DIRECT_MODES`].
+pub const SECOND: u8 = 64;
+/// Contexts of modes: those of the mode before, and [`SECOND`].
+pub const MODE_CONTEXTS: usize = 65;
 
 /// Where the slopes begin in [`STEPS`], which the modes of type W and K index.
 pub const SLOPE: u8 = 16;
@@ -114,7 +116,11 @@ pub(crate) fn read(state: &mut ChannelState, segments: &mut Segments<'_>) {
         state.prev_sign = context.sign;
         state.w = number::<true>(symbols, &context, unit);
     }
-    state.k = if matches!(kind as u8, segment_type::K | segment_type::WK) { slope(symbols, state) } else { 0 };
+    match kind as u8 {
+        segment_type::W => state.k = 0,
+        segment_type::K | segment_type::WK => state.k = slope(symbols, state),
+        _ => (),
+    }
 }
 
 /// A new slope: captured motion has few.
@@ -149,13 +155,13 @@ fn mode(symbols: &mut Symbols<'_>, after: u8) -> u32 {
     if symbol < DIRECT_MODES {
         return symbol;
     }
-    (DIRECT_MODES + symbols.bits(MODE_BITS)).min(u32::from(START_MODE) - 1)
+    (DIRECT_MODES + symbols.symbol(tables::mode(SECOND))).min(u32::from(START_MODE) - 1)
 }
 
 /// A magnitude behind the groups.
 #[inline(never)]
 fn far(symbols: &mut Symbols<'_>) -> u32 {
-    let bits = symbols.bits(FAR_BITS);
+    let bits = symbols.symbol(&tables::FAR);
     // At most 2^32 + 2^7: it may wrap, but no well-formed number is so large.
     (group(GROUPS + 1) - 1).wrapping_add(1 << bits).wrapping_add(symbols.long_bits(bits))
 }

@@ -2,13 +2,14 @@
 
 use crate::symbols::{Coder, Reader};
 use crate::tables;
-use pantin::codec::layout::{DIRECT, FAR_BITS, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
+use pantin::codec::layout::{DIRECT, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
 use pantin::codec::{segment, segment_frames, step_size};
 
 /// A segment, and optionally the state from which it starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Message {
-    /// Type and length of the segment as in FORMAT.md 9; the length determines the steps of `w` and `k`.
+    /// Type and length of the segment as in FORMAT.md 9; the length determines the steps of `w` and `k`. The line's `CARRY` has no
+    /// slope: where one carries on, the type is `K` with the length that determined its steps.
     pub mode: u8,
     /// Frames until this channel's next message, 1 to 127: the mode's length, unless the sender splits the segment.
     pub run: u8,
@@ -27,7 +28,7 @@ pub struct Refresh {
     pub p: i32,
     /// Velocity in S / 256.
     pub v: i32,
-    /// Acceleration in S / 4096 for the types `K` and `NONE`, which keep it; otherwise 0.
+    /// Acceleration in S / 4096 for the types `K` and `CARRY`, which keep it; otherwise 0.
     pub w: i32,
 }
 
@@ -40,6 +41,8 @@ pub fn units(step: u8) -> [i32; 3] {
     SHIFTS.map(|shift| (step_size(step.min(MAX_STEP)) >> shift).max(1) as i32)
 }
 
+/// Bits of a far number's count of bits.
+const FAR_BITS: u32 = 5;
 /// Bits of a run that differs from the mode's length.
 const RUN_BITS: u32 = 7;
 /// Flags of the first symbol.

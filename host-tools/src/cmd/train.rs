@@ -1,13 +1,15 @@
 //! `pantin train`.
 
 use super::channel_bound::above_zero;
-use crate::encode::rig;
-use crate::fit::{descent::Level, fit};
+use crate::edit::cut::cut;
+use crate::encode::{clip::Coded, rig};
+use crate::fit::{bounds::Bounds, chain::Constraint, channelwise, descent::Level, fit};
 use crate::import;
-use crate::motion::Motion;
+use crate::motion::{Interpolation, Keys, Kind, Motion};
 use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
 use crate::train::Counts;
 use anyhow::{Context, Result};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Compute the format's tables (decoder/src/codec/tables.rs) from motions; needed only to change the format.
@@ -54,6 +56,94 @@ fn decimated(motion: &Motion, stride: usize) -> Motion {
     }
 }
 
+/// Lengths of the parts that are cut out, in frames, and how many of each: short clips begin in the middle of a movement.
+const CUTS: [usize; 2] = [24, 56];
+const CUTS_OF_LENGTH: usize = 4;
+
+/// The same motion with three translations at every joint, all at rest: many files are written so.
+fn with_translations(motion: &Motion) -> Motion {
+    let mut out = motion.clone();
+    (out.values, out.keys) = (Vec::new(), Vec::new());
+    let first = motion.rig.first_channels();
+    for (joint, entry) in out.rig.joints.iter_mut().enumerate() {
+        let channels = first[joint]..first[joint] + entry.kinds.len();
+        if !entry.end_site && !entry.kinds.iter().any(|kind| kind.is_position()) {
+            entry.kinds.splice(..0, [Kind::Xposition, Kind::Yposition, Kind::Zposition]);
+            out.values.extend(entry.offset.iter().map(|&x| vec![x; motion.frames]));
+        }
+        out.values.extend_from_slice(&motion.values[channels]);
+    }
+    out.values.extend_from_slice(&motion.values[motion.rig.joint_channels()..]);
+    out.keys = vec![None; out.values.len()];
+    out
+}
+
+/// Short parts of a motion, every second one with translations.
+fn cuts(motion: &Motion) -> Result<Vec<Motion>> {
+    let mut out = Vec::new();
+    for (place, length) in CUTS.iter().flat_map(|&length| (0..CUTS_OF_LENGTH).map(move |place| (place, length))) {
+        if length > motion.frames {
+            continue;
+        }
+        let from = (motion.frames - length) * place / (CUTS_OF_LENGTH - 1);
+        let part = cut(motion, Some(from), Some(from + length - 1))?;
+        out.push(if place.is_multiple_of(2) { part } else { with_translations(&part) });
+    }
+    Ok(out)
+}
+
+/// Spans between the key frames of [`keyed`], in frames, and its bounds in degrees and the motion's units.
+const KEY_SPANS: [usize; 6] = [6, 10, 16, 24, 32, 48];
+const KEYED_BOUNDS: [f64; 2] = [0.006, 0.05];
+/// How much a keyed motion counts beside a captured one.
+const KEYED_WEIGHT: f64 = 0.08;
+/// Most frames of a keyed motion.
+const KEYED_FRAMES: usize = 240;
+
+/// A motion of key frames: smooth between every `span`-th frame of `motion`.
+fn keyed(motion: &Motion, span: usize) -> Motion {
+    let frames = motion.frames.min(KEYED_FRAMES);
+    let mut out = motion.clone();
+    for (values, keys) in out.values.iter_mut().zip(&mut out.keys) {
+        let at: Vec<usize> = (0..frames - 1).step_by(span).chain([frames - 1]).collect();
+        let on: Vec<(usize, f64)> = at.into_iter().map(|frame| (frame, values[frame])).collect();
+        *values = crate::keys::sample(&on, Interpolation::Discrete, frames, false);
+        *keys = Some(Keys::OnFrames { interpolation: Interpolation::Discrete, keys: on });
+    }
+    Motion { frames, ..out }
+}
+
+/// What is fitted for the statistics.
+struct Sample {
+    motion: Motion,
+    bound: f64,
+    counts: Counted,
+}
+
+/// What of a sample is counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Counted {
+    Whole,
+    /// The starts: the segments of short parts are those of whole motions.
+    Start,
+    /// A keyed motion, every channel of which keeps the bound instead of every joint.
+    Keyed,
+}
+
+impl Sample {
+    fn coded(&self) -> Result<(Coded, Vec<u8>)> {
+        let bytes = rig::encode(&self.motion.rig)?;
+        let coded = if self.counts == Counted::Keyed {
+            let greatest = vec![self.bound; self.motion.values.len()];
+            let bounds = Bounds { constraint: Constraint::Positions, exact: true, greatest };
+            channelwise::fit(&self.motion, &bounds, &|| ())?
+        } else {
+            fit(&self.motion, TRAINING.plan(self.bound), 0.02, &mut |_| ())?
+        };
+        Ok((coded, bytes))
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     refuse_foreign(&arguments.output, Wanted::Source)?;
@@ -66,16 +156,36 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             import::load(path, &import::Options { fps: arguments.fps, files: files.clone(), ..Default::default() })?.motion;
         super::check_read(&files, &[&arguments.output])?;
         super::check_fit(&motion, TRAINING, &files).with_context(|| path.display().to_string())?;
-        let bytes = rig::encode(&motion.rig)?;
-        let rig = pantin::Rig::new_checked(&bytes)?;
+        let mut samples = Vec::new();
+        if motion.frames > KEY_SPANS[5] {
+            for (&span, &bound) in KEY_SPANS.iter().flat_map(|span| KEYED_BOUNDS.iter().map(move |bound| (span, bound))) {
+                samples.push(Sample { motion: keyed(&motion, span), bound, counts: Counted::Keyed });
+            }
+        }
         for &stride in &arguments.strides {
             let motion = decimated(&motion, stride as usize);
-            for &bound_cm in &arguments.bounds {
-                let coded =
-                    fit(&motion, TRAINING.plan(bound_cm), 0.02, &mut |_| ()).with_context(|| path.display().to_string())?;
-                let segments: usize = coded.channels.iter().map(|channel| channel.segments.len()).sum();
-                note!("{} every {stride}: {bound_cm} cm, {segments} segments", path.display());
-                counts.add(&coded, &rig, (2000.0 / segments.max(200) as f64).min(1.0));
+            let parts = cuts(&motion)?;
+            let counted = [(motion, Counted::Whole)].into_iter().chain(parts.into_iter().map(|part| (part, Counted::Start)));
+            for (motion, counts) in counted {
+                samples.extend(arguments.bounds.iter().map(|&bound| Sample { motion: motion.clone(), bound, counts }));
+            }
+        }
+        let coded = samples.par_iter().map(Sample::coded).collect::<Result<Vec<_>>>();
+        for (sample, (coded, bytes)) in samples.iter().zip(coded.with_context(|| path.display().to_string())?) {
+            let segments: usize = coded.channels.iter().map(|channel| channel.segments.len()).sum();
+            note!(
+                "{}: {:?}, {} frames, {}, {segments} segments",
+                path.display(),
+                sample.counts,
+                sample.motion.frames,
+                sample.bound
+            );
+            let rig = pantin::Rig::new_checked(&bytes)?;
+            let weight = (2000.0 / segments.max(200) as f64).min(1.0);
+            match sample.counts {
+                Counted::Whole => counts.add(&coded, &rig, weight),
+                Counted::Start => counts.add_starts(&coded, &rig, weight),
+                Counted::Keyed => counts.add(&coded, &rig, KEYED_WEIGHT * weight),
             }
         }
     }

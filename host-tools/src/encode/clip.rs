@@ -6,7 +6,7 @@ use super::{index, varint};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::Event;
 use pantin::codec::layout::*;
-use pantin::codec::{crc, step_size};
+use pantin::codec::{Statuses, crc, step_size};
 
 /// How a channel begins, in multiples of its grids, which need not divide the range of raw values: those may wrap, these not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,23 +203,29 @@ fn head(coded: &Coded, flags: u8, rig_id: Option<u32>) -> Vec<u8> {
     out
 }
 
+/// The change from one index of a step to the next as a zigzag number.
+pub fn step_change(before: u8, step: u8) -> u32 {
+    let change = i32::from(step) - i32::from(before);
+    ((change << 1) ^ (change >> 31)) as u32
+}
+
 /// Predicts channel steps as `pantin::Opening` does.
 struct Opening {
-    status: u8,
+    statuses: Statuses,
     steps: [u8; 2],
 }
 
 impl Opening {
     /// `moving` lists the channels before that move.
-    fn put(&mut self, start: &Start, position: bool, moving: &[usize], out: &mut dyn Sink) {
+    fn put(&mut self, start: &Start, kind: pantin::Kind, moving: &[usize], out: &mut dyn Sink) {
         let (status, step, p) = match *start {
             Start::Rest => (status::RESTS, 0, 0),
             Start::Constant { p, step } => (status::CONSTANT, step, p),
             Start::Moving { p, step, .. } => (status::MOVES, step, p),
             Start::Follows { .. } => (status::FOLLOWS, 0, 0),
         };
-        out.symbol(Alphabet::Status(self.status), u32::from(status));
-        self.status = status;
+        out.symbol(Alphabet::Status(self.statuses.context(kind)), u32::from(status));
+        self.statuses.put(kind, status);
         if let Start::Follows { leader } = *start {
             // The fit chooses leaders that are near enough.
             let back = moving.iter().rev().position(|&channel| channel == leader).unwrap_or(0);
@@ -229,11 +235,10 @@ impl Opening {
         if status == status::RESTS {
             return;
         }
-        let before = std::mem::replace(&mut self.steps[usize::from(position)], step);
-        let change = i32::from(step) - i32::from(before);
-        let zigzag = ((change << 1) ^ (change >> 31)) as u32;
-        out.symbol(Alphabet::StepChange, zigzag.min(STEP_CHANGES));
-        if zigzag >= STEP_CHANGES {
+        let before = std::mem::replace(&mut self.steps[usize::from(kind.is_position())], step);
+        let change = step_change(before, step);
+        out.symbol(Alphabet::StepChange, change.min(STEP_CHANGES));
+        if change >= STEP_CHANGES {
             out.bits(u32::from(step), STEP_BITS);
         }
         out.magnitude(Alphabet::Position, p);
@@ -245,11 +250,11 @@ impl Opening {
 
 /// All symbols, in the order in which a player reads them.
 pub fn symbols(coded: &Coded, rig: &pantin::Rig<'_>, out: &mut dyn Sink) {
-    let mut opening = Opening { status: 0, steps: [FIRST_STEP; 2] };
-    let kinds = rig.joints().flat_map(|joint| joint.kinds).map(pantin::Kind::is_position).chain(std::iter::repeat(false));
+    let mut opening = Opening { statuses: Statuses::default(), steps: [FIRST_STEP; 2] };
+    let kinds = rig.joints().flat_map(|joint| joint.kinds).chain(std::iter::repeat(pantin::Kind::Scalar));
     let (mut running, mut moving) = (Vec::new(), Vec::new());
-    for (index, (channel, position)) in coded.channels.iter().zip(kinds).enumerate() {
-        opening.put(&channel.start, position, &moving, out);
+    for (index, (channel, kind)) in coded.channels.iter().zip(kinds).enumerate() {
+        opening.put(&channel.start, kind, &moving, out);
         if matches!(channel.start, Start::Moving { .. } | Start::Follows { .. }) {
             moving.push(index);
         }

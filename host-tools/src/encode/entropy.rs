@@ -7,7 +7,7 @@ use pantin::codec::tables;
 /// What a symbol is of: the format's tables by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Alphabet {
-    /// Whether a channel rests, is constant or moves, after one of that status.
+    /// Whether a channel rests, is constant, moves or follows, in this context.
     Status(u8),
     /// How a channel's step differs from the one before.
     StepChange,
@@ -15,10 +15,12 @@ pub enum Alphabet {
     Position,
     /// Bits of a first velocity.
     Velocity,
-    /// A segment's mode, after a segment of that mode.
+    /// A segment's mode in this context: the mode before, or [`pantin::codec::segment::SECOND`].
     Mode(u8),
     /// An acceleration or slope in this context.
     Number(u8),
+    /// Bits of a number beyond all groups.
+    Far,
 }
 
 impl Alphabet {
@@ -31,6 +33,7 @@ impl Alphabet {
             Alphabet::Velocity => &tables::VELOCITY,
             Alphabet::Mode(after) => tables::mode(after),
             Alphabet::Number(context) => tables::number(context),
+            Alphabet::Far => &tables::FAR,
         }
     }
 }
@@ -115,12 +118,13 @@ pub fn magnitude_cost(table: &Table, value: i32) -> f64 {
 mod tests {
     use super::*;
     use pantin::codec::entropy::SIXTEENTH;
-    use pantin::codec::segment::CONTEXTS;
+    use pantin::codec::layout::STATUS_CONTEXTS;
+    use pantin::codec::segment::{CONTEXTS, MODE_CONTEXTS};
 
     #[test]
     fn tables_are_probabilities_and_their_hints_never_lead_past_the_symbol() {
-        let few = [Alphabet::StepChange, Alphabet::Position, Alphabet::Velocity];
-        let contexts = (0..pantin::codec::layout::STATUSES as u8).map(Alphabet::Status).chain((0..64).map(Alphabet::Mode));
+        let few = [Alphabet::StepChange, Alphabet::Position, Alphabet::Velocity, Alphabet::Far];
+        let contexts = (0..STATUS_CONTEXTS as u8).map(Alphabet::Status).chain((0..MODE_CONTEXTS as u8).map(Alphabet::Mode));
         let contexts = contexts.chain((0..CONTEXTS as u8).map(Alphabet::Number)).chain(few);
         for alphabet in contexts {
             let table = alphabet.table();

@@ -1,8 +1,8 @@
 //! A segment's symbols: the mirror of `pantin::codec::segment`.
 
 use super::entropy::{Alphabet, Sink};
-use pantin::codec::layout::{DIRECT, FAR, FAR_BITS, GROUPS, group, segment_type};
-use pantin::codec::segment::{Context, DIRECT_MODES, MODE_BITS, SLOPE, step};
+use pantin::codec::layout::{DIRECT, FAR_NUMBER, GROUPS, group, segment_type};
+use pantin::codec::segment::{Context, DIRECT_MODES, SECOND, SLOPE, step};
 
 /// A segment: its mode, and how many steps its new acceleration and slope have (0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,24 +44,39 @@ pub struct Running {
     pub step: u8,
 }
 
-/// The symbol of a number, and the bits that follow it: their value and count, in the order of reading.
-pub fn number_symbol(number: i32) -> (u32, [(u32, u32); 2]) {
-    let size = number.unsigned_abs();
-    let symbol = |index: u32| if number < 0 { 2 * index - 1 } else { 2 * index };
-    if size <= DIRECT {
-        return (symbol(size), [(0, 0); 2]);
-    }
-    for bits in 1..=GROUPS {
-        if size < group(bits + 1) {
-            return (symbol(DIRECT + bits), [(size - group(bits), bits), (0, 0)]);
-        }
-    }
-    let rest = size - group(GROUPS + 1) + 1;
-    let bits = rest.ilog2();
-    (symbol(FAR), [(bits, FAR_BITS), (rest - (1 << bits), bits)])
+/// A number as it is written: a symbol, then where that is [`FAR_NUMBER`] the number of bits, then the bits.
+pub struct NumberCode {
+    /// The symbol in the number's context.
+    pub symbol: u32,
+    /// Value and number of the bits.
+    pub bits: (u32, u32),
 }
 
-/// The symbol of a mode and, where it does not name the mode, the bits that do.
+impl NumberCode {
+    /// The code of a number whose sign is already turned as its context says.
+    pub fn of(number: i32) -> NumberCode {
+        let size = number.unsigned_abs();
+        let symbol = |index: u32| if number < 0 { 2 * index - 1 } else { 2 * index };
+        if size <= DIRECT {
+            return NumberCode { symbol: symbol(size), bits: (0, 0) };
+        }
+        for bits in 1..=GROUPS {
+            if size < group(bits + 1) {
+                return NumberCode { symbol: symbol(DIRECT + bits), bits: (size - group(bits), bits) };
+            }
+        }
+        let rest = size - group(GROUPS + 1) + 1;
+        let bits = rest.ilog2();
+        NumberCode { symbol: symbol(FAR_NUMBER), bits: (rest - (1 << bits), bits) }
+    }
+
+    /// Whether the number of bits is written too.
+    pub fn far(&self) -> bool {
+        self.symbol.div_ceil(2) == FAR_NUMBER
+    }
+}
+
+/// The symbol of a mode and, where it does not name the mode, the one that follows and does.
 pub fn mode_symbol(mode: u8) -> (u32, Option<u32>) {
     let mode = u32::from(mode);
     if mode < DIRECT_MODES { (mode, None) } else { (DIRECT_MODES, Some(mode - DIRECT_MODES)) }
@@ -73,9 +88,13 @@ impl Running {
         let mode = segment.mode;
         let mut number = |context: Context, number: i32| {
             let Some(out) = out.as_deref_mut() else { return };
-            let (symbol, bits) = number_symbol(if context.flip != 0 { -number } else { number });
-            out.symbol(Alphabet::Number(context.index), symbol);
-            bits.iter().for_each(|&(value, count)| out.bits(value, count));
+            let code = NumberCode::of(if context.flip != 0 { -number } else { number });
+            out.symbol(Alphabet::Number(context.index), code.symbol);
+            let (value, count) = code.bits;
+            if code.far() {
+                out.symbol(Alphabet::Far, count);
+            }
+            out.bits(value, count);
         };
         let length = mode & 15;
         if matches!(segment.kind(), segment_type::W | segment_type::WK) {
@@ -88,7 +107,7 @@ impl Running {
             let unit = step(length | SLOPE, self.step);
             number(Context::new(length | SLOPE, self.k, 0, unit), segment.k);
             self.k = segment.k.wrapping_mul(unit as i32);
-        } else {
+        } else if segment.kind() == segment_type::W {
             self.k = 0;
         }
         self.mode = mode;
@@ -96,10 +115,10 @@ impl Running {
 
     /// Writes the mode's symbol; the numbers follow by [`Running::start`].
     pub fn put_mode(&self, mode: u8, out: &mut dyn Sink) {
-        let (symbol, bits) = mode_symbol(mode);
+        let (symbol, second) = mode_symbol(mode);
         out.symbol(Alphabet::Mode(self.mode), symbol);
-        if let Some(bits) = bits {
-            out.bits(bits, MODE_BITS);
+        if let Some(second) = second {
+            out.symbol(Alphabet::Mode(SECOND), second);
         }
     }
 

@@ -108,7 +108,7 @@ impl<C: Cost> Beam<C> {
         self.ranked.extend(within.map(|(index, hypothesis)| (hypothesis.cost.rank(), index)));
         self.ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let first = self.extended.len();
-        let mut cells = Vec::with_capacity(width);
+        let mut cells = Vec::with_capacity(width.min(here.len()));
         for &(_, index) in &self.ranked {
             if cells.len() >= width {
                 break;
@@ -120,6 +120,12 @@ impl<C: Cost> Beam<C> {
             }
         }
         first..self.extended.len()
+    }
+
+    /// Keeps a hypothesis on the way to another, without a choice; its index for [`Beam::extended`].
+    pub fn keep(&mut self, hypothesis: Hypothesis<C>) -> usize {
+        self.extended.push(hypothesis);
+        self.extended.len() - 1
     }
 
     /// A hypothesis that was chosen.
@@ -149,6 +155,6 @@ impl<C: Cost> Beam<C> {
         }
         let (p, v) = in_grids(path[0], first.v, step);
         let segments = chain[1..].iter().map(|hypothesis| hypothesis.segment).collect();
-        Some((Fitted { start: Start::Moving { p, v, step }, segments, path, bits: 0.0 }, end.cost))
+        Some((Fitted { start: Start::Moving { p, v, step }, segments, path, bits: 0.0, start_bits: 0.0 }, end.cost))
     }
 }

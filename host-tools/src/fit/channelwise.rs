@@ -2,14 +2,14 @@
 //! every frame, or (a) `|w_l(n) - w(n)| <= epsilon`, where positions may drift.
 
 use super::bounds::{Bounds, unit};
-use super::chain::{Constraint, chain};
+use super::chain::{Constraint, chain, known};
 use super::cost::Costs;
 use super::refusal::amount;
 use super::search::{Effort, Fitted, Tube, in_grids, search};
 use super::{raw, time};
 use crate::encode::clip::{Channel, Coded, Start, position_grid, velocity_grid};
 use crate::events;
-use crate::motion::Motion;
+use crate::motion::{Interpolation, Keys, Motion};
 use anyhow::{Result, bail};
 use pantin::codec::layout::MAX_STEP;
 use rayon::prelude::*;
@@ -23,6 +23,7 @@ const NARROWEST: f64 = 0.6;
 const PRICE: f64 = 0.1;
 /// Steps that are tried, against the one that is as large as the bound: none outside was ever best.
 const POSITION_STEPS: RangeInclusive<i32> = -3..=4;
+const KNOWN_STEPS: RangeInclusive<i32> = -6..=3;
 const ACCELERATION_STEPS: RangeInclusive<i32> = -3..=5;
 /// First values lie this many grid steps around the target at most.
 const AROUND: i32 = 3;
@@ -43,6 +44,8 @@ struct Aim<'a> {
     room: f64,
     constraint: Constraint,
     exact: bool,
+    /// Frames between which its second difference is linear, if they are known.
+    keys: Option<Vec<usize>>,
 }
 
 /// Codes `motion` with every channel within its bound. `progress` is called once per channel.
@@ -64,7 +67,15 @@ pub fn fit_exponent(motion: &Motion, bounds: &Bounds, length_exponent: i8, progr
         let rest = f64::from(rests[channel]);
         let turns = motion.rig.channel_kinds()[channel].1.is_rotation();
         let room = if turns { f64::INFINITY } else { f64::from(i32::MAX) };
-        let aim = Aim { target: &target, rest, bound, room, constraint: bounds.constraint, exact: bounds.exact };
+        let aim = Aim {
+            target: &target,
+            rest,
+            bound,
+            room,
+            constraint: bounds.constraint,
+            exact: bounds.exact,
+            keys: linear_between(motion, channel),
+        };
         let found = aim.best();
         progress();
         found.map_or_else(|| refuse(motion, channel, aim, scale), Ok)
@@ -128,7 +139,7 @@ impl Aim<'_> {
         let frames = self.target.len();
         if self.target.iter().all(|x| (x - self.rest).abs() <= self.bound) {
             let path = vec![self.rest; frames];
-            return Some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits: REST_BITS });
+            return Some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits: REST_BITS, start_bits: REST_BITS });
         }
         if frames >= 3 && self.constraint == Constraint::Accelerations {
             return self.accelerations();
@@ -141,6 +152,12 @@ impl Aim<'_> {
             let steps = [step, (step + 1).min(MAX_STEP)];
             let chains = if frames < 3 { None } else { cheapest(steps, |step| positions(&tube, step, BEAM)) };
             return cheapest([Some(found), chains], |code| code);
+        }
+        if let Some(keys) = &self.keys {
+            let found = cheapest(self.steps(KNOWN_STEPS), |step| known(&tube, keys, &starts(&tube, step), step));
+            if found.is_some() {
+                return found;
+            }
         }
         cheapest(self.steps(POSITION_STEPS), |step| positions(&tube, step, EXACT_BEAM))
     }
@@ -161,7 +178,7 @@ impl Aim<'_> {
         let lo = x.iter().map(|x| (x - self.bound).max(-room)).collect();
         let hi = x.iter().map(|x| (x + self.bound).min(room)).collect();
         let (a, b) = (vec![PRICE / (self.bound * self.bound); x.len()], vec![0.0; x.len()]);
-        Tube { x, lo, hi, a, b, bend: f64::INFINITY }
+        Tube { x, lo, hi, a, b, bend: f64::INFINITY, start: Default::default() }
     }
 
     /// Channel steps around the one that is as large as the bound.
@@ -182,6 +199,19 @@ fn start(p: f64, v: f64, step: u8) -> (f64, f64, f64) {
 }
 
 fn positions(tube: &Tube, step: u8, beam: usize) -> Option<Fitted> {
+    chain(tube, Constraint::Positions, &starts(tube, step), step, beam)
+}
+
+/// The frames of a channel's keys, if its second difference is linear between them.
+fn linear_between(motion: &Motion, channel: usize) -> Option<Vec<usize>> {
+    match motion.keys[channel].as_ref()? {
+        Keys::OnFrames { interpolation: Interpolation::Discrete, keys } => Some(keys.iter().map(|&(frame, _)| frame).collect()),
+        _ => None,
+    }
+}
+
+/// Positions and velocities near the target's first, with their bits.
+fn starts(tube: &Tube, step: u8) -> Vec<(f64, f64, f64)> {
     let (p_grid, v_grid) = (f64::from(position_grid(step)), f64::from(velocity_grid(step)));
     let near = |x: f64, grid: f64| (-AROUND..=AROUND).map(move |offset| ((x / grid).round() + f64::from(offset)) * grid);
     let inside = |frame: usize, p: f64| (tube.lo[frame]..=tube.hi[frame]).contains(&p);
@@ -191,5 +221,5 @@ fn positions(tube: &Tube, step: u8, beam: usize) -> Option<Fitted> {
         let both = near(tube.x[1] - tube.x[0], v_grid).chain(near(tube.x[1] - p, v_grid));
         starts.extend(both.filter(|&v| inside(1, p + v)).map(|v| start(p, v, step)));
     }
-    chain(tube, Constraint::Positions, &starts, step, beam)
+    starts
 }

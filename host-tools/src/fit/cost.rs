@@ -1,9 +1,9 @@
 //! What symbols cost: the format's tables, in bits, ready for the search.
 
 use crate::encode::entropy::{cost, magnitude_cost};
-use crate::encode::segment::{mode_symbol, number_symbol};
+use crate::encode::segment::{NumberCode, mode_symbol};
 use pantin::codec::layout::{GROUPS, group};
-use pantin::codec::segment::{CONTEXTS, MODE_BITS};
+use pantin::codec::segment::{CONTEXTS, SECOND};
 use pantin::codec::tables;
 use std::sync::OnceLock;
 
@@ -25,8 +25,9 @@ impl Costs {
 
     fn of_tables() -> Costs {
         let mode = |after: u8, mode: u8| {
-            let (symbol, bits) = mode_symbol(mode);
-            (cost(tables::mode(after), symbol) + if bits.is_some() { f64::from(MODE_BITS) } else { 0.0 }) as f32
+            let (symbol, second) = mode_symbol(mode);
+            let second = second.map_or(0.0, |second| cost(tables::mode(SECOND), second));
+            (cost(tables::mode(after), symbol) + second) as f32
         };
         let number = |context: u8, index: usize| number_cost(context, index as i32 - AT_HAND) as f32;
         Costs {
@@ -50,13 +51,20 @@ impl Costs {
         number_cost(context, number)
     }
 
+    /// A constant channel's position, in multiples of its grid.
+    pub fn position(&self, p: i32) -> f64 {
+        magnitude_cost(&tables::POSITION, p)
+    }
+
     /// How a moving channel begins, in multiples of its grids.
     pub fn start(&self, p: i32, v: i32) -> f64 {
-        magnitude_cost(&tables::POSITION, p) + magnitude_cost(&tables::VELOCITY, v)
+        self.position(p) + magnitude_cost(&tables::VELOCITY, v)
     }
 }
 
 fn number_cost(context: u8, number: i32) -> f64 {
-    let (symbol, bits) = number_symbol(number);
-    cost(tables::number(context), symbol) + bits.iter().map(|&(_, count)| f64::from(count)).sum::<f64>()
+    let code = NumberCode::of(number);
+    let (_, count) = code.bits;
+    let far = if code.far() { cost(&tables::FAR, count) } else { 0.0 };
+    cost(tables::number(context), code.symbol) + far + f64::from(count)
 }

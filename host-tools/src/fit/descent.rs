@@ -5,7 +5,9 @@ use super::figure::{Figure, Poses, lever};
 use super::parametrize::Rotations;
 use super::refusal::refusal;
 use super::search::{Effort, Fitted, Tube, search};
+use super::start_cost::{StartCosts, step_of};
 use crate::encode::clip::Start;
+use crate::motion::Kind;
 use anyhow::{Result, bail};
 use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
 
@@ -29,11 +31,22 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The same with more passes for a short clip, which takes little time: `values` is the number of its channels times that of its frames.
+    pub fn with_time_for(self, values: usize) -> Plan {
+        let more = (VALUES_OF_A_PLAN / values.max(1) as f64).sqrt().clamp(1.0, MOST_PASSES);
+        let passes = if self.both_steps { (self.passes as f64 * more) as usize } else { self.passes };
+        Plan { passes, ..self }
+    }
+
     /// The bound that a code with this plan's errors would fill.
     pub fn filled_cm(&self) -> f64 {
         self.mean_cm.map_or(self.bound_cm, |mean| MEAN_OF_FILLED * mean)
     }
 }
+
+/// Clips of fewer values have more passes, up to this many times more: a clip of 25 frames becomes 4 % smaller by four times as many.
+const VALUES_OF_A_PLAN: f64 = 40_000.0;
+const MOST_PASSES: f64 = 4.0;
 
 /// Codes that fill a bound have a mean this many times smaller.
 pub const MEAN_OF_FILLED: f64 = 2.2;
@@ -57,7 +70,7 @@ impl Level {
             bound_cm,
             mean_cm: None,
             passes,
-            prices: (10.0, 0.2),
+            prices: (FIRST_PRICE_AT_1_CM * bound_cm.powf(FIRST_PRICE_FALLS).clamp(0.5, 4.0), 0.2),
             both_steps: thorough,
             effort: Effort { beam, margin, slopes: thorough },
             rotations: Rotations::ByCost,
@@ -71,6 +84,9 @@ impl Level {
     }
 }
 
+/// The price of the first pass. A tight bound takes many bits a frame, and an error must cost as much: measured on five clips at 0.1 to 3 cm.
+const FIRST_PRICE_AT_1_CM: f64 = 16.0;
+const FIRST_PRICE_FALLS: f64 = -0.35;
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
 /// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
@@ -83,8 +99,6 @@ const CROWDING: f64 = 4.0;
 const TRUST_DEGREES: f64 = 25.0;
 /// Bits by which a new code must be better.
 const GAIN: f64 = 0.01;
-/// What a channel at rest costs, about.
-const REST_BITS: f64 = 0.4;
 
 /// Passes to a mean, in those to a bound.
 const MEAN_PASSES: usize = 3;
@@ -101,6 +115,9 @@ const END_SITE_PART: f64 = 0.1;
 /// A channel's code, and what the search had found it to cost.
 type Code = Fitted;
 
+/// Bits that a step away from the best one costs, times the square of the distance, about.
+const STEP_LOSS: f64 = 0.3;
+
 /// The state of a descent.
 pub struct Descent<'m> {
     figure: &'m Figure,
@@ -113,6 +130,8 @@ pub struct Descent<'m> {
     scales: &'m [f64],
     /// Where the rig has each channel at rest, raw.
     rests: &'m [i32],
+    /// Kinds as the file has them.
+    kinds: &'m [Kind],
     original: &'m Poses,
     poses: Poses,
     values: Vec<Vec<f64>>,
@@ -139,6 +158,7 @@ impl<'m> Descent<'m> {
         targets: &'m [Vec<f64>],
         scales: &'m [f64],
         rests: &'m [i32],
+        kinds: &'m [Kind],
         original: &'m Poses,
         seconds_a_frame: f64,
     ) -> Self {
@@ -146,7 +166,21 @@ impl<'m> Descent<'m> {
         let poses = figure.poses(&values);
         let codes = vec![None; targets.len()];
         let improved = vec![0; targets.len()];
-        Descent { figure, plan, first_part, targets, scales, rests, original, poses, values, codes, improved, seconds_a_frame }
+        Descent {
+            figure,
+            plan,
+            first_part,
+            targets,
+            scales,
+            rests,
+            kinds,
+            original,
+            poses,
+            values,
+            codes,
+            improved,
+            seconds_a_frame,
+        }
     }
 
     /// All passes. `progress` receives the fraction that is done, 0 to 1.
@@ -324,7 +358,15 @@ impl<'m> Descent<'m> {
         // Many joints below share one error: their sum counts as the root of their number.
         let share = price / (self.plan.bound_cm.powi(2) * (moved.len().max(1) as f64).sqrt());
         let zeros = || vec![0.0; frames];
-        let mut tube = Tube { x: target.clone(), lo: zeros(), hi: zeros(), a: zeros(), b: zeros(), bend: f64::INFINITY };
+        let mut tube = Tube {
+            x: target.clone(),
+            lo: zeros(),
+            hi: zeros(),
+            a: zeros(),
+            b: zeros(),
+            bend: f64::INFINITY,
+            start: self.start_costs(channel),
+        };
         let center = self.figure.channels[channel].0.map(|joint| &self.poses.places[joint]);
         let Some(center) = center else { return tube };
         for frame in 0..frames {
@@ -365,6 +407,11 @@ impl<'m> Descent<'m> {
         tube
     }
 
+    /// What the channel's start costs beside those of the others.
+    fn start_costs(&self, channel: usize) -> StartCosts {
+        StartCosts::of(channel, &self.kinds, |other| self.codes[other].as_ref().map(|code| &code.start))
+    }
+
     /// The best of what the search finds at a few steps.
     fn best(&self, channel: usize, tube: &Tube, pass: usize) -> Option<Fitted> {
         if let Some(rest) = self.at_rest(channel, tube) {
@@ -373,9 +420,14 @@ impl<'m> Descent<'m> {
         let (guess, other) = match &self.codes[channel] {
             Some(code) => {
                 let rms = (code.path.iter().zip(&tube.x).map(|(p, x)| (p - x).powi(2)).sum::<f64>() / tube.x.len() as f64).sqrt();
-                let step = step_of(code).unwrap_or(FIRST_STEP);
+                let step = step_of(&code.start).unwrap_or(FIRST_STEP);
                 let near = step_index(1.6 * rms).clamp(step.saturating_sub(1), step + 1);
-                (near, if pass.is_multiple_of(2) { near + 1 } else { near.saturating_sub(1) })
+                let other = if pass.is_multiple_of(2) { near + 1 } else { near.saturating_sub(1) };
+                // One that the others predict, as long as it is hardly worse.
+                let bits = |step: u8| tube.start.step(step) + STEP_LOSS * f64::from(step.abs_diff(near)).powi(2);
+                let cheap = (near.saturating_sub(3)..=(near + 3).min(MAX_STEP)).min_by(|&a, &b| bits(a).total_cmp(&bits(b)));
+                let cheap = cheap.filter(|&cheap| cheap != near && pass % 3 != 2);
+                (near, cheap.unwrap_or(other))
             }
             None => {
                 // The tube of a channel that is exact so far is as wide as the bound.
@@ -407,7 +459,8 @@ impl<'m> Descent<'m> {
         let flat = tube.a.iter().all(|&a| a == 0.0);
         let path = vec![rest; tube.x.len()];
         let cheap = flat || tube.price(&path) < 8.0;
-        (inside && cheap).then_some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits: REST_BITS })
+        let bits = tube.start.bits(&Start::Rest);
+        (inside && cheap).then_some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits, start_bits: bits })
     }
 }
 
@@ -416,15 +469,9 @@ fn in_units(path: &[f64], scale: f64) -> Vec<f64> {
     path.iter().map(|p| p * scale).collect()
 }
 
+/// The price of a code's errors, and its bits beside the other channels' codes of now.
 fn objective(code: &Fitted, tube: &Tube) -> f64 {
-    code.bits + tube.price(&code.path)
-}
-
-fn step_of(code: &Fitted) -> Option<u8> {
-    match code.start {
-        Start::Rest | Start::Follows { .. } => None,
-        Start::Constant { step, .. } | Start::Moving { step, .. } => Some(step),
-    }
+    code.bits - code.start_bits + tube.start.bits(&code.start) + tube.price(&code.path)
 }
 
 /// Index of the channel step nearest to `size` raw units.

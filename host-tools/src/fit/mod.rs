@@ -12,6 +12,7 @@ pub mod raw;
 pub mod refusal;
 pub mod scalars;
 pub mod search;
+pub mod start_cost;
 
 use crate::encode::clip::{Channel, Coded};
 use crate::encode::rig as rig_bytes;
@@ -43,11 +44,13 @@ pub fn fit_coding(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Coded> {
     let frame_time_ns = time(motion)?;
+    let plan = plan.with_time_for(motion.frames * motion.rig.joint_channels());
     let chosen = coding.apply(motion);
     let length_exponent = coding.length_exponent;
     let scales = raw::scales(&chosen.rig, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);
     let kinds = chosen.rig.channel_kinds();
+    let file_kinds: Vec<_> = motion.rig.channel_kinds().into_iter().map(|(_, kind)| kind).collect();
     let channels = chosen.values.iter().zip(kinds).zip(&scales);
     let targets: Vec<_> = channels.map(|((values, (_, kind)), &scale)| raw::target(values, kind, scale)).collect();
     let original = Figure::new(motion.rig.clone(), motion.frames).poses(&motion.values);
@@ -68,7 +71,17 @@ pub fn fit_coding(
     let mut failed = None;
     let mut codes = None;
     for first_part in FIRST_PARTS {
-        let descent = Descent::new(&figure, plan, first_part, targets, &scales, &rests, &original, motion.frame_time);
+        let descent = Descent::new(
+            &figure,
+            plan,
+            first_part,
+            targets,
+            &scales,
+            &rests,
+            &file_kinds[..joint_channels],
+            &original,
+            motion.frame_time,
+        );
         match descent.run(progress) {
             Ok(found) => {
                 codes = Some(found);

@@ -71,7 +71,8 @@ pub fn fit(rig: &Rig, aims: &[Aim], effort: Effort) -> Result<Vec<Fitted>> {
         let leader = first + members[0];
         for &follower in &members[1..] {
             let start = Start::Follows { leader };
-            codes[follower] = Fitted { start, segments: Vec::new(), path: code.path.clone(), bits: FOLLOWS_BITS };
+            codes[follower] =
+                Fitted { start, segments: Vec::new(), path: code.path.clone(), bits: FOLLOWS_BITS, start_bits: FOLLOWS_BITS };
         }
         codes[members[0]] = code;
     }
@@ -79,7 +80,7 @@ pub fn fit(rig: &Rig, aims: &[Aim], effort: Effort) -> Result<Vec<Fitted>> {
 }
 
 fn rest(frames: usize) -> Fitted {
-    Fitted { start: Start::Rest, segments: Vec::new(), path: vec![0.0; frames], bits: REST_BITS }
+    Fitted { start: Start::Rest, segments: Vec::new(), path: vec![0.0; frames], bits: REST_BITS, start_bits: REST_BITS }
 }
 
 impl Aim {
@@ -94,7 +95,7 @@ impl Aim {
         let frames = self.target.len();
         let bend = self.target.windows(3).fold(0.0, |most: f64, x| most.max((x[0] + x[2] - 2.0 * x[1]).abs()));
         let (a, b) = (vec![PRICE / (bound * bound); frames], vec![0.0; frames]);
-        Tube { x: self.target.clone(), lo, hi, a, b, bend: BEND * bend }
+        Tube { x: self.target.clone(), lo, hi, a, b, bend: BEND * bend, start: Default::default() }
     }
 }
 
@@ -104,7 +105,7 @@ fn shared(one: &Tube, other: &Tube) -> Option<Tube> {
     let hi: Vec<f64> = one.hi.iter().zip(&other.hi).map(|(a, b)| a.min(*b)).collect();
     let open = lo.iter().zip(&hi).all(|(lo, hi)| lo < hi);
     let x = lo.iter().zip(&hi).map(|(lo, hi)| 0.5 * (lo + hi)).collect();
-    open.then(|| Tube { x, lo, hi, a: one.a.clone(), b: one.b.clone(), bend: one.bend.min(other.bend) })
+    open.then(|| Tube { x, lo, hi, a: one.a.clone(), b: one.b.clone(), bend: one.bend.min(other.bend), start: one.start.clone() })
 }
 
 fn narrowest(tube: &Tube) -> f64 {

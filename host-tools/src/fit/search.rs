@@ -2,9 +2,10 @@
 
 use super::beam::{Beam, Hypothesis};
 use super::cost::Costs;
+use super::start_cost::StartCosts;
 use crate::encode::clip::{Start, position_grid, velocity_grid};
 use crate::encode::segment::Segment;
-use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
+use pantin::codec::layout::{LENGTHS, MAX_STEP, START_MODE, segment_type};
 use pantin::codec::segment::{Context, SLOPE, step as number_step};
 use pantin::codec::step_size;
 
@@ -23,6 +24,8 @@ pub struct Tube {
     pub b: Vec<f64>,
     /// Greatest second difference of [`search`]'s path.
     pub bend: f64,
+    /// What its start costs.
+    pub start: StartCosts,
 }
 
 impl Tube {
@@ -48,6 +51,8 @@ pub struct Fitted {
     pub path: Vec<f64>,
     /// Bits of its symbols.
     pub bits: f64,
+    /// Those of them that are its start's.
+    pub start_bits: f64,
 }
 
 /// How hard to search.
@@ -82,10 +87,6 @@ const fn inverses(slope: bool) -> [f64; LONGEST + 1] {
 /// What it is worth to spare a player the reading of a segment: 1 % more bytes for 7 % fewer segments, measured on eight clips.
 pub const SEGMENT_BITS: f64 = 2.0;
 
-/// What a channel's status and step cost, about: they depend on its neighbours.
-const STATUS_BITS: f64 = 1.0;
-const STEP_BITS: f64 = 3.5;
-
 /// Both steps of a mode's length for one channel.
 struct Steps {
     w: [f64; 16],
@@ -118,6 +119,9 @@ pub fn search(tube: &Tube, step: u8, effort: Effort) -> Option<Fitted> {
     }
 }
 
+/// By how much the step of a constant may be finer than its channel would have, or coarser.
+const CONSTANT_STEPS: std::ops::RangeInclusive<i8> = -4..=24;
+
 /// One value for all frames.
 fn constant(tube: &Tube, step: u8) -> Option<Fitted> {
     let lo = tube.lo.iter().copied().fold(f64::MIN, f64::max);
@@ -130,19 +134,19 @@ fn constant(tube: &Tube, step: u8) -> Option<Fitted> {
     let sum_x: f64 = (0..frames).map(|f| tube.a[f] * tube.x[f] - tube.b[f]).sum();
     let best = if sum_a > 0.0 { (sum_x / sum_a).clamp(lo, hi) } else { 0.5 * (lo + hi) };
     let mut chosen: Option<(f64, Fitted)> = None;
-    for below in 0..12 {
-        let Some(step) = step.checked_sub(2 * below) else { break };
+    for finer in CONSTANT_STEPS {
+        let Some(step) = step.checked_add_signed(-finer).filter(|&step| step <= MAX_STEP) else { continue };
         let grid = f64::from(position_grid(step));
         let p = (best / grid).round() * grid;
         if p < lo || p > hi {
             continue;
         }
         let path = vec![p; frames];
-        let bits = STATUS_BITS + STEP_BITS + Costs::get().start(wrap(p / grid), 0);
+        let start = Start::Constant { p: wrap(p / grid), step };
+        let bits = tube.start.bits(&start);
         let objective = bits + tube.price(&path);
         if chosen.as_ref().is_none_or(|(least, _)| objective < *least) {
-            let start = Start::Constant { p: wrap(p / grid), step };
-            chosen = Some((objective, Fitted { start, segments: Vec::new(), path, bits }));
+            chosen = Some((objective, Fitted { start, segments: Vec::new(), path, bits, start_bits: bits }));
         }
     }
     chosen.map(|(_, fitted)| fitted)
@@ -157,7 +161,8 @@ fn short(tube: &Tube, step: u8) -> Option<Fitted> {
     let inside = path.iter().enumerate().all(|(f, p)| (tube.lo[f]..=tube.hi[f]).contains(p));
     let (p, v) = (wrap(p / pg), wrap(v / vg));
     let start = Start::Moving { p, v, step };
-    inside.then_some(Fitted { start, segments: Vec::new(), path, bits: 24.0 })
+    let bits = tube.start.bits(&start);
+    inside.then_some(Fitted { start, segments: Vec::new(), path, bits, start_bits: bits })
 }
 
 /// A first position and velocity in the step's grids, of which they are multiples.
@@ -215,7 +220,7 @@ impl<'t> Search<'t> {
         }
         let (fitted, cost) = self.beam.backtrack(self.step)?;
         let bits = cost - self.tube.price(&fitted.path);
-        Some(Fitted { bits, ..fitted })
+        Some(Fitted { bits, start_bits: self.tube.start.bits(&fitted.start), ..fitted })
     }
 
     /// Starts near the target, each with its velocity.
@@ -233,7 +238,7 @@ impl<'t> Search<'t> {
                 if next < tube.lo[1] || next > tube.hi[1] {
                     continue;
                 }
-                let bits = STATUS_BITS + STEP_BITS + self.costs.start(wrap(p / pg), wrap(v / vg));
+                let bits = self.tube.start.bits(&Start::Moving { p: wrap(p / pg), v: wrap(v / vg), step: self.step });
                 let cost = bits + tube.price_at(0, p) + tube.price_at(1, next);
                 self.beam.insert(Hypothesis::start(cost, p, v));
             }

@@ -166,12 +166,19 @@ fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, Track)]) {
         }
     }
     for (_, track) in tracks.iter_mut().filter(|(_, track)| track.segments.is_empty()) {
-        track.segments.push(Segment { frame: 0, mode: segment_type::NONE << 4, w: 0, k: 0 });
+        track.segments.push(Segment { frame: 0, mode: segment_type::CARRY << 4, w: 0, k: 0 });
     }
 }
 
 impl Track {
     fn segment(&self, frame: u32, mode: u8, w: i32, k: i32) -> Segment {
+        if mode >> 4 == segment_type::CARRY
+            && k != 0
+            && let Some(before) = self.segments.last()
+        {
+            // A message that is lost must not take the slope with it.
+            return Segment { frame, mode: segment_type::K << 4 | before.mode & 15, w: 0, k: before.k };
+        }
         let new = pantin_link::Message { mode: mode.min(START_MODE - 1), ..Default::default() }.is_new();
         // Both are multiples: no well-formed clip's wrap.
         let steps = |new: bool, value: i32, which: u8| if new { value / segment::step(which, self.step) as i32 } else { 0 };

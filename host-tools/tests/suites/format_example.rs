@@ -143,12 +143,13 @@ fn trace(reads: &[Read], symbols: &[u8]) -> String {
                 let low = state & 4095;
                 assert!((start..start + size).contains(&low), "the bytes hold other symbols than the encoder was given");
                 let name = match alphabet {
-                    Alphabet::Status(after) => format!("status after {after}"),
+                    Alphabet::Status(context) => format!("status in {context}"),
                     Alphabet::StepChange => "step change".into(),
                     Alphabet::Position => "position".into(),
                     Alphabet::Velocity => "velocity".into(),
                     Alphabet::Mode(after) => format!("mode after {after}"),
                     Alphabet::Number(context) => format!("number in {context}"),
+                    Alphabet::Far => "far".into(),
                 };
                 let _ = writeln!(out, "{state:06x}  {low:4}  {name:16} {symbol:2}  {meaning}");
                 state = size * (state >> 12) + low - start;
@@ -233,7 +234,7 @@ fn the_text_names_the_numbers_of_the_layout() {
         format!("{START_MODE} (`START_MODE`)"),
         format!("0 to {DIRECT} (`DIRECT`)"),
         format!("n = 1 to {GROUPS} (`GROUPS`)"),
-        format!("{FAR} (`FAR`) | n = {FAR_BITS} bits; then {} + 2^n", group(GROUPS + 1) - 1),
+        format!("{FAR_NUMBER} (`FAR_NUMBER`) | n = a symbol by `FAR`; then {} + 2^n", group(GROUPS + 1) - 1),
     ] {
         assert!(text.contains(&expected), "FORMAT.md does not say: {expected}");
     }

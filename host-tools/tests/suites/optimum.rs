@@ -51,7 +51,15 @@ fn tube(case: u64, frames: usize) -> Tube {
     let price = [0.0, 0.1, 0.3, 1.0][case as usize % 4];
     let lo = x.iter().map(|x| x - half).collect();
     let hi = x.iter().map(|x| x + half).collect();
-    Tube { x, lo, hi, a: vec![price / (half * half); frames], b: vec![0.0; frames], bend: f64::INFINITY }
+    Tube {
+        x,
+        lo,
+        hi,
+        a: vec![price / (half * half); frames],
+        b: vec![0.0; frames],
+        bend: f64::INFINITY,
+        start: Default::default(),
+    }
 }
 
 /// All codes from a state on; a branch ends where it costs more than the best so far.

@@ -3,7 +3,7 @@
 //! A table lists the probabilities of its symbols in 1/4096. Contexts that share a table share its index.
 
 use pantin::Kind;
-use pantin::codec::segment::{CONTEXTS, DIRECT_MODES};
+use pantin::codec::segment::{CONTEXTS, DIRECT_MODES, MODE_CONTEXTS};
 use pantin::codec::{entropy, layout};
 use pantin_tools::encode::entropy::{Alphabet, sizes};
 use serde_json::json;
@@ -30,9 +30,9 @@ fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u32>>, Vec<usize
 
 /// The file's text.
 pub fn text() -> String {
-    let (mode, mode_after) = shared((0..64).map(Alphabet::Mode));
+    let (mode, mode_after) = shared((0..MODE_CONTEXTS as u8).map(Alphabet::Mode));
     let (number, number_in) = shared((0..CONTEXTS as u8).map(Alphabet::Number));
-    let status: Vec<Vec<u32>> = (0..layout::STATUSES as u8).map(|after| list(Alphabet::Status(after))).collect();
+    let (status, status_in) = shared((0..layout::STATUS_CONTEXTS as u8).map(Alphabet::Status));
     let kinds: Vec<String> = Kind::ALL.iter().map(|kind| format!("{kind:?}")).collect();
     json::text(&[
         ("magic", json!(layout::MAGIC)),
@@ -59,13 +59,12 @@ pub fn text() -> String {
         ("type_w", json!(layout::segment_type::W)),
         ("type_k", json!(layout::segment_type::K)),
         ("type_wk", json!(layout::segment_type::WK)),
-        ("type_none", json!(layout::segment_type::NONE)),
+        ("type_carry", json!(layout::segment_type::CARRY)),
         ("start_mode", json!(layout::START_MODE)),
         ("direct_modes", json!(DIRECT_MODES)),
         ("direct", json!(layout::DIRECT)),
         ("groups", json!(layout::GROUPS)),
-        ("far", json!(layout::FAR)),
-        ("far_bits", json!(layout::FAR_BITS)),
+        ("far_number", json!(layout::FAR_NUMBER)),
         ("max_step", json!(layout::MAX_STEP)),
         ("first_step", json!(layout::FIRST_STEP)),
         ("step_changes", json!(layout::STEP_CHANGES)),
@@ -78,9 +77,11 @@ pub fn text() -> String {
         ("mode", json!(mode)),
         ("number_in", json!(number_in)),
         ("number", json!(number)),
+        ("status_in", json!(status_in)),
         ("status", json!(status)),
         ("step_change", json!(list(Alphabet::StepChange))),
         ("position", json!(list(Alphabet::Position))),
         ("velocity", json!(list(Alphabet::Velocity))),
+        ("far", json!(list(Alphabet::Far))),
     ])
 }

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use anyhow::Result;
-use pantin::codec::layout::{FAR, FAR_BITS, FOLLOW_BITS, LENGTHS, START_MODE, STATUSES, STEP_CHANGES, status};
+use pantin::codec::layout::{FAR_NUMBER, FOLLOW_BITS, LENGTHS, START_MODE, STATUS_CONTEXTS, STATUSES, STEP_CHANGES, status};
+use pantin::codec::segment::{DIRECT_MODES, SECOND};
 use pantin_tools::encode::clip::symbols;
 use pantin_tools::encode::entropy::{Alphabet, Sink};
 use pantin_tools::encode::rig;
@@ -11,12 +12,11 @@ use pantin_tools::encode::segment::mode_symbol;
 
 use super::synthetic::Made;
 
-/// Symbols by alphabet, the counts of bits that far numbers had, and the ways back to those that others follow.
+/// Symbols by alphabet, modes, and the ways back to those that others follow.
 #[derive(Default)]
 struct Seen {
     symbols: BTreeSet<(Alphabet, u32)>,
     modes: BTreeSet<u8>,
-    far_bits: BTreeSet<u32>,
     backs: BTreeSet<u32>,
     /// The last symbol, which tells what the bits behind it are.
     last: Option<(Alphabet, u32)>,
@@ -26,20 +26,17 @@ impl Sink for Seen {
     fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
         self.symbols.insert((alphabet, symbol));
         self.last = Some((alphabet, symbol));
-        if let Alphabet::Mode(_) = alphabet {
-            self.modes.extend((0..START_MODE).filter(|&mode| mode_symbol(mode) == (symbol, None)));
+        match alphabet {
+            Alphabet::Mode(SECOND) => {
+                self.modes.extend((0..START_MODE).filter(|&mode| mode_symbol(mode) == (DIRECT_MODES, Some(symbol))));
+            }
+            Alphabet::Mode(_) => self.modes.extend((0..START_MODE).filter(|&mode| mode_symbol(mode) == (symbol, None))),
+            _ => {}
         }
     }
 
-    fn bits(&mut self, value: u32, count: u32) {
+    fn bits(&mut self, value: u32, _: u32) {
         match self.last.take() {
-            Some((Alphabet::Number(_), symbol)) if symbol.div_ceil(2) == FAR && count == FAR_BITS => {
-                self.far_bits.insert(value);
-            }
-            Some((Alphabet::Mode(_), symbol)) => {
-                let named = |mode: &u8| mode_symbol(*mode) == (symbol, Some(value));
-                self.modes.extend((0..START_MODE).filter(named));
-            }
             Some((Alphabet::Status(_), symbol)) if symbol == u32::from(status::FOLLOWS) => {
                 self.backs.insert(value);
             }
@@ -66,16 +63,17 @@ pub fn left_out(motions: &[Made]) -> Result<Vec<String>> {
     }
     let has =
         |of: &dyn Fn(Alphabet) -> bool, symbol| seen.symbols.iter().any(|&(alphabet, other)| of(alphabet) && other == symbol);
-    for symbol in 0..=2 * FAR {
+    for symbol in 0..=2 * FAR_NUMBER {
         wants(has(&|of| matches!(of, Alphabet::Number(context) if context < 48), symbol), format!("symbol {symbol} of w"));
         wants(has(&|of| matches!(of, Alphabet::Number(context) if context >= 48), symbol), format!("symbol {symbol} of k"));
     }
     for bits in 0..30 {
-        wants(seen.far_bits.contains(&bits), format!("a far number of {bits} bits"));
+        wants(seen.symbols.contains(&(Alphabet::Far, bits)), format!("a far number of {bits} bits"));
     }
-    for after in 0..STATUSES as u8 {
+    for context in 0..STATUS_CONTEXTS as u8 {
         for status in 0..STATUSES as u32 {
-            wants(seen.symbols.contains(&(Alphabet::Status(after), status)), format!("status {status} after {after}"));
+            let like = |of: Alphabet| matches!(of, Alphabet::Status(_)) && of.table() == Alphabet::Status(context).table();
+            wants(has(&like, status), format!("status {status} in a context like {context}"));
         }
     }
     for back in 0..1 << FOLLOW_BITS {

@@ -1,10 +1,12 @@
 //! Finds the cheapest segments of all four types for one channel in a narrow tube, by a beam search (`beam.rs`).
 //!
-//! Where a curve is known exactly, its acceleration and slope are both known: WK segments restart them, K and NONE segments
+//! Where a curve is known exactly, its acceleration and slope are both known: WK segments restart them, K and CARRY segments
 //! carry them on. The tube bounds positions (METHOD 2.3 (b)) or accelerations ((a)).
 
+mod known;
 mod numbers;
 
+pub use known::known;
 pub use numbers::Constraint;
 
 use super::beam::{self, Beam};
@@ -46,19 +48,20 @@ const SLOPES: i32 = 1;
 const MISSES: u32 = 2;
 /// What a channel's status and step cost, about.
 const OPENING_BITS: f64 = 4.5;
-/// What the tube leaves of the number of a W or a K segment, and whether it leaves NONE.
+/// What the tube leaves of the number of a W or a K segment, and whether it leaves CARRY.
 struct Ranges {
     w: Range,
     k: Range,
-    none: Range,
+    carry: Range,
 }
 
 impl Ranges {
-    fn cut(&mut self, room: &Room, carried: f64) {
+    fn cut(&mut self, room: &Room, carried: f64, slope: f64) {
         let (w, k) = room.weights;
         self.w.cut(room.lo, room.hi, w);
         self.k.cut(room.lo - w * carried, room.hi - w * carried, k);
-        self.none.cut(room.lo - w * carried, room.hi - w * carried, 0.0);
+        let carry = w * carried + k * slope;
+        self.carry.cut(room.lo - carry, room.hi - carry, 0.0);
     }
 }
 
@@ -158,7 +161,7 @@ impl Chains<'_> {
     fn extend(&mut self, id: usize, from: &Hypothesis) {
         let start = from.frame as usize;
         let rest = self.tube.x.len() - 1 - start;
-        let mut ranges = Ranges { w: Range::ALL, k: Range::ALL, none: Range::ALL };
+        let mut ranges = Ranges { w: Range::ALL, k: Range::ALL, carry: Range::ALL };
         let mut sums = Sums::default();
         let mut room = Vec::new();
         let mut misses = 0;
@@ -166,7 +169,7 @@ impl Chains<'_> {
             let length = usize::from(LENGTHS[usize::from(index)]).min(rest);
             while room.len() < length {
                 let next = self.room(from, room.len() + 1);
-                ranges.cut(&next, from.w);
+                ranges.cut(&next, from.w, from.k);
                 sums.add(&next, self.tube.a[start + room.len() + 1]);
                 room.push(next);
             }
@@ -174,13 +177,13 @@ impl Chains<'_> {
             if length > 1 && misses < MISSES {
                 misses = if self.both(id, from, index, &sums, &room) { 0 } else { misses + 1 };
             }
-            if length == rest || (ranges.w.is_empty() && ranges.k.is_empty() && misses == MISSES) {
+            if length == rest || (ranges.w.is_empty() && ranges.k.is_empty() && ranges.carry.is_empty() && misses == MISSES) {
                 break;
             }
         }
     }
 
-    /// W, and after a first segment K and NONE.
+    /// W, and after a first segment K and CARRY.
     fn single(&mut self, id: usize, from: &Hypothesis, index: u8, sums: &Sums, ranges: &Ranges, length: usize) {
         for q in ranges.w.choices(self.unit(false, index), sums.best_w(0.0), from.w) {
             self.segment(id, from, segment_type::W << 4 | index, sums, length, (q, 0));
@@ -191,8 +194,8 @@ impl Chains<'_> {
         for q in ranges.k.choices(self.unit(true, index), sums.best_k(from.w), from.k) {
             self.segment(id, from, segment_type::K << 4 | index, sums, length, (0, q));
         }
-        if !ranges.none.is_empty() {
-            self.segment(id, from, segment_type::NONE << 4 | index, sums, length, (0, 0));
+        if !ranges.carry.is_empty() {
+            self.segment(id, from, segment_type::CARRY << 4 | index, sums, length, (0, 0));
         }
     }
 
@@ -231,7 +234,8 @@ impl Chains<'_> {
         }
         let kind = mode >> 4;
         let mut bits = from.cost.bits + self.costs.mode(from.mode, mode);
-        let (mut w, mut k, mut prev_sign) = (from.w, 0.0, from.prev_sign);
+        let carries = kind == segment_type::CARRY;
+        let (mut w, mut k, mut prev_sign) = (from.w, if carries { from.k } else { 0.0 }, from.prev_sign);
         let length_index = mode & 15;
         if kind == segment_type::W || kind == segment_type::WK {
             let unit = self.unit(false, mode);
