@@ -84,9 +84,9 @@ impl Level {
     }
 }
 
-/// The price of the first pass. A tight bound takes many bits a frame, and an error must cost as much: measured on five clips at 0.1 to 3 cm.
-const FIRST_PRICE_AT_1_CM: f64 = 16.0;
-const FIRST_PRICE_FALLS: f64 = -0.35;
+/// The price of the first pass. A tight bound takes many bits a frame, and an error must cost as much: measured on ten clips at 0.1 to 3 cm.
+const FIRST_PRICE_AT_1_CM: f64 = 11.0;
+const FIRST_PRICE_FALLS: f64 = -0.45;
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
 /// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
