@@ -4,7 +4,7 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
-const VERSION = 0xe6, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, BLOCK = 256, CRC_BYTES = 2;
+const VERSION = 0xe7, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, BLOCK = 256, CRC_BYTES = 2;
 const FRAME_RATES = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 const LENGTHS = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 const LENGTH_CLASSES = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];

@@ -3,7 +3,7 @@
 /// First bytes of every clip.
 pub const MAGIC: [u8; 2] = *b"Pn";
 /// Version byte: values from 0xe0 are experimental and promise nothing.
-pub const VERSION: u8 = 0xe6;
+pub const VERSION: u8 = 0xe7;
 
 /// Flag: the rig stands in the file, after the flags.
 pub const HAS_RIG: u8 = 1;

@@ -305,9 +305,10 @@ fn crowd() -> Made {
 }
 
 /// Channels that follow another, every way back that there is, some of them one that follows itself, among channels of every status;
-/// of angles, of positions and of scalars with names by a list.
+/// of angles, of positions, whose statuses come in every order, and of scalars with names by a list.
 fn followers() -> Made {
-    let mut rig = figure(&[vec![&EULER as &[Kind]; 12], vec![&PLACE as &[Kind]; 4]].concat(), 60);
+    let places = 48..48 + 6 * 32;
+    let mut rig = figure(&[vec![&EULER as &[Kind]; 12], vec![&PLACE as &[Kind]; 4 + 2 * 32]].concat(), 60);
     let names = pantin::names::LIVE_LINK.split(' ').filter(|&name| name != "TongueOut");
     rig.scalars.iter_mut().zip(names).for_each(|(scalar, name)| scalar.name = name.into());
     let mut coded = motion(30);
@@ -315,12 +316,21 @@ fn followers() -> Made {
     let (mut moves, mut back) = (vec![], 0);
     for channel in 0..rig.channels() {
         let leader = moves.len().checked_sub(back % 32 + 1).map(|at| moves[at]);
-        let made = match (noise.below(8), leader) {
+        // A pair of joints for each status behind one that moves or follows, and each of the last x before it.
+        let ordered = places.contains(&channel).then(|| {
+            let pair = (channel - places.start) / 6;
+            let statuses = [pair / 8, 0, 2 + pair / 4 % 2, pair % 4, 0, 2];
+            [0, 1, 7, 2][statuses[(channel - places.start) % 6]]
+        });
+        let made = match (ordered.unwrap_or_else(|| noise.below(8)), leader) {
             (0, _) => Channel { start: Start::Rest, segments: vec![] },
             (1, _) => Channel { start: constant(noise.between(-99, 99), 44), segments: vec![] },
             (2..6, Some(leader)) => {
                 back += 1;
                 Channel { start: Start::Follows { leader }, segments: vec![] }
+            }
+            _ if ordered.is_some() => {
+                Channel { start: moving(0, 1, 44), segments: fill(coded.frames, || Segment { mode: 15, w: 0, k: 0 }) }
             }
             _ => lively(coded.frames, moving(noise.between(-90, 90), noise.between(-9, 9), 40 + channel as u8 % 7), &mut noise),
         };
