@@ -93,14 +93,14 @@ impl<C: Cost> Beam<C> {
         }
     }
 
-    /// Chooses up to `width` hypotheses of a frame to extend: the best within `limit`, and of those in one cell the best. Returns
-    /// their indices for [`Beam::extended`].
+    /// Chooses up to `width` hypotheses of a frame to extend: the best within `limit`, and of those in one cell the best; those
+    /// without a cell are all kept apart. Returns their indices for [`Beam::extended`].
     pub fn choose<K: PartialEq>(
         &mut self,
         frame: usize,
         limit: f64,
         width: usize,
-        cell: impl Fn(&Hypothesis<C>) -> K,
+        cell: impl Fn(&Hypothesis<C>) -> Option<K>,
     ) -> Range<usize> {
         let here = std::mem::take(&mut self.heap[frame]);
         let within = here.iter().enumerate().filter(|(_, hypothesis)| hypothesis.cost.rank() <= limit);
@@ -110,11 +110,11 @@ impl<C: Cost> Beam<C> {
         let first = self.extended.len();
         let mut cells = Vec::with_capacity(width.min(here.len()));
         for &(_, index) in &self.ranked {
-            if cells.len() >= width {
+            if self.extended.len() - first >= width {
                 break;
             }
             let cell = cell(&here[index]);
-            if !cells.contains(&cell) {
+            if cell.is_none() || !cells.contains(&cell) {
                 cells.push(cell);
                 self.extended.push(here[index]);
             }

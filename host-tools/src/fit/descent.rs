@@ -72,7 +72,7 @@ impl Level {
             passes,
             prices: (FIRST_PRICE_AT_1_CM * bound_cm.powf(FIRST_PRICE_FALLS).clamp(0.5, 4.0), 0.2),
             both_steps: thorough,
-            effort: Effort { beam, margin, slopes: thorough },
+            effort: Effort { beam, margin, slopes: thorough, all_alike: false },
             rotations: Rotations::ByCost,
         };
 

@@ -64,6 +64,8 @@ pub struct Effort {
     pub margin: f64,
     /// Whether slopes are tried.
     pub slopes: bool,
+    /// Whether hypotheses at nearly the same position and velocity are all kept (slow); otherwise the best of them is.
+    pub all_alike: bool,
 }
 
 /// Frames of the longest segment.
@@ -144,7 +146,9 @@ pub fn search(tube: &Tube, step: u8, effort: Effort) -> Option<Fitted> {
     if tube.x.len() < 3 {
         return resting.or_else(|| short(tube, step));
     }
-    let moving = Search::new(tube, step, effort).run();
+    // Where every hypothesis that was kept has come to an end, others may not have.
+    let wider = Effort { beam: WIDER * effort.beam, margin: WIDER as f64 * effort.margin, ..effort };
+    let moving = Search::new(tube, step, effort).run().or_else(|| Search::new(tube, step, wider).run());
     match (resting, moving) {
         (Some(rest), Some(moving)) => {
             let better = rest.bits + tube.price(&rest.path) <= moving.bits + tube.price(&moving.path);
@@ -154,6 +158,8 @@ pub fn search(tube: &Tube, step: u8, effort: Effort) -> Option<Fitted> {
     }
 }
 
+/// By how much wider a second search is than one that found nothing.
+const WIDER: usize = 4;
 /// By how much the step of a constant may be finer than its channel would have, or coarser.
 const CONSTANT_STEPS: std::ops::RangeInclusive<i8> = -4..=24;
 
@@ -242,7 +248,8 @@ impl<'t> Search<'t> {
         let frames = self.tube.x.len();
         let (position_cells, velocity_cells) =
             (4.0 / f64::from(step_size(self.step)), 1.0 / (0.03 * f64::from(step_size(self.step))));
-        let cell = |at: &Hypothesis<f64>| (floor(at.p * position_cells), floor(at.v * velocity_cells));
+        let apart = self.effort.all_alike;
+        let cell = |at: &Hypothesis<f64>| (!apart).then(|| (floor(at.p * position_cells), floor(at.v * velocity_cells)));
         for frame in 1..frames - 1 {
             let least = &self.beam.least;
             let horizon = least[frame..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
@@ -356,7 +363,7 @@ impl<'t> Search<'t> {
         let nearest = |x: f64| (floor(x.clamp(-1e9, 1e9) + 0.5) as i32).clamp(ql, qh);
         let best = if s2 > 0.0 { nearest(-s1 / (s2 * unit)) } else { 0.clamp(ql, qh) };
         let carried = if SLOPE { 0 } else { nearest(from.w / unit) };
-        for q in candidates(ql, qh, best, carried) {
+        for q in candidates(ql, qh, best, carried, s2 <= 0.0) {
             let number = if context.flip != 0 { -q } else { q };
             let g = f64::from(q) * unit;
             let cost = mode_cost + self.costs.number(context.index, number) + s0 + g * (2.0 * s1 + g * s2);
@@ -394,21 +401,26 @@ struct Reach {
     weight: Weight,
 }
 
+/// So many numbers are all tried.
+const ALL_OF: usize = 9;
+
 /// Which of the numbers `least..=most` are tried: all of a few, else those that price and statistics favour.
-fn candidates(least: i32, most: i32, best: i32, carried: i32) -> impl Iterator<Item = i32> {
-    let mut list = [0; 6];
+fn candidates(least: i32, most: i32, best: i32, carried: i32, free: bool) -> impl Iterator<Item = i32> {
+    let mut list = [0; ALL_OF];
     let mut len = 0;
-    if most - least < 6 {
-        for q in least..=most {
+    let mut put = |q: i32| {
+        if (least..=most).contains(&q) && !list[..len].contains(&q) {
             list[len] = q;
             len += 1;
         }
+    };
+    if most - least < ALL_OF as i32 {
+        (least..=most).for_each(&mut put);
     } else {
-        for q in [best, best - 1, best + 1, 0.clamp(least, most), carried, (best / 2).clamp(least, most)] {
-            if (least..=most).contains(&q) && !list[..len].contains(&q) {
-                list[len] = q;
-                len += 1;
-            }
+        [best, best - 1, best + 1, 0.clamp(least, most), carried, (best / 2).clamp(least, most)].into_iter().for_each(&mut put);
+        if free {
+            // No error has a price: numbers near 0 differ in bits alone.
+            [best - 2, best + 2].into_iter().for_each(&mut put);
         }
     }
     list.into_iter().take(len)

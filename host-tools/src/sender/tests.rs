@@ -407,7 +407,7 @@ fn the_bytes_on_the_line_stay_the_same() {
         (sent.len(), pantin::codec::crc::of(&sent))
     };
     // A packet has the rig's id in it.
-    let expected = [(14810, 10171), (15798, 63856), (17385, 26247)];
+    let expected = [(16219, 52849), (17279, 46455), (18965, 29646)];
     assert_eq!([(CLIPS[0], false), (CLIPS[0], true), (CLIPS[4], false)].map(sent), expected);
 }
 

@@ -142,7 +142,7 @@ pub fn known(tube: &Tube, keys: &[usize], starts: &[(f64, f64, f64)], step: u8) 
         let length = span.length as f64;
         let cell = |at: &Hypothesis| {
             let part = |x: f64| (x / (CELL * bound)).floor() as i64;
-            [part(at.p), part(at.v * length), part(at.w * length * length)]
+            Some([part(at.p), part(at.v * length), part(at.w * length * length)])
         };
         let width = if place == 0 { usize::MAX } else { WIDTH };
         for id in known.beam.choose(span.frame, limit, width, cell) {

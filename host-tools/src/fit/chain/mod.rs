@@ -87,7 +87,7 @@ pub fn chain(tube: &Tube, constraint: Constraint, starts: &[(f64, f64, f64)], st
     for frame in 1..frames - 1 {
         let half = chains.half_width(frame);
         let limit = chains.beam.least[frame] + MARGIN;
-        for id in chains.beam.choose(frame, limit, width, |at| cell(constraint, half, at)) {
+        for id in chains.beam.choose(frame, limit, width, |at| Some(cell(constraint, half, at))) {
             let hypothesis = chains.beam.extended(id);
             chains.extend(id, &hypothesis);
         }
