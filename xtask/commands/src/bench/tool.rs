@@ -58,9 +58,14 @@ impl Tool {
         Ok(Self { program, clips })
     }
 
+    /// Where the clip of a name is. Names have points: `walk-0.05degrees`.
+    fn clip(&self, name: &str) -> PathBuf {
+        self.clips.join(format!("{name}.ptn"))
+    }
+
     /// Converts a motion into the clip `name`.ptn.
     pub fn convert(&self, motion: &Path, name: &str, options: &[String]) -> Result<Converted> {
-        let clip = self.clips.join(name).with_extension("ptn");
+        let clip = self.clip(name);
         let start = Instant::now();
         self.run(Command::new(&self.program).arg("convert").arg(motion).arg("-q").arg("-o").arg(&clip).args(options))?;
         let seconds = Some(start.elapsed().as_secs_f64());
@@ -69,7 +74,7 @@ impl Tool {
 
     /// As [`Tool::convert`], but takes a clip that is newer than the program and the motion. The name must stand for the options.
     pub fn converted(&self, motion: &Path, name: &str, options: &[String]) -> Result<Converted> {
-        let clip = self.clips.join(name).with_extension("ptn");
+        let clip = self.clip(name);
         let changed = |path: &Path| path.metadata().and_then(|data| data.modified());
         let newer = |path: &Path| matches!((changed(&clip), changed(path)), (Ok(made), Ok(source)) if made > source);
         if newer(&self.program) && newer(motion) {
@@ -122,4 +127,16 @@ pub fn mean_options(mean_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
 
 fn unit(cm_per_unit: Option<f64>) -> Vec<String> {
     cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_with_points_are_apart() {
+        let tool = Tool { program: PathBuf::new(), clips: "clips".into() };
+        assert_eq!(tool.clip("walk-0.05degrees"), Path::new("clips/walk-0.05degrees.ptn"));
+        assert_ne!(tool.clip("walk-0.05degrees"), tool.clip("walk-0.5cm"));
+    }
 }
