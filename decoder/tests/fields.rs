@@ -170,3 +170,13 @@ fn a_slow_clock_loses_no_part_of_a_nanosecond() {
     (0..1 << 16).for_each(|_| clock.advance(1));
     assert_eq!(clock.frame(), 10);
 }
+
+#[test]
+fn a_form_is_what_it_is_made_of() {
+    let form = Form::new(7, -3, [1, 0, 2, 0]);
+    assert_eq!((form.rig_id(), form.length_exponent()), (7, -3));
+    assert!(form.exponentials().take(4).eq([1, 0, 2, 0]) && form.exponentials().skip(4).all(|byte| byte == 0));
+    // A bit for each joint with a choice, in whole words.
+    let bits = 8 * Form::EXPONENTIAL_BYTES;
+    assert!((MAX_CHANNELS / 3..MAX_CHANNELS / 3 + 32).contains(&bits) && form.exponentials().count() == bits / 8);
+}

@@ -18,7 +18,8 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use harness::{paths, vectors};
-use hostile::{FUZZ_TARGETS, FuzzTarget};
+use hostile::{FUZZ_TARGETS, FuzzTarget, fix};
+use pantin::codec::layout::{BANK_MAGIC, MAGIC, VERSION};
 use xtask::setup;
 use xtask::steps::say;
 
@@ -204,10 +205,22 @@ fn corpus(target: FuzzTarget) -> Result<PathBuf> {
     if kept.is_file() {
         let packed = fs::File::open(&kept).with_context(|| kept.display().to_string())?;
         for (index, input) in unpack(packed).with_context(|| kept.display().to_string())?.into_iter().enumerate() {
-            fs::write(folder.join(format!("kept-{index}")), input)?;
+            fs::write(folder.join(format!("kept-{index}")), of_this_version(input))?;
         }
     }
     Ok(folder)
+}
+
+/// A kept input as this version of the format reads it: a clip or a bank of another version would be refused by its third byte.
+fn of_this_version(mut input: Vec<u8>) -> Vec<u8> {
+    if input.get(2).is_some_and(|&version| version != VERSION) {
+        if input.starts_with(&MAGIC) {
+            fix::clip(&mut input);
+        } else if input.starts_with(&BANK_MAGIC) {
+            fix::bank(&mut input);
+        }
+    }
+    input
 }
 
 fn kept(target: FuzzTarget) -> PathBuf {
@@ -271,6 +284,18 @@ mod tests {
         let inputs = [vec![], vec![0], vec![7; 70_000]];
         assert_eq!(unpack(&pack(&inputs).unwrap()[..]).unwrap(), inputs);
         assert!(unpack(&pack(&inputs).unwrap()[..20]).is_err());
+    }
+
+    #[test]
+    fn clips_of_another_version_are_kept_as_clips_of_this_one() {
+        let walk = fs::read(paths::root().join("motions/walk.ptn")).unwrap();
+        let mut other = walk.clone();
+        other[2] ^= 1;
+        assert!(pantin::Clip::new_checked(&other).is_err());
+        assert!(of_this_version(other) == walk);
+        assert!(of_this_version(walk.clone()) == walk);
+        // What is no clip stays as it is.
+        assert_eq!(of_this_version(b"HIERARCHY".to_vec()), b"HIERARCHY");
     }
 
     #[test]
