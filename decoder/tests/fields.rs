@@ -100,6 +100,8 @@ fn a_clip_knows_its_form_scalars_and_names_of_events() {
     let clip = Clip::new_checked(WALK).unwrap();
     assert_eq!(clip.form(), clip.form_ref().to_form());
     assert_eq!((clip.form().rig_id(), clip.form().length_exponent()), (clip.rig().id(), clip.length_exponent()));
+    let form = clip.form_ref();
+    assert_eq!((form.rig_id(), form.length_exponent()), (clip.rig().id(), clip.length_exponent()));
     assert_ne!(clip.form(), Form::default());
     assert_eq!((clip.event_name(0), clip.event_id(""), clip.event_id("left_foot_down")), (None, None, None));
     let (Some(scalars), Some(names)) = (vector("scalars"), vector("event-names")) else { return };
