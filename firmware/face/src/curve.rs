@@ -17,6 +17,8 @@ pub struct Curve<'a> {
     pub small: bool,
     /// Whether it consists of straight lines at every detail. Other curves bend from detail 1 on.
     pub straight: bool,
+    /// Whether the area inside is filled, in place of a line. The curve is closed.
+    pub filled: bool,
     /// Brightness, 0 to 255.
     pub shade: u8,
     indices: &'a [u8],
@@ -26,7 +28,8 @@ pub struct Curve<'a> {
 impl<'a> Curve<'a> {
     fn parse(bytes: &mut Bytes<'a>, wide: bool) -> Result<Self, ModelError> {
         let [flags, shade, count] = bytes.array()?;
-        if flags >> 6 != 0 || count < 2 {
+        let filled = flags & 64 != 0;
+        if flags >> 7 != 0 || count < 2 || (filled && flags & 1 == 0) {
             return Err(ModelError::Malformed);
         }
         Ok(Curve {
@@ -35,6 +38,7 @@ impl<'a> Curve<'a> {
             detail: flags >> 2 & 3,
             small: flags & 32 != 0,
             straight: flags & 16 != 0,
+            filled,
             shade,
             indices: bytes.take(usize::from(count) << u32::from(wide))?,
             wide,

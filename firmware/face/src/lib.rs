@@ -58,6 +58,7 @@ mod opening;
 mod opening_clip;
 mod outline;
 mod pen;
+mod polygon;
 mod projection;
 mod renderer;
 mod rotate;
@@ -80,6 +81,9 @@ pub use weights::{FULL_WEIGHT, Weight, Weights};
 
 /// The model of Pantin's own face, for [`Model::new_checked`]. `pantin face model` writes it; docs/FACE.md describes its units.
 pub static MODEL: &[u8] = include_bytes!("../face.model");
+
+/// A face of filled shapes in two tones for small displays, driven by the same names as [`MODEL`]. `pantin face model --cartoon` writes it.
+pub static CARTOON: &[u8] = include_bytes!("../cartoon.model");
 
 /// The names that drive Pantin's own face, one per line: its units, sums of units such as `joy` and `viseme_aa`, the blend shapes of ARKit and
 /// the facial animation parameters of MPEG-4. docs/FACE.md explains them.

@@ -147,11 +147,14 @@ fn add_along_arc(model: &Model, shape: &Shape, arc: Arc, pair: [i32; 2], vertice
         let centre = [sign * i32::from(arc.centre[0]), i32::from(arc.centre[1]), i32::from(arc.centre[2])];
         for run in shape.runs() {
             let first = if mirrored { model.mirror(run.first) } else { run.first };
-            for index in first..first.saturating_add(run.deltas.len() as u16) {
+            for (index, delta) in (first..=u16::MAX).zip(run.deltas) {
+                // What moves less is bent less: by the square of its part of the largest movement, which is 127. Q8.
+                let most = delta.iter().fold(0, |most: i32, &x| most.max(i32::from(x as i8).abs()));
+                let bent = (away * ((most * most * 65) >> 12)) >> 8;
                 let from = model.neutral(index);
                 let Some(vertex) = vertices.get_mut(usize::from(index)) else { continue };
                 for axis in 0..3 {
-                    let pushed = (i32::from(from[axis]) - centre[axis]).wrapping_mul(away).wrapping_add(1 << 14) >> 15;
+                    let pushed = (i32::from(from[axis]) - centre[axis]).wrapping_mul(bent).wrapping_add(1 << 14) >> 15;
                     vertex[axis] = vertex[axis].wrapping_add(pushed as i16);
                 }
             }

@@ -21,7 +21,8 @@ pub enum Interpolation {
 /// What the spherical interpolation of a shape's deltas needs: about which point, and by which angle.
 ///
 /// A vertex goes from s to e, both seen from the centre, by sin((1 - w) W) / sin W s + sin(w W) / sin W e. If W is the angle between s and e, this is an arc of a
-/// great circle; a larger W bends it more.
+/// great circle; a larger W bends it more. Vertices that move less than
+/// others of the shape are bent less: by the square of their part of the largest movement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arc {
     /// In steps; x is negated for the mirror image.

@@ -5,6 +5,7 @@ use crate::curve::Curve;
 use crate::model::Model;
 use crate::outline::{Outline, each_triangle};
 use crate::pen::StrokeSink;
+use crate::polygon::Polygon;
 use crate::projection::NOT_DRAWN;
 
 /// Brightness of the mesh.
@@ -37,7 +38,9 @@ pub(crate) fn draw(model: &Model, face: ProjectedFace, detail: u8, out: &mut imp
                 break;
             }
             out.begin(curve.shade);
-            if fine.is_empty() {
+            if curve.filled {
+                face.filled(model, &curve, mirrored, fine, out);
+            } else if fine.is_empty() {
                 face.straight(model, &curve, mirrored, out);
             } else {
                 face.smooth(model, &curve, mirrored, fine, out);
@@ -119,6 +122,27 @@ impl ProjectedFace<'_> {
         if curve.closed {
             visible(from, first, out);
         }
+    }
+
+    /// Fills the inside of a closed curve, if its first vertex faces the camera.
+    #[inline(never)]
+    fn filled(&self, model: &Model, curve: &Curve, mirrored: bool, fine: &[[i32; 4]], out: &mut impl StrokeSink) {
+        let len = curve.len();
+        let at = |position: usize| {
+            let index = curve.vertex(if position < len { position } else { position - len });
+            self.vertex(if mirrored { model.mirror(index) } else { index })
+        };
+        if at(0).facing <= GRAZING {
+            return;
+        }
+        let mut corners = Polygon::new();
+        let mut ends = [at(len - 1), at(0), at(1), at(2)];
+        for segment in 0..len {
+            corners.add(ends[1].at);
+            fine.iter().for_each(|weights| corners.add(blend(ends, weights).at));
+            ends = [ends[1], ends[2], ends[3], at(segment + 3)];
+        }
+        corners.fill(out);
     }
 
     /// Draws a curve that bends through its vertices.

@@ -4,7 +4,7 @@ use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::{Gray8, GrayColor};
-use pantin_face::{FaceRenderer, FaceView, MODEL, Model, Morph, NAMES, Target, UnknownName, VERTICES, Weight, Weights};
+use pantin_face::{CARTOON, FaceRenderer, FaceView, MODEL, Model, Morph, NAMES, Target, UnknownName, VERTICES, Weight, Weights};
 use pantin_figure::Canvas;
 use pantin_figure::draw::stroke;
 use pantin_figure::surface::OnTarget;
@@ -36,7 +36,12 @@ impl DrawTarget for Display {
 
 /// Draws the face with these weights, by name.
 fn drawn(named: &[(&str, &str)]) -> [[u8; WIDTH]; HEIGHT] {
-    let model = Model::new_checked(MODEL).unwrap();
+    drawn_of(MODEL, named)
+}
+
+/// Draws a model.
+fn drawn_of(model: &[u8], named: &[(&str, &str)]) -> [[u8; WIDTH]; HEIGHT] {
+    let model = Model::new_checked(model).unwrap();
     let mut weights = Weights::new();
     for (name, weight) in named {
         weights.set(&model, name, weight.parse().unwrap()).unwrap();
@@ -57,6 +62,10 @@ fn drawn(named: &[(&str, &str)]) -> [[u8; WIDTH]; HEIGHT] {
     assert_eq!(display.0, before, "drawing over the same picture changes it");
     let mut full = Display([[7; WIDTH]; HEIGHT]);
     renderer.draw_over(&model, &mut full).unwrap();
+    // Filled shapes may be dark.
+    if model.curves().any(|curve| curve.filled) {
+        return before;
+    }
     assert!(
         full.0.iter().flatten().zip(before.iter().flatten()).all(|(over, alone)| over == if *alone == 0 { &7 } else { alone })
     );
@@ -113,6 +122,32 @@ fn each_unit_of_the_paper_shows_where_it_acts_and_nowhere_else() {
             let one = drawn(&[(&format!("{unit}_{side}"), "1")]);
             assert!(one != neutral && one != moved, "{unit}_{side}");
         }
+    }
+}
+
+#[test]
+fn the_cartoon_fills_its_shapes_and_moves_them_by_the_same_names() {
+    let lit = |picture: &[[u8; WIDTH]; HEIGHT], rows: std::ops::Range<usize>| {
+        picture[rows].iter().flatten().filter(|&&pixel| pixel > 0).count()
+    };
+    let (eyes, mouth) = (10..32, 32..HEIGHT);
+    let neutral = drawn_of(CARTOON, &[]);
+    assert!(lit(&neutral, eyes.clone()) > 250 && lit(&neutral, mouth.clone()) > 200, "shapes are filled");
+    // Two tones and the tongue between.
+    let closed = drawn_of(CARTOON, &[("blink", "1")]);
+    assert!(lit(&closed, eyes.clone()) * 3 < lit(&neutral, eyes.clone()), "closed eyes are dark");
+    assert_eq!(lit(&closed, mouth.clone()), lit(&neutral, mouth.clone()));
+    let wink = drawn_of(CARTOON, &[("wink_left", "1")]);
+    let half = |picture: &[[u8; WIDTH]; HEIGHT], left: bool| {
+        let columns = if left { WIDTH / 2..WIDTH } else { 0..WIDTH / 2 };
+        picture[eyes.clone()].iter().flat_map(|row| &row[columns.clone()]).filter(|&&pixel| pixel > 0).count()
+    };
+    assert!(half(&wink, true) * 2 < half(&wink, false), "the face's left eye is on the right");
+    let open = drawn_of(CARTOON, &[("open_mouth", "0.6")]);
+    let dark = |picture: &[[u8; WIDTH]; HEIGHT]| (WIDTH / 2 - 8..WIDTH / 2 + 8).filter(|&x| picture[50][x] == 0).count();
+    assert!(dark(&open) >= 12 && lit(&open, mouth.clone()) > 100, "an open mouth is dark inside");
+    for name in ["joy", "sadness", "surprise", "angry", "pucker", "tongue_out", "look_left", "viseme_aa"] {
+        assert!(drawn_of(CARTOON, &[(name, "1")]) != neutral, "{name}");
     }
 }
 

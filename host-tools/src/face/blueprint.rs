@@ -1,6 +1,7 @@
 //! A face in full precision, from which a model is encoded: points, curves, shapes that move points, and names of channels.
 
 use super::head::Vector;
+use anyhow::{Context, Result, bail, ensure};
 use pantin_face::shape::{Interpolation, ShapeKind};
 use std::collections::HashSet;
 
@@ -80,6 +81,8 @@ pub struct Curve {
     pub straight: bool,
     /// Whether it is drawn at detail 0 only.
     pub small: bool,
+    /// Whether the area inside is filled.
+    pub filled: bool,
     /// Its points.
     pub points: Vec<usize>,
 }
@@ -135,6 +138,45 @@ impl Blueprint {
             index if index < self.middles + self.pairs => index + self.pairs,
             _ => index - self.pairs,
         }
+    }
+
+    /// Sets how a unit moves, as `--interpolation` says it: `smile=linear`, `smile=spherical:40`. A unit with sides of its own has both set. Fails for units that do
+    /// not exist, for unknown kinds, and where a spherical unit has no centre or an angle beyond [`Arc::LEAST`] to [`Arc::MOST`].
+    pub fn choose(&mut self, choice: &str) -> Result<()> {
+        let (unit, kind) = choice.split_once('=').with_context(|| format!("{choice}: expected unit=kind"))?;
+        let (kind, degrees) = kind.split_once(':').map_or((kind, None), |(kind, degrees)| (kind, Some(degrees)));
+        let interpolation = match kind {
+            "linear" => Interpolation::Linear,
+            "improved" => Interpolation::ImprovedLinear,
+            "eased" => Interpolation::Eased,
+            "spherical" => Interpolation::Spherical,
+            _ => bail!("{choice}: expected linear, improved, eased or spherical"),
+        };
+        let named = |name: &str| name == unit || ["_left", "_right"].iter().any(|side| name.strip_suffix(side) == Some(unit));
+        let mut shapes: Vec<&mut Shape> = self.shapes.iter_mut().filter(|shape| named(&shape.name)).collect();
+        ensure!(!shapes.is_empty(), "{choice}: no unit of the face is called {unit}");
+        for shape in &mut shapes {
+            shape.interpolation = interpolation;
+            let Some(degrees) = degrees else { continue };
+            ensure!(interpolation == Interpolation::Spherical, "{choice}: only spherical interpolation has an angle");
+            ensure!(shape.turns.is_empty(), "{choice}: {unit} rotates by an angle of its own");
+            let degrees: f64 = degrees.parse().with_context(|| format!("{choice}: {degrees} is no angle"))?;
+            ensure!(
+                (Arc::LEAST..=Arc::MOST).contains(&degrees),
+                "{choice}: expected an angle from {} to {} degrees",
+                Arc::LEAST,
+                Arc::MOST
+            );
+            let arc =
+                shape.arc.as_mut().with_context(|| format!("{choice}: {unit} has no centre for spherical interpolation"))?;
+            arc.degrees = degrees;
+        }
+        let centred = |shape: &&mut Shape| shape.deltas.is_empty() || shape.arc.is_some();
+        ensure!(
+            interpolation != Interpolation::Spherical || shapes.iter().all(centred),
+            "{choice}: {unit} has no centre for spherical interpolation"
+        );
+        Ok(())
     }
 
     /// Index of the shape with this name.

@@ -18,6 +18,7 @@ pub fn neutral(head: &Head) -> Blueprint {
         closed: curve.closed,
         straight: false,
         small: curve.small,
+        filled: false,
         points: curve.points.clone(),
     };
     let opening = |opening: &super::head::Opening| Opening { opening: opening.clone(), release: None };

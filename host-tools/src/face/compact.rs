@@ -46,7 +46,7 @@ pub fn encode(blueprint: &Blueprint) -> Result<Vec<u8>> {
     blueprint.triangles.iter().flatten().chain(&blueprint.fixed).for_each(|&index| out.index(index));
     for curve in &blueprint.curves {
         let flags = u8::from(curve.closed) | u8::from(curve.paired) << 1 | curve.detail << 2;
-        let flags = flags | u8::from(curve.straight) << 4 | u8::from(curve.small) << 5;
+        let flags = flags | u8::from(curve.straight) << 4 | u8::from(curve.small) << 5 | u8::from(curve.filled) << 6;
         ensure!(curve.points.len() <= 255, "a curve of {} points; a model's have at most 255", curve.points.len());
         out.bytes.extend([flags, curve.shade, curve.points.len() as u8]);
         curve.points.iter().for_each(|&index| out.index(index));

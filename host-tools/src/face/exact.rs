@@ -26,14 +26,18 @@ pub fn places(face: &Blueprint, weights: &[[f64; 2]]) -> Vec<Vector> {
         let pair = whole(shape, pair);
         let [stored, mirrored] = pair.map(|weight| eased(shape.interpolation, weight));
         let arc = shape.arc.filter(|_| shape.interpolation == Interpolation::Spherical);
+        let longest = |way: &Vector| way.iter().fold(0f64, |longest, x| longest.max(x.abs()));
+        let most = shape.deltas.iter().map(|(_, way)| longest(way)).fold(1e-12, f64::max);
         for &(index, way) in &shape.deltas {
             let image = face.mirror(index);
             let reversed = [-way[0], way[1], way[2]];
             if let Some(arc) = arc {
+                let bend = (longest(&way) / most).powi(2);
                 let centre = arc.centre;
                 let other = [-centre[0], centre[1], centre[2]];
-                places[index] = plus(places[index], on_arc(minus(neutral[index], centre), way, arc.degrees, pair[0]), 1.0);
-                places[image] = plus(places[image], on_arc(minus(neutral[image], other), reversed, arc.degrees, pair[1]), 1.0);
+                places[index] = plus(places[index], on_arc(minus(neutral[index], centre), way, bend, arc.degrees, pair[0]), 1.0);
+                places[image] =
+                    plus(places[image], on_arc(minus(neutral[image], other), reversed, bend, arc.degrees, pair[1]), 1.0);
             } else {
                 places[index] = plus(places[index], way, stored);
                 places[image] = plus(places[image], reversed, mirrored);
@@ -46,12 +50,12 @@ pub fn places(face: &Blueprint, weights: &[[f64; 2]]) -> Vec<Vector> {
     places
 }
 
-/// How far a point moves by the paper's spherical formula, from `start` to `start + way`, both seen from the centre.
-fn on_arc(start: Vector, way: Vector, degrees: f64, weight: f64) -> Vector {
+/// How far a point moves by the paper's spherical formula, from `start` to `start + way`, both seen from the centre. A point that moves less than others is
+/// bent less: the push away from the centre, which grows with the square of the angle, is multiplied by `bend`.
+fn on_arc(start: Vector, way: Vector, bend: f64, degrees: f64, weight: f64) -> Vector {
     let angle = degrees.to_radians();
     let [from, to] = [((1.0 - weight) * angle).sin() / angle.sin(), (weight * angle).sin() / angle.sin()];
-    let end = plus(start, way, 1.0);
-    minus(plus(start.map(|x| x * from), end, to), start)
+    plus(start.map(|x| x * (from + to - 1.0) * bend), way, to)
 }
 
 fn turn(face: &Blueprint, shape: &Shape, [stored, mirrored]: [f64; 2], places: &mut [Vector]) {

@@ -2,6 +2,7 @@
 
 pub mod blueprint;
 pub mod build;
+pub mod cartoon;
 pub mod cast;
 pub mod compact;
 pub mod compare;
@@ -14,11 +15,14 @@ mod faps;
 pub mod fit;
 pub mod head;
 pub mod names;
+pub mod onmesh;
 pub mod outside;
 pub mod paper;
+pub mod points;
 pub mod pose;
 pub mod sheet;
 mod skin;
+pub mod speak;
 pub mod subject;
 
 use anyhow::Result;

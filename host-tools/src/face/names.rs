@@ -19,6 +19,25 @@ pub fn drives(shapes: &[Shape]) -> Result<Vec<Drive>> {
     Ok(drives)
 }
 
+/// Returns the drives of those sums of the table whose units are all among `units`.
+pub fn sums(units: &[Drive]) -> Vec<Drive> {
+    let mut sums = Vec::new();
+    for line in TABLE.lines() {
+        let Some((name, sum)) = line.split('#').next().unwrap_or("").split_once('=') else { continue };
+        let words: Vec<&str> = sum.split_whitespace().collect();
+        let terms = words.chunks_exact(2).map(|pair| {
+            let driven: Vec<&Drive> = units.iter().filter(|drive| drive.name == pair[0]).collect();
+            let gain: f64 = pair[1].parse().ok()?;
+            (!driven.is_empty()).then_some((driven, gain))
+        });
+        let Some(terms) = terms.collect::<Option<Vec<_>>>() else { continue };
+        for (driven, gain) in terms {
+            sums.extend(driven.into_iter().map(|drive| Drive { name: name.trim().into(), gain, ..drive.clone() }));
+        }
+    }
+    sums
+}
+
 fn own(shape: usize, entry: &Shape) -> Vec<Drive> {
     let drive = |suffix: &str, sides| Drive { name: format!("{}{suffix}", entry.name), shape, sides, gain: 1.0 };
     match (entry.sided, goes_aside(&entry.name)) {

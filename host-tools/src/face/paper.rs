@@ -224,7 +224,7 @@ const PARTNERS: [(&str, &str); 9] = [
 ];
 
 /// The image of a feature point on the left; of one in the middle itself.
-pub fn partner<'n>(name: &'n str) -> &'n str {
+pub fn partner(name: &str) -> &str {
     let others = [("4.5", "4.6"), ("5.1", "5.2"), ("2.11", "2.12"), ("2.13", "2.14")];
     PARTNERS.iter().chain(&others).find(|pair| pair.0 == name).map_or(name, |pair| pair.1)
 }

@@ -1,6 +1,7 @@
 //! Writes a picture of many labelled faces, such as the sheet of all units and emotions.
 
 use super::Face;
+use super::blueprint::Blueprint;
 use super::draw::picture;
 use super::pose;
 use crate::render::canvas::Canvas;
@@ -10,7 +11,7 @@ use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
 use embedded_graphics::pixelcolor::Gray8;
 use embedded_graphics::text::{Baseline, Text};
-use pantin_face::FaceView;
+use pantin_face::{FaceView, Model};
 use std::io::Write;
 
 const GAP: usize = 6;
@@ -116,6 +117,29 @@ const POSES: [(&str, &str, i16); 64] = [
     ("u", "viseme_u", 0),
     ("laugh, from aside", "corner_up=0.9,open_mouth=0.35,cheek_raise,squint=0.6", -20),
 ];
+
+/// Writes a sheet of a model's own units and sums, at full weight, and of the neutral face.
+pub fn of_model(out: impl Write, face: &Blueprint, bytes: &[u8]) -> Result<()> {
+    let model = Model::new_checked(bytes)?;
+    let canvas = pantin_figure::Canvas { width: BIG[0] as u16, height: BIG[1] as u16 };
+    let mut names: Vec<&str> = vec![""];
+    for drive in &face.names {
+        if !names.contains(&drive.name.as_str()) {
+            names.push(&drive.name);
+        }
+    }
+    let cell = |name: &&str| {
+        let weights = pose::weights(&pose::parse(face, name)?);
+        let label = if name.is_empty() { "neutral" } else { name };
+        Ok(Cell { label: label.into(), pixels: picture(&model, &weights, canvas, FaceView::default()) })
+    };
+    let cells = names.iter().take(MOST_CELLS).map(cell).collect::<Result<Vec<_>>>()?;
+    write(out, &cells, 5, BIG)
+}
+
+/// The size of a picture of another mesh, which shows its triangles, and how many pictures there are at most.
+const BIG: [usize; 2] = [224, 224];
+const MOST_CELLS: usize = 40;
 
 /// Writes the sheet of all units and emotions.
 pub fn units(out: impl Write, face: &Face) -> Result<()> {

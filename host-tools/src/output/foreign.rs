@@ -14,6 +14,8 @@ pub enum Wanted {
     Rig,
     /// A motion, or source text.
     Motion,
+    /// Key-frame text.
+    Keys,
     /// A picture.
     Picture,
     /// A face's model.
@@ -34,8 +36,13 @@ const KINDS: &[(Wanted, &[&str], &str)] = &[
     (Wanted::Motion, &["bvh", "glb", "csv", "h"], "to write a motion or source text use `pantin expand`"),
     (
         Wanted::Other,
-        &["gltf", "fbx", "amc", "asf", "wrl", "vrml", "x3dv", "keys", "proc", "fap", "tsv"],
+        &["gltf", "fbx", "amc", "asf", "wrl", "vrml", "x3dv", "proc", "fap", "tsv"],
         "Pantin reads these files and does not write them; `pantin expand` writes .bvh, .glb and .csv",
+    ),
+    (
+        Wanted::Keys,
+        &["keys"],
+        "`pantin face fit` and `pantin face speak` write .keys; `pantin expand` writes .bvh, .glb and .csv",
     ),
     (Wanted::Picture, &["png", "apng", "gif", "svg"], "to draw a clip use `pantin render`"),
     (
@@ -65,6 +72,7 @@ pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
         Wanted::Bank => "a bank's name ends in .ptb",
         Wanted::Rig => "a rig's name ends in .rig",
         Wanted::Motion => "expected a name that ends in .bvh, .glb, .csv, .h or .rs",
+        Wanted::Keys => "key-frame text has a name that ends in .keys",
         Wanted::Picture => "expected a name that ends in .gif, .apng, .png or .svg",
         Wanted::Model => "a model's name ends in .model",
         Wanted::Source => "expected a name that ends in .rs",

@@ -4,7 +4,7 @@ use pantin_face::model::{ModelError, hash};
 use pantin_face::{Binding, FaceRenderer, FaceView, Model, Morph, Target, VERTICES, Weights};
 use pantin_figure::Canvas;
 use pantin_tools::face::cast::{Cast, is_face};
-use pantin_tools::face::{Face, error, export, fit, outside, pose};
+use pantin_tools::face::{Face, cartoon, error, exact, export, fit, onmesh, outside, points, pose};
 use pantin_tools::import;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -44,6 +44,28 @@ fn the_device_keeps_within_a_tenth_of_a_percent() {
     assert!(error.part < 0.001, "{error:?}");
 }
 
+#[test]
+fn the_committed_cartoon_is_what_its_table_makes() {
+    let face = Face::new().unwrap();
+    let cartoon = cartoon::build(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
+    let bytes = pantin_tools::face::compact::encode(&cartoon).unwrap();
+    assert!(pantin_face::CARTOON == bytes, "write it again by `pantin face model --cartoon -o firmware/face/cartoon.model`");
+    let error = error::greatest(&cartoon, &bytes).unwrap();
+    assert!(error.part < 0.002, "{error:?}");
+    assert_eq!(cartoon.name_list(), face.blueprint.name_list());
+    for (table, wanted) in [
+        ("view 90 60 -90", "nothing is drawn"),
+        ("fill 255 - lip-corner lip-top lip-bottom", "view"),
+        ("view 90 60 -90\nfill 255 - lip-corner nowhere lip-top", "nowhere"),
+        ("view 90 60 -90\nzoom ear 2 0 0", "eye, brow or mouth"),
+        ("view 90 60 -90\nzoom eye 200 0 0", "beyond"),
+        ("smile", "line 1"),
+    ] {
+        let refused = format!("{:#}", cartoon::build(&face.head, &face.blueprint, table).unwrap_err());
+        assert!(refused.contains(wanted), "{table}: {refused}");
+    }
+}
+
 /// Plays and draws a model, whatever it is.
 fn play(model: &Model) {
     let Ok(mut morph) = Morph::<512>::new(model) else { return };
@@ -65,6 +87,7 @@ fn play(model: &Model) {
 fn hostile_bytes_are_refused_or_harmless() {
     let bytes = Face::new().unwrap().bytes;
     play(&Model::new_checked(&bytes).unwrap());
+    play(&Model::new_checked(pantin_face::CARTOON).unwrap());
     for len in 0..bytes.len() {
         assert!(Model::new_checked(&bytes[..len]).is_err(), "{len} bytes are taken for all");
     }
@@ -81,8 +104,8 @@ fn hostile_bytes_are_refused_or_harmless() {
             play(&model);
         }
     }
-    for _ in 0..2000 {
-        let mut bad = bytes.clone();
+    for round in 0..3000 {
+        let mut bad = if round % 3 == 0 { pantin_face::CARTOON.to_vec() } else { bytes.clone() };
         for _ in 0..1 + random() % 6 {
             let place = random() as usize % bad.len();
             bad[place] = random() as u8;
@@ -126,6 +149,49 @@ fn a_pose_is_taken_apart_into_its_units() {
                 assert!((wanted - found).abs() < 0.05, "{sum}: {} is found {found}, not {wanted}", shape.name);
             }
         }
+    }
+}
+
+/// A mesh of others moves, and the units that move it are found by its feature points.
+#[test]
+fn faces_of_other_meshes_are_taken_apart_by_their_feature_points() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
+    let mesh = outside::mesh(&folder.join("ball.obj"), &import::Files::default()).unwrap();
+    let points = points::parse(&std::fs::read_to_string(folder.join("ball.points")).unwrap()).unwrap();
+    let built = onmesh::build(&mesh, &points).unwrap().blueprint;
+    let face = Face::new().unwrap();
+    let matched = fit::Matched::new(&face.head, &mesh, &points).unwrap();
+    for (unit, shape) in [("smile", "smile"), ("lower_corners", "lower_corners"), ("brow_outer_raise", "brow_outer_raise")] {
+        let pose = exact::places(&built, &pose::parse(&built, unit).unwrap());
+        let rows = matched.rows(&face.head, &mesh.points, &pose[..mesh.points.len()]).unwrap();
+        let fit = fit::fit_rows(&face.blueprint, &rows, fit::Limits { paper: true, most: 4 }).unwrap();
+        assert!(fit.residual < 0.7 * fit.before, "{unit}: {} of {} mm are left", fit.residual, fit.before);
+        // The round head's mouth is wider and flatter than ours: the unit is found, and it is the one that moves most.
+        let own = fit.pairs[face.blueprint.shape(shape).unwrap()];
+        let others = fit.pairs.iter().flatten().filter(|&&weight| weight > own[0]).count();
+        assert!(own[0] > 0.15 && own[1] > 0.15 && others == 0, "{unit} is found {own:?}");
+    }
+}
+
+#[test]
+fn a_recording_is_taken_apart_into_few_weights_a_frame() {
+    let Some(path) = data("fap_xface_joy.fap") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let keys = folder.path().join("joy.keys");
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
+        .args(["face", "fit", "--json", "-o"])
+        .args([&keys, &path])
+        .output()
+        .unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let frames = report["frames"].as_array().unwrap();
+    let motion = import::load(&keys, &import::Options::default()).unwrap().motion;
+    assert_eq!(motion.frames, frames.len());
+    for frame in frames {
+        assert!(frame["weights"].as_u64().unwrap() <= 8, "{frame}");
+        let (residual, neutral) = (frame["residual_mm"].as_f64().unwrap(), frame["neutral_residual_mm"].as_f64().unwrap());
+        assert!(residual <= 0.25 * neutral + 0.05, "{frame}");
     }
 }
 
@@ -178,4 +244,45 @@ fn own_motions_are_small_faces_that_begin_and_end_at_rest() {
     }
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(total <= 2 << 10, "{total} bytes");
+}
+
+#[test]
+fn the_emotes_are_small_loops_that_move_the_face() {
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(repository().join("motions/emotes")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    let names: Vec<String> = files.iter().map(|file| file.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    let wanted = "angry confident confused cool crying curious delicious embarrassed funny happy kissy laughing listening loving neutral \
+        relaxed sad shocked silly sleepy surprised thinking winking";
+    assert_eq!(names, wanted.split_whitespace().collect::<Vec<_>>());
+    let folder = tempfile::tempdir().unwrap();
+    let mut total = pantin_face::MODEL.len() + pantin_face::CARTOON.len();
+    for file in &files {
+        let clip = folder.path().join("emote.ptn");
+        let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
+            .args(["convert", "--max-scalar-error", "2", "-o"])
+            .args([&clip, file])
+            .output()
+            .unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        let bytes = std::fs::read(&clip).unwrap();
+        total += bytes.len();
+        let clip = pantin::Clip::new_checked(&bytes).unwrap();
+        let seconds = f64::from(clip.frames()) * f64::from(clip.frame_time_ns()) * 1e-9;
+        assert!((1.0..=2.01).contains(&seconds) && clip.looped(), "{}: {seconds} s", file.display());
+        assert!(is_face(&clip).unwrap(), "{}", file.display());
+        let view = pantin_figure::View { orbit: 0, tilt: 0, ..Default::default() };
+        let mut cast = Cast::of_clip(&clip, Canvas { width: 128, height: 64 }, &[view]).unwrap().unwrap();
+        let mut states = vec![pantin::ChannelState::default(); clip.moving()];
+        let mut pose = vec![0; clip.rig().channels()];
+        let frames = clip.frames();
+        let mut player = pantin::Player::new(clip, &mut states, &mut pose).unwrap();
+        let mut pictures = std::collections::HashSet::new();
+        for frame in (0..frames).step_by(5) {
+            player.seek(frame);
+            pictures.insert(format!("{:?}", cast.lines(player.pose().values, 0)));
+        }
+        assert!(pictures.len() >= 2, "{}: nothing moves", file.display());
+    }
+    assert!(total <= 12 << 10, "{total} bytes with both models");
 }

@@ -16,8 +16,10 @@ mod events;
 mod exhaustion;
 mod export_source;
 mod face_laws;
+mod face_meshes;
 mod face_model;
 mod face_real_clips;
+mod face_speak;
 mod fap_input;
 #[cfg(feature = "fbx")]
 mod fbx_input;

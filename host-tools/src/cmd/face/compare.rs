@@ -5,7 +5,7 @@ use crate::face::compare::{Compared, Jaw, METHODS, TABLES, jaw, pictures, write}
 use crate::face::subject::Subject;
 use crate::face::{Face, paper};
 use crate::output::{check, is_json, outln, report, write_whole};
-use anyhow::Result;
+use anyhow::{Context, Result};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -19,6 +19,9 @@ pub struct Arguments {
     /// The picture to write (PNG); without it only the numbers are printed
     #[arg(short, long)]
     output: Option<PathBuf>,
+    /// The angle of a unit's spherical interpolation in degrees, 2 to 120, instead of that between its start and its end; may be given several times
+    #[arg(long, value_name = "UNIT=DEGREES")]
+    angle: Vec<String>,
 }
 
 /// Runs the command.
@@ -27,7 +30,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         face_picture(output, "face compare")?;
         check(&[], &[output])?;
     }
-    let face = Face::new()?;
+    let mut face = Face::new()?;
+    for angle in &arguments.angle {
+        let (unit, degrees) = angle.split_once('=').with_context(|| format!("{angle}: expected unit=degrees"))?;
+        face.blueprint.choose(&format!("{unit}=spherical:{degrees}"))?;
+    }
     let jaws = METHODS.iter().map(|&(method, name)| Ok((name, jaw(&face, method)?))).collect::<Result<Vec<_>>>()?;
     let rows = TABLES.iter().flat_map(|table| table.actions.iter().map(move |action| (table, action)));
     let rows = rows.map(|(table, action)| Ok((table, action, pictures(&face, action)?.cells))).collect::<Result<Vec<_>>>()?;

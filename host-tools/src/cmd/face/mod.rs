@@ -5,10 +5,11 @@ mod export;
 mod fit;
 mod model;
 mod sheet;
+mod speak;
 
 use anyhow::Result;
 
-/// Work with Pantin's face: draw its units, compare interpolations, write its model, decompose poses into units.
+/// Work with Pantin's face: draw its units, compare interpolations, write its model, decompose poses and motions into units, let it speak.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(subcommand)]
@@ -22,6 +23,7 @@ enum Command {
     Fit(fit::Arguments),
     Model(model::Arguments),
     Sheet(sheet::Arguments),
+    Speak(speak::Arguments),
 }
 
 /// Runs the command.
@@ -32,6 +34,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Command::Fit(arguments) => fit::run(arguments),
         Command::Model(arguments) => model::run(arguments),
         Command::Sheet(arguments) => sheet::run(arguments),
+        Command::Speak(arguments) => speak::run(arguments),
     }
 }
 

@@ -1,0 +1,184 @@
+//! Faces of filled shapes from a small text: parts of Pantin's head, enlarged and moved, with the same units.
+
+use super::blueprint::{Blueprint, Curve, Opening, Shape};
+use super::head::{Head, Vector, minus, plus};
+use super::subject::distance;
+use anyhow::{Context, Result, bail, ensure};
+
+/// Pantin's own cartoon face.
+pub const TABLE: &str = include_str!("cartoon.txt");
+
+/// A part of the face, enlarged about its middle, which moves.
+struct Zoom {
+    part: Part,
+    factor: f64,
+    to: [f64; 2],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Eye,
+    Brow,
+    Mouth,
+}
+
+/// The middle of each part of the head, on the left: of the eyeball, of the brow, of the lips.
+const MIDDLES: [(Part, Vector); 3] =
+    [(Part::Eye, [32.0, 0.0, 62.0]), (Part::Brow, [34.0, 25.0, 82.0]), (Part::Mouth, [0.0, -67.0, 88.0])];
+
+fn part(label: &str) -> Option<Part> {
+    let label = label.trim_start_matches('-');
+    let begins = |starts: &[&str]| starts.iter().any(|start| label.starts_with(start));
+    if begins(&["eye-", "lid-", "iris", "pupil", "crease"]) {
+        Some(Part::Eye)
+    } else if begins(&["brow"]) {
+        Some(Part::Brow)
+    } else if begins(&["lip-", "inner-", "teeth", "tongue"]) {
+        Some(Part::Mouth)
+    } else {
+        None
+    }
+}
+
+/// Builds a face from a table, given the head and its face. Fails with the line that cannot be read.
+pub fn build(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
+    let (mut view, mut zooms, mut curves, mut jaw) = (None, Vec::new(), Vec::new(), 1.0);
+    for (number, line) in table.lines().enumerate() {
+        let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
+        let place = || format!("line {}", number + 1);
+        match words[..] {
+            [] => {}
+            ["view", width, top, bottom] => view = Some(numbers([width, top, bottom]).with_context(place)?),
+            ["jaw", part] => {
+                [jaw] = numbers([part]).with_context(place)?;
+                ensure!((0.0..=1.0).contains(&jaw), "{}: expected a part from 0 to 1", place());
+            }
+            ["zoom", name, factor, aside, up] => {
+                let part = match name {
+                    "eye" => Part::Eye,
+                    "brow" => Part::Brow,
+                    "mouth" => Part::Mouth,
+                    _ => bail!("{}: expected eye, brow or mouth, not {name}", place()),
+                };
+                let [factor, aside, up] = numbers([factor, aside, up]).with_context(place)?;
+                ensure!((0.1..=10.0).contains(&factor), "{}: expected a factor from 0.1 to 10", place());
+                zooms.push(Zoom { part, factor, to: [aside, up] });
+            }
+            [kind @ ("fill" | "line"), shade, options, ref points @ ..] => {
+                let points = points.iter().map(|name| head.find(name)).collect::<Result<Vec<_>>>().with_context(place)?;
+                ensure!(points.len() >= if kind == "fill" { 3 } else { 2 }, "{}: too few points", place());
+                let filled = kind == "fill";
+                let shade = shade.parse().with_context(place)?;
+                let paired = options == "paired";
+                curves.push(Curve { detail: 0, shade, paired, closed: filled, straight: false, small: false, filled, points });
+            }
+            _ => bail!("{}: expected view, jaw, zoom, fill or line", place()),
+        }
+    }
+    let [width, top, bottom] = view.context("no line `view`")?;
+    ensure!(width > 0.0 && top > bottom, "view: expected a width above 0, and a top above the bottom");
+    ensure!(!curves.is_empty(), "nothing is drawn");
+    let zoomed = |index: usize| -> (f64, Vector) {
+        let zoom = part(head.label(index)).and_then(|part| zooms.iter().find(|zoom| zoom.part == part));
+        let Some(zoom) = zoom else { return (1.0, [0.0; 3]) };
+        let middle = MIDDLES.iter().find(|entry| entry.0 == zoom.part).map_or([0.0; 3], |entry| entry.1);
+        // place * factor + move
+        let to = [zoom.to[0], zoom.to[1], middle[2]];
+        (zoom.factor, minus(to, middle.map(|x| x * zoom.factor)))
+    };
+    let used = |index: usize| {
+        let drawn = curves.iter().any(|curve| curve.points.iter().any(|&point| head.stored(point) == index));
+        let behind = face.openings.iter().any(|entry| {
+            let opening = &entry.opening;
+            [&opening.upper, &opening.lower, &opening.members]
+                .iter()
+                .any(|part| part.iter().any(|&point| head.stored(point) == index))
+        });
+        drawn || behind
+    };
+    let stored = head.middles + head.pairs;
+    let kept: Vec<usize> = (0..stored).filter(|&index| used(index)).collect();
+    let middles = kept.iter().filter(|&&index| index < head.middles).count() + 2;
+    let pairs = kept.len() + 2 - middles + 1;
+    // Two points in the middle and one on the left set what the camera shows.
+    let to_new = |index: usize| -> usize {
+        let own = kept.iter().position(|&kept| kept == head.stored(index)).unwrap_or(0);
+        let own = if head.stored(index) < head.middles { own } else { own + 2 };
+        if index >= stored { own + pairs } else { own }
+    };
+    let place = |index: usize| {
+        let (factor, moved) = zoomed(index);
+        let place = head.points[index].map(|x| x * factor);
+        plus(place, moved, 1.0)
+    };
+    let mut points: Vec<Vector> = kept.iter().filter(|&&index| index < head.middles).map(|&index| place(index)).collect();
+    points.extend([[0.0, top, 70.0], [0.0, bottom, 70.0]]);
+    points.extend(kept.iter().filter(|&&index| index >= head.middles).map(|&index| place(index)));
+    points.push([width, 0.0, 70.0]);
+    let shapes = face.shapes.iter().map(|shape| {
+        let keep = |index: usize| kept.contains(&head.stored(index));
+        let deltas = shape
+            .deltas
+            .iter()
+            .filter(|entry| keep(entry.0))
+            .map(|&(index, way)| (to_new(index), way.map(|x| x * zoomed(index).0)));
+        let turns = shape.turns.iter().map(|turn| {
+            let mut turn = turn.clone();
+            // A rotation about the middle of an enlarged part stays one.
+            let (factor, moved) = turn.members.first().map_or((1.0, [0.0; 3]), |member| zoomed(member.0));
+            let eyeball = distance(turn.centre, MIDDLES[0].1) < 1e-6;
+            if eyeball {
+                turn.centre = plus(turn.centre.map(|x| x * factor), moved, 1.0);
+            } else if !turn.members.is_empty() {
+                // The jaw keeps its axis as seen from the mouth.
+                turn.centre = plus(turn.centre.map(|x| x * factor), zoomed_mouth(&zooms), 1.0);
+                turn.degrees *= jaw;
+            }
+            turn.members =
+                turn.members.iter().filter(|member| keep(member.0)).map(|&(index, part)| (to_new(index), part)).collect();
+            turn
+        });
+        let turns = turns.filter(|turn| !turn.members.is_empty() || shape.kind == pantin_face::shape::ShapeKind::Head).collect();
+        Shape { deltas: deltas.collect(), turns, ..shape.clone() }
+    });
+    let opening = |entry: &Opening| {
+        let new = |points: &Vec<usize>| points.iter().map(|&index| to_new(index)).collect();
+        let own = &entry.opening;
+        let opening =
+            super::head::Opening { upper: new(&own.upper), lower: new(&own.lower), members: new(&own.members), ..own.clone() };
+        Opening { opening, release: entry.release }
+    };
+    let curves =
+        curves.iter().map(|curve| Curve { points: curve.points.iter().map(|&index| to_new(index)).collect(), ..curve.clone() });
+    Ok(Blueprint {
+        middles,
+        pairs,
+        fraction_bits: face.fraction_bits,
+        normals: vec![[0.0, 0.0, 1.0]; middles + pairs],
+        points,
+        curves: curves.collect(),
+        openings: face.openings.iter().map(opening).collect(),
+        shapes: shapes.collect(),
+        names: face.names.clone(),
+        ..Blueprint::default()
+    })
+}
+
+/// The move of the mouth.
+fn zoomed_mouth(zooms: &[Zoom]) -> Vector {
+    let middle = MIDDLES[2].1;
+    zooms
+        .iter()
+        .find(|zoom| zoom.part == Part::Mouth)
+        .map_or([0.0; 3], |zoom| minus([zoom.to[0], zoom.to[1], middle[2]], middle.map(|x| x * zoom.factor)))
+}
+
+fn numbers<const N: usize>(words: [&str; N]) -> Result<[f64; N]> {
+    let mut out = [0.0; N];
+    for (slot, word) in out.iter_mut().zip(words) {
+        let number: f64 = word.parse().with_context(|| format!("{word} is no number"))?;
+        ensure!(number.is_finite() && number.abs() < 200.0, "{word} is beyond 200 mm");
+        *slot = number;
+    }
+    Ok(out)
+}

@@ -1,0 +1,362 @@
+//! A track of visemes for spoken text, or for the level of a recording.
+
+use anyhow::{Context, Result, ensure};
+use std::fmt::Write;
+
+/// Frames a second of the track.
+pub const FPS: f64 = 30.0;
+/// Milliseconds of a vowel, of a consonant, and of a pause at a comma or at the end of a sentence.
+const VOWEL_MS: f64 = 140.0;
+const CONSONANT_MS: f64 = 80.0;
+const PAUSE_MS: [f64; 2] = [180.0, 320.0];
+/// Milliseconds of rest before and after.
+const REST_MS: f64 = 200.0;
+/// The longest text in letters.
+const MOST_LETTERS: usize = 20_000;
+
+/// A viseme, or the mouth at rest, and when it is spoken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spoken {
+    /// The name of a weight of the face; `None` is a pause.
+    pub viseme: Option<&'static str>,
+    /// Milliseconds from the start of the track to its middle.
+    pub middle_ms: f64,
+}
+
+impl Spoken {
+    /// Whether the lips must be closed: at p, b and m.
+    pub fn closes(&self) -> bool {
+        self.viseme == Some("viseme_pp")
+    }
+
+    /// Whether it is an open vowel, at which the jaw must be open.
+    pub fn opens(&self) -> bool {
+        matches!(self.viseme, Some("viseme_aa" | "viseme_o" | "viseme_e"))
+    }
+}
+
+/// Spellings and their visemes, longer ones first; what is not listed is silent.
+const SPELLINGS: [(&str, &[&str]); 58] = [
+    ("tion", &["ch", "e", "nn"]),
+    ("ough", &["o"]),
+    ("augh", &["o"]),
+    ("igh", &["aa", "i"]),
+    ("tch", &["ch"]),
+    ("dge", &["ch"]),
+    ("sch", &["ch"]),
+    ("th", &["th"]),
+    ("sh", &["ch"]),
+    ("ch", &["ch"]),
+    ("ph", &["ff"]),
+    ("wh", &["u"]),
+    ("ck", &["kk"]),
+    ("ng", &["nn", "kk"]),
+    ("qu", &["kk", "u"]),
+    ("kn", &["nn"]),
+    ("wr", &["rr"]),
+    ("mb", &["pp"]),
+    ("ee", &["i"]),
+    ("ea", &["i"]),
+    ("ie", &["i"]),
+    ("oo", &["u"]),
+    ("ou", &["aa", "u"]),
+    ("ow", &["o", "u"]),
+    ("oa", &["o"]),
+    ("oi", &["o", "i"]),
+    ("oy", &["o", "i"]),
+    ("ai", &["e", "i"]),
+    ("ay", &["e", "i"]),
+    ("au", &["o"]),
+    ("aw", &["o"]),
+    ("ew", &["u"]),
+    ("a", &["aa"]),
+    ("b", &["pp"]),
+    ("c", &["kk"]),
+    ("d", &["dd"]),
+    ("e", &["e"]),
+    ("f", &["ff"]),
+    ("g", &["kk"]),
+    ("h", &[]),
+    ("i", &["i"]),
+    ("j", &["ch"]),
+    ("k", &["kk"]),
+    ("l", &["nn"]),
+    ("m", &["pp"]),
+    ("n", &["nn"]),
+    ("o", &["o"]),
+    ("p", &["pp"]),
+    ("q", &["kk"]),
+    ("r", &["rr"]),
+    ("s", &["ss"]),
+    ("t", &["dd"]),
+    ("u", &["u"]),
+    ("v", &["ff"]),
+    ("w", &["u"]),
+    ("x", &["kk", "ss"]),
+    ("y", &["i"]),
+    ("z", &["ss"]),
+];
+
+/// Mnemonics of espeak-ng's phonemes, longer ones first.
+const PHONEMES: [(&str, &[&str]); 64] = [
+    ("tS", &["ch"]),
+    ("dZ", &["ch"]),
+    ("aI@", &["aa", "i", "e"]),
+    ("aU@", &["aa", "u", "e"]),
+    ("aI", &["aa", "i"]),
+    ("aU", &["aa", "u"]),
+    ("eI", &["e", "i"]),
+    ("OI", &["o", "i"]),
+    ("oU", &["o", "u"]),
+    ("i@", &["i", "e"]),
+    ("e@", &["e"]),
+    ("U@", &["u", "e"]),
+    ("A@", &["aa"]),
+    ("O@", &["o"]),
+    ("o@", &["o"]),
+    ("I2", &["i"]),
+    ("I#", &["i"]),
+    ("@L", &["e", "nn"]),
+    ("@2", &["e"]),
+    ("@5", &["e"]),
+    ("a#", &["aa"]),
+    ("aa", &["aa"]),
+    ("3:", &["e"]),
+    ("A:", &["aa"]),
+    ("O:", &["o"]),
+    ("i:", &["i"]),
+    ("u:", &["u"]),
+    ("p", &["pp"]),
+    ("b", &["pp"]),
+    ("m", &["pp"]),
+    ("f", &["ff"]),
+    ("v", &["ff"]),
+    ("T", &["th"]),
+    ("D", &["th"]),
+    ("t", &["dd"]),
+    ("d", &["dd"]),
+    ("k", &["kk"]),
+    ("g", &["kk"]),
+    ("N", &["kk"]),
+    ("S", &["ch"]),
+    ("Z", &["ch"]),
+    ("s", &["ss"]),
+    ("z", &["ss"]),
+    ("n", &["nn"]),
+    ("l", &["nn"]),
+    ("L", &["nn"]),
+    ("r", &["rr"]),
+    ("R", &["rr"]),
+    ("w", &["u"]),
+    ("j", &["i"]),
+    ("h", &[]),
+    ("a", &["aa"]),
+    ("A", &["aa"]),
+    ("0", &["o"]),
+    ("O", &["o"]),
+    ("o", &["o"]),
+    ("V", &["aa"]),
+    ("E", &["e"]),
+    ("e", &["e"]),
+    ("@", &["e"]),
+    ("3", &["e"]),
+    ("I", &["i"]),
+    ("i", &["i"]),
+    ("U", &["u"]),
+];
+
+/// The visemes of a text by rules of English spelling.
+pub fn of_text(text: &str) -> Result<Vec<Spoken>> {
+    ensure!(text.chars().count() <= MOST_LETTERS, "the text has more than {MOST_LETTERS} letters");
+    let mut track = Track::new();
+    for word in text.to_lowercase().split_inclusive(|c: char| !c.is_alphanumeric() && c != '\'') {
+        let letters: String = word.chars().filter(char::is_ascii_alphabetic).collect();
+        track.say(silent_end(&letters), &SPELLINGS);
+        match word.chars().last() {
+            Some(',' | ';' | ':') => track.rest(PAUSE_MS[0]),
+            Some('.' | '!' | '?' | '\n') => track.rest(PAUSE_MS[1]),
+            _ => {}
+        }
+    }
+    track.finish("the text has no letters to speak")
+}
+
+/// A word without an e at its end that is not spoken.
+fn silent_end(word: &str) -> &str {
+    let vowels = word.chars().filter(|letter| "aeiouy".contains(*letter)).count();
+    if vowels > 1 && !word.ends_with("ee") { word.strip_suffix('e').unwrap_or(word) } else { word }
+}
+
+/// The visemes of what `espeak-ng -q -x` prints: mnemonics of phonemes, a line for each clause.
+pub fn of_phonemes(lines: &str) -> Result<Vec<Spoken>> {
+    ensure!(lines.len() <= MOST_LETTERS, "there are more than {MOST_LETTERS} phonemes");
+    let mut track = Track::new();
+    for line in lines.lines() {
+        for word in line.split_whitespace() {
+            track.say(word, &PHONEMES);
+        }
+        track.rest(PAUSE_MS[1]);
+    }
+    track.finish("there are no phonemes")
+}
+
+struct Track {
+    spoken: Vec<Spoken>,
+    at_ms: f64,
+}
+
+impl Track {
+    fn new() -> Track {
+        let mut track = Track { spoken: Vec::new(), at_ms: 0.0 };
+        track.rest(REST_MS);
+        track
+    }
+
+    fn rest(&mut self, ms: f64) {
+        self.add(None, ms);
+    }
+
+    fn add(&mut self, viseme: Option<&'static str>, ms: f64) {
+        self.spoken.push(Spoken { viseme, middle_ms: self.at_ms + ms / 2.0 });
+        self.at_ms += ms;
+    }
+
+    /// Adds the visemes of a word by the first entry of a table that fits at each place.
+    fn say(&mut self, word: &str, table: &[(&str, &[&'static str])]) {
+        let mut rest = word;
+        while let Some(first) = rest.chars().next() {
+            let Some((spelling, visemes)) = table.iter().find(|entry| rest.starts_with(entry.0)) else {
+                rest = &rest[first.len_utf8()..];
+                continue;
+            };
+            // A letter that is written twice is spoken once.
+            let again = spelling.len() == 1 && rest[1..].starts_with(spelling);
+            for viseme in visemes.iter().filter(|_| !again) {
+                let vowel = matches!(*viseme, "aa" | "e" | "i" | "o" | "u");
+                self.add(Some(name(viseme)), if vowel { VOWEL_MS } else { CONSONANT_MS });
+            }
+            rest = &rest[spelling.len()..];
+        }
+    }
+
+    fn finish(mut self, nothing: &str) -> Result<Vec<Spoken>> {
+        ensure!(self.spoken.iter().any(|spoken| spoken.viseme.is_some()), "{nothing}");
+        self.rest(REST_MS);
+        Ok(self.spoken)
+    }
+}
+
+/// The face's name of a viseme.
+fn name(short: &str) -> &'static str {
+    match short {
+        "pp" => "viseme_pp",
+        "ff" => "viseme_ff",
+        "th" => "viseme_th",
+        "dd" => "viseme_dd",
+        "kk" => "viseme_kk",
+        "ch" => "viseme_ch",
+        "ss" => "viseme_ss",
+        "nn" => "viseme_nn",
+        "rr" => "viseme_rr",
+        "aa" => "viseme_aa",
+        "e" => "viseme_e",
+        "i" => "viseme_i",
+        "o" => "viseme_o",
+        _ => "viseme_u",
+    }
+}
+
+/// The frame of a time.
+fn frame(ms: f64) -> usize {
+    (ms * FPS / 1000.0).round() as usize
+}
+
+/// Writes the track as key-frame text: each viseme has its full weight in the middle of its time, and none in the middle of its neighbours'.
+pub fn keys(spoken: &[Spoken], comment: &str) -> String {
+    // Middles are at least two frames apart, but those of short consonants may fall into one frame.
+    let mut frames: Vec<usize> = Vec::new();
+    for entry in spoken {
+        frames.push(frame(entry.middle_ms).max(frames.last().map_or(0, |&last| last + 1)));
+    }
+    let count = frames.last().map_or(0, |&last| last + 1) + frame(REST_MS / 2.0);
+    let mut names: Vec<&str> = spoken.iter().filter_map(|entry| entry.viseme).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut out = format!("keyframes 1\n# {}\nfps {FPS:.0}\nframes {count}\n\n", comment.replace('\n', " "));
+    // Writing to a string cannot fail.
+    for name in &names {
+        let _ = writeln!(out, "scalar {name} scale 1");
+    }
+    for name in names {
+        let _ = writeln!(out, "\nkeys linear {name}");
+        let mut rows: Vec<(usize, u8)> = vec![(0, 0)];
+        for (index, entry) in spoken.iter().enumerate() {
+            let near = index.saturating_sub(1)..=(index + 1).min(spoken.len() - 1);
+            let own = entry.viseme == Some(name);
+            if own || near.into_iter().any(|index| spoken[index].viseme == Some(name)) {
+                rows.push((frames[index], u8::from(own)));
+            }
+        }
+        rows.push((count - 1, 0));
+        rows.dedup_by_key(|row| row.0);
+        rows.iter().for_each(|(frame, value)| {
+            let _ = writeln!(out, "  {frame} {value}");
+        });
+    }
+    out
+}
+
+/// Writes the level of a WAV as key-frame text: jaw and lips follow it frame by frame. Fails for other files than PCM of 16 bits.
+pub fn of_wav(bytes: &[u8], comment: &str) -> Result<String> {
+    let (rate, samples) = wav(bytes)?;
+    let step = (f64::from(rate) / FPS).max(1.0);
+    let count = ((samples.len() as f64 / step).ceil() as usize).max(2);
+    ensure!(count <= 1 << 16, "the recording is longer than {} minutes", (1 << 16) / 30 / 60);
+    let level = |frame: usize| {
+        let part = (frame as f64 * step) as usize..(((frame + 1) as f64 * step) as usize).min(samples.len());
+        let some = &samples[part.start.min(part.end)..part.end];
+        (some.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>() / some.len().max(1) as f64).sqrt()
+    };
+    let levels: Vec<f64> = (0..count).map(level).collect();
+    let mut sorted = levels.clone();
+    sorted.sort_by(f64::total_cmp);
+    // What is louder than nearly all of it opens the mouth fully; what is as soft as a thirtieth of that is silence.
+    let (loud, silent) = (sorted[(count * 95 / 100).min(count - 1)].max(1.0), 1.0 / 30.0);
+    let mut out = format!(
+        "keyframes 1\n# {}\nfps {FPS:.0}\nframes {count}\n\nscalar viseme_aa scale 1\n\nkeys linear viseme_aa\n",
+        comment.replace('\n', " ")
+    );
+    for (frame, level) in levels.iter().enumerate() {
+        let part = ((level / loud - silent) / (1.0 - silent)).clamp(0.0, 1.0).sqrt();
+        let _ = writeln!(out, "  {frame} {part:.3}");
+    }
+    Ok(out)
+}
+
+/// The sampling rate and the first channel of a WAV.
+fn wav(bytes: &[u8]) -> Result<(u32, Vec<i16>)> {
+    ensure!(bytes.len() > 12 && bytes.starts_with(b"RIFF") && &bytes[8..12] == b"WAVE", "no WAV");
+    let (mut at, mut format) = (12, None);
+    while let Some(head) = bytes.get(at..at + 8) {
+        let length = u32::from_le_bytes([head[4], head[5], head[6], head[7]]) as usize;
+        let body = &bytes[at + 8..(at + 8).saturating_add(length).min(bytes.len())];
+        match &head[..4] {
+            b"fmt " if body.len() >= 16 => {
+                let short = |place: usize| u16::from_le_bytes([body[place], body[place + 1]]);
+                ensure!(short(0) == 1 && short(14) == 16, "expected PCM of 16 bits");
+                let channels = usize::from(short(2)).max(1);
+                format = Some((u32::from_le_bytes([body[4], body[5], body[6], body[7]]), channels));
+            }
+            b"data" => {
+                let (rate, channels) = format.context("samples before their format")?;
+                ensure!((1_000..=400_000).contains(&rate), "expected a sampling rate from 1,000 to 400,000 Hz, not {rate}");
+                let samples: Vec<i16> = body.chunks_exact(2 * channels).map(|x| i16::from_le_bytes([x[0], x[1]])).collect();
+                ensure!(!samples.is_empty(), "no samples");
+                return Ok((rate, samples));
+            }
+            _ => {}
+        }
+        at = (at + 8).saturating_add(length.next_multiple_of(2));
+    }
+    anyhow::bail!("no samples")
+}
