@@ -76,6 +76,12 @@ pub fn fit_rows(face: &Blueprint, rows: &[(usize, Vector)], limits: Limits) -> R
     }
     let target: Vec<Vector> = rows.iter().map(|row| row.1).collect();
     let picked = |places: &[Vector]| -> Vec<Vector> { rows.iter().map(|row| places[row.0]).collect() };
+    // Both sides of a unit together are one weight, which most faces need instead of two.
+    let mut all = all;
+    let both = |unknown: &&Unknown| unknown.sides == [true, false] && face.shapes[unknown.shape].sided;
+    let pairs_of_sides: Vec<Unknown> =
+        all.iter().filter(both).map(|&unknown| Unknown { sides: [true, true], ..unknown }).collect();
+    all.extend(pairs_of_sides);
     let (mut chosen, mut left): (Vec<usize>, Vec<usize>) = (Vec::new(), (0..all.len()).collect());
     let mut best = solve(face, rows, &[]);
     let rest = best.residual.powi(2);
@@ -247,16 +253,16 @@ fn unknowns(face: &Blueprint, paper: bool) -> Vec<Unknown> {
 fn pairs(face: &Blueprint, unknowns: &[Unknown], ways: &[f64]) -> Pairs {
     let mut pairs = vec![[0.0; 2]; face.shapes.len()];
     for (unknown, &way) in unknowns.iter().zip(ways) {
-        let weight = match face.shapes[unknown.shape].interpolation {
+        for (slot, driven) in pairs[unknown.shape].iter_mut().zip(unknown.sides) {
+            *slot += if driven { way } else { 0.0 };
+        }
+    }
+    for (shape, pair) in face.shapes.iter().zip(&mut pairs) {
+        *pair = pair.map(|way| match shape.interpolation {
             Interpolation::Eased => way.signum() * (1.0 - 2.0 * way.abs().min(1.0)).acos() / PI,
             Interpolation::ImprovedLinear => way.clamp(-1.0, 1.0).asin() * 2.0 / PI,
             _ => way,
-        };
-        for (slot, driven) in pairs[unknown.shape].iter_mut().zip(unknown.sides) {
-            if driven {
-                *slot = weight;
-            }
-        }
+        });
     }
     pairs
 }

@@ -5,7 +5,11 @@ use crate::board::{Board, Exit};
 use crate::log::{error, info};
 use crate::session::{Outcome, PlayContext};
 use pantin::{Clip, Player, Pose, Rig};
-use pantin_face::{Binding, FaceRenderer, MODEL, Model, Morph, VERTICES, Weights};
+#[cfg(feature = "cartoon")]
+use pantin_face::CARTOON as MODEL;
+#[cfg(not(feature = "cartoon"))]
+use pantin_face::MODEL;
+use pantin_face::{Binding, FaceRenderer, Model, Morph, VERTICES, Weights};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, View};
 

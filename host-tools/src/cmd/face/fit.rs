@@ -3,10 +3,8 @@
 use crate::cmd::Files;
 use crate::cmd::render::Moment;
 use crate::expand::expand;
-use crate::face::blueprint::Shape;
 use crate::face::fit::{Fit, LEAST};
 use crate::face::head::{Vector, plus};
-use crate::face::names::goes_aside;
 use crate::face::{Face, exact, fit, outside, points, pose};
 use crate::import;
 use crate::input;
@@ -44,7 +42,7 @@ pub struct Arguments {
     /// The units that may be used
     #[arg(long, value_enum, default_value = "all")]
     units: Units,
-    /// The most units that have a weight, sides counted apart
+    /// The most weights; sides that move alike have one
     #[arg(long, default_value_t = 8)]
     most: usize,
     /// Feature points of another mesh: lines of an MPEG-4 number and a vertex, or an .fdp of xface
@@ -100,12 +98,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let fits = poses.rows.par_iter().map(|rows| fit::fit_rows(&face.blueprint, rows, limits)).collect::<Result<Vec<_>>>();
     let fits = fits.with_context(place)?;
     let Some(output) = &arguments.output else { return print(&face, &fits[0]) };
-    // A unit without sides has one weight, which both of its sides have.
-    let of_shape = |(shape, pair): (&Shape, &[f64; 2])| {
-        let sides = pair.iter().filter(|weight| weight.abs() >= LEAST).count();
-        if shape.sided || goes_aside(&shape.name) { sides } else { sides.min(1) }
+    // Sides that move alike have one weight.
+    let of_shape = |pair: &[f64; 2]| match pair.iter().filter(|weight| weight.abs() >= LEAST).count() {
+        2 if (pair[0] - pair[1]).abs() < LEAST => 1,
+        sides => sides,
     };
-    let used = |fit: &Fit| face.blueprint.shapes.iter().zip(&fit.pairs).map(of_shape).sum::<usize>();
+    let used = |fit: &Fit| fit.pairs.iter().map(of_shape).sum::<usize>();
     let frames = || fits.iter().enumerate();
     if is_json() {
         let frame = |(frame, fit): (usize, &Fit)| json!({"frame": frame, "weights": used(fit), "residual_mm": fit.residual, "neutral_residual_mm": fit.before, "worst_mm": fit.worst.0});
