@@ -134,9 +134,11 @@ fn solve(face: &Blueprint, rows: &[(usize, Vector)], unknowns: &[Unknown]) -> Fi
         let columns: Vec<Vec<f64>> = (0..unknowns.len())
             .map(|unknown| {
                 let mut moved = ways.clone();
-                moved[unknown] += STEP;
+                // Beyond a full displacement nothing moves any more.
+                let step = if ways[unknown] + STEP > 1.0 { -STEP } else { STEP };
+                moved[unknown] += step;
                 let places = picked(&exact::places(face, &pairs(face, unknowns, &moved)));
-                differences(&places, &at).iter().map(|x| x / STEP).collect()
+                differences(&places, &at).iter().map(|x| x / step).collect()
             })
             .collect();
         let before = ways.clone();
