@@ -7,7 +7,7 @@ use pantin_store::{BLOCK_BYTES, ClipInfo, Request, Response, Slot, Store, Update
 
 /// Golden vectors: clips of several blocks.
 pub const OLD: &[u8] = include_bytes!("../../../../tests/vectors/index.ptn");
-pub const NEW: &[u8] = include_bytes!("../../../../tests/vectors/followers.ptn");
+pub const NEW: &[u8] = include_bytes!("../../../../tests/vectors/channels-300.ptn");
 pub const THIRD: &[u8] = include_bytes!("../../../../tests/vectors/numbers.ptn");
 
 /// What a clip is sent with.
