@@ -409,7 +409,7 @@ impl<'m> Descent<'m> {
 
     /// What the channel's start costs beside those of the others.
     fn start_costs(&self, channel: usize) -> StartCosts {
-        StartCosts::of(channel, &self.kinds, |other| self.codes[other].as_ref().map(|code| &code.start))
+        StartCosts::of(channel, self.kinds, |other| self.codes[other].as_ref().map(|code| &code.start))
     }
 
     /// The best of what the search finds at a few steps.

@@ -61,12 +61,12 @@ impl StartCosts {
             let mut statuses = before;
             let mut bits = cost(tables::status(statuses.context(kind)), own as u32);
             statuses.put(kind, own as u8);
-            for other in channel + 1..=last {
+            for (other, &kind) in kinds.iter().enumerate().take(last + 1).skip(channel + 1) {
                 let theirs = status_at(other);
                 if Some(other) == next || Some(other) == of_kind {
-                    bits += cost(tables::status(statuses.context(kinds[other])), u32::from(theirs));
+                    bits += cost(tables::status(statuses.context(kind)), u32::from(theirs));
                 }
-                statuses.put(kinds[other], theirs);
+                statuses.put(kind, theirs);
             }
             bits
         });
