@@ -67,7 +67,7 @@ pub struct Statuses {
 }
 
 impl Statuses {
-    /// Which of a status's [`STATUS_CONTEXTS`] a channel of this kind has.
+    /// Which of a status's contexts ([`crate::layout::STATUS_CONTEXTS`]) a channel of this kind has.
     pub fn context(&self, kind: Kind) -> u8 {
         let of_kind = (self.of_kinds >> (2 * kind as u32)) as u8 & 3;
         (u8::from(kind.is_position()) << 4) | (self.last << 2) | of_kind
