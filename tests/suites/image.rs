@@ -7,9 +7,9 @@ use harness::setup;
 
 /// Bytes of code of each of [`DECODERS`], without the compiler's memory functions: growth is to be meant. (`cargo xtask bench footprint` says
 /// what the goals are.)
-const CODE: [u64; DECODERS.len()] = [5120, 6470, 7980, 10040];
+const CODE: [u64; DECODERS.len()] = [5180, 6520, 8030, 10120];
 /// Bytes of tables.
-const TABLES: u64 = 2220;
+const TABLES: u64 = 2420;
 
 #[test]
 fn the_decoder_alone_cannot_panic_and_stays_small() {

@@ -305,10 +305,10 @@ fn crowd() -> Made {
 }
 
 /// Channels that follow another, every way back that there is, some of them one that follows itself, among channels of every status;
-/// of angles, of positions, whose statuses come in every order, and of scalars with names by a list.
+/// of angles, of positions and of scalars with names by a list.
 fn followers() -> Made {
-    let places = 48..48 + 6 * 32;
-    let mut rig = figure(&[vec![&EULER as &[Kind]; 12], vec![&PLACE as &[Kind]; 4 + 2 * 32]].concat(), 60);
+    let places = 48..48 + 6 * 4;
+    let mut rig = figure(&[vec![&EULER as &[Kind]; 12], vec![&PLACE as &[Kind]; 4 + 2 * 4]].concat(), 60);
     let names = pantin::names::LIVE_LINK.split(' ').filter(|&name| name != "TongueOut");
     rig.scalars.iter_mut().zip(names).for_each(|(scalar, name)| scalar.name = name.into());
     let mut coded = motion(30);
@@ -316,10 +316,10 @@ fn followers() -> Made {
     let (mut moves, mut back) = (vec![], 0);
     for channel in 0..rig.channels() {
         let leader = moves.len().checked_sub(back % 32 + 1).map(|at| moves[at]);
-        // A pair of joints for each status behind one that moves or follows, and each of the last x before it.
+        // Pairs of joints: an x that is constant or follows, behind a channel that moves or follows, and behind an x that rests.
         let ordered = places.contains(&channel).then(|| {
             let pair = (channel - places.start) / 6;
-            let statuses = [pair / 8, 0, 2 + pair / 4 % 2, pair % 4, 0, 2];
+            let statuses = [0, 0, 2 + pair / 2, 1 + 2 * (pair % 2), 0, 2];
             [0, 1, 7, 2][statuses[(channel - places.start) % 6]]
         });
         let made = match (ordered.unwrap_or_else(|| noise.below(8)), leader) {
