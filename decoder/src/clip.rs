@@ -222,8 +222,7 @@ impl<'a> Clip<'a> {
         if parts.flags & HAS_RIG != 0 {
             return Err(OpenError::Malformed);
         }
-        let motion = parts.blocks(crc::of(&[MAGIC[0], MAGIC[1], VERSION, parts.flags]))?;
-        [clip.index, clip.names] = parts.tail(motion)?;
+        let motion = clip.check_rest(&mut parts)?;
         clip.head.flags = parts.flags;
         clip.read_front(motion, OpenError::Malformed)?;
         Ok(clip)
@@ -233,9 +232,16 @@ impl<'a> Clip<'a> {
     fn open(&mut self, file: &'a [u8], rig: &'a [u8]) -> Result<(), OpenError> {
         let mut parts = Parts::new(file);
         parts.read()?;
+        let motion = self.check_rest(&mut parts)?;
+        self.read(&parts, rig, motion, OpenError::Malformed)
+    }
+
+    /// Checks what follows the rig: the motion, whose blocks it returns, the index and the names of events.
+    #[inline(always)]
+    fn check_rest(&mut self, parts: &mut Parts<'a>) -> Result<&'a [u8], OpenError> {
         let motion = parts.blocks(crc::of(&[MAGIC[0], MAGIC[1], VERSION, parts.flags]))?;
         [self.index, self.names] = parts.tail(motion)?;
-        self.read(&parts, rig, motion, OpenError::Malformed)
+        Ok(motion)
     }
 
     /// Reads the rig, and the front of a motion before its symbols: `motion` is of checked blocks. `short` is what it means that the events

@@ -1,5 +1,8 @@
 //! Banks: what is in one, and that each rule of FORMAT.md 16 is checked.
 
+mod common;
+
+use common::varint;
 use pantin::codec::{crc, layout::VERSION};
 use pantin::{Bank, Clip, OpenError};
 use std::path::Path;
@@ -14,16 +17,6 @@ fn vectors() -> Option<[Vec<u8>; 3]> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/vectors");
     let read = |name: &str| std::fs::read(folder.join(name)).ok();
     Some([read("rig-apart.ptn")?, read("rig-apart.rig")?, read("frames-1.ptn")?])
-}
-
-fn varint(mut number: usize) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
-    bytes
 }
 
 fn name(name: &[u8]) -> Vec<u8> {

@@ -1,5 +1,8 @@
 //! The fields in front of a motion's symbols: each rule of FORMAT.md is checked, and a clip reports what the file holds.
 
+mod common;
+
+use common::varint;
 use pantin::codec::crc;
 use pantin::codec::layout::*;
 use pantin::{ChannelState, Clip, Form, OpenError, PartialClip, Player};
@@ -9,16 +12,6 @@ static WALK: &[u8] = include_bytes!("walk.ptn");
 /// One of the repository's vectors; `None` where the package has none.
 fn vector(name: &str) -> Option<Vec<u8>> {
     std::fs::read(format!("{}/../tests/vectors/{name}.ptn", env!("CARGO_MANIFEST_DIR"))).ok()
-}
-
-fn varint(mut number: usize) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
-    bytes
 }
 
 /// Bytes in blocks with their CRCs, the first of which goes on from `seed`.

@@ -337,16 +337,23 @@ fn banks_and_folders_report_what_one_conversion_does() {
     assert!(said.contains("all 2: --max-scalar-error has no effect") && said.contains("walk.keys: rate: 160 frames"), "{said}");
 }
 
+/// A folder with a bank, `moves.ptb`, that holds one clip so many times: as c0, c1, and so on. Returns the clip too.
 #[cfg(target_os = "linux")]
-#[test]
-fn unpacking_needs_few_open_files() {
+fn folder_with_bank(clips: usize) -> (super::outputs::Folder, Vec<u8>) {
     use pantin_tools::encode::bank::{Named, encode, rig_of};
     let folder = super::outputs::Folder::new();
     folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
     let clip = folder.get("a.ptn");
     let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
     let named = |number| Named { name: format!("c{number}"), place: String::new(), clip: clip.clone(), rig: rig.clone() };
-    folder.put("moves.ptb", encode(&(0..200).map(named).collect::<Vec<_>>()).unwrap());
+    folder.put("moves.ptb", encode(&(0..clips).map(named).collect::<Vec<_>>()).unwrap());
+    (folder, clip)
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn unpacking_needs_few_open_files() {
+    let (folder, clip) = folder_with_bank(200);
     // The second time all files are there already.
     for _ in 0..2 {
         let mut command = Command::new("sh");
@@ -362,13 +369,7 @@ fn unpacking_needs_few_open_files() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_signal_leaves_no_temporary_file_of_many() {
-    use pantin_tools::encode::bank::{Named, encode, rig_of};
-    let folder = super::outputs::Folder::new();
-    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
-    let clip = folder.get("a.ptn");
-    let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
-    let named = |number| Named { name: format!("c{number}"), place: String::new(), clip: clip.clone(), rig: rig.clone() };
-    folder.put("moves.ptb", encode(&(0..2000).map(named).collect::<Vec<_>>()).unwrap());
+    let (folder, _) = folder_with_bank(2000);
     let files = |name: &str| std::fs::read_dir(folder.path(name)).map_or(0, Iterator::count);
     for round in 0..15 {
         let out = format!("out{round}");
@@ -384,15 +385,9 @@ fn a_signal_leaves_no_temporary_file_of_many() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_signal_leaves_all_or_none_of_what_belongs_together() {
-    use pantin_tools::encode::bank::{Named, encode, rig_of};
     use std::os::unix::fs::MetadataExt;
     const CLIPS: usize = 1500;
-    let folder = super::outputs::Folder::new();
-    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
-    let clip = folder.get("a.ptn");
-    let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
-    let named = |number| Named { name: format!("c{number}"), place: String::new(), clip: clip.clone(), rig: rig.clone() };
-    folder.put("moves.ptb", encode(&(0..CLIPS).map(named).collect::<Vec<_>>()).unwrap());
+    let (folder, clip) = folder_with_bank(CLIPS);
     let path = |number: usize| folder.path("out").join(format!("c{number}.ptn"));
     std::fs::create_dir(folder.path("out")).unwrap();
     (0..CLIPS).for_each(|number| std::fs::write(path(number), "before").unwrap());

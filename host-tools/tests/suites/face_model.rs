@@ -220,13 +220,7 @@ fn own_motions_are_small_faces_that_begin_and_end_at_rest() {
     let mut total = 0;
     for file in &files {
         let clip = folder.join(file.file_name().unwrap()).with_extension("ptn");
-        let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
-            .args(["convert", "--max-scalar-error", "2", "-o"])
-            .args([&clip, file])
-            .output()
-            .unwrap();
-        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-        let bytes = std::fs::read(&clip).unwrap();
+        let bytes = converted(file, &clip);
         total += bytes.len();
         let clip = pantin::Clip::new_checked(&bytes).unwrap();
         assert!(clip.frames() > 30 && is_face(&clip).unwrap(), "{}", file.display());
@@ -246,6 +240,17 @@ fn own_motions_are_small_faces_that_begin_and_end_at_rest() {
     assert!(total <= 2 << 10, "{total} bytes");
 }
 
+/// The bytes of `file` converted to `clip` at the scalar error at which our faces are shipped.
+fn converted(file: &Path, clip: &Path) -> Vec<u8> {
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
+        .args(["convert", "--max-scalar-error", "2", "-o"])
+        .args([clip, file])
+        .output()
+        .unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    std::fs::read(clip).unwrap()
+}
+
 #[test]
 fn the_emotes_are_small_loops_that_move_the_face() {
     let mut files: Vec<PathBuf> =
@@ -259,13 +264,7 @@ fn the_emotes_are_small_loops_that_move_the_face() {
     let mut total = pantin_face::MODEL.len() + pantin_face::CARTOON.len();
     for file in &files {
         let clip = folder.path().join("emote.ptn");
-        let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
-            .args(["convert", "--max-scalar-error", "2", "-o"])
-            .args([&clip, file])
-            .output()
-            .unwrap();
-        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-        let bytes = std::fs::read(&clip).unwrap();
+        let bytes = converted(file, &clip);
         total += bytes.len();
         let clip = pantin::Clip::new_checked(&bytes).unwrap();
         let seconds = f64::from(clip.frames()) * f64::from(clip.frame_time_ns()) * 1e-9;

@@ -8,6 +8,7 @@ use crate::face::head::{Vector, plus};
 use crate::face::{Face, exact, fit, outside, points, pose};
 use crate::import;
 use crate::input;
+use crate::motion::Motion;
 use crate::output::{Wanted, check, is_json, outln, refuse_foreign, report, write_whole};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{ChannelState, Player};
@@ -184,7 +185,12 @@ fn of_motion(arguments: &Arguments, face: &Face) -> Result<Poses> {
         Ok(exact::places(&face.blueprint, &pairs).into_iter().enumerate().collect())
     };
     let rows = (0..motion.frames).map(pose).collect::<Result<_>>()?;
-    Ok(Poses { rows, fps: (1e6 / motion.frame_time).round() / 1e6 })
+    Ok(Poses { rows, fps: rate(&motion) })
+}
+
+/// Frames a second, without the last digits that the file's rounded frame time leaves.
+fn rate(motion: &Motion) -> f64 {
+    (1e6 / motion.frame_time).round() / 1e6
 }
 
 /// Poses of another mesh, by its feature points.
@@ -223,7 +229,7 @@ fn of_others(arguments: &Arguments, face: &Face, extension: Option<&str>, points
             rows(&places)
         };
         let rows = (0..motion.frames).map(pose).collect::<Result<_>>()?;
-        return Ok(Poses { rows, fps: (1e6 / motion.frame_time).round() / 1e6 });
+        return Ok(Poses { rows, fps: rate(&motion) });
     }
     let rows = paths.iter().map(|path| rows(&outside::mesh(path, &files)?.points)).collect::<Result<_>>()?;
     Ok(Poses { rows, fps: arguments.fps })

@@ -175,8 +175,8 @@ impl Known<'_> {
             (-AROUND..=AROUND).map(move |offset| best as i32 + offset)
         };
         if first {
-            let [p, v, _] = self.error(&from);
-            let bend = from.w - self.error(&from)[2];
+            let [p, v, w] = self.error(&from);
+            let bend = from.w - w;
             for w in near(bend, w_unit) {
                 let slope = span.slope + span.best([p, v, f64::from(w) * w_unit - bend]).0;
                 for k in near(slope, k_unit) {
