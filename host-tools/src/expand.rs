@@ -90,15 +90,19 @@ pub fn expand(clip: &Clip<'_>) -> Result<Motion> {
 
 /// The same for a clip that was made of a motion in memory, which has its size.
 pub(crate) fn expand_made(clip: &Clip<'_>) -> Result<Motion> {
-    let expanded = Expanded::new(clip);
-    let (frames, channels) = (expanded.frames(), expanded.rig.channels());
-    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(frames); channels];
-    expanded.each(&mut |pose| {
+    Ok(Motion { looped: clip.looped(), ..gather(&Expanded::new(clip))? })
+}
+
+/// All frames in memory, as a motion that is no loop.
+pub fn gather(frames: &impl Frames) -> Result<Motion> {
+    let (rig, count) = (frames.rig().clone(), frames.frames());
+    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(count); rig.channels()];
+    frames.each(&mut |pose| {
         values.iter_mut().zip(pose).for_each(|(out, &value)| out.push(value));
         Ok(())
     })?;
-    let (frame_time, keys) = (expanded.frame_time(), vec![None; channels]);
-    Ok(Motion { rig: expanded.rig, frame_time, frames, values, keys, looped: clip.looped(), events: events::of_clip(clip) })
+    let (frame_time, keys) = (frames.frame_time(), vec![None; rig.channels()]);
+    Ok(Motion { rig, frame_time, frames: count, values, keys, looped: false, events: frames.events() })
 }
 
 /// The rotation channels of a joint that has three of them, its first channel being `first`.

@@ -126,6 +126,7 @@ fn main() -> ExitCode {
         Command::Unpack(arguments) => cmd::bank::unpack(&arguments),
         Command::Update(arguments) => cmd::update::run(&arguments),
     };
+    output::remove_empty_folders();
     match result.and_then(|()| output::finish(name)) {
         Ok(()) => {
             output::print_detail(format_args!("{name}: {:.2} s", begun.elapsed().as_secs_f64()));

@@ -9,7 +9,6 @@ use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
 use serde_json::json;
 use std::collections::HashMap;
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -181,14 +180,14 @@ pub fn unpack(arguments: &Unpack) -> Result<()> {
         bank.open(entry).with_context(|| context(entry))?;
         super::batch::regular(file)?;
     }
-    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    output::make_folder(folder)?;
     output::check(&[&arguments.input], &files.iter().map(|(_, path)| path.as_path()).collect::<Vec<_>>())?;
     let (rig, mut staged) = (CheckedRig::of(&bank), Vec::with_capacity(files.len()));
     let bar = output::progress(files.len() as u64, "{wide_bar} {pos} of {len} clips {eta} left")?;
     for (entry, path) in &files {
         let clip = bank::with_rig(entry.bytes(), &rig).with_context(|| context(entry))?;
         let mut file = Staged::create(path)?;
-        file.write_all(&clip).with_context(|| format!("{}: cannot be written", path.display()))?;
+        file.write_all(&clip)?;
         file.close()?;
         staged.push(file);
         bar.inc(1);

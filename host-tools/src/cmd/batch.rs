@@ -3,7 +3,7 @@
 //! A clip that is up to date carries its source's modification time in seconds, and in the microseconds beside them a fingerprint of
 //! the source, the options and this program. So nothing but clips is written, and whatever loses the time (an edit, a copy) converts again.
 
-use super::convert::{Arguments, Made, convert, say_of_each};
+use super::convert::{Arguments, Made, Progress, convert, say_of_each};
 use super::is_free;
 use crate::import;
 use crate::input;
@@ -209,15 +209,14 @@ fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], ot
     different_files(tasks)?;
     sources_stay(tasks)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
-    let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} files {eta} left")?;
+    let bar = output::Pieces::new(tasks.len(), "files")?;
     let convert = |task: &Arguments| {
-        let outcome = outcome(task);
-        bar.inc(1);
-        outcome
+        let piece = bar.begin();
+        outcome(task, &|part| piece.set(part))
     };
     // One at a time from the list, so that a long file does not hold back those behind it.
     let outcomes: Vec<Outcome> = pool.install(|| tasks.par_iter().with_max_len(1).map(convert).collect());
-    bar.finish_and_clear();
+    bar.finish();
     let refused = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Refused(_))).count();
     if output::is_json() {
         let files: Vec<_> = tasks.iter().zip(&outcomes).map(|(task, outcome)| outcome.json(task)).collect();
@@ -344,7 +343,7 @@ fn different_files(tasks: &[Arguments]) -> Result<()> {
     Ok(())
 }
 
-fn outcome(task: &Arguments) -> Outcome {
+fn outcome(task: &Arguments, progress: Progress<'_>) -> Outcome {
     let begun = std::time::Instant::now();
     let convert = || -> Result<Outcome> {
         let (stamp, taken) = stamp(task)?;
@@ -358,9 +357,9 @@ fn outcome(task: &Arguments) -> Outcome {
             "{output}: exists; --output FOLDER replaces clips in that folder"
         );
         if let Some(folder) = task.output().parent() {
-            fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+            output::make_folder(folder)?;
         }
-        let made = convert(task)?;
+        let made = convert(task, progress)?;
         // A file that the fingerprint does not cover may change unseen: then the clip is made again each time.
         if made.read.iter().all(|path| taken.contains(path)) {
             File::options().write(true).open(task.output())?.set_modified(stamp).context("cannot set the clip's time")?;

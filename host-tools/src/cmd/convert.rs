@@ -27,6 +27,8 @@ use pantin::codec::layout::MAX_FRAMES;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Turn a motion file into a clip.
 ///
@@ -244,7 +246,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let arguments = &arguments.with_output()?;
     arguments.check_outputs(&[])?;
-    let made = convert(arguments)?;
+    // Drawn when the motion is read.
+    let bar = OnceLock::new();
+    let begin = || output::progress(1000, "fitting {wide_bar} {percent} % {eta} left").unwrap_or_else(|_| ProgressBar::hidden());
+    let made = convert(arguments, &|part| bar.get_or_init(begin).set_position((part * 1000.0) as u64))?;
+    bar.get_or_init(begin).finish_and_clear();
     output::report(made.fields().into());
     note!("{}", made.sentence(arguments.output()));
     Ok(())
@@ -400,11 +406,14 @@ pub(super) fn say_of_each<'a>(all: impl Iterator<Item = (&'a str, &'a [String])>
     }
 }
 
+/// A function that takes the part of a fit that is done, from 0 to 1.
+pub(super) type Progress<'a> = &'a (dyn Fn(f64) + Sync);
+
 /// Converts one file and writes the clip.
-pub(super) fn convert(arguments: &Arguments) -> Result<Made> {
+pub(super) fn convert(arguments: &Arguments, progress: Progress<'_>) -> Result<Made> {
     let prepared = prepare(arguments)?;
     arguments.check_outputs(&prepared.read)?;
-    let made = prepared.code(arguments, &prepared.coding(arguments))?;
+    let made = prepared.code(arguments, &prepared.coding(arguments), progress)?;
     // A clip opens with its own rig alone: a new one beside an old one would be lost.
     let rig = arguments.rig_out.as_deref().map(|path| (path, prepared.rig.as_slice()));
     let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
@@ -478,10 +487,11 @@ impl Prepared {
     }
 
     /// The clip in a coding; its errors are those of the device's decoder.
-    pub fn code(&self, arguments: &Arguments, coding: &Coding) -> Result<Made> {
+    pub fn code(&self, arguments: &Arguments, coding: &Coding, progress: Progress<'_>) -> Result<Made> {
+        progress(0.0);
         let mut made = match &self.bound {
-            Bound::Channels(bounds) => by_channel(arguments, self, bounds, coding)?,
-            Bound::Distance(distance) => by_distance(arguments, self, distance, coding)?,
+            Bound::Channels(bounds) => by_channel(arguments, self, bounds, coding, progress)?,
+            Bound::Distance(distance) => by_distance(arguments, self, distance, coding, progress)?,
         };
         if let (Some(cm), Some(fields)) = (self.retarget_max_cm, made.json.as_object_mut()) {
             fields.insert("retarget_max_cm".into(), json!(cm));
@@ -615,13 +625,6 @@ fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
     (!closed.seam_joint.is_empty()).then_some(seam).into_iter().chain([moved]).chain(travel).collect()
 }
 
-fn bar(arguments: &Arguments, length: u64) -> Result<ProgressBar> {
-    if arguments.silent {
-        return Ok(ProgressBar::hidden());
-    }
-    output::progress(length, "fitting {wide_bar} {percent} % {eta} left")
-}
-
 /// The clip's bytes, with the index that was asked for; says what it costs.
 fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8], notes: &mut Notes) -> Result<Vec<u8>> {
     let apart = arguments.rig_out.is_some();
@@ -640,12 +643,16 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8], notes: &mut Note
     Ok(bytes)
 }
 
-fn by_distance(arguments: &Arguments, prepared: &Prepared, distance: &Distance, coding: &Coding) -> Result<Made> {
+fn by_distance(
+    arguments: &Arguments,
+    prepared: &Prepared,
+    distance: &Distance,
+    coding: &Coding,
+    progress: Progress<'_>,
+) -> Result<Made> {
     let Prepared { motion, rig, .. } = prepared;
     let (plan, part) = (distance.plan(arguments.effort), distance.scalar_part);
-    let bar = bar(arguments, 1000)?;
-    let coded = fit_coding(motion, coding, plan, part, &mut |done| bar.set_position((done * 1000.0) as u64))?;
-    bar.finish_and_clear();
+    let coded = fit_coding(motion, coding, plan, part, &mut |done| progress(done))?;
     let mut notes = Notes::of(arguments);
     let bytes = file(arguments, &coded, rig, &mut notes)?;
     let not_written = || format!("{}: not written", arguments.output().display());
@@ -670,15 +677,21 @@ fn by_distance(arguments: &Arguments, prepared: &Prepared, distance: &Distance, 
     Ok(Made::new(motion, bytes, errors::to_json(&report, motion).into(), errors, cell, notes))
 }
 
-fn by_channel(arguments: &Arguments, prepared: &Prepared, bounds: &Bounds, coding: &Coding) -> Result<Made> {
+fn by_channel(
+    arguments: &Arguments,
+    prepared: &Prepared,
+    bounds: &Bounds,
+    coding: &Coding,
+    progress: Progress<'_>,
+) -> Result<Made> {
     let Prepared { motion, rig, .. } = prepared;
     let mut bounds = bounds.clone();
     bounds.at_least_steps(motion, coding.length_exponent);
     let bounds = &bounds;
-    let bar = bar(arguments, motion.rig.channels() as u64)?;
+    let (channels, done) = (motion.rig.channels() as f64, AtomicUsize::new(0));
+    let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / channels);
     let not_written = || format!("{}: not written", arguments.output().display());
-    let coded = channelwise::fit_exponent(motion, bounds, coding.length_exponent, &|| bar.inc(1)).with_context(not_written)?;
-    bar.finish_and_clear();
+    let coded = channelwise::fit_exponent(motion, bounds, coding.length_exponent, &step).with_context(not_written)?;
     let mut notes = Notes::of(arguments);
     let bytes = file(arguments, &coded, rig, &mut notes)?;
     let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;

@@ -38,23 +38,26 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         budget::check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
         Ok(prepared)
     };
+    let bar = output::progress(tasks.len() as u64, "reading {wide_bar} {pos} of {len} motions {eta} left")?;
+    let prepare = |task: &Task| prepare(task).inspect(|_| bar.inc(1));
     let mut prepared: Vec<Prepared> =
         pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
+    bar.finish_and_clear();
     agree_on_up(&mut prepared, arguments.up_is_given())?;
     let labels: Vec<String> = tasks.iter().map(|task| task.label.clone()).collect();
     of_one_rig(&prepared, &labels, "a bank holds clips of one rig")?;
     let shared = arguments.same_form.then(|| shared_coding(&prepared, arguments));
-    let bar = output::progress(tasks.len() as u64, "{wide_bar} {pos} of {len} clips {eta} left")?;
+    let bar = output::Pieces::new(tasks.len(), "clips")?;
     let code = |(task, prepared): (&Task, &Prepared)| {
         let own = || shared_coding(std::slice::from_ref(prepared), arguments);
-        let made = prepared.code(&task.arguments, &shared.clone().unwrap_or_else(own)).with_context(|| task.label.clone());
-        bar.inc(1);
-        made
+        let piece = bar.begin();
+        let coding = shared.clone().unwrap_or_else(own);
+        prepared.code(&task.arguments, &coding, &|part| piece.set(part)).with_context(|| task.label.clone())
     };
     let made: Vec<Made> = pool.install(|| {
         tasks.par_iter().with_max_len(1).zip(prepared.par_iter().with_max_len(1)).map(code).collect::<Result<Vec<_>>>()
     })?;
-    bar.finish_and_clear();
+    bar.finish();
     let read: Vec<PathBuf> = prepared.iter().flat_map(|prepared| prepared.read.clone()).collect();
     output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[output])?;
     // Equal bytes, or `encode` refuses them.

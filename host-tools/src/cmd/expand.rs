@@ -1,11 +1,13 @@
 //! `pantin expand`.
 
 use super::{Files, default_output, format_of};
-use crate::expand::{Expanded, expand};
+use crate::budget;
+use crate::expand::{Expanded, gather};
 use crate::export::{self, bvh::Columns};
-use crate::motion::Frames;
+use crate::motion::{Event, Frames, Motion, Rig};
 use crate::output::{self, Staged, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail};
+use indicatif::ProgressBar;
 use pantin::Clip;
 use serde_json::json;
 use std::io::Write;
@@ -80,6 +82,53 @@ impl Arguments {
     }
 }
 
+impl Format {
+    /// How often the clip is played to write it; source text holds its bytes.
+    fn plays(self) -> u64 {
+        match self {
+            Format::Csv => 2,
+            Format::Bvh | Format::Glb | Format::H | Format::Rs => 1,
+        }
+    }
+}
+
+/// A clip that moves a bar as it is played.
+struct Watched<'w, 'c> {
+    of: &'w Expanded<'c>,
+    bar: &'w ProgressBar,
+}
+
+impl Frames for Watched<'_, '_> {
+    fn rig(&self) -> &Rig {
+        self.of.rig()
+    }
+
+    fn frame_time(&self) -> f64 {
+        self.of.frame_time()
+    }
+
+    fn frames(&self) -> usize {
+        self.of.frames()
+    }
+
+    fn events(&self) -> Vec<Event> {
+        self.of.events()
+    }
+
+    fn each(&self, each: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+        self.of.each(&mut |pose| {
+            self.bar.inc(1);
+            each(pose)
+        })
+    }
+}
+
+fn glb(clip: &Clip, frames: &impl Frames, out: &mut impl Write) -> Result<()> {
+    budget::check(frames.frames(), frames.rig().channels())?;
+    let motion = Motion { looped: clip.looped(), ..gather(frames)? };
+    Ok(out.write_all(&export::gltf::write(&motion)?)?)
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     if let Some(output) = &arguments.output {
@@ -100,8 +149,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let named = if output.as_os_str() == "-" { &arguments.input } else { output };
     let stem = named.file_stem().unwrap_or_default().to_string_lossy();
     let expanded = Expanded::new(&clip);
+    let rig = expanded.rig();
     // A digit and a comma or a space a value; four bytes a number in glTF; as text, a digit and a comma a byte.
-    let values = expanded.frames() as u64 * (expanded.rig().channels() as u64 + 1);
+    let values = expanded.frames() as u64 * (rig.channels() as u64 + 1);
     let least = match format {
         Format::Glb => 4 * values,
         Format::H | Format::Rs => 3 * files.clip_len() as u64,
@@ -112,15 +162,21 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         note!("{}: {} events are left out: this kind of file holds none here", output.display(), clip.event_count());
     }
     let mut out = Staged::create(output)?;
-    match format {
-        Format::Bvh => export::bvh::write(&expanded, Columns::ThreeRotations, &mut out).with_context(place)?,
-        Format::Csv => export::table::write(&expanded, &mut out).with_context(place)?,
-        Format::Glb => out.write_all(&export::gltf::write(&expand(&clip).with_context(place)?).with_context(place)?)?,
-        Format::H => out.write_all(export::source::c_header(&clip, files.clip(), &stem)?.as_bytes())?,
-        Format::Rs => out.write_all(export::source::rust_module(&clip, files.clip(), &stem)?.as_bytes())?,
-    }
+    let bar = output::progress(format.plays() * expanded.frames() as u64, "writing {wide_bar} {percent} % {eta} left")?;
+    let watched = Watched { of: &expanded, bar: &bar };
+    let written = match format {
+        Format::Bvh => export::bvh::write(&watched, Columns::ThreeRotations, &mut out),
+        Format::Csv => export::table::write(&watched, &mut out),
+        Format::Glb => glb(&clip, &watched, &mut out),
+        Format::H => export::source::c_header(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?)),
+        Format::Rs => {
+            export::source::rust_module(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?))
+        }
+    };
+    bar.finish_and_clear();
+    out.explain(written, place)?;
     output::commit(vec![out])?;
-    output::report(json!({"frames": clip.frames(), "channels": expanded.rig().channels()}));
+    output::report(json!({"frames": clip.frames(), "channels": rig.channels()}));
     if arguments.output.is_none() {
         note!("{}: written", output.display());
     }

@@ -121,7 +121,10 @@ impl Files {
             let place = || clip.display().to_string();
             check_fit(&motion, Level::Fast, &from).with_context(place)?;
             let rig = encode::rig::encode(&motion.rig).with_context(place)?;
-            let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, &mut |_| ()).with_context(place)?;
+            let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;
+            let moved = &mut |part: f64| bar.set_position((part * 1000.0) as u64);
+            let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, moved).with_context(place)?;
+            bar.finish_and_clear();
             files.clip = encode::clip::encode(&coded, &rig, false).with_context(place)?;
             verify(&files.clip, &rig, &motion, SHOWN_CM, SHOWN_PART).with_context(place)?;
         }

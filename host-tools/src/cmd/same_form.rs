@@ -1,12 +1,12 @@
 //! `pantin convert A B C --same-form -o FOLDER`: clips of one rig which one figure renderer plays in turn.
 
+use super::batch::regular;
 use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
 use super::convert_bank::{agree_on_up, of_one_rig};
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Converts all motions in one coding and writes their clips into the folder `arguments.output`. Writes nothing if any of
@@ -16,21 +16,28 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ensure!(!folder.is_file(), "{}: a file; --same-form needs a folder", folder.display());
     arguments.rig_out.iter().try_for_each(|path| refuse_foreign(path, Wanted::Rig))?;
     let tasks = tasks(arguments)?;
+    let outputs: Vec<&Path> = arguments.rig_out.as_deref().into_iter().chain(tasks.iter().map(Arguments::output)).collect();
+    let inputs: Vec<&Path> = tasks.iter().flat_map(Arguments::inputs).collect();
+    output::make_folder(folder)?;
+    tasks.iter().try_for_each(|task| regular(task.output()))?;
+    output::check(&inputs, &outputs)?;
     let mut prepared = tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?;
     agree_on_up(&mut prepared, arguments.up_is_given())?;
     let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
     of_one_rig(&prepared, &labels, "--same-form needs one rig")?;
     let coding = shared_coding(&prepared, arguments);
-    let code = |(task, prepared): (&Arguments, &Prepared)| prepared.code(task, &coding);
+    let bar = output::Pieces::new(tasks.len(), "clips")?;
+    let code = |(task, prepared): (&Arguments, &Prepared)| {
+        let piece = bar.begin();
+        prepared.code(task, &coding, &|part| piece.set(part))
+    };
     let made = tasks.iter().zip(&prepared).map(code).collect::<Result<Vec<_>>>()?;
-    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    bar.finish();
+    let read: Vec<&Path> = prepared.iter().flat_map(|prepared| prepared.read.iter().map(PathBuf::as_path)).collect();
+    output::check(&read, &outputs)?;
     let clips = tasks.iter().zip(&made).map(|(task, made)| (task.output(), made.bytes.as_slice()));
     let rig = arguments.rig_out.as_deref().map(|path| (path, prepared[0].rig.as_slice()));
-    let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain(clips).collect();
-    let read = prepared.iter().flat_map(|prepared| prepared.read.iter().map(PathBuf::as_path));
-    let inputs: Vec<&Path> = tasks.iter().flat_map(Arguments::inputs).chain(read).collect();
-    output::check(&inputs, &outputs.iter().map(|(path, _)| *path).collect::<Vec<_>>())?;
-    output::write_together(&outputs)?;
+    output::write_together(&rig.into_iter().chain(clips).collect::<Vec<_>>())?;
     if output::is_json() {
         let object = |(task, made): (&Arguments, &Made)| {
             let mut fields = made.fields();

@@ -24,9 +24,9 @@ pub enum Columns {
 /// Writes `motion`, with its own channels, to the output `path`: all of it, or the file stays as it was.
 #[cfg(feature = "cli")]
 pub fn save(motion: &Motion, path: &Path) -> Result<()> {
-    let place = || path.display().to_string();
     let mut file = Staged::create(path)?;
-    write(motion, Columns::Own, &mut file).with_context(place)?;
+    let written = write(motion, Columns::Own, &mut file);
+    file.explain(written, || path.display().to_string())?;
     commit(vec![file])
 }
 

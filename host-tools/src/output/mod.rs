@@ -8,22 +8,27 @@
 //! - Lines for people go through [`print_note`] and [`print_line`], which escape control characters.
 //! - [`report()`] collects what `--json` prints.
 //! - No output is longer than `--max-output`; [`check_size`] refuses one before it is begun where its size is known.
+//! - A folder that a command made is removed again if nothing was written into it.
 //! - Files that belong together are committed together: [`write_together`] replaces all of them or none.
 
+mod folders;
 mod foreign;
 mod place;
+mod progress;
 mod report;
 mod staged;
 mod terminal;
 
+pub use folders::{make_folder, remove_empty_folders};
 pub use foreign::{Wanted, refuse_foreign};
 pub use place::{Place, check, file_id};
-pub use report::{fail, finish, is_json, is_quiet, is_verbose, progress, report, set_reporting, take_stdout};
+pub use progress::{Piece, Pieces, progress};
+pub use report::{fail, finish, is_json, is_quiet, is_verbose, report, set_reporting, take_stdout};
 pub use staged::{Staged, check_size, commit, set_most_bytes};
 pub use terminal::{clean, is_hostile, print_detail, print_error, print_error_text, print_line, print_note, reader_gone};
 pub(crate) use terminal::{detail, note, noticed, outln};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use std::io::Write;
 use std::path::Path;
 
@@ -37,7 +42,7 @@ pub fn write_together(outputs: &[(&Path, &[u8])]) -> Result<()> {
     let mut staged = Vec::with_capacity(outputs.len());
     for (path, bytes) in outputs {
         let mut output = Staged::create(path)?;
-        output.write_all(bytes).with_context(|| format!("{}: cannot be written", path.display()))?;
+        output.write_all(bytes)?;
         output.close()?;
         staged.push(output);
     }

@@ -5,12 +5,9 @@
 
 use super::terminal;
 use anyhow::{Error, Result};
-use indicatif::{HumanDuration, ProgressBar, ProgressFinish, ProgressState, ProgressStyle};
 use serde_json::{Map, Value, json};
-use std::fmt::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError};
-use std::time::Duration;
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 static VERBOSE: AtomicBool = AtomicBool::new(false);
@@ -80,33 +77,18 @@ pub fn finish(command: &str) -> Result<()> {
     terminal::print_json(&object)
 }
 
-/// Prints an error for people, and as the field `error` of the report of `command`.
-pub fn fail(command: &str, error: &Error) {
-    terminal::print_error(format_args!("{error:#}"));
-    report(json!({"error": format!("{error:#}")}));
-    // Where it cannot be printed, the exit code alone says so.
-    let _ = finish(command);
+/// An error with its causes. Some libraries print a cause as their own error: it is printed once.
+fn sentence(error: &Error) -> String {
+    let mut parts: Vec<String> = error.chain().map(ToString::to_string).collect();
+    parts.dedup();
+    parts.join(": ")
 }
 
-/// How often a bar is drawn while nothing is done: its times go on.
-const TICK: Duration = Duration::from_millis(200);
-
-/// A bar that shows how far the command is, with the time that is left; hidden under `-q` and `--json`. `template` is indicatif's; before
-/// anything is done, its `eta` is a question mark.
-pub fn progress(length: u64, template: &str) -> Result<ProgressBar> {
-    if is_quiet() || is_json() {
-        return Ok(ProgressBar::hidden());
-    }
-    let left = |state: &ProgressState, out: &mut dyn Write| {
-        // A line that cannot be formatted is not drawn.
-        let _ = match state.pos() {
-            0 => write!(out, "? s"),
-            _ => write!(out, "{:#}", HumanDuration(state.eta())),
-        };
-    };
-    let bar = ProgressBar::new(length).with_finish(ProgressFinish::AndClear);
-    bar.set_style(ProgressStyle::with_template(template)?.with_key("eta", left));
-    bar.tick();
-    bar.enable_steady_tick(TICK);
-    Ok(bar)
+/// Prints an error for people, and as the field `error` of the report of `command`.
+pub fn fail(command: &str, error: &Error) {
+    let text = sentence(error);
+    terminal::print_error(format_args!("{text}"));
+    report(json!({ "error": text }));
+    // Where it cannot be printed, the exit code alone says so.
+    let _ = finish(command);
 }

@@ -1,5 +1,6 @@
 //! Bytes on their way to an output: beside it until they are whole, then in its place.
 
+use super::folders::remove_empty_folders;
 use super::place::{Place, folder};
 use super::report;
 use super::terminal::{detail, noticed};
@@ -12,7 +13,7 @@ use std::io::{self, BufWriter, Stdout, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, Once, PoisonError};
-use tempfile::{Builder, NamedTempFile, TempPath};
+use tempfile::{Builder, TempPath};
 
 /// An output that is being written. Dropped before [`commit`], it leaves the file that was there as it was.
 pub struct Staged {
@@ -20,6 +21,7 @@ pub struct Staged {
     path: PathBuf,
     to: To,
     written: u64,
+    failed: bool,
 }
 
 /// The limit without `--max-output`, in bytes.
@@ -40,7 +42,8 @@ pub fn check_size(path: &Path, bytes: u64) -> Result<()> {
 
 enum To {
     Replace {
-        bytes: BufWriter<NamedTempFile>,
+        bytes: BufWriter<File>,
+        temporary: TempPath,
         file: PathBuf,
         name: Registered,
     },
@@ -67,30 +70,50 @@ impl Staged {
             ))),
             Place::File(file) => {
                 remove_on_signals();
-                let (bytes, name) = Registered::create(folder(&file)).context("cannot be written")?;
-                Ok(To::Replace { bytes: BufWriter::new(bytes), file, name })
+                let (bytes, temporary, name) = Registered::create(folder(&file)).context("cannot be written")?;
+                Ok(To::Replace { bytes: BufWriter::new(bytes), temporary, file, name })
             }
         });
-        Ok(Staged { path: path.to_path_buf(), to: to.with_context(|| path.display().to_string())?, written: 0 })
+        Ok(Staged { path: path.to_path_buf(), to: to.with_context(|| path.display().to_string())?, written: 0, failed: false })
     }
 
     /// Ends the output: its bytes are on the disk, and its file is closed. Only [`commit`] may follow. Where many outputs belong together, each is closed before
     /// the next one begins, for a process may have few files open at a time.
     pub fn close(&mut self) -> Result<()> {
-        self.end().with_context(|| format!("{}: cannot be written", self.path.display()))
+        self.flush()?;
+        Ok(self.end().map_err(|error| self.unwritten(error))?)
+    }
+
+    /// Puts `place` before an error of what wrote this output. An error of the output itself names it already.
+    pub fn explain<T>(&self, result: Result<T>, place: impl FnOnce() -> String) -> Result<T> {
+        if self.failed { result } else { result.with_context(place) }
+    }
+
+    /// The error of a write, which names the output as the user did, and not the temporary file.
+    fn unwritten(&mut self, error: io::Error) -> io::Error {
+        if error.kind() == io::ErrorKind::Interrupted {
+            return error;
+        }
+        self.failed = true;
+        let help = match error.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "; free some space, or choose another place for it",
+            io::ErrorKind::FileTooLarge => "; `ulimit -f` sets the most bytes of a file",
+            _ => "",
+        };
+        let name = if self.path.as_os_str() == "-" { "standard output".into() } else { self.path.display().to_string() };
+        io::Error::new(error.kind(), format!("{name}: cannot be written: {error}{help}"))
     }
 
     fn end(&mut self) -> io::Result<()> {
-        self.flush()?;
         self.to = match std::mem::replace(&mut self.to, To::Stdout(BufWriter::new(io::stdout()))) {
-            To::Replace { bytes, file, name } => {
+            To::Replace { bytes, temporary, file, name } => {
                 let bytes = bytes.into_inner().map_err(io::IntoInnerError::into_error)?;
                 // A full disk may be reported no earlier.
-                bytes.as_file().sync_data()?;
+                bytes.sync_data()?;
                 if let Ok(found) = fs::metadata(&file) {
-                    bytes.as_file().set_permissions(found.permissions())?;
+                    bytes.set_permissions(found.permissions())?;
                 }
-                To::Whole { bytes: bytes.into_temp_path(), file, _name: name }
+                To::Whole { bytes: temporary, file, _name: name }
             }
             other => other,
         };
@@ -100,24 +123,29 @@ impl Staged {
 
 impl Write for Staged {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        check_size(&self.path, self.written.saturating_add(bytes.len() as u64)).map_err(io::Error::other)?;
+        if let Err(error) = check_size(&self.path, self.written.saturating_add(bytes.len() as u64)) {
+            self.failed = true;
+            return Err(io::Error::other(error));
+        }
         let taken = match &mut self.to {
             To::Replace { bytes: file, .. } => file.write(bytes),
             To::Whole { .. } => Err(io::Error::other("the output was closed")),
             To::Through(file) => noticed(file.write(bytes)),
             To::Stdout(out) => noticed(out.write(bytes)),
-        }?;
+        };
+        let taken = taken.map_err(|error| self.unwritten(error))?;
         self.written += taken as u64;
         Ok(taken)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match &mut self.to {
+        let flushed = match &mut self.to {
             To::Replace { bytes, .. } => bytes.flush(),
             To::Whole { .. } => Ok(()),
             To::Through(file) => noticed(file.flush()),
             To::Stdout(out) => noticed(out.flush()),
-        }
+        };
+        flushed.map_err(|error| self.unwritten(error))
     }
 }
 
@@ -202,12 +230,14 @@ struct Registered(PathBuf);
 
 impl Registered {
     /// Makes a temporary file in `folder`. A signal sees it once it is known, or prevents it.
-    fn create(folder: &Path) -> io::Result<(NamedTempFile, Registered)> {
+    fn create(folder: &Path) -> io::Result<(File, TempPath, Registered)> {
         let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-        let file = temporary().tempfile_in(folder)?;
+        // Its error names the temporary file, which says nothing to the user.
+        let file = temporary().tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?;
         names.insert(file.path().to_path_buf());
         let name = Registered(file.path().to_path_buf());
-        Ok((file, name))
+        let (file, path) = file.into_parts();
+        Ok((file, path, name))
     }
 }
 
@@ -217,8 +247,8 @@ impl Drop for Registered {
     }
 }
 
-/// Signals that end the program remove temporary files first. A signal that the program was started to ignore stays ignored.
-fn remove_on_signals() {
+/// Signals that end the program remove temporary files first, and folders that were made for nothing. A signal that the program was started to ignore stays ignored.
+pub(super) fn remove_on_signals() {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXFSZ};
@@ -239,6 +269,7 @@ fn remove_on_signals() {
                         // Nobody is left to be told.
                         let _ = fs::remove_file(name);
                     }
+                    remove_empty_folders();
                     let _ = signal_hook::low_level::emulate_default_handler(signal);
                 }
             });

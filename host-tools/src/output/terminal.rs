@@ -4,6 +4,7 @@
 //! colours or write into the terminal's input. A closed or full standard output is an error, which `main` turns into an exit code; a
 //! closed or full standard error is none, because nobody is left to read it.
 
+use super::progress::without_bar;
 use super::report;
 use anyhow::{Context, Result};
 use std::borrow::Cow;
@@ -118,7 +119,7 @@ pub fn print_error_text(text: &str) {
 
 fn print_to_stderr(line: &str) {
     // Where it cannot be written, there is no place to say so.
-    let _ = writeln!(io::stderr(), "{}", clean(line));
+    without_bar(|| drop(writeln!(io::stderr(), "{}", clean(line))));
 }
 
 #[cfg(test)]

@@ -1,10 +1,14 @@
 //! A server of files in memory: a request a connection, GET and HEAD alone, and a bound on everything that a client may make it keep.
+//!
+//! A connection takes one of [`MOST_CONNECTIONS`] places until it has its answer. Where all are taken, the client that has had the longest time to send its
+//! request, and has not, gives up its place to the next one; if all of them take their answers, the next one is refused. Both get the status 503, and the time
+//! to read it.
 
 use super::Site;
-use std::io::{self, Read, Write};
+use std::collections::BTreeMap;
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -12,8 +16,12 @@ use std::time::{Duration, Instant};
 pub const MOST_HEAD: usize = 8 << 10;
 /// Connections at a time: each takes a thread and a head.
 pub const MOST_CONNECTIONS: usize = 32;
+/// Connections that have their answer and are not closed yet: each takes a thread for [`CLOSE_TIME`] at most. Others wait in the system's queue.
+const MOST_CLOSING: usize = 96;
 /// How long a request's head may take to come, and how long a client may take no byte of the answer.
 pub const PATIENCE: Duration = Duration::from_secs(5);
+/// How long a client has for its request's head in any case, where others wait for its place.
+const SHORT_PATIENCE: Duration = Duration::from_millis(200);
 /// The time in which a client must have taken its answer, plus one second per [`SLOWEST`] bytes.
 pub const ANSWER_TIME: Duration = Duration::from_secs(10);
 /// Bytes per second at which a client must take an answer.
@@ -27,44 +35,139 @@ const MOST_REST: usize = 64 << 10;
 /// Serves for ever.
 pub fn serve(listener: &TcpListener, site: Site) {
     let site = Arc::new(site);
-    let open = Arc::new(AtomicUsize::new(0));
+    let places = Arc::new(Places::default());
     for stream in listener.incoming() {
         // A connection that is gone before it was taken, or no file handle for one: others may come.
         let Ok(stream) = stream else {
             thread::sleep(Duration::from_millis(10));
             continue;
         };
-        let guest = Guest::new(&open);
-        if guest.number > MOST_CONNECTIONS {
-            let _ = stream.set_write_timeout(Some(Duration::from_millis(100)));
-            let _ = answer(&stream, Status::Busy, None, true);
-            continue;
-        }
+        let guest = Places::enter(&places);
         let site = site.clone();
         // Without a thread, the connection is dropped.
         let _ = thread::Builder::new().stack_size(256 << 10).spawn(move || {
-            let _guest = guest;
             // What goes wrong between us concerns no other client.
-            let _ = attend(&stream, &site);
+            let _ = attend(&stream, &site, guest);
         });
     }
 }
 
+/// The places of connections.
+#[derive(Default)]
+struct Places {
+    taken: Mutex<Taken>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Taken {
+    /// The number of the next connection.
+    next: u64,
+    /// Connections whose request is still to come, by their numbers, with the time when they came.
+    asking: BTreeMap<u64, Instant>,
+    /// Number of those that take their answer.
+    answered: usize,
+    /// Number of those that have their answer, or were refused.
+    closing: usize,
+}
+
+/// What a connection is at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    Asking,
+    Answered,
+    Closing,
+}
+
 /// One of the connections that are open.
 struct Guest {
-    open: Arc<AtomicUsize>,
-    number: usize,
+    places: Arc<Places>,
+    number: u64,
+    stage: Stage,
+}
+
+impl Places {
+    /// Finds a place for a connection. It is refused, which its stage says, where all others take their answers.
+    fn enter(places: &Arc<Places>) -> Guest {
+        let mut taken = places.lock();
+        let stage = loop {
+            let now = Instant::now();
+            let oldest = taken.asking.first_key_value().map(|(&number, &since)| (number, since + SHORT_PATIENCE));
+            let full = taken.asking.len() + taken.answered >= MOST_CONNECTIONS;
+            match oldest {
+                _ if taken.closing >= MOST_CLOSING => taken = places.wait(taken, CLOSE_TIME),
+                _ if !full => break Stage::Asking,
+                Some((number, until)) if until <= now => {
+                    // Its thread sees that soon.
+                    taken.asking.remove(&number);
+                    taken.closing += 1;
+                }
+                Some((_, until)) => taken = places.wait(taken, until - now),
+                None => break Stage::Closing,
+            }
+        };
+        let number = taken.next;
+        taken.next += 1;
+        match stage {
+            Stage::Asking => drop(taken.asking.insert(number, Instant::now())),
+            Stage::Answered => taken.answered += 1,
+            Stage::Closing => taken.closing += 1,
+        }
+        Guest { places: places.clone(), number, stage }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Taken> {
+        self.taken.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits until a place is free, or for `most`.
+    fn wait<'a>(&self, taken: MutexGuard<'a, Taken>, most: Duration) -> MutexGuard<'a, Taken> {
+        self.changed.wait_timeout(taken, most).unwrap_or_else(PoisonError::into_inner).0
+    }
 }
 
 impl Guest {
-    fn new(open: &Arc<AtomicUsize>) -> Guest {
-        Guest { open: open.clone(), number: open.fetch_add(1, Ordering::Relaxed) + 1 }
+    /// Whether another connection has got the place while the request was to come.
+    fn lost_its_place(&self) -> bool {
+        self.stage == Stage::Asking && !self.places.lock().asking.contains_key(&self.number)
+    }
+
+    /// Goes on to `stage`. Returns whether the connection still had its place: another one may have got it while the request was to come.
+    fn go_on(&mut self, stage: Stage) -> bool {
+        let mut taken = self.places.lock();
+        let kept = taken.leave(self.number, self.stage);
+        self.stage = if kept { stage } else { Stage::Closing };
+        match self.stage {
+            Stage::Asking => {}
+            Stage::Answered => taken.answered += 1,
+            // One that lost its place is counted already.
+            Stage::Closing => taken.closing += usize::from(kept),
+        }
+        self.places.changed.notify_all();
+        kept
+    }
+}
+
+impl Taken {
+    /// Frees a place. Returns whether the connection had it.
+    fn leave(&mut self, number: u64, stage: Stage) -> bool {
+        match stage {
+            Stage::Asking => return self.asking.remove(&number).is_some(),
+            Stage::Answered => self.answered -= 1,
+            Stage::Closing => self.closing -= 1,
+        }
+        true
     }
 }
 
 impl Drop for Guest {
     fn drop(&mut self) {
-        self.open.fetch_sub(1, Ordering::Relaxed);
+        let mut taken = self.places.lock();
+        if !taken.leave(self.number, self.stage) {
+            // It lost its place and has not heard of it.
+            taken.closing -= 1;
+        }
+        self.places.changed.notify_all();
     }
 }
 
@@ -93,16 +196,23 @@ impl Status {
     }
 }
 
-fn attend(stream: &TcpStream, site: &Site) -> io::Result<()> {
+fn attend(stream: &TcpStream, site: &Site, mut guest: Guest) -> io::Result<()> {
     stream.set_write_timeout(Some(PATIENCE))?;
     let mut buffer = [0; MOST_HEAD];
-    match head(stream, &mut buffer) {
-        Err(status) => answer(stream, status, None, true)?,
+    let refused = guest.stage == Stage::Closing;
+    let request = if refused { Err(Status::Busy) } else { head(stream, &mut buffer, &guest) };
+    let kept = !refused && guest.go_on(Stage::Answered);
+    match request {
+        _ if !kept => answer(stream, Status::Busy, None, true, CLOSE_TIME)?,
+        Err(status) => answer(stream, status, None, true, ANSWER_TIME)?,
         Ok(Request { method, path }) => match site.file(path.split('?').next().unwrap_or_default()) {
-            _ if method != "GET" && method != "HEAD" => answer(stream, Status::Method, None, true)?,
-            None => answer(stream, Status::Missing, None, method == "GET")?,
-            file => answer(stream, Status::Good, file, method == "GET")?,
+            _ if method != "GET" && method != "HEAD" => answer(stream, Status::Method, None, true, ANSWER_TIME)?,
+            None => answer(stream, Status::Missing, None, method == "GET", ANSWER_TIME)?,
+            file => answer(stream, Status::Good, file, method == "GET", ANSWER_TIME)?,
         },
+    }
+    if kept {
+        guest.go_on(Stage::Closing);
     }
     finish(stream)
 }
@@ -112,20 +222,26 @@ struct Request<'b> {
     path: &'b str,
 }
 
-/// Reads until the head is whole.
-fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD]) -> Result<Request<'b>, Status> {
+/// Reads until the head is whole, or the place is lost.
+fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD], guest: &Guest) -> Result<Request<'b>, Status> {
     let until = Instant::now() + PATIENCE;
     let mut len = 0;
     loop {
         let left = until.saturating_duration_since(Instant::now());
-        if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
+        if left.is_zero() || stream.set_read_timeout(Some(left.min(SHORT_PATIENCE))).is_err() {
             return Err(Status::Late);
+        }
+        if guest.lost_its_place() {
+            return Err(Status::Busy);
         }
         match stream.read(&mut buffer[len..]) {
             Ok(0) if len == MOST_HEAD => return Err(Status::TooLong),
             Ok(0) => return Err(Status::Malformed),
             Ok(count) => len += count,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            // Such as the end of a turn of waiting.
+            Err(error) if matches!(error.kind(), ErrorKind::Interrupted | ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
+                continue;
+            }
             Err(_) => return Err(Status::Late),
         }
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
@@ -146,7 +262,8 @@ fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD]) -> Result<R
     }
 }
 
-fn answer(stream: &TcpStream, status: Status, file: Option<&super::File>, body: bool) -> io::Result<()> {
+/// Writes an answer within `time` and what a file's length adds to it.
+fn answer(stream: &TcpStream, status: Status, file: Option<&super::File>, body: bool, time: Duration) -> io::Result<()> {
     let line = status.line();
     let own = format!("{line}\n");
     let (bytes, kind) = file.map_or((own.as_bytes(), "text/plain"), |file| (&file.bytes, file.kind));
@@ -156,7 +273,7 @@ fn answer(stream: &TcpStream, status: Status, file: Option<&super::File>, body: 
          Cache-Control: no-cache\r\nConnection: close\r\n\r\n",
         bytes.len()
     );
-    let until = Instant::now() + ANSWER_TIME + Duration::from_secs((bytes.len() / SLOWEST) as u64);
+    let until = Instant::now() + time + Duration::from_secs((bytes.len() / SLOWEST) as u64);
     write_until(stream, head.as_bytes(), until)?;
     if body { write_until(stream, bytes, until) } else { Ok(()) }
 }
@@ -166,13 +283,13 @@ fn write_until(mut stream: &TcpStream, mut bytes: &[u8], until: Instant) -> io::
     while !bytes.is_empty() {
         let left = until.saturating_duration_since(Instant::now());
         if left.is_zero() {
-            return Err(io::ErrorKind::TimedOut.into());
+            return Err(ErrorKind::TimedOut.into());
         }
         stream.set_write_timeout(Some(left.min(PATIENCE)))?;
         match stream.write(bytes) {
-            Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
+            Ok(0) => return Err(ErrorKind::WriteZero.into()),
             Ok(count) => bytes = bytes.get(count..).unwrap_or_default(),
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) => return Err(error),
         }
     }

@@ -295,7 +295,7 @@ fn what_is_admitted_takes_no_more_than_the_limit() {
 }
 
 /// The clip with another number of frames: its symbols end, and what a player reads then is zeros.
-fn with_frames(clip: &[u8], frames: u32) -> Vec<u8> {
+pub fn with_frames(clip: &[u8], frames: u32) -> Vec<u8> {
     let opened = pantin::Clip::new_checked(clip).unwrap();
     let blocks = &clip[clip.len() - opened.motion_len()..];
     let mut payload: Vec<u8> = blocks.chunks(256).flat_map(|block| &block[..block.len() - 2]).copied().collect();

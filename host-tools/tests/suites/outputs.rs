@@ -213,11 +213,75 @@ fn a_name_that_the_user_does_not_give_replaces_nothing() {
 fn a_file_that_may_not_grow_leaves_nothing() {
     let folder = Folder::new();
     folder.done(&["convert", "run.keys", "-o", "run.ptn", "--effort", "fast"]);
+    folder.done(&["pack", "run.ptn", "-o", "moves.ptb"]);
+    let commands: [&[&str]; 8] = [
+        &["render", "run.ptn", "-o", "new.gif"],
+        &["render", "run.ptn", "-o", "new.apng"],
+        &["render", "run.ptn", "-o", "new.png"],
+        &["render", "run.ptn", "-o", "new.svg"],
+        &["expand", "run.ptn", "-o", "new.bvh"],
+        &["expand", "run.ptn", "-o", "new.csv"],
+        &["expand", "run.ptn", "-o", "new.glb"],
+        &["face", "sheet", "-o", "new.png"],
+    ];
+    for arguments in commands {
+        let said = err(&small_files(&folder, arguments));
+        let output = arguments[arguments.len() - 1];
+        assert!(said.starts_with(&format!("error: {output}: cannot be written: ")), "{arguments:?}: {said}");
+        // What the program calls it meanwhile is of no use to the user.
+        assert!(!said.contains(".pantin-") && said.matches("cannot be written").count() == 1, "{arguments:?}: {said}");
+        assert!(said.contains("ulimit -f"), "{arguments:?}: {said}");
+    }
+    let said = err(&small_files(&folder, &["unpack", "moves.ptb", "-o", "new/deep"]));
+    assert!(said.starts_with("error: new/deep/run.ptn: cannot be written: "), "{said}");
+    assert_eq!(folder.names(), ["moves.ptb", "run.keys", "run.ptn"]);
+}
+
+/// Runs the command, which must fail, where a file may have at most 512 or 1,024 bytes, depending on the shell.
+#[cfg(unix)]
+fn small_files(folder: &Folder, arguments: &[&str]) -> Output {
     let tool = env!("CARGO_BIN_EXE_pantin");
-    let script = format!("ulimit -f 1; exec '{tool}' render run.ptn -o run.gif");
-    let output = Command::new("sh").args(["-c", &script]).current_dir(folder.path("")).output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
-    assert_eq!(folder.names(), ["run.keys", "run.ptn"]);
+    let script = "ulimit -f 1; exec \"$@\"";
+    let output =
+        Command::new("sh").args(["-c", script, "sh", tool]).args(arguments).current_dir(folder.path("")).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {}", err(&output));
+    output
+}
+
+#[test]
+fn a_folder_that_was_made_for_nothing_goes_again() {
+    let folder = Folder::new();
+    folder.put("bad/a.bvh", "HIERARCHY\nROOT\n");
+    folder.put("other.keys", "keyframes 1\nfps 30\nframes 10\nscalar a scale 1\nkeys linear a\n0 0\n9 1\n");
+    std::fs::create_dir(folder.path("empty")).unwrap();
+    let before = folder.names();
+    let commands: [&[&str]; 5] = [
+        &["convert", "bad", "-o", "new"],
+        &["convert", "bad", "-o", "new/deep/er"],
+        &["convert", "bad", "-o", "empty"],
+        &["convert", "bad/a.bvh", "other.keys", "--same-form", "-o", "new/deep"],
+        &["convert", "run.keys", "other.keys", "--same-form", "--effort", "fast", "-o", "new"],
+    ];
+    for arguments in commands {
+        folder.refused(arguments);
+        // A folder that was there stays.
+        assert_eq!(folder.names(), before, "{arguments:?}");
+    }
+    // One that holds a clip stays too.
+    folder.put("bad/b.keys", folder.get("other.keys"));
+    folder.refused(&["convert", "bad", "-o", "new"]);
+    assert!(folder.path("new/b.ptn").is_file());
+}
+
+#[test]
+fn clips_of_one_form_have_places_that_are_checked_before_the_work() {
+    let folder = Folder::new();
+    folder.put("broken.bvh", "HIERARCHY\nROOT\n");
+    folder.put("file", "");
+    assert!(folder.refused(&["convert", "broken.bvh", "run.keys", "--same-form", "-o", "file"]).contains("needs a folder"));
+    std::fs::create_dir_all(folder.path("out/run.ptn")).unwrap();
+    let said = folder.refused(&["convert", "broken.bvh", "run.keys", "--same-form", "-o", "out"]);
+    assert!(said.contains("run.ptn: no regular file"), "{said}");
 }
 
 #[test]
@@ -463,6 +527,15 @@ mod unix {
             std::thread::sleep(Duration::from_millis(5));
         }
         assert!(part(), "the picture is written as it is drawn");
+        Command::new("kill").arg(child.id().to_string()).status().unwrap();
+        assert_eq!(std::os::unix::process::ExitStatusExt::signal(&child.wait().unwrap()), Some(15));
+        assert_eq!(folder.names(), ["a.ptn", "run.keys"]);
+        // Nor a folder for it.
+        let mut child = folder.command(&["convert", ".", "-o", "new/deep", "--exact"]).stderr(Stdio::null()).spawn().unwrap();
+        let begun = Instant::now();
+        while !folder.path("new/deep").is_dir() && begun.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
         Command::new("kill").arg(child.id().to_string()).status().unwrap();
         assert_eq!(std::os::unix::process::ExitStatusExt::signal(&child.wait().unwrap()), Some(15));
         assert_eq!(folder.names(), ["a.ptn", "run.keys"]);

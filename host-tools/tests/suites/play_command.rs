@@ -350,16 +350,42 @@ fn a_long_conversion_shows_its_progress_and_a_stop_leaves_nothing() {
     let big =
         "keyframes 1\nfps 30\nframes 100000\njoint hip offset 0 90 0 channels Yposition Zposition Xrotation\nkeys natural hip\n";
     std::fs::write(folder.0.join("big.keys"), format!("{big}0 0 0 0\n50000 50 20 10\n99999 3 3 3\n")).unwrap();
+    let swing = |name: &str, fps: u32, frames: u32| {
+        let figure = "joint hip offset 0 90 0 channels Yposition Xrotation\nhip.Yposition = 90 - 2 * sin(2 * PI * t)^2\n";
+        let text = format!("procedural 1\nfps {fps}\nframes {frames}\n{figure}hip.Xrotation = 25 * sin(2 * PI * t)\n");
+        std::fs::write(folder.0.join(name), text).unwrap();
+    };
+    std::fs::create_dir(folder.0.join("two")).unwrap();
+    ["two/a.proc", "two/b.proc"].iter().for_each(|name| swing(name, 1000, 40_000));
+    swing("short.proc", 30, 100);
+    let made =
+        Command::new(env!("CARGO_BIN_EXE_pantin")).args(["convert", "short.proc"]).current_dir(&folder.0).output().unwrap();
+    assert!(made.status.success(), "{made:?}");
+    let clip = std::fs::read(folder.0.join("short.ptn")).unwrap();
+    std::fs::write(folder.0.join("long.ptn"), super::exhaustion::with_frames(&clip, 1 << 23)).unwrap();
     let names = || {
         let entries = std::fs::read_dir(&folder.0).unwrap();
         entries.map(|entry| entry.unwrap().file_name()).collect::<std::collections::BTreeSet<_>>()
     };
     let before = names();
-    for arguments in [&["convert", "walk.keys", "--exact", "-o", "new.ptn"][..], &["convert", "big.keys", "-o", "new.ptn"]] {
+    // The command, what its bar says, and whether its time must have been estimated: then the bar has moved.
+    let cases: [(&[&str], [&str; 2], bool); 7] = [
+        (&["convert", "walk.keys", "--exact", "-o", "new.ptn"], ["fitting", " %"], false),
+        (&["convert", "big.keys", "-o", "new.ptn"], ["fitting", " %"], false),
+        (&["convert", "two", "-o", "new.ptb"], ["", "0 of 2 clips"], true),
+        (&["convert", "two", "-o", "new"], ["", "0 of 2 files"], true),
+        (&["render", "big.keys", "-o", "new.gif"], ["converting", " %"], true),
+        (&["expand", "long.ptn", "-o", "new.csv"], ["writing", " %"], true),
+        (&["expand", "long.ptn", "-o", "new.bvh"], ["writing", " %"], true),
+    ];
+    for (arguments, words, moves) in cases {
         let mut seat = Seat::new(&folder.0, env!("CARGO_BIN_EXE_pantin"), arguments);
         let begun = Instant::now();
-        let shown =
-            || seat.rows().iter().any(|row| row.contains("fitting") && row.contains(" %") && row.trim_end().ends_with(" left"));
+        let shows = |row: &String| {
+            let row = row.trim_end();
+            words.iter().all(|word| row.contains(word)) && row.ends_with(" left") && !(moves && row.ends_with("? s left"))
+        };
+        let shown = || seat.rows().iter().any(shows);
         while !shown() {
             assert!(begun.elapsed() < PATIENCE, "{:?}", seat.rows());
             std::thread::sleep(Duration::from_millis(10));

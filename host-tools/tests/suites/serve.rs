@@ -262,6 +262,57 @@ fn clients_that_drip_bytes_after_their_answer_keep_nobody_waiting() {
 }
 
 #[test]
+fn hundreds_of_clients_that_drip_their_requests_leave_places_to_others() {
+    let place = server();
+    let mut dripping: Vec<(TcpStream, Vec<u8>)> = Vec::new();
+    let (begun, mut served, mut statuses) = (Instant::now(), 0, std::collections::BTreeSet::new());
+    let (done, stop) = std::sync::mpsc::channel();
+    let other = thread::spawn(move || {
+        thread::sleep(Duration::from_secs(1));
+        for _ in 0..5 {
+            let begun = Instant::now();
+            serves(place);
+            done.send(begun.elapsed()).unwrap();
+        }
+    });
+    while served < 5 && begun.elapsed() < 6 * PATIENCE {
+        // Those that were refused come again.
+        while dripping.len() < 300 {
+            let stream = connect(place);
+            stream.set_nonblocking(true).unwrap();
+            dripping.push((stream, Vec::new()));
+        }
+        dripping.retain_mut(|(stream, answer)| {
+            if answer.is_empty() {
+                let _ = stream.write(b"G");
+            }
+            let mut piece = [0; 512];
+            loop {
+                match stream.read(&mut piece) {
+                    Ok(0) => break,
+                    Ok(count) => answer.extend_from_slice(&piece[..count]),
+                    Err(error) if error.kind() == ErrorKind::WouldBlock => return true,
+                    Err(error) => panic!("{error}"),
+                }
+            }
+            statuses.insert(status(answer));
+            false
+        });
+        for time in stop.try_iter() {
+            assert!(time < PATIENCE, "{time:?}");
+            served += 1;
+        }
+        thread::sleep(Duration::from_millis(50));
+    }
+    assert_eq!(served, 5);
+    other.join().unwrap();
+    assert!(
+        !statuses.is_empty() && statuses.iter().all(|status| ["408", "503", "400"].contains(&status.as_str())),
+        "{statuses:?}"
+    );
+}
+
+#[test]
 fn clients_that_take_an_answer_byte_by_byte_keep_nobody_waiting() {
     let place = server();
     let mut slow: Vec<TcpStream> = (0..MOST_CONNECTIONS).map(|_| connect(place)).collect();
