@@ -43,6 +43,7 @@
 //! | play a file while its buffer fills | [`PartialClip`]; [`PausedClip`] if the buffer moves as it grows |
 //! | play clips in turn | one [`Room`]: a player gives it back when it goes out of scope |
 //! | play several at once | a [`Room`] each |
+//! | keep a player beside its memory in one structure | [`DetachedPlayer`] |
 //! | mix poses, or draw one clip with another's renderer | compare their [`Form`] first: [`Form::check`] |
 //! | write an encoder | [`codec`] and [`format`](mod@format) |
 //!
@@ -60,6 +61,7 @@ mod channel;
 mod clip;
 mod clock;
 pub mod codec;
+mod detached;
 mod error;
 mod form;
 #[doc = include_str!("../FORMAT.md")]
@@ -90,6 +92,7 @@ pub use bank::{Bank, BankEntry};
 pub use channel::ChannelState;
 pub use clip::{Clip, Event, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 pub use clock::Clock;
+pub use detached::DetachedPlayer;
 pub use error::{Memory, OpenError, TooSmall};
 pub use form::{CodedKinds, Form, FormRef, Pose, WrongForm};
 pub use history::Undo;

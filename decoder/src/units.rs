@@ -36,6 +36,17 @@ impl Angle {
         Angle(((scaled + if scaled < 0 { -180 } else { 180 }) / 360) as i32)
     }
 
+    /// The angle of the vector (x, y) from the x axis, in any unit: within 2^-28 turns for a vector longer than 2^26; 0 for no vector.
+    pub fn atan2(y: i32, x: i32) -> Angle {
+        Angle(crate::trig::atan2(y, x))
+    }
+
+    /// Sine and cosine, each within 6e-8.
+    pub fn sin_cos(self) -> (Component, Component) {
+        let (sin, cos) = crate::trig::sin_cos(self.0);
+        (Component::from_bits(sin), Component::from_bits(cos))
+    }
+
     /// In turns: -0.5 to 0.5.
     pub const fn turns(self) -> I0F32 {
         I0F32::from_bits(self.0)

@@ -1,0 +1,73 @@
+//! A player apart from the memory that it plays in, for programs that keep both in one structure and change clips.
+
+use crate::channel::ChannelState;
+use crate::clip::Clip;
+use crate::form::Pose;
+use crate::play_state::{Channels, PlayState};
+use crate::player::Player;
+
+/// A [`Player`] without its memory, which is lent call by call. A structure can hold it beside the memory, and give the memory to
+/// the player of another clip later.
+///
+/// The memory has to be the same from call to call, as the player left it. In other memory the poses are wrong, and nothing panics.
+#[derive(Clone, Copy, Debug)]
+pub struct DetachedPlayer<'a> {
+    clip: Clip<'a>,
+    moving: u16,
+    position: PlayState,
+}
+
+impl<'a> Player<'a, '_> {
+    /// Gives the memory back.
+    pub fn detach(self) -> DetachedPlayer<'a> {
+        let clip = *self.clip();
+        let (moving, position) = self.pause();
+        DetachedPlayer { clip, moving: moving as u16, position }
+    }
+}
+
+impl<'a> DetachedPlayer<'a> {
+    /// The player in its memory again; `None` if there is less of it than before.
+    pub fn attach<'m>(&self, states: &'m mut [ChannelState], values: &'m mut [i32]) -> Option<Player<'a, 'm>> {
+        Player::resume(self.clip, self.moving.into(), self.position, states, values)
+    }
+
+    /// The clip that plays.
+    pub fn clip(&self) -> &Clip<'a> {
+        &self.clip
+    }
+
+    /// The frame that the pose shows.
+    pub fn frame(&self) -> u32 {
+        self.position.frame
+    }
+
+    /// Number of moving channels: the states in use.
+    pub fn moving(&self) -> usize {
+        self.moving.into()
+    }
+
+    /// The pose of this frame, whose values are in the player's memory.
+    pub fn pose<'p>(&self, values: &'p [i32]) -> Pose<'p>
+    where
+        'a: 'p,
+    {
+        Pose { values: values.get(..self.clip.rig().channels()).unwrap_or(values), form: self.clip.form_ref() }
+    }
+
+    /// Goes on by one frame; at the last frame it stays. (A [`Player`] goes to frame 0.)
+    #[inline(never)]
+    pub fn step(&mut self, states: &mut [ChannelState], values: &mut [i32]) {
+        let (input, frames) = (self.clip.input(), self.clip.frames());
+        let Some(states) = states.get_mut(..self.moving.into()).filter(|_| self.position.frame + 1 < frames) else { return };
+        self.position.step(&mut Channels { states, pose: values }, &input, frames);
+    }
+
+    /// Goes to `frame`, or to the last one if there are fewer: [`Player::seek`].
+    pub fn seek(&mut self, frame: u32, states: &mut [ChannelState], values: &mut [i32]) {
+        if let Some(mut player) = self.attach(states, values) {
+            player.seek(frame);
+            (_, self.position) = player.pause();
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Motion that reacts: transitions between [`pantin`] clips, layers, root motion, events, inverse kinematics and a state machine, in
+//! integers, without heap, float, `unsafe` or panic. The caller lends the memory. The poses are the same bits on every processor.
+//!
+//! ```
+//! use pantin_animator::{Animator, Transition, Workspace};
+//! # use fixed::types::I16F16;
+//!
+//! # fn play(walk: pantin::Clip, run: pantin::Clip) -> Result<(), Box<dyn std::error::Error>> {
+//! let mut memory = Workspace::<80, 100>::new();
+//! let mut animator = Animator::new(walk, memory.lend())?;
+//! for picture in 0..200 {
+//!     if picture == 100 {
+//!         // From the walk, wherever it is, to the run's first frame, in 12 of the run's frames.
+//!         animator.switch(run, 0, I16F16::ONE, Transition::Inertialized(12))?;
+//!     }
+//!     animator.update(16_667)?;
+//!     let (_pose, _place) = (animator.pose(), animator.placement());
+//!     while let Some(event) = animator.events().take() {
+//!         println!("{:?}", animator.track().clip().event_name(event.id));
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # What state is kept
+//!
+//! One player (20 bytes for each moving channel and 4 for each channel, as in the decoder), one [`Offset`] of 16 bytes for each channel,
+//! the pose that comes out (4 bytes for each channel) and a [`Group`] of 6 bytes for each joint. There is no second player.
+//!
+//! # What a transition costs
+//!
+//! At the switch, the pose and the velocity of each channel are kept, the player starts the new clip in the same memory, and the
+//! differences become a cubic that ends at zero, with velocity zero, after the given number of frames. Until then each channel costs three
+//! more additions a frame and one that adds the difference to the clip. At the end the pose is the clip's, bit for bit. Another
+//! transition can start at any time: the difference that is left is a part of the pose from which it starts.
+//!
+//! Of the angles that are the same rotation the nearest to the new clip's are taken, once, at the switch: Euler angles by the other triple,
+//! exponential maps by a turn less, quaternions by their sign. Clips of different forms ([`pantin::Form`]) cost the conversion of the
+//! joints that they code differently, at that instant too.
+//!
+//! # Root motion
+//!
+//! The root's horizontal position channels are 0 in [`Animator::pose`]; [`Animator::placement`] says where the figure is and what to turn it
+//! by. A placement is a function of the clip's frame, the laps of the loop and the place where the clip was started, so that increments add up
+//! exactly. A loop whose root does not come back to within 5 cm of its start goes on by its last velocity over the seam. A switch keeps
+//! place and heading. A clip in which the root points straight up or down has no heading there.
+//!
+//! # The order of work in a frame
+//!
+//! 1. [`Animator::update`]: time, events, root motion, the transition, the pose.
+//! 2. Layers, then procedural motion, on [`Animator::pose_mut`].
+//! 3. Inverse kinematics, last: it needs the final pose.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+mod animator;
+mod error;
+mod events;
+mod groups;
+mod math;
+mod offset;
+mod root;
+mod track;
+
+pub use animator::{Animator, Memory, RootMotion, Transition, Workspace};
+pub use error::Error;
+pub use events::{EVENTS, EventQueue, EventsLost, Fired};
+pub use groups::Group;
+pub use offset::Offset;
+pub use root::Placement;
+pub use track::Track;

@@ -1,0 +1,146 @@
+//! The difference that a transition leaves behind, one channel: a segment of the decoder's own kind that ends at zero.
+
+/// What one channel is away from its clip during a transition: 16 bytes. It moves by the decoder's three additions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Offset {
+    /// Difference, in the channel's raw unit, and its velocity, acceleration and slope a frame.
+    pub(crate) d: i32,
+    pub(crate) v: i32,
+    pub(crate) w: i32,
+    pub(crate) k: i32,
+}
+
+impl Offset {
+    /// No difference: what fills memory before an animator takes it.
+    pub const ZERO: Offset = Offset { d: 0, v: 0, w: 0, k: 0 };
+
+    /// One frame on.
+    #[inline(always)]
+    pub(crate) fn step(&mut self) {
+        self.d = self.d.wrapping_add(self.v);
+        self.v = self.v.wrapping_add(self.w);
+        self.w = self.w.wrapping_add(self.k);
+    }
+}
+
+/// A positive fraction below 2^30 as a product and a shift.
+#[derive(Clone, Copy, Debug)]
+struct Ratio {
+    /// 2^29 to 2^30.
+    factor: i32,
+    shift: u32,
+}
+
+impl Ratio {
+    /// `over` is at most 12, `under` below 2^25 and not below `over`.
+    fn new(over: u32, under: u32) -> Ratio {
+        let under = u64::from(under.max(1));
+        let mut shift = 29;
+        while shift < 58 && (u64::from(over) << shift) < under << 29 {
+            shift += 1;
+        }
+        Ratio { factor: (u64::from(over) << shift).checked_div(under).unwrap_or(0) as i32, shift }
+    }
+
+    #[inline(always)]
+    fn of(self, x: i32) -> i32 {
+        // Below 2^61.
+        ((i64::from(x) * i64::from(self.factor)) >> self.shift) as i32
+    }
+}
+
+/// The cubic that takes difference and velocity to zero in a number of frames.
+///
+/// With d + n v + C(n,2) w + C(n,3) k = 0 and v + n w + C(n,2) k = 0 the slope is k = 12 d / (n (n^2 - 1)) + 6 v / (n (n - 1)) and the
+/// acceleration w = -v / n - (n - 1) k / 2. Rounded, they leave up to C(n,3) / 2 raw units at the end. The cubic is therefore solved
+/// again at [`AGAIN`]; with 2 frames left the solution is whole, so that the end is exactly zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cubic {
+    frames: u8,
+    of_d: Ratio,
+    of_v: Ratio,
+    inverse: Ratio,
+}
+
+/// The numbers of frames left at which the cubic is solved again.
+pub(crate) const AGAIN: [u8; 3] = [2, 32, 128];
+
+impl Cubic {
+    pub(crate) fn new(frames: u8) -> Cubic {
+        let n = u32::from(frames.max(3));
+        Cubic { frames, of_d: Ratio::new(12, n * (n * n - 1)), of_v: Ratio::new(6, n * (n - 1)), inverse: Ratio::new(1, n) }
+    }
+
+    /// Sets acceleration and slope by difference and velocity.
+    pub(crate) fn solve(&self, offset: &mut Offset) {
+        let Offset { d, v, .. } = *offset;
+        match self.frames {
+            0 => *offset = Offset::ZERO,
+            1 => (offset.v, offset.w, offset.k) = (d.wrapping_neg(), d, 0),
+            2 => {
+                offset.w = d.wrapping_neg().wrapping_sub(v.wrapping_mul(2));
+                offset.k = d.wrapping_mul(2).wrapping_add(v.wrapping_mul(3));
+            }
+            n => {
+                let k = self.of_d.of(d).wrapping_add(self.of_v.of(v));
+                let half = (i64::from(k) * i64::from(n - 1)) >> 1;
+                (offset.w, offset.k) = ((-i64::from(self.inverse.of(v)) - half) as i32, k);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs(d: i32, v: i32, frames: u8) -> Vec<i32> {
+        let mut offset = Offset { d, v, ..Offset::ZERO };
+        Cubic::new(frames).solve(&mut offset);
+        let mut values = vec![offset.d];
+        for left in (0..frames).rev() {
+            offset.step();
+            if AGAIN.contains(&left) {
+                Cubic::new(left).solve(&mut offset);
+            }
+            values.push(offset.d);
+        }
+        assert_eq!((offset.d, offset.v), (0, 0), "{d} {v} {frames}");
+        values
+    }
+
+    #[test]
+    fn it_ends_exactly_at_zero_and_starts_with_its_velocity() {
+        let mut state = 1u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 32) as i32
+        };
+        for frames in 1..=255u8 {
+            for shift in [2, 4, 12, 27] {
+                let (d, v) = (next() >> shift, (next() >> (shift + 3)) / (i32::from(frames) / 8 + 1));
+                let values = runs(d, v, frames);
+                if frames > 2 {
+                    assert_eq!(values[1] - values[0], v, "{frames}");
+                }
+                // Where it is solved again the path stays smooth: the second difference changes by a part of itself.
+                let truth = |n: f64| {
+                    let (t, big) = (n / f64::from(frames), f64::from(frames));
+                    f64::from(d) * (1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t) + f64::from(v) * big * t * (1.0 - t) * (1.0 - t)
+                };
+                for (n, &value) in values.iter().enumerate() {
+                    let near = f64::from(v).abs() + f64::from(d).abs() * 1.7 / f64::from(frames) + 2e6;
+                    assert!((f64::from(value) - truth(n as f64)).abs() <= near, "{frames} frames, {n}: {value}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_frames_are_no_difference() {
+        assert_eq!(runs(0, 0, 0), [0]);
+        let mut offset = Offset { d: 5, v: 6, w: 7, k: 8 };
+        Cubic::new(0).solve(&mut offset);
+        assert_eq!(offset, Offset::ZERO);
+    }
+}

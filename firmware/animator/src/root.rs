@@ -1,0 +1,274 @@
+//! Root motion: where the figure is in the world and which way it faces, in exact integers.
+//!
+//! A place is a function of the clip's frame, of the number of laps and of where the clip was started, so that an increment is the
+//! difference of two places: sums over loops, reverse and seeks are exact by construction.
+
+use crate::groups::Group;
+use crate::math;
+use pantin::{Angle, Clip, EulerOrder, JointRef, Kind, Matrix, Pose, Rig, Turn};
+
+/// Where a figure is in the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Placement {
+    /// The horizontal axes that follow the vertical one in the cycle x, y, z (for y up: z, x), in 2^[`pantin::Form::length_exponent`] units of
+    /// the source.
+    pub place: [i64; 2],
+    /// How far the figure is turned about the vertical axis (about the axis itself, also where up is against it), beyond what its pose says.
+    pub heading: Angle,
+}
+
+impl Placement {
+    /// A point of the pose, as a horizontal vector in the order of [`Placement::place`], in the world.
+    pub fn to_world(&self, point: [i32; 2]) -> [i64; 2] {
+        let [a, b] = Heading::new(self.heading).rotate(point);
+        let [x, y] = self.place;
+        [x.wrapping_add(a), y.wrapping_add(b)]
+    }
+
+    /// The reverse of [`Placement::to_world`], within a raw unit; cut off at the range of a channel.
+    pub fn to_pose(&self, point: [i64; 2]) -> [i32; 2] {
+        let ([x, y], [own_x, own_y]) = (point, self.place);
+        let narrow = |x: i64| x.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32;
+        Heading::new(-self.heading).rotate([narrow(x.wrapping_sub(own_x)), narrow(y.wrapping_sub(own_y))]).map(narrow)
+    }
+}
+
+/// An angle with its sine and cosine, which are worked out when it changes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Heading {
+    pub(crate) angle: Angle,
+    sin: i32,
+    cos: i32,
+}
+
+impl Heading {
+    pub(crate) const ZERO: Heading = Heading { angle: Angle::ZERO, sin: 0, cos: 1 << 30 };
+
+    pub(crate) fn new(angle: Angle) -> Heading {
+        if angle == Angle::ZERO {
+            return Heading::ZERO;
+        }
+        let (sin, cos) = angle.sin_cos();
+        Heading { angle, sin: sin.to_bits(), cos: cos.to_bits() }
+    }
+
+    #[inline(never)]
+    pub(crate) fn rotate(&self, [a, b]: [i32; 2]) -> [i64; 2] {
+        if self.angle == Angle::ZERO {
+            return [a.into(), b.into()];
+        }
+        let times = |x: i32, y: i32| i64::from(x) * i64::from(y);
+        let narrow = |q30: i64| (q30 + (1 << 29)) >> 30;
+        [narrow(times(a, self.cos) - times(b, self.sin)), narrow(times(a, self.sin) + times(b, self.cos))]
+    }
+}
+
+/// The channels that place a figure: those of the first joint that has any.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Root<'a> {
+    joint: JointRef<'a>,
+    /// Channels of the two horizontal axes.
+    pub(crate) place: [Option<u16>; 2],
+    /// The order whose first axis is the vertical one.
+    order: EulerOrder,
+    /// The vertical axis.
+    axis: pantin::Axis,
+    /// How the joint is turned, and by which channels.
+    pub(crate) turns: Group,
+}
+
+/// The root at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RootSample {
+    pub(crate) place: [i32; 2],
+    pub(crate) yaw: Angle,
+}
+
+impl<'a> Root<'a> {
+    /// The root of a rig; `None` for a rig without joints.
+    pub(crate) fn of(rig: &Rig<'a>, groups: &[Group]) -> Option<Root<'a>> {
+        let index = rig.joints().position(|joint| { joint.kinds }.any(|kind| kind.is_position())).unwrap_or(0);
+        let joint = rig.joint_ref(index)?;
+        let channel = |axis: usize| {
+            let wanted = |(kind, _): &(Kind, usize)| kind.is_position() && kind.axis() == Some(axis % 3);
+            joint.kinds().zip(joint.first_channel()..).find(wanted).map(|(_, channel)| channel as u16)
+        };
+        let up = rig.up().axis();
+        let (order, axis) = match up {
+            0 => (EulerOrder::XYZ, pantin::Axis::X),
+            1 => (EulerOrder::YXZ, pantin::Axis::Y),
+            _ => (EulerOrder::ZXY, pantin::Axis::Z),
+        };
+        let mut kinds = joint.kinds().zip(joint.first_channel()..).filter(|(kind, _)| !kind.is_position());
+        let first = kinds.next().map(|(_, channel)| channel);
+        let own = groups.iter().find(|group| usize::from(group.bit) == index && Some(usize::from(group.first)) == first);
+        let turns = own.copied().unwrap_or(Group::NONE);
+        Some(Root { joint, place: [channel(up + 1), channel(up + 2)], order, axis, turns })
+    }
+
+    pub(crate) fn place_of(&self, values: &[i32]) -> [i32; 2] {
+        self.place.map(|channel| channel.and_then(|channel| values.get(usize::from(channel)).copied()).unwrap_or(0))
+    }
+
+    pub(crate) fn yaw_of(&self, pose: &Pose<'_>) -> Angle {
+        let [yaw, ..] = self.matrix(pose).euler(self.order);
+        yaw
+    }
+
+    fn matrix(&self, pose: &Pose<'_>) -> Matrix {
+        pose.turn(&self.joint).map_or(Matrix::IDENTITY, Turn::matrix)
+    }
+
+    pub(crate) fn sample(&self, pose: &Pose<'_>) -> RootSample {
+        RootSample { place: self.place_of(pose.values), yaw: self.yaw_of(pose) }
+    }
+
+    /// Turns the root about the vertical axis, in its channels `own`; one that has up to two angles keeps them, but for one that turns about
+    /// the vertical axis first.
+    pub(crate) fn turn_by(&self, angle: Angle, own: &mut [i32]) {
+        if angle == Angle::ZERO {
+            return;
+        }
+        let Some(turn) = math::turn_of(self.turns.shape, self.joint.kinds(), own) else {
+            let first = self.joint.kinds().find(|kind| !kind.is_position());
+            if first.is_some_and(|kind| kind.is_rotation() && kind.axis() == Some(self.axis as usize))
+                && let Some(value) = own.first_mut()
+            {
+                *value = value.wrapping_add(angle.to_bits());
+            }
+            return;
+        };
+        let about = Turn::Euler { order: self.order, angles: [angle, Angle::ZERO, Angle::ZERO] };
+        let turned = math::product(about.quaternion(), turn.quaternion());
+        math::write(self.turns.shape, self.joint.kinds(), turned, own);
+    }
+}
+
+impl RootSample {
+    /// A frame on, by the velocities of the channels.
+    pub(crate) fn advance<I: Iterator<Item = (usize, i32)>>(
+        &mut self,
+        root: &Root<'_>,
+        pose: &Pose<'_>,
+        velocities: impl Fn() -> I,
+    ) {
+        for (place, channel) in self.place.iter_mut().zip(root.place) {
+            let moved = velocities().find(|(slot, _)| Some(*slot) == channel.map(usize::from));
+            *place = place.wrapping_add(moved.map_or(0, |(_, v)| v));
+        }
+        let (first, mut own) = (usize::from(root.turns.first), [0i32; 4]);
+        let own = own.get_mut(..root.turns.len.into()).unwrap_or_default();
+        for (own, value) in own.iter_mut().zip(pose.values.get(first..).unwrap_or_default()) {
+            *own = *value;
+        }
+        for (slot, v) in velocities() {
+            if let Some(own) = slot.checked_sub(first).and_then(|at| own.get_mut(at)) {
+                *own = own.wrapping_add(v);
+            }
+        }
+        if let Some(turn) = math::turn_of(root.turns.shape, root.joint.kinds(), own) {
+            let [yaw, ..] = turn.matrix().euler(root.order);
+            self.yaw = yaw;
+        }
+    }
+}
+
+/// Between the last frame of a loop and its first: where a lap takes the root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Seam {
+    pub(crate) place: [i32; 2],
+    pub(crate) yaw: Angle,
+    /// Where the loop begins.
+    pub(crate) first: [i32; 2],
+}
+
+/// A loop whose root comes back to within this of its start stays in its place.
+const RETURNS_CM: i64 = 5;
+/// A loop whose root comes back to within this of its first heading keeps it: 5 degrees, in 2^-32 turns.
+const RETURNS_TURN: u32 = 59_652_323;
+
+impl Seam {
+    pub(crate) fn between(root: &Root<'_>, first: &RootSample, next: &RootSample, clip: &Clip<'_>) -> Seam {
+        let ([a, b], [first_a, first_b]) = (next.place, first.place);
+        let (a, b) = (a.wrapping_sub(first_a), b.wrapping_sub(first_b));
+        let micro_cm = i64::from(clip.rig().unit_micro_cm());
+        // In 2^exponent units: 5 cm.
+        let shift = i32::from(clip.length_exponent());
+        let units = RETURNS_CM * 1_000_000;
+        let bound = if shift >= 0 { units >> shift } else { units.checked_shl(shift.unsigned_abs().min(40)).unwrap_or(units) };
+        let bound = bound.checked_div(micro_cm).unwrap_or(0).max(0).unsigned_abs();
+        let near = u64::from(a.unsigned_abs()) <= bound && u64::from(b.unsigned_abs()) <= bound;
+        let yaw = next.yaw - first.yaw;
+        let turns = yaw.to_bits().unsigned_abs() > RETURNS_TURN && root.place.iter().all(Option::is_some);
+        Seam {
+            place: if near && !turns { [0; 2] } else { [a, b] },
+            yaw: if turns { yaw } else { Angle::ZERO },
+            first: first.place,
+        }
+    }
+}
+
+/// The way of a root since its clip was started.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Travel {
+    /// Where the figure was when the clip was started, and what its heading is beside the pose's.
+    pub(crate) anchor: [i64; 2],
+    pub(crate) heading: Heading,
+    /// The root's place in the clip that stands at the anchor.
+    pub(crate) origin: [i64; 2],
+    /// Laps since then, what they turn by, and where they lead, in the clip's axes.
+    laps: i32,
+    lap_heading: Heading,
+    lap_place: [i64; 2],
+}
+
+impl Travel {
+    pub(crate) const NONE: Travel =
+        Travel { anchor: [0; 2], heading: Heading::ZERO, origin: [0; 2], laps: 0, lap_heading: Heading::ZERO, lap_place: [0; 2] };
+
+    /// Starts at a placement with a clip whose root is at `origin`.
+    pub(crate) fn new(from: Placement, origin: [i64; 2]) -> Travel {
+        Travel { anchor: from.place, heading: Heading::new(from.heading), origin, ..Travel::NONE }
+    }
+
+    /// Passes the seam of a loop a number of times. A lap's way is turned by the laps before it, so that the same laps backwards take back
+    /// the same numbers.
+    pub(crate) fn pass(&mut self, laps: i32, seam: &Seam) {
+        for _ in 0..laps.unsigned_abs() {
+            if laps < 0 {
+                self.laps = self.laps.wrapping_sub(1);
+            }
+            if seam.yaw != Angle::ZERO {
+                self.lap_heading = Heading::new(Angle::from_bits(seam.yaw.to_bits().wrapping_mul(self.laps)));
+            }
+            let way = self.lap_heading.rotate(seam.place);
+            for (sum, way) in self.lap_place.iter_mut().zip(way) {
+                *sum = sum.wrapping_add(if laps < 0 { -way } else { way });
+            }
+            if laps > 0 {
+                self.laps = self.laps.wrapping_add(1);
+                if seam.yaw != Angle::ZERO {
+                    self.lap_heading = Heading::new(Angle::from_bits(seam.yaw.to_bits().wrapping_mul(self.laps)));
+                }
+            }
+        }
+    }
+
+    /// The placement of a root that is at a place of its clip.
+    pub(crate) fn placement(&self, place: [i32; 2], seam: Option<Seam>) -> Placement {
+        // About the place where the loop begins, which is where a lap's turn happens.
+        let first = seam.map_or([0; 2], |seam| seam.first);
+        let ([x, y], [first_x, first_y]) = (place, first);
+        let [turned_x, turned_y] = self.lap_heading.rotate([x.wrapping_sub(first_x), y.wrapping_sub(first_y)]);
+        let ([lap_x, lap_y], [origin_x, origin_y]) = (self.lap_place, self.origin);
+        let x = turned_x.wrapping_add(first_x.into()).wrapping_add(lap_x).wrapping_sub(origin_x);
+        let y = turned_y.wrapping_add(first_y.into()).wrapping_add(lap_y).wrapping_sub(origin_y);
+        let narrow = |x: i64| x.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32;
+        let [x, y] = if self.heading.angle == Angle::ZERO { [x, y] } else { self.heading.rotate([narrow(x), narrow(y)]) };
+        let [anchor_x, anchor_y] = self.anchor;
+        Placement {
+            place: [anchor_x.wrapping_add(x), anchor_y.wrapping_add(y)],
+            heading: self.heading.angle + self.lap_heading.angle,
+        }
+    }
+}
