@@ -84,7 +84,8 @@ impl<'a> Parts<'a> {
         Ok(bytes)
     }
 
-    /// Checks what follows the motion, to the end of the file: snapshots and names of events, if there are any.
+    /// Checks what follows the motion: snapshots and names of events, if there are any. Behind them the file ends, or sections follow that
+    /// this version does not define.
     pub(crate) fn tail(&mut self, motion: &[u8]) -> Result<[&'a [u8]; 2], OpenError> {
         let (mut index, mut names) = (&[][..], &[][..]);
         if self.flags & HAS_INDEX != 0 {
@@ -104,7 +105,8 @@ impl<'a> Parts<'a> {
             }
             walk.check()?;
         }
-        if self.reader.rest().is_empty() { Ok([index, names]) } else { Err(OpenError::Malformed) }
+        let ends = self.flags & HAS_SECTIONS != 0 || self.reader.rest().is_empty();
+        if ends { Ok([index, names]) } else { Err(OpenError::Malformed) }
     }
 }
 

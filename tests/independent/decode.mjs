@@ -4,7 +4,7 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
-const VERSION = 0xe7, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, BLOCK = 256, CRC_BYTES = 2;
+const VERSION = 1, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, HAS_SECTIONS = 64, BLOCK = 256, CRC_BYTES = 2;
 const FRAME_RATES = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 const LENGTHS = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 const LENGTH_CLASSES = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];
@@ -275,11 +275,11 @@ function readNames(bytes) { // [15]
 export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = true } = {}) {
   const file = new Fields(clipBytes, "file"), before = file.take(4), [P, n, version, flags] = before;
   need(P === 0x50 && n === 0x6e, "The file does not begin with the magic of a clip.");
-  need(version === VERSION && flags < 64, "The file's version, or a flag that it sets, is unknown.");
+  need(version === VERSION && flags < 128, "The file's version, or a flag that it sets, is unknown.");
   const itsRig = flags & HAS_RIG ? file.take(file.varint()) : rigBytes;
   const motion = file.take(file.varint()), index = flags & HAS_INDEX ? file.take(file.varint()) : null;
   const names = flags & HAS_EVENT_NAMES ? readNames(file.take(file.varint())) : [];
-  need(file.at === clipBytes.length, "Bytes follow the last part.");
+  need(flags & HAS_SECTIONS || file.at === clipBytes.length, "Bytes follow the last part.");
   need(itsRig, "The clip has no rig of its own, and none was given.");
   const rig = readRig(itsRig, tables), { payload, lastCrc } = readBlocks(motion, [...before, ...u32Bytes(motion.length)], "motion");
   const fields = new Fields(payload, "motion", true), head = readHead(fields, flags, rig);

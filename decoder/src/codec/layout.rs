@@ -2,8 +2,8 @@
 
 /// First bytes of every clip.
 pub const MAGIC: [u8; 2] = *b"Pn";
-/// Version byte: values from 0xe0 are experimental and promise nothing.
-pub const VERSION: u8 = 0xe7;
+/// Version byte. What a file of this version decodes to never changes.
+pub const VERSION: u8 = 1;
 
 /// Flag: the rig stands in the file, after the flags.
 pub const HAS_RIG: u8 = 1;
@@ -17,8 +17,10 @@ pub const HAS_EVENTS: u8 = 8;
 pub const HAS_INDEX: u8 = 16;
 /// Flag: names of event markers stand at the end of the file.
 pub const HAS_EVENT_NAMES: u8 = 32;
+/// Flag: sections follow that this version does not define; a decoder ignores them.
+pub const HAS_SECTIONS: u8 = 64;
 /// Flags that a decoder knows.
-pub const KNOWN_FLAGS: u8 = 63;
+pub const KNOWN_FLAGS: u8 = 127;
 
 /// First bytes of every bank.
 pub const BANK_MAGIC: [u8; 2] = *b"Pb";

@@ -115,8 +115,9 @@ const END_SITE_PART: f64 = 0.1;
 /// A channel's code, and what the search had found it to cost.
 type Code = Fitted;
 
-/// Bits that a step away from the best one costs, times the square of the distance, about.
+/// Bits that a step away from the best one costs, times the square of the distance, about: so much up to this many bits, then in proportion.
 const STEP_LOSS: f64 = 0.3;
+const BITS_OF_STEP_LOSS: f64 = 256.0;
 
 /// The state of a descent.
 pub struct Descent<'m> {
@@ -424,7 +425,8 @@ impl<'m> Descent<'m> {
                 let near = step_index(1.6 * rms).clamp(step.saturating_sub(1), step + 1);
                 let other = if pass.is_multiple_of(2) { near + 1 } else { near.saturating_sub(1) };
                 // One that the others predict, as long as it is hardly worse.
-                let bits = |step: u8| tube.start.step(step) + STEP_LOSS * f64::from(step.abs_diff(near)).powi(2);
+                let loss = STEP_LOSS * ((code.bits - code.start_bits) / BITS_OF_STEP_LOSS).max(1.0);
+                let bits = |step: u8| tube.start.step(step) + loss * f64::from(step.abs_diff(near)).powi(2);
                 let cheap = (near.saturating_sub(3)..=(near + 3).min(MAX_STEP)).min_by(|&a, &b| bits(a).total_cmp(&bits(b)));
                 let cheap = cheap.filter(|&cheap| cheap != near && pass % 3 != 2);
                 (near, cheap.unwrap_or(other))

@@ -225,7 +225,7 @@ fn the_text_names_the_numbers_of_the_layout() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../decoder/FORMAT.md")).unwrap();
     let list = |numbers: &[u8]| numbers.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
     for expected in [
-        format!("{VERSION:#04x} (`VERSION`)"),
+        format!("{VERSION} (`VERSION`)"),
         format!("{} (`FRAME_RATES`)", list(&FRAME_RATES)),
         format!("{} (`LENGTHS`)", list(&LENGTHS)),
         format!("{FIRST_STEP} (`FIRST_STEP`)"),

@@ -28,6 +28,9 @@ fn shared(contexts: impl Iterator<Item = Alphabet>) -> (Vec<Vec<u32>>, Vec<usize
     (rows, indices)
 }
 
+/// The file's name.
+pub const NAME: &str = "tables.json";
+
 /// The file's text.
 pub fn text() -> String {
     let (mode, mode_after) = shared((0..MODE_CONTEXTS as u8).map(Alphabet::Mode));
@@ -41,6 +44,9 @@ pub fn text() -> String {
         ("looped", json!(layout::LOOPED)),
         ("has_exponentials", json!(layout::HAS_EXPONENTIALS)),
         ("has_events", json!(layout::HAS_EVENTS)),
+        ("has_index", json!(layout::HAS_INDEX)),
+        ("has_event_names", json!(layout::HAS_EVENT_NAMES)),
+        ("has_sections", json!(layout::HAS_SECTIONS)),
         ("known_flags", json!(layout::KNOWN_FLAGS)),
         ("max_joints", json!(layout::MAX_JOINTS)),
         ("max_channels", json!(layout::MAX_CHANNELS)),

@@ -6,6 +6,7 @@ pub mod coverage;
 mod json;
 pub mod own;
 pub mod record;
+pub mod sums;
 pub mod synthetic;
 
 use std::path::{Path, PathBuf};

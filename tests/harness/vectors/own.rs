@@ -17,8 +17,8 @@ const CLIPS: [(&str, &str, &str); 6] = [
     ("run-coarse", "run", "3cm"),
 ];
 
-/// Codes them with the host tool.
-pub fn vectors() -> Result<Vec<Vector>> {
+/// Codes those that are `wanted` with the host tool.
+pub fn vectors(wanted: impl Fn(&str) -> bool) -> Result<Vec<Vector>> {
     let tool = build::host_tool()?;
     let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
     let vector = |&(name, motion, bound): &(&str, &str, &str)| {
@@ -30,5 +30,5 @@ pub fn vectors() -> Result<Vec<Vector>> {
         ensure!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr).trim());
         Ok(Vector { name: name.into(), clip: std::fs::read(&clip)?, rig: None })
     };
-    CLIPS.iter().map(vector).collect()
+    CLIPS.iter().filter(|(name, ..)| wanted(name)).map(vector).collect()
 }

@@ -1,7 +1,7 @@
 //! Vectors made of noise and of edges: together they hold every feature of the format, which [`super::coverage`] counts.
 
 use anyhow::Result;
-use pantin::codec::layout::{FIRST_STEP, GROUPS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
+use pantin::codec::layout::{FIRST_STEP, GROUPS, HAS_SECTIONS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
 use pantin::{Event, Kind, Up};
 use pantin_tools::encode::clip::{self, Channel, Coded, Start};
 use pantin_tools::encode::rig;
@@ -23,16 +23,24 @@ pub struct Made {
     pub apart: bool,
     /// Frames from one snapshot of its index to the next; 0 for none.
     pub index: u32,
+    /// Sections behind the clip, which this version does not define.
+    pub sections: &'static [u8],
 }
 
 impl Made {
     /// The files.
     pub fn vector(&self) -> Result<Vector> {
         let rig = rig::encode(&self.rig)?;
-        let clip = match self.index {
+        let mut clip = match self.index {
             0 => clip::encode(&self.coded, &rig, self.apart)?,
             spacing => clip::encode_with_index(&self.coded, &rig, self.apart, spacing)?,
         };
+        if !self.sections.is_empty() {
+            clip[3] |= HAS_SECTIONS;
+            clip.extend_from_slice(self.sections);
+            // The CRC covers the flags.
+            hostile::fix::clip(&mut clip);
+        }
         Ok(Vector { name: self.name.into(), clip, rig: self.apart.then_some(rig) })
     }
 }
@@ -125,7 +133,7 @@ fn simple(name: &'static str, joints: &[&[Kind]], scalars: usize, mut coded: Cod
     let rig = figure(joints, scalars);
     let seed = name.len() as u64 + u64::from(coded.frames);
     alive(&rig, &mut coded, &mut Noise::new(seed));
-    Made { name, rig, coded, apart: false, index: 0 }
+    Made { name, rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// Every type with every length: six channels take the 63 modes in six orders.
@@ -140,7 +148,7 @@ fn segments() -> Made {
         let segments = fill(coded.frames, || small(order.next().copied().unwrap_or(0), &mut noise));
         coded.channels.push(Channel { start, segments });
     }
-    Made { name: "segments", rig, coded, apart: false, index: 0 }
+    Made { name: "segments", rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// Numbers of every size up to 2^30, of either sign, as accelerations and as slopes; values wrap.
@@ -170,7 +178,7 @@ fn numbers() -> Made {
         };
         coded.channels.push(Channel { start: moving(0, 0, 5 * channel + channel % 2), segments: fill(100, next) });
     }
-    Made { name: "numbers", rig, coded, apart: false, index: 0 }
+    Made { name: "numbers", rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// How channels begin: every change of step, every step, first values of every size, the least one included; resting,
@@ -204,7 +212,7 @@ fn starts() -> Made {
         _ => vec![],
     };
     coded.channels = starts.into_iter().map(|start| Channel { segments: segments(&start), start }).collect();
-    Made { name: "starts", rig, coded, apart: false, index: 0 }
+    Made { name: "starts", rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// Nothing moves.
@@ -215,7 +223,7 @@ fn still() -> Made {
     coded.channels = vec![rest; 6];
     coded.channels[1].start = constant(95, 22);
     coded.channels[5].start = constant(-33, 44);
-    Made { name: "still", rig, coded, apart: false, index: 0 }
+    Made { name: "still", rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// Twelve joints may choose, so that the bits take two bytes; every third one does.
@@ -239,7 +247,7 @@ fn widest_steps() -> Made {
         });
         coded.channels.push(Channel { start: moving(1, -1, step), segments });
     }
-    Made { name: "widest-steps", rig, coded, apart: false, index: 0 }
+    Made { name: "widest-steps", rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// Joints that rest, in a clip whose lengths are finer than the rig's; joints with six channels and with four angles beside one that
@@ -284,6 +292,19 @@ fn event_names() -> Made {
     made
 }
 
+/// Two sections of types that this version does not define.
+pub const SECTIONS: &[u8] = &[0, 3, 1, 2, 3, 0xff, 0];
+
+/// Sections behind snapshots and names of events.
+fn sections() -> Made {
+    let mut coded = motion(24);
+    coded.events = vec![Event { frame: 3, id: 0 }];
+    coded.event_names = vec!["clap".into()];
+    let mut made = simple("sections", &[&PLACE, &EULER], 1, coded);
+    (made.index, made.sections) = (10, SECTIONS);
+    made
+}
+
 /// A frame time that is no usual rate's.
 fn odd_rate() -> Made {
     simple("odd-rate", &[&EULER], 0, Coded { frame_time_ns: 41_708_375, ..motion(12) })
@@ -301,7 +322,7 @@ fn crowd() -> Made {
             _ => Channel { start: Start::Rest, segments: vec![] },
         });
     }
-    Made { name: "channels-300", rig, coded, apart: false, index: 0 }
+    Made { name: "channels-300", rig, coded, apart: false, index: 0, sections: &[] }
 }
 
 /// Channels that follow another, every way back that there is, some of them one that follows itself, among channels of every status;
@@ -339,7 +360,7 @@ fn followers() -> Made {
         }
         coded.channels.push(made);
     }
-    Made { name: "followers", rig, coded, apart: false, index: 13 }
+    Made { name: "followers", rig, coded, apart: false, index: 13, sections: &[] }
 }
 
 /// The clips of the vector of a bank.
@@ -372,6 +393,7 @@ pub fn all() -> Vec<Made> {
         exponential_choice(),
         events(),
         event_names(),
+        sections(),
         odd_rate(),
         widest_steps(),
         rests_and_choices(),

@@ -2,7 +2,7 @@
 
 use pantin::codec::crc;
 use pantin::codec::layout::{
-    BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, KNOWN_FLAGS, MAGIC, VERSION, section,
+    BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, HAS_SECTIONS, KNOWN_FLAGS, MAGIC, VERSION, section,
 };
 
 /// Makes the CRC of a rig or of event names right, if they are long enough to have one.
@@ -44,21 +44,27 @@ pub fn clip(bytes: &mut Vec<u8>) {
     let Some((len, digits)) = varint(&bytes[at..]) else { return };
     let mut motion = bytes.split_off(at).split_off(digits);
     // What follows the motion: its bytes, where there are lengths, end where these say.
-    let mut rest = if flags & (HAS_INDEX | HAS_EVENT_NAMES) != 0 { motion.split_off(len.min(motion.len())) } else { vec![] };
+    let mut rest =
+        if flags & (HAS_INDEX | HAS_EVENT_NAMES | HAS_SECTIONS) != 0 { motion.split_off(len.min(motion.len())) } else { vec![] };
     let seed = crc::update(crc::of(&bytes[..4]), &(motion.len() as u32).to_le_bytes());
     let last = put_part(bytes, &motion, seed);
     if flags & HAS_INDEX != 0 {
         let (len, digits) = varint(&rest).unwrap_or((0, rest.len()));
         let mut index = rest.split_off(digits);
-        rest = if flags & HAS_EVENT_NAMES != 0 { index.split_off(len.min(index.len())) } else { vec![] };
+        rest = if flags & (HAS_EVENT_NAMES | HAS_SECTIONS) != 0 { index.split_off(len.min(index.len())) } else { vec![] };
         put_part(bytes, &index, pantin::codec::index_seed(last, index.len() as u32));
     }
     if flags & HAS_EVENT_NAMES != 0 {
-        let mut names = rest.split_off(varint(&rest).map_or(rest.len(), |(_, digits)| digits));
+        let (len, digits) = varint(&rest).unwrap_or((0, rest.len()));
+        let mut names = rest.split_off(digits);
+        rest = if flags & HAS_SECTIONS != 0 { names.split_off(len.min(names.len())) } else { vec![] };
         names.resize(names.len().max(CRC_BYTES), 0);
         rig(&mut names);
         put_varint(bytes, names.len());
         bytes.extend_from_slice(&names);
+    }
+    if flags & HAS_SECTIONS != 0 {
+        bytes.extend_from_slice(&rest);
     }
 }
 

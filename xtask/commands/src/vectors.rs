@@ -1,75 +1,84 @@
-//! `cargo xtask vectors`: regenerates the golden vectors.
+//! `cargo xtask vectors`: adds golden vectors.
 //!
-//! Only while the format is experimental: afterwards a vector never changes, and a new one takes a new name.
+//! A vector of this version of the format never changes; one that is new takes a name of its own. Those of another version are replaced as a whole.
 
+use std::collections::BTreeMap;
+use std::fs;
 use std::path::Path;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
-use harness::vectors::{self, Vector, bank, constants, coverage, own, record, synthetic};
+use harness::vectors::{self, Vector, bank, constants, coverage, own, record, sums, synthetic};
 use pantin::codec::layout::VERSION;
 use pantin_tools::output::write_whole;
 
-/// Versions from here on are experimental.
-const EXPERIMENTAL: u8 = 0xe0;
-
-/// Regenerates tests/vectors: clips, the CRC of each of their frames, the format's tables as JSON
+/// Adds what tests/vectors lacks: clips, the CRC of each of their frames, the format's tables as JSON
 #[derive(Args)]
 pub struct Vectors {}
 
 impl Vectors {
-    /// Writes all files, and takes away those of vectors that are no more.
+    /// Writes what is new, and refuses to change what is there.
     pub fn run(self) -> Result<()> {
-        if VERSION < EXPERIMENTAL {
-            bail!("version {VERSION:#04x} of the format is frozen: its vectors stay as they are");
-        }
         let made = synthetic::all();
         let missing = coverage::left_out(&made)?;
         ensure!(missing.is_empty(), "the vectors leave out: {}", missing.join(", "));
-        let mut all = own::vectors()?;
-        for made in &made {
-            all.push(made.vector()?);
-        }
         let folder = vectors::folder();
-        std::fs::create_dir_all(&folder)?;
-        for entry in std::fs::read_dir(&folder)? {
-            let path = entry?.path();
-            if path.extension().is_some_and(|extension| ["ptn", "ptb", "rig", "json"].iter().any(|ours| extension == *ours)) {
-                std::fs::remove_file(path)?;
-            }
+        fs::create_dir_all(&folder)?;
+        remove_other_versions(&folder)?;
+        let mut files = BTreeMap::new();
+        for vector in own::vectors(|name| !folder.join(name).with_extension("ptn").exists())? {
+            put(&mut files, &vector)?;
         }
-        let mut total = 0;
-        for vector in &all {
-            total += write(&folder, vector)?;
+        for made in &made {
+            put(&mut files, &made.vector()?)?;
         }
         let bank = bank::bytes()?;
-        let record = bank::record(&bank)?;
-        write_whole(&folder.join(bank::NAME).with_extension("ptb"), &bank)?;
-        write_whole(&folder.join(bank::NAME).with_extension("json"), record.as_bytes())?;
-        total += bank.len() + record.len();
-        let tables = constants::text();
-        write_whole(&folder.join("tables.json"), tables.as_bytes())?;
-        println!("{} vectors, {} bytes with tables.json", all.len(), total + tables.len());
+        files.insert(format!("{}.json", bank::NAME), bank::record(&bank)?.into_bytes());
+        files.insert(format!("{}.ptb", bank::NAME), bank);
+        let mut added = 0;
+        for (name, bytes) in &files {
+            let path = folder.join(name);
+            match fs::read(&path) {
+                Ok(there) => ensure!(
+                    there == *bytes,
+                    "{name}: a vector of version {VERSION} never changes, and would have other bytes now"
+                ),
+                Err(_) => {
+                    write_whole(&path, bytes)?;
+                    println!("{name}: {} bytes, new", bytes.len());
+                    added += 1;
+                }
+            }
+        }
+        write_whole(&folder.join(constants::NAME), constants::text().as_bytes())?;
+        write_whole(&folder.join(sums::NAME), sums::text(&folder)?.as_bytes())?;
+        println!("{} files as they were, {added} new", files.len() - added);
         Ok(())
     }
 }
 
-fn write(folder: &Path, vector: &Vector) -> Result<usize> {
-    let clip = vector.open()?;
-    let record = record::of(&clip)?;
-    println!(
-        "{:<20} {:>5} bytes {:>5} frames {:>4} channels {:>4} moving",
-        vector.name,
-        vector.clip.len(),
-        clip.frames(),
-        clip.rig().channels(),
-        clip.moving()
-    );
-    let path = |extension: &str| folder.join(format!("{}.{extension}", vector.name));
-    write_whole(&path("ptn"), &vector.clip)?;
-    write_whole(&path("json"), record.as_bytes())?;
-    if let Some(rig) = &vector.rig {
-        write_whole(&path("rig"), rig)?;
+/// Takes the vectors away if they are not of this version.
+fn remove_other_versions(folder: &Path) -> Result<()> {
+    let tables = fs::read_to_string(folder.join(constants::NAME)).unwrap_or_default();
+    let tables: serde_json::Value = serde_json::from_str(&tables).unwrap_or_default();
+    if tables["version"] == VERSION {
+        return Ok(());
     }
-    Ok(vector.clip.len() + record.len() + vector.rig.as_ref().map_or(0, Vec::len))
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| ["ptn", "ptb", "rig", "json"].iter().any(|ours| extension == *ours)) {
+            fs::remove_file(&path).with_context(|| path.display().to_string())?;
+        }
+    }
+    Ok(())
+}
+
+fn put(files: &mut BTreeMap<String, Vec<u8>>, vector: &Vector) -> Result<()> {
+    let record = record::of(&vector.open()?)?;
+    files.insert(format!("{}.ptn", vector.name), vector.clip.clone());
+    files.insert(format!("{}.json", vector.name), record.into_bytes());
+    if let Some(rig) = &vector.rig {
+        files.insert(format!("{}.rig", vector.name), rig.clone());
+    }
+    Ok(())
 }
