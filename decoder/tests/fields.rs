@@ -76,6 +76,21 @@ fn events_end_in_the_payload() {
 }
 
 #[test]
+fn names_of_events_end_in_their_section() {
+    let with_names = |names: &[u8]| {
+        let names = blocks(names, crc::INITIAL);
+        [file(HAS_EVENT_NAMES, &[1, 10, 0]), varint(names.len()), names].concat()
+    };
+    let bytes = with_names(&[1, b'a', 0, 2, b'b', b'c']);
+    let clip = Clip::new_checked(&bytes).unwrap();
+    assert_eq!([0, 1, 2, 3].map(|id| clip.event_name(id)), [Some("a"), None, Some("bc"), None]);
+    // The last name is longer than what is left, or its length has no end.
+    for wrong in [&[1, b'a', 3, b'b', b'c'][..], &[1, b'a', 0x80]] {
+        assert_eq!(Clip::new_checked(&with_names(wrong)).map(drop), Err(OpenError::Truncated), "{wrong:?}");
+    }
+}
+
+#[test]
 fn the_parts_of_a_file_add_up_to_the_byte() {
     let (Some(names), Some(index), Some(scalars)) = (vector("event-names"), vector("index"), vector("scalars")) else { return };
     assert!(Clip::new_checked(&names).unwrap().event_names_len() > 0);

@@ -27,9 +27,12 @@ pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
     Ok(table(spacing, &snapshots))
 }
 
+/// Lengths of a head that are tried before one with a byte too many will do.
+const EXACT_LENGTHS: u32 = 8;
+
 /// Spacing, number, where each begins, and the snapshots. Where they begin depends on how long it takes to say so.
 fn table(spacing: u32, snapshots: &[Vec<u8>]) -> Vec<u8> {
-    let mut head_len = 0;
+    let (mut head_len, mut tried) = (0, 0);
     loop {
         let mut out = Vec::new();
         varint::put(&mut out, spacing);
@@ -41,13 +44,16 @@ fn table(spacing: u32, snapshots: &[Vec<u8>]) -> Vec<u8> {
             varint::put(&mut out, place - before);
             (before, begin) = (place, begin + snapshot.len());
         }
-        if out.len() == head_len {
+        // Two lengths may lead to each other for ever, as a CRC between two snapshots moves: then zeros fill up the longer one.
+        if out.len() == head_len || tried > EXACT_LENGTHS && out.len() < head_len {
+            out.resize(head_len, 0);
             return snapshots.iter().fold(out, |mut out, snapshot| {
                 out.extend_from_slice(snapshot);
                 out
             });
         }
         head_len = out.len();
+        tried += 1;
     }
 }
 
@@ -74,4 +80,53 @@ pub fn check(bytes: &[u8], rig: &[u8], spacing: u32) -> Result<()> {
         ensure!(sought.pose().values == stepped.pose().values, "frame {} differs when it is sought", stepped.frame());
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES};
+
+    /// The first byte of each snapshot, as a decoder finds it.
+    fn found(index: &[u8]) -> Vec<usize> {
+        let mut bytes = index.iter();
+        let mut number = || {
+            let mut value = 0;
+            for digit in 0.. {
+                let byte = *bytes.next().unwrap();
+                value |= usize::from(byte & 0x7f) << (7 * digit);
+                if byte < 0x80 {
+                    break;
+                }
+            }
+            value
+        };
+        let (_, count) = (number(), number());
+        let mut at = 0;
+        let places = (0..count).map(|_| {
+            at += number();
+            at - at / (BLOCK_BYTES + CRC_BYTES) * CRC_BYTES
+        });
+        places.collect()
+    }
+
+    #[test]
+    fn every_index_ends_and_says_where_its_snapshots_begin() {
+        let mut padded = 0;
+        for first in (1..600).step_by(2) {
+            for second in 120..132 {
+                let snapshots = [vec![1; first], vec![2; second], vec![3; 5]];
+                let index = table(7, &snapshots);
+                let places = found(&index);
+                for (place, snapshot) in places.iter().zip(&snapshots) {
+                    assert!(index[*place..].starts_with(snapshot), "{first} and {second} bytes");
+                }
+                assert_eq!(places.len(), 3);
+                padded += usize::from(index[places[0] - 1] == 0);
+                assert_eq!(index.len(), places[2] + 5);
+            }
+        }
+        // Few of them take a byte more.
+        assert!((1..10).contains(&padded), "{padded}");
+    }
 }

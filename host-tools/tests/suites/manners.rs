@@ -6,14 +6,21 @@ use serde_json::Value;
 use std::process::Output;
 
 /// Every command, with arguments that succeed in a folder of [`prepared`]; `serve`, `stream` and `update` need a partner.
-const RUNS: [&[&str]; 16] = [
+const RUNS: [&[&str]; 26] = [
     &["completions", "bash"],
     &["man", "convert"],
     &["convert", "run.keys", "-o", "b.ptn", "--effort", "fast"],
     &["convert", "run.keys", "walk.keys", "-o", "clips", "--effort", "fast"],
     &["convert", "run.keys", "run2.keys", "--same-form", "-o", "same", "--effort", "fast"],
     &["convert", "in", "-o", "out"],
+    &["convert", "in", "-o", "in.ptb"],
     &["convert", "--list", "run.keys"],
+    &["convert", "walk.keys", "--find-loop"],
+    &["pack", "a.ptn", "-o", "packed.ptb"],
+    &["unpack", "moves.ptb", "-o", "unpacked"],
+    &["list", "moves.ptb"],
+    &["info", "moves.ptb"],
+    &["train", "in/light.csv", "--bounds", "1", "--note", "A test.", "-o", "tables.rs"],
     &["expand", "a.ptn", "-o", "a.bvh"],
     &["info", "a.ptn"],
     &["render", "a.ptn", "-o", "a.png", "--frame", "0"],
@@ -21,6 +28,8 @@ const RUNS: [&[&str]; 16] = [
     &["flash-image", "a.ptn", "--board", "pico", "-o", "a.uf2"],
     &["face", "model", "-o", "face.model"],
     &["face", "export", "-o", "face.obj"],
+    &["face", "sheet", "-o", "sheet.png"],
+    &["face", "speak", "Hello", "--rules", "-o", "hello.keys"],
     &["face", "compare"],
     &["face", "fit", "face.obj"],
 ];
@@ -33,6 +42,7 @@ fn prepared() -> Folder {
     folder.put("in/light.csv", "time,a\n0,0\n0.1,1\n0.2,0.5\n");
     folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
     folder.done(&["face", "export", "-o", "face.obj"]);
+    folder.done(&["pack", "a.ptn", "-o", "moves.ptb"]);
     folder
 }
 
