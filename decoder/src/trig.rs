@@ -65,6 +65,17 @@ pub(crate) fn sin_cos(angle: i32) -> (i32, i32) {
 /// The angle of the vector (x, y) from the x axis, in 2^-32 turns, within 16 of the true value for a vector longer than 2^26; 0 for no vector.
 #[inline(never)]
 pub(crate) fn atan2(y: i32, x: i32) -> i32 {
+    atan2_in::<30>(y, x)
+}
+
+/// [`atan2`] in half the steps: within 2^-16 turns, for what stands in Q15.
+#[inline(never)]
+pub(crate) fn atan2_coarse(y: i32, x: i32) -> i32 {
+    atan2_in::<15>(y, x)
+}
+
+#[inline(always)]
+fn atan2_in<const STEPS: usize>(y: i32, x: i32) -> i32 {
     // Components below 2^29: the rotations lengthen the vector by 1.65 at most, which stays below 2^31.
     let largest = (x.unsigned_abs() | y.unsigned_abs()).leading_zeros() as i32;
     if largest == 32 {
@@ -77,7 +88,7 @@ pub(crate) fn atan2(y: i32, x: i32) -> i32 {
     if x < 0 {
         (x, y, angle) = (-x, -y, i32::MIN);
     }
-    for (shift, arctangent) in ARCTANGENTS.iter().enumerate() {
+    for (shift, arctangent) in ARCTANGENTS.iter().enumerate().take(STEPS) {
         let (dx, dy) = (y >> shift, x >> shift);
         if y > 0 {
             (x, y, angle) = (x + dx, y - dy, angle.wrapping_add(*arctangent));
@@ -124,6 +135,13 @@ mod tests {
             }
         }
         assert!(worst <= 16.0, "{worst}");
+        for step in 0..STEPS / 8 {
+            let raw = step.wrapping_mul(42_949_673).wrapping_add(step) as i32;
+            let angle = f64::from(raw) / UNITS * std::f64::consts::TAU;
+            let (y, x) = ((angle.sin() * 32768.0).round() as i32, (angle.cos() * 32768.0).round() as i32);
+            let error = atan2_coarse(y, x).wrapping_sub(raw);
+            assert!(error.unsigned_abs() <= 1 << 16, "{error}");
+        }
         assert_eq!(atan2(0, 0), 0);
         for (y, x) in [(i32::MIN, i32::MIN), (i32::MAX, i32::MIN), (0, i32::MIN), (1, 0), (0, 1)] {
             let truth = f64::from(y).atan2(f64::from(x)) / std::f64::consts::TAU * UNITS;

@@ -41,6 +41,11 @@ impl Angle {
         Angle(crate::trig::atan2(y, x))
     }
 
+    /// [`Angle::atan2`] in half the instructions, within 2^-16 turns.
+    pub fn atan2_coarse(y: i32, x: i32) -> Angle {
+        Angle(crate::trig::atan2_coarse(y, x))
+    }
+
     /// Sine and cosine, each within 6e-8.
     pub fn sin_cos(self) -> (Component, Component) {
         let (sin, cos) = crate::trig::sin_cos(self.0);

@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::events::{EventQueue, EventsLost};
 use crate::groups::{self, Group, Shape, nearest};
+use crate::layer::{Weight, mix_group};
 use crate::math;
 use crate::offset::{AGAIN, Cubic, Offset};
 use crate::root::{Heading, Placement, Root, Travel};
@@ -105,6 +106,8 @@ pub struct Animator<'a, 'm> {
     rest_ns: u32,
     root: Root<'a>,
     travel: Travel,
+    /// The root's horizontal place in the clip, with what the transition adds.
+    place: [i32; 2],
     motion: RootMotion,
     events: EventQueue,
     /// The placement before the last update, for its increment.
@@ -133,13 +136,14 @@ impl<'a, 'm> Animator<'a, 'm> {
             rest_ns: 0,
             root,
             travel: Travel::NONE,
+            place: [0; 2],
             motion: RootMotion::Travel,
             events: EventQueue::new(),
             before: Placement::default(),
         };
-        animator.travel = Travel::new(Placement::default(), animator.root.place_of(animator.track.values()).map(i64::from));
         animator.events.at(animator.track.clip(), 0);
         animator.compose();
+        animator.travel = Travel::new(Placement::default(), animator.place.map(i64::from));
         Ok(animator)
     }
 
@@ -204,14 +208,14 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// Makes the root's present place stand at a placement.
     fn settle(&mut self, placement: Placement) {
-        self.travel = Travel::new(placement, self.root_place().map(i64::from));
+        self.travel = Travel::new(placement, self.place.map(i64::from));
         self.before = placement;
     }
 
     /// Where the figure is, and how it is turned.
     pub fn placement(&self) -> Placement {
         match self.motion {
-            RootMotion::Travel => self.travel.placement(self.root_place(), self.track.seam()),
+            RootMotion::Travel => self.travel.placement(self.place, self.track.seam()),
             RootMotion::InPlace => Placement { place: self.travel.anchor, heading: self.travel.heading.angle },
         }
     }
@@ -222,25 +226,6 @@ impl<'a, 'm> Animator<'a, 'm> {
         let now = self.placement();
         let ([x, y], [before_x, before_y]) = (now.place, self.before.place);
         Placement { place: [x.wrapping_sub(before_x), y.wrapping_sub(before_y)], heading: now.heading - self.before.heading }
-    }
-
-    /// The root's horizontal place in the clip with what the transition adds.
-    fn root_place(&self) -> [i32; 2] {
-        let part = i64::from(self.track.part().to_bits());
-        let mut place = self.root.place_of(self.track.values());
-        for (place, channel) in place.iter_mut().zip(self.root.place) {
-            let Some(channel) = channel.map(usize::from) else { continue };
-            if part != 0 {
-                let v = self.track.velocities().find(|(slot, _)| *slot == channel).map_or(0, |(_, v)| v);
-                *place = place.wrapping_add(((i64::from(v) * part) >> 16) as i32);
-            }
-            if self.left > 0 {
-                let offset = self.offsets.get(channel).copied().unwrap_or(Offset::ZERO);
-                let moved = ((i64::from(offset.v) * i64::from(self.transition_part().to_bits())) >> 16) as i32;
-                *place = place.wrapping_add(offset.d).wrapping_add(moved);
-            }
-        }
-        place
     }
 
     fn transition_part(&self) -> U0F16 {
@@ -266,11 +251,41 @@ impl<'a, 'm> Animator<'a, 'm> {
         self.events.check(lost)
     }
 
+    /// Goes on by exactly one frame of the clip, forwards and whatever its speed: for a program that shows one picture for each frame. Where this
+    /// serves it is cheaper than [`Animator::update`]. A transition goes on by a frame too.
+    pub fn step(&mut self) -> Result<(), EventsLost> {
+        self.before = self.placement();
+        let passage = self.track.step(Some(&self.root));
+        if passage.laps != 0
+            && let Some(seam) = self.track.seam()
+        {
+            self.travel.pass(passage.laps, &seam);
+        }
+        let lost = self.events.lost();
+        self.events.pass(self.track.clip(), &passage);
+        self.rest_ns = 0;
+        if self.left > 0 {
+            self.left -= 1;
+            self.compose_step();
+            self.solve_again();
+        } else {
+            self.compose();
+        }
+        self.events.check(lost)
+    }
+
     /// Goes to a frame of the clip, or to the last one if there are fewer, without events. The transition stays where it is.
     pub fn seek(&mut self, frame: u32) {
         self.before = self.placement();
         self.track.seek(frame);
         self.compose();
+    }
+
+    fn solve_again(&mut self) {
+        if AGAIN.contains(&self.left) {
+            let cubic = Cubic::new(self.left);
+            self.offsets.iter_mut().filter(|offset| !offset.is_zero()).for_each(|offset| cubic.solve(offset));
+        }
     }
 
     fn run_transition(&mut self, elapsed_us: u32) {
@@ -279,40 +294,77 @@ impl<'a, 'm> Animator<'a, 'm> {
         while rest >= frame_time && self.left > 0 {
             rest -= frame_time;
             self.left -= 1;
-            for offset in self.offsets.iter_mut() {
+            for offset in self.offsets.iter_mut().filter(|offset| !offset.is_zero()) {
                 offset.step();
             }
-            if AGAIN.contains(&self.left) {
-                let cubic = Cubic::new(self.left);
-                self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
-            }
+            self.solve_again();
         }
         self.rest_ns = if self.left > 0 { rest as u32 } else { 0 };
     }
 
-    /// Writes the pose of this instant.
+    /// Writes the pose of this instant, and takes the root's place out of it.
     fn compose(&mut self) {
-        if self.left == 0 {
-            for (out, value) in self.pose.iter_mut().zip(self.track.values()) {
-                *out = *value;
-            }
-        } else {
-            for ((out, value), offset) in self.pose.iter_mut().zip(self.track.values()).zip(self.offsets.iter()) {
-                *out = value.wrapping_add(offset.d);
-            }
-            if self.rest_ns != 0 {
-                let part = i64::from(self.transition_part().to_bits());
-                for (out, offset) in self.pose.iter_mut().zip(self.offsets.iter()) {
-                    *out = out.wrapping_add(((i64::from(offset.v) * part) >> 16) as i32);
+        let values = self.track.values();
+        if let Some(values) = values.get(..self.pose.len()) {
+            self.pose.copy_from_slice(values);
+        }
+        if self.left > 0 {
+            let part = Weight::from_bits(if self.rest_ns == 0 { 0 } else { self.transition_part().to_bits() >> 1 });
+            for (out, offset) in self.pose.iter_mut().zip(self.offsets.iter()) {
+                if offset.is_zero() {
+                    continue;
+                }
+                *out = out.wrapping_add(offset.d);
+                if part != Weight::ZERO {
+                    *out = out.wrapping_add(part.of(offset.v));
                 }
             }
         }
+        self.finish();
+    }
+
+    /// [`Animator::compose`] on a whole frame, with a step of the transition, in one pass.
+    #[inline(never)]
+    fn compose_step(&mut self) {
+        let values = self.track.values();
+        if let Some(values) = values.get(..self.pose.len()) {
+            self.pose.copy_from_slice(values);
+        }
+        for (out, offset) in self.pose.iter_mut().zip(self.offsets.iter_mut()) {
+            if offset.is_zero() {
+                continue;
+            }
+            offset.step();
+            *out = out.wrapping_add(offset.d);
+        }
+        self.finish();
+    }
+
+    fn finish(&mut self) {
         self.track.add_part(self.pose);
+        for (place, channel) in self.place.iter_mut().zip(self.root.place) {
+            let Some(value) = channel.and_then(|channel| self.pose.get_mut(usize::from(channel))) else { continue };
+            *place = core::mem::take(value);
+        }
+    }
+
+    /// Mixes another clip into the pose of this instant: all joints, but not the root's horizontal place. Its form has to be that of the clip that
+    /// plays. It lasts until the next update.
+    pub fn mix(&mut self, other: &Track<'_, '_>, weight: Weight) -> Result<(), WrongForm> {
+        let form = self.form();
+        let pose = other.pose();
+        form.check(pose.form)?;
+        for group in self.groups.get(..self.used_groups).unwrap_or_default() {
+            let range = group.range();
+            let (Some(own), Some(to)) = (self.pose.get_mut(range.clone()), pose.values.get(range)) else { continue };
+            mix_group(group.shape, own, to, weight);
+        }
         for channel in self.root.place.iter().flatten() {
             if let Some(value) = self.pose.get_mut(usize::from(*channel)) {
                 *value = 0;
             }
         }
+        Ok(())
     }
 
     /// Goes over to a clip of the same rig, from a frame (from the last one if there are fewer) and at a speed of -4 to 4 (others are cut off).
@@ -376,9 +428,9 @@ impl<'a, 'm> Animator<'a, 'm> {
             }
         }
         self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
-        self.travel = Travel::new(now, self.root_place().map(i64::from));
         self.events.at(self.track.clip(), self.track.frame());
         self.compose();
+        self.travel = Travel::new(now, self.place.map(i64::from));
         Ok(())
     }
 

@@ -26,6 +26,8 @@ pub enum Error {
     NoSuchJoint,
     /// The clip lacks footstep events, without which phases cannot be compared.
     NoFootsteps,
+    /// The state machine's table is damaged or names what is not there.
+    Machine(crate::machine::TableError),
 }
 
 impl From<TooSmall> for Error {
@@ -56,6 +58,7 @@ impl core::fmt::Display for Error {
             Error::NothingMatches => f.write_str("no joint and no scalar matches the pattern"),
             Error::NoSuchJoint => f.write_str("the rig has no such joint, or not in this chain"),
             Error::NoFootsteps => f.write_str("the clip has no events left_foot_down and right_foot_down"),
+            Error::Machine(error) => error.fmt(f),
         }
     }
 }

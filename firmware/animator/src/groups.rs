@@ -32,6 +32,11 @@ impl Group {
     /// What fills memory before an animator takes it.
     pub const NONE: Group = Group { first: 0, bit: 0, len: 0, shape: Shape::Free };
 
+    /// Fills `groups` with those of a clip's poses, and returns how many they are.
+    pub fn of_clip(clip: &pantin::Clip<'_>, groups: &mut [Group]) -> Result<usize, Error> {
+        set_up(&clip.rig(), clip.form_ref(), groups)
+    }
+
     #[inline(always)]
     pub(crate) fn range(&self) -> core::ops::Range<usize> {
         usize::from(self.first)..usize::from(self.first) + usize::from(self.len)

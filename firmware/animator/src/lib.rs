@@ -55,18 +55,32 @@
 #![forbid(unsafe_code)]
 
 mod animator;
+mod chain;
 mod error;
 mod events;
+mod foot;
 mod groups;
+pub mod layer;
+mod look;
+pub mod machine;
+mod mask;
 mod math;
 mod offset;
+pub mod procedural;
 mod root;
+mod sync;
 mod track;
+mod two_bone;
+mod vector;
 
 pub use animator::{Animator, Memory, RootMotion, Transition, Workspace};
 pub use error::Error;
 pub use events::{EVENTS, EventQueue, EventsLost, Fired};
+pub use foot::FootLock;
 pub use groups::Group;
+pub use look::{Look, Share};
+pub use mask::Mask;
 pub use offset::Offset;
 pub use root::Placement;
 pub use track::Track;
+pub use two_bone::{Limb, Limits, Reach};

@@ -14,6 +14,12 @@ impl Offset {
     /// No difference: what fills memory before an animator takes it.
     pub const ZERO: Offset = Offset { d: 0, v: 0, w: 0, k: 0 };
 
+    /// Whether there is no difference and none comes: at the end, and in channels that never had one.
+    #[inline(always)]
+    pub(crate) fn is_zero(&self) -> bool {
+        self.d | self.v == 0
+    }
+
     /// One frame on.
     #[inline(always)]
     pub(crate) fn step(&mut self) {

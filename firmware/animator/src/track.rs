@@ -1,12 +1,16 @@
 //! A clip that plays in lent memory by time: any display rate, speeds of -4 to 4, without drift.
 
 use crate::Error;
+use crate::layer::Weight;
 use crate::root::{Root, Seam};
 use fixed::types::{I16F16, U0F16};
 use pantin::{ChannelState, Clip, DetachedPlayer, Player, Pose};
 
 /// Laps of a loop in one update; time beyond them is dropped.
 const MOST_LAPS: i64 = 64;
+
+const LEAST_SPEED: I16F16 = I16F16::from_bits(-4 << 16);
+const GREATEST_SPEED: I16F16 = I16F16::from_bits(4 << 16);
 
 /// A stretch of play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +98,7 @@ impl<'a, 'm> Track<'a, 'm> {
 
     /// Plays at a speed of -4 to 4 from here on; others are cut off. Speed 0 holds the pose.
     pub fn set_speed(&mut self, speed: I16F16) {
-        self.speed = speed.clamp(I16F16::lit("-4"), I16F16::lit("4"));
+        self.speed = speed.clamp(LEAST_SPEED, GREATEST_SPEED);
         self.ended = false;
     }
 
@@ -104,6 +108,12 @@ impl<'a, 'm> Track<'a, 'm> {
         (self.rest, self.ended) = (0, false);
     }
 
+    /// Goes to an instant between frames.
+    pub(crate) fn seek_part(&mut self, frame: u32, part: U0F16) {
+        self.seek(frame);
+        self.rest = i64::from(part.to_bits()) * i64::from(self.clip().frame_time_ns());
+    }
+
     /// The pose of [`Track::frame`] itself.
     pub fn pose(&self) -> Pose<'_> {
         self.player.pose(self.pose)
@@ -111,8 +121,10 @@ impl<'a, 'm> Track<'a, 'm> {
 
     /// Writes the pose of this instant to `out`, on a straight line a channel between frames.
     pub fn sample(&self, out: &mut [i32]) {
-        for (out, value) in out.iter_mut().zip(self.pose.iter()) {
-            *out = *value;
+        if let (len, Some(values)) = (out.len(), self.pose.get(..out.len().min(self.pose.len())))
+            && let Some(out) = out.get_mut(..len.min(values.len()))
+        {
+            out.copy_from_slice(values);
         }
         self.add_part(out);
     }
@@ -122,11 +134,11 @@ impl<'a, 'm> Track<'a, 'm> {
         if self.rest == 0 {
             return;
         }
-        let part = i64::from(self.part().to_bits());
+        let part = Weight::from_bits(self.part().to_bits() >> 1);
         for state in self.states.get(..self.player.moving()).unwrap_or_default() {
             if let Some(value) = out.get_mut(state.slot()) {
                 let [v, ..] = state.rates();
-                *value = value.wrapping_add(((i64::from(v) * part) >> 16) as i32);
+                *value = value.wrapping_add(part.of(v));
             }
         }
     }
@@ -156,6 +168,36 @@ impl<'a, 'm> Track<'a, 'm> {
         } else {
             self.player.seek(frame, self.states, self.pose);
         }
+    }
+
+    /// Lets time pass, for a clip that plays as a layer: without events and root motion.
+    pub fn update(&mut self, elapsed_us: u32) {
+        self.advance(elapsed_us, None);
+    }
+
+    /// Goes on by one frame of the clip, whatever its speed; a loop goes on from its last frame to its first.
+    pub(crate) fn step(&mut self, root: Option<&Root<'_>>) -> Passage {
+        let (from, from_rest) = (self.player.frame(), self.rest != 0);
+        let mut passage = Passage { from, from_rest, to: from, to_rest: false, laps: 0, forward: true };
+        self.rest = 0;
+        if from + 1 < self.clip().frames() {
+            self.player.step(self.states, self.pose);
+        } else if self.clip().looped() {
+            if let (None, Some(root)) = (self.seam, root) {
+                self.learn_seam(root);
+            }
+            self.player.seek(0, self.states, self.pose);
+            passage.laps = 1;
+        } else {
+            self.ended = true;
+        }
+        passage.to = self.player.frame();
+        passage
+    }
+
+    /// [`Animator::step`](crate::Animator::step) for a clip that plays as a layer.
+    pub fn step_frame(&mut self) {
+        self.step(None);
     }
 
     /// Lets time pass. `root` is that of the figure that travels with this clip, if one does.
@@ -188,7 +230,7 @@ impl<'a, 'm> Track<'a, 'm> {
             let last = frames - 1;
             self.ended |= target > last || target < 0 || (target == last && self.rest > 0);
             if target >= last || target < 0 {
-                (to, self.rest) = (target.clamp(0, last), 0);
+                (to, self.rest) = (target.max(0).min(last), 0);
             }
         }
         let to = to as u32;

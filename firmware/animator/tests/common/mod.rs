@@ -38,3 +38,14 @@ impl Random {
         self.next() % end
     }
 }
+
+/// The vectors' bank, with the section of a state machine behind it.
+pub fn bank(table: &[u8]) -> Vec<u8> {
+    let mut bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/vectors/bank.ptb")).to_vec();
+    let len = table.len();
+    assert!(len < 1 << 14);
+    bytes.push(4);
+    bytes.extend([len as u8 | 0x80, (len >> 7) as u8]);
+    bytes.extend(table);
+    bytes
+}

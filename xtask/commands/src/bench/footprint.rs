@@ -48,7 +48,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
 }
 
 /// A clip of 31 joints where there is one, else our walk.
-fn clip(setting: &Setting) -> Result<(String, std::path::PathBuf)> {
+pub fn clip(setting: &Setting) -> Result<(String, std::path::PathBuf)> {
     let (name, path, unit) = match reference::named("bvh_xia_strut-walk")? {
         Some(clip) => (clip.name.clone(), clip.path.clone(), clip.cm_per_unit()),
         None => ("walk".into(), paths::root().join("motions/walk.keys"), None),

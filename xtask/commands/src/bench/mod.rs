@@ -1,5 +1,6 @@
 //! What `cargo xtask bench` measures: one part a file, and what the parts share.
 
+mod animator;
 mod argument;
 mod board;
 pub mod command;
@@ -58,6 +59,8 @@ pub enum Part {
     Web,
     /// Motion over a line that loses packets: time to recovery, and its cost
     Link,
+    /// Guest instructions of transitions, layers and inverse kinematics, and the animator's code
+    Animator,
 }
 
 /// What every part works with.
@@ -96,6 +99,7 @@ impl Part {
             Self::Face => face::run(setting),
             Self::Web => web::run(),
             Self::Link => link::run(setting),
+            Self::Animator => animator::run(setting),
         }
     }
 

@@ -1,0 +1,187 @@
+//! Layers: another pose over the animator's, where a mask says, with a weight that moves in time.
+
+use crate::groups::{Group, Shape, nearest};
+use crate::mask::Mask;
+use pantin::{FormRef, Pose, WrongForm};
+
+/// A weight of 0 to 1 in 2^-15.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Weight(u16);
+
+impl Weight {
+    /// Nothing of a layer.
+    pub const ZERO: Weight = Weight(0);
+    /// A layer alone.
+    pub const ONE: Weight = Weight(1 << 15);
+
+    /// A weight in 2^-15; what is above 2^15 is 1.
+    pub const fn from_bits(bits: u16) -> Weight {
+        Weight(if bits > 1 << 15 { 1 << 15 } else { bits })
+    }
+
+    /// The weight in 2^-15: 0 to 2^15.
+    pub const fn to_bits(self) -> u16 {
+        self.0
+    }
+
+    /// A difference times the weight, rounded down; times 1 it is exact.
+    #[inline(always)]
+    pub(crate) fn of(self, difference: i32) -> i32 {
+        // The high half times 2^15 is below 2^31, and so is the low half's share.
+        let (high, low) = (difference >> 16, (difference & 0xffff) as u32);
+        ((high * i32::from(self.0)) << 1).wrapping_add(((low * u32::from(self.0)) >> 15) as i32)
+    }
+}
+
+/// A weight on its way to another, which it reaches exactly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ramp {
+    now: Weight,
+    to: Weight,
+    /// Time until it is there.
+    left_us: u32,
+}
+
+impl Ramp {
+    /// A weight that stays.
+    pub const fn at(weight: Weight) -> Ramp {
+        Ramp { now: weight, to: weight, left_us: 0 }
+    }
+
+    /// Goes to a weight in a time, at once if it is 0.
+    pub fn go_to(&mut self, weight: Weight, time_us: u32) {
+        (self.to, self.left_us) = (weight, time_us);
+        if time_us == 0 {
+            self.now = weight;
+        }
+    }
+
+    /// Lets time pass.
+    pub fn advance(&mut self, elapsed_us: u32) {
+        if elapsed_us >= self.left_us {
+            (self.now, self.left_us) = (self.to, 0);
+            return;
+        }
+        let way = i64::from(self.to.0) - i64::from(self.now.0);
+        let step = (way * i64::from(elapsed_us)).checked_div(self.left_us.into()).unwrap_or(0);
+        self.now = Weight((i64::from(self.now.0) + step) as u16);
+        self.left_us -= elapsed_us;
+    }
+
+    /// The weight now.
+    pub fn weight(&self) -> Weight {
+        self.now
+    }
+}
+
+/// Puts a pose over another where the mask says: at weight 1 the layer's, at 0 none of it, between them the shortest way. Angles wrap; of
+/// angles that are the same rotation the nearest are taken. The forms have to be equal.
+#[inline(never)]
+pub fn blend(
+    pose: &mut [i32],
+    groups: &[Group],
+    form: FormRef<'_>,
+    layer: Pose<'_>,
+    mask: &Mask<'_>,
+    weight: Weight,
+) -> Result<(), WrongForm> {
+    form.check(layer.form)?;
+    if weight == Weight::ZERO {
+        return Ok(());
+    }
+    for group in groups.iter().filter(|group| mask.contains(group.bit.into())) {
+        let range = group.range();
+        let (Some(own), Some(to)) = (pose.get_mut(range.clone()), layer.values.get(range)) else { continue };
+        mix_group(group.shape, own, to, weight);
+    }
+    Ok(())
+}
+
+/// Mixes the channels of a group.
+#[inline(always)]
+pub(crate) fn mix_group(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
+    if shape != Shape::Free {
+        own_nearest(shape, own, to, weight);
+    }
+    for (own, to) in own.iter_mut().zip(to) {
+        *own = own.wrapping_add(weight.of(to.wrapping_sub(*own)));
+    }
+}
+
+/// A quarter turn.
+const FAR: u32 = 1 << 30;
+
+/// Before a mix: the pose's own channels as what is the same rotation nearest to the layer's, if they are far from them. At weight 1 nothing
+/// of them is left.
+#[inline(always)]
+fn own_nearest(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
+    if weight != Weight::ONE {
+        let mut far = shape == Shape::Quaternion;
+        for (own, to) in own.iter().zip(to) {
+            far |= to.wrapping_sub(*own).unsigned_abs() > FAR;
+        }
+        if far {
+            nearest(shape, own, to);
+        }
+    }
+}
+
+/// Adds the difference of a pose to a reference, times a weight, where the mask says. A pose that is the reference adds nothing. The
+/// difference is a channel's: meant for small ones, such as a breath or a recoil. The forms have to be equal.
+#[inline(never)]
+pub fn add(
+    pose: &mut [i32],
+    groups: &[Group],
+    form: FormRef<'_>,
+    layer: Pose<'_>,
+    reference: &[i32],
+    mask: &Mask<'_>,
+    weight: Weight,
+) -> Result<(), WrongForm> {
+    form.check(layer.form)?;
+    for group in groups.iter().filter(|group| mask.contains(group.bit.into())) {
+        let range = group.range();
+        let (Some(own), Some(layer), Some(reference)) =
+            (pose.get_mut(range.clone()), layer.values.get(range.clone()), reference.get(range))
+        else {
+            continue;
+        };
+        for ((own, layer), reference) in own.iter_mut().zip(layer).zip(reference) {
+            *own = own.wrapping_add(weight.of(layer.wrapping_sub(*reference)));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_weight_of_one_is_exact_and_none_is_nothing() {
+        for difference in [0, 1, -1, 65_535, -65_536, i32::MAX, i32::MIN, 0x1234_5678] {
+            assert_eq!(Weight::ONE.of(difference), difference);
+            assert_eq!(Weight::ZERO.of(difference), 0);
+            let half = i64::from(Weight::from_bits(1 << 14).of(difference));
+            assert!((half - i64::from(difference) / 2).abs() <= 2, "{difference}: {half}");
+        }
+        assert_eq!(Weight::from_bits(40_000), Weight::ONE);
+    }
+
+    #[test]
+    fn a_ramp_arrives() {
+        let mut ramp = Ramp::at(Weight::ZERO);
+        ramp.go_to(Weight::ONE, 1_000_000);
+        let mut last = 0;
+        for _ in 0..100 {
+            ramp.advance(9_999);
+            assert!(ramp.weight().to_bits() >= last);
+            last = ramp.weight().to_bits();
+        }
+        assert!(last > 32_000 && last < 1 << 15);
+        ramp.advance(1_000);
+        assert_eq!(ramp.weight(), Weight::ONE);
+        ramp.go_to(Weight::from_bits(5), 0);
+        assert_eq!(ramp.weight().to_bits(), 5);
+    }
+}

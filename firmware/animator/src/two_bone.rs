@@ -1,0 +1,173 @@
+//! Two-bone inverse kinematics: a leg whose ankle, or an arm whose wrist, goes to a target.
+
+use crate::Error;
+use crate::chain::{Chain, Joint, shifted};
+use crate::groups::Group;
+use crate::vector::{Vector, add, between, cross, direction, dot, sub, times};
+use pantin::{Angle, Clip};
+use pantin_figure::trig::{ONE, sin_cos};
+
+/// How near inverse kinematics came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reach {
+    /// Distance between the end and the target, in 2^[`pantin::Form::length_exponent`] units of the source; of a look, in 2^-32 turns.
+    pub error: u32,
+    /// Whether the target lies within the reach that the limits of the joints leave. Joints with fewer than three angles can miss it all the same, by
+    /// the error.
+    pub within: bool,
+}
+
+/// How far the middle joint may bend: 0 is straight. The defaults suit knees and elbows: 2 to 150 degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The least bend, above 0 and below half a turn.
+    pub least: Angle,
+    /// The greatest bend, above the least and below half a turn.
+    pub greatest: Angle,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        let degrees = |degrees| Angle::from_bits(crate::procedural::degrees(degrees));
+        Limits { least: degrees(2), greatest: degrees(150) }
+    }
+}
+
+/// Most joints from the root to the end of a limb.
+const JOINTS: usize = 12;
+
+/// Three joints in a row (thigh, shin, foot; upper arm, forearm, hand), the last of which goes to targets.
+#[derive(Clone, Debug)]
+pub struct Limb<'a> {
+    chain: Chain<'a, JOINTS>,
+    /// Lengths of the two bones in figure units, with 2^29 over each, and the distances of the ends that the limits allow.
+    upper: (i32, i32),
+    lower: (i32, i32),
+    least: i32,
+    greatest: i32,
+    /// The axis about which the middle joint bends, in its own axes: used while the limb is straight.
+    hinge: Option<Vector>,
+}
+
+impl<'a> Limb<'a> {
+    /// The limb that ends in a joint, by its name: its parent and its parent's parent bend. `groups` are those of the poses:
+    /// [`crate::Animator::groups`]. [`Error::NoSuchJoint`] for a joint with fewer than two above it, or for bones without length.
+    pub fn to(clip: &Clip<'a>, groups: &[Group], end: &str, limits: Limits) -> Result<Limb<'a>, Error> {
+        let chain = Chain::to(clip, groups, end)?;
+        let count = chain.bones.len();
+        let length = |back: usize| {
+            let bone = chain.bones.get(count.wrapping_sub(back)).ok_or(Error::NoSuchJoint)?;
+            direction(bone.offset).map(|(_, length)| length).ok_or(Error::NoSuchJoint)
+        };
+        let (upper, lower) = (length(2)?, length(1)?);
+        if count < 3 {
+            return Err(Error::NoSuchJoint);
+        }
+        let distance = |bend: Angle| {
+            let (_, cos) = sin_cos(bend.to_bits());
+            let square = i64::from(upper).pow(2)
+                + i64::from(lower).pow(2)
+                + ((2 * i64::from(upper) * i64::from(lower) * i64::from(cos)) >> 15);
+            square.max(0).unsigned_abs().isqrt() as i32
+        };
+        let (least, greatest) = (distance(limits.greatest), distance(limits.least));
+        // A bone of a few units bends nothing that can be seen.
+        let known = |length: i32| (length, (1i32 << 29).checked_div(length.max(1 << 8)).unwrap_or(0));
+        Ok(Limb { chain, upper: known(upper), lower: known(lower), least, greatest, hinge: None })
+    }
+
+    /// Where the end is in a pose, in 2^[`pantin::Form::length_exponent`] units of the source.
+    pub fn end(&self, pose: &[i32]) -> [i32; 3] {
+        self.chain.place(pose, usize::MAX).place.map(|x| shifted(x, -self.chain.shift))
+    }
+
+    /// The length of the limb when it is stretched, in the same units.
+    pub fn length(&self) -> i32 {
+        shifted(self.upper.0 + self.lower.0, -self.chain.shift)
+    }
+
+    /// Turns the upper and the middle joint so that the end comes to a target, in the axes of the pose and in 2^[`pantin::Form::length_exponent`]
+    /// units of the source, or as near as the limits allow; the end keeps its rotation in the world. The middle joint bends in the plane in which
+    /// it did or, with a pole, towards that direction (in the axes of the pose, of any length).
+    pub fn reach(&mut self, pose: &mut [i32], target: [i32; 3], pole: Option<[i32; 3]>) -> Reach {
+        self.solve(pose, target.map(|x| shifted(x, self.chain.shift)), pole)
+    }
+
+    #[inline(never)]
+    pub(crate) fn solve(&mut self, pose: &mut [i32], target: Vector, pole: Option<Vector>) -> Reach {
+        let failed = Reach { error: u32::MAX, within: false };
+        let shift = self.chain.shift;
+        let count = self.chain.bones.len();
+        let above = self.chain.place(pose, count.saturating_sub(3));
+        let Some([first, second, third]) = self.chain.bones.last_chunk::<3>() else { return failed };
+        let hip: Joint = first.after(&above, pose, shift);
+        let knee = second.after(&hip, pose, shift);
+        let ankle = third.after(&knee, pose, shift);
+        // Within 2^-13 of a bone's length: nothing to do, and an unlocked limb costs no more than its kinematics.
+        if sub(target, ankle.place).iter().all(|x| x.unsigned_abs() <= 2) {
+            return Reach { error: 0, within: true };
+        }
+        let Some((e, distance)) = direction(sub(target, hip.place)) else { return failed };
+        // The lengths are known: a product in place of a root.
+        let unit = |v: Vector, (length, inverse): (i32, i32)| v.map(|x| (x.max(-length).min(length) * inverse) >> 14);
+        let u = unit(sub(knee.place, hip.place), self.upper);
+        let l = unit(sub(ankle.place, knee.place), self.lower);
+        // The axis of the bend: at least 2 degrees tell it, and are remembered for a straight limb.
+        let bend = cross(u, l);
+        let bent = direction(bend).filter(|(_, sine)| *sine > ONE / 28).map(|(axis, _)| axis);
+        let own = bent.or_else(|| self.hinge.map(|hinge| knee.rotation.apply(hinge)));
+        let axis = match (own, pole) {
+            (Some(axis), _) => axis,
+            // Never bent: the pole, or any direction across.
+            (None, Some(pole)) => match direction(pole).and_then(|(pole, _)| direction(cross(pole, e))) {
+                Some((axis, _)) => axis,
+                None => return failed,
+            },
+            (None, None) => match direction(cross(e, [ONE, 0, 0])) {
+                Some((axis, _)) => axis,
+                None => [0, 0, ONE],
+            },
+        };
+        if bent.is_some() {
+            self.hinge = Some(crate::vector::transposed(&knee.rotation).apply(axis));
+        }
+        let reached = distance.max(self.least).min(self.greatest);
+        let Some((n, _)) = direction(match pole {
+            Some(pole) => match direction(pole) {
+                Some((pole, _)) => sub(pole, times(e, dot(pole, e))),
+                None => return failed,
+            },
+            None => cross(e, axis),
+        }) else {
+            return failed;
+        };
+        // The cosine at the upper joint, (a^2 + d^2 - b^2) / 2ad: lengths below 2^16 as 2^14, squares below 2^28.
+        let [a, b, d] = [self.upper.0, self.lower.0, reached].map(|length| length >> 2);
+        let under = ((a * d) >> 13).max(1);
+        let cos = (((a * a + d * d - b * b) << 1).checked_div(under).unwrap_or(0)).clamp(-ONE, ONE);
+        let sin = (ONE * ONE - cos * cos).max(0).unsigned_abs().isqrt() as i32;
+        let along = |v: Vector, by: i32| v.map(|x| (x * by) >> 15);
+        // In the plane of the target and the bend: unit vectors, and at right angles to the new axis.
+        let new_u = add(along(e, cos), along(n, sin));
+        let new_l = unit(sub(times(e, reached), times(new_u, self.upper.0)), self.lower);
+        let new_axis = cross(n, e);
+        // A limb whose bend is remembered is straight: its axis is made square to each bone.
+        let square = |bone: Vector| match bent {
+            Some(axis) => Some(axis),
+            None => direction(cross(cross(bone, axis), bone)).map(|(axis, _)| axis),
+        };
+        let (Some(old_axis_u), Some(old_axis_l)) = (square(u), square(l)) else { return failed };
+        let new_hip = between((u, old_axis_u), (new_u, new_axis)).then(&hip.rotation);
+        let new_shin = between((l, old_axis_l), (new_l, new_axis)).then(&knee.rotation);
+        first.write(&above.rotation, &new_hip, pose);
+        second.write(&new_hip, &new_shin, pose);
+        third.write(&new_shin, &ankle.rotation, pose);
+        let mut off = (distance - reached).abs();
+        if [first, second, third].iter().any(|bone| bone.is_hinge()) {
+            // Joints with fewer than three angles cannot leave their plane.
+            let end = third.after(&second.after(&first.after(&above, pose, shift), pose, shift), pose, shift);
+            off = direction(sub(target, end.place)).map_or(0, |(_, length)| length);
+        }
+        Reach { error: shifted(off, -shift).unsigned_abs(), within: distance == reached }
+    }
+}

@@ -1,0 +1,153 @@
+//! Inverse kinematics against the figure's own kinematics.
+
+mod common;
+
+use common::{Random, run, walk};
+use pantin::{Clip, Pose};
+use pantin_animator::{Animator, FootLock, Limb, Limits, Look, Share, Workspace};
+use pantin_figure::JointChain;
+
+type Room = Workspace<96, 160>;
+
+fn at(clip: &Clip<'_>, name: &str, values: &[i32]) -> [f64; 3] {
+    let chain = JointChain::<32>::to(clip, name).unwrap();
+    chain.locate(Pose { values, form: clip.form_ref() }).unwrap().position.map(|x| x.to_num())
+}
+
+fn turned(clip: &Clip<'_>, name: &str, values: &[i32]) -> [[f64; 3]; 3] {
+    let chain = JointChain::<32>::to(clip, name).unwrap();
+    chain.locate(Pose { values, form: clip.form_ref() }).unwrap().rotation.rows.map(|row| row.map(|x| x.to_num()))
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Raw units of a position channel in a centimetre.
+fn per_cm(clip: &Clip<'_>) -> f64 {
+    1e6 / f64::from(clip.rig().unit_micro_cm()) / f64::from(clip.length_exponent()).exp2()
+}
+
+#[test]
+fn a_leg_reaches_its_target_and_keeps_the_foots_rotation() {
+    let mut random = Random(5);
+    for clip in [walk(), run()] {
+        let mut room = Room::new();
+        let mut animator = Animator::new(clip, room.lend()).unwrap();
+        let mut limb = Limb::to(&clip, animator.groups(), "left-foot", Limits::default()).unwrap();
+        let scale = per_cm(&clip);
+        let (mut worst, mut reached) = (0.0f64, 0);
+        for round in 0..2_000 {
+            animator.seek(random.below(clip.frames()));
+            let start = at(&clip, "left-foot", animator.pose().values);
+            let mut offset = || f64::from(random.below(2001)) / 100.0 - 10.0;
+            let by = [0.0, offset(), offset()];
+            let goal: [f64; 3] = core::array::from_fn(|axis| start[axis] + by[axis]);
+            let before = turned(&clip, "left-foot", animator.pose().values);
+            let near = limb.reach(animator.pose_mut(), goal.map(|cm| (cm * scale) as i32), None);
+            let end = at(&clip, "left-foot", animator.pose().values);
+            let error = distance(end, goal);
+            if near.within {
+                reached += 1;
+                worst = worst.max(error);
+                let after = turned(&clip, "left-foot", animator.pose().values);
+                let apart =
+                    before.iter().flatten().zip(after.iter().flatten()).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+                assert!(apart < 0.05, "{round}: the foot turns by {apart}");
+            }
+            assert!(
+                (error - f64::from(near.error) / scale).abs() < 0.1,
+                "{round}: {error} {near:?} {}",
+                f64::from(near.error) / scale
+            );
+        }
+        println!("{reached} reached, {worst}");
+        assert!(reached > 500);
+    }
+}
+
+#[test]
+fn a_look_faces_its_target() {
+    let clip = walk();
+    let mut random = Random(6);
+    let mut room = Room::new();
+    let mut animator = Animator::new(clip, room.lend()).unwrap();
+    let most = pantin::Angle::from_bits(1 << 29);
+    // The head of this rig nods alone: the neck turns all the way.
+    let shares = [Share { part: 1 << 15, most }, Share { part: 1 << 15, most }];
+    let look = Look::of(&clip, animator.groups(), "head", &shares, [0, 0, 1]).unwrap();
+    let scale = per_cm(&clip);
+    let (mut sum, mut worst) = (0.0, 0.0f64);
+    for round in 0..500 {
+        animator.seek(random.below(clip.frames()));
+        let head = at(&clip, "head", animator.pose().values);
+        let mut offset = |by: u32| f64::from(random.below(2 * by + 1)) - f64::from(by);
+        let goal = [head[0] + offset(40), head[1] + offset(30), head[2] + 150.0];
+        let before = facing(&clip, animator.pose().values, goal);
+        let near = look.at(animator.pose_mut(), goal.map(|cm| (cm * scale) as i32));
+        let after = facing(&clip, animator.pose().values, goal);
+        assert!(after < before.max(0.06), "{round}: {before} before, {after} after, {near:?}");
+        sum += after;
+        worst = worst.max(after);
+    }
+    assert!(sum / 500.0 < 0.06 && worst < 0.2, "{} and at most {worst} radians", sum / 500.0);
+}
+
+/// The angle between the head's z axis and a point, in radians.
+fn facing(clip: &Clip<'_>, values: &[i32], goal: [f64; 3]) -> f64 {
+    let (head, axes) = (at(clip, "head", values), turned(clip, "head", values));
+    let way: [f64; 3] = core::array::from_fn(|axis| goal[axis] - head[axis]);
+    let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+    ((0..3).map(|axis| axes[axis][2] * way[axis]).sum::<f64>() / length).clamp(-1.0, 1.0).acos()
+}
+
+#[test]
+fn a_locked_foot_stays_and_is_let_go_without_a_jump() {
+    let clip = walk();
+    let mut room = Room::new();
+    let mut animator = Animator::new(clip, room.lend()).unwrap();
+    let mut foot = FootLock::new(&clip, animator.groups(), "left-foot", Limits::default(), 10).unwrap();
+    let scale = per_cm(&clip);
+    // This walk has no events: a foot comes down where its ankle stops sinking.
+    let mut heights = vec![];
+    for frame in 0..clip.frames() {
+        animator.seek(frame);
+        heights.push(at(&clip, "left-foot", animator.pose().values)[1]);
+    }
+    let lowest = heights.iter().copied().fold(f64::MAX, f64::min);
+    animator.seek(0);
+    let (mut anchor, mut slide, mut own_slide, mut locked_frames) = (None::<(f64, f64)>, 0.0f64, 0.0f64, 0);
+    let (mut before, mut own_before) = (None, None);
+    let (mut fastest, mut own_fastest) = (0.0f64, 0.0f64);
+    for step in 1..clip.frames() as usize * 3 {
+        animator.step().unwrap();
+        let frame = animator.track().frame() as usize;
+        let placement = animator.placement();
+        let own = at(&clip, "left-foot", animator.pose().values)[2] + placement.place[0] as f64 / scale;
+        let down = heights[frame] < lowest + 1.0 && heights[(frame + heights.len() - 1) % heights.len()] >= lowest + 1.0;
+        let near = foot.update(animator.pose_mut(), placement, down);
+        // This leg bends forwards and back alone: it cannot follow the hips' turn sideways.
+        assert!(f64::from(near.error) / scale < 3.0 || !near.within, "{step}: {near:?}");
+        let ankle = at(&clip, "left-foot", animator.pose().values)[2] + placement.place[0] as f64 / scale;
+        if foot.is_locked() {
+            locked_frames += 1;
+            let (at, own_at) = *anchor.get_or_insert((ankle, own));
+            if near.within {
+                slide = slide.max((ankle - at).abs());
+            }
+            own_slide = own_slide.max((own - own_at).abs());
+        } else {
+            anchor = None;
+        }
+        if let (Some(before), Some(own_before)) = (before, own_before) {
+            let (before, own_before): (f64, f64) = (before, own_before);
+            fastest = fastest.max((ankle - before).abs());
+            own_fastest = own_fastest.max((own - own_before).abs());
+        }
+        (before, own_before) = (Some(ankle), Some(own));
+    }
+    println!("{locked_frames} frames locked, {slide} cm of {own_slide}; fastest {fastest} of {own_fastest} cm a frame");
+    assert!(locked_frames > 30);
+    assert!(slide <= 1.0, "{slide}");
+    assert!(fastest <= 2.0 * own_fastest, "{fastest} of {own_fastest}");
+}
