@@ -36,6 +36,7 @@ mod keyframes_input;
 mod livelink_input;
 mod manners;
 mod mean_error;
+mod motions_library;
 mod optimum;
 mod outputs;
 mod own_clips;
