@@ -59,14 +59,23 @@ impl<C> Hypothesis<C> {
     }
 }
 
+/// Hypotheses of a frame are sorted this many times the beam's width at a time.
+const SORTED: usize = 3;
+
 /// The hypotheses of one search.
 pub struct Beam<C> {
     /// Hypotheses by the frame they stand at.
     heap: Vec<Vec<Hypothesis<C>>>,
+    /// Memory of frames that are done.
+    spare: Vec<Vec<Hypothesis<C>>>,
     /// Those that were extended, to backtrack by.
     extended: Vec<Hypothesis<C>>,
     /// Least rank seen at each frame.
     pub least: Vec<f64>,
+    /// Hypotheses that a frame keeps at least once it has twice as many: the best ones.
+    kept: usize,
+    /// The rank from which on each frame takes no more.
+    full: Vec<f64>,
     ranked: Vec<(f64, usize)>,
 }
 
@@ -74,22 +83,47 @@ impl<C: Cost> Beam<C> {
     /// No hypotheses yet, for a channel of this many frames. About `width` are extended at each.
     pub fn new(frames: usize, width: usize) -> Self {
         let extended = Vec::with_capacity(frames * width);
-        Beam { heap: vec![Vec::new(); frames], extended, least: vec![f64::MAX; frames], ranked: Vec::new() }
+        let ranks = || vec![f64::MAX; frames];
+        let (heap, spare, ranked) = (vec![Vec::new(); frames], Vec::new(), Vec::new());
+        Beam { heap, spare, extended, least: ranks(), kept: usize::MAX / 2, full: ranks(), ranked }
+    }
+
+    /// The same, where a frame keeps no more than the `kept` best hypotheses while others keep coming.
+    pub fn keeping(self, kept: usize) -> Self {
+        Beam { kept, ..self }
+    }
+
+    /// The greatest rank that [`Beam::offer`] takes at a frame.
+    #[inline]
+    pub fn limit(&self, frame: usize, margin: f64) -> f64 {
+        (self.least[frame] + margin).min(self.full[frame])
     }
 
     /// Adds a hypothesis, whatever it costs and without an effect on [`Beam::least`].
     #[inline]
     pub fn insert(&mut self, hypothesis: Hypothesis<C>) {
-        self.heap[hypothesis.frame as usize].push(hypothesis);
+        let here = &mut self.heap[hypothesis.frame as usize];
+        if here.capacity() == 0
+            && let Some(spare) = self.spare.pop()
+        {
+            *here = spare;
+        }
+        here.push(hypothesis);
     }
 
     /// Adds a hypothesis if it is within `margin` of the best at its frame.
     #[inline]
     pub fn offer(&mut self, hypothesis: Hypothesis<C>, margin: f64) {
-        let (least, rank) = (&mut self.least[hypothesis.frame as usize], hypothesis.cost.rank());
-        if rank <= *least + margin {
-            *least = least.min(rank);
+        let (frame, rank) = (hypothesis.frame as usize, hypothesis.cost.rank());
+        if rank <= self.limit(frame, margin) {
+            self.least[frame] = self.least[frame].min(rank);
             self.insert(hypothesis);
+            let here = &mut self.heap[frame];
+            if here.len() >= 2 * self.kept {
+                let (_, last, _) = here.select_nth_unstable_by(self.kept - 1, |a, b| a.cost.rank().total_cmp(&b.cost.rank()));
+                self.full[frame] = last.cost.rank();
+                here.truncate(self.kept);
+            }
         }
     }
 
@@ -102,23 +136,36 @@ impl<C: Cost> Beam<C> {
         width: usize,
         cell: impl Fn(&Hypothesis<C>) -> Option<K>,
     ) -> Range<usize> {
-        let here = std::mem::take(&mut self.heap[frame]);
+        let mut here = std::mem::take(&mut self.heap[frame]);
         let within = here.iter().enumerate().filter(|(_, hypothesis)| hypothesis.cost.rank() <= limit);
         self.ranked.clear();
         self.ranked.extend(within.map(|(index, hypothesis)| (hypothesis.cost.rank(), index)));
-        self.ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let first = self.extended.len();
         let mut cells = Vec::with_capacity(width.min(here.len()));
-        for &(_, index) in &self.ranked {
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut sorted = 0;
+        for at in 0..self.ranked.len() {
             if self.extended.len() - first >= width {
                 break;
             }
+            if at == sorted {
+                // As many as are likely needed: most are never looked at.
+                let rest = &mut self.ranked[at..];
+                sorted += rest.len().min(SORTED * width);
+                if sorted - at < rest.len() {
+                    rest.select_nth_unstable_by(sorted - at, order);
+                }
+                self.ranked[at..sorted].sort_unstable_by(order);
+            }
+            let (_, index) = self.ranked[at];
             let cell = cell(&here[index]);
             if cell.is_none() || !cells.contains(&cell) {
                 cells.push(cell);
                 self.extended.push(here[index]);
             }
         }
+        here.clear();
+        self.spare.push(here);
         first..self.extended.len()
     }
 

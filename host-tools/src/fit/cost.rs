@@ -14,6 +14,8 @@ const AT_HAND: i32 = group(GROUPS + 1) as i32 - 1;
 pub struct Costs {
     modes: Vec<[f32; 64]>,
     numbers: Vec<[f32; 2 * AT_HAND as usize + 1]>,
+    /// The least cost of a number in each context.
+    least_number: Vec<f32>,
 }
 
 impl Costs {
@@ -30,9 +32,12 @@ impl Costs {
             (cost(tables::mode(after), symbol) + second) as f32
         };
         let number = |context: u8, index: usize| number_cost(context, index as i32 - AT_HAND) as f32;
+        let numbers: Vec<[f32; _]> =
+            (0..CONTEXTS as u8).map(|context| std::array::from_fn(|index| number(context, index))).collect();
         Costs {
+            least_number: numbers.iter().map(|costs| costs.iter().copied().fold(f32::MAX, f32::min)).collect(),
+            numbers,
             modes: (0..64).map(|after| std::array::from_fn(|m| mode(after, m as u8))).collect(),
-            numbers: (0..CONTEXTS as u8).map(|context| std::array::from_fn(|index| number(context, index))).collect(),
         }
     }
 
@@ -49,6 +54,12 @@ impl Costs {
             return f64::from(self.numbers[usize::from(context)][(number + AT_HAND) as usize]);
         }
         number_cost(context, number)
+    }
+
+    /// What no number in this context costs less than: those beyond the ones at hand cost more.
+    #[inline]
+    pub fn least_number(&self, context: u8) -> f64 {
+        f64::from(self.least_number[usize::from(context)])
     }
 
     /// A constant channel's position, in multiples of its grid.

@@ -12,6 +12,7 @@ pub mod raw;
 pub mod refusal;
 pub mod scalars;
 pub mod search;
+mod segment_price;
 pub mod start_cost;
 
 use crate::encode::clip::{Channel, Coded};

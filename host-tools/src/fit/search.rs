@@ -2,6 +2,7 @@
 
 use super::beam::{Beam, Hypothesis};
 use super::cost::Costs;
+use super::segment_price::{self, LONGEST, Quadratic, SegmentPrice};
 use super::start_cost::StartCosts;
 use crate::encode::clip::{Start, position_grid, velocity_grid};
 use crate::encode::segment::Segment;
@@ -68,30 +69,23 @@ pub struct Effort {
     pub all_alike: bool,
 }
 
-/// Frames of the longest segment.
-const LONGEST: usize = LENGTHS[15] as usize;
-
-/// By how much one unit of a new number moves p after n frames.
+/// By how much one unit of v, of w and of a new number moves p after n frames, and the inverse of the last: for W, then for K.
 #[derive(Clone, Copy)]
 struct Weight {
     n: f64,
-    /// Of a w.
     c2: f64,
-    /// Of the number itself, a w or a k, and its inverse.
     c: f64,
     inverse: f64,
 }
 
-/// The weights of w, then of k, by frames.
 const WEIGHTS: [[Weight; LONGEST + 1]; 2] = [weights(false), weights(true)];
 
 const fn weights(slope: bool) -> [Weight; LONGEST + 1] {
     let mut out = [Weight { n: 0.0, c2: 0.0, c: 0.0, inverse: 0.0 }; LONGEST + 1];
     let mut m = 1;
     while m <= LONGEST {
-        let n = m as f64;
-        let c2 = n * (n + 1.0) * 0.5;
-        let c = if slope { c2 * (n - 1.0) / 3.0 } else { c2 };
+        let [_, n, c2, c3] = segment_price::WEIGHTS[m];
+        let c = if slope { c3 } else { c2 };
         out[m] = Weight { n, c2, c, inverse: 1.0 / c };
         m += 1;
     }
@@ -119,20 +113,11 @@ struct Steps {
     k: [f64; 16],
 }
 
-/// A tube's numbers at one frame.
-struct Frame {
-    x: f64,
-    lo: f64,
-    hi: f64,
-    a: f64,
-    b: f64,
-}
-
 /// The channel's own numbers during one search.
 struct Search<'t> {
     tube: &'t Tube,
-    /// The tube by frames.
-    frames: Vec<Frame>,
+    /// What frames behind the present one cost.
+    price: SegmentPrice,
     step: u8,
     steps: Steps,
     costs: &'static Costs,
@@ -231,21 +216,22 @@ impl<'t> Search<'t> {
     fn new(tube: &'t Tube, step: u8, effort: Effort) -> Self {
         let frames = tube.x.len();
         let of = |first| std::array::from_fn(|i| f64::from(number_step(first | i as u8, step)));
-        let at = |f: usize| Frame { x: tube.x[f], lo: tube.lo[f], hi: tube.hi[f], a: tube.a[f], b: tube.b[f] };
+        let kept = if effort.all_alike { usize::MAX / 2 } else { KEPT * effort.beam };
         Search {
             tube,
-            frames: (0..frames).map(at).collect(),
+            price: SegmentPrice::default(),
             step,
             steps: Steps { w: of(0), k: of(segment::SLOPE) },
             costs: Costs::get(),
             effort,
-            beam: Beam::new(frames, effort.beam),
+            beam: Beam::new(frames, effort.beam).keeping(kept),
         }
     }
 
     fn run(mut self) -> Option<Fitted> {
         self.begin();
-        let frames = self.tube.x.len();
+        let tube = self.tube;
+        let frames = tube.x.len();
         let (position_cells, velocity_cells) =
             (4.0 / f64::from(step_size(self.step)), 1.0 / (0.03 * f64::from(step_size(self.step))));
         let apart = self.effort.all_alike;
@@ -254,7 +240,11 @@ impl<'t> Search<'t> {
             let least = &self.beam.least;
             let horizon = least[frame..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
             let limit = (horizon + self.effort.margin).max(least[frame]);
-            for id in self.beam.choose(frame, limit, self.effort.beam, cell) {
+            let chosen = self.beam.choose(frame, limit, self.effort.beam, cell);
+            if !chosen.is_empty() {
+                self.price.begin(tube, frame);
+            }
+            for id in chosen {
                 let hypothesis = self.beam.extended(id);
                 self.extend::<false>(id, &hypothesis);
                 if self.effort.slopes && hypothesis.mode != START_MODE {
@@ -291,78 +281,76 @@ impl<'t> Search<'t> {
 
     /// Adds all segments of type K, or W, that may follow the hypothesis `from`, whose index is `id`.
     fn extend<const SLOPE: bool>(&mut self, id: usize, from: &Hypothesis<f64>) {
-        let bend = self.tube.bend;
+        let tube = self.tube;
         let start = from.frame as usize;
-        let rest = self.frames.len() - 1 - start;
-        if SLOPE && from.w.abs() > bend {
+        let rest = tube.x.len() - 1 - start;
+        if SLOPE && from.w.abs() > tube.bend {
             return;
         }
-        let mut reach = Reach { least: f64::MIN, most: f64::MAX, s0: 0.0, s1: 0.0, s2: 0.0, base: 0.0, weight: WEIGHTS[0][0] };
-        if !SLOPE {
-            (reach.least, reach.most) = (-bend, bend);
-        }
-        let weights = &WEIGHTS[usize::from(SLOPE)];
+        let mut reach =
+            if SLOPE { Reach { least: f64::MIN, most: f64::MAX } } else { Reach { least: -tube.bend, most: tube.bend } };
         let mut passed = 0;
         for (index, &length) in LENGTHS.iter().enumerate() {
             let end = usize::from(length).min(rest);
             if end == passed {
                 return;
             }
-            let frames = &self.frames[start + passed + 1..=start + end];
-            for (at, &weight) in frames.iter().zip(&weights[passed + 1..=end]) {
-                let base = from.p + weight.n * from.v;
-                let base = if SLOPE { base + weight.c2 * from.w } else { base };
-                let (lo, hi) = (at.lo - base, at.hi - base);
-                if !SLOPE || weight.c > 0.0 {
-                    reach.least = greater(reach.least, lo * weight.inverse);
-                    reach.most = lesser(reach.most, hi * weight.inverse);
-                    if SLOPE && bend < f64::INFINITY {
-                        // The second difference there is the carried acceleration, and n - 1 slopes.
-                        reach.least = greater(reach.least, (-bend - from.w) / (weight.n - 1.0));
-                        reach.most = lesser(reach.most, (bend - from.w) / (weight.n - 1.0));
-                    }
-                } else if lo > 0.0 || hi < 0.0 {
+            let frames = start + passed + 1..start + end + 1;
+            let (lo, hi) = (&tube.lo[frames.clone()], &tube.hi[frames]);
+            let weights = &WEIGHTS[usize::from(SLOPE)][passed + 1..=end];
+            if SLOPE && end == 1 {
+                // A slope does not move the first frame.
+                let base = from.p + from.v + from.w;
+                if base < lo[0] || base > hi[0] {
                     return;
                 }
-                if reach.least > reach.most {
-                    return;
+            } else {
+                reach.narrow::<SLOPE>(from, lo, hi, weights);
+                if SLOPE && tube.bend < f64::INFINITY {
+                    reach.bend(from.w, tube.bend, weights);
                 }
-                let e = base - at.x;
-                reach.s0 += e * (at.a * e + 2.0 * at.b);
-                reach.s1 += (at.a * e + at.b) * weight.c;
-                reach.s2 += at.a * weight.c * weight.c;
-                (reach.base, reach.weight) = (base, weight);
+            }
+            if reach.least > reach.most {
+                return;
             }
             passed = end;
-            self.end::<SLOPE>(id, from, index, start + end, &reach);
+            self.end::<SLOPE>(id, from, index, end, &reach);
         }
     }
 
-    /// Adds the segments of length `index` that end at `frame`.
+    /// Adds the segments of length `index` that end after `frames`.
     #[inline(always)]
-    fn end<const SLOPE: bool>(&mut self, id: usize, from: &Hypothesis<f64>, index: usize, frame: usize, reach: &Reach) {
+    fn end<const SLOPE: bool>(&mut self, id: usize, from: &Hypothesis<f64>, index: usize, frames: usize, reach: &Reach) {
         let kind = if SLOPE { segment_type::K } else { segment_type::W };
         let mode = kind << 4 | index as u8;
+        let frame = from.frame as usize + frames;
         let mode_cost = from.cost + self.costs.mode(from.mode, mode) + SEGMENT_BITS;
-        let limit = self.beam.least[frame] + self.effort.margin;
+        let limit = self.beam.limit(frame, self.effort.margin);
         if mode_cost > limit {
             return;
         }
-        let &Reach { least, most, s0, s1, s2, base, weight: Weight { n, c, .. } } = reach;
         let unit = if SLOPE { self.steps.k[index] } else { self.steps.w[index] };
         // With the first frame alone, a slope is free within what an integer holds.
-        let (ql, qh) = (-floor(lesser(-least / unit, 1e9)), floor(lesser(most / unit, 1e9)));
+        let (ql, qh) = (-floor(lesser(-reach.least / unit, 1e9)), floor(lesser(reach.most / unit, 1e9)));
         if ql > qh {
             return;
         }
+        let Quadratic { s0, s1, s2 } = self.price.of::<SLOPE>(index, from.p, from.v, from.w);
+        let ideal = if s2 > 0.0 { -s1 / s2 } else { 0.0 };
         let now = wrap(if SLOPE { from.k } else { from.w });
         let which = index as u8 | if SLOPE { segment::SLOPE } else { 0 };
         let context = Context::new(which, now, if SLOPE { 0 } else { from.prev_sign }, unit as u32);
+        if mode_cost + s0 + ideal * s1 + self.costs.least_number(context.index) > limit {
+            return;
+        }
         let prev_sign = if SLOPE { from.prev_sign } else { context.sign };
         let (ql, qh) = (ql as i32, qh as i32);
         let nearest = |x: f64| (floor(x.clamp(-1e9, 1e9) + 0.5) as i32).clamp(ql, qh);
-        let best = if s2 > 0.0 { nearest(-s1 / (s2 * unit)) } else { 0.clamp(ql, qh) };
+        let best = if s2 > 0.0 { nearest(ideal / unit) } else { 0.clamp(ql, qh) };
         let carried = if SLOPE { 0 } else { nearest(from.w / unit) };
+        let Weight { n, c2, c, .. } = WEIGHTS[usize::from(SLOPE)][frames];
+        let base = from.p + n * from.v;
+        let base = if SLOPE { base + c2 * from.w } else { base };
         for q in candidates(ql, qh, best, carried, s2 <= 0.0) {
             let number = if context.flip != 0 { -q } else { q };
             let g = f64::from(q) * unit;
@@ -389,17 +377,62 @@ impl<'t> Search<'t> {
     }
 }
 
-/// What the tube leaves of a segment's number, and the price of its frames so far: s0 + 2 g s1 + g^2 s2 for a number g.
+/// What the tube leaves of a segment's number.
 struct Reach {
     least: f64,
     most: f64,
-    s0: f64,
-    s1: f64,
-    s2: f64,
-    /// The position at the last frame without the number, and the weight of the number there.
-    base: f64,
-    weight: Weight,
 }
+
+/// Frames that are looked at together.
+const LANES: usize = 4;
+
+impl Reach {
+    /// Leaves what keeps the hypothesis `from` within the tube at more frames.
+    #[inline(always)]
+    fn narrow<const SLOPE: bool>(&mut self, from: &Hypothesis<f64>, lo: &[f64], hi: &[f64], weights: &[Weight]) {
+        let bounds = |lo: f64, hi: f64, weight: &Weight| {
+            let base = from.p + weight.n * from.v;
+            let base = if SLOPE { base + weight.c2 * from.w } else { base };
+            ((lo - base) * weight.inverse, (hi - base) * weight.inverse)
+        };
+        if weights.len() < LANES {
+            for ((&lo, &hi), weight) in lo.iter().zip(hi).zip(weights) {
+                let (from, to) = bounds(lo, hi, weight);
+                self.least = greater(self.least, from);
+                self.most = lesser(self.most, to);
+            }
+            return;
+        }
+        let (los, his, all) = (lo.chunks_exact(LANES), hi.chunks_exact(LANES), weights.chunks_exact(LANES));
+        let rest = los.remainder().iter().zip(his.remainder()).zip(all.remainder());
+        let (mut least, mut most) = ([self.least; LANES], [self.most; LANES]);
+        for ((lo, hi), weights) in los.zip(his).zip(all) {
+            for lane in 0..LANES {
+                let (from, to) = bounds(lo[lane], hi[lane], &weights[lane]);
+                least[lane] = greater(least[lane], from);
+                most[lane] = lesser(most[lane], to);
+            }
+        }
+        for ((&lo, &hi), weight) in rest {
+            let (from, to) = bounds(lo, hi, weight);
+            least[0] = greater(least[0], from);
+            most[0] = lesser(most[0], to);
+        }
+        self.least = least.into_iter().reduce(greater).unwrap_or(self.least);
+        self.most = most.into_iter().reduce(lesser).unwrap_or(self.most);
+    }
+
+    /// Leaves slopes whose second difference stays within `bend`: at each frame it is the carried acceleration `w`, and n - 1 slopes.
+    fn bend(&mut self, w: f64, bend: f64, weights: &[Weight]) {
+        for weight in weights {
+            self.least = greater(self.least, (-bend - w) / (weight.n - 1.0));
+            self.most = lesser(self.most, (bend - w) / (weight.n - 1.0));
+        }
+    }
+}
+
+/// Hypotheses that a frame keeps for each that is extended: a fifth of the time is saved against keeping all, at the same size.
+const KEPT: usize = 3;
 
 /// So many numbers are all tried.
 const ALL_OF: usize = 9;
