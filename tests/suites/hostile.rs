@@ -75,6 +75,11 @@ fn banks() {
 }
 
 #[test]
+fn animators() {
+    holds("animator", CLIPS / 20);
+}
+
+#[test]
 fn clips_in_pieces() {
     holds("stream_play", CLIPS);
 }

@@ -460,7 +460,7 @@ impl<'a> Machine<'a> {
         let index = usize::from(parameter);
         let [least, most, _] = self.table.parameter_row(index);
         if let Some(own) = self.parameters.get_mut(index).filter(|_| index < self.table.counted(3)) {
-            *own = value.clamp(least, most);
+            *own = value.max(least).min(most);
         }
     }
 

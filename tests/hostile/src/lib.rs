@@ -1,5 +1,6 @@
 //! Entry points for untrusted input, and what must hold for each: a target panics where it does not.
 
+mod animator;
 pub mod clips;
 mod faces;
 pub mod fix;
@@ -28,11 +29,12 @@ pub struct FuzzTarget {
 const CLIPS: &[&str] = &["ptn"];
 
 /// All entry points.
-pub const FUZZ_TARGETS: [FuzzTarget; 20] = [
+pub const FUZZ_TARGETS: [FuzzTarget; 21] = [
     FuzzTarget { name: "open_play", run: clips::open_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "crc_fixed_play", run: clips::crc_fixed_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "rig_open", run: clips::rig_open, words: &[], vectors: &["rig"], made: Vec::new },
     FuzzTarget { name: "bank_open", run: clips::bank_open, words: &[], vectors: &["ptb"], made: Vec::new },
+    FuzzTarget { name: "animator", run: animator::animator, words: &[], vectors: &[], made: animator::tables },
     FuzzTarget { name: "stream_play", run: streams::stream_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "link_receive", run: lines::link_receive, words: &[], vectors: &[], made: lines::streams },
     FuzzTarget { name: "store_open", run: lines::store_open, words: &[], vectors: CLIPS, made: Vec::new },
