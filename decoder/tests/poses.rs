@@ -137,9 +137,9 @@ fn turns_are_what_the_channels_of_a_joint_make() {
                     assert!(difference(&of_order, &wanted) < 5e-4, "{name}: joint {index}: {turn:?} as {order:?}");
                 }
                 let position = pose.position(&found).unwrap();
-                for of in 0..3 {
+                for (of, value) in position.into_iter().enumerate() {
                     let at = kinds.iter().position(|kind| kind.is_position() && kind.axis() == Some(of));
-                    assert_eq!(position[of], at.map(|at| own[at]), "{name}: joint {index}");
+                    assert_eq!(value, at.map(|at| own[at]), "{name}: joint {index}");
                 }
             }
             for scalar in rig.scalars() {
