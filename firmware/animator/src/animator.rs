@@ -110,12 +110,13 @@ pub struct Animator<'a, 'm> {
     place: [i32; 2],
     motion: RootMotion,
     events: EventQueue,
-    /// The placement before the last update, for its increment.
+    /// Where the figure is now, and where it was before the last update.
+    now: Placement,
     before: Placement,
 }
 
 impl<'a, 'm> Animator<'a, 'm> {
-    /// Starts a clip at frame 0, at the world's origin.
+    /// Starts a clip at frame 0, at the world's origin. A rig that has scalars alone is [`Error::NoSuchJoint`]: a [`Track`] plays it.
     pub fn new(clip: Clip<'a>, memory: Memory<'m>) -> Result<Self, Error> {
         let Memory { states, values, offsets, pose, groups } = memory;
         let needed = clip.rig().channels();
@@ -139,6 +140,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             place: [0; 2],
             motion: RootMotion::Travel,
             events: EventQueue::new(),
+            now: Placement::default(),
             before: Placement::default(),
         };
         animator.events.at(animator.track.clip(), 0);
@@ -209,15 +211,21 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// Makes the root's present place stand at a placement.
     fn settle(&mut self, placement: Placement) {
         self.travel = Travel::new(placement, self.place.map(i64::from));
-        self.before = placement;
+        self.locate();
+        self.before = self.now;
     }
 
     /// Where the figure is, and how it is turned.
     pub fn placement(&self) -> Placement {
-        match self.motion {
+        self.now
+    }
+
+    /// Finds where the figure is, after everything that moves it.
+    fn locate(&mut self) {
+        self.now = match self.motion {
             RootMotion::Travel => self.travel.placement(self.place, self.track.seam()),
             RootMotion::InPlace => Placement { place: self.travel.anchor, heading: self.travel.heading.angle },
-        }
+        };
     }
 
     /// What the last [`Animator::update`], [`Animator::seek`] or [`Animator::switch`] changed the placement by: the sum of all increments is
@@ -248,6 +256,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             self.run_transition(elapsed_us);
         }
         self.compose();
+        self.locate();
         self.events.check(lost)
     }
 
@@ -271,6 +280,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         } else {
             self.compose();
         }
+        self.locate();
         self.events.check(lost)
     }
 
@@ -279,6 +289,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         self.before = self.placement();
         self.track.seek(frame);
         self.compose();
+        self.locate();
     }
 
     fn solve_again(&mut self) {
@@ -431,6 +442,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         self.events.at(self.track.clip(), self.track.frame());
         self.compose();
         self.travel = Travel::new(now, self.place.map(i64::from));
+        self.locate();
         Ok(())
     }
 
