@@ -151,7 +151,7 @@ impl<C: Cost> Beam<C> {
             if at == sorted {
                 // As many as are likely needed: most are never looked at.
                 let rest = &mut self.ranked[at..];
-                sorted += rest.len().min(SORTED * width);
+                sorted += rest.len().min(SORTED.saturating_mul(width));
                 if sorted - at < rest.len() {
                     rest.select_nth_unstable_by(sorted - at, order);
                 }
