@@ -46,6 +46,22 @@
 //! exactly. A loop whose root does not come back to within 5 cm of its start goes on by its last velocity over the seam. A switch keeps
 //! place and heading. A clip in which the root points straight up or down has no heading there.
 //!
+//! # Which type do I want?
+//!
+//! | to | use |
+//! |---|---|
+//! | play a clip and go over to others | [`Animator::switch`] with a [`Transition`] |
+//! | fade from one moving clip to another | a second [`Track`] and [`layer::blend`] with a [`layer::Ramp`] |
+//! | wave while walking | a [`Track`], a [`Mask`] and [`layer::blend`] |
+//! | add a recoil | [`layer::add`] |
+//! | breathe, blink | [`procedural::Breath`], [`procedural::Blink`] |
+//! | keep feet where they stand | [`FootLock`] |
+//! | reach for something | [`Limb`] |
+//! | look at something | [`Look`] |
+//! | mix a walk and a run in step | [`Track::sync_to`], or a state that blends |
+//! | leave all this to a table | [`machine::Machine`] |
+//! | place several figures | [`Scene`] |
+//!
 //! # The order of work in a frame
 //!
 //! 1. [`Animator::update`]: time, events, root motion, the transition, the pose.
@@ -68,6 +84,7 @@ mod math;
 mod offset;
 pub mod procedural;
 mod root;
+mod scene;
 mod sync;
 mod track;
 mod two_bone;
@@ -82,5 +99,6 @@ pub use look::{Look, Share};
 pub use mask::Mask;
 pub use offset::Offset;
 pub use root::Placement;
+pub use scene::Scene;
 pub use track::Track;
 pub use two_bone::{Limb, Limits, Reach};
