@@ -1,7 +1,7 @@
 //! Closed-loop descent (METHOD 5): each channel is coded again inside the tube that the true error of everything below it
 //! still leaves, pass after pass, while the price of an error falls.
 
-use super::figure::{Figure, Poses, lever};
+use super::figure::{Figure, Places, Poses, lever};
 use super::parametrize::Rotations;
 use super::refusal::refusal;
 use super::search::{Effort, Fitted, Tube, search};
@@ -133,7 +133,7 @@ pub struct Descent<'m> {
     rests: &'m [i32],
     /// Kinds as the file has them.
     kinds: &'m [Kind],
-    original: &'m Poses,
+    original: &'m Places,
     poses: Poses,
     values: Vec<Vec<f64>>,
     codes: Vec<Option<Code>>,
@@ -160,7 +160,7 @@ impl<'m> Descent<'m> {
         scales: &'m [f64],
         rests: &'m [i32],
         kinds: &'m [Kind],
-        original: &'m Poses,
+        original: &'m Places,
         seconds_a_frame: f64,
     ) -> Self {
         let values: Vec<Vec<f64>> = targets.iter().zip(scales).map(|(x, s)| x.iter().map(|x| x * s).collect()).collect();
@@ -314,7 +314,7 @@ impl<'m> Descent<'m> {
             self.refresh(channel);
         }
         if self.codes[channel].is_none() {
-            bail!(refusal(self.figure, &self.poses, self.original, channel, &moved, self.plan.bound_cm));
+            bail!(refusal(self.figure, &self.poses.places, self.original, channel, &moved, self.plan.bound_cm));
         }
         Ok(())
     }
@@ -345,7 +345,7 @@ impl<'m> Descent<'m> {
     }
 
     fn error(&self, joint: usize, frame: usize) -> [f64; 3] {
-        let (p, q) = (&self.poses.places[joint][frame], &self.original.places[joint][frame]);
+        let (p, q) = (&self.poses.places[joint][frame], &self.original[joint][frame]);
         [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
     }
 

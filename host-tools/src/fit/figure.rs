@@ -1,15 +1,21 @@
 //! Computes where every joint is at every frame, and how a channel moves the joints below it.
 
 use crate::fk::{IDENTITY, Matrix, about, apply, local, product};
-use crate::motion::{Kind, Rig};
+use crate::motion::{Joint, Kind, Rig};
 
-/// Rotations and places of every joint at every frame, `[joint][frame]`; places in cm.
+/// Where every joint is, in cm: `[joint][frame]`.
+pub type Places = Vec<Vec<[f64; 3]>>;
+
+/// Rotations and places of every joint at every frame, `[joint][frame]`; places in cm. Joints with nothing below them have no rotations.
 #[derive(Clone)]
 pub struct Poses {
-    locals: Vec<Vec<(Matrix, [f64; 3])>>,
+    /// Rotations in the parent.
+    locals: Vec<Vec<Matrix>>,
+    /// Places in the parent: one for all frames where no channel moves the joint.
+    offsets: Places,
     turns: Vec<Vec<Matrix>>,
     /// Where every joint is, in cm.
-    pub places: Vec<Vec<[f64; 3]>>,
+    pub places: Places,
 }
 
 /// A rig, and what depends on what.
@@ -56,11 +62,11 @@ impl Figure {
     /// All joints at all frames.
     pub fn poses(&self, values: &[Vec<f64>]) -> Poses {
         let joints = self.rig.joints.len();
-        let mut poses = Poses {
-            locals: vec![vec![(IDENTITY, [0.0; 3]); self.frames]; joints],
-            turns: vec![vec![IDENTITY; self.frames]; joints],
-            places: vec![vec![[0.0; 3]; self.frames]; joints],
-        };
+        let turns: Vec<Vec<Matrix>> =
+            self.below.iter().map(|below| vec![IDENTITY; if below.is_empty() { 0 } else { self.frames }]).collect();
+        let moves = |joint: &Joint| joint.kinds.iter().any(|kind| kind.is_position());
+        let offsets = self.rig.joints.iter().map(|joint| vec![[0.0; 3]; if moves(joint) { self.frames } else { 1 }]).collect();
+        let mut poses = Poses { locals: turns.clone(), offsets, turns, places: vec![vec![[0.0; 3]; self.frames]; joints] };
         for joint in 0..joints {
             self.place_local(joint, values, &mut poses);
             self.place(joint, &mut poses);
@@ -81,27 +87,30 @@ impl Figure {
         let entry = &self.rig.joints[joint];
         let first = self.first[joint];
         let cm = self.rig.cm_per_unit;
-        for (frame, slot) in poses.locals[joint].iter_mut().enumerate() {
-            let (turn, offset) = local(entry, |channel| values[first + channel][frame]);
-            *slot = (turn, offset.map(|x| x * cm));
-        }
+        let of = |frame: usize| local(entry, |channel| values[first + channel][frame]);
+        poses.locals[joint].iter_mut().enumerate().for_each(|(frame, turn)| *turn = of(frame).0);
+        poses.offsets[joint].iter_mut().enumerate().for_each(|(frame, offset)| *offset = of(frame).1.map(|x| x * cm));
     }
 
     fn place(&self, joint: usize, poses: &mut Poses) {
+        let Poses { locals, offsets, turns, places } = poses;
+        let (locals, offsets) = (&locals[joint], &offsets[joint]);
+        let offset = |frame: usize| offsets.get(frame).unwrap_or(&offsets[0]);
         let Some(parent) = self.rig.joints[joint].parent else {
-            for frame in 0..self.frames {
-                (poses.turns[joint][frame], poses.places[joint][frame]) = poses.locals[joint][frame];
-            }
+            turns[joint].clone_from(locals);
+            places[joint].iter_mut().enumerate().for_each(|(frame, place)| *place = *offset(frame));
             return;
         };
-        for frame in 0..self.frames {
-            let (turn, offset) = &poses.locals[joint][frame];
-            let above = &poses.turns[parent][frame];
-            let [x, y, z] = poses.places[parent][frame];
-            let [dx, dy, dz] = apply(above, *offset);
-            let turned = product(above, turn);
-            poses.turns[joint][frame] = turned;
-            poses.places[joint][frame] = [x + dx, y + dy, z + dz];
+        // Parents come first.
+        let ((above, turns), (from, places)) = (turns.split_at_mut(joint), places.split_at_mut(joint));
+        let (above, from) = (&above[parent], &from[parent]);
+        for (frame, place) in places[0].iter_mut().enumerate() {
+            let [dx, dy, dz] = apply(&above[frame], *offset(frame));
+            let [x, y, z] = from[frame];
+            *place = [x + dx, y + dy, z + dz];
+        }
+        for ((turn, above), local) in turns[0].iter_mut().zip(above).zip(locals) {
+            *turn = product(above, local);
         }
     }
 

@@ -46,19 +46,20 @@ pub fn fit_coding(
 ) -> Result<Coded> {
     let frame_time_ns = time(motion)?;
     let plan = plan.with_time_for(motion.frames * motion.rig.joint_channels());
-    let chosen = coding.apply(motion);
+    let Motion { rig: chosen, values: chosen_values, .. } = coding.apply(motion);
     let length_exponent = coding.length_exponent;
-    let scales = raw::scales(&chosen.rig, length_exponent);
+    let scales = raw::scales(&chosen, length_exponent);
     let rests = raw::rests(&motion.rig, length_exponent);
-    let kinds = chosen.rig.channel_kinds();
+    let kinds = chosen.channel_kinds();
     let file_kinds: Vec<_> = motion.rig.channel_kinds().into_iter().map(|(_, kind)| kind).collect();
-    let channels = chosen.values.iter().zip(kinds).zip(&scales);
-    let targets: Vec<_> = channels.map(|((values, (_, kind)), &scale)| raw::target(values, kind, scale)).collect();
-    let original = Figure::new(motion.rig.clone(), motion.frames).poses(&motion.values);
+    // In turn, so that a long take is not held twice.
+    let channels = chosen_values.into_iter().zip(kinds).zip(&scales);
+    let targets: Vec<_> = channels.map(|((values, (_, kind)), &scale)| raw::target(&values, kind, scale)).collect();
+    let original = Figure::new(motion.rig.clone(), motion.frames).poses(&motion.values).places;
     // What will be played has the rig's rounded offsets.
     let bytes = rig_bytes::encode(&motion.rig)?;
     let mut played = rig_bytes::decode(&pantin::Rig::new_checked(&bytes)?);
-    for (joint, source) in played.joints.iter_mut().zip(&chosen.rig.joints) {
+    for (joint, source) in played.joints.iter_mut().zip(&chosen.joints) {
         joint.kinds.clone_from(&source.kinds);
     }
     let figure = Figure::new(played, motion.frames);

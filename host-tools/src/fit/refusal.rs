@@ -1,6 +1,6 @@
 //! What is said when a bound cannot be met.
 
-use super::figure::{Figure, Poses};
+use super::figure::{Figure, Places};
 
 /// `x` with four digits of what `bound` has, however small that is.
 pub fn amount(x: f64, bound: f64) -> String {
@@ -9,10 +9,10 @@ pub fn amount(x: f64, bound: f64) -> String {
 }
 
 /// Names the joint and frame at which a channel without a code has the least room: `moved` are the joints that it moves.
-pub fn refusal(figure: &Figure, poses: &Poses, original: &Poses, channel: usize, moved: &[usize], bound_cm: f64) -> String {
+pub fn refusal(figure: &Figure, places: &Places, original: &Places, channel: usize, moved: &[usize], bound_cm: f64) -> String {
     let name = figure.rig.channel_name(channel);
     let distance = |joint: usize, frame: usize| {
-        let (p, q) = (poses.places[joint][frame], original.places[joint][frame]);
+        let (p, q) = (places[joint][frame], original[joint][frame]);
         (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum::<f64>().sqrt()
     };
     let all = moved.iter().flat_map(|&joint| (0..figure.frames).map(move |frame| (joint, frame, distance(joint, frame))));
