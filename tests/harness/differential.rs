@@ -1,6 +1,8 @@
-//! Damaged clips in the Rust decoder and in the one that was written from FORMAT.md alone: both must refuse them, or read the same.
+//! Damaged clips in the Rust decoder and in one that was written from FORMAT.md alone, in JavaScript or in C: both must refuse them, or
+//! read the same.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
@@ -11,6 +13,15 @@ use crate::{paths, setup, vectors};
 
 /// Mutants that one run of Node.js reads.
 const BATCH: usize = 2000;
+
+/// A decoder that reads mutants and prints a line for each.
+#[derive(Clone, Debug)]
+pub enum Decoder {
+    /// The one in JavaScript, in Node.js.
+    JavaScript,
+    /// A program: `mutants.c` of the C decoder.
+    Program(PathBuf),
+}
 
 /// What became of the mutants.
 #[derive(Clone, Debug, Default)]
@@ -35,9 +46,14 @@ pub struct Difference {
 }
 
 impl Counts {
-    /// Adds the comparison of more mutants.
+    /// Adds the comparison of more mutants with the decoder in JavaScript.
     pub fn add(&mut self, mutants: Vec<Vec<u8>>) -> Result<()> {
-        let independent = independent(&mutants)?;
+        self.add_read_by(&Decoder::JavaScript, mutants)
+    }
+
+    /// Adds the comparison of more mutants with another decoder.
+    pub fn add_read_by(&mut self, decoder: &Decoder, mutants: Vec<Vec<u8>>) -> Result<()> {
+        let independent = independent(decoder, &mutants)?;
         for (bytes, independent) in mutants.into_iter().zip(independent) {
             let rust = read(&bytes);
             match (rust == independent, rust == REFUSED) {
@@ -51,22 +67,22 @@ impl Counts {
 }
 
 /// Compares `count` mutants of the golden vectors; `seed` selects which. `after_batch` receives the counts so far.
-pub fn run(count: usize, seed: u64, mut after_batch: impl FnMut(&Counts)) -> Result<Counts> {
+pub fn run(decoder: &Decoder, count: usize, seed: u64, mut after_batch: impl FnMut(&Counts)) -> Result<Counts> {
     let vectors = vectors::load(&vectors::folder())?;
     let clips: Vec<Vec<u8>> = vectors.into_iter().map(|vector| vector.clip).collect();
     let mut noise = Noise::new(seed);
     let (mut counts, mut left) = (Counts::default(), count);
     while left > 0 {
         let batch = left.min(BATCH);
-        counts.add((0..batch).map(|_| mutant(&mut noise, &clips)).collect())?;
+        counts.add_read_by(decoder, (0..batch).map(|_| mutant(&mut noise, &clips)).collect())?;
         left -= batch;
         after_batch(&counts);
     }
     Ok(counts)
 }
 
-/// What the independent decoder reads of each clip.
-fn independent(clips: &[Vec<u8>]) -> Result<Vec<String>> {
+/// What another decoder reads of each clip.
+fn independent(decoder: &Decoder, clips: &[Vec<u8>]) -> Result<Vec<String>> {
     let mut all = vec![];
     for clip in clips {
         all.extend_from_slice(&(clip.len() as u32).to_le_bytes());
@@ -75,11 +91,28 @@ fn independent(clips: &[Vec<u8>]) -> Result<Vec<String>> {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("mutants");
     fs::write(&file, all)?;
-    let mut node = Command::new(setup::emulator("node")?);
-    node.arg(paths::root().join("tests/independent/mutants.mjs")).arg(vectors::folder()).arg(&file);
-    let output = node.args([VALUES, FRAMES, EVENTS].map(|limit| limit.to_string())).output().context("cannot start node")?;
+    let mut command = command(decoder, &file)?;
+    let output =
+        command.args([VALUES, FRAMES, EVENTS].map(|limit| limit.to_string())).output().context("cannot start the decoder")?;
     ensure!(output.status.success(), "the independent decoder fails: {}", String::from_utf8_lossy(&output.stderr));
     let lines: Vec<String> = String::from_utf8(output.stdout)?.lines().map(str::to_owned).collect();
     ensure!(lines.len() == clips.len(), "{} lines for {} clips", lines.len(), clips.len());
     Ok(lines)
+}
+
+/// The decoder's program with its files.
+fn command(decoder: &Decoder, mutants: &Path) -> Result<Command> {
+    let vectors = vectors::folder();
+    Ok(match decoder {
+        Decoder::JavaScript => {
+            let mut node = Command::new(setup::emulator("node")?);
+            node.arg(paths::root().join("tests/independent/mutants.mjs")).arg(vectors).arg(mutants);
+            node
+        }
+        Decoder::Program(program) => {
+            let mut command = Command::new(program);
+            command.arg(vectors.join("rig-apart.rig")).arg(mutants);
+            command
+        }
+    })
 }

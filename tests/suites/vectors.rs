@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use harness::vectors::{self, bank, constants, coverage, record, sums, synthetic};
+use harness::vectors::{self, bank, c_header, constants, coverage, record, sums, synthetic};
 use pantin::Bank;
 
 /// Bytes that the folder may have.
@@ -44,6 +44,15 @@ fn the_tables_as_json_are_those_of_the_decoder() {
 fn no_vector_has_changed() {
     let committed = fs::read_to_string(vectors::folder().join(sums::NAME)).unwrap();
     assert_eq!(committed, sums::text(&vectors::folder()).unwrap(), "a vector never changes; `cargo xtask vectors` adds new ones");
+}
+
+#[test]
+fn the_tables_in_c_are_those_of_the_decoder() {
+    if std::env::var_os("PANTIN_UPDATE").is_some() {
+        fs::write(c_header::path(), c_header::text()).unwrap();
+    }
+    let committed = fs::read_to_string(c_header::path()).unwrap();
+    assert_eq!(committed, c_header::text(), "`cargo xtask vectors`, or this test with PANTIN_UPDATE=1, regenerates them");
 }
 
 #[test]

@@ -21,10 +21,15 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 23] = [
+const LIST: [(&str, Place, &str); 24] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
-    ("test", Place::Here(test::run), "Runs every check and test; --host-only leaves out QEMU and Chromium"),
+    (
+        "test",
+        Place::Here(test::run),
+        "Runs every check and test; --host-only leaves out QEMU and Chromium, --bindings runs those of other languages",
+    ),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
+    ("bindings", COMMANDS, "Tests the decoder in C with compilers and emulators; `test --bindings` is the same"),
     ("blender", COMMANDS, "Imports exports of our clips into Blender (bpy), and validates the glTF files"),
     ("conformance", COMMANDS, "Plays the golden vectors on every core, and compares the CRC of every pose"),
     (

@@ -98,7 +98,8 @@ pub fn install_emulator(name: &str) -> Result<PathBuf> {
     if paths::program("apt-get").is_none() || !is_root() {
         return emulator(name);
     }
-    let installed = apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", debian(name)]));
+    let install: Vec<&str> = ["install", "-y", "--no-install-recommends"].into_iter().chain(debian(name).split(' ')).collect();
+    let installed = apt_get(&["update"]).and_then(|()| apt_get(&install));
     installed.with_context(|| format!("{name} is missing and could not be installed"))?;
     emulator(name)
 }
@@ -130,11 +131,15 @@ fn apt_get(arguments: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The package of Debian and Ubuntu that has the program.
+/// The packages of Debian and Ubuntu that have the program, and a compiler's C library.
 fn debian(name: &str) -> &str {
     match name {
         "node" => "nodejs",
         "qemu-system-riscv32" => "qemu-system-misc",
+        "arm-none-eabi-gcc" => "gcc-arm-none-eabi libnewlib-arm-none-eabi",
+        "avr-gcc" => "gcc-avr avr-libc",
+        "riscv64-unknown-elf-gcc" => "gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf",
+        "xtensa-lx106-elf-gcc" => "gcc-xtensa-lx106",
         // That of the Arm emulators is named as they are.
         other => other,
     }

@@ -1,4 +1,4 @@
-//! `cargo xtask test [--host-only]`: every test, on the host and in QEMU; what CI runs.
+//! `cargo xtask test [--host-only | --bindings]`: every test, on the host and in QEMU; what CI runs.
 //!
 //! ```text
 //! $ cargo xtask test
@@ -25,12 +25,13 @@ use xtask::{paths, setup};
 
 use crate::publish;
 
-const USAGE: &str = "Usage: cargo xtask test [--host-only]
+const USAGE: &str = "Usage: cargo xtask test [--host-only | --bindings]
 
 Runs every check and test: format, lints, host tests, firmware builds, tests in QEMU and Chromium
 
 Options:
-  --host-only  Leaves out the tests that need QEMU or Chromium";
+  --host-only  Leaves out the tests that need QEMU or Chromium
+  --bindings   Runs the tests of the decoder in C instead: they need compilers for other targets";
 
 /// What the web page's modules are compiled for.
 const WEB_TARGET: &str = "wasm32-unknown-unknown";
@@ -40,6 +41,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
     match arguments {
         [] => all(false),
         [only] if only == "--host-only" => all(true),
+        [only] if only == "--bindings" => shown(Workspace::Host, "run --package xtask-commands -- bindings"),
         [help] if ["--help", "-h"].contains(&help.as_str()) => {
             println!("{USAGE}");
             Ok(())

@@ -8,7 +8,8 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use harness::{differential, paths, soak};
+use harness::differential::{self, Decoder};
+use harness::{paths, soak};
 use pantin::Clip;
 use pantin_tools::sender::{Line, Source};
 use xtask::setup;
@@ -38,7 +39,7 @@ impl MutantsDifferential {
     /// Runs it; an error if a mutant is read differently.
     pub fn run(self) -> Result<()> {
         let start = Instant::now();
-        let counts = differential::run(self.count, self.seed, |counts| {
+        let counts = differential::run(&Decoder::JavaScript, self.count, self.seed, |counts| {
             let done = counts.agreed + counts.refused + counts.differing.len();
             xtask::steps::progress("mutants", done, self.count);
         })?;

@@ -1,6 +1,7 @@
 //! The commands of `cargo xtask` that need the harness or the host tool.
 
 mod bench;
+mod bindings;
 mod blender;
 mod campaign;
 mod conformance;
@@ -25,6 +26,7 @@ use clap::Parser;
 enum Command {
     Conformance(conformance::Conformance),
     Bench(bench::command::Bench),
+    Bindings(bindings::Bindings),
     Blender(blender::Blender),
     Coverage(campaign::Coverage),
     Firmware(firmware::Firmware),
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
     let result = match Command::parse() {
         Command::Conformance(conformance) => conformance.run(),
         Command::Bench(bench) => bench.run(),
+        Command::Bindings(bindings) => bindings.run(),
         Command::Blender(blender) => blender.run(),
         Command::Coverage(coverage) => coverage.run(),
         Command::Firmware(firmware) => firmware.run(),

@@ -1,0 +1,339 @@
+//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C (`bindings/c`), which need compilers for other targets.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use harness::differential::{self, Decoder};
+use harness::{paths, vectors};
+use serde_json::Value;
+use tempfile::TempDir;
+use xtask::setup;
+use xtask::steps::Steps;
+
+/// Every warning is an error.
+const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
+const SANITIZERS: [&str; 4] = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+/// Options by which unused functions can be left out of an image.
+const SECTIONS: [&str; 3] = ["-Os", "-ffunction-sections", "-fdata-sections"];
+
+/// Compilers for small machines: their options, and the most bytes of code of the slice decoder and of the whole decoder without tables.
+const TARGETS: [Target; 3] = [
+    Target { compiler: "arm-none-eabi-gcc", options: &["-mcpu=cortex-m0", "-mthumb"], limits: Some([6 * 1024, 10 * 1024]) },
+    Target { compiler: "avr-gcc", options: &["-mmcu=atmega328p", "-mcall-prologues"], limits: Some([12 * 1024, 15 * 1024]) },
+    Target {
+        compiler: "riscv64-unknown-elf-gcc",
+        options: &["-march=rv32imc", "-mabi=ilp32", "--specs=picolibc.specs"],
+        limits: None,
+    },
+];
+
+/// Functions of banks and streams, which the slice decoder does not need.
+const EXTRAS: [&str; 12] = [
+    "pantin_open_bank",
+    "pantin_first_entry",
+    "pantin_next_entry",
+    "pantin_open_entry",
+    "pantin_open_named",
+    "pantin_open_stream",
+    "pantin_push",
+    "load_stream",
+    "advance",
+    "pantin_paged",
+    "load_page",
+    "pantin_read_progmem",
+];
+
+/// Emulated boards that play the test vectors; files and output go through semihosting.
+const BOARDS: [Board; 3] = [
+    Board {
+        name: "a Cortex-M3",
+        compiler: "arm-none-eabi-gcc",
+        options: &["-mcpu=cortex-m3", "-mthumb", "--specs=rdimon.specs", "-T", "tests/mps2.ld"],
+        emulator: "qemu-system-arm",
+        machine: &["-M", "mps2-an385"],
+    },
+    Board {
+        name: "a Cortex-M3, code for a Cortex-M0",
+        compiler: "arm-none-eabi-gcc",
+        options: &["-mcpu=cortex-m0", "-mthumb", "--specs=rdimon.specs", "-T", "tests/mps2.ld"],
+        emulator: "qemu-system-arm",
+        machine: &["-M", "mps2-an385"],
+    },
+    Board {
+        name: "RISC-V",
+        compiler: "riscv64-unknown-elf-gcc",
+        options: &[
+            "-march=rv32imac",
+            "-mabi=ilp32",
+            "--specs=picolibc.specs",
+            "--oslib=semihost",
+            "--crt0=semihost",
+            "-Wl,--defsym=__flash=0x80000000",
+            "-Wl,--defsym=__flash_size=0x200000",
+            "-Wl,--defsym=__ram=0x80200000",
+            "-Wl,--defsym=__ram_size=0x400000",
+        ],
+        emulator: "qemu-system-riscv32",
+        machine: &["-M", "virt", "-bios", "none"],
+    },
+];
+
+struct Board {
+    name: &'static str,
+    compiler: &'static str,
+    options: &'static [&'static str],
+    emulator: &'static str,
+    machine: &'static [&'static str],
+}
+
+/// RAM of an ATmega328P, in bytes.
+const UNO_RAM: u32 = 2048;
+
+struct Target {
+    compiler: &'static str,
+    options: &'static [&'static str],
+    limits: Option<[u64; 2]>,
+}
+
+/// Tests the decoder in C: test vectors, damaged files, mutants, code size, emulated boards
+#[derive(Args)]
+pub struct Bindings {
+    /// Number of mutants that are compared with the Rust decoder
+    #[arg(long, default_value_t = 6000)]
+    mutants: usize,
+    /// Selects which mutants are made
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Bindings {
+    /// Runs all steps, failed ones too, then lists them.
+    pub fn run(self) -> Result<()> {
+        let steps = Steps::default();
+        let folder = tempfile::tempdir()?;
+        steps.run("tools", || {
+            for emulator in ["simavr", "qemu-system-arm", "qemu-system-riscv32"] {
+                setup::install_emulator(emulator)?;
+            }
+            let hosts = ["gcc", "g++", "clang", "clang++", "xtensa-lx106-elf-gcc"];
+            for compiler in hosts.into_iter().chain(TARGETS.iter().map(|target| target.compiler)) {
+                setup::install_emulator(compiler)?;
+            }
+            Ok(())
+        });
+        for compiler in ["gcc", "clang"] {
+            steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
+        }
+        steps.run("C++", || {
+            ["g++", "clang++"].into_iter().try_for_each(|compiler| {
+                let mut command = Command::new(compiler);
+                command.args(["-x", "c++", "-std=c++11"]);
+                compile(command, &["src/pantin.c"], &folder.path().join("cpp.o")).map(drop)
+            })
+        });
+        steps.run("cuts and flipped bits", || damage(&folder));
+        steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
+        for target in &TARGETS {
+            steps.run(&format!("size with {}", target.compiler), || target.size(&folder));
+        }
+        for board in &BOARDS {
+            steps.run(&format!("test vectors on {}", board.name), || board.test_vectors(&folder));
+        }
+        steps.run("a clip on an Arduino Uno in simavr", || uno(&folder));
+        steps.run("compiler of the ESP8266", || {
+            let mut command = Command::new("xtensa-lx106-elf-gcc");
+            command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include"]);
+            compile(command, &["src/pantin.c"], &folder.path().join("esp8266.o")).map(drop)
+        });
+        steps.finish()
+    }
+
+    fn mutants(&self, folder: &TempDir) -> Result<()> {
+        let program = host_program(folder, "gcc", "mutants")?;
+        let counts = differential::run(&Decoder::Program(program), self.mutants, self.seed, |counts| {
+            xtask::steps::progress("mutants", counts.agreed + counts.refused + counts.differing.len(), self.mutants);
+        })?;
+        println!("   {} agreed, {} refused by both, {} differing", counts.agreed, counts.refused, counts.differing.len());
+        if let Some(first) = counts.differing.first() {
+            bail!("{}\nRust: {}\nC:    {}", first.bytes.escape_ascii(), first.rust, first.independent);
+        }
+        Ok(())
+    }
+}
+
+/// The folder of the decoder in C.
+fn home() -> PathBuf {
+    paths::root().join("bindings/c")
+}
+
+/// Runs a compiler in the folder of the decoder; `sources` are compiled to one object, or with other options to a program.
+fn compile(mut command: Command, sources: &[&str], to: &Path) -> Result<PathBuf> {
+    command.current_dir(home()).args(WARNINGS).arg("-Isrc").args(sources).arg("-o").arg(to);
+    if to.extension().is_some_and(|extension| extension == "o") {
+        command.arg("-c");
+    }
+    output(command)?;
+    Ok(to.to_owned())
+}
+
+fn output(mut command: Command) -> Result<Output> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let output = command.output().with_context(|| format!("cannot start {name}"))?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    ensure!(output.status.success(), "{name}: {}{}", text(&output.stderr), text(&output.stdout));
+    Ok(output)
+}
+
+/// Builds a test program for this machine, with sanitizers.
+fn host_program(folder: &TempDir, compiler: &str, name: &str) -> Result<PathBuf> {
+    let mut command = Command::new(compiler);
+    command.arg("-std=c99").args(SANITIZERS);
+    compile(command, &["src/pantin.c", &format!("tests/{name}.c")], &folder.path().join(format!("{name}-{compiler}")))
+}
+
+/// The clips and banks among the vectors, with their rigs.
+fn files() -> Result<Vec<(PathBuf, Option<PathBuf>)>> {
+    let mut files = vec![];
+    for entry in std::fs::read_dir(vectors::folder())? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "ptn" || extension == "ptb") {
+            let rig = path.with_extension("rig");
+            files.push((path, rig.is_file().then_some(rig)));
+        }
+    }
+    files.sort();
+    ensure!(files.len() > 20, "{} vectors", files.len());
+    Ok(files)
+}
+
+/// Compares what the decoder prints of every vector with its record.
+fn test_vectors(folder: &TempDir, compiler: &str) -> Result<()> {
+    let program = host_program(folder, compiler, "frames")?;
+    let files = files()?;
+    for (file, rig) in &files {
+        let mut command = Command::new(&program);
+        command.arg(file).args(rig);
+        let printed = output(command).with_context(|| file.display().to_string())?;
+        agrees(file, &printed.stdout).with_context(|| file.display().to_string())?;
+    }
+    println!("   {} files", files.len());
+    Ok(())
+}
+
+/// An error if a field of the record is missing in what was printed, or different.
+fn agrees(file: &Path, printed: &[u8]) -> Result<()> {
+    let record: Value = serde_json::from_str(&std::fs::read_to_string(file.with_extension("json"))?)?;
+    let printed: Value = serde_json::from_slice(printed)?;
+    for (name, expected) in record.as_object().context("a record is an object")? {
+        let actual = &printed[name];
+        match name.as_str() {
+            "poses" => {
+                for (frame, pose) in expected.as_object().context("poses are by frame")? {
+                    ensure!(actual[frame] == *pose, "the pose of frame {frame} is {}", actual[frame]);
+                }
+            }
+            "clips" => {
+                let fields = ["name", "bytes", "frames", "looped", "crcs"];
+                let clips = actual.as_array().context("clips are a list")?;
+                let clips: Value = clips.iter().map(|clip| fields.map(|field| clip[field].clone()).to_vec()).collect();
+                ensure!(clips == *expected, "the bank's clips differ");
+            }
+            _ => ensure!(actual == expected, "{name} is {actual}, not {expected}"),
+        }
+    }
+    Ok(())
+}
+
+fn damage(folder: &TempDir) -> Result<()> {
+    let program = host_program(folder, "gcc", "damage")?;
+    for (file, rig) in files()? {
+        let mut command = Command::new(&program);
+        command.arg(&file).args(rig);
+        output(command).with_context(|| file.display().to_string())?;
+    }
+    Ok(())
+}
+
+impl Target {
+    /// Bytes of code of all functions, and of those of the slice decoder.
+    fn size(&self, folder: &TempDir) -> Result<()> {
+        let mut command = Command::new(self.compiler);
+        command.arg("-std=c99").args(SECTIONS).args(self.options);
+        let object = compile(command, &["src/pantin.c"], &folder.path().join(format!("{}.o", self.compiler)))?;
+        let mut size = Command::new(self.compiler.replace("-gcc", "-size"));
+        size.arg("-A").arg(object);
+        let sections = String::from_utf8(output(size)?.stdout)?;
+        let (mut all, mut slice) = (0, 0);
+        for line in sections.lines() {
+            let mut words = line.split_whitespace();
+            let (Some(section), Some(bytes)) = (words.next(), words.next().and_then(|bytes| bytes.parse::<u64>().ok())) else {
+                continue;
+            };
+            let Some(function) = section.strip_prefix(".text") else { continue };
+            all += bytes;
+            // A compiler appends to the name of a function of which it makes a variant.
+            let function = function.trim_start_matches('.').split('.').next().unwrap_or_default();
+            if !EXTRAS.contains(&function) {
+                slice += bytes;
+            }
+        }
+        println!("   {slice} bytes of code without banks, pages and streams, {all} with them");
+        if let Some([most_slice, most_all]) = self.limits {
+            ensure!(
+                slice > 1000 && slice <= most_slice && all <= most_all,
+                "at most {most_slice} and {most_all} bytes are allowed"
+            );
+        }
+        Ok(())
+    }
+}
+
+impl Board {
+    /// Compares what the board prints of the vectors that need no second file with their records.
+    fn test_vectors(&self, folder: &TempDir) -> Result<()> {
+        let mut command = Command::new(self.compiler);
+        command.args(["-std=c99", "-Os", "-DCLIP_FILE=\"clip.ptn\""]).args(self.options);
+        let program = compile(command, &["src/pantin.c", "tests/frames.c"], &folder.path().join("frames.elf"))?;
+        for (file, _) in files()?.iter().filter(|(_, rig)| rig.is_none()) {
+            std::fs::copy(file, folder.path().join("clip.ptn"))?;
+            let mut qemu = Command::new(setup::emulator(self.emulator)?);
+            qemu.current_dir(folder.path()).args(self.machine).args(["-nographic", "-monitor", "none", "-serial", "none"]);
+            qemu.args(["-semihosting-config", "enable=on,target=native"]).arg("-kernel").arg(&program);
+            let printed = output(qemu).with_context(|| file.display().to_string())?;
+            // Some C libraries print through the emulator's console, which is its standard error.
+            let printed = if printed.stdout.is_empty() { printed.stderr } else { printed.stdout };
+            agrees(file, &printed).with_context(|| file.display().to_string())?;
+        }
+        Ok(())
+    }
+}
+
+/// Plays our walk in the RAM of an Arduino Uno, from flash and through a page buffer of 128 bytes.
+fn uno(folder: &TempDir) -> Result<()> {
+    let clip = std::fs::read(vectors::folder().join("walk.ptn"))?;
+    let bytes: String = clip.iter().map(|byte| format!("{byte},")).collect();
+    std::fs::write(folder.path().join("clip.h"), format!("static const uint8_t clip_bytes[] PROGMEM = {{{bytes}}};\n"))?;
+    let mut command = Command::new("avr-gcc");
+    command
+        .args(["-mmcu=atmega328p", "-std=c99", "-mcall-prologues", "-Wl,--gc-sections", "-I"])
+        .arg(folder.path())
+        .args(SECTIONS);
+    let program = compile(command, &["src/pantin.c", "tests/uno.c"], &folder.path().join("uno.elf"))?;
+    let mut simavr = Command::new(setup::emulator("simavr")?);
+    simavr.args(["-m", "atmega328p", "-f", "16000000"]).arg(program);
+    let output = output(simavr)?;
+    let log = [output.stdout, output.stderr].concat();
+    // The emulator prints what comes over the serial port in colours, with a point for each line's end.
+    let log = String::from_utf8_lossy(&log).replace("\x1b[32m", "").replace("\x1b[0m", "");
+    let words: Vec<&str> = log.lines().filter_map(|line| line.strip_suffix('.')).collect();
+    let crcs: Vec<&str> = words.iter().copied().filter(|word| word.len() == 4).collect();
+    let record: Value = serde_json::from_str(&std::fs::read_to_string(vectors::folder().join("walk.json"))?)?;
+    ensure!(Value::from(crcs) == record["crcs"], "the frames differ: {log}");
+    let used = words.iter().find_map(|word| word.strip_prefix('=')).context("no use of RAM in the output")?;
+    let used = u32::from_str_radix(used, 16)?;
+    println!("   {used} bytes of RAM, stack included");
+    ensure!(used < UNO_RAM, "the Uno has {UNO_RAM} bytes");
+    Ok(())
+}
