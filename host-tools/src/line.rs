@@ -46,6 +46,12 @@ impl Line {
     }
 }
 
+/// Whether `address` is HOST:PORT, with a port from 1 to 65,535.
+pub fn is_address(address: &str) -> bool {
+    let port = address.rsplit_once(':').filter(|(host, _)| !host.is_empty());
+    port.and_then(|(_, port)| port.parse::<u16>().ok()).is_some_and(|port| port > 0)
+}
+
 impl Read for Line {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         match self {

@@ -152,7 +152,7 @@ fn not_understood(error: &clap::Error) -> ExitCode {
             }
         };
     }
-    let text = error.to_string();
+    let text = with_clean_arguments(error.to_string());
     if std::env::args_os().any(|argument| argument == "--json") {
         output::set_reporting(false, false, true);
         let reason = text.split("\n\nUsage:").next().unwrap_or_default();
@@ -166,6 +166,17 @@ fn not_understood(error: &clap::Error) -> ExitCode {
         }
     }
     ExitCode::from(WRONG_USE)
+}
+
+/// The same text with the line breaks of arguments as escapes. Its own ones stay.
+fn with_clean_arguments(text: String) -> String {
+    let arguments: Vec<String> = std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    // A message quotes an argument, or its value, or one of its values.
+    let mut parts: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    parts.extend(arguments.iter().filter_map(|argument| argument.split_once('=')).map(|(_, value)| value));
+    parts.extend(arguments.iter().flat_map(|argument| argument.split(['=', ','])));
+    parts.retain(|part| part.contains(['\n', '\r']));
+    parts.iter().fold(text, |text, part| text.replace(part, &output::clean(part)))
 }
 
 fn completions(shell: clap_complete::Shell) -> Result<()> {

@@ -39,6 +39,7 @@ pub struct Pack {
 /// Write the clips of a bank as files, each with its rig.
 ///
 /// Each clip goes into NAME.ptn. Characters that are no part of a file's name everywhere become _, and the command prints which names change.
+/// The names come from the bank, so a file that exists is replaced only with --replace; without it, nothing is written.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin unpack moves.ptb -o clips
@@ -52,6 +53,9 @@ pub struct Unpack {
     /// Only the clip of this name. May be given several times
     #[arg(long = "clip", value_name = "NAME")]
     clips: Vec<String>,
+    /// Replace files that exist in the folder
+    #[arg(long)]
+    replace: bool,
 }
 
 /// List the clips of a bank: names, frames, rates and bytes.
@@ -179,6 +183,11 @@ pub fn unpack(arguments: &Unpack) -> Result<()> {
     for (entry, file) in &files {
         bank.open(entry).with_context(|| context(entry))?;
         super::batch::regular(file)?;
+        ensure!(
+            arguments.replace || super::is_free(file),
+            "{}: exists; --replace replaces it, another folder keeps it",
+            file.display()
+        );
     }
     output::make_folder(folder)?;
     output::check(&[&arguments.input], &files.iter().map(|(_, path)| path.as_path()).collect::<Vec<_>>())?;

@@ -631,10 +631,12 @@ fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8], notes: &mut Note
     let plain = clip::encode(coded, rig, apart)?;
     let Some(seconds) = arguments.index else { return Ok(plain) };
     let spacing = (seconds * 1e9 / f64::from(coded.frame_time_ns)).round();
+    let frame = f64::from(coded.frame_time_ns) * 1e-9;
     ensure!(
         (1.0..=f64::from(MAX_FRAMES)).contains(&spacing),
-        "--index {}: expected a frame's time or more, in seconds",
-        Number(seconds)
+        "--index {}: expected seconds, from {frame} (a frame) to {} ({MAX_FRAMES} frames)",
+        Number(seconds),
+        frame * f64::from(MAX_FRAMES)
     );
     let bytes = clip::encode_with_index(coded, rig, apart, spacing as u32)?;
     let cost = bytes.len() - plain.len();

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 
 /// Serve the page that `cargo xtask web` builds, to show clips in a browser.
 ///
-/// The server listens only on this machine unless --bind sets another address. It opens no browser, and serves only the page and the clips named
+/// The server listens on this machine only, and answers only requests to localhost, 127.0.0.1 or ::1 with its port, unless --bind sets
+/// another address. It opens no browser, and serves only the page and the clips named
 /// here, as they are when it starts.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = "Examples:

@@ -1,6 +1,5 @@
 //! `pantin stream`: clips over a line, while they play.
 
-use super::channel_bound::above_zero;
 use crate::budget;
 use crate::cmd::{Files, rig_is_needed};
 use crate::input;
@@ -19,6 +18,8 @@ use std::time::{Duration, Instant};
 
 /// Most bytes of a file that holds a key: comments have no place in it.
 const KEY_BYTES: u64 = 256;
+/// Longest cycle and look-ahead. The limits in frames are usually shorter.
+const MOST_SECONDS: f64 = 60.0;
 
 /// Send clips over a line while they play, each frame a little ahead of its time.
 ///
@@ -48,11 +49,11 @@ pub struct Arguments {
     /// Share of the line that refreshes may take, in percent: more than 0
     #[arg(long, value_name = "PERCENT", default_value_t = 100.0)]
     refresh: f64,
-    /// Shortest cycle in which every channel is refreshed, in seconds; longer if the line is too slow
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.2, value_parser = above_zero)]
+    /// Shortest cycle in which every channel is refreshed, in seconds: more than 0, at most 60 and 120 frames; longer if the line is too slow
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2, value_parser = seconds)]
     cycle: f64,
-    /// Largest look-ahead, in seconds: the figure starts later by it, and at most 24 packets wait at the receiver
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.5, value_parser = above_zero)]
+    /// Largest look-ahead, in seconds: more than 0, at most 60 and 250 frames. The figure starts later by it, and at most 24 packets wait at the receiver
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.5, value_parser = seconds)]
     ahead: f64,
     /// Add 8 bytes of parity to each packet, which correct 4 wrong bytes; the receiver must expect them (the board's argument `fec`)
     #[arg(long)]
@@ -61,6 +62,12 @@ pub struct Arguments {
     /// 32 hexadecimal digits, or these digits
     #[arg(long, value_name = "KEY")]
     key: Option<String>,
+}
+
+/// A time that the sender plans with.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.trim().parse::<f64>().ok().filter(|&seconds| seconds > 0.0 && seconds <= MOST_SECONDS);
+    seconds.ok_or_else(|| format!("expected seconds, more than 0 and at most {MOST_SECONDS}"))
 }
 
 impl Arguments {

@@ -3,6 +3,7 @@
 use super::blueprint::{Blueprint, Drive};
 use anyhow::{Context, Result, bail, ensure};
 use pantin_face::{FULL_WEIGHT, Target, Weights};
+use std::collections::HashSet;
 
 /// A pair of weights for each shape.
 pub type Pairs = Vec<[f64; 2]>;
@@ -10,11 +11,13 @@ pub type Pairs = Vec<[f64; 2]>;
 /// Far more than any face shows.
 const MOST_WEIGHT: f64 = 100.0;
 
-/// Parses a sum of names, each with a value (default 1). Fails on unknown names, and for values that are no number from -100 to 100.
+/// Parses a sum of names, each with a value (default 1). Fails on unknown names, for a name that comes twice, and for values that are no number from -100 to 100.
 pub fn parse(face: &Blueprint, sum: &str) -> Result<Pairs> {
     let mut pairs = vec![[0.0; 2]; face.shapes.len()];
+    let mut names = HashSet::new();
     for term in sum.split([',', '+']).map(str::trim).filter(|term| !term.is_empty()) {
         let (name, value) = term.split_once('=').unwrap_or((term, "1"));
+        ensure!(names.insert(name.trim()), "{term}: {} comes twice; give it one weight", name.trim());
         let value: f64 = value.trim().parse().with_context(|| format!("{term}: expected name=number"))?;
         ensure!(
             value.abs() <= MOST_WEIGHT,

@@ -1,5 +1,6 @@
 //! What an output's path names: a file to replace, a pipe or device to write through, or standard output.
 
+use crate::input;
 use anyhow::{Context, Result, bail, ensure};
 use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
@@ -76,6 +77,9 @@ impl Place {
     }
 
     fn identity(&self) -> Option<Identity> {
+        if *self == Place::Stdout {
+            return stream_id(&std::io::stdout()).map(Identity::Existing);
+        }
         let (Place::File(path) | Place::Through(path)) = self else { return None };
         // A name below /proc can be a regular file's.
         if path.is_file() {
@@ -112,6 +116,20 @@ pub fn file_id(path: &Path) -> Option<FileId> {
     path.metadata().ok().map(|found| (found.dev(), found.ino()))
 }
 
+/// The identity of the regular file that standard input or standard output is, if it is one.
+#[cfg(unix)]
+fn stream_id(stream: &impl std::os::fd::AsFd) -> Option<FileId> {
+    use std::os::unix::fs::MetadataExt;
+    let found = File::from(stream.as_fd().try_clone_to_owned().ok()?).metadata().ok()?;
+    found.is_file().then(|| (found.dev(), found.ino()))
+}
+
+/// Not known here: such a file is no output's name.
+#[cfg(not(unix))]
+fn stream_id<T>(_: &T) -> Option<FileId> {
+    None
+}
+
 /// The identity of a file that is there.
 #[cfg(not(unix))]
 pub fn file_id(path: &Path) -> Option<FileId> {
@@ -137,7 +155,11 @@ pub(super) fn folder(path: &Path) -> &Path {
 pub fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
     let mut sources = HashMap::new();
     for &input in inputs {
-        if let Some(identity) = Place::of(input).ok().and_then(|input| input.identity()) {
+        let identity = match input::is_stdin(input) {
+            true => stream_id(&std::io::stdin()).map(Identity::Existing),
+            false => Place::of(input).ok().and_then(|input| input.identity()),
+        };
+        if let Some(identity) = identity {
             sources.entry(identity).or_insert(input);
         }
     }
@@ -147,7 +169,9 @@ pub fn check(inputs: &[&Path], outputs: &[&Path]) -> Result<()> {
     for (place, &output) in places.iter().zip(outputs) {
         let identity = place.identity();
         if let Some(input) = identity.as_ref().and_then(|identity| sources.get(identity)) {
-            bail!("{}: is the input {} itself; choose another name for the output", output.display(), input.display());
+            let stream = |path: &Path, name: &str| if path.as_os_str() == "-" { name.into() } else { path.display().to_string() };
+            let (output, input) = (stream(output, "standard output"), stream(input, "standard input"));
+            bail!("{output}: is the input {input} itself; choose another name for the output");
         }
         if let Some(other) = named.insert(identity.unwrap_or_else(|| Identity::Through(place.clone())), output) {
             bail!("{} and {}: both outputs are one file", other.display(), output.display());

@@ -29,6 +29,21 @@ pub(crate) use {detail, note, outln};
 /// Whether a reader of the output went away.
 static READER_GONE: AtomicBool = AtomicBool::new(false);
 
+/// Most characters of a word that are printed. Paths and names have fewer.
+const LONGEST_WORD: usize = 1000;
+
+fn is_long(word: &str) -> bool {
+    word.chars().nth(LONGEST_WORD).is_some()
+}
+
+/// A word with at most [`LONGEST_WORD`] characters, of which the last one is an ellipsis if some are left out.
+fn short(word: &str) -> Cow<'_, str> {
+    match is_long(word) {
+        true => Cow::Owned(word.chars().take(LONGEST_WORD - 1).chain(['…']).collect()),
+        false => Cow::Borrowed(word),
+    }
+}
+
 /// Whether what was written has no reader any more, as after `| head -1`: then there is nothing to report.
 pub fn reader_gone() -> bool {
     READER_GONE.load(Ordering::Relaxed)
@@ -48,8 +63,13 @@ pub fn is_hostile(c: char) -> bool {
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }
 
-/// `text` with such characters as escapes, so that it stays on its line and readable.
+/// `text` with such characters as escapes, and the end of a word of more than 1,000 characters as an ellipsis, so that it stays
+/// on its line and readable.
 pub fn clean(text: &str) -> Cow<'_, str> {
+    if text.len() > LONGEST_WORD && text.split(' ').any(is_long) {
+        let words: Vec<_> = text.split(' ').map(short).collect();
+        return Cow::Owned(clean(&words.join(" ")).into_owned());
+    }
     if !text.chars().any(is_hostile) {
         return Cow::Borrowed(text);
     }
@@ -129,6 +149,8 @@ mod tests {
     #[test]
     fn what_a_terminal_would_obey_is_escaped() {
         assert_eq!(clean("Hüfte 左"), "Hüfte 左");
+        let long = format!("a {}: b", "é".repeat(100_000));
+        assert_eq!(clean(&long), format!("a {}… b", "é".repeat(LONGEST_WORD - 1)));
         assert_eq!(clean("a\x1b[31m\r\n\u{202e}b\u{9b}"), "a\\u{1b}[31m\\r\\n\\u{202e}b\\u{9b}");
     }
 }

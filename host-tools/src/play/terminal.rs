@@ -12,9 +12,15 @@ use crossterm::terminal::{
 use crossterm::{execute, queue, terminal};
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(unix)]
+use std::time::Duration;
 
 /// Columns and rows that are used at most, whatever size a terminal claims.
 const LARGEST: [usize; 2] = [1000, 500];
+
+/// The time that a terminal has to take what restores it, after a signal: one that stopped reading never takes it.
+#[cfg(unix)]
+const RESTORE_TIME: Duration = Duration::from_secs(1);
 
 /// Whether it has to be restored.
 static ENTERED: AtomicBool = AtomicBool::new(false);
@@ -70,17 +76,23 @@ impl Drop for Terminal {
 }
 
 /// Restores the terminal and ends the program when a signal comes. By a thread of its own: waiting for a key does not end where the
-/// terminal is gone.
+/// terminal is gone. A terminal that takes no output within [`RESTORE_TIME`] gets only its modes back.
 #[cfg(unix)]
 fn leave_by_signals() -> Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
     let mut signals = signal_hook::iterator::Signals::new([SIGHUP, SIGINT, SIGQUIT, SIGTERM])?;
     std::thread::spawn(move || {
         if let Some(signal) = signals.forever().next() {
-            // Held to the end, so that no picture follows.
-            let _held = io::stdout().lock();
-            restore();
-            std::process::exit(128 + signal);
+            std::thread::spawn(move || {
+                // Held to the end, so that no picture follows.
+                let _held = io::stdout().lock();
+                restore();
+                std::process::exit(128 + signal);
+            });
+            std::thread::sleep(RESTORE_TIME);
+            // Modes are set without output.
+            let _ = disable_raw_mode();
+            signal_hook::low_level::exit(128 + signal);
         }
     });
     Ok(())

@@ -7,7 +7,7 @@
 use super::Site;
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -32,10 +32,12 @@ const MOST_HEADERS: usize = 64;
 /// Bytes that are read of what a client still sends once it has its answer: unread, they would take it back from the client.
 const MOST_REST: usize = 64 << 10;
 
-/// Serves for ever.
+/// Serves for ever. A listener on a loopback address answers only requests whose header `Host`, if there is one, names this machine and the port: a page of
+/// another site whose name leads here gets nothing.
 pub fn serve(listener: &TcpListener, site: Site) {
     let site = Arc::new(site);
     let places = Arc::new(Places::default());
+    let local = listener.local_addr().ok().filter(|address| address.ip().is_loopback());
     for stream in listener.incoming() {
         // A connection that is gone before it was taken, or no file handle for one: others may come.
         let Ok(stream) = stream else {
@@ -47,7 +49,7 @@ pub fn serve(listener: &TcpListener, site: Site) {
         // Without a thread, the connection is dropped.
         let _ = thread::Builder::new().stack_size(256 << 10).spawn(move || {
             // What goes wrong between us concerns no other client.
-            let _ = attend(&stream, &site, guest);
+            let _ = attend(&stream, &site, local, guest);
         });
     }
 }
@@ -175,6 +177,7 @@ impl Drop for Guest {
 enum Status {
     Good,
     Malformed,
+    Forbidden,
     Missing,
     Method,
     Late,
@@ -187,6 +190,7 @@ impl Status {
         match self {
             Status::Good => "200 OK",
             Status::Malformed => "400 Bad Request",
+            Status::Forbidden => "403 Forbidden",
             Status::Missing => "404 Not Found",
             Status::Method => "405 Method Not Allowed",
             Status::Late => "408 Request Timeout",
@@ -196,7 +200,7 @@ impl Status {
     }
 }
 
-fn attend(stream: &TcpStream, site: &Site, mut guest: Guest) -> io::Result<()> {
+fn attend(stream: &TcpStream, site: &Site, local: Option<SocketAddr>, mut guest: Guest) -> io::Result<()> {
     stream.set_write_timeout(Some(PATIENCE))?;
     let mut buffer = [0; MOST_HEAD];
     let refused = guest.stage == Stage::Closing;
@@ -205,7 +209,10 @@ fn attend(stream: &TcpStream, site: &Site, mut guest: Guest) -> io::Result<()> {
     match request {
         _ if !kept => answer(stream, Status::Busy, None, true, CLOSE_TIME)?,
         Err(status) => answer(stream, status, None, true, ANSWER_TIME)?,
-        Ok(Request { method, path }) => match site.file(path.split('?').next().unwrap_or_default()) {
+        Ok(Request { hosts, .. }) if !local.is_none_or(|local| hosts.iter().all(|host| is_here(host, local))) => {
+            answer(stream, Status::Forbidden, None, true, ANSWER_TIME)?;
+        }
+        Ok(Request { method, path, .. }) => match site.file(path.split('?').next().unwrap_or_default()) {
             _ if method != "GET" && method != "HEAD" => answer(stream, Status::Method, None, true, ANSWER_TIME)?,
             None => answer(stream, Status::Missing, None, method == "GET", ANSWER_TIME)?,
             file => answer(stream, Status::Good, file, method == "GET", ANSWER_TIME)?,
@@ -220,6 +227,19 @@ fn attend(stream: &TcpStream, site: &Site, mut guest: Guest) -> io::Result<()> {
 struct Request<'b> {
     method: &'b str,
     path: &'b str,
+    /// What its headers `Host` say.
+    hosts: Vec<&'b [u8]>,
+}
+
+/// Whether a header `Host` names the server at the loopback address `local`.
+fn is_here(host: &[u8], local: SocketAddr) -> bool {
+    let port = local.port();
+    let names = ["localhost", "127.0.0.1", "[::1]"].map(|name| format!("{name}:{port}"));
+    let is = |name: &str| {
+        let bare = name.strip_suffix(":80").unwrap_or(name);
+        host.eq_ignore_ascii_case(name.as_bytes()) || host.eq_ignore_ascii_case(bare.as_bytes())
+    };
+    names.iter().any(|name| is(name)) || is(&local.to_string())
 }
 
 /// Reads until the head is whole, or the place is lost.
@@ -257,7 +277,10 @@ fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD], guest: &Gue
     // It was whole above; what it borrows could not be handed out there.
     let parsed = request.parse(&buffer[..len]);
     match (parsed, request.method, request.path) {
-        (Ok(_), Some(method), Some(path)) => Ok(Request { method, path }),
+        (Ok(_), Some(method), Some(path)) => {
+            let hosts = request.headers.iter().filter(|header| header.name.eq_ignore_ascii_case("host"));
+            Ok(Request { method, path, hosts: hosts.map(|header| header.value).collect() })
+        }
         _ => Err(Status::Malformed),
     }
 }
@@ -265,7 +288,11 @@ fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD], guest: &Gue
 /// Writes an answer within `time` and what a file's length adds to it.
 fn answer(stream: &TcpStream, status: Status, file: Option<&super::File>, body: bool, time: Duration) -> io::Result<()> {
     let line = status.line();
-    let own = format!("{line}\n");
+    let help = match status {
+        Status::Forbidden => "The Host header names another server. Open the URL that `pantin serve` prints.\n",
+        _ => "",
+    };
+    let own = format!("{line}\n{help}");
     let (bytes, kind) = file.map_or((own.as_bytes(), "text/plain"), |file| (&file.bytes, file.kind));
     let allow = if let Status::Method = status { "Allow: GET, HEAD\r\n" } else { "" };
     let head = format!(

@@ -2,6 +2,7 @@
 
 use crate::input;
 use crate::open::no_clip;
+use crate::output::note;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
 use serde_json::json;
@@ -33,10 +34,11 @@ impl Site {
     /// Reads a site that `cargo xtask web` has built.
     pub fn read(folder: &Path) -> Result<Site> {
         let mut site = Site::default();
-        site.add_folder(folder, "/")?;
+        let root = folder.canonicalize().with_context(|| format!("{}: cannot be read", folder.display()))?;
+        site.add_folder(&root, folder, "/")?;
         let clips = folder.join(CLIPS);
         if clips.is_dir() {
-            site.add_folder(&clips, &format!("/{CLIPS}/"))?;
+            site.add_folder(&root, &clips, &format!("/{CLIPS}/"))?;
         }
         ensure!(
             site.files.contains_key("/index.html"),
@@ -90,11 +92,16 @@ impl Site {
         Ok(())
     }
 
-    fn add_folder(&mut self, folder: &Path, prefix: &str) -> Result<()> {
+    /// Adds the files in `folder`, except links that lead out of the site's folder `root`.
+    fn add_folder(&mut self, root: &Path, folder: &Path, prefix: &str) -> Result<()> {
         let entries = fs::read_dir(folder).with_context(|| format!("{}: cannot be read", folder.display()))?;
         for entry in entries {
             let path = entry.with_context(|| folder.display().to_string())?.path();
             if let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|_| path.is_file()) {
+                if !path.canonicalize().is_ok_and(|file| file.starts_with(root)) {
+                    note!("warning: {}: not served, because it is a link to a file outside of the site's folder", path.display());
+                    continue;
+                }
                 let bytes = input::read(&path)?;
                 self.add(format!("{prefix}{name}"), bytes)?;
             }

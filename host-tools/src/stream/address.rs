@@ -48,6 +48,9 @@ impl FromStr for Address {
         if to.is_empty() || (way != Way::Serial && !to.contains(':')) {
             bail!("{text}: {expected}");
         }
+        if way != Way::Serial && !line::is_address(to) {
+            bail!("{to}: expected HOST:PORT, with a port from 1 to 65535");
+        }
         Ok(Address { way, to: to.into(), baud })
     }
 }
@@ -108,7 +111,19 @@ mod tests {
         let address = |text: &str| text.parse::<Address>().map(|address| (address.to.clone(), address.rate()));
         assert_eq!(address("serial:/dev/ttyUSB0@9600").unwrap(), ("/dev/ttyUSB0".into(), 960.0));
         assert_eq!(address("udp:board.local:4000").unwrap(), ("board.local:4000".into(), 3840.0));
-        for wrong in ["", "tcp", "tcp:", "tcp:host", "udp:host:1@x", "udp:host:1@0", "file:a:b", "serial:"] {
+        for wrong in [
+            "",
+            "tcp",
+            "tcp:",
+            "tcp:host",
+            "udp:host:1@x",
+            "udp:host:1@0",
+            "udp:127.0.0.1:99999",
+            "tcp:host:0",
+            "tcp::1",
+            "file:a:b",
+            "serial:",
+        ] {
             assert!(address(wrong).is_err(), "{wrong}");
         }
     }

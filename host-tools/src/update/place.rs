@@ -1,6 +1,6 @@
 //! Where a board is.
 
-use crate::line::Line;
+use crate::line::{Line, is_address};
 use anyhow::Result;
 use std::fmt;
 use std::str::FromStr;
@@ -37,6 +37,9 @@ impl FromStr for Place {
             }
         }
         match text.strip_prefix("tcp:") {
+            Some(address) if address.contains(':') && !is_address(address) => {
+                Err(format!("{address}: expected HOST:PORT, with a port from 1 to 65535"))
+            }
             Some(address) if address.contains(':') => Ok(Place::Tcp(address.into())),
             _ => Err(expected.into()),
         }
@@ -73,7 +76,7 @@ mod tests {
         assert_eq!("serial:COM3@9600".parse(), serial("COM3", 9600));
         assert_eq!("tcp:localhost:4000".parse(), Ok(Place::Tcp("localhost:4000".into())));
         assert!(
-            ["", "serial:", "serial:@9600", "serial:a@b", "serial:a@0", "tcp:localhost", "/dev/ttyACM0"]
+            ["", "serial:", "serial:@9600", "serial:a@b", "serial:a@0", "tcp:localhost", "tcp:localhost:99999", "/dev/ttyACM0"]
                 .iter()
                 .all(|text| text.parse::<Place>().is_err())
         );

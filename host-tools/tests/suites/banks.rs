@@ -339,6 +339,20 @@ fn banks_and_folders_report_what_one_conversion_does() {
 
 /// A folder with a bank, `moves.ptb`, that holds one clip so many times: as c0, c1, and so on. Returns the clip too.
 #[cfg(target_os = "linux")]
+#[test]
+fn unpacking_replaces_no_file_that_nobody_named() {
+    let (folder, clip) = folder_with_bank(3);
+    folder.put("out/c1.ptn", "mine");
+    let said = folder.refused(&["unpack", "moves.ptb", "-o", "out"]);
+    assert!(said.contains("c1.ptn: exists; --replace replaces it, another folder keeps it"), "{said}");
+    assert_eq!(folder.get("out/c1.ptn"), b"mine");
+    assert!(!folder.path("out/c0.ptn").exists() && !folder.path("out/c2.ptn").exists());
+    // Those that are not asked for may exist.
+    folder.done(&["unpack", "moves.ptb", "-o", "out", "--clip", "c2"]);
+    folder.done(&["unpack", "moves.ptb", "-o", "out", "--replace"]);
+    assert!((0..3).all(|number| folder.get(&format!("out/c{number}.ptn")) == clip));
+}
+
 fn folder_with_bank(clips: usize) -> (super::outputs::Folder, Vec<u8>) {
     use pantin_tools::encode::bank::{Named, encode, rig_of};
     let folder = super::outputs::Folder::new();
@@ -355,9 +369,9 @@ fn folder_with_bank(clips: usize) -> (super::outputs::Folder, Vec<u8>) {
 fn unpacking_needs_few_open_files() {
     let (folder, clip) = folder_with_bank(200);
     // The second time all files are there already.
-    for _ in 0..2 {
+    for options in ["", "--replace"] {
         let mut command = Command::new("sh");
-        command.args(["-c", "ulimit -n 40; \"$0\" unpack moves.ptb -o out", env!("CARGO_BIN_EXE_pantin")]);
+        command.args(["-c", &format!("ulimit -n 40; \"$0\" unpack moves.ptb -o out {options}"), env!("CARGO_BIN_EXE_pantin")]);
         let output = command.current_dir(folder.path("")).output().unwrap();
         assert!(output.status.success(), "{}", super::outputs::err(&output));
     }
@@ -393,7 +407,7 @@ fn a_signal_leaves_all_or_none_of_what_belongs_together() {
     (0..CLIPS).for_each(|number| std::fs::write(path(number), "before").unwrap());
     let inode = |number| path(number).metadata().unwrap().ino();
     let before: Vec<u64> = (0..CLIPS).map(inode).collect();
-    let mut child = folder.command(&["unpack", "moves.ptb", "-o", "out", "-q"]).spawn().unwrap();
+    let mut child = folder.command(&["unpack", "moves.ptb", "-o", "out", "-q", "--replace"]).spawn().unwrap();
     // In the midst of it: the first is in place.
     while inode(0) == before[0] {
         assert!(child.try_wait().unwrap().is_none_or(|status| status.success()));

@@ -17,7 +17,7 @@ const RUNS: [&[&str]; 25] = [
     &["convert", "--list", "run.keys"],
     &["convert", "walk.keys", "--find-loop"],
     &["pack", "a.ptn", "-o", "packed.ptb"],
-    &["unpack", "moves.ptb", "-o", "unpacked"],
+    &["unpack", "moves.ptb", "-o", "unpacked", "--replace"],
     &["list", "moves.ptb"],
     &["info", "moves.ptb"],
     &["train", "in/light.csv", "--bounds", "1", "--note", "A test.", "-o", "tables.rs"],
@@ -341,6 +341,66 @@ fn options_that_do_not_apply_are_refused() {
     folder.done(&["convert", "in", "-o", "out", "--animation", "smile"]);
     folder.done(&["convert", "in/world.wrl", "-o", "smile.ptn", "--animation", "Smile"]);
     assert!(folder.get("out/world.ptn") == folder.get("smile.ptn") && folder.path("out/light.ptn").exists());
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_with_the_range() {
+    let folder = prepared();
+    for wrong in ["1e9", "1e-9", "nan"] {
+        let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--effort", "fast", &format!("--index={wrong}")]);
+        assert!(said.contains("--index") && said.contains("expected seconds, from 0.0") && said.contains(" frames)"), "{said}");
+    }
+    let wrong: [(&[&str], &str); 10] = [
+        (&["render", "a.ptn", "--tilt=nan"], "expected whole degrees from -90 to 90"),
+        (&["render", "a.ptn", "--tilt", "-91"], "expected whole degrees from -90 to 90"),
+        (&["stream", "a.ptn", "--to", "udp:127.0.0.1:99999"], "a port from 1 to 65535"),
+        (&["stream", "a.ptn", "--to", "tcp:127.0.0.1:0"], "a port from 1 to 65535"),
+        (&["update", "a.ptn", "--to", "tcp:127.0.0.1:99999"], "a port from 1 to 65535"),
+        (&["stream", "a.ptn", "--to", "udp:127.0.0.1:9", "--ahead", "1e9"], "more than 0 and at most 60"),
+        (&["stream", "a.ptn", "--to", "udp:127.0.0.1:9", "--ahead", "61"], "more than 0 and at most 60"),
+        (&["stream", "a.ptn", "--to", "udp:127.0.0.1:9", "--cycle", "1e9"], "more than 0 and at most 60"),
+        (&["stream", "a.ptn", "--to", "udp:127.0.0.1:9", "--cycle", "0"], "more than 0 and at most 60"),
+        (&["update", "a.ptn", "--to", "udp:127.0.0.1:9"], "expected serial:PORT"),
+    ];
+    for (arguments, why) in wrong {
+        let output = folder.run(arguments);
+        assert!(output.status.code() == Some(2) && err(&output).contains(why), "{arguments:?}: {}", err(&output));
+    }
+}
+
+#[test]
+fn a_pose_with_a_unit_twice_is_refused() {
+    let folder = Folder::new();
+    for pose in ["joy=1,joy=2", "joy + joy=0.5"] {
+        let said = folder.refused(&["face", "export", "-o", "joy.obj", "--pose", pose]);
+        assert!(said.contains("joy comes twice") && !folder.path("joy.obj").exists(), "{said}");
+    }
+    folder.done(&["face", "export", "-o", "joy.obj", "--pose", "joy=1,wink_left"]);
+}
+
+#[test]
+fn an_argument_stays_on_its_line() {
+    let folder = Folder::new();
+    let wrong: [&[&str]; 4] = [
+        &["a\nerror: fake"],
+        &["info", "a.ptn", "--no\nerror: fake"],
+        &["render", "a.ptn", "--size=big\nerror: fake"],
+        &["render", "a.ptn", "--view", "side,up\nerror: fake"],
+    ];
+    for arguments in wrong {
+        let output = folder.run(arguments);
+        let said = err(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains("\\nerror: fake") && !said.contains("\nerror: fake"), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn a_very_long_name_is_cut() {
+    let folder = Folder::new();
+    folder.put("long.csv", format!("time,{}\n0,0\n0.1,1\n0.2,0.5\n", "n".repeat(100_000)));
+    let output = folder.run(&["convert", "long.csv", "-o", "long.ptn"]);
+    assert!(err(&output).contains('…') && err(&output).len() < 10_000, "{} bytes", err(&output).len());
 }
 
 #[test]

@@ -500,6 +500,40 @@ mod unix {
     }
 
     #[test]
+    fn a_redirected_input_is_no_output_and_a_redirected_output_no_input() {
+        let folder = Folder::new();
+        let clip = clip(&folder);
+        folder.put("z.csv", &clip);
+        folder.put("a1.ptn", &clip);
+        let runs = [
+            "expand - -o z.csv < z.csv",
+            "expand - --format csv -o - < a1.ptn >> a1.ptn",
+            "expand a1.ptn --format csv -o - >> a1.ptn",
+            "expand a1.ptn --format csv -o - 1<> a1.ptn",
+            "expand z.csv --format csv -o /dev/stdout >> z.csv",
+            "render a1.ptn --format png --frame 0 -o - >> a1.ptn",
+            "convert - -o z.ptn < z.ptn",
+            "convert a.keys -o - >> a.keys",
+        ];
+        folder.put("z.ptn", folder.get("run.keys"));
+        folder.put("a.keys", folder.get("run.keys"));
+        for run in runs {
+            let mut command = Command::new("sh");
+            command.args(["-c", &format!("\"$0\" {run}"), env!("CARGO_BIN_EXE_pantin")]).current_dir(folder.path(""));
+            let output = command.output().unwrap();
+            let said = err(&output);
+            assert!(output.status.code() == Some(1) && said.contains("is the input"), "{run}: {said}");
+            assert!(folder.get("z.csv") == clip && folder.get("a1.ptn") == clip, "{run}");
+            assert!(["z.ptn", "a.keys"].iter().all(|name| folder.get(name) == folder.get("run.keys")), "{run}");
+        }
+        // Other files are no obstacle.
+        let run = "\"$0\" expand - --format csv -o - < a1.ptn >> new.csv && \"$0\" expand a1.ptn --format csv -o - > /dev/null < a1.ptn";
+        let done =
+            Command::new("sh").args(["-c", run, env!("CARGO_BIN_EXE_pantin")]).current_dir(folder.path("")).output().unwrap();
+        assert!(done.status.success() && !folder.get("new.csv").is_empty(), "{}", err(&done));
+    }
+
+    #[test]
     fn a_replaced_file_keeps_its_rights_and_a_new_one_has_the_usual_ones() {
         let folder = Folder::new();
         folder.put("a.ptn", "old");

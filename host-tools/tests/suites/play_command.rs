@@ -258,6 +258,40 @@ fn a_signal_restores_the_terminal_and_a_hangup_ends_it() {
     }
 }
 
+#[test]
+fn a_signal_ends_it_where_the_terminal_has_stopped_reading() {
+    let folder = Folder::new("stopped");
+    for (name, number) in [("-TERM", 15), ("-INT", 2), ("-HUP", 1)] {
+        let pair = native_pty_system().openpty(PtySize { rows: 100, cols: 300, pixel_width: 0, pixel_height: 0 }).unwrap();
+        let modes = format!("{:?}", pair.master.get_termios());
+        let mut command = CommandBuilder::new(PANTIN);
+        command.args(["play", "walk.ptn", "--dots", "half", "--colours", "all"]);
+        command.cwd(&folder.0);
+        let mut child = pair.slave.spawn_command(command).unwrap();
+        let begun = Instant::now();
+        while modes == format!("{:?}", pair.master.get_termios()) {
+            assert!(begun.elapsed() < PATIENCE, "it does not begin");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        // Nobody reads: by now a write waits.
+        std::thread::sleep(Duration::from_secs(2));
+        assert!(Command::new("kill").args([name, &child.process_id().unwrap().to_string()]).status().unwrap().success());
+        let begun = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().unwrap() {
+                break status;
+            }
+            if begun.elapsed() > Duration::from_secs(5) {
+                child.kill().unwrap();
+                panic!("{name} does not end it");
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        };
+        assert_eq!(status.exit_code(), 128 + number, "{name}");
+        assert_eq!(modes, format!("{:?}", pair.master.get_termios()), "{name}");
+    }
+}
+
 /// Runs in the terminal of the test below.
 #[test]
 #[ignore = "panics on purpose: a_panic_restores_the_terminal_and_is_read runs it"]

@@ -51,7 +51,7 @@ fn body(answer: &[u8]) -> &[u8] {
 }
 
 fn serves(place: SocketAddr) {
-    let answer = talk(place, b"GET / HTTP/1.1\r\nHost: here\r\n\r\n");
+    let answer = talk(place, format!("GET / HTTP/1.1\r\nHost: {place}\r\n\r\n").as_bytes());
     assert_eq!((status(&answer).as_str(), body(&answer)), ("200", PAGE));
 }
 
@@ -87,6 +87,55 @@ fn what_was_not_given_is_not_there() {
         assert!(["404", "400"].contains(&status(&answer).as_str()), "{path}: {}", status(&answer));
     }
     serves(place);
+}
+
+#[test]
+fn a_request_to_another_host_is_forbidden() {
+    let place = server();
+    let port = place.port();
+    let asked = |host: &str| talk(place, format!("GET / HTTP/1.1\r\nHost: {host}\r\n\r\n").as_bytes());
+    for host in ["localhost", "LocalHost", "127.0.0.1", "[::1]"] {
+        assert_eq!(status(&asked(&format!("{host}:{port}"))), "200", "{host}");
+    }
+    let others = ["elsewhere.example".into(), format!("elsewhere.example:{port}"), "localhost:1".into(), "localhost".into()];
+    for host in others.into_iter().chain([String::new(), format!("localhost:{port}\r\nHost: elsewhere")]) {
+        let answer = asked(&host);
+        assert_eq!(status(&answer), "403", "{host}");
+        assert!(String::from_utf8_lossy(body(&answer)).contains("the URL that `pantin serve` prints"), "{host}");
+    }
+}
+
+#[test]
+fn another_bound_address_has_any_name() {
+    let mut site = Site::default();
+    site.add("/index.html".into(), PAGE.to_vec()).unwrap();
+    let listener = TcpListener::bind("0.0.0.0:0").unwrap();
+    let place = SocketAddr::from(([127, 0, 0, 1], listener.local_addr().unwrap().port()));
+    thread::spawn(move || serve(&listener, site));
+    assert_eq!(status(&talk(place, b"GET / HTTP/1.1\r\nHost: desk.local\r\n\r\n")), "200");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_site_are_not_served() {
+    use std::os::unix::fs::symlink;
+    let outside = tempfile::TempDir::new().unwrap();
+    fs::create_dir(outside.path().join("clips")).unwrap();
+    ["secret", "clips/secret"].iter().for_each(|name| fs::write(outside.path().join(name), b"secret").unwrap());
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("index.html"), PAGE).unwrap();
+    symlink("index.html", path("inside.html")).unwrap();
+    symlink(outside.path().join("secret"), path("leak")).unwrap();
+    symlink(outside.path().join("clips"), path("clips")).unwrap();
+    // The site's folder itself may be a link.
+    let link = outside.path().join("site");
+    symlink(folder.path(), &link).unwrap();
+    for site in [folder.path(), &link] {
+        let site = Site::read(site).unwrap();
+        assert_eq!(site.file("/inside.html").unwrap().bytes, PAGE);
+        assert!(site.file("/leak").is_none() && site.file("/clips/secret").is_none());
+    }
 }
 
 /// A folder with a page, and with what `name` says in `content`.

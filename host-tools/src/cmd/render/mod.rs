@@ -75,7 +75,7 @@ pub struct Arguments {
     #[arg(long, value_name = "SIDES", value_delimiter = ',', allow_hyphen_values = true)]
     view: Vec<Side>,
     /// Degrees of the camera above the horizon [default: 12; a face: 0]
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = clap::value_parser!(i16).range(-90..=90))]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = tilt)]
     tilt: Option<i16>,
     /// The direction that is vertical, instead of the one that the clip states: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", value_parser = up_axis, allow_hyphen_values = true)]
@@ -114,6 +114,12 @@ enum Format {
     Png,
     /// A still of lines
     Svg,
+}
+
+/// An angle of the camera.
+fn tilt(text: &str) -> Result<i16, String> {
+    let degrees = text.parse().ok().filter(|degrees| (-90..=90).contains(degrees));
+    degrees.ok_or_else(|| "expected whole degrees from -90 to 90".into())
 }
 
 /// Runs the command.
