@@ -351,13 +351,16 @@ impl Made {
     /// Sizes and errors, for the user.
     pub fn sentence(&self, output: &Path) -> String {
         let raw = self.frames * self.channels * 2;
+        let saved = match raw {
+            0 => String::new(),
+            raw => format!(", {:.1} % saved", 100.0 - 100.0 * self.bytes.len() as f64 / raw as f64),
+        };
         format!(
-            "{}: {} frames, {} channels; {} bytes ({raw} per frame at 16 bits, {:.1} % saved); {}",
+            "{}: {} frames, {} channels; {} bytes ({raw} per frame at 16 bits{saved}); {}",
             output.display(),
             self.frames,
             self.channels,
             self.bytes.len(),
-            100.0 - 100.0 * self.bytes.len() as f64 / raw as f64,
             self.errors
         )
     }

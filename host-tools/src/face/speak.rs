@@ -339,17 +339,30 @@ fn wav(bytes: &[u8]) -> Result<(u32, Vec<i16>)> {
     let (mut at, mut format) = (12, None);
     while let Some(head) = bytes.get(at..at + 8) {
         let length = u32::from_le_bytes([head[4], head[5], head[6], head[7]]) as usize;
+        let left = bytes.len() - at - 8;
+        // A recorder that cannot go back to its header claims the longest length.
+        ensure!(
+            &head[..4] != b"data" || length <= left || length == u32::MAX as usize,
+            "byte {at}: the data chunk claims {length} bytes, but {left} follow; expected a whole WAV"
+        );
         let body = &bytes[at + 8..(at + 8).saturating_add(length).min(bytes.len())];
         match &head[..4] {
             b"fmt " if body.len() >= 16 => {
                 let short = |place: usize| u16::from_le_bytes([body[place], body[place + 1]]);
                 ensure!(short(0) == 1 && short(14) == 16, "expected PCM of 16 bits");
-                let channels = usize::from(short(2)).max(1);
+                let channels = usize::from(short(2));
+                ensure!(channels > 0, "byte {at}: the format has 0 channels; expected at least 1");
                 format = Some((u32::from_le_bytes([body[4], body[5], body[6], body[7]]), channels));
             }
             b"data" => {
                 let (rate, channels) = format.context("samples before their format")?;
                 ensure!((1_000..=400_000).contains(&rate), "expected a sampling rate from 1,000 to 400,000 Hz, not {rate}");
+                ensure!(
+                    body.len().is_multiple_of(2 * channels) || length == u32::MAX as usize,
+                    "byte {at}: the data chunk has {} bytes; expected a multiple of {}, {channels} samples of 16 bits",
+                    body.len(),
+                    2 * channels
+                );
                 let samples: Vec<i16> = body.chunks_exact(2 * channels).map(|x| i16::from_le_bytes([x[0], x[1]])).collect();
                 ensure!(!samples.is_empty(), "no samples");
                 return Ok((rate, samples));

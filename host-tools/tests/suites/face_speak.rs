@@ -112,3 +112,29 @@ fn a_mouth_follows_the_level_of_a_recording() {
     }
     assert!(speak::of_text("?!").is_err() && speak::of_phonemes("").is_err());
 }
+
+/// A WAV of 16 bits at 8,000 Hz whose data chunk claims `claimed` bytes and has `data`.
+fn wav(channels: u16, claimed: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = b"RIFF\0\0\0\0WAVEfmt \x10\0\0\0\x01\0".to_vec();
+    bytes.extend(channels.to_le_bytes());
+    bytes.extend(8000u32.to_le_bytes());
+    bytes.extend(16000u32.to_le_bytes());
+    bytes.extend([2, 0, 16, 0]);
+    bytes.extend(b"data");
+    bytes.extend(claimed.to_le_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+#[test]
+fn damaged_recordings_are_refused() {
+    let refused = |channels, claimed, data: &[u8], part: &str| {
+        let error = format!("{:#}", speak::of_wav(&wav(channels, claimed, data), "test").expect_err(part));
+        assert!(error.contains(part), "no `{part}` in: {error}");
+    };
+    refused(1, 800, &[1; 400], "claims 800 bytes, but 400 follow");
+    refused(0, 400, &[1; 400], "0 channels");
+    refused(1, 401, &[1; 401], "401 bytes; expected a multiple of 2");
+    speak::of_wav(&wav(1, 400, &[1; 400]), "test").unwrap();
+    speak::of_wav(&wav(1, u32::MAX, &[1; 401]), "test").unwrap();
+}

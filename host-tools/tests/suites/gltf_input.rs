@@ -117,6 +117,14 @@ fn spline() -> Builder {
 }
 
 #[test]
+fn an_animation_of_nodes_outside_of_the_scene_alone_is_refused() {
+    let mut builder = Builder::new(json!([{"name": "root"}, {"name": "other"}]));
+    builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let error = load("outside", &builder.text(), &Options::default()).err().unwrap();
+    assert!(format!("{error:#}").contains("animations[0]: no channel moves a node of the scene, so nothing moves"), "{error:#}");
+}
+
+#[test]
 fn cubic_and_straight_tracks_convert_without_a_fit() {
     let motion = spline().load("exact").motion;
     assert_eq!((motion.frames, motion.frame_time), (61, 1.0 / 30.0));

@@ -98,6 +98,15 @@ impl Seat {
         parser.screen().rows(0, columns.get()).collect()
     }
 
+    /// Waits until the screen shows these words: what a program wrote before its end may not have been read yet.
+    fn shows(&self, words: &str) {
+        let begun = Instant::now();
+        while !self.screen.lock().unwrap().screen().contents().contains(words) {
+            assert!(begun.elapsed() < PATIENCE, "no {words:?} on the screen: {:?}", self.rows());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
     /// Waits until the last row has all of the words, and gives it.
     fn status(&self, words: &[&str]) -> String {
         let begun = Instant::now();
@@ -307,7 +316,7 @@ fn a_panic_restores_the_terminal_and_is_read() {
     let mut seat = Seat::new(&std::env::temp_dir(), own.to_str().unwrap(), &arguments);
     assert!(!seat.wait().success());
     assert!(seat.is_restored());
-    assert!(seat.screen.lock().unwrap().screen().contents().contains("on purpose"));
+    seat.shows("on purpose");
 }
 
 #[test]

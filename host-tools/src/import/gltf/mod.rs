@@ -77,6 +77,9 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     warnings.append(&mut channels.warnings);
     let worlds = std::mem::take(&mut channels.worlds);
     let mut motion = channels.motion(&grid);
+    if motion.rig.channels() == 0 && motion.frames > 1 {
+        bail!(file.error(&format!("animations[{number}]"), "no channel moves a node of the scene, so nothing moves"));
+    }
     motion.add_events(events(&file.root.animations[number], &grid, motion.frames));
     let error = from_transforms::error(&motion, &worlds.iter().map(Vec::as_slice).collect::<Vec<_>>());
     warnings.extend(doubts(&file, &tree, &motion, options));
