@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "file.h"
 #include "pantin.h"
 
 static uint16_t crc_byte(uint16_t crc, uint8_t byte) {
@@ -22,23 +23,6 @@ static uint16_t pose_crc(const int32_t *pose, unsigned channels) {
         for (b = 0; b < 4; b++) crc = crc_byte(crc, (uint8_t)((uint32_t)pose[i] >> (8 * b)));
     }
     return crc;
-}
-
-/* Reads a file to its end: not every C library of an emulated board can seek. */
-static uint8_t *file(const char *path, uint32_t *length) {
-    FILE *f = fopen(path, "rb");
-    uint8_t *bytes = NULL;
-    int byte;
-    *length = 0;
-    if (!f) exit(2);
-    while ((byte = getc(f)) != EOF) {
-        if (*length % 1024 == 0) bytes = (uint8_t *)realloc(bytes, *length + 1024);
-        if (!bytes) exit(2);
-        bytes[(*length)++] = (uint8_t)byte;
-    }
-    fclose(f);
-    /* Of the right size, so that a sanitizer notices what is read past its end. */
-    return (uint8_t *)realloc(bytes, *length ? *length : 1);
 }
 
 static void check(int held, const char *what) {

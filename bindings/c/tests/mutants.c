@@ -6,22 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "file.h"
 #include "pantin.h"
-
-static uint8_t *file(const char *path, uint32_t *length) {
-    FILE *f = fopen(path, "rb");
-    uint8_t *bytes;
-    long size;
-    if (!f) exit(2);
-    fseek(f, 0, SEEK_END);
-    size = ftell(f);
-    rewind(f);
-    bytes = (uint8_t *)malloc(size ? (size_t)size : 1);
-    if (fread(bytes, 1, (size_t)size, f) != (size_t)size) exit(2);
-    fclose(f);
-    *length = (uint32_t)size;
-    return bytes;
-}
 
 static int32_t pose[1023];
 static pantin_channel moving[1023];

@@ -72,8 +72,8 @@ pub struct Beam<C> {
     extended: Vec<Hypothesis<C>>,
     /// Least rank seen at each frame.
     pub least: Vec<f64>,
-    /// Hypotheses that a frame keeps at least once it has twice as many: the best ones.
-    kept: usize,
+    /// Hypotheses that a frame keeps once it has twice as many, the best ones; without it, all.
+    kept: Option<usize>,
     /// The rank from which on each frame takes no more.
     full: Vec<f64>,
     ranked: Vec<(f64, usize)>,
@@ -85,12 +85,12 @@ impl<C: Cost> Beam<C> {
         let extended = Vec::with_capacity(frames * width);
         let ranks = || vec![f64::MAX; frames];
         let (heap, spare, ranked) = (vec![Vec::new(); frames], Vec::new(), Vec::new());
-        Beam { heap, spare, extended, least: ranks(), kept: usize::MAX / 2, full: ranks(), ranked }
+        Beam { heap, spare, extended, least: ranks(), kept: None, full: ranks(), ranked }
     }
 
     /// The same, where a frame keeps no more than the `kept` best hypotheses while others keep coming.
     pub fn keeping(self, kept: usize) -> Self {
-        Beam { kept, ..self }
+        Beam { kept: Some(kept), ..self }
     }
 
     /// The greatest rank that [`Beam::offer`] takes at a frame.
@@ -119,10 +119,10 @@ impl<C: Cost> Beam<C> {
             self.least[frame] = self.least[frame].min(rank);
             self.insert(hypothesis);
             let here = &mut self.heap[frame];
-            if here.len() >= 2 * self.kept {
-                let (_, last, _) = here.select_nth_unstable_by(self.kept - 1, |a, b| a.cost.rank().total_cmp(&b.cost.rank()));
+            if let Some(kept) = self.kept.filter(|kept| here.len() >= 2 * kept) {
+                let (_, last, _) = here.select_nth_unstable_by(kept - 1, |a, b| a.cost.rank().total_cmp(&b.cost.rank()));
                 self.full[frame] = last.cost.rank();
-                here.truncate(self.kept);
+                here.truncate(kept);
             }
         }
     }

@@ -117,7 +117,7 @@ struct Steps {
 struct Search<'t> {
     tube: &'t Tube,
     /// What frames behind the present one cost.
-    price: SegmentPrice,
+    price: SegmentPrice<'t>,
     step: u8,
     steps: Steps,
     costs: &'static Costs,
@@ -216,15 +216,15 @@ impl<'t> Search<'t> {
     fn new(tube: &'t Tube, step: u8, effort: Effort) -> Self {
         let frames = tube.x.len();
         let of = |first| std::array::from_fn(|i| f64::from(number_step(first | i as u8, step)));
-        let kept = if effort.all_alike { usize::MAX / 2 } else { KEPT * effort.beam };
+        let beam = Beam::new(frames, effort.beam);
         Search {
             tube,
-            price: SegmentPrice::default(),
+            price: SegmentPrice::new(tube),
             step,
             steps: Steps { w: of(0), k: of(segment::SLOPE) },
             costs: Costs::get(),
             effort,
-            beam: Beam::new(frames, effort.beam).keeping(kept),
+            beam: if effort.all_alike { beam } else { beam.keeping(KEPT * effort.beam) },
         }
     }
 
@@ -240,11 +240,8 @@ impl<'t> Search<'t> {
             let least = &self.beam.least;
             let horizon = least[frame..frames.min(frame + 100)].iter().copied().fold(f64::MAX, f64::min);
             let limit = (horizon + self.effort.margin).max(least[frame]);
-            let chosen = self.beam.choose(frame, limit, self.effort.beam, cell);
-            if !chosen.is_empty() {
-                self.price.begin(tube, frame);
-            }
-            for id in chosen {
+            self.price.begin(frame);
+            for id in self.beam.choose(frame, limit, self.effort.beam, cell) {
                 let hypothesis = self.beam.extended(id);
                 self.extend::<false>(id, &hypothesis);
                 if self.effort.slopes && hypothesis.mode != START_MODE {

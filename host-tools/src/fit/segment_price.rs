@@ -32,11 +32,15 @@ struct Sums {
     constant: f64,
 }
 
-/// The sums from one frame on, to the end of each length.
-#[derive(Default)]
-pub struct SegmentPrice {
+/// The sums from one frame on, to the end of each length that was asked for.
+pub struct SegmentPrice<'t> {
+    tube: &'t Tube,
+    start: usize,
     origin: f64,
     by_length: [Sums; LENGTHS.len()],
+    /// Lengths that have their sums, and the frames of the longest of them.
+    summed: usize,
+    passed: usize,
 }
 
 /// What a segment costs for a number g, its w or k: s0 + 2 g s1 + g^2 s2.
@@ -47,18 +51,26 @@ pub struct Quadratic {
     pub s2: f64,
 }
 
-impl SegmentPrice {
-    /// Sums the tube's prices behind `start`.
-    pub fn begin(&mut self, tube: &Tube, start: usize) {
-        let rest = tube.x.len() - 1 - start;
-        self.origin = tube.x[start];
-        let mut sums = Sums::default();
-        let mut passed = 0;
-        for (place, &length) in self.by_length.iter_mut().zip(&LENGTHS) {
-            let end = usize::from(length).min(rest);
-            let frames = start + passed + 1..start + end + 1;
-            let tube = tube.x[frames.clone()].iter().zip(&tube.a[frames.clone()]).zip(&tube.b[frames]);
-            for (((&x, &a), &b), weight) in tube.zip(&WEIGHTS[passed + 1..=end]) {
+impl<'t> SegmentPrice<'t> {
+    /// Prices of the tube's frames behind its first one.
+    pub fn new(tube: &'t Tube) -> Self {
+        SegmentPrice { tube, start: 0, origin: 0.0, by_length: Default::default(), summed: 0, passed: 0 }
+    }
+
+    /// Goes to the frames behind `start`.
+    pub fn begin(&mut self, start: usize) {
+        (self.start, self.origin, self.summed, self.passed) = (start, self.tube.x[start], 0, 0);
+    }
+
+    /// Sums on to the end of a length: where the tube is narrow, few lengths are asked for.
+    fn sum_to(&mut self, index: usize) {
+        let rest = self.tube.x.len() - 1 - self.start;
+        while self.summed <= index {
+            let end = usize::from(LENGTHS[self.summed]).min(rest);
+            let mut sums = if self.summed == 0 { Sums::default() } else { self.by_length[self.summed - 1] };
+            let frames = self.start + self.passed + 1..self.start + end + 1;
+            let tube = self.tube.x[frames.clone()].iter().zip(&self.tube.a[frames.clone()]).zip(&self.tube.b[frames]);
+            for (((&x, &a), &b), weight) in tube.zip(&WEIGHTS[self.passed + 1..=end]) {
                 let x = x - self.origin;
                 let [_, v, w, k] = *weight;
                 let (av, aw, ak) = (a * v, a * w, a * k);
@@ -68,14 +80,15 @@ impl SegmentPrice {
                 sums.lines.iter_mut().zip(weight).for_each(|(sum, weight)| *sum += line * weight);
                 sums.constant += x * (a * x - 2.0 * b);
             }
-            *place = sums;
-            passed = end;
+            self.by_length[self.summed] = sums;
+            (self.summed, self.passed) = (self.summed + 1, end);
         }
     }
 
     /// The price of a segment of this length that begins at position p and velocity v: with a new w, or with a new k while w carries on.
     #[inline(always)]
-    pub fn of<const SLOPE: bool>(&self, index: usize, p: f64, v: f64, w: f64) -> Quadratic {
+    pub fn of<const SLOPE: bool>(&mut self, index: usize, p: f64, v: f64, w: f64) -> Quadratic {
+        self.sum_to(index);
         let Sums { squares: [pp, pv, pw, pk, vv, vw, vk, ww, wk, kk], lines: [lp, lv, lw, lk], constant } = self.by_length[index];
         let p = p - self.origin;
         let s0 = p * (pp * p + 2.0 * (pv * v + lp)) + v * (vv * v + 2.0 * lv) + constant;
@@ -96,9 +109,9 @@ mod tests {
     fn sums_price_a_segment_as_its_frames_do() {
         let wave = |scale: f64, speed: f64| (0..150).map(|t| scale * (1.1 + (speed * f64::from(t)).sin())).collect::<Vec<f64>>();
         let tube = Tube { x: wave(1e9, 0.1), a: wave(1e-13, 0.7), b: wave(1e-6, 0.3), ..Tube::default() };
-        let mut price = SegmentPrice::default();
+        let mut price = SegmentPrice::new(&tube);
         for start in [0, 40, 120] {
-            price.begin(&tube, start);
+            price.begin(start);
             let (p, v, w) = (tube.x[start] + 3e5, 4e7, -2e5);
             for (index, &length) in LENGTHS.iter().enumerate() {
                 for (slope, g) in [(false, 3e5), (true, -1e4)] {

@@ -337,7 +337,6 @@ fn banks_and_folders_report_what_one_conversion_does() {
     assert!(said.contains("all 2: --max-scalar-error has no effect") && said.contains("walk.keys: rate: 160 frames"), "{said}");
 }
 
-/// A folder with a bank, `moves.ptb`, that holds one clip so many times: as c0, c1, and so on. Returns the clip too.
 #[cfg(target_os = "linux")]
 #[test]
 fn unpacking_replaces_no_file_that_nobody_named() {
@@ -353,6 +352,7 @@ fn unpacking_replaces_no_file_that_nobody_named() {
     assert!((0..3).all(|number| folder.get(&format!("out/c{number}.ptn")) == clip));
 }
 
+/// A folder with a bank, `moves.ptb`, that holds one clip `clips` times, called c0, c1 and so on. Returns the clip too.
 fn folder_with_bank(clips: usize) -> (super::outputs::Folder, Vec<u8>) {
     use pantin_tools::encode::bank::{Named, encode, rig_of};
     let folder = super::outputs::Folder::new();
