@@ -62,6 +62,9 @@ impl<C> Hypothesis<C> {
 /// Hypotheses of a frame are sorted this many times the beam's width at a time.
 const SORTED: usize = 3;
 
+/// From this many extended hypotheses on, those that nothing comes from any more are dropped: 10 minutes would take 80 MB.
+const FORGET_AT: usize = 1 << 16;
+
 /// The hypotheses of one search.
 pub struct Beam<C> {
     /// Hypotheses by the frame they stand at.
@@ -70,6 +73,8 @@ pub struct Beam<C> {
     spare: Vec<Vec<Hypothesis<C>>>,
     /// Those that were extended, to backtrack by.
     extended: Vec<Hypothesis<C>>,
+    /// How many of them there may be before some are dropped.
+    forget_at: usize,
     /// Least rank seen at each frame.
     pub least: Vec<f64>,
     /// Hypotheses that a frame keeps once it has twice as many, the best ones; without it, all.
@@ -82,10 +87,10 @@ pub struct Beam<C> {
 impl<C: Cost> Beam<C> {
     /// No hypotheses yet, for a channel of this many frames. About `width` are extended at each.
     pub fn new(frames: usize, width: usize) -> Self {
-        let extended = Vec::with_capacity(frames * width);
+        let extended = Vec::with_capacity((frames * width).min(FORGET_AT));
         let ranks = || vec![f64::MAX; frames];
         let (heap, spare, ranked) = (vec![Vec::new(); frames], Vec::new(), Vec::new());
-        Beam { heap, spare, extended, least: ranks(), kept: None, full: ranks(), ranked }
+        Beam { heap, spare, extended, forget_at: FORGET_AT, least: ranks(), kept: None, full: ranks(), ranked }
     }
 
     /// The same, where a frame keeps no more than the `kept` best hypotheses while others keep coming.
@@ -128,7 +133,7 @@ impl<C: Cost> Beam<C> {
     }
 
     /// Chooses up to `width` hypotheses of a frame to extend: the best within `limit`, and of those in one cell the best; those
-    /// without a cell are all kept apart. Returns their indices for [`Beam::extended`].
+    /// without a cell are all kept apart. Returns their indices for [`Beam::extended`], which hold until the next choice.
     pub fn choose<K: PartialEq>(
         &mut self,
         frame: usize,
@@ -136,6 +141,9 @@ impl<C: Cost> Beam<C> {
         width: usize,
         cell: impl Fn(&Hypothesis<C>) -> Option<K>,
     ) -> Range<usize> {
+        if self.extended.len() >= self.forget_at {
+            self.forget();
+        }
         let mut here = std::mem::take(&mut self.heap[frame]);
         let within = here.iter().enumerate().filter(|(_, hypothesis)| hypothesis.cost.rank() <= limit);
         self.ranked.clear();
@@ -167,6 +175,33 @@ impl<C: Cost> Beam<C> {
         here.clear();
         self.spare.push(here);
         first..self.extended.len()
+    }
+
+    /// Drops the extended hypotheses that lead to none of those which wait.
+    fn forget(&mut self) {
+        let mut lives = vec![false; self.extended.len()];
+        let mark = |lives: &mut [bool], from: u32| lives.get_mut(from as usize).into_iter().for_each(|live| *live = true);
+        self.heap.iter().flatten().for_each(|hypothesis| mark(&mut lives, hypothesis.from));
+        for index in (0..self.extended.len()).rev() {
+            if lives[index] {
+                mark(&mut lives, self.extended[index].from);
+            }
+        }
+        let mut kept = 0;
+        let place = |&live: &bool| {
+            kept += u32::from(live);
+            kept - u32::from(live)
+        };
+        let places: Vec<u32> = lives.iter().map(place).collect();
+        let mut lives = lives.into_iter();
+        self.extended.retain(|_| lives.next() == Some(true));
+        let waiting = self.heap.iter_mut().flatten();
+        for hypothesis in self.extended.iter_mut().chain(waiting) {
+            if let Some(&place) = places.get(hypothesis.from as usize) {
+                hypothesis.from = place;
+            }
+        }
+        self.forget_at = FORGET_AT.max(2 * self.extended.len());
     }
 
     /// Keeps a hypothesis on the way to another, without a choice; its index for [`Beam::extended`].
@@ -203,5 +238,44 @@ impl<C: Cost> Beam<C> {
         let (p, v) = in_grids(path[0], first.v, step);
         let segments = chain[1..].iter().map(|hypothesis| hypothesis.segment).collect();
         Some((Fitted { start: Start::Moving { p, v, step }, segments, path, bits: 0.0, start_bits: 0.0 }, end.cost))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRAMES: u32 = 400;
+
+    /// The cheapest of random chains, where hypotheses are dropped from `forget_at` on; and how many were held at the end.
+    fn cheapest(forget_at: usize) -> (Vec<f64>, Vec<Segment>, usize) {
+        let mut beam: Beam<f64> = Beam { forget_at, ..Beam::new(FRAMES as usize, 3) };
+        beam.insert(Hypothesis::start(0.0, 0.0, 0.0));
+        let mut random = 1u32;
+        for frame in 1..FRAMES - 1 {
+            for id in beam.choose(frame as usize, f64::MAX, 3, |_| None::<u8>) {
+                let from = beam.extended(id);
+                for _ in 0..3 {
+                    random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    let (length, w) = (1 + (random >> 28) % 9, f64::from((random >> 20) & 15) - 7.0);
+                    let n = f64::from(length.min(FRAMES - 1 - from.frame));
+                    let segment = Segment { mode: (random >> 8) as u8 & 15, w: w as i32, k: 0 };
+                    let (p, v) = (from.p + n * from.v + 0.5 * n * (n + 1.0) * w, from.v + n * w);
+                    let (frame, cost) = (from.frame + n as u32, from.cost + n * f64::from((random >> 12) & 255));
+                    beam.offer(Hypothesis { cost, p, v, w, k: 0.0, frame, from: id as u32, segment, ..from }, 1e4);
+                }
+            }
+            beam.forget_at = forget_at;
+        }
+        let held = beam.extended.len();
+        let (fitted, _) = beam.backtrack(0).unwrap();
+        (fitted.path, fitted.segments, held)
+    }
+
+    #[test]
+    fn what_is_dropped_leads_nowhere() {
+        let (all, some) = (cheapest(usize::MAX), cheapest(64));
+        assert!(all.2 > 1000 && some.2 < 300, "{} and {} held", all.2, some.2);
+        assert_eq!((all.0, all.1), (some.0, some.1));
     }
 }

@@ -135,7 +135,6 @@ pub struct Descent<'m> {
     kinds: &'m [Kind],
     original: &'m Places,
     poses: Poses,
-    values: Vec<Vec<f64>>,
     codes: Vec<Option<Code>>,
     /// The last pass that found each channel a better code.
     improved: Vec<usize>,
@@ -163,25 +162,10 @@ impl<'m> Descent<'m> {
         original: &'m Places,
         seconds_a_frame: f64,
     ) -> Self {
-        let values: Vec<Vec<f64>> = targets.iter().zip(scales).map(|(x, s)| x.iter().map(|x| x * s).collect()).collect();
-        let poses = figure.poses(&values);
+        let poses = figure.poses(|channel, frame| targets[channel][frame] * scales[channel]);
         let codes = vec![None; targets.len()];
         let improved = vec![0; targets.len()];
-        Descent {
-            figure,
-            plan,
-            first_part,
-            targets,
-            scales,
-            rests,
-            kinds,
-            original,
-            poses,
-            values,
-            codes,
-            improved,
-            seconds_a_frame,
-        }
+        Descent { figure, plan, first_part, targets, scales, rests, kinds, original, poses, codes, improved, seconds_a_frame }
     }
 
     /// All passes. `progress` receives the fraction that is done, 0 to 1.
@@ -234,9 +218,7 @@ impl<'m> Descent<'m> {
                 }
             } else if let Some(kept) = &kept {
                 self.codes.clone_from(&kept.codes);
-                let played = self.codes.iter().zip(self.scales).zip(&mut self.values);
-                played.for_each(|((code, scale), values)| code.iter().for_each(|code| *values = in_units(&code.path, *scale)));
-                self.poses = self.figure.poses(&self.values);
+                self.poses = self.figure.poses(|channel, frame| self.value(channel, frame));
                 fall = fall.sqrt();
                 price = kept.price * fall;
                 if fall > FALL_LEAST {
@@ -279,7 +261,7 @@ impl<'m> Descent<'m> {
         let bound = self.plan.bound_cm * USED;
         let coded = self.codes[channel].is_some();
         let mut bounds = vec![if coded { bound } else { bound * self.first_part }; self.figure.frames];
-        let axes = self.figure.axes(channel, &self.values, &self.poses);
+        let axes = self.figure.axes(channel, |channel, frame| self.value(channel, frame), &self.poses);
         let worst_now = self.worst(&moved);
         let attempts = if coded { ATTEMPTS } else { FIRST_ATTEMPTS };
         for attempt in 0..attempts {
@@ -297,10 +279,10 @@ impl<'m> Descent<'m> {
             {
                 return Ok(());
             }
-            let before = self.set(channel, &best.path);
+            let before = self.codes[channel].replace(best);
+            self.refresh(channel);
             let worst = self.worst(&moved);
             if worst.iter().all(|&distance| distance <= bound) {
-                self.codes[channel] = Some(best);
                 self.improved[channel] = pass;
                 return Ok(());
             }
@@ -310,7 +292,7 @@ impl<'m> Descent<'m> {
                     *limit = (*limit * (bound / distance).powi(2) * 0.98).max(0.5 * (now + bound));
                 }
             }
-            self.values[channel] = before;
+            self.codes[channel] = before;
             self.refresh(channel);
         }
         if self.codes[channel].is_none() {
@@ -319,17 +301,22 @@ impl<'m> Descent<'m> {
         Ok(())
     }
 
-    /// Puts a path in place and returns the values that it replaces.
-    fn set(&mut self, channel: usize, path: &[f64]) -> Vec<f64> {
-        let scale = self.scales[channel];
-        let before = std::mem::replace(&mut self.values[channel], in_units(path, scale));
-        self.refresh(channel);
-        before
+    fn path(&self, channel: usize) -> &[f64] {
+        path(&self.codes, self.targets, channel)
+    }
+
+    /// A channel's value at a frame, in the motion's units.
+    fn value(&self, channel: usize, frame: usize) -> f64 {
+        self.path(channel)[frame] * self.scales[channel]
     }
 
     fn refresh(&mut self, channel: usize) {
         if let (Some(joint), ..) = self.figure.channels[channel] {
-            self.figure.update(joint, &self.values, &mut self.poses);
+            let Descent { figure, targets, scales, codes, poses, .. } = self;
+            let first = figure.first[joint];
+            let paths: Vec<&[f64]> =
+                (first..first + figure.rig.joints[joint].kinds.len()).map(|channel| path(codes, targets, channel)).collect();
+            figure.update(joint, |channel, frame| paths[channel - first][frame] * scales[channel], poses);
         }
     }
 
@@ -353,6 +340,7 @@ impl<'m> Descent<'m> {
     fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64], shrink: f64) -> Tube {
         let frames = self.figure.frames;
         let target = &self.targets[channel];
+        let path = self.path(channel);
         let scale = self.scales[channel];
         let translates = self.figure.translates(channel);
         let trust = if translates { f64::MAX } else { TRUST_DEGREES / scale.abs() };
@@ -371,7 +359,7 @@ impl<'m> Descent<'m> {
         let center = self.figure.channels[channel].0.map(|joint| &self.poses.places[joint]);
         let Some(center) = center else { return tube };
         for frame in 0..frames {
-            let now = self.values[channel][frame] / scale - target[frame];
+            let now = path[frame] - target[frame];
             let (mut lo, mut hi) = (now - trust, now + trust);
             let (mut a, mut b) = (0.0, 0.0);
             let axis = axes[frame].map(|x| x * scale);
@@ -466,9 +454,9 @@ impl<'m> Descent<'m> {
     }
 }
 
-/// A path in the motion's units.
-fn in_units(path: &[f64], scale: f64) -> Vec<f64> {
-    path.iter().map(|p| p * scale).collect()
+/// A channel that is not coded yet is where it should be.
+fn path<'c>(codes: &'c [Option<Code>], targets: &'c [Vec<f64>], channel: usize) -> &'c [f64] {
+    codes[channel].as_ref().map_or(&targets[channel], |code| &code.path)
 }
 
 /// The price of a code's errors, and its bits beside the other channels' codes of now.

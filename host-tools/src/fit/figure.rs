@@ -1,7 +1,7 @@
 //! Computes where every joint is at every frame, and how a channel moves the joints below it.
 
 use crate::fk::{IDENTITY, Matrix, about, apply, local, product};
-use crate::motion::{Joint, Kind, Rig};
+use crate::motion::{Kind, Rig};
 
 /// Where every joint is, in cm: `[joint][frame]`.
 pub type Places = Vec<Vec<[f64; 3]>>;
@@ -9,10 +9,6 @@ pub type Places = Vec<Vec<[f64; 3]>>;
 /// Rotations and places of every joint at every frame, `[joint][frame]`; places in cm. Joints with nothing below them have no rotations.
 #[derive(Clone)]
 pub struct Poses {
-    /// Rotations in the parent.
-    locals: Vec<Vec<Matrix>>,
-    /// Places in the parent: one for all frames where no channel moves the joint.
-    offsets: Places,
     turns: Vec<Vec<Matrix>>,
     /// Where every joint is, in cm.
     pub places: Places,
@@ -59,75 +55,68 @@ impl Figure {
         moved
     }
 
-    /// All joints at all frames.
-    pub fn poses(&self, values: &[Vec<f64>]) -> Poses {
-        let joints = self.rig.joints.len();
-        let turns: Vec<Vec<Matrix>> =
-            self.below.iter().map(|below| vec![IDENTITY; if below.is_empty() { 0 } else { self.frames }]).collect();
-        let moves = |joint: &Joint| joint.kinds.iter().any(|kind| kind.is_position());
-        let offsets = self.rig.joints.iter().map(|joint| vec![[0.0; 3]; if moves(joint) { self.frames } else { 1 }]).collect();
-        let mut poses = Poses { locals: turns.clone(), offsets, turns, places: vec![vec![[0.0; 3]; self.frames]; joints] };
-        for joint in 0..joints {
-            self.place_local(joint, values, &mut poses);
-            self.place(joint, &mut poses);
+    /// All joints at all frames. `value` has each channel at each frame.
+    pub fn poses(&self, value: impl Fn(usize, usize) -> f64) -> Poses {
+        let turns = self.below.iter().map(|below| vec![IDENTITY; if below.is_empty() { 0 } else { self.frames }]).collect();
+        let mut poses = Poses { turns, places: vec![vec![[0.0; 3]; self.frames]; self.rig.joints.len()] };
+        for joint in 0..self.rig.joints.len() {
+            for frame in 0..self.frames {
+                let (turn, place) = self.pose(joint, frame, &value, &poses);
+                poses.places[joint][frame] = place;
+                poses.turns[joint].get_mut(frame).into_iter().for_each(|slot| *slot = turn);
+            }
         }
         poses
     }
 
-    /// Joint `joint` after its channels changed, and all below it.
-    pub fn update(&self, joint: usize, values: &[Vec<f64>], poses: &mut Poses) {
-        self.place_local(joint, values, poses);
-        self.place(joint, poses);
+    /// Joint `joint` after its channels changed, and all below it, which turn and move with it.
+    pub fn update(&self, joint: usize, value: impl Fn(usize, usize) -> f64, poses: &mut Poses) {
+        let mut changes = Vec::with_capacity(if self.below[joint].is_empty() { 0 } else { self.frames });
+        for frame in 0..self.frames {
+            let (turn, place) = self.pose(joint, frame, &value, poses);
+            let from = std::mem::replace(&mut poses.places[joint][frame], place);
+            if let Some(slot) = poses.turns[joint].get_mut(frame) {
+                let before = std::mem::replace(slot, turn);
+                changes.push((product(&turn, &transposed(&before)), from, place));
+            }
+        }
         for &below in &self.below[joint] {
-            self.place(below, poses);
+            for (at, (change, from, to)) in poses.places[below].iter_mut().zip(&changes) {
+                let [x, y, z] = apply(change, [at[0] - from[0], at[1] - from[1], at[2] - from[2]]);
+                *at = [to[0] + x, to[1] + y, to[2] + z];
+            }
+            for (turn, (change, ..)) in poses.turns[below].iter_mut().zip(&changes) {
+                *turn = product(change, turn);
+            }
         }
     }
 
-    fn place_local(&self, joint: usize, values: &[Vec<f64>], poses: &mut Poses) {
-        let entry = &self.rig.joints[joint];
+    /// Rotation and place of a joint at a frame, where its parent's are known.
+    fn pose(&self, joint: usize, frame: usize, value: &impl Fn(usize, usize) -> f64, poses: &Poses) -> (Matrix, [f64; 3]) {
         let first = self.first[joint];
-        let cm = self.rig.cm_per_unit;
-        let of = |frame: usize| local(entry, |channel| values[first + channel][frame]);
-        poses.locals[joint].iter_mut().enumerate().for_each(|(frame, turn)| *turn = of(frame).0);
-        poses.offsets[joint].iter_mut().enumerate().for_each(|(frame, offset)| *offset = of(frame).1.map(|x| x * cm));
-    }
-
-    fn place(&self, joint: usize, poses: &mut Poses) {
-        let Poses { locals, offsets, turns, places } = poses;
-        let (locals, offsets) = (&locals[joint], &offsets[joint]);
-        let offset = |frame: usize| offsets.get(frame).unwrap_or(&offsets[0]);
-        let Some(parent) = self.rig.joints[joint].parent else {
-            turns[joint].clone_from(locals);
-            places[joint].iter_mut().enumerate().for_each(|(frame, place)| *place = *offset(frame));
-            return;
-        };
-        // Parents come first.
-        let ((above, turns), (from, places)) = (turns.split_at_mut(joint), places.split_at_mut(joint));
-        let (above, from) = (&above[parent], &from[parent]);
-        for (frame, place) in places[0].iter_mut().enumerate() {
-            let [dx, dy, dz] = apply(&above[frame], *offset(frame));
-            let [x, y, z] = from[frame];
-            *place = [x + dx, y + dy, z + dz];
-        }
-        for ((turn, above), local) in turns[0].iter_mut().zip(above).zip(locals) {
-            *turn = product(above, local);
-        }
+        let (turn, offset) = local(&self.rig.joints[joint], |channel| value(first + channel, frame));
+        let offset = offset.map(|x| x * self.rig.cm_per_unit);
+        let Some(parent) = self.rig.joints[joint].parent else { return (turn, offset) };
+        let above = &poses.turns[parent][frame];
+        let ([dx, dy, dz], [x, y, z]) = (apply(above, offset), poses.places[parent][frame]);
+        (product(above, &turn), [x + dx, y + dy, z + dz])
     }
 
     /// At each frame, the world axis about which a channel turns (radians a degree, or a unit), or along which it moves (cm a unit).
-    pub fn axes(&self, channel: usize, values: &[Vec<f64>], poses: &Poses) -> Vec<[f64; 3]> {
+    pub fn axes(&self, channel: usize, value: impl Fn(usize, usize) -> f64, poses: &Poses) -> Vec<[f64; 3]> {
         let (Some(joint), kind, _) = self.channels[channel] else { return Vec::new() };
         let parent = self.rig.joints[joint].parent;
         let cm = self.rig.cm_per_unit;
         let of = |frame: usize| {
-            let in_parent =
-                self.local_axis(channel, joint, kind, values, frame).map(|x| if kind.is_position() { x * cm } else { x });
+            let in_parent = self
+                .local_axis(channel, joint, kind, |channel| value(channel, frame))
+                .map(|x| if kind.is_position() { x * cm } else { x });
             parent.map_or(in_parent, |parent| apply(&poses.turns[parent][frame], in_parent))
         };
         (0..self.frames).map(of).collect()
     }
 
-    fn local_axis(&self, channel: usize, joint: usize, kind: Kind, values: &[Vec<f64>], frame: usize) -> [f64; 3] {
+    fn local_axis(&self, channel: usize, joint: usize, kind: Kind, value: impl Fn(usize) -> f64) -> [f64; 3] {
         let first = self.first[joint];
         let unit = |axis: usize| std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 });
         if kind.is_position() {
@@ -137,15 +126,15 @@ impl Figure {
             let before =
                 self.rig.joints[joint].kinds[..channel - first].iter().enumerate().filter(|(_, kind)| kind.is_rotation());
             let turn = before.fold(IDENTITY, |turn, (i, kind)| {
-                product(&turn, &about(kind.axis().unwrap_or(0), values[first + i][frame].to_radians()))
+                product(&turn, &about(kind.axis().unwrap_or(0), value(first + i).to_radians()))
             });
             return apply(&turn, unit(kind.axis().unwrap_or(0))).map(f64::to_radians);
         }
         // Exponential maps and quaternions: how a small change of the channel turns the joint.
         let small = if kind.is_quaternion() { 1e-5 } else { 1e-3 };
         let turn_at = |delta: f64| {
-            let value = |i: usize| values[first + i][frame] + if first + i == channel { delta } else { 0.0 };
-            local(&self.rig.joints[joint], value).0
+            let at = |i: usize| value(first + i) + if first + i == channel { delta } else { 0.0 };
+            local(&self.rig.joints[joint], at).0
         };
         let (less, more) = (turn_at(-small), turn_at(small));
         let across: Matrix =
@@ -158,6 +147,10 @@ impl Figure {
     pub fn translates(&self, channel: usize) -> bool {
         self.channels[channel].1.is_position()
     }
+}
+
+fn transposed(m: &Matrix) -> Matrix {
+    std::array::from_fn(|row| std::array::from_fn(|column| m[column][row]))
 }
 
 /// How a joint at `place` moves by one unit of a channel with this axis whose joint is at `center`: cm.
@@ -214,7 +207,43 @@ fn exponential(m: &Matrix) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fk::from_exponential;
+    use crate::fk::{from_exponential, positions};
+    use crate::motion::Joint;
+
+    #[test]
+    fn joints_follow_the_changes_of_those_above_them() {
+        let joint = |parent: Option<usize>, kinds: &[Kind]| Joint {
+            name: format!("{parent:?}"),
+            parent,
+            offset: [3.0, 4.0, 5.0],
+            kinds: kinds.to_vec(),
+            end_site: false,
+            helper: false,
+        };
+        use Kind::{Xexponential, Xrotation, Yexponential, Yposition, Yrotation, Zexponential};
+        let joints = vec![
+            joint(None, &[Yposition, Xrotation, Yrotation]),
+            joint(Some(0), &[Xexponential, Yexponential, Zexponential]),
+            joint(Some(1), &[Yposition, Yrotation]),
+            joint(Some(2), &[]),
+            joint(Some(0), &[]),
+        ];
+        let rig = Rig { joints, cm_per_unit: 2.0, ..Rig::default() };
+        let mut values: Vec<Vec<f64>> =
+            (0..8).map(|channel| (0..9).map(|frame| f64::from(channel * 7 + frame * 11 % 50)).collect()).collect();
+        let figure = Figure::new(rig, 9);
+        let mut poses = figure.poses(|channel, frame| values[channel][frame]);
+        for (channel, joint) in [0, 0, 0, 1, 1, 1, 2, 2].into_iter().enumerate() {
+            values[channel].iter_mut().enumerate().for_each(|(frame, value)| *value -= 3.0 * frame as f64);
+            figure.update(joint, |channel, frame| values[channel][frame], &mut poses);
+            for frame in 0..9 {
+                let expected = positions(&figure.rig, &values, frame);
+                for (places, expected) in poses.places.iter().zip(expected) {
+                    assert!((0..3).all(|axis| (places[frame][axis] - expected[axis]).abs() < 1e-9));
+                }
+            }
+        }
+    }
 
     #[test]
     fn an_exponential_map_comes_back_from_its_rotation() {

@@ -55,7 +55,7 @@ pub fn fit_coding(
     // In turn, so that a long take is not held twice.
     let channels = chosen_values.into_iter().zip(kinds).zip(&scales);
     let targets: Vec<_> = channels.map(|((values, (_, kind)), &scale)| raw::target(&values, kind, scale)).collect();
-    let original = Figure::new(motion.rig.clone(), motion.frames).poses(&motion.values).places;
+    let original = Figure::new(motion.rig.clone(), motion.frames).poses(|channel, frame| motion.values[channel][frame]).places;
     // What will be played has the rig's rounded offsets.
     let bytes = rig_bytes::encode(&motion.rig)?;
     let mut played = rig_bytes::decode(&pantin::Rig::new_checked(&bytes)?);
