@@ -6,7 +6,7 @@ use std::path::Path;
 
 use pantin::{Angle, Axis, Clip, EulerOrder, Form, Kind, Pose, Turn, WrongForm};
 
-type Matrix = [[f64; 3]; 3];
+pub type Matrix = [[f64; 3]; 3];
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const ORDERS: [EulerOrder; 6] =
@@ -37,13 +37,13 @@ fn of_map(map: [f64; 3]) -> Matrix {
     if length == 0.0 { IDENTITY } else { about(map.map(|x| x / length), length * TAU) }
 }
 
-fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
+pub fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     let length = [x, y, z].iter().map(|x| x * x).sum::<f64>().sqrt();
     if length == 0.0 { IDENTITY } else { about([x, y, z].map(|x| x / length), 2.0 * length.atan2(w)) }
 }
 
 /// The rotation of a joint with these kinds, as section 11 has it.
-fn expected(kinds: &[Kind], values: &[i32], exponential: bool) -> Matrix {
+pub fn expected(kinds: &[Kind], values: &[i32], exponential: bool) -> Matrix {
     let turns = |raw: i32| f64::from(raw) / 4_294_967_296.0;
     let (mut matrix, mut coded) = (IDENTITY, vec![]);
     let (mut quaternion, mut map) = ([0.0; 4], [0.0; 3]);
@@ -63,7 +63,7 @@ fn expected(kinds: &[Kind], values: &[i32], exponential: bool) -> Matrix {
     times(&times(&matrix, &of_quaternion(quaternion)), &of_map(map))
 }
 
-fn of_turn(turn: Turn) -> Matrix {
+pub fn of_turn(turn: Turn) -> Matrix {
     turn.matrix().rows.map(|row| row.map(|element| f64::from(element.to_bits()) / f64::from(1 << 30)))
 }
 
@@ -73,15 +73,15 @@ fn of_angles(order: EulerOrder, angles: [Angle; 3]) -> Matrix {
     })
 }
 
-fn difference(a: &Matrix, b: &Matrix) -> f64 {
+pub fn difference(a: &Matrix, b: &Matrix) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// Numbers of all magnitudes.
-struct Noise(u64);
+pub struct Noise(pub u64);
 
 impl Noise {
-    fn next(&mut self) -> i32 {
+    pub fn next(&mut self) -> i32 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 32) as i32 >> (self.0 >> 8 & 3)
     }
@@ -167,6 +167,7 @@ fn angles_in_a_joints_own_order_come_back_as_they_are() {
 fn values_of_another_form_are_refused_by_its_first_difference() {
     let form = Form::new(7, -3, [1, 2]);
     assert_eq!(form.check(&Form::new(7, -3, [1, 2, 0])), Ok(()));
+    assert_eq!(pantin::FormRef::from(&form), pantin::FormRef::from(&Form::new(7, -3, [1, 2, 0])));
     assert_eq!(form.check(&Form::new(8, -3, [1, 2])), Err(WrongForm::Rig));
     assert_eq!(form.check(&Form::new(7, -2, [1, 2])), Err(WrongForm::LengthExponent));
     for other in [&[1, 3][..], &[1], &[1, 2, 4], &[]] {

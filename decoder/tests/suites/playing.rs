@@ -6,8 +6,8 @@ use pantin::{
     WrongForm,
 };
 
-static WALK: &[u8] = include_bytes!("walk.ptn");
-static RUN: &[u8] = include_bytes!("run.ptn");
+static WALK: &[u8] = include_bytes!("../walk.ptn");
+static RUN: &[u8] = include_bytes!("../run.ptn");
 
 type Memories = Room<96, 144>;
 

@@ -1,8 +1,6 @@
 //! Banks: what is in one, and that each rule of FORMAT.md 16 is checked.
 
-mod common;
-
-use common::varint;
+use super::common::varint;
 use pantin::codec::{crc, layout::VERSION};
 use pantin::{Bank, Clip, OpenError};
 use std::path::Path;

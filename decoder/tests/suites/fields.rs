@@ -1,13 +1,11 @@
 //! The fields in front of a motion's symbols: each rule of FORMAT.md is checked, and a clip reports what the file holds.
 
-mod common;
-
-use common::varint;
+use super::common::varint;
 use pantin::codec::crc;
 use pantin::codec::layout::*;
 use pantin::{ChannelState, Clip, Form, OpenError, PartialClip, Player};
 
-static WALK: &[u8] = include_bytes!("walk.ptn");
+static WALK: &[u8] = include_bytes!("../walk.ptn");
 
 /// One of the repository's vectors; `None` where the package has none.
 fn vector(name: &str) -> Option<Vec<u8>> {

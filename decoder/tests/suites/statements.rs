@@ -4,8 +4,8 @@ use fixed::types::{I16F16, U0F16};
 use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES};
 use pantin::{Clip, Clock, Memory, OpenError, TooSmall};
 
-static WALK: &[u8] = include_bytes!("walk.ptn");
-static RUN: &[u8] = include_bytes!("run.ptn");
+static WALK: &[u8] = include_bytes!("../walk.ptn");
+static RUN: &[u8] = include_bytes!("../run.ptn");
 
 /// A clip that is no loop; `None` where the package has no vectors.
 fn open() -> Option<Vec<u8>> {

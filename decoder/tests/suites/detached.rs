@@ -4,8 +4,8 @@ use pantin::{ChannelState, Clip, Player};
 
 #[test]
 fn a_detached_player_plays_what_a_player_plays() {
-    let walk = Clip::new_checked(include_bytes!("walk.ptn")).unwrap();
-    let run = Clip::new_checked(include_bytes!("run.ptn")).unwrap();
+    let walk = Clip::new_checked(include_bytes!("../walk.ptn")).unwrap();
+    let run = Clip::new_checked(include_bytes!("../run.ptn")).unwrap();
     let (mut states, mut values) = ([ChannelState::NEW; 64], [0; 64]);
     let (mut other_states, mut other_values) = ([ChannelState::NEW; 64], [0; 64]);
     // One memory for one clip after the other.

@@ -1,0 +1,11 @@
+//! The decoder's tests. They are one program: mutation tests build it again for each mutant.
+
+mod bank;
+mod common;
+mod detached;
+mod fields;
+mod forms;
+mod golden;
+mod playing;
+mod poses;
+mod statements;
