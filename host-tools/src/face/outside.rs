@@ -5,23 +5,55 @@ use super::head::{Vector, cross, minus, plus, unit};
 use super::paper::shape;
 use crate::import::Files;
 use crate::import::gltf::mesh::{self, Mesh};
-use anyhow::{Context, Result, bail, ensure};
+use crate::import::text::{number_in, shown};
+use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use pantin_face::shape::Interpolation;
+use std::fmt::Display;
 use std::path::Path;
 
 /// Maximum coordinate of a vertex of the device, in steps.
 const MOST_STEPS: f64 = i16::MAX as f64;
 
-/// Reads the points of an .obj.
-pub fn obj_points(text: &str) -> Result<Vec<Vector>> {
-    let point = |(number, line): (usize, &str)| -> Option<Result<Vector>> {
-        let mut words = line.split('#').next()?.split_whitespace();
-        (words.next()? == "v").then(|| {
-            let mut next = || -> Result<f64> { Ok(words.next().context("expected x, y and z")?.parse()?) };
-            (|| anyhow::Ok([next()?, next()?, next()?]))().with_context(|| format!("line {}", number + 1))
-        })
-    };
-    text.lines().enumerate().filter_map(point).collect()
+/// The content of a text file with lines, and errors that name both.
+struct Text<'a> {
+    path: &'a Path,
+    content: &'a str,
+}
+
+/// A line's number from 1, and its words.
+type Line<'a> = (usize, Vec<&'a str>);
+
+impl<'a> Text<'a> {
+    fn new(path: &'a Path, content: &'a str) -> Result<Text<'a>> {
+        let text = Text { path, content };
+        let zero = (1..).zip(content.lines()).find(|(_, line)| line.contains('\0'));
+        zero.map_or(Ok(text), |(line, _)| Err(Text { path, content }.error(line, "a NUL byte; expected text")))
+    }
+
+    /// `file:line: message`.
+    fn error(&self, line: usize, message: impl Display) -> Error {
+        anyhow!("{}:{line}: {message}", self.path.display())
+    }
+
+    /// The lines that have words; `#` begins a comment.
+    fn lines(&self) -> impl Iterator<Item = Line<'a>> {
+        let words = |line: &'a str| line.split('#').next().unwrap_or("").split_whitespace().collect::<Vec<_>>();
+        (1..).zip(self.content.lines().map(words)).filter(|(_, words)| !words.is_empty())
+    }
+
+    /// The first three of `words`, which are the x, y and z of a point.
+    fn point(&self, line: usize, words: &[&str]) -> Result<Vector> {
+        let [x, y, z, ..] = words else { return Err(self.error(line, "expected x, y and z")) };
+        let number = |word: &str| number_in(word.as_bytes()).map_err(|message| self.error(line, message));
+        Ok([number(x)?, number(y)?, number(z)?])
+    }
+}
+
+/// Reads the points of an .obj; errors name `path` and the line.
+pub fn obj_points(path: &Path, text: &str) -> Result<Vec<Vector>> {
+    let text = Text::new(path, text)?;
+    let points = text.lines().filter(|(_, words)| words[0] == "v");
+    points.map(|(line, words)| text.point(line, &words[1..])).collect()
 }
 
 /// Reads a mesh: an .obj, a .wfm (Candide), or the first mesh of a glTF.
@@ -30,57 +62,72 @@ pub fn mesh(path: &Path, files: &Files) -> Result<Mesh> {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     let read = match extension.as_deref() {
         Some("glb" | "gltf") => return mesh::read(path, files),
-        Some("obj") => obj as fn(&str) -> Result<Mesh>,
+        Some("obj") => obj as fn(&Path, &str) -> Result<Mesh>,
         Some("wfm") => wfm,
         _ => bail!("{}: expected a mesh: .obj, .glb, .gltf or .wfm", place()),
     };
     // Comments of old files are in Latin-1.
-    let mesh = read(&String::from_utf8_lossy(&files.read(path)?)).with_context(place)?;
-    let count = mesh.points.len();
-    ensure!(count > 0 && !mesh.triangles.is_empty(), "{}: no triangles", place());
-    ensure!(
-        mesh.triangles.iter().flatten().all(|&corner| corner < count),
-        "{}: a triangle has a vertex that is not there",
-        place()
-    );
+    let mesh = read(path, &String::from_utf8_lossy(&files.read(path)?))?;
+    ensure!(!mesh.points.is_empty() && !mesh.triangles.is_empty(), "{}: no triangles", place());
     Ok(mesh)
 }
 
-/// Reads points and faces of an .obj; faces of more than three corners become fans.
-pub fn obj(text: &str) -> Result<Mesh> {
-    let points = obj_points(text)?;
+/// Reads points and faces of an .obj; faces of more than three corners become fans. Errors name `path` and the line.
+pub fn obj(path: &Path, text: &str) -> Result<Mesh> {
+    let points = obj_points(path, text)?;
+    let text = Text::new(path, text)?;
     let mut triangles = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let mut words = line.split('#').next().unwrap_or("").split_whitespace();
-        if words.next() != Some("f") {
-            continue;
-        }
-        let corner = |word: &str| -> Result<usize> {
-            let index: i64 = word.split('/').next().unwrap_or("").parse()?;
-            // Negative numbers count from the end.
-            let index = if index < 0 { points.len() as i64 + index } else { index - 1 };
-            usize::try_from(index).context("vertices count from 1")
+    for (line, words) in text.lines().filter(|(_, words)| words[0] == "f") {
+        let corner = |word: &&str| -> Result<usize> {
+            let index = word.split('/').next().and_then(|index| index.parse::<i64>().ok());
+            let index = index.ok_or_else(|| {
+                text.error(line, format!("expected the number of a vertex, found {}", shown(Some(word.as_bytes()))))
+            })?;
+            // Numbers from 1; negative ones count from the end.
+            let place = if index < 0 { (points.len() as i64).checked_add(index) } else { index.checked_sub(1) };
+            let place = place.and_then(|place| usize::try_from(place).ok()).filter(|&place| place < points.len());
+            place.ok_or_else(|| text.error(line, format!("no vertex {index}; there are {}", points.len())))
         };
-        let corners = words.map(corner).collect::<Result<Vec<_>>>().with_context(|| format!("line {}", number + 1))?;
+        let corners = words[1..].iter().map(corner).collect::<Result<Vec<_>>>()?;
+        if corners.len() < 3 {
+            return Err(text.error(line, format!("a face of {} corners; expected 3 or more", corners.len())));
+        }
         triangles.extend(corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]]));
     }
     Ok(Mesh { points, triangles, ..Mesh::default() })
 }
 
-/// Reads the vertices and the faces of a Candide model.
-pub fn wfm(text: &str) -> Result<Mesh> {
-    let rows = |title: &str| -> Result<Vec<Vec<f64>>> {
-        let (_, rest) = text.split_once(title).with_context(|| format!("no {title}"))?;
-        let mut lines = rest.lines().skip(1).map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
-        let count: usize = lines.next().and_then(|line| line.parse().ok()).with_context(|| format!("{title}: no count"))?;
-        let row = |line: &str| line.split_whitespace().take(3).map(|word| Ok(word.parse::<f64>()?)).collect::<Result<Vec<_>>>();
-        let rows = lines.take(count).map(row).collect::<Result<Vec<_>>>().with_context(|| title.to_string())?;
-        ensure!(rows.len() == count && rows.iter().all(|row| row.len() == 3), "{title}: expected {count} rows of three numbers");
+/// Reads the vertices and the faces of a Candide model. Errors name `path` and the line.
+pub fn wfm(path: &Path, text: &str) -> Result<Mesh> {
+    let text = Text::new(path, text)?;
+    // Titles stand in comments: the number of the title's line, that of the count's, and the rows.
+    let rows = |title: &str| -> Result<Vec<Line>> {
+        let at = text.content.lines().position(|line| line.contains(title));
+        let at = at.with_context(|| format!("{}: no `{title}`", path.display()))? + 1;
+        let mut lines = text.lines().filter(|(line, _)| *line > at);
+        let wrong = |line| text.error(line, format!("expected the number of rows of `{title}`"));
+        let (line, count) = lines.next().ok_or_else(|| wrong(at))?;
+        let count: usize = count[0].parse().map_err(|_| wrong(line))?;
+        let rows: Vec<Line> = lines.take(count).collect();
+        if rows.len() < count {
+            return Err(text.error(line, format!("`{title}` has {} rows; its number says {count}", rows.len())));
+        }
         Ok(rows)
     };
-    let triple = |row: &Vec<f64>| [row[0], row[1], row[2]];
-    let points = rows("VERTEX LIST:")?.iter().map(triple).collect();
-    let triangles = rows("FACE LIST:")?.iter().map(|row| triple(row).map(|x| x as usize)).collect();
+    let points = rows("VERTEX LIST:")?.iter().map(|(line, words)| text.point(*line, words)).collect::<Result<Vec<_>>>()?;
+    let triangle = |(line, words): &Line| {
+        let corner = |word: &str| {
+            let place = word.parse().ok().filter(|&place: &usize| place < points.len());
+            let wrong = || format!("expected a vertex of 0 to {}, found {}", points.len() - 1, shown(Some(word.as_bytes())));
+            place.ok_or_else(|| text.error(*line, wrong()))
+        };
+        let [a, b, c] = words[..] else { return Err(text.error(*line, "expected a face of three vertices")) };
+        Ok([corner(a)?, corner(b)?, corner(c)?])
+    };
+    let triangles = match points.is_empty() {
+        true => Vec::new(),
+        false => rows("FACE LIST:")?.iter().map(triangle).collect::<Result<_>>()?,
+    };
     Ok(Mesh { points, triangles, ..Mesh::default() })
 }
 

@@ -27,7 +27,7 @@ fn subjects() -> Vec<Subject> {
     subjects.push(("ball", ball, read("ball.points")));
     let face = Face::new().unwrap();
     let neutral = pose::parse(&face.blueprint, "").unwrap();
-    let own = outside::obj(&export::obj(&face, &neutral).unwrap()).unwrap();
+    let own = outside::obj(Path::new("ours.obj"), &export::obj(&face, &neutral).unwrap()).unwrap();
     subjects.push(("ours", own, face.head.features().map(|(name, index)| (name.to_string(), index)).collect()));
     let data = std::env::var_os("PANTIN_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"), PathBuf::from);
@@ -174,5 +174,59 @@ fn a_units_interpolation_and_angle_are_chosen_by_name() {
     ] {
         let refused = format!("{:#}", face.choose(choice).unwrap_err());
         assert!(refused.contains(wanted), "{choice}: {refused}");
+    }
+}
+
+#[test]
+fn what_is_wrong_in_a_mesh_is_named_with_its_line() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let refused = |name: &str, text: &str, wanted: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let said = format!("{:#}", outside::mesh(&path, &Files::default()).expect_err(wanted));
+        assert!(said.contains(&format!("{name}:{wanted}")), "{text:?}: no `{wanted}` in: {said}");
+    };
+    let obj = "# three\nv 0 0 0\nv 1 0 0 # right\nv 0 1 0\nf 1/1 2/2 3/3\n";
+    for (from, to, wanted) in [
+        ("v 1 0 0", "v nan 0 0", "3: expected a finite number of at most 1e9, found `nan`"),
+        ("v 1 0 0", "v 0 -inf 0", "3: expected a finite number of at most 1e9, found `-inf`"),
+        ("v 1 0 0", "v 0 0 1e308", "3: expected a finite number of at most 1e9, found `1e308`"),
+        ("v 1 0 0", "v 0 0 x", "3: expected a number, found `x`"),
+        ("v 1 0 0", "v 1 0", "3: expected x, y and z"),
+        ("3/3", "999999", "5: no vertex 999999; there are 3"),
+        ("3/3", "0", "5: no vertex 0; there are 3"),
+        ("3/3", "-4", "5: no vertex -4; there are 3"),
+        ("3/3", "-9223372036854775808", "5: no vertex -9223372036854775808"),
+        ("3/3", "x", "5: expected the number of a vertex, found `x`"),
+        ("3/3", "", "5: a face of 2 corners; expected 3 or more"),
+        ("3/3\n", "3/3\n\0\0\0\0", "6: a NUL byte; expected text"),
+        ("3/3", "3/3\0", "5: a NUL byte; expected text"),
+    ] {
+        assert!(obj.contains(from));
+        refused("a.obj", &obj.replacen(from, to, 1), wanted);
+    }
+    let points = format!("{:#}", outside::obj_points(Path::new("b.obj"), "v 1 2\n").unwrap_err());
+    assert_eq!(points, "b.obj:1: expected x, y and z");
+    let wfm = "# VERTEX LIST:\n3\n0 0 0\n1 0 0\n0 1 0\n\n# FACE LIST:\n1\n0 1 2\n\n# END\n";
+    for (from, to, wanted) in [
+        ("1 0 0", "1 inf 0", "4: expected a finite number of at most 1e9, found `inf`"),
+        ("1 0 0", "1 0", "4: expected x, y and z"),
+        ("3\n0", "99999999999\n0", "2: `VERTEX LIST:` has 5 rows; its number says 99999999999"),
+        ("3\n0", "-3\n0", "2: expected the number of rows of `VERTEX LIST:`"),
+        ("0 1 2", "0 1 3", "9: expected a vertex of 0 to 2, found `3`"),
+        ("0 1 2", "0 1 1e300", "9: expected a vertex of 0 to 2, found `1e300`"),
+        ("0 1 2", "0 1 NaN", "9: expected a vertex of 0 to 2, found `NaN`"),
+        ("0 1 2", "0 1 1.5", "9: expected a vertex of 0 to 2, found `1.5`"),
+        ("0 1 2", "0 1", "9: expected a face of three vertices"),
+        ("FACE LIST:", "FACES:", " no `FACE LIST:`"),
+        ("# END\n", "\0\0", "11: a NUL byte; expected text"),
+    ] {
+        assert!(wfm.contains(from));
+        refused("a.wfm", &wfm.replacen(from, to, 1), wanted);
+    }
+    for (name, text) in [("a.obj", obj), ("a.wfm", wfm)] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let mesh = outside::mesh(&folder.path().join(name), &Files::default()).unwrap();
+        assert_eq!((mesh.points.len(), &mesh.triangles[..]), (3, &[[0, 1, 2]][..]), "{name}");
     }
 }

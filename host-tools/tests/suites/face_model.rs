@@ -141,7 +141,7 @@ fn a_pose_is_taken_apart_into_its_units() {
     let face = Face::new().unwrap();
     for sum in ["joy=0.7,wink_left=1,open_mouth=0.3", "sadness=0.5", "surprise=0.6,look_left=0.5,puff_cheeks_right=0.9"] {
         let pairs = pose::parse(&face.blueprint, sum).unwrap();
-        let target = outside::obj_points(&export::obj(&face, &pairs).unwrap()).unwrap();
+        let target = outside::obj_points(std::path::Path::new("pose.obj"), &export::obj(&face, &pairs).unwrap()).unwrap();
         let fit = fit::fit(&face.blueprint, &target).unwrap();
         assert!(fit.residual < 0.05, "{sum}: {} mm are left of {}", fit.residual, fit.before);
         for ((shape, wanted), found) in face.blueprint.shapes.iter().zip(&pairs).zip(&fit.pairs) {

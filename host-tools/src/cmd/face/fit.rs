@@ -124,15 +124,16 @@ fn extension(path: &Path) -> Option<String> {
 }
 
 fn obj(path: &Path) -> Result<Vec<Vector>> {
-    let place = || path.display().to_string();
-    outside::obj_points(&String::from_utf8(input::read(path)?).with_context(place)?).with_context(place)
+    let text = String::from_utf8(input::read(path)?).with_context(|| path.display().to_string())?;
+    outside::obj_points(path, &text)
 }
 
 /// The .obj files of a folder by name.
 fn objs(folder: &Path) -> Result<Vec<PathBuf>> {
     let place = || folder.display().to_string();
     let mut paths = std::fs::read_dir(folder).with_context(place)?.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?;
-    paths.retain(|path| extension(path).as_deref() == Some("obj"));
+    // A pipe or a device in a folder was not asked for, and may never end.
+    paths.retain(|path| extension(path).as_deref() == Some("obj") && path.is_file());
     paths.sort();
     ensure!(!paths.is_empty(), "{}: no .obj files", place());
     Ok(paths)
