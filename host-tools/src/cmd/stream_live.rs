@@ -2,6 +2,7 @@
 
 use super::stream::{Arguments, closing, sender};
 use crate::cmd::Files;
+use crate::import::one_line;
 use crate::output::note;
 use crate::sender::{Line, Live, LiveChannel, Source};
 use crate::stream::live::Feed;
@@ -12,6 +13,8 @@ use std::time::{Duration, Instant};
 
 /// Frames that packets are ahead of their time beside what coding takes: what the line's jitter may be.
 const AHEAD: u32 = 6;
+/// Columns that a warning lists.
+const LISTED: usize = 20;
 /// About what a refresh takes, in bytes, and the part of the line that all of them may.
 const REFRESH_BYTES: f64 = 4.3;
 const REFRESHES: f64 = 0.35;
@@ -44,6 +47,17 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
         "{}: none of its channels is in what --live brings",
         path.display()
     );
+    let left_out: Vec<&str> =
+        names.iter().filter(|name| !clip.rig().scalars().any(|scalar| scalar.name() == **name)).map(String::as_str).collect();
+    if let Some((first, rest)) = left_out.split_at_checked(LISTED).filter(|(_, rest)| !rest.is_empty()) {
+        note!(
+            "warning: columns that the clip has no channel for are left out: {} and {} more",
+            one_line(&first.join(", ")),
+            rest.len()
+        );
+    } else if !left_out.is_empty() {
+        note!("warning: columns that the clip has no channel for are left out: {}", one_line(&left_out.join(", ")));
+    }
     let part = arguments.max_scalar_error / 100.0;
     ensure!(
         part > 0.0 && part < 1.0,

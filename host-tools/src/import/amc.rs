@@ -21,11 +21,15 @@ pub fn begins(head: &[u8]) -> bool {
 /// Reads the AMC file `path` and its ASF file, which states the unit of length.
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let bytes = options.files.read(path)?;
-    let skeleton_path = match &options.skeleton {
-        Some(given) => given.clone(),
-        None => find_skeleton(path, &bytes, &options.files)?,
+    let (skeleton_path, content) = match &options.skeleton {
+        Some(given) => (given.clone(), options.files.read(given)?),
+        None => {
+            let found = find_skeleton(path, &bytes, &options.files)?;
+            let content = options.files.read_named(&found)?;
+            (found, content)
+        }
     };
-    let skeleton = asf::read(&skeleton_path, &options.files.read(&skeleton_path)?)?;
+    let skeleton = asf::read(&skeleton_path, &content)?;
     let mut warnings = skeleton.warnings.clone();
     if skeleton_path.file_stem() != path.file_stem() {
         warnings.push(format!("the skeleton is {}; --skeleton overrides", skeleton_path.display()));

@@ -13,7 +13,7 @@ use std::path::Path;
 /// Whether `head` begins such a file.
 pub fn begins(head: &[u8]) -> bool {
     let line = head.trim_ascii_start().split(|&byte| byte == b'\n').next().unwrap_or_default();
-    Header::read(line).is_some()
+    Header::read(line).is_ok()
 }
 
 /// Reads the file `path`.
@@ -27,10 +27,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         given: Vec::new(),
         frames: 0,
     };
-    let (_, first) = reader.lines.next().unwrap_or((1, &[]));
-    let Some(header) = Header::read(first) else {
-        return Err(reader.error(format!("expected `2.1 NAME FRAMES-A-SECOND FRAMES`, found {}", shown(Some(first)))));
-    };
+    let (line, first) = reader.lines.next().unwrap_or((1, &[]));
+    reader.line = line;
+    let header =
+        Header::read(first).map_err(|wrong| reader.error(format!("expected `2.1 NAME FRAMES-A-SECOND FRAMES`; {wrong}")))?;
     reader.columns = vec![Vec::new(); values().count()];
     reader.given = vec![false; values().count()];
     scalars::check_size(1, header.frames).map_err(|error| reader.error(error))?;
@@ -47,12 +47,24 @@ struct Header {
 }
 
 impl Header {
-    fn read(line: &[u8]) -> Option<Header> {
-        let text = String::from_utf8_lossy(line);
-        let words: Vec<&str> = text.split_whitespace().collect();
-        let ["2.1", .., fps, frames] = words[..] else { return None };
-        let fps = number_in(fps.as_bytes()).ok().filter(|&fps| fps > 0.0)?;
-        Some(Header { fps, frames: frames.parse().ok().filter(|&frames| frames > 0)? })
+    /// Reads the first line, or says which of its words is wrong. A name may have spaces.
+    fn read(line: &[u8]) -> Result<Header, String> {
+        let words: Vec<&[u8]> = words(line).collect();
+        let wrong = |number: usize, what: &str| format!("word {number}, {what}, is {}", shown(Some(words[number - 1])));
+        let count = words.len();
+        if count == 0 {
+            return Err("the line has no words".into());
+        }
+        if words[0] != b"2.1" {
+            return Err(wrong(1, "the version"));
+        }
+        if count < 3 {
+            return Err(format!("the line has {count} of at least 3 words"));
+        }
+        let fps = number_in(words[count - 2]).ok().filter(|&fps| fps > 0.0);
+        let fps = fps.ok_or_else(|| wrong(count - 1, "the frames a second"))?;
+        let frames = std::str::from_utf8(words[count - 1]).ok().and_then(|word| word.parse().ok()).filter(|&frames| frames > 0);
+        Ok(Header { fps, frames: frames.ok_or_else(|| wrong(count, "the number of frames"))? })
     }
 }
 

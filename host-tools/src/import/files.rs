@@ -1,7 +1,7 @@
 //! Where importers read from: the machine's folders, or files handed over with their names.
 
 use crate::input;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
 use std::collections::{BTreeSet, HashMap};
 use std::fs::{self, File};
 use std::io::Read;
@@ -79,6 +79,17 @@ impl Files {
             Files::OnDisk(disk) => disk.whole(path).map_err(|error| anyhow!("{}: cannot be read: {error:#}", path.display())),
             Files::Given(_) => Ok(self.given(path)?.to_vec()),
         }
+    }
+
+    /// The whole content of `path`, which another file names. Only a regular file is read, links followed: nobody said that a pipe's
+    /// or a device's bytes are wanted, and they may never come.
+    pub(crate) fn read_named(&self, path: &Path) -> Result<Vec<u8>> {
+        if let Files::OnDisk(_) = self {
+            let found = fs::metadata(path).map_err(|error| anyhow!("{}: cannot be read: {error}", path.display()))?;
+            let kind = if found.is_dir() { "a directory" } else { "a pipe or a device" };
+            ensure!(found.is_file(), "{}: {kind}; expected a regular file", path.display());
+        }
+        self.read(path)
     }
 
     /// Its first bytes, `most` at most.

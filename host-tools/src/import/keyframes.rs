@@ -113,7 +113,18 @@ impl Reader {
         if words.len() != count {
             return wrong(format!("expected {count} values after the frame, one a channel, found {}", words.len()));
         }
-        let values = words.iter().map(|word| number(word)).collect::<Read<_>>()?;
+        let rig = &self.header.rig;
+        let value = |(word, &channel): (&&str, &usize)| {
+            let value = number(word)?;
+            let scalar = channel.checked_sub(rig.joint_channels()).and_then(|scalar| rig.scalars.get(scalar));
+            match scalar.filter(|scalar| value.abs() > scalar.full_scale) {
+                Some(scalar) => {
+                    wrong(format!("{value} of `{}` is outside {1}..{2}", scalar.name, -scalar.full_scale, scalar.full_scale))
+                }
+                None => Ok(value),
+            }
+        };
+        let values = words.iter().zip(&block.channels).map(value).collect::<Read<_>>()?;
         block.rows.push((frame, values));
         Ok(())
     }

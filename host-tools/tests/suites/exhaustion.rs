@@ -201,6 +201,77 @@ fn a_live_line_without_end_is_refused_and_a_silent_one_is_stopped() {
     }
 }
 
+/// What another file names is read if it is a regular file: nobody writes to the pipe.
+#[cfg(unix)]
+#[test]
+fn a_pipe_that_another_file_names_is_refused() {
+    use super::gltf_input::Builder;
+    use std::process::{Command, Stdio};
+    let folder = Folder::new();
+    let mut builder = Builder::new(serde_json::json!([{"name": "a"}]));
+    builder.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    builder.root["buffers"] = serde_json::json!([{"byteLength": 32, "uri": "pipe.bin"}]);
+    folder.put("pipe.gltf", builder.root.to_string());
+    folder.put("zero.gltf", builder.root.to_string().replace("pipe.bin", "zero.bin"));
+    folder.put("dir.gltf", builder.root.to_string().replace("pipe.bin", "meshes"));
+    folder.put("walk.amc", "#!OML:ASF walk.asf\n:FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n");
+    std::fs::create_dir(folder.path("meshes")).unwrap();
+    for pipe in ["pipe.bin", "walk.asf", "meshes/a.obj"] {
+        if !Command::new("mkfifo").arg(folder.path(pipe)).status().is_ok_and(|status| status.success()) {
+            eprintln!("skipped: no mkfifo");
+            return;
+        }
+    }
+    std::os::unix::fs::symlink("/dev/zero", folder.path("zero.bin")).unwrap();
+    for (arguments, wanted) in [
+        (&["convert", "pipe.gltf", "-o", "a.ptn"][..], "pipe.bin: a pipe or a device; expected a regular file"),
+        (&["convert", "zero.gltf", "-o", "a.ptn"], "zero.bin: a pipe or a device; expected a regular file"),
+        (&["convert", "dir.gltf", "-o", "a.ptn"], "meshes: a directory; expected a regular file"),
+        (&["convert", "walk.amc", "-o", "a.ptn"], "walk.asf: a pipe or a device; expected a regular file"),
+        (&["face", "fit", "meshes"], "no .obj files"),
+    ] {
+        let mut child = folder.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let begun = std::time::Instant::now();
+        while child.try_wait().unwrap().is_none() {
+            if begun.elapsed().as_secs() > 60 {
+                child.kill().unwrap();
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.code() == Some(1) && err(&output).contains(wanted), "{arguments:?}: {}", err(&output));
+    }
+}
+
+/// Columns of a live line that the clip has no channel for are named, in one warning.
+#[test]
+fn columns_that_a_live_line_leaves_out_are_named() {
+    use std::process::Stdio;
+    let folder = Folder::new();
+    folder.put("face.csv", "time,JawOpen\n0,0\n0.1,1\n0.2,0\n");
+    folder.done(&["convert", "face.csv", "-o", "face.ptn"]);
+    let warnings = |columns: &[String]| {
+        let listener = std::net::TcpListener::bind(("127.0.0.1", 0)).unwrap();
+        let line = format!("tcp:127.0.0.1:{}", listener.local_addr().unwrap().port());
+        let mut command = folder.command(&["stream", "face.ptn", "--live", "-", "--to", &line]);
+        let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+        let rows = format!("Timecode,BlendshapeCount,{}\n0,1{}\n", columns.join(","), ",0".repeat(columns.len()));
+        std::io::Write::write_all(&mut child.stdin.take().unwrap(), rows.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{}", err(&output));
+        let said = err(&output);
+        said.lines().filter(|line| line.contains("left out")).map(String::from).collect::<Vec<_>>()
+    };
+    let names = |count: usize| -> Vec<String> {
+        ["JawOpen".to_string()].into_iter().chain((0..count).map(|index| format!("Extra{index}"))).collect()
+    };
+    assert!(warnings(&names(0)).is_empty());
+    let few = warnings(&names(2));
+    assert!(few.len() == 1 && few[0].ends_with("are left out: Extra0, Extra1"), "{few:?}");
+    let many = warnings(&names(30));
+    assert!(many.len() == 1 && many[0].ends_with("Extra19 and 10 more"), "{many:?}");
+}
+
 /// The most memory that a command had at a time, in bytes, and whether it succeeded; `None` if it refused.
 #[cfg(target_os = "linux")]
 fn peak(folder: &Folder, arguments: &[&str]) -> Option<u64> {

@@ -74,6 +74,19 @@ fn frames_may_count_from_any_number() {
 fn what_is_wrong_is_named_with_its_line() {
     let jaw = mask(&[3]);
     assert!(error("header", "2.0 x 25 1\n").contains(".fap:1: expected `2.1 NAME"));
+    for (name, header, wrong) in [
+        ("version", "2.0 x 25 1", "word 1, the version, is `2.0`"),
+        ("rate", "2.1 my face x 1", "word 4, the frames a second, is `x`"),
+        ("still", "2.1 x 0 1", "word 3, the frames a second, is `0`"),
+        ("fast", "2.1 x inf 1", "word 3, the frames a second, is `inf`"),
+        ("many", "2.1 x 25 1.5", "word 4, the number of frames, is `1.5`"),
+        ("none", "2.1 x 25 0", "word 4, the number of frames, is `0`"),
+        ("few", "2.1 25", "the line has 2 of at least 3 words"),
+    ] {
+        // Lines without words count too.
+        let said = error(name, &format!("\n\n{header}\n"));
+        assert!(said.contains(".fap:3: expected `2.1 NAME FRAMES-A-SECOND FRAMES`; ") && said.contains(wrong), "{said}");
+    }
     assert!(error("only", "2.1 x 25 1\n").contains(".fap:1: no mask sets a parameter"));
     assert!(error("short", "2.1 x 25 1\n0 1 1\n0 5 5\n").contains(".fap:2: a mask of 3; expected 68"));
     assert!(

@@ -1,6 +1,7 @@
 //! Small glTF files of our own: curves that convert exactly, scales, accessors, several animations, and what is refused.
 
 use base64::Engine as _;
+use pantin_tools::face::outside;
 use pantin_tools::fit::bounds::Bounds;
 use pantin_tools::fit::channelwise;
 use pantin_tools::import::{self, Files, Imported, Options};
@@ -532,4 +533,85 @@ fn a_mesh_whose_points_are_missing_is_refused() {
     });
     let error = format!("{:#}", load("points", &text.to_string(), &Options::default()).unwrap_err());
     assert!(error.contains("meshes[0]: no such accessor"), "{error}");
+}
+
+#[test]
+fn versions_and_required_extensions_that_are_not_read_are_refused_by_name() {
+    let with = |change: &dyn Fn(&mut Value)| {
+        let mut builder = spline();
+        change(&mut builder.root);
+        load("versions", &builder.text(), &Options::default()).map_err(|error| format!("{error:#}"))
+    };
+    for (version, least, wanted) in [
+        ("1.0", None, Some("asset.version is `1.0`")),
+        ("3.0", None, Some("asset.version is `3.0`")),
+        ("two", None, Some("asset.version is `two`")),
+        ("2.1", Some("2.1"), Some("asset.minVersion is `2.1`")),
+        ("2.1", Some("x"), Some("asset.minVersion is `x`")),
+        ("2.0", None, None),
+        ("2.1", None, None),
+        ("2.1", Some("2.0"), None),
+    ] {
+        let read = with(&|root| {
+            root["asset"]["version"] = json!(version);
+            least.into_iter().for_each(|least| root["asset"]["minVersion"] = json!(least));
+        });
+        match wanted {
+            Some(wanted) => {
+                let said = read.err().unwrap_or_else(|| panic!("{version} {least:?} is read"));
+                assert!(said.contains(wanted) && said.contains("glTF 2.0 is read"), "{said}");
+            }
+            None => drop(read.unwrap()),
+        }
+    }
+    for (name, is_read) in [
+        ("KHR_materials_unlit", true),
+        ("KHR_texture_transform", true),
+        ("KHR_mesh_quantization", true),
+        ("KHR_draco_mesh_compression", true),
+        ("EXT_meshopt_compression", false),
+        ("KHR_meshopt_compression", false),
+        ("KHR_animation_pointer", false),
+        ("ACME_limbs", false),
+    ] {
+        let read = with(&|root| {
+            root["extensionsRequired"] = json!(["KHR_materials_unlit", name]);
+            root["extensionsUsed"] = json!(["KHR_materials_unlit", name]);
+        });
+        assert_eq!(read.is_ok(), is_read, "{name}");
+        assert!(read.err().is_none_or(|said| said.contains(&format!("extensionsRequired: `{name}`"))), "{name}");
+    }
+    // A mesh whose points are in an extension's own bytes is no mesh of points at zero.
+    let mut builder = spline();
+    builder.root["accessors"].as_array_mut().unwrap().push(json!({"componentType": 5126, "count": 3, "type": "VEC3"}));
+    let points = builder.root["accessors"].as_array().unwrap().len() - 1;
+    builder.root["meshes"] = json!([{"primitives": [{"attributes": {"POSITION": points}}]}]);
+    builder.root["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    // Its motion does not need them.
+    assert_eq!(builder.load("draco").motion.values, spline().load("plain").motion.values);
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("draco.gltf");
+    std::fs::write(&path, builder.text()).unwrap();
+    let said = format!("{:#}", outside::mesh(&path, &Files::default()).err().unwrap());
+    assert!(said.contains("part 0 of the mesh is compressed (KHR_draco_mesh_compression)"), "{said}");
+}
+
+#[test]
+fn bytes_behind_a_binary_are_left_out_with_a_warning() {
+    let motion = spline().load("behind").motion;
+    let mut bytes = export::gltf::write(&motion).unwrap();
+    let length = bytes.len();
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("behind.glb");
+    let mut warnings = vec![];
+    for behind in [&b""[..], b"more"] {
+        bytes.extend(behind);
+        std::fs::write(&path, &bytes).unwrap();
+        let read = import::load(&path, &Options::default()).unwrap();
+        assert_eq!(read.motion, import::load(&path, &Options::default()).unwrap().motion);
+        warnings.push(read.warnings.iter().filter(|warning| warning.contains("left out") && warning.contains("head")).count());
+    }
+    assert_eq!(warnings, [0, 1]);
+    let read = import::load(&path, &Options::default()).unwrap();
+    assert!(read.warnings[0].contains(&format!("4 bytes stand after the {length}")), "{:?}", read.warnings);
 }

@@ -130,3 +130,14 @@ fn lines_of_which_there_is_one_stand_once() {
     }
     refused("channel-twice", "Zposition Xrotation", "Zposition Zposition", "`hip` has the channel Zposition twice");
 }
+
+#[test]
+fn keys_of_a_scalar_stay_in_its_scale() {
+    refused("above", "  30    0.8", "  30    5", "5 of `smile` is outside -1..1");
+    refused("below", "  30    0.8", "  30    -1.5", "-1.5 of `smile` is outside -1..1");
+    for value in ["1", "-1", "1.0"] {
+        load("ends", &example().replacen("  30    0.8", &format!("  30    {value}"), 1)).unwrap();
+    }
+    // Joints have no such bounds.
+    load("joint", &example().replacen("  20    0  40", "  20    0  4000", 1)).unwrap();
+}

@@ -224,7 +224,7 @@ fn worlds_that_would_fill_memory_or_stack_are_refused() {
     let long = LEG.replace("cycleInterval 2", "cycleInterval 999999999");
     assert!(load(&long).unwrap_err().contains("--fps"));
     let loops = "#VRML V2.0 utf8\nPROTO A [ ] { B { } } PROTO B [ ] { A { } } A { children A { } }";
-    assert!(load(loops).unwrap_err().contains("no TimeSensor"));
+    assert!(load(loops).unwrap_err().contains("the prototype `A` contains itself"));
 }
 
 #[test]
@@ -235,4 +235,24 @@ fn a_cycle_that_is_no_time_is_named() {
         assert!(leg.warnings.iter().any(named), "{:?}", leg.warnings);
     }
     assert!(!load(LEG).unwrap().warnings.iter().any(|warning| warning.contains("cycleInterval")));
+}
+
+#[test]
+fn a_prototype_that_contains_itself_is_named() {
+    let with = |prototypes: &str| load(&LEG.replace("# a leg", prototypes)).map(drop);
+    for (prototypes, wanted) in [
+        ("PROTO Leg [] { Leg { } }", ":2: the prototype `Leg` contains itself"),
+        ("PROTO Leg [] {\nTransform { children Leg { } } }", ":3: the prototype `Leg` contains itself"),
+        ("PROTO Leg [] {\nGroup { }\nTransform { children [ DEF a Leg { } ] } }", ":4: the prototype `Leg` contains itself"),
+        ("PROTO A [] { B { } }\nPROTO B [] { C { } }\nPROTO C [] { A { } }", ":4: the prototype `A` contains itself"),
+    ] {
+        let said = with(prototypes).unwrap_err();
+        assert!(said.contains(wanted), "{prototypes}: {said}");
+    }
+    with("PROTO A [] { Transform { } }\nPROTO B [] { A { children A { } } }\nB { }").unwrap();
+    // A long chain and many nodes take no time.
+    let chain: String = (0..20_000).map(|index| format!("PROTO P{index} [] {{ P{} {{ }} }}\n", index + 1)).collect();
+    with(&chain).unwrap();
+    let deep: String = (0..150).map(|index| format!("PROTO N{index} [] {{ {}", "Group { } ".repeat(300))).collect();
+    with(&format!("{deep}{}", "}".repeat(150))).unwrap();
 }

@@ -8,7 +8,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use gltf::json::accessor::Accessor;
 use gltf::json::animation::{Animation, Channel};
-use gltf::json::validation::Validate;
+use gltf::json::validation::{Error, Validate};
 use gltf::json::{Index, Path as JsonPath, Root};
 use std::cell::{Cell, OnceCell};
 use std::path::{Component, Path, PathBuf};
@@ -19,10 +19,35 @@ const NEEDED: [&str; 8] = ["nodes", "scene", "skins", "animations", "accessors",
 /// Length of the head of a .glb.
 const GLB_HEAD: usize = 12;
 
+/// Extensions that may be required and that change nothing that is read here, or that are read: materials, textures, lights,
+/// integers as coordinates, an avatar's description. Compressed triangles do not matter to a motion; a mesh with them is refused
+/// where it is read.
+const HARMLESS: [&str; 14] = [
+    "KHR_materials_*",
+    "KHR_texture_*",
+    "KHR_lights_*",
+    "KHR_xmp*",
+    "KHR_mesh_quantization",
+    "KHR_techniques_webgl",
+    COMPRESSED_TRIANGLES,
+    "EXT_texture_*",
+    "EXT_lights_*",
+    "MSFT_texture_*",
+    "VRM",
+    "VRMC_vrm",
+    "VRMC_vrm_animation",
+    "VRMC_materials_*",
+];
+
+/// The extension that keeps the triangles of a mesh, and the numbers of its points, in a bit stream of its own.
+pub const COMPRESSED_TRIANGLES: &str = "KHR_draco_mesh_compression";
+
 /// A glTF file; buffers are read when they are first asked for.
 pub struct File {
     /// The JSON, its indices checked.
     pub root: Root,
+    /// What is odd about the container.
+    pub warnings: Vec<String>,
     path: PathBuf,
     files: Files,
     bin: Option<Vec<u8>>,
@@ -35,25 +60,33 @@ impl File {
     /// Opens `bytes`, the content of `path` among `files`.
     pub fn open(path: &Path, bytes: &[u8], files: &Files) -> Result<File> {
         let place = |message: String| anyhow!("{}: {}", path.display(), one_line(&message));
+        let mut warnings = Vec::new();
         let (json, bin) = if bytes.starts_with(b"glTF") {
-            let length = bytes.get(8..GLB_HEAD).map(|field| u32::from_le_bytes([field[0], field[1], field[2], field[3]]));
-            if length.is_none_or(|length| (length as usize) < GLB_HEAD || length as usize > bytes.len()) {
+            let length =
+                bytes.get(8..GLB_HEAD).map(|field| u32::from_le_bytes([field[0], field[1], field[2], field[3]]) as usize);
+            let Some(whole) = length.filter(|&length| length >= GLB_HEAD).and_then(|length| bytes.get(..length)) else {
                 return Err(place("the file is shorter than its head says; expected a whole .glb".into()));
+            };
+            if bytes.len() > whole.len() {
+                let (behind, length) = (bytes.len() - whole.len(), whole.len());
+                warnings.push(format!("{behind} bytes stand after the {length} that the head of the .glb states; left out"));
             }
-            let glb = gltf::Glb::from_slice(bytes).map_err(|error| place(format!("not a .glb of version 2: {error}")))?;
+            let glb = gltf::Glb::from_slice(whole).map_err(|error| place(format!("not a .glb of version 2: {error}")))?;
             (glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned()))
         } else {
             (bytes.to_vec(), None)
         };
         let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&json);
         let root: Root = gltf::json::deserialize::from_slice(json).map_err(|error| place(format!("glTF's JSON: {error}")))?;
-        if let Some(message) = missing_accessor(&root) {
+        if let Some(message) = unknown_version(&root).or_else(|| unknown_extension(&root)).or_else(|| missing_accessor(&root)) {
             return Err(place(message));
         }
         let mut wrong = None;
         root.validate(&root, JsonPath::new, &mut |at, error| {
             let at = at().to_string();
-            if wrong.is_none() && NEEDED.iter().any(|part| at.starts_with(part)) {
+            // The numbers of compressed points stand in no view: where a mesh is read, it is refused.
+            let compressed = error == Error::Missing && at.ends_with(".bufferView") && has_compressed_triangles(&root);
+            if wrong.is_none() && !compressed && NEEDED.iter().any(|part| at.starts_with(part)) {
                 wrong = Some(format!("{at}: {error}"));
             }
         });
@@ -62,6 +95,7 @@ impl File {
             None => Ok(File {
                 buffers: vec![OnceCell::new(); root.buffers.len()],
                 root,
+                warnings,
                 path: path.into(),
                 files: files.clone(),
                 bin,
@@ -105,7 +139,7 @@ impl File {
         let Some(beside) = self.beside(uri) else {
             bail!("uri `{}`: expected a data URI or the name of a file beside this one", one_line(uri));
         };
-        self.files.read(&beside)
+        self.files.read_named(&beside)
     }
 
     /// The file that a URI names, if it lies beside this one.
@@ -121,6 +155,41 @@ impl File {
         let uris = self.root.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
         uris.filter(|uri| !uri.starts_with("data:")).filter_map(|uri| self.beside(uri)).collect()
     }
+}
+
+/// Versions are MAJOR.MINOR; files of a later minor version can be read unless they state that they cannot.
+fn unknown_version(root: &Root) -> Option<String> {
+    let parts = |version: &str| {
+        let (major, minor) = version.split_once('.')?;
+        Some((major.parse::<u32>().ok()?, minor.parse::<u32>().ok()?))
+    };
+    let (version, least) = (&root.asset.version, &root.asset.min_version);
+    if parts(version).is_none_or(|(major, _)| major != 2) {
+        return Some(format!("asset.version is `{}`; glTF 2.0 is read", shortened(version)));
+    }
+    let least = least.as_ref().filter(|least| parts(least).is_none_or(|least| least > (2, 0)))?;
+    Some(format!("asset.minVersion is `{}`; glTF 2.0 is read", shortened(least)))
+}
+
+/// An extension that the file requires and that could change what is read here.
+fn unknown_extension(root: &Root) -> Option<String> {
+    let harmless = |name: &str| {
+        HARMLESS.iter().any(|known| known.strip_suffix('*').map_or(name == *known, |prefix| name.starts_with(prefix)))
+    };
+    let name = root.extensions_required.iter().find(|name| !harmless(name))?;
+    let way = if name.ends_with("_meshopt_compression") { ": write the file without compression" } else { "" };
+    Some(format!("extensionsRequired: `{}`, which is not read here{way}", shortened(name)))
+}
+
+/// Whether meshes of the file can be compressed.
+pub fn has_compressed_triangles(root: &Root) -> bool {
+    root.extensions_used.iter().any(|name| name == COMPRESSED_TRIANGLES)
+}
+
+/// A word of the file as an error quotes it.
+fn shortened(word: &str) -> String {
+    const LONGEST: usize = 40;
+    word.chars().take(LONGEST).collect()
 }
 
 /// An accessor that a mesh names and that is not there: the gltf crate looks into it without asking.

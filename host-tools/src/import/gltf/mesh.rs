@@ -1,7 +1,7 @@
 //! The first mesh with morph targets, or the first of all: points, triangles, targets by name.
 
 use super::accessor::{indices, numbers};
-use super::file::File;
+use super::file::{COMPRESSED_TRIANGLES, File, has_compressed_triangles};
 use super::scalars::target_names;
 use crate::import::Files;
 use anyhow::{Context, Result, ensure};
@@ -35,6 +35,13 @@ pub fn read(path: &Path, files: &Files) -> Result<Mesh> {
         let first = out.points.len();
         let position = part.attributes.get(&Checked::Valid(Semantic::Positions));
         let position = position.with_context(|| format!("{}: part {number} of the mesh has no POSITION", path.display()))?;
+        let compressed = has_compressed_triangles(&file.root);
+        let without_bytes = file.root.accessors.get(position.value()).is_some_and(|accessor| accessor.buffer_view.is_none());
+        ensure!(
+            !(compressed && without_bytes),
+            "{}: part {number} of the mesh is compressed ({COMPRESSED_TRIANGLES}), which is not read here: write the file without compression",
+            path.display()
+        );
         out.points.extend(places(&file, position.value())?);
         let count = out.points.len() - first;
         let corners = match part.indices {

@@ -52,7 +52,7 @@ pub(super) fn buffers(path: &Path) -> Result<Vec<PathBuf>> {
 pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let file = File::open(path, &options.files.read(path)?, &options.files)?;
     let number = chosen(&file, path, options)?;
-    let mut warnings = Vec::new();
+    let mut warnings = file.warnings.clone();
     let animations = &file.root.animations;
     if options.animation.is_none() && animations.len() > 1 {
         let first = named(number, &animations[number].name);

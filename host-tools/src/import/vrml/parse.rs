@@ -4,7 +4,9 @@
 
 use super::lexer::{Word, Words, shown};
 use super::world::{Node, Prototype, Route, Value, World};
+use crate::import::one_line;
 use anyhow::{Result, bail};
+use std::collections::{BTreeMap, HashMap, btree_map};
 
 /// Nodes and prototypes in each other.
 const DEEPEST: usize = 200;
@@ -15,12 +17,15 @@ const LARGEST: f64 = 1e9;
 
 /// Reads the world.
 pub fn world(mut words: Words) -> Result<World> {
-    let mut parser = Parser { world: World::default(), depth: 0 };
+    let mut parser = Parser { world: World::default(), depth: 0, open: Vec::new(), parts: BTreeMap::new() };
     let mut roots = Vec::new();
     while words.peek().is_some() {
         if let Some(node) = parser.statement(&mut words)? {
             roots.push(node);
         }
+    }
+    if let Some((kind, line)) = parser.endless() {
+        bail!(words.error_at(line, format!("the prototype `{}` contains itself", one_line(&kind))));
     }
     parser.world.roots = roots;
     Ok(parser.world)
@@ -29,6 +34,10 @@ pub fn world(mut words: Words) -> Result<World> {
 struct Parser {
     world: World,
     depth: usize,
+    /// Names of the prototypes whose bodies are being read, the innermost last.
+    open: Vec<String>,
+    /// Types of the nodes in a prototype's body, each with the line of its first node, by the prototype's name.
+    parts: BTreeMap<String, BTreeMap<String, usize>>,
 }
 
 fn plain<'a>(words: &mut Words<'a>, what: &str) -> Result<&'a [u8]> {
@@ -147,6 +156,7 @@ impl Parser {
         // Names of the body are its own, and its routes move every instance alike.
         let outside = (std::mem::take(&mut self.world.names), self.world.routes.len());
         self.deeper(words)?;
+        self.open.push(kind.clone());
         let interface = self.fields(words, b']')?;
         mark(words, b'{', "before a prototype's body")?;
         let mut first = None;
@@ -159,6 +169,7 @@ impl Parser {
         }
         words.next();
         self.depth -= 1;
+        self.open.pop();
         self.world.names = outside.0;
         self.world.routes.truncate(outside.1);
         if let Some(first) = first {
@@ -188,6 +199,10 @@ impl Parser {
         let line = words.line();
         mark(words, b'{', "after a node's type")?;
         self.deeper(words)?;
+        if let Some(open) = self.open.last() {
+            let parts = self.parts.entry(open.clone()).or_default();
+            parts.entry(kind.clone()).or_insert(line);
+        }
         let node = self.world.nodes.len();
         self.world.nodes.push(Node { kind, def: def.clone(), line, fields: Vec::new() });
         if let Some(def) = def {
@@ -196,6 +211,36 @@ impl Parser {
         self.world.nodes[node].fields = self.fields(words, b'}')?;
         self.depth -= 1;
         Ok(Some(node))
+    }
+
+    /// A prototype whose instance would have another instance of it inside, and the line of a node that makes it so.
+    fn endless(&self) -> Option<(String, usize)> {
+        // Prototypes are followed depth first; those on the way are `false`, those that end are `true`.
+        let mut ends: HashMap<&str, bool> = HashMap::new();
+        for kind in self.parts.keys() {
+            let mut way: Vec<(&str, btree_map::Iter<String, usize>)> = Vec::new();
+            let mut next = (!ends.contains_key(kind.as_str())).then_some(kind.as_str());
+            loop {
+                if let Some(parts) = next.and_then(|kind| Some((kind, self.parts.get(kind)?))) {
+                    ends.insert(parts.0, false);
+                    way.push((parts.0, parts.1.iter()));
+                }
+                let Some((last, parts)) = way.last_mut() else { break };
+                next = match parts.next() {
+                    Some((part, &line)) => match ends.get(part.as_str()) {
+                        Some(false) => return Some((part.clone(), line)),
+                        Some(true) => None,
+                        None => Some(part),
+                    },
+                    None => {
+                        ends.insert(last, true);
+                        way.pop();
+                        None
+                    }
+                };
+            }
+        }
+        None
     }
 
     fn deeper(&mut self, words: &Words) -> Result<()> {
