@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use harness::vectors::{self, bank, c_header, constants, coverage, record, sums, synthetic};
+use harness::vectors::{self, bank, c_figure, c_header, constants, coverage, record, sums, synthetic};
 use pantin::Bank;
 
 /// Bytes that the folder may have.
@@ -47,12 +47,14 @@ fn no_vector_has_changed() {
 }
 
 #[test]
-fn the_tables_in_c_are_those_of_the_decoder() {
-    if std::env::var_os("PANTIN_UPDATE").is_some() {
-        fs::write(c_header::path(), c_header::text()).unwrap();
+fn the_tables_in_c_are_those_of_the_crates() {
+    for (path, text) in [(c_header::path(), c_header::text()), (c_figure::path(), c_figure::text())] {
+        if std::env::var_os("PANTIN_UPDATE").is_some() {
+            fs::write(&path, &text).unwrap();
+        }
+        let committed = fs::read_to_string(&path).unwrap();
+        assert_eq!(committed, text, "`cargo xtask vectors`, or this test with PANTIN_UPDATE=1, regenerates them");
     }
-    let committed = fs::read_to_string(c_header::path()).unwrap();
-    assert_eq!(committed, c_header::text(), "`cargo xtask vectors`, or this test with PANTIN_UPDATE=1, regenerates them");
 }
 
 #[test]

@@ -153,7 +153,8 @@ static void field_name(fields *f, pantin_name *name) {
 
 /* ---- Names ---- */
 
-static uint8_t name_byte(const pantin_name *name, uint32_t i) {
+uint8_t pantin_name_byte(const pantin_name *name, uint32_t i) {
+    if (i >= name->length) return 0;
     return name->source ? byte_at(name->source, name->start + i) : PANTIN_U8(pantin_live_link + name->start + i);
 }
 
@@ -176,7 +177,7 @@ static void listed_name(pantin_name *name, uint16_t index) {
 uint32_t pantin_copy_name(const pantin_name *name, char *into, size_t room) {
     uint32_t i;
     if (room > 0) {
-        for (i = 0; i < name->length && i + 1 < room; i++) into[i] = (char)name_byte(name, i);
+        for (i = 0; i < name->length && i + 1 < room; i++) into[i] = (char)pantin_name_byte(name, i);
         into[i] = 0;
     }
     return name->length;
@@ -185,7 +186,7 @@ uint32_t pantin_copy_name(const pantin_name *name, char *into, size_t room) {
 int pantin_name_is(const pantin_name *name, const char *text) {
     uint32_t i;
     for (i = 0; i < name->length; i++) {
-        if (text[i] == 0 || (uint8_t)text[i] != name_byte(name, i)) return 0;
+        if (text[i] == 0 || (uint8_t)text[i] != pantin_name_byte(name, i)) return 0;
     }
     return text[i] == 0;
 }

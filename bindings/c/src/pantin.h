@@ -112,6 +112,9 @@ typedef struct pantin_name {
 /* Copies a name into `into`, which has `room` bytes, and appends a 0. A longer name is cut. Returns the name's whole length in bytes. */
 uint32_t pantin_copy_name(const pantin_name *name, char *into, size_t room);
 
+/* Returns byte `i` of a name, or 0 after its end. */
+uint8_t pantin_name_byte(const pantin_name *name, uint32_t i);
+
 /* Returns 1 if the name equals `text`, otherwise 0. */
 int pantin_name_is(const pantin_name *name, const char *text);
 

@@ -110,6 +110,15 @@ fn rows(bytes: &[u8], indent: &str) -> String {
     bytes.chunks(PER_LINE).map(row).collect()
 }
 
+/// On an AVR, constants are in RAM unless they are declared to be in flash.
+const FLASH: &str = "#ifdef __AVR__
+#include <avr/pgmspace.h>
+#define PANTIN_FLASH PROGMEM
+#else
+#define PANTIN_FLASH
+#endif
+";
+
 /// A C header: the clip's bytes as `static const unsigned char CLIP_STEM[]`, and constants for the memory that it takes.
 pub fn c_header(clip: &Clip, bytes: &[u8], stem: &str) -> Result<String> {
     // The prefix keeps names such as `EOF` away from those of other headers.
@@ -141,7 +150,11 @@ pub fn c_header(clip: &Clip, bytes: &[u8], stem: &str) -> Result<String> {
         "/* Initializes an array of {name}_CHANNELS strings. */\n#define {name}_NAMES {}\n",
         names.join(", \\\n    ")
     );
-    let _ = write!(out, "\nstatic const unsigned char {name}[{name}_LEN] = {{\n{}}};\n\n#endif\n", rows(bytes, "    "));
+    let _ = write!(
+        out,
+        "\n{FLASH}\nstatic const unsigned char {name}[{name}_LEN] PANTIN_FLASH = {{\n{}}};\n\n#endif\n",
+        rows(bytes, "    ")
+    );
     Ok(out)
 }
 

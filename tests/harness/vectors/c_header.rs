@@ -72,7 +72,7 @@ fn list(value: &Value) -> &[Value] {
 }
 
 /// An array, or an array of arrays.
-fn table(text: &mut String, kind: &str, name: &str, values: &Value) {
+pub(super) fn table(text: &mut String, kind: &str, name: &str, values: &Value) {
     let values = list(values);
     let inner = values.first().map_or(&[][..], list);
     let columns = if inner.is_empty() { String::new() } else { format!("[{}]", inner.len()) };

@@ -1,6 +1,7 @@
 //! Golden vectors: clips, each with what a decoder must make of it, in `tests/vectors`.
 
 pub mod bank;
+pub mod c_figure;
 pub mod c_header;
 pub mod constants;
 pub mod coverage;

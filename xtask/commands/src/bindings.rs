@@ -1,5 +1,7 @@
 //! `cargo xtask bindings [--mutants N]`: tests of the decoder in C (`bindings/c`), which need compilers for other targets.
 
+mod figure;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -12,6 +14,9 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
+/// The decoder, and figures.
+const SOURCES: [&str; 2] = ["src/pantin.c", "src/pantin_figure.c"];
+
 /// Every warning is an error.
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
 const SANITIZERS: [&str; 4] = ["-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
@@ -20,12 +25,23 @@ const SECTIONS: [&str; 3] = ["-Os", "-ffunction-sections", "-fdata-sections"];
 
 /// Compilers for small machines: their options, and the most bytes of code of the slice decoder and of the whole decoder without tables.
 const TARGETS: [Target; 3] = [
-    Target { compiler: "arm-none-eabi-gcc", options: &["-mcpu=cortex-m0", "-mthumb"], limits: Some([6 * 1024, 10 * 1024]) },
-    Target { compiler: "avr-gcc", options: &["-mmcu=atmega328p", "-mcall-prologues"], limits: Some([12 * 1024, 15 * 1024]) },
+    Target {
+        compiler: "arm-none-eabi-gcc",
+        options: &["-mcpu=cortex-m0", "-mthumb"],
+        limits: Some([6 * 1024, 10 * 1024]),
+        figures: Some(10 * 1024),
+    },
+    Target {
+        compiler: "avr-gcc",
+        options: &["-mmcu=atmega328p", "-mcall-prologues"],
+        limits: Some([12 * 1024, 15 * 1024]),
+        figures: Some(21 * 1024),
+    },
     Target {
         compiler: "riscv64-unknown-elf-gcc",
         options: &["-march=rv32imc", "-mabi=ilp32", "--specs=picolibc.specs"],
         limits: None,
+        figures: None,
     },
 ];
 
@@ -95,6 +111,8 @@ struct Target {
     compiler: &'static str,
     options: &'static [&'static str],
     limits: Option<[u64; 2]>,
+    /// Most bytes of code of figures.
+    figures: Option<u64>,
 }
 
 /// Tests the decoder in C: test vectors, damaged files, mutants, code size, emulated boards
@@ -106,12 +124,29 @@ pub struct Bindings {
     /// Selects which mutants are made
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Runs only the steps whose name contains this text
+    #[arg(long)]
+    only: Option<String>,
+}
+
+/// The steps that were asked for.
+struct Selected<'a> {
+    steps: Steps,
+    only: Option<&'a str>,
+}
+
+impl Selected<'_> {
+    fn run(&self, name: &str, step: impl FnOnce() -> Result<()>) {
+        if self.only.is_none_or(|only| name.contains(only)) {
+            self.steps.run(name, step);
+        }
+    }
 }
 
 impl Bindings {
     /// Runs all steps, failed ones too, then lists them.
     pub fn run(self) -> Result<()> {
-        let steps = Steps::default();
+        let steps = Selected { steps: Steps::default(), only: self.only.as_deref() };
         let folder = tempfile::tempdir()?;
         steps.run("tools", || {
             for emulator in ["simavr", "qemu-system-arm", "qemu-system-riscv32"] {
@@ -127,12 +162,15 @@ impl Bindings {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
         }
         steps.run("C++", || {
-            ["g++", "clang++"].into_iter().try_for_each(|compiler| {
+            for (compiler, source) in ["g++", "clang++"].into_iter().flat_map(|compiler| SOURCES.map(|source| (compiler, source)))
+            {
                 let mut command = Command::new(compiler);
                 command.args(["-x", "c++", "-std=c++11"]);
-                compile(command, &["src/pantin.c"], &folder.path().join("cpp.o")).map(drop)
-            })
+                compile(command, &[source], &folder.path().join("cpp.o"))?;
+            }
+            Ok(())
         });
+        steps.run("lines of figures against the crate's", || figure::lines(&folder));
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         for target in &TARGETS {
@@ -144,10 +182,10 @@ impl Bindings {
         steps.run("a clip on an Arduino Uno in simavr", || uno(&folder));
         steps.run("compiler of the ESP8266", || {
             let mut command = Command::new("xtensa-lx106-elf-gcc");
-            command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include"]);
-            compile(command, &["src/pantin.c"], &folder.path().join("esp8266.o")).map(drop)
+            command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include", "-r", "-nostdlib"]);
+            compile(command, &SOURCES, &folder.path().join("esp8266.elf")).map(drop)
         });
-        steps.finish()
+        steps.steps.finish()
     }
 
     fn mutants(&self, folder: &TempDir) -> Result<()> {
@@ -190,7 +228,9 @@ fn output(mut command: Command) -> Result<Output> {
 fn host_program(folder: &TempDir, compiler: &str, name: &str) -> Result<PathBuf> {
     let mut command = Command::new(compiler);
     command.arg("-std=c99").args(SANITIZERS);
-    compile(command, &["src/pantin.c", &format!("tests/{name}.c")], &folder.path().join(format!("{name}-{compiler}")))
+    let test = format!("tests/{name}.c");
+    let sources: Vec<&str> = SOURCES.into_iter().chain([test.as_str()]).collect();
+    compile(command, &sources, &folder.path().join(format!("{name}-{compiler}")))
 }
 
 /// The clips and banks among the vectors, with their rigs.
@@ -257,28 +297,12 @@ fn damage(folder: &TempDir) -> Result<()> {
 }
 
 impl Target {
-    /// Bytes of code of all functions, and of those of the slice decoder.
+    /// Bytes of code of all functions, and of those of the slice decoder; then those of figures.
     fn size(&self, folder: &TempDir) -> Result<()> {
-        let mut command = Command::new(self.compiler);
-        command.arg("-std=c99").args(SECTIONS).args(self.options);
-        let object = compile(command, &["src/pantin.c"], &folder.path().join(format!("{}.o", self.compiler)))?;
-        let mut size = Command::new(self.compiler.replace("-gcc", "-size"));
-        size.arg("-A").arg(object);
-        let sections = String::from_utf8(output(size)?.stdout)?;
-        let (mut all, mut slice) = (0, 0);
-        for line in sections.lines() {
-            let mut words = line.split_whitespace();
-            let (Some(section), Some(bytes)) = (words.next(), words.next().and_then(|bytes| bytes.parse::<u64>().ok())) else {
-                continue;
-            };
-            let Some(function) = section.strip_prefix(".text") else { continue };
-            all += bytes;
-            // A compiler appends to the name of a function of which it makes a variant.
-            let function = function.trim_start_matches('.').split('.').next().unwrap_or_default();
-            if !EXTRAS.contains(&function) {
-                slice += bytes;
-            }
-        }
+        let decoder = self.functions(folder, "src/pantin.c", &[])?;
+        let all: u64 = decoder.iter().map(|(_, bytes)| bytes).sum();
+        let slice: u64 =
+            decoder.iter().filter(|(function, _)| !EXTRAS.contains(&function.as_str())).map(|(_, bytes)| bytes).sum();
         println!("   {slice} bytes of code without banks, pages and streams, {all} with them");
         if let Some([most_slice, most_all]) = self.limits {
             ensure!(
@@ -286,7 +310,34 @@ impl Target {
                 "at most {most_slice} and {most_all} bytes are allowed"
             );
         }
+        let [figure, euler] = [&[][..], &["-DPANTIN_EULER_ONLY"]].map(|options| {
+            self.functions(folder, "src/pantin_figure.c", options)
+                .map(|functions| functions.iter().map(|(_, bytes)| bytes).sum::<u64>())
+        });
+        let (figure, euler) = (figure?, euler?);
+        println!("   {figure} bytes of code for figures, {euler} with Euler angles alone");
+        if let Some(limit) = self.figures {
+            ensure!(figure > 1000 && figure <= limit, "figures may take {limit} bytes");
+        }
         Ok(())
+    }
+
+    /// The functions of a source, and the bytes of each.
+    fn functions(&self, folder: &TempDir, source: &str, options: &[&str]) -> Result<Vec<(String, u64)>> {
+        let mut command = Command::new(self.compiler);
+        command.arg("-std=c99").args(SECTIONS).args(self.options).args(options);
+        let object = compile(command, &[source], &folder.path().join(format!("{}.o", self.compiler)))?;
+        let mut size = Command::new(self.compiler.replace("-gcc", "-size"));
+        size.arg("-A").arg(object);
+        let sections = String::from_utf8(output(size)?.stdout)?;
+        let function = |line: &str| {
+            let (section, rest) = line.split_once(char::is_whitespace)?;
+            let name = section.strip_prefix(".text")?.trim_start_matches('.');
+            // A compiler appends to the name of a function of which it makes a variant.
+            let name = name.split('.').next().unwrap_or_default();
+            Some((name.to_owned(), rest.split_whitespace().next()?.parse().ok()?))
+        };
+        Ok(sections.lines().filter_map(function).collect())
     }
 }
 
