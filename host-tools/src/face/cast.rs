@@ -1,8 +1,9 @@
 //! Draws a clip's face from one or several views, with the device's own code.
 
+use super::draw::ROOM;
 use anyhow::Result;
 use pantin::Clip;
-use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES, Weights};
+use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, Weights};
 use pantin_figure::Canvas;
 use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::lines::Line;
@@ -14,36 +15,45 @@ pub fn is_face(clip: &Clip) -> Result<bool> {
 
 /// Returns whether a clip has the scalars of a face.
 fn has_face(clip: &Clip) -> Result<bool> {
-    Ok(Binding::new(&clip.rig(), &Model::new_checked(MODEL)?).is_face())
+    Ok(drives(clip, &Model::new_checked(MODEL)?))
+}
+
+/// Returns whether a clip has scalars that drive a model.
+pub fn drives(clip: &Clip, model: &Model) -> bool {
+    Binding::new(&clip.rig(), model).is_face()
 }
 
 /// A face that a clip drives, with a renderer for each view.
-pub struct Cast {
-    model: Model<'static>,
+pub struct Cast<'f> {
+    model: Model<'f>,
     binding: Binding,
     weights: Weights,
-    morph: Morph<VERTICES>,
-    looks: Vec<FaceRenderer<VERTICES>>,
+    morph: Box<Morph<ROOM>>,
+    looks: Vec<FaceRenderer<ROOM>>,
     /// First column of its area.
     column: i16,
     side: u16,
 }
 
-impl Cast {
-    /// Sets up a renderer for each view, or returns `None` for a clip that has no face. A clip with a body has its face in the square that
+impl<'f> Cast<'f> {
+    /// Sets up Pantin's own face with a renderer for each view, or returns `None` for a clip that has no face. A clip with a body has its face in the square that
     /// the firmware gives it.
-    pub fn of_clip(clip: &Clip, canvas: Canvas, views: &[pantin_figure::View]) -> Result<Option<Cast>> {
-        if !has_face(clip)? {
+    pub fn of_clip(clip: &Clip, canvas: Canvas, views: &[pantin_figure::View]) -> Result<Option<Cast<'static>>> {
+        Cast::of_model(Model::new_checked(MODEL)?, clip, canvas, views)
+    }
+
+    /// Like [`Cast::of_clip`], with the face of any model.
+    pub fn of_model(model: Model<'f>, clip: &Clip, canvas: Canvas, views: &[pantin_figure::View]) -> Result<Option<Cast<'f>>> {
+        if !drives(clip, &model) {
             return Ok(None);
         }
         let (canvas, column) = match clip.rig().joint_count() {
             0 => (canvas, 0),
             _ => (canvas.with_face().face, canvas.with_face().face_column),
         };
-        let model = Model::new_checked(MODEL)?;
         let view = |view: &pantin_figure::View| FaceView { orbit: view.orbit, tilt: view.tilt };
         let looks = views.iter().map(|seen| FaceRenderer::new(&model, canvas, view(seen))).collect();
-        let (binding, weights, morph) = (Binding::new(&clip.rig(), &model), Weights::new(), Morph::new(&model)?);
+        let (binding, weights, morph) = (Binding::new(&clip.rig(), &model), Weights::new(), Box::new(Morph::new(&model)?));
         Ok(Some(Cast { model, binding, weights, morph, looks, column, side: canvas.width.min(canvas.height) }))
     }
 

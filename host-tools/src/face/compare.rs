@@ -38,7 +38,7 @@ pub struct Action {
 }
 
 /// Side of the part of a picture that is shown.
-pub const PART: u16 = 160;
+pub const PART: u16 = 180;
 
 /// A table of the paper.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ pub struct Table {
 const CANVAS: u16 = 240;
 
 const fn action(label: &'static str, name: &'static str) -> Action {
-    Action { label, name, orbit: 0, part: [40, 40] }
+    Action { label, name, orbit: 0, part: [30, 58] }
 }
 
 /// Tables 3 (all actions) and 4 (the mouth).
@@ -74,8 +74,8 @@ pub const TABLES: [Table; 2] = [
     Table {
         title: "table 4",
         actions: &[
-            Action { part: [40, 80], ..action("1 open mouth", "open_mouth") },
-            Action { orbit: -75, part: [64, 80], ..action("1 from aside", "open_mouth") },
+            Action { part: [30, 60], ..action("1 open mouth", "open_mouth") },
+            Action { orbit: -75, part: [54, 60], ..action("1 from aside", "open_mouth") },
         ],
     },
 ];

@@ -26,7 +26,7 @@ struct Shown {
     canvas: Canvas,
     view: View,
     body: Option<FigureRenderer<RIG_JOINTS>>,
-    face: Option<Cast>,
+    face: Option<Cast<'static>>,
 }
 
 impl<'a, 'm> Figure<'a, 'm> {

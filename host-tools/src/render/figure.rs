@@ -8,6 +8,7 @@ use super::smooth;
 use crate::face::cast::Cast;
 use anyhow::{Context, Result};
 use pantin::{ChannelState, Clip, Player};
+use pantin_face::Model;
 use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
 
 /// Most columns and rows of a picture made of a display's pixels: the figure's places have 16 bits, four of them below the pixel.
@@ -45,14 +46,14 @@ pub struct Figure<'a, 'm> {
     player: Player<'a, 'm>,
     /// One for each view; none if the clip has no body.
     bodies: Vec<FigureRenderer<RIG_JOINTS>>,
-    face: Option<Box<Cast>>,
+    face: Option<Box<Cast<'a>>>,
     size: [usize; 2],
     factor: usize,
 }
 
 impl<'a, 'm> Figure<'a, 'm> {
-    /// Sets up the cameras for pictures of `size` (columns, rows).
-    pub fn new(mut player: Player<'a, 'm>, size: [usize; 2], views: &[View]) -> Result<Figure<'a, 'm>> {
+    /// Sets up the cameras for pictures of `size` (columns, rows). `model` is the face that the clip drives.
+    pub fn new(mut player: Player<'a, 'm>, size: [usize; 2], views: &[View], model: Model<'a>) -> Result<Figure<'a, 'm>> {
         let factor = size[0].max(size[1]).div_ceil(MOST_PIXELS);
         let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
         let canvas = Canvas { width, height };
@@ -61,7 +62,7 @@ impl<'a, 'm> Figure<'a, 'm> {
         let ahead = |view: &View| (view.orbit, view.tilt) == (View::default().orbit, View::default().tilt);
         let face_view = |view: &View| if has_body && ahead(view) { View { orbit: 0, tilt: 0, ..*view } } else { *view };
         let face_views: Vec<View> = views.iter().map(face_view).collect();
-        let face = Cast::of_clip(player.clip(), canvas, &face_views)?.map(Box::new);
+        let face = Cast::of_model(model, player.clip(), canvas, &face_views)?.map(Box::new);
         let area = if face.is_some() { canvas.with_face().body } else { canvas };
         let renderer = |view: &View| FigureRenderer::of_clip(&mut player, area, *view).context("this figure cannot be drawn");
         let bodies = if has_body { views.iter().map(renderer).collect::<Result<_>>()? } else { Vec::new() };

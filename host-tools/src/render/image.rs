@@ -57,6 +57,19 @@ impl Image {
         Image { pixels: rows.collect(), width: self.width * scale }
     }
 
+    /// Paints what lies outside the largest circle in the middle.
+    pub fn keep_circle(&mut self, colour: Rgb) {
+        let [width, height] = [self.width, self.height()];
+        let side = width.min(height);
+        for (index, pixel) in self.pixels.iter_mut().enumerate() {
+            // Twice the distances of the pixel's middle from that of the picture.
+            let [x, y] = [(2 * (index % width) + 1).abs_diff(width), (2 * (index / width) + 1).abs_diff(height)];
+            if x * x + y * y > side * side {
+                *pixel = colour;
+            }
+        }
+    }
+
     /// Copies a picture to a place where it is inside.
     pub fn put(&mut self, left: usize, top: usize, picture: &Image) {
         for (row, line) in picture.pixels.chunks(picture.width).enumerate() {
@@ -154,6 +167,17 @@ mod tests {
         let area = Area::of_change(&before, &after, 5);
         assert_eq!(area, Area { left: 1, top: 1, width: 3, height: 2 });
         assert_eq!(area.cut(&after, 5), [0, 0, 1, 2, 0, 0]);
+    }
+
+    #[test]
+    fn a_circle_keeps_the_middle_of_each_side_and_no_corner() {
+        let mut image = Image::new(12, 8, [9; 3]);
+        image.keep_circle([1; 3]);
+        let row =
+            |y: usize| image.pixels()[12 * y..12 * y + 12].iter().map(|pixel| usize::from(pixel[0] == 9)).collect::<Vec<_>>();
+        assert_eq!(row(0), [0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0]);
+        assert_eq!(row(3), [0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0]);
+        assert_eq!(row(0), row(7));
     }
 
     #[test]

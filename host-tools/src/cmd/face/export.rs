@@ -1,22 +1,34 @@
 //! `pantin face export`
 
+use crate::cmd::render::Size;
+use crate::face::draw::picture;
 use crate::face::{Face, export, pose};
 use crate::output::{check, write_whole};
-use anyhow::{Result, bail};
+use crate::render::figure::MOST_PIXELS;
+use crate::render::image::Image;
+use anyhow::{Result, bail, ensure};
+use pantin_face::FaceView;
 use std::path::PathBuf;
 
-/// Write the face's mesh: .glb with one morph target per unit, or .obj.
+/// Write the face: its mesh as .glb with one morph target per unit or as .obj, or a picture of it as .png.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin face export -o face.glb
-  pantin face export -o joy.obj --pose joy=0.7,wink_left")]
+  pantin face export -o joy.obj --pose joy=0.7,wink_left
+  pantin face export -o joy.png --pose joy --scale 4")]
 pub struct Arguments {
-    /// The file to write: .glb or .obj
+    /// The file to write: .glb, .obj or .png
     #[arg(short, long)]
     output: PathBuf,
     /// Units and their weights instead of the neutral pose
     #[arg(long, default_value = "", value_name = "UNIT=WEIGHT,...")]
     pose: String,
+    /// Columns and rows of a picture
+    #[arg(long, value_name = "COLUMNSxROWS", default_value = "128x64")]
+    size: Size,
+    /// Magnify each pixel of a picture N times
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=64))]
+    scale: u16,
 }
 
 /// Runs the command.
@@ -27,7 +39,20 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {
         Some("glb") => export::glb(&face, &pairs)?,
         Some("obj") => export::obj(&face, &pairs)?.into_bytes(),
-        _ => bail!("{}: expected a name that ends in .glb or .obj", arguments.output.display()),
+        Some("png") => png(arguments, &face, &pairs)?,
+        _ => bail!("{}: expected a name that ends in .glb, .obj or .png", arguments.output.display()),
     };
     write_whole(&arguments.output, &bytes)
+}
+
+/// The face as a display of this size shows it.
+fn png(arguments: &Arguments, face: &Face, pairs: &pose::Pairs) -> Result<Vec<u8>> {
+    let [width, height] = arguments.size.0;
+    ensure!(width.max(height) <= MOST_PIXELS, "--size {width}x{height}: displays of pixels have at most {MOST_PIXELS} a side");
+    let canvas = pantin_figure::Canvas { width: width as u16, height: height as u16 };
+    let greys = picture(&face.model()?, &pose::weights(pairs), canvas, FaceView::default());
+    let mut out = Vec::new();
+    let image = Image::of(width, greys.into_iter().map(|grey| [grey; 3]).collect());
+    image.enlarged(usize::from(arguments.scale)).write_png(&mut out)?;
+    Ok(out)
 }

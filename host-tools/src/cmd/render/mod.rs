@@ -5,7 +5,9 @@ mod output;
 
 use super::{Files, check_read, default_output, format_of, up_axis};
 use crate::expand::expand;
-use crate::face::cast::is_face;
+use crate::face::cast::drives;
+use crate::face::{Face, cartoon, compact};
+use crate::input;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
 use crate::render::chart;
 use crate::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
@@ -14,6 +16,7 @@ use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
 use pantin::Up;
+use pantin_face::Model;
 use pantin_figure::{Track, View};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -22,6 +25,8 @@ use std::path::{Path, PathBuf};
 const SMOOTH_FROM: usize = 240;
 /// Columns and rows of a picture without --size.
 const SIZE: &str = "128x64";
+/// The name of the face of filled shapes.
+const CARTOON: &str = "cartoon";
 /// Colours without --palette.
 const PALETTE: &str = "grey";
 
@@ -39,6 +44,7 @@ const PALETTE: &str = "grey";
   pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
   pantin render walk.ptn -o poster.png --frame 0.5s --size 1200x1600 --palette blueprint
   pantin render face.ptn -o face.png
+  pantin render face.ptn --face cartoon --interpolation smile=spherical:60 -o face.gif
 
 Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink) or
 RRGGBB,RRGGBB,RRGGBB (paper, far, near).")]
@@ -83,6 +89,15 @@ pub struct Arguments {
     /// Use a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
+    /// The face that the clip drives: cartoon, or a model of `pantin face model` [default: Pantin's wireframe head]
+    #[arg(long, value_name = "MODEL")]
+    face: Option<PathBuf>,
+    /// How a unit of the face moves: linear, improved, eased, or spherical with an angle of 2 to 120 degrees; may be given several times
+    #[arg(long, value_name = "UNIT=KIND[:DEGREES]")]
+    interpolation: Vec<String>,
+    /// Leave out what lies outside the circle that fits the picture, as on a round display
+    #[arg(long)]
+    round: bool,
     /// First frame to show: a number, or seconds as in 1.5s
     #[arg(long, value_name = "MOMENT")]
     from: Option<Moment>,
@@ -130,7 +145,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let files = Files::read_to_show(&arguments.input, arguments.rig.as_deref())?;
     let clip = files.open_alone().with_context(|| arguments.input.display().to_string())?;
-    let face = is_face(&clip)?;
+    let model = arguments.model()?;
+    let model = Model::new_checked(&model).with_context(|| arguments.face.clone().unwrap_or_default().display().to_string())?;
+    let has_face = drives(&clip, &model);
+    let face = has_face && clip.rig().joint_count() == 0;
+    let of_faces = [("--face", arguments.face.is_some()), ("--interpolation", !arguments.interpolation.is_empty())];
+    if let Some((option, _)) = of_faces.into_iter().find(|entry| entry.1 && !has_face) {
+        bail!(
+            "{}: {option} is for clips that drive the face, and no three channels have names that it knows",
+            arguments.input.display()
+        );
+    }
     let output = &match &arguments.output {
         Some(output) => output.clone(),
         None => arguments.default_output(clip.rig().joint_count() == 0 && !face)?,
@@ -152,7 +177,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let look = arguments.look(kind)?;
         let mut memory = PlayerBuffers::of(&clip);
         let sides = arguments.sides(face);
-        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views(&sides, face))?;
+        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views(&sides, face), model)?;
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
         Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.write(&mut file)?;
     }
@@ -165,9 +190,34 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 impl Arguments {
+    /// The bytes of the face's model.
+    fn model(&self) -> Result<Vec<u8>> {
+        let is_cartoon = self.face.as_ref().is_some_and(|name| name.as_os_str() == CARTOON);
+        if let Some(path) = self.face.as_ref().filter(|_| !is_cartoon) {
+            let place = || path.display().to_string();
+            ensure!(
+                self.interpolation.is_empty(),
+                "{}: a model has its interpolations; `pantin face model --interpolation` writes one with others",
+                place()
+            );
+            return input::read(path).with_context(place);
+        }
+        if self.interpolation.is_empty() {
+            return Ok(if is_cartoon { pantin_face::CARTOON } else { pantin_face::MODEL }.to_vec());
+        }
+        let face = Face::new()?;
+        let mut blueprint = match is_cartoon {
+            true => cartoon::build(&face.head, &face.blueprint, cartoon::TABLE)?,
+            false => face.blueprint,
+        };
+        self.interpolation.iter().try_for_each(|choice| blueprint.choose(choice))?;
+        compact::encode(&blueprint)
+    }
+
     /// Checks the output before any work.
     fn check(&self, output: &Path) -> Result<()> {
-        let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(self.rig.as_deref()).collect();
+        let face = self.face.as_deref().filter(|name| name.as_os_str() != CARTOON);
+        let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(self.rig.as_deref()).chain(face).collect();
         check(&inputs, &[output])?;
         refuse_foreign(output, Wanted::Picture)
     }
@@ -200,6 +250,7 @@ impl Arguments {
             ("--tilt", self.tilt.is_some()),
             ("--up", self.up.is_some()),
             ("--fixed", self.fixed),
+            ("--round", self.round),
             ("--from", self.from.is_some()),
             ("--to", self.to.is_some()),
             ("--frame", self.frame.is_some()),
@@ -223,6 +274,7 @@ impl Arguments {
         ensure!(animated || self.fps.is_none(), "{name}: --fps is for animations: .gif, .apng, or .png with --animate");
         ensure!(kind != Kind::Svg || !self.animate, "{name}: an .svg does not move; .gif and .apng do");
         ensure!(kind != Kind::Svg || self.scale.is_none(), "{name}: an .svg has no pixels to scale; --size says how big it is");
+        ensure!(kind != Kind::Svg || !self.round, "{name}: --round is for pictures of pixels");
         ensure!(kind != Kind::Svg || !self.pixels, "{name}: an .svg has lines, no pixels");
         Ok(kind)
     }

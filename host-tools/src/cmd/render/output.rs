@@ -86,7 +86,10 @@ impl Output<'_, '_> {
     }
 
     fn image(&mut self, view: usize, scale: usize) -> Image {
-        let image = self.figure.image(view, self.look, &self.arguments.palette);
+        let mut image = self.figure.image(view, self.look, &self.arguments.palette);
+        if self.arguments.round {
+            image.keep_circle(self.arguments.palette.paper());
+        }
         if scale == 1 { image } else { image.enlarged(scale) }
     }
 

@@ -1,5 +1,5 @@
 //! Recorded faces at 2 % of full scale: bits a second with and without the channels' names, how smooth they are played, and what a plain
-//! coder of first differences takes at best for the same error. Then what our own clips, the model and a frame take.
+//! coder of first differences takes at best for the same error. Then what our own clips, the models and a frame take.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -30,19 +30,23 @@ const BEND: f64 = 1.5;
 pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let (mut goals, mut played) = recordings(setting)?;
     goals.push(own(setting, &mut played)?);
-    goals.extend(frames(&played)?);
-    let memory = board::memory("face", &played[0].1)?;
-    goals.push(Goal::at_most(
-        format!("RAM without the framebuffer, {} on Cortex-M3", played[0].0),
-        memory as f64,
-        RAM,
-        0,
-        "bytes",
-    ));
+    for style in &STYLES {
+        goals.extend(frames(&played, style)?);
+        let memory = board::memory(style.feature, &played[0].1)?;
+        goals.push(Goal::at_most(
+            format!("RAM without the framebuffer, {} on Cortex-M3{}", played[0].0, style.label),
+            memory as f64,
+            RAM,
+            0,
+            "bytes",
+        ));
+    }
     let own = size_of::<Morph<VERTICES>>() + size_of::<FaceRenderer<VERTICES>>() + size_of::<Binding>() + size_of::<Weights>();
     goals.push(Goal::told("share of vertices, display, names and weights", format!("{own} bytes")));
     let model = pantin_face::MODEL.len();
     goals.push(Goal::at_most("the face's model in flash", model as f64, MODEL, 0, "bytes"));
+    let cartoon = pantin_face::CARTOON.len();
+    goals.push(Goal::at_most("the model of filled shapes in flash", cartoon as f64, MODEL, 0, "bytes"));
     Ok(goals)
 }
 
@@ -86,14 +90,25 @@ fn own(setting: &Setting, clips: &mut Clips) -> Result<Goal> {
 /// Machines, and most instructions of a frame.
 const FRAMES: [(&str, Machine, f64); 2] = [("M3, 128x64, 4 bits", LM3S6965EVB, 60e3), ("M0, 128x64, 1 bit", MICROBIT, 120e3)];
 
+/// A face that the boards can show.
+struct Style {
+    /// The boards' feature.
+    feature: &'static str,
+    /// Follows the names of what is measured.
+    label: &'static str,
+}
+
+const STYLES: [Style; 2] = [Style { feature: "face", label: "" }, Style { feature: "cartoon", label: ", filled shapes" }];
+
 /// Instructions of a frame in the whole program: weights, morph and projection, then clear and draw.
-fn frames(clips: &Clips) -> Result<Vec<Goal>> {
+fn frames(clips: &Clips, style: &Style) -> Result<Vec<Goal>> {
     let mut goals = vec![];
     for (machine_name, machine, most) in FRAMES {
-        say(&format!("   instructions per frame of a face, {machine_name} ({}), mean of the clip", machine.name));
+        let label = style.label;
+        say(&format!("   instructions per frame of a face, {machine_name} ({}){label}, mean of the clip", machine.name));
         let (mut rows, mut own) = (vec![], vec![]);
         let files = clips.iter().map(|(_, clip)| Ok((clip.as_path(), frames_of(clip)?))).collect::<Result<Vec<_>>>()?;
-        for ((name, _), stats) in clips.iter().zip(played(machine, "face", &files, &[])?) {
+        for ((name, _), stats) in clips.iter().zip(played(machine, style.feature, &files, &[])?) {
             let cost = stats[1].mean() + stats[2].mean();
             rows.push(vec![
                 name.clone(),
@@ -102,7 +117,7 @@ fn frames(clips: &Clips) -> Result<Vec<Goal>> {
                 format!("{cost:.0}"),
             ]);
             if name.starts_with(RECORDED) {
-                goals.push(Goal::at_most(format!("instructions per frame, {machine_name}: {name}"), cost, most, 0, ""));
+                goals.push(Goal::at_most(format!("instructions per frame, {machine_name}{label}: {name}"), cost, most, 0, ""));
             } else {
                 own.push(cost);
             }
@@ -110,7 +125,7 @@ fn frames(clips: &Clips) -> Result<Vec<Goal>> {
         table::print(&["clip", "morph and project", "clear and draw", "together"], &rows);
         let worst = own.iter().copied().fold(0.0, f64::max);
         goals.push(Goal::at_most(
-            format!("instructions per frame, {machine_name}: the most expensive of our own clips"),
+            format!("instructions per frame, {machine_name}{label}: the most expensive of our own clips"),
             worst,
             most,
             0,
