@@ -102,7 +102,7 @@ where
     let [width, height] = glass.size;
     let whole = Display { width, height, depth: Depth::Rgb565, way: Way::Bus("spi") };
     // As the picture is turned before it is on the glass.
-    let before = if quarters % 2 == 0 { whole } else { Display { width: height, height: width, ..whole } };
+    let before = if quarters.is_multiple_of(2) { whole } else { Display { width: height, height: width, ..whole } };
     let mut count = 0;
     simulator::present::<L>(&clips(), &KEYS, |frame: &mut Framebuffer<L>| {
         driver.show(frame).unwrap();
