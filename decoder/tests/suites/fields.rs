@@ -74,6 +74,20 @@ fn events_end_in_the_payload() {
 }
 
 #[test]
+fn bytes_follow_the_last_part_only_where_the_flags_say_so() {
+    let with = |flags: u8, behind: &[u8]| {
+        let bytes = [&file(flags, &[1, 10, 0]), behind].concat();
+        Clip::new_checked(&bytes).map(|clip| clip.frames())
+    };
+    for behind in [&[0][..], &[200, 1, 7], &[255; 300]] {
+        assert_eq!(with(0, behind), Err(OpenError::Malformed), "{} bytes", behind.len());
+        assert_eq!(with(LOOPED, behind), Err(OpenError::Malformed), "{} bytes", behind.len());
+        assert_eq!(with(HAS_SECTIONS, behind), Ok(10), "{} bytes", behind.len());
+    }
+    assert_eq!((with(0, &[]), with(HAS_SECTIONS, &[])), (Ok(10), Ok(10)));
+}
+
+#[test]
 fn names_of_events_end_in_their_section() {
     let with_names = |names: &[u8]| {
         let names = blocks(names, crc::INITIAL);
