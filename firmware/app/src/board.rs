@@ -20,6 +20,12 @@ pub trait Board {
     /// Brings the display up to date. Only the windows that [`Framebuffer::send`] returns have changed since the last call.
     fn present(&mut self, framebuffer: &mut Framebuffer<Self::Layout>);
 
+    /// Shows two lines of text over the next picture that is presented, at its top and its bottom, by hardware of the display's own. Returns
+    /// `false` on a board without it: then they are drawn on the framebuffer.
+    fn overlay(&mut self, _lines: [&str; 2]) -> bool {
+        false
+    }
+
     /// Starts a timer with a period in nanoseconds, or changes the period of the one that runs. Ticks count from now on.
     fn start_timer(&mut self, period_ns: u32);
 

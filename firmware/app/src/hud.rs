@@ -1,5 +1,6 @@
 //! Two lines of text over the picture: the clip's name, and the state of its source.
 
+use crate::board::Board;
 use crate::source::Status;
 use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
@@ -13,16 +14,21 @@ use pantin_figure::surface::{Framebuffer, Layout};
 /// Displays with this many rows or more take the larger font.
 const LARGE_ROWS: usize = 160;
 /// Brightness of the letters.
-const SHADE: u8 = 200;
+pub(crate) const SHADE: u8 = 200;
 
 /// A line of text. What is longer than the line is cut off.
 type Line = String<32>;
 
-/// Draws the name at the top, and at the bottom frame and speed of a clip, or packets and exact channels of a link.
+/// Shows the name at the top, and at the bottom frame and speed of a clip, or packets and exact channels of a link: on the board's overlay,
+/// or drawn on the framebuffer.
 #[inline(never)]
-pub(crate) fn draw<L: Layout>(view_state: &ViewState, name: &str, status: &Status, target: &mut Framebuffer<L>) {
-    let font: &MonoFont = const { if L::HEIGHT >= LARGE_ROWS { &FONT_6X10 } else { &FONT_4X6 } };
-    let style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
+pub(crate) fn show<B: Board>(
+    view_state: &ViewState,
+    name: &str,
+    status: &Status,
+    target: &mut Framebuffer<B::Layout>,
+    board: &mut B,
+) {
     let (mut top, mut bottom) = (Line::new(), Line::new());
     let name = name.get(..24).unwrap_or(name);
     match status {
@@ -33,8 +39,18 @@ pub(crate) fn draw<L: Layout>(view_state: &ViewState, name: &str, status: &Statu
         #[cfg(feature = "link")]
         Status::Link(status) => link(&mut top, &mut bottom, name, status),
     }
+    if !board.overlay([&top, &bottom]) {
+        draw([&top, &bottom], target);
+    }
+}
+
+/// Draws a line at the top and one at the bottom.
+#[inline(always)]
+fn draw<L: Layout>([top, bottom]: [&str; 2], target: &mut Framebuffer<L>) {
+    let font: &MonoFont = const { if L::HEIGHT >= LARGE_ROWS { &FONT_6X10 } else { &FONT_4X6 } };
+    let style = MonoTextStyle::new(font, L::Ink::of(BodyPart::Middle, SHADE));
     let last_row = L::HEIGHT as i32 - font.character_size.height as i32;
-    for (line, y) in [(&top, 0), (&bottom, last_row)] {
+    for (line, y) in [(top, 0), (bottom, last_row)] {
         // Drawing on a framebuffer cannot fail.
         let _ = Text::with_baseline(line, Point::new(0, y), style, Baseline::Top).draw(target);
     }

@@ -147,7 +147,9 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
             board.start_timer(frame_ns);
         }
         if view_state.hud {
-            hud::draw(view_state, first.name, &first.source.status(), framebuffer);
+            hud::show(view_state, first.name, &first.source.status(), framebuffer, board);
+        } else {
+            board.overlay([""; 2]);
         }
         present(framebuffer, board);
         // Between the pictures of `Sync`, the line has its own protocol.

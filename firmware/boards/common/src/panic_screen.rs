@@ -3,10 +3,10 @@
 use board_drivers::Display;
 use core::fmt::Write;
 use core::panic::PanicInfo;
-use core::sync::atomic::{AtomicBool, Ordering};
 use embedded_hal::delay::DelayNs;
 use pantin_app::TextScreen;
 use pantin_figure::surface::{Framebuffer, Layout};
+use portable_atomic::{AtomicBool, Ordering};
 
 /// How long a panic stays on the display.
 const PANIC_SHOW_MS: u32 = 10_000;

@@ -51,6 +51,11 @@ where
         (self.feed)();
     }
 
+    #[inline(always)]
+    fn overlay(&mut self, lines: [&str; 2]) -> bool {
+        self.display.overlay(lines)
+    }
+
     fn start_timer(&mut self, period_ns: u32) {
         self.timer.start(period_ns);
     }

@@ -10,6 +10,11 @@ pub trait Display<L: Layout> {
     ///
     /// There is no error to return: a program has nothing better to do than to try again with the next picture.
     fn present(&mut self, framebuffer: &mut Framebuffer<L>);
+
+    /// Shows text by hardware of its own, as `pantin_app::Board::overlay` says.
+    fn overlay(&mut self, _lines: [&str; 2]) -> bool {
+        false
+    }
 }
 
 impl<L: Layout, F: FnMut(&mut Framebuffer<L>)> Display<L> for F {

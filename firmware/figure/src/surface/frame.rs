@@ -26,6 +26,8 @@ pub trait Layout {
     const CELL: [usize; 2];
     /// All dark.
     const DARK: Self::Cells;
+    /// Whether the display's driver hands over dark memory after each picture: then [`Framebuffer::clear`] need not darken it.
+    const STARTS_DARK: bool = false;
 
     /// The place of a pixel inside.
     fn cursor(x: usize, y: usize) -> Self::Cursor;
@@ -94,7 +96,7 @@ impl<L: Layout> Framebuffer<L> {
 
     /// Darkens what was drawn.
     pub fn clear(&mut self) {
-        for window in self.drawn.windows(L::HEIGHT) {
+        for window in self.drawn.windows(if L::STARTS_DARK { 0 } else { L::HEIGHT }) {
             let Window { columns: [from, to], rows: [top, bottom] } = window.cells::<L>();
             let wide = L::WIDTH / L::CELL[0];
             let rows = self.cells.as_mut().get_mut(top * wide..(bottom + 1) * wide).unwrap_or_default();
@@ -122,6 +124,11 @@ impl<L: Layout> Framebuffer<L> {
     /// The memory as the display takes it.
     pub fn cells(&self) -> &[L::Cell] {
         self.cells.as_ref()
+    }
+
+    /// The memory itself, for a display's driver that swaps it with what is shown.
+    pub fn memory(&mut self) -> &mut L::Cells {
+        &mut self.cells
     }
 
     /// The cells that a window touches, row by row.
