@@ -1,0 +1,85 @@
+//! The console's ten buttons, and the commands that they give.
+
+use crate::registers::KEYS;
+use board_common::ButtonSource;
+use pantin_app::Command;
+
+const A: u16 = 1 << 0;
+const B: u16 = 1 << 1;
+const SELECT: u16 = 1 << 2;
+const START: u16 = 1 << 3;
+const RIGHT: u16 = 1 << 4;
+const LEFT: u16 = 1 << 5;
+const UP: u16 = 1 << 6;
+const DOWN: u16 = 1 << 7;
+const R: u16 = 1 << 8;
+const L: u16 = 1 << 9;
+const ALL: u16 = (1 << 10) - 1;
+
+/// The commands of the buttons, alone.
+const ALONE: [(u16, Command); 9] = [
+    (A, Command::NextClip),
+    (B, Command::PreviousClip),
+    (START, Command::Pause),
+    (RIGHT, Command::OrbitRight),
+    (LEFT, Command::OrbitLeft),
+    (UP, Command::TiltUp),
+    (DOWN, Command::TiltDown),
+    (R, Command::Faster),
+    (L, Command::Slower),
+];
+
+/// Their commands while select is held.
+const WITH_SELECT: [(u16, Command); 9] = [
+    (A, Command::Smooth),
+    (B, Command::Ground),
+    (START, Command::Hud),
+    (RIGHT, Command::Step),
+    (LEFT, Command::Back),
+    (UP, Command::Track),
+    (DOWN, Command::Reverse),
+    (R, Command::Faster),
+    (L, Command::Slower),
+];
+
+/// Returns the buttons that are held.
+pub fn held() -> u16 {
+    !KEYS.read() & ALL
+}
+
+/// The buttons. Select alone, pressed and released, goes to the next view.
+#[derive(Debug)]
+pub struct Keys {
+    held: u16,
+    /// Another button was pressed while select was held.
+    chord: bool,
+    command: Option<Command>,
+}
+
+impl Keys {
+    /// Makes the buttons. Those that are held now give no command before they were released.
+    pub fn new() -> Self {
+        Keys { held: held(), chord: true, command: None }
+    }
+}
+
+impl ButtonSource for Keys {
+    fn read(&mut self) {
+        let now = held();
+        let (pressed, released) = (now & !self.held, self.held & !now);
+        self.held = now;
+        if pressed & SELECT != 0 {
+            self.chord = false;
+        }
+        let commands = if now & SELECT != 0 { &WITH_SELECT } else { &ALONE };
+        self.command = commands.iter().find(|(key, _)| pressed & key != 0).map(|(_, command)| *command);
+        self.chord |= self.command.is_some();
+        if released & SELECT != 0 && !self.chord {
+            self.command = Some(Command::View);
+        }
+    }
+
+    fn take(&mut self) -> Option<Command> {
+        self.command.take()
+    }
+}
