@@ -11,6 +11,8 @@ pub enum Depth {
     Gray4,
     /// Five bits of red, six of green, five of blue.
     Rgb565,
+    /// Five bits of blue, of green and of red, which are the lowest.
+    Bgr555,
 }
 
 /// How a display's pictures reach the host.
@@ -84,6 +86,7 @@ impl Depth {
             Depth::Mono => [spread(1, 0); 3],
             Depth::Gray4 => [spread(4, 0); 3],
             Depth::Rgb565 => [spread(5, 11), spread(6, 5), spread(5, 0)],
+            Depth::Bgr555 => [spread(5, 0), spread(5, 5), spread(5, 10)],
         }
     }
 

@@ -11,13 +11,13 @@ pub mod differential;
 pub mod display;
 #[cfg(feature = "full")]
 pub mod equal;
+#[cfg(feature = "full")]
+pub mod gba;
 pub mod icount;
 #[cfg(feature = "full")]
 pub mod image;
 #[cfg(feature = "full")]
 pub mod lossy;
-#[cfg(feature = "full")]
-pub mod panel;
 pub mod pictures;
 pub mod qemu;
 pub mod qmp;
@@ -34,8 +34,6 @@ pub mod sizes;
 pub mod soak;
 #[cfg(feature = "full")]
 pub mod stack;
-#[cfg(feature = "full")]
-pub mod stm32;
 pub mod sync;
 #[cfg(feature = "full")]
 pub mod uf2;

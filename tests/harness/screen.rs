@@ -33,6 +33,7 @@ fn value(depth: Depth, rgb: [u8; 3]) -> Option<u16> {
     let (value, shown) = match depth {
         Depth::Mono => (u16::from(red > 0), [255 * u16::from(red > 0); 3]),
         Depth::Gray4 => (red / 17, [red / 17 * 17; 3]),
+        Depth::Bgr555 => (red >> 3 | green >> 3 << 5 | blue >> 3 << 10, [red & 0xf8, green & 0xf8, blue & 0xf8]),
         Depth::Rgb565 => (red >> 3 << 11 | green >> 2 << 5 | blue >> 3, [red & 0xf8, green & 0xfc, blue & 0xf8]),
     };
     (shown == [red, green, blue]).then_some(value)

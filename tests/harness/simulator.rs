@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
+use board_drivers::indexed::{Indexed, IndexedRows};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
 use pantin_app::{Board, Entry, Exit, Options};
@@ -48,24 +49,10 @@ pub fn play<R: RotationBackend>(
         (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, wishes),
         (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, wishes),
         (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, &entries, options, wishes),
-        (168, 168, Depth::Rgb565) => simulate::<R, Rgb565Rows<168, 168, 14112>>(display, &entries, options, wishes),
-        (240, 240, Depth::Gray4) => simulate::<R, Gray4Rows<240, 240, 7200>>(display, &entries, options, wishes),
         (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, &entries, options, wishes),
+        (240, 160, Depth::Bgr555) => simulate::<R, IndexedRows<240, 160, 19200>>(display, &entries, options, wishes),
         _ => anyhow::bail!("no machine has a display like {display:?}"),
     }
-}
-
-/// Passes the framebuffers to `present`, as a display's driver gets them: the first, and one after each of the keys' letters.
-pub fn present<L: Layout>(clips: &[PathBuf], keys: &[&[u8]], present: impl FnMut(&mut Framebuffer<L>)) -> Result<()> {
-    let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
-    let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes, rig: &[] }).collect();
-    let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
-    wishes.push_back(pantin_app::QUIT);
-    let mut simulator = Simulator::<Rotation, L, _> { wishes, told: vec![], present, kind: PhantomData };
-    let mut frame = Box::new(Framebuffer::<L>::new());
-    let exit = pantin_app::run(&entries, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
-    ensure!(exit == Exit::Done, "a clip cannot be played");
-    Ok(())
 }
 
 /// The pictures of the OLED while `line` brings the motion of the clip's figure: the first, then one after each of the line's stretches.
@@ -84,40 +71,37 @@ fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
     options: Options,
     wishes: VecDeque<u8>,
 ) -> Result<Vec<(u32, Picture)>> {
-    let mut shown = vec![];
-    let present = |framebuffer: &mut Framebuffer<L>| {
-        let Display { width, height, .. } = display;
-        let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
-        shown.push(Picture { display, pixels });
-    };
-    let mut simulator = Simulator::<R, L, _> { wishes, told: vec![], present, kind: PhantomData };
+    let mut simulator = Simulator::<R, L> { display, wishes, told: vec![], shown: vec![], kind: PhantomData };
     // The display's memory and the player's would be much of a test thread's stack.
     let mut frame = Box::new(Framebuffer::<L>::new());
     let exit = pantin_app::run(entries, options, &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "a clip cannot be played");
-    let told = simulator.told;
-    ensure!(told.len() == 5 * shown.len(), "the program told something else than frames' numbers");
-    let numbers = told.chunks_exact(5).map(|message| u32::from_le_bytes([message[1], message[2], message[3], message[4]]));
-    Ok(numbers.zip(shown).collect())
+    ensure!(simulator.told.len() == 5 * simulator.shown.len(), "the program told something else than frames' numbers");
+    let numbers =
+        simulator.told.chunks_exact(5).map(|message| u32::from_le_bytes([message[1], message[2], message[3], message[4]]));
+    Ok(numbers.zip(simulator.shown).collect())
 }
 
 /// The board.
-struct Simulator<R, L, P> {
+struct Simulator<R, L> {
+    display: Display,
     /// Bytes that the other end of the line sends.
     wishes: VecDeque<u8>,
     /// Bytes that it gets.
     told: Vec<u8>,
-    present: P,
+    shown: Vec<Picture>,
     kind: PhantomData<(R, L)>,
 }
 
-impl<R: RotationBackend, L: Layout, P: FnMut(&mut Framebuffer<L>)> Board for Simulator<R, L, P> {
+impl<R: RotationBackend, L: Layout<Ink: Value>> Board for Simulator<R, L> {
     type Layout = L;
     type Rotation = R;
     type Capacity = Capacity;
 
     fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
-        (self.present)(framebuffer);
+        let Display { width, height, .. } = self.display;
+        let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
+        self.shown.push(Picture { display: self.display, pixels });
     }
 
     fn start_timer(&mut self, _period_ns: u32) {}
@@ -153,6 +137,14 @@ impl Value for BinaryColor {
 impl Value for Gray4 {
     fn value(self) -> u16 {
         self.luma().into()
+    }
+}
+
+/// A palette's colour as the Game Boy Advance takes it.
+impl Value for Indexed {
+    fn value(self) -> u16 {
+        let [red, green, blue] = self.rgb().map(|part| u16::from(part >> 3));
+        blue << 10 | green << 5 | red
     }
 }
 

@@ -17,7 +17,7 @@ const fn cell(depth: Depth) -> [usize; 3] {
     match depth {
         Depth::Mono => [1, 8, 1],
         Depth::Gray4 => [8, 1, 4],
-        Depth::Rgb565 => [2, 1, 4],
+        Depth::Rgb565 | Depth::Bgr555 => [2, 1, 4],
     }
 }
 
@@ -53,7 +53,7 @@ impl Memory {
         let value = |index: usize| match depth {
             Depth::Mono => u16::from(bytes[index / width / 8 * width + index % width] >> (index / width % 8) & 1),
             Depth::Gray4 => u16::from(bytes[index / 2] >> (4 * (1 - index % 2)) & 15),
-            Depth::Rgb565 => u16::from_be_bytes([bytes[2 * index], bytes[2 * index + 1]]),
+            Depth::Rgb565 | Depth::Bgr555 => u16::from_be_bytes([bytes[2 * index], bytes[2 * index + 1]]),
         };
         Picture { display: self.display, pixels: (0..width * height).map(value).collect() }
     }

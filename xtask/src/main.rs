@@ -21,7 +21,7 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 24] = [
+const LIST: [(&str, Place, &str); 25] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
@@ -41,6 +41,7 @@ const LIST: [(&str, Place, &str); 24] = [
     ("docs", Place::Here(publish::docs), "Builds the documentation of the published crates, with warnings as errors"),
     ("fuzz", COMMANDS, "Fuzzes the entry points for untrusted input; needs a nightly Rust and cargo-fuzz"),
     ("gallery", COMMANDS, "Converts every captured clip and draws one contact sheet of all"),
+    ("gba", COMMANDS, "Makes a cartridge image for the Game Boy Advance, with all our motions"),
     ("miri", COMMANDS, "Runs the decoder's tests in Miri; needs a nightly Rust"),
     ("mutants-differential", COMMANDS, "Plays damaged clips in two decoders and compares them; needs Node.js"),
     ("mutation", COMMANDS, "Mutates the decoder and lists what its tests do not notice; needs cargo-mutants"),

@@ -104,6 +104,32 @@ pub fn install_emulator(name: &str) -> Result<PathBuf> {
     emulator(name)
 }
 
+/// Makes sure that the library of mGBA, the Game Boy Advance's emulator, can be linked: installs it on Debian and Ubuntu as root.
+pub fn mgba() -> Result<()> {
+    ensure!(paths::program("cc").is_some(), "cc is missing, which compiles the program that drives mGBA");
+    let there = || -> Result<bool> {
+        let mut cc = Command::new("cc");
+        cc.args(["-x", "c", "-fsyntax-only", "-include", "mgba/core/core.h", "/dev/null"]);
+        let status = cc.stdout(Stdio::null()).stderr(Stdio::null()).status().context("cannot start cc")?;
+        Ok(status.success())
+    };
+    if there()? {
+        return Ok(());
+    }
+    if paths::program("apt-get").is_some() && is_root() {
+        apt_get(&["update"]).and_then(|()| apt_get(&["install", "-y", "--no-install-recommends", MGBA]))?;
+    }
+    ensure!(
+        there()?,
+        "the library of mGBA (0.10) is missing; install it with: sudo apt-get install -y --no-install-recommends {MGBA} \
+         (or https://mgba.io, with its headers)"
+    );
+    Ok(())
+}
+
+/// The package of Debian and Ubuntu that has mGBA's library and headers.
+const MGBA: &str = "libmgba-dev";
+
 /// Major and minor version of the emulator.
 pub fn version(name: &str) -> Result<(u32, u32)> {
     let output = Command::new(emulator(name)?).arg("--version").output()?;

@@ -172,6 +172,7 @@ fn tools(boards: &[Package], host_only: bool) -> Result<()> {
         for program in ["qemu-system-arm", "qemu-system-riscv32", "node", "npm"] {
             setup::install_emulator(program).context("(or leave QEMU's tests out with --host-only)")?;
         }
+        setup::mgba().context("(or leave the emulators' tests out with --host-only)")?;
         Browser::ready().context("(or leave Chromium's tests out with --host-only)")?;
     }
     Ok(())

@@ -104,7 +104,9 @@ fn advice(board: &Package) -> String {
             "hold BOOTSEL while you plug it in, and drag target/firmware/{name}.uf2, or another, onto the drive RPI-RP2"
         ));
     }
-    if let Some(runner) = board.runner() {
+    if name == "gba" {
+        ways.push("cargo xtask gba makes pantin.gba, which emulators play, with all our motions".to_owned());
+    } else if let Some(runner) = board.runner() {
         ways.push(format!("{runner} target/firmware/{name}.elf"));
     } else if BOARDS.iter().any(|machine| machine.name == name) {
         ways.push(format!("emulated: cargo xtask demo --board {name}"));

@@ -8,6 +8,7 @@ mod conformance;
 mod firmware;
 mod fuzz;
 mod gallery;
+mod gba;
 mod images;
 mod log;
 mod sizes;
@@ -32,6 +33,7 @@ enum Command {
     Firmware(firmware::Firmware),
     Fuzz(fuzz::Fuzz),
     Gallery(gallery::Gallery),
+    Gba(gba::Gba),
     #[command(hide = true)]
     Log(log::Log),
     Miri(campaign::Miri),
@@ -55,6 +57,7 @@ fn main() -> ExitCode {
         Command::Firmware(firmware) => firmware.run(),
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Gallery(gallery) => gallery.run(),
+        Command::Gba(gba) => gba.run(),
         Command::Log(log) => log.run(),
         Command::Miri(miri) => miri.run(),
         Command::MutantsDifferential(differential) => differential.run(),

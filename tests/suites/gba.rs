@@ -1,0 +1,180 @@
+//! The Game Boy Advance's cartridge in mGBA: what the display shows is what the same program shows on the host, pixel by pixel, and no frame
+//! is dropped.
+
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use harness::display::Picture;
+use harness::gba::{self, Console, FRAME_CYCLES, LCD, MOST};
+use harness::{screen, setup, simulator};
+use pantin_figure::rotation::Rotation;
+use tempfile::TempDir;
+
+/// The clips of the image with all our motions, and the image.
+static CARTRIDGE: LazyLock<(TempDir, Vec<PathBuf>, Vec<u8>)> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let clips = gba::motions(folder.path()).unwrap();
+    let image = gba::image(&clips.iter().map(PathBuf::as_path).collect::<Vec<_>>()).unwrap();
+    (folder, clips, image)
+});
+
+const A: u16 = 1 << 0;
+const SELECT: u16 = 1 << 2;
+const START: u16 = 1 << 3;
+const RIGHT: u16 = 1 << 4;
+const LEFT: u16 = 1 << 5;
+const UP: u16 = 1 << 6;
+
+/// Frames that a button is held in a test, and after which the next one is pressed: the camera is set up meanwhile.
+const HELD: u32 = 6;
+const APART: u32 = 90;
+
+/// Frames of 60 seconds.
+const MINUTE: u32 = 3584;
+
+#[test]
+fn the_header_is_right_and_all_motions_fit() {
+    if setup::host_only("the cartridge's header") {
+        return;
+    }
+    let image = &CARTRIDGE.2;
+    println!("{} bytes with all our motions", image.len());
+    assert!(image.len() <= MOST, "{} bytes", image.len());
+    // An unconditional branch behind the header.
+    assert_eq!(image[3], 0xea);
+    let target = 8 + 4 * u32::from_le_bytes([image[0], image[1], image[2], 0]);
+    assert_eq!(target, 0xc0);
+    assert!(image[4..0xa0].iter().all(|byte| *byte == 0), "the logo is not ours");
+    assert_eq!(&image[0xa0..0xac], b"PANTIN\0\0\0\0\0\0");
+    assert_eq!(&image[0xac..0xb2], b"APTE00");
+    assert_eq!(image[0xb2], 0x96);
+    let sum = image[0xa0..0xbd].iter().fold(0_u8, |sum, byte| sum.wrapping_sub(*byte));
+    assert_eq!(image[0xbd], sum.wrapping_sub(0x19), "the header's check");
+}
+
+/// A clip of the image by its place, for the simulator.
+fn clip(name: &str) -> PathBuf {
+    let named = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem == name);
+    CARTRIDGE.1.iter().find(named).unwrap().clone()
+}
+
+fn frames(clip: &PathBuf) -> usize {
+    let bytes = std::fs::read(clip).unwrap();
+    pantin::Clip::new_checked(&bytes).unwrap().frames() as usize
+}
+
+/// Pictures after which none is dropped: with a face, the first one takes longer than a frame of the display.
+const BEGUN: usize = 4;
+
+/// Plays a clip alone for a minute: each picture of the host is on the display for exactly one of its frames.
+fn drops_no_frame(name: &str) {
+    if setup::host_only(&format!("{name} on the Game Boy Advance")) {
+        return;
+    }
+    let clip = clip(name);
+    let image = gba::image(&[&clip]).unwrap();
+    // Twice through the clip: what follows repeats.
+    let period = frames(&clip);
+    let keys = vec![&b""[..]; 2 * period - 1];
+    let expected = simulator::play::<Rotation>(LCD, &[clip], &["info"], &keys).unwrap();
+    let expected: Vec<Vec<u8>> = expected.iter().map(|(_, picture)| gba::pixels(picture)).collect();
+    // A button ends the start screen.
+    let console = Console::new(&image).unwrap().hold(30, SELECT).hold(32, 0);
+    let mut first = None;
+    let mut shown = 0;
+    console
+        .run(MINUTE + 120, |frame, pixels| {
+            if first.is_none() && pixels == expected[BEGUN] {
+                first = Some(frame);
+            }
+            let Some(first) = first else { return };
+            let index = BEGUN + (frame - first) as usize;
+            let expected = &expected[if index < period { index } else { period + index % period }];
+            if pixels != expected {
+                let difference = screen::difference(&gba::picture(pixels), &gba::picture(expected));
+                panic!("{name}, picture {index} in frame {frame}: {}", difference.unwrap());
+            }
+            shown += 1;
+        })
+        .unwrap();
+    assert!(shown >= MINUTE, "{shown} frames equal");
+    let stretches = console.stretches(300).unwrap();
+    // Decoding, kinematics, drawing, what comes before the wait for the display, and what comes after it.
+    let pictures: Vec<_> = stretches.chunks_exact(5).skip(20).collect();
+    let mean = |kind: usize| pictures.iter().map(|picture| u64::from(picture[kind].cycles)).sum::<u64>() / pictures.len() as u64;
+    let instructions = pictures.iter().map(|picture| picture.iter().map(|stretch| u64::from(stretch.instructions)).sum::<u64>());
+    let most = pictures.iter().map(|picture| picture.iter().map(|stretch| stretch.cycles).sum::<u32>()).max().unwrap();
+    println!(
+        "{name}: {shown} frames shown, none dropped; cycles a frame: decode {}, kinematics {}, draw {}, page {}; at most {most} of {FRAME_CYCLES}; \
+         {} instructions",
+        mean(0),
+        mean(1),
+        mean(2),
+        mean(3) + mean(4),
+        instructions.sum::<u64>() / pictures.len() as u64
+    );
+    assert!(most < FRAME_CYCLES);
+}
+
+#[test]
+fn a_figure_plays_for_a_minute_and_no_frame_is_dropped() {
+    drops_no_frame("walk");
+}
+
+#[test]
+fn a_face_plays_for_a_minute_and_no_frame_is_dropped() {
+    drops_no_frame("hello");
+}
+
+#[test]
+fn the_buttons_do_what_they_should() {
+    if setup::host_only("the buttons of the Game Boy Advance") {
+        return;
+    }
+    // Each with the letters that do the same over a serial line.
+    const PRESSES: [(&[u16], &[u8]); 10] = [
+        (&[START], b" "),
+        (&[RIGHT], b"d"),
+        (&[LEFT], b"a"),
+        (&[UP], b"w"),
+        (&[SELECT], b"v"),
+        (&[SELECT, SELECT | RIGHT], b"."),
+        (&[SELECT, SELECT | LEFT], b","),
+        (&[SELECT, SELECT | A], b"l"),
+        (&[A], b"n"),
+        (&[START], b" "),
+    ];
+    let mut console = Console::new(&CARTRIDGE.2).unwrap().hold(30, SELECT).hold(36, 0);
+    let mut at = 120;
+    let mut looks = vec![];
+    for (keys, _) in PRESSES {
+        for held in keys {
+            console = console.hold(at, *held);
+            at += HELD;
+        }
+        console = console.hold(at, 0);
+        at += APART;
+        looks.push(at - 1);
+    }
+    let mut seen: Vec<Picture> = vec![];
+    let mut look = |frame, pixels: &[u8]| {
+        if looks.contains(&frame) {
+            seen.push(gba::picture(pixels));
+        }
+    };
+    console.run(at, &mut look).unwrap();
+    let clips = [clip("walk"), clip("greet")];
+    // The frame at which the walk is paused, as the display says in words.
+    let steps = vec![&b"."[..]; 2 * frames(&clips[0])];
+    let paused = simulator::play::<Rotation>(LCD, &clips, &["info"], &steps).unwrap();
+    let paused_at = paused.iter().skip(1).position(|(_, picture)| *picture == seen[0]).expect("the walk is paused");
+    let mut letters = steps[..=paused_at].to_vec();
+    for (index, (keys, letter)) in PRESSES.iter().enumerate().skip(1).take(8) {
+        letters.push(letter);
+        let expected = simulator::play::<Rotation>(LCD, &clips, &["info"], &letters).unwrap().pop().unwrap().1;
+        if let Some(difference) = screen::difference(&seen[index], &expected) {
+            panic!("after {keys:?}: {difference}");
+        }
+    }
+    assert_ne!(seen[8], seen[9], "it plays on");
+}

@@ -1,0 +1,39 @@
+//! `cargo xtask gba [--clip FILE]... [-o OUT]`: a cartridge image for the Game Boy Advance.
+//!
+//! ```text
+//! $ cargo xtask gba
+//! pantin.gba: 118,640 bytes, 58 clips. Emulators play it as it is; for a console put the missing logo into its header: gbafix pantin.gba
+//! ```
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use harness::gba;
+use pantin_tools::output::write_whole;
+
+/// Makes a cartridge image for the Game Boy Advance, with all our motions
+#[derive(Args)]
+pub struct Gba {
+    /// A clip or a bank to build in instead of our motions; may be given several times
+    #[arg(long, value_name = "FILE")]
+    clip: Vec<PathBuf>,
+    /// The file
+    #[arg(short, value_name = "OUT", default_value = "pantin.gba")]
+    out: PathBuf,
+}
+
+impl Gba {
+    /// Builds the program and writes the file.
+    pub fn run(self) -> Result<()> {
+        let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
+        let clips = if self.clip.is_empty() { gba::motions(folder.path())? } else { self.clip };
+        let image = gba::image(&clips.iter().map(PathBuf::as_path).collect::<Vec<&Path>>())?;
+        ensure!(image.len() <= gba::MOST, "{} bytes; there is room for {}", image.len(), gba::MOST);
+        write_whole(&self.out, &image)?;
+        let out = self.out.display();
+        let advice = "Emulators play it as it is; a console also needs the logo in its header, which gbafix adds";
+        println!("{out}: {} bytes. {advice}: gbafix {out}", image.len());
+        Ok(())
+    }
+}
