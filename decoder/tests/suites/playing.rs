@@ -2,8 +2,8 @@
 
 use fixed::types::{I16F16, U0F16};
 use pantin::{
-    ChannelState, Clip, Clock, CollectError, Memory, PartialClip, Player, Progress, Rig, RigCollector, Room, Stream, TooSmall,
-    WrongForm,
+    ChannelState, Clip, Clock, CollectError, Memory, PartialClip, Player, Progress, Rig, RigCollector, Room, SeekCache,
+    SnapshotPos, Stream, TooSmall, Undo, WrongForm,
 };
 
 static WALK: &[u8] = include_bytes!("../walk.ptn");
@@ -233,4 +233,52 @@ fn the_packages_clips_are_the_repositorys() {
     }
     assert_eq!(std::fs::read(motions.join("walk.ptn")).unwrap(), WALK);
     assert_eq!(std::fs::read(motions.join("run.ptn")).unwrap(), RUN);
+}
+
+#[test]
+fn steps_are_taken_back_with_any_memory() {
+    for file in [WALK, RUN] {
+        let truth = frames(file);
+        let last = truth.len().min(if cfg!(miri) { 16 } else { 60 }) - 4;
+        for (undos, marks) in [(0, 0), (0, 2), (1, 0), (2, 1), (7, 0), (300, 3)] {
+            let mut room = Memories::new();
+            let mut player = room.player(Clip::new_checked(file).unwrap()).unwrap();
+            let moving = player.clip().moving();
+            let mut lent = (vec![Undo::default(); undos], vec![SnapshotPos::default(); marks]);
+            let mut more = (vec![ChannelState::NEW; marks * moving], vec![0; marks * moving]);
+            let mut memory = SeekCache::new(&player, &mut lent.0, &mut lent.1, &mut more.0, &mut more.1);
+            // Steps that lead elsewhere are forgotten.
+            for (steps, to, more) in [(5, last, 0), (5, last, 1), (0, 3, 2)] {
+                player.rewind();
+                (0..steps).for_each(|_| player.step_with(&mut memory));
+                player.seek(to as u32);
+                (0..more).for_each(|_| player.step_with(&mut memory));
+                for back in (to / 2..player.frame() as usize).rev() {
+                    player.step_back(&mut memory);
+                    assert_eq!(player.pose().values, truth[back], "frame {back} from {to}, {undos} undos");
+                }
+            }
+            player.rewind();
+            for target in [last, 1, last / 2] {
+                while (player.frame() as usize) < target {
+                    player.step_with(&mut memory);
+                    assert_eq!(player.pose().values, truth[player.frame() as usize], "{undos} undos, {marks} snapshots");
+                }
+                for back in (0..target).rev() {
+                    player.step_back(&mut memory);
+                    assert_eq!(player.frame() as usize, back);
+                    assert_eq!(player.pose().values, truth[back], "frame {back}, {undos} undos, {marks} snapshots");
+                    // What was read is not read twice.
+                    for ahead in 1..=3 {
+                        player.step_with(&mut memory);
+                        assert_eq!(player.pose().values, truth[back + ahead], "frame {back} and {ahead}, {undos} undos");
+                    }
+                    for ahead in (0..3).rev() {
+                        player.step_back(&mut memory);
+                        assert_eq!(player.pose().values, truth[back + ahead], "frame {back} and {ahead}, {undos} undos");
+                    }
+                }
+            }
+        }
+    }
 }
