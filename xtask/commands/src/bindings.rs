@@ -1,6 +1,9 @@
-//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C (`bindings/c`), which need compilers for other targets.
+//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C, the Arduino library and the decoder in MicroPython (`bindings`), which need
+//! compilers for other targets.
 
+mod arduino;
 mod figure;
+mod micropython;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -185,6 +188,11 @@ impl Bindings {
             command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include", "-r", "-nostdlib"]);
             compile(command, &SOURCES, &folder.path().join("esp8266.elf")).map(drop)
         });
+        steps.run("copies in the Arduino library", arduino::copies);
+        steps.run("examples of the Arduino library", || arduino::examples(&folder));
+        steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
+        steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
+        steps.run("MicroPython", || micropython::run(&folder));
         steps.steps.finish()
     }
 

@@ -1,0 +1,208 @@
+/* Pantin for Arduino: plays a clip or a bank, and draws it as a wireframe figure.
+ *
+ *     PantinFigure<CLIP_WALK_CHANNELS, CLIP_WALK_FIGURE_JOINTS, CLIP_WALK_WORKSPACE> figure;
+ *     figure.begin(CLIP_WALK, CLIP_WALK_LEN, 128, 64);
+ *     if (figure.update(millis())) figure.draw(display);
+ *
+ * The numbers are in the header that `pantin expand walk.ptn -o walk.h` writes; all memory is in the object. Clips are read from flash. */
+#ifndef PANTIN_PLAYER_H
+#define PANTIN_PLAYER_H
+
+#include "pantin.h"
+#include "pantin_figure.h"
+
+/* Plays clips of at most CHANNELS channels: for servos, lights and faces. */
+template <uint16_t CHANNELS> class PantinPlayer {
+  public:
+    /* Opens a clip or a bank, and shows frame 0 (of a bank: of its first clip). Returns false if it is damaged or has too many channels. */
+    bool begin(const uint8_t *bytes, uint32_t length) {
+#ifdef __AVR__
+        pantin_paged(&pages, length, pantin_read_progmem, const_cast<uint8_t *>(bytes), page, sizeof page);
+#else
+        pantin_memory(&pages.source, bytes, length);
+#endif
+        isBank = pantin_open_bank(&bank, &pages.source) == PANTIN_OK;
+        if (!isBank) return pantin_open(&clip, &pages.source, NULL) == PANTIN_OK && start();
+        pantin_entry first;
+        pantin_first_entry(&first, &bank);
+        return pantin_next_entry(&first) && pantin_open_entry(&clip, &first) == PANTIN_OK && start();
+    }
+
+    /* Shows the frame that is due at a time in milliseconds: pass millis(). Returns true if the pose changed. A clip starts again at its end. */
+    bool update(uint32_t now) {
+        if (!ready) return false;
+        if (!running) last = now;
+        uint32_t elapsed = now - last;
+        last = now;
+        running = true;
+        /* After a long pause the motion goes on where it was. */
+        if (elapsed > 1000) elapsed = 0;
+        due += static_cast<uint64_t>(elapsed) * 1000000u;
+        bool changed = fresh;
+        fresh = false;
+        while (due >= clip.frame_time_ns) {
+            due -= clip.frame_time_ns;
+            if (pantin_step(&player) != PANTIN_OK && pantin_restart(&player) != PANTIN_OK) return false;
+            changed = true;
+        }
+        return changed;
+    }
+
+    /* Starts a clip of a bank by its name. Returns false if there is none; the clip before has ended then. */
+    bool play(const char *name) {
+        ready = false;
+        return isBank && pantin_open_named(&clip, &bank, name) == PANTIN_OK && start();
+    }
+
+    /* Starts the clip again. */
+    bool play() { return start(); }
+
+    /* The angle of a joint in degrees, -180 to 180: of its first rotation channel, or the `index`th after it. 0 if there is none. */
+    float joint(const char *name, uint8_t index = 0) {
+        pantin_joint found;
+        if (!ready || !pantin_find_joint(&clip.rig, name, &found)) return 0;
+        for (uint8_t channel = 0; channel < found.channels; channel++) {
+            if (pantin_joint_kind(&found, channel) >= PANTIN_EULER_X && index-- == 0) {
+                return static_cast<float>(pantin_centidegrees(pose[found.first_channel + channel])) / 100.0f;
+            }
+        }
+        return 0;
+    }
+
+    /* The value of a scalar channel, for example a unit of a face from 0 to 1. 0 if there is none. */
+    float scalar(const char *name) {
+        pantin_scalar found;
+        if (!ready || !pantin_find_scalar(&clip.rig, name, &found)) return 0;
+        float value = static_cast<float>(pose[found.channel]);
+        for (int exponent = found.exponent - 31; exponent < 0; exponent++) value /= 2;
+        for (int exponent = found.exponent - 31; exponent > 0; exponent--) value *= 2;
+        return value;
+    }
+
+    uint32_t frame() const { return player.frame; }
+    uint32_t frames() const { return clip.frames; }
+
+  protected:
+    bool start() {
+        ready = pantin_start(&player, &clip, pose, CHANNELS, moving, CHANNELS) == PANTIN_OK;
+        running = false;
+        fresh = true;
+        due = 0;
+        return ready;
+    }
+
+    pantin_pages pages;
+    pantin_bank bank;
+    pantin_clip clip;
+    pantin_player player;
+    int32_t pose[CHANNELS];
+    pantin_channel moving[CHANNELS];
+#ifdef __AVR__
+    uint8_t page[64];
+#endif
+    uint64_t due;
+    uint32_t last;
+    bool isBank, ready, running, fresh;
+};
+
+/* Draws clips as a figure of at most BONES bones, from rigs of at most JOINTS joints. */
+template <uint16_t CHANNELS, uint16_t BONES, uint16_t JOINTS> class PantinFigure : public PantinPlayer<CHANNELS> {
+    typedef PantinPlayer<CHANNELS> Player;
+
+  public:
+    /* Opens a clip or a bank for a display of `width` times `height` pixels. */
+    bool begin(const uint8_t *bytes, uint32_t length, uint16_t width, uint16_t height) {
+        columns = width;
+        rows = height;
+        viewed = pantin_default_view;
+        return Player::begin(bytes, length) && setUp();
+    }
+
+    bool play(const char *name) { return Player::play(name) && setUp(); }
+    bool play() { return Player::play(); }
+
+    /* Looks from elsewhere: degrees about the vertical and above the horizon. `fixed`: the camera does not follow the figure. */
+    bool view(int16_t orbit, int16_t tilt, bool fixed = false) {
+        viewed.orbit = orbit;
+        viewed.tilt = tilt;
+        viewed.fixed = fixed;
+        return aim();
+    }
+
+    /* Draws the figure in its pose over what the display shows, in a colour of the display's own numbers (1: a lit pixel of an OLED).
+     * `Display` is a display of Adafruit_GFX, TFT_eSPI or U8g2. */
+    template <class Display> void draw(Display &display, uint16_t color = 1) {
+        if (!this->ready || !drawable) return;
+        pantin_figure_pose(&figure, this->pose);
+        pantin_ground ground;
+        pantin_line line;
+        pantin_head head;
+        pantin_first_ground(&ground, &figure);
+        while (figure.dotted && pantin_next_ground(&ground, &line)) dot(display, line.from[0] >> 4, line.from[1] >> 4, color, 0);
+        for (uint8_t i = 0; pantin_figure_line(&figure, i, &line); i++) stroke(display, line, color);
+        if (pantin_figure_head(&figure, &head)) {
+            int16_t radius = static_cast<int16_t>((head.radius + 8) >> 4);
+            disc(display, head.centre[0] >> 4, head.centre[1] >> 4, radius < 1 ? 1 : radius, color, 0);
+        }
+    }
+
+  private:
+    bool setUp() {
+        pantin_figure_memory(&figure, bones, BONES, drives, CHANNELS, slots, PANTIN_FIGURE_SLOTS);
+        drawable = pantin_figure_set_up(&figure, &this->player, columns, rows, scratch, JOINTS) == PANTIN_OK;
+        return aim();
+    }
+
+    bool aim() {
+        drawable = drawable && pantin_figure_aim(&figure, &this->player, &viewed) == PANTIN_OK;
+        return drawable;
+    }
+
+    /* A line in its width: lines side by side, across the longer way. */
+    template <class Display> void stroke(Display &display, const pantin_line &line, uint16_t color) {
+        int16_t x0 = line.from[0] >> 4, y0 = line.from[1] >> 4, x1 = line.to[0] >> 4, y1 = line.to[1] >> 4;
+        int16_t across = x0 < x1 ? x1 - x0 : x0 - x1, down = y0 < y1 ? y1 - y0 : y0 - y1;
+        for (uint8_t i = 0; i < line.width; i++) {
+            int16_t aside = static_cast<int16_t>(i - line.width / 2);
+            if (down > across) {
+                stretch(display, x0 + aside, y0, x1 + aside, y1, color, 0);
+            } else {
+                stretch(display, x0, y0 + aside, x1, y1 + aside, color, 0);
+            }
+        }
+    }
+
+    /* Displays whose calls take a colour (Adafruit_GFX, TFT_eSPI), and those that do not and take no places left of 0 (U8g2). */
+    template <class D> static auto dot(D &d, int16_t x, int16_t y, uint16_t color, int) -> decltype(d.drawPixel(x, y, color), void()) {
+        d.drawPixel(x, y, color);
+    }
+    template <class D> void dot(D &d, int16_t x, int16_t y, uint16_t, long) {
+        if (inside(x, y)) d.drawPixel(x, y);
+    }
+    template <class D>
+    static auto stretch(D &d, int16_t x0, int16_t y0, int16_t x1, int16_t y1, uint16_t color, int)
+        -> decltype(d.drawLine(x0, y0, x1, y1, color), void()) {
+        d.drawLine(x0, y0, x1, y1, color);
+    }
+    template <class D> void stretch(D &d, int16_t x0, int16_t y0, int16_t x1, int16_t y1, uint16_t, long) {
+        if (inside(x0, y0) && inside(x1, y1)) d.drawLine(x0, y0, x1, y1);
+    }
+    template <class D> static auto disc(D &d, int16_t x, int16_t y, int16_t r, uint16_t color, int) -> decltype(d.fillCircle(x, y, r, color), void()) {
+        d.fillCircle(x, y, r, color);
+    }
+    template <class D> void disc(D &d, int16_t x, int16_t y, int16_t r, uint16_t, long) {
+        if (inside(x - r, y - r) && inside(x + r, y + r)) d.drawDisc(x, y, r);
+    }
+    bool inside(int16_t x, int16_t y) const { return x >= 0 && y >= 0 && x < static_cast<int16_t>(columns) && y < static_cast<int16_t>(rows); }
+
+    pantin_figure figure;
+    pantin_view viewed;
+    pantin_bone bones[BONES];
+    pantin_drive drives[CHANNELS];
+    pantin_slot slots[PANTIN_FIGURE_SLOTS];
+    pantin_joint_info scratch[JOINTS];
+    uint16_t columns, rows;
+    bool drawable;
+};
+
+#endif
