@@ -204,3 +204,21 @@ fn any_damaged_byte_is_found() {
         }
     }
 }
+
+#[test]
+fn a_player_writes_the_snapshots_that_the_file_holds() {
+    for vector in vectors().into_iter().flatten().filter(|vector| vector.name == "index") {
+        let clip = vector.open();
+        let (mut states, mut pose) = (vec![ChannelState::NEW; clip.moving()], vec![0; clip.rig().channels()]);
+        let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
+        let mut found = 0;
+        for _ in 1..clip.frames() {
+            player.step();
+            let mut bytes = vec![];
+            pantin::codec::write_snapshot(&player, &mut |byte| bytes.push(byte));
+            // A snapshot across two blocks has a CRC inside.
+            found += usize::from(vector.clip.windows(bytes.len()).any(|own| own == bytes));
+        }
+        assert!(found >= 2, "{found}");
+    }
+}
