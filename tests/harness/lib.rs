@@ -18,6 +18,8 @@ pub mod icount;
 pub mod image;
 #[cfg(feature = "full")]
 pub mod lossy;
+#[cfg(feature = "full")]
+pub mod panel;
 pub mod pictures;
 pub mod qemu;
 pub mod qmp;
@@ -34,6 +36,8 @@ pub mod sizes;
 pub mod soak;
 #[cfg(feature = "full")]
 pub mod stack;
+#[cfg(feature = "full")]
+pub mod stm32;
 pub mod sync;
 #[cfg(feature = "full")]
 pub mod uf2;

@@ -49,10 +49,27 @@ pub fn play<R: RotationBackend>(
         (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, wishes),
         (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, wishes),
         (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, &entries, options, wishes),
+        (168, 168, Depth::Gray4) => simulate::<R, Gray4Rows<168, 168, 3528>>(display, &entries, options, wishes),
+        (240, 320, Depth::Gray4) => simulate::<R, Gray4Rows<240, 320, 9600>>(display, &entries, options, wishes),
+        (168, 168, Depth::Rgb565) => simulate::<R, Rgb565Rows<168, 168, 14112>>(display, &entries, options, wishes),
+        (240, 240, Depth::Gray4) => simulate::<R, Gray4Rows<240, 240, 7200>>(display, &entries, options, wishes),
         (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, &entries, options, wishes),
         (240, 160, Depth::Bgr555) => simulate::<R, IndexedRows<240, 160, 19200>>(display, &entries, options, wishes),
         _ => anyhow::bail!("no machine has a display like {display:?}"),
     }
+}
+
+/// Passes the framebuffers to `present`, as a display's driver gets them: the first, and one after each of the keys' letters.
+pub fn present<L: Layout>(clips: &[PathBuf], keys: &[&[u8]], present: impl FnMut(&mut Framebuffer<L>)) -> Result<()> {
+    let files: Vec<File> = clips.iter().map(|path| File::read(path)).collect::<Result<_>>()?;
+    let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes, rig: &[] }).collect();
+    let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
+    wishes.push_back(pantin_app::QUIT);
+    let mut simulator = Simulator::<Rotation, L, _> { wishes, told: vec![], present, kind: PhantomData };
+    let mut frame = Box::new(Framebuffer::<L>::new());
+    let exit = pantin_app::run(&entries, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
+    ensure!(exit == Exit::Done, "a clip cannot be played");
+    Ok(())
 }
 
 /// The pictures of the OLED while `line` brings the motion of the clip's figure: the first, then one after each of the line's stretches.
@@ -71,37 +88,40 @@ fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
     options: Options,
     wishes: VecDeque<u8>,
 ) -> Result<Vec<(u32, Picture)>> {
-    let mut simulator = Simulator::<R, L> { display, wishes, told: vec![], shown: vec![], kind: PhantomData };
+    let mut shown = vec![];
+    let present = |framebuffer: &mut Framebuffer<L>| {
+        let Display { width, height, .. } = display;
+        let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
+        shown.push(Picture { display, pixels });
+    };
+    let mut simulator = Simulator::<R, L, _> { wishes, told: vec![], present, kind: PhantomData };
     // The display's memory and the player's would be much of a test thread's stack.
     let mut frame = Box::new(Framebuffer::<L>::new());
     let exit = pantin_app::run(entries, options, &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "a clip cannot be played");
-    ensure!(simulator.told.len() == 5 * simulator.shown.len(), "the program told something else than frames' numbers");
-    let numbers =
-        simulator.told.chunks_exact(5).map(|message| u32::from_le_bytes([message[1], message[2], message[3], message[4]]));
-    Ok(numbers.zip(simulator.shown).collect())
+    let told = simulator.told;
+    ensure!(told.len() == 5 * shown.len(), "the program told something else than frames' numbers");
+    let numbers = told.chunks_exact(5).map(|message| u32::from_le_bytes([message[1], message[2], message[3], message[4]]));
+    Ok(numbers.zip(shown).collect())
 }
 
 /// The board.
-struct Simulator<R, L> {
-    display: Display,
+struct Simulator<R, L, P> {
     /// Bytes that the other end of the line sends.
     wishes: VecDeque<u8>,
     /// Bytes that it gets.
     told: Vec<u8>,
-    shown: Vec<Picture>,
+    present: P,
     kind: PhantomData<(R, L)>,
 }
 
-impl<R: RotationBackend, L: Layout<Ink: Value>> Board for Simulator<R, L> {
+impl<R: RotationBackend, L: Layout, P: FnMut(&mut Framebuffer<L>)> Board for Simulator<R, L, P> {
     type Layout = L;
     type Rotation = R;
     type Capacity = Capacity;
 
     fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
-        let Display { width, height, .. } = self.display;
-        let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
-        self.shown.push(Picture { display: self.display, pixels });
+        (self.present)(framebuffer);
     }
 
     fn start_timer(&mut self, _period_ns: u32) {}

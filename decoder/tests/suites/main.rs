@@ -6,6 +6,7 @@ mod detached;
 mod fields;
 mod forms;
 mod golden;
+mod matrices;
 mod playing;
 mod poses;
 mod statements;

@@ -26,31 +26,22 @@ pub(crate) fn rotate(rotation: &AxisRotation, interpolation: Interpolation, side
         angle: if rotation.axis == 0 { rotation.angle } else { rotation.angle.wrapping_neg() },
         ..*rotation
     };
-    // Members often share part and weight with those before: a sine takes as long as ten vertices.
-    let mut last = ([0; 3], [ONE, 0]);
-    let mut coefficients = |angle: i16, part: u8, weight: i32| {
-        let of = [i32::from(angle), i32::from(part), weight];
-        if last.0 != of {
-            last = (of, coefficients(angle, part, interpolation, weight));
-        }
-        last.1
-    };
     for members in rotation.members() {
         let first = usize::from(members.first);
         let range = first..first + usize::from(members.count);
         if first < sides.middles {
-            let c_s = coefficients(rotation.angle, members.part, (stored + mirrored) >> 1);
+            let c_s = coefficients(rotation.angle, members.part, interpolation, (stored + mirrored) >> 1);
             vertices.get_mut(range).into_iter().flatten().for_each(|vertex| move_about(rotation, c_s, vertex));
             continue;
         }
         if stored != 0 {
-            let c_s = coefficients(rotation.angle, members.part, stored);
+            let c_s = coefficients(rotation.angle, members.part, interpolation, stored);
             vertices.get_mut(range.clone()).into_iter().flatten().for_each(|vertex| move_about(rotation, c_s, vertex));
         }
         let to_right = first < sides.middles + sides.pairs;
         let other = |index: usize| if to_right { index + sides.pairs } else { index.wrapping_sub(sides.pairs) };
         if mirrored != 0 {
-            let c_s = coefficients(image.angle, members.part, mirrored);
+            let c_s = coefficients(image.angle, members.part, interpolation, mirrored);
             let range = other(range.start)..other(range.end);
             vertices.get_mut(range).into_iter().flatten().for_each(|vertex| move_about(&image, c_s, vertex));
         }

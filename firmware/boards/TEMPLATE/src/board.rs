@@ -3,7 +3,7 @@
 use crate::placeholder;
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
-use board_drivers::{Mono128x64, Ssd1306, ssd1306::ADDRESS};
+use board_drivers::{Mono128x64, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 
@@ -23,5 +23,5 @@ pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = 
     let timer = SysTick::<CPU_HZ>::new();
     // A watchdog that resets the board after 2 s.
     let feed_watchdog = || {};
-    SharedBoard::new(Ssd1306::new(i2c, ADDRESS), serial, buttons, timer, feed_watchdog)
+    SharedBoard::new(Ssd1306::new(i2c), serial, buttons, timer, feed_watchdog)
 }

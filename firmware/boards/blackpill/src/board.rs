@@ -1,11 +1,11 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
-#[cfg(feature = "st7789")]
-use crate::st7789::{PanicPicture, Picture};
+#[cfg(feature = "spi")]
+use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
-#[cfg(not(feature = "st7789"))]
-use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306, ssd1306::ADDRESS};
+#[cfg(not(feature = "spi"))]
+use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 use stm32f4xx_hal::pac::{Peripherals, RCC};
@@ -45,14 +45,15 @@ pub fn new(
     let Ok(serial) = serial else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "update")]
     let serial = crate::uart_rx::listen(serial);
-    #[cfg(not(feature = "st7789"))]
+    #[cfg(not(feature = "spi"))]
     let display = {
         // Without a display, the pull-ups keep the bus idle.
         let pins = (b.pb6.internal_pull_up(true), b.pb7.internal_pull_up(true));
-        Ssd1306::new(parts.I2C1.i2c(pins, 400.kHz(), &mut clocks), ADDRESS)
+        let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
+        new(parts.I2C1.i2c(pins, 400.kHz(), &mut clocks))
     };
-    #[cfg(feature = "st7789")]
-    let display = crate::st7789::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0, b.pb1), &mut clocks);
+    #[cfg(feature = "spi")]
+    let display = crate::spi_display::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0, b.pb1), &mut clocks);
     // The last one is the board's own.
     let buttons = five_buttons([
         b.pb12.into_pull_up_input().erase(),

@@ -5,8 +5,8 @@
 mod board;
 mod flash;
 mod panic;
-#[cfg(feature = "st7789")]
-mod st7789;
+#[cfg(feature = "spi")]
+mod spi_display;
 #[cfg(feature = "update")]
 mod uart_rx;
 

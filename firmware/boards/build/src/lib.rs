@@ -14,12 +14,71 @@ const FACES: [&str; 5] = ["greet", "face/hello", "face/joy", "face/surprise", "f
 /// The whole script of most boards: the memory map `memory.x` of the board's folder, arguments for the linker, the linker script of `defmt` if
 /// the board's feature of that name is on, and the clips.
 pub fn board(link_arguments: &[&str]) {
-    memory_map("memory.x");
+    board_in("memory.x", link_arguments);
+}
+
+/// The same with another file for the memory map.
+pub fn board_in(map: &str, link_arguments: &[&str]) {
+    memory_map(map);
     link(link_arguments);
     if feature("defmt") {
         link(&["-Tdefmt.x"]);
     }
+    display();
     clips();
+}
+
+/// The displays over SPI: the board's feature, the name of its `Module` in `board_drivers::color_panel`, and the most columns and rows of its
+/// pictures.
+const DISPLAYS: [(&str, &str, [usize; 2]); 6] = [
+    ("st7789", "ST7789_240X240", [240, 240]),
+    ("st7789-135x240", "ST7789_135X240", [135, 240]),
+    ("st7789-170x320", "ST7789_170X320", [170, 320]),
+    ("st7789-240x320", "ST7789_240X320", [240, 320]),
+    ("ili9341", "ILI9341_240X320", [240, 320]),
+    // The square that the circle does not cut.
+    ("gc9a01", "GC9A01_240X240", [168, 168]),
+];
+
+/// Writes `display.rs` for a board with a display over SPI: the constant `MODULE`, and the types of pictures `Colour`, `Greys` and `Mono`, which
+/// are as large as the display and the layout allow. `PANTIN_ROTATION` turns the picture clockwise, by 0, 90, 180 or 270 degrees.
+pub fn display() {
+    println!("cargo::rerun-if-env-changed=PANTIN_ROTATION");
+    let is_on = |name: &&str| feature(name);
+    let chosen: Vec<&str> = DISPLAYS.iter().map(|(name, ..)| *name).chain(["sh1106"]).filter(is_on).collect();
+    if let [first, second, ..] = *chosen {
+        println!("cargo::error=the features {first} and {second} exclude each other: choose one display");
+    }
+    let Some((name, module, [wide, high])) = DISPLAYS.into_iter().find(|(name, ..)| feature(name)) else { return };
+    let rotation = env::var("PANTIN_ROTATION").unwrap_or("0".into());
+    let [wide, high] = match &*rotation {
+        "0" | "180" => [wide, high],
+        "90" | "270" => [high, wide],
+        _ => return println!("cargo::error=PANTIN_ROTATION is {rotation}, not 0, 90, 180 or 270"),
+    };
+    if wide > 256 {
+        return println!(
+            "cargo::error=PANTIN_ROTATION={rotation}: a picture of {wide} columns is too wide: {name} can be turned by 180 degrees only"
+        );
+    }
+    let in_pairs = wide / 2 * 2;
+    let in_eights = wide / 8 * 8;
+    let text = format!(
+        "pub const MODULE: board_drivers::color_panel::Module<board_drivers::color_panel::{controller}> =\n    \
+         board_drivers::color_panel::{module}.rotated(board_drivers::color_panel::Rotation::Deg{rotation});\n\
+         /// In colour.\n#[allow(dead_code)]\n\
+         pub type Colour = pantin_figure::surface::Rgb565Rows<{in_pairs}, {high}, {pairs}>;\n\
+         /// In 16 greys.\n#[allow(dead_code)]\n\
+         pub type Greys = pantin_figure::surface::Gray4Rows<{in_eights}, {high}, {words}>;\n\
+         /// In black and white.\n\
+         pub type Mono = pantin_figure::surface::MonoPages<{in_pairs}, {pages}, {bytes}>;\n",
+        controller = module.split('_').next().unwrap_or_default(),
+        pairs = in_pairs * high / 2,
+        words = in_eights * high / 8,
+        pages = high / 8 * 8,
+        bytes = in_pairs * (high / 8),
+    );
+    fs::write(out().join("display.rs"), text).expect("OUT_DIR is writable");
 }
 
 /// Copies a memory map (its path from the board's folder) to where the linker looks for `memory.x`.
@@ -112,7 +171,7 @@ pub fn capacity(clips: [usize; 3], most: [usize; 3]) {
 
 /// Returns whether a feature of the board's package is on.
 pub fn feature(name: &str) -> bool {
-    env::var_os(format!("CARGO_FEATURE_{}", name.to_uppercase())).is_some()
+    env::var_os(format!("CARGO_FEATURE_{}", name.to_uppercase().replace('-', "_"))).is_some()
 }
 
 /// Returns a clip's channels, moving channels, and joints of the figure with the crown that it may get. The program itself reports what is

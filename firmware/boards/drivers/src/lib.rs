@@ -2,15 +2,15 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod color_panel;
 mod display;
 pub mod indexed;
 pub mod led_matrix;
 pub mod nrf52;
 pub mod servo;
 pub mod ssd1306;
-pub mod st7789;
 
+pub use color_panel::ColorPanel;
 pub use display::Display;
 pub use servo::Servo;
 pub use ssd1306::{Mono128x64, Ssd1306};
-pub use st7789::St7789;

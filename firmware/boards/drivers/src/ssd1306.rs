@@ -1,4 +1,4 @@
-//! The SSD1306: a monochrome display of 128x64 pixels, over I2C.
+//! The SSD1306 and the SH1106: monochrome displays of 128x64 pixels, over I2C.
 //!
 //! The crate `ssd1306` is not used: over I2C it copies what it sends into transfers of 16 bytes, each with an address and a control byte of
 //! its own. This driver sends each page that changed in one transfer, straight from the framebuffer: 8 bytes and the page's columns.
@@ -10,8 +10,8 @@ use pantin_figure::surface::{BAND, Framebuffer, Layout, MonoPages, Surface};
 /// The layout of the display's memory.
 pub type Mono128x64 = MonoPages<128, 64, 1024>;
 
-/// The I2C address of most modules; a solder bridge changes it to 0x3d.
-pub const ADDRESS: u8 = 0x3c;
+/// The I2C addresses: the first is that of most modules, a solder bridge changes it to the second.
+pub const ADDRESSES: [u8; 2] = [0x3c, 0x3d];
 
 /// Control bytes: one command and then another control byte follow; only commands follow; only data follow.
 const ONE_COMMAND: u8 = 0x80;
@@ -28,22 +28,41 @@ const SET_UP: [u8; 26] = [
     0x81, 0xcf, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
     0x2e, 0xa4, 0xa6, // scrolling off, picture from memory, not inverted
 ];
+/// The same for an SH1106, which has another charge pump, and no modes of addressing.
+const SET_UP_SH1106: [u8; 23] = [
+    COMMANDS, 0xae, // display off
+    0xd5, 0x80, 0xa8, 63, 0xd3, 0, 0x40, // clock divider, last row, row offset, start line
+    0xad, 0x8b, // charge pump on
+    0xa1, 0xc8, 0xda, 0x12, // columns and rows reversed, row pins
+    0x81, 0xcf, 0xd9, 0xf1, 0xdb, 0x40, // contrast, precharge, deselect level
+    0xa4, 0xa6, // picture from memory, not inverted
+];
+/// An SH1106 has 132 columns, of which the glass shows those in the middle.
+const FIRST_COLUMN_SH1106: u8 = 2;
 const DISPLAY_ON: [u8; 2] = [COMMANDS, 0xaf];
 
 /// The display.
 #[derive(Debug)]
 pub struct Ssd1306<B> {
     bus: B,
+    /// The address that the display answers, or is tried next.
     address: u8,
+    set_up: &'static [u8],
+    /// The column of the display's memory that the glass shows first.
+    first_column: u8,
     /// The display is set up and shows what was last sent.
     ready: bool,
 }
 
 impl<B: I2c> Ssd1306<B> {
-    /// Makes a driver for a display on a bus of at most 400 kHz. Most modules have the address [`ADDRESS`]. Nothing is sent before the first
-    /// picture.
-    pub fn new(bus: B, address: u8) -> Self {
-        Ssd1306 { bus, address, ready: false }
+    /// Makes a driver for an SSD1306 on a bus of at most 400 kHz. It has one of [`ADDRESSES`]. Nothing is sent before the first picture.
+    pub fn new(bus: B) -> Self {
+        Ssd1306 { bus, address: ADDRESSES[0], set_up: &SET_UP, first_column: 0, ready: false }
+    }
+
+    /// Makes a driver for an SH1106.
+    pub fn sh1106(bus: B) -> Self {
+        Ssd1306 { set_up: &SET_UP_SH1106, first_column: FIRST_COLUMN_SH1106, ..Ssd1306::new(bus) }
     }
 
     /// Sends what changed since the last call. After an error it sets the display up again and sends the whole picture, so that a display
@@ -60,12 +79,22 @@ impl<B: I2c> Ssd1306<B> {
         sent
     }
 
+    /// Sets the display up, at the address that it answers.
+    fn find(&mut self) -> Result<(), B::Error> {
+        if self.bus.write(self.address, self.set_up).is_ok() {
+            return Ok(());
+        }
+        let [one, other] = ADDRESSES;
+        self.address = if self.address == one { other } else { one };
+        self.bus.write(self.address, self.set_up)
+    }
+
     fn send(&mut self, frame: &mut Framebuffer<Mono128x64>) -> Result<(), B::Error> {
         if !self.ready {
-            self.bus.write(self.address, &SET_UP)?;
+            self.find()?;
         }
         for window in frame.send() {
-            let (column, page) = (window.columns[0] as u8, (window.rows[0] / BAND) as u8);
+            let (column, page) = (window.columns[0] as u8 + self.first_column, (window.rows[0] / BAND) as u8);
             let head = [ONE_COMMAND, 0xb0 | page, ONE_COMMAND, column & 15, ONE_COMMAND, 0x10 | column >> 4, DATA];
             for cells in frame.stretches(window) {
                 self.bus.transaction(self.address, &mut [Operation::Write(&head), Operation::Write(cells)])?;
@@ -98,6 +127,7 @@ mod tests {
         lit: bool,
         bytes: usize,
         plugged: bool,
+        address: u8,
     }
 
     impl ErrorType for Panel {
@@ -106,8 +136,8 @@ mod tests {
 
     impl I2c for Panel {
         fn transaction(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
-            assert_eq!(address, ADDRESS);
-            if !self.plugged {
+            assert!(ADDRESSES.contains(&address));
+            if !self.plugged || address != self.address {
                 return Err(ErrorKind::Bus);
             }
             let mut bytes = vec![];
@@ -130,7 +160,7 @@ mod tests {
     }
 
     fn panel() -> Ssd1306<Panel> {
-        Ssd1306::new(Panel { memory: [0xaa; 1024], lit: false, bytes: 0, plugged: true }, ADDRESS)
+        Ssd1306::new(Panel { memory: [0xaa; 1024], lit: false, bytes: 0, plugged: true, address: ADDRESSES[0] })
     }
 
     fn put(frame: &mut Framebuffer<Mono128x64>, x: i32, y: i32) {
@@ -165,6 +195,8 @@ mod tests {
         put(&mut frame, 6, 40);
         assert_eq!(display.show(&mut frame), Err(ErrorKind::Bus));
         display.bus = panel().bus;
+        // Plugged in again with its solder bridge changed.
+        display.bus.address = ADDRESSES[1];
         frame.clear();
         put(&mut frame, 7, 7);
         display.show(&mut frame).unwrap();

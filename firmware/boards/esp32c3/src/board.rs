@@ -1,7 +1,7 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
 use board_common::{Capacity, FnSerial, PanicBoard, SharedBoard, TickTimer, five_buttons};
-use board_drivers::{Mono128x64, Ssd1306, ssd1306::ADDRESS};
+use board_drivers::{Mono128x64, Ssd1306};
 use esp_hal::gpio::{Input, InputConfig, Pull};
 use esp_hal::i2c::master::{self, I2c};
 use esp_hal::interrupt::wait_for_interrupt;
@@ -35,7 +35,8 @@ pub fn new(
     let i2c = I2c::new(parts.I2C0, master::Config::default().with_frequency(Rate::from_khz(400)));
     let serial = Uart::new(parts.UART0, uart::Config::default().with_baudrate(BAUD));
     let (Ok(i2c), Ok(serial)) = (i2c, serial) else { unreachable!("bus and port support these rates") };
-    let display = Ssd1306::new(i2c.with_sda(parts.GPIO5).with_scl(parts.GPIO6), ADDRESS);
+    let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
+    let display = new(i2c.with_sda(parts.GPIO5).with_scl(parts.GPIO6));
     #[cfg(feature = "update")]
     let serial = crate::uart_rx::listen(serial);
     let (mut rx, mut tx) = serial.with_tx(parts.GPIO21).with_rx(parts.GPIO20).split();

@@ -3,7 +3,7 @@
 use crate::{leds, serial, watchdog};
 use board_common::{Capacity, SharedBoard, TickTimer, two_buttons};
 use board_drivers::led_matrix::reduce;
-use board_drivers::{Display, Mono128x64, Ssd1306, ssd1306::ADDRESS};
+use board_drivers::{Display, Mono128x64, Ssd1306};
 use nrf52833_hal::gpio::{Floating, Input, Level, Pin, p0, p1};
 use nrf52833_hal::pac::{Peripherals, TWIM0};
 use nrf52833_hal::twim::{Frequency, Pins, Twim};
@@ -37,9 +37,10 @@ pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rot
     SharedBoard::new(display, serial, buttons, tick_timer, watchdog::start(parts.WDT))
 }
 
-/// Sets up the SSD1306 on the edge connector: SCL on P19, SDA on P20. These pins have pull-ups, which keep the bus idle without a display.
+/// Sets up the SSD1306, or the SH1106, on the edge connector: SCL on P19, SDA on P20. These pins have pull-ups, which keep the bus idle without a display.
 pub fn oled(twim: TWIM0, scl: Pin<Input<Floating>>, sda: Pin<Input<Floating>>) -> impl Display<Mono128x64> {
     // A panic may have interrupted a transfer.
     twim.enable.reset();
-    Ssd1306::new(Twim::new(twim, Pins { scl, sda }, Frequency::K400), ADDRESS)
+    let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
+    new(Twim::new(twim, Pins { scl, sda }, Frequency::K400))
 }

@@ -1,12 +1,12 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
 use crate::clocks::{self, CPU_HZ};
-#[cfg(feature = "st7789")]
-use crate::st7789::{PanicPicture, Picture};
+#[cfg(feature = "spi")]
+use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
-#[cfg(not(feature = "st7789"))]
-use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306, ssd1306::ADDRESS};
+#[cfg(not(feature = "spi"))]
+use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 use rp2040_hal::fugit::{ExtU32, RateExtU32};
@@ -34,14 +34,16 @@ pub fn new(
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "update")]
     let serial = crate::uart_rx::listen(serial);
-    #[cfg(not(feature = "st7789"))]
+    #[cfg(not(feature = "spi"))]
     let display = {
         let (sda, scl) = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
         let bus = rp2040_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
-        Ssd1306::new(crate::i2c::Bus::new(bus), ADDRESS)
+        let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
+        new(crate::i2c::Bus::new(bus))
     };
-    #[cfg(feature = "st7789")]
-    let display = crate::st7789::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20, pins.gpio21), &mut resets);
+    #[cfg(feature = "spi")]
+    let display =
+        crate::spi_display::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20, pins.gpio21), &mut resets);
     let buttons = five_buttons([
         pins.gpio10.into_pull_up_input().into_dyn_pin(),
         pins.gpio11.into_pull_up_input().into_dyn_pin(),

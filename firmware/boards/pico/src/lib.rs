@@ -5,10 +5,10 @@ pub mod board;
 mod boot;
 pub mod clocks;
 pub mod flash;
-#[cfg(not(feature = "st7789"))]
+#[cfg(not(feature = "spi"))]
 mod i2c;
 mod panic;
-#[cfg(feature = "st7789")]
-mod st7789;
+#[cfg(feature = "spi")]
+mod spi_display;
 #[cfg(feature = "update")]
 mod uart_rx;

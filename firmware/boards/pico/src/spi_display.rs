@@ -1,13 +1,12 @@
-//! The ST7789: clock on GP18, data on GP19, chip select on GP17, data/command on GP20, reset on GP21.
+//! A display over SPI: clock on GP18, data on GP19, chip select on GP17, data/command on GP20, reset on GP21.
 
 use crate::clocks::CPU_HZ;
 use board_common::cortex_m::ClockDelay;
-use board_drivers::{Display, St7789};
+use board_drivers::{ColorPanel, Display};
 use core::convert::Infallible;
 use embedded_hal::spi::{ErrorType, MODE_3, SpiBus};
 use embedded_hal_bus::spi::ExclusiveDevice;
 use embedded_hal_nb::spi::FullDuplex;
-use pantin_figure::surface::{MonoPages, Rgb565Rows};
 use rp2040_hal::Spi;
 use rp2040_hal::fugit::RateExtU32;
 use rp2040_hal::gpio::bank0::{Gpio17, Gpio18, Gpio19, Gpio20, Gpio21};
@@ -15,10 +14,15 @@ use rp2040_hal::gpio::{FunctionNull, FunctionSpi, Pin, PullDown};
 use rp2040_hal::pac::{RESETS, SPI0};
 use rp2040_hal::spi::Enabled;
 
-/// The layout of the pictures: in colour, in 115,200 bytes.
-pub type Picture = Rgb565Rows<240, 240, 28800>;
+/// The module, as the features choose it.
+mod chosen {
+    include!(concat!(env!("OUT_DIR"), "/display.rs"));
+}
+
+/// The layout of the pictures: in colour, in 115,200 bytes for 240x240 pixels.
+pub type Picture = chosen::Colour;
 /// The layout of the panic screen: after a panic there may be no RAM for a second picture in colour.
-pub type PanicPicture = MonoPages<240, 240, 7200>;
+pub type PanicPicture = chosen::Mono;
 
 /// The clock of the bus: a quarter of the chip's, which jumper wires carry. With the feature `fast` it is half of the chip's, the fastest.
 const SPI_HZ: u32 = CPU_HZ / if cfg!(feature = "fast") { 2 } else { 4 };
@@ -38,7 +42,13 @@ pub fn new(
     let lines: Lines = (out.into_function(), clock.into_function());
     let bus = Spi::<_, _, _, 8>::new(spi, lines).init(resets, CPU_HZ.Hz(), SPI_HZ.Hz(), MODE_3);
     let Ok(bus) = ExclusiveDevice::new_no_delay(WriteBus(bus), select.into_push_pull_output());
-    match St7789::new(bus, data.into_push_pull_output(), &mut reset.into_push_pull_output(), &mut ClockDelay::<CPU_HZ>) {
+    match ColorPanel::new(
+        chosen::MODULE,
+        bus,
+        data.into_push_pull_output(),
+        &mut reset.into_push_pull_output(),
+        &mut ClockDelay::<CPU_HZ>,
+    ) {
         Some(display) => display,
         None => unreachable!("neither this bus nor its pins can fail"),
     }

@@ -1,8 +1,9 @@
-//! The ST7789: a colour display of 240x240 pixels, over SPI. The crate `mipidsi` sets it up and encodes its commands. This driver sends the
-//! rows that changed itself, because `mipidsi` takes pixels one by one, which takes a small processor twice as long.
+//! Colour displays over SPI: ST7789, ILI9341, GC9A01. The crate `mipidsi` sets them up and encodes their commands. This driver sends the rows that
+//! changed itself, because `mipidsi` takes pixels one by one, which takes a small processor twice as long.
 //!
-//! The framebuffer may have any layout whose pixels convert to RGB565: `Rgb565Rows<240, 240, 28800>` takes 115,200 bytes and distinguishes
-//! left and right limbs by hue, `Gray4Rows<240, 240, 7200>` takes a quarter of that, `MonoPages<240, 240, 7200>` a sixteenth.
+//! The framebuffer may have any layout whose pixels convert to RGB565. For 240x240 pixels `Rgb565Rows<240, 240, 28800>` takes 115,200 bytes and
+//! distinguishes left and right limbs by hue, `Gray4Rows<240, 240, 7200>` takes a quarter of that, `MonoPages<240, 240, 7200>` a sixteenth. A
+//! framebuffer that is smaller than the glass is shown in its middle.
 
 use crate::Display;
 use core::fmt::Debug;
@@ -12,18 +13,111 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::SpiDevice;
 use mipidsi::Builder;
-use mipidsi::dcs::{InterfaceExt, SetColumnAddress, SetPageAddress, WriteMemoryStart};
+use mipidsi::dcs::{DcsCommand, InterfaceExt, SetAddressMode, SetColumnAddress, SetPageAddress, WriteMemoryStart};
 use mipidsi::interface::{Interface, InterfaceKind};
-use mipidsi::models::ST7789;
-use mipidsi::options::ColorInversion;
+use mipidsi::models::Model;
+pub use mipidsi::models::{GC9A01, ILI9341Rgb565 as ILI9341, ST7789};
+pub use mipidsi::options::Rotation;
+use mipidsi::options::{ColorInversion, ColorOrder, ModelOptions, Orientation};
 use pantin_figure::surface::{Cursor, Framebuffer, Layout, Window};
 
-/// The number of columns, and of rows.
-pub const SIDE: usize = 240;
+/// The most pixels in a row.
+const MAX_WIDTH: usize = 256;
 
 /// How long the reset pin is low, and the time after that until the panel takes commands.
 const RESET_LOW_US: u32 = 20;
 const RESET_MS: u32 = 120;
+
+/// The bits of a controller's address mode (command 0x36).
+const REVERSE_ROWS: u8 = 0x80;
+const REVERSE_COLUMNS: u8 = 0x40;
+const SWAP_ROWS_AND_COLUMNS: u8 = 0x20;
+
+/// A display module: its controller, and the glass that is wired to it. Sizes and offsets are in pixels, and those of a picture that is
+/// not turned.
+#[derive(Debug)]
+pub struct Module<M> {
+    /// Makes `mipidsi`'s model of the controller.
+    pub controller: fn() -> M,
+    /// The glass's columns and rows.
+    pub size: [u16; 2],
+    /// The first column and row of the controller's memory that the glass shows.
+    pub offset: [u16; 2],
+    /// The glass's columns are in the opposite order to the memory's.
+    pub mirrored: bool,
+    /// The glass shows inverted colours by default, as IPS panels do.
+    pub inverted: bool,
+    /// The glass's pixels are blue, green and red from the left.
+    pub bgr: bool,
+    /// How far the picture is turned clockwise on the glass.
+    pub rotation: Rotation,
+}
+
+/// Square modules of 240x240 pixels, also those without a chip select.
+pub const ST7789_240X240: Module<ST7789> = Module {
+    controller: || ST7789,
+    size: [240, 240],
+    offset: [0, 0],
+    mirrored: false,
+    inverted: true,
+    bgr: false,
+    rotation: Rotation::Deg0,
+};
+/// Narrow modules of 135x240 pixels, as on the T-Display and in the Pico display pack.
+pub const ST7789_135X240: Module<ST7789> = Module { size: [135, 240], offset: [52, 40], ..ST7789_240X240 };
+/// Modules of 170x320 pixels.
+pub const ST7789_170X320: Module<ST7789> = Module { size: [170, 320], offset: [35, 0], ..ST7789_240X240 };
+/// Modules of 240x320 pixels.
+pub const ST7789_240X320: Module<ST7789> = Module { size: [240, 320], ..ST7789_240X240 };
+/// Modules of 240x320 pixels with an ILI9341.
+pub const ILI9341_240X320: Module<ILI9341> = Module {
+    controller: || ILI9341,
+    size: [240, 320],
+    offset: [0, 0],
+    mirrored: true,
+    inverted: false,
+    bgr: true,
+    rotation: Rotation::Deg0,
+};
+/// Round modules of 240x240 pixels, of which a square of 168x168 is not cut.
+pub const GC9A01_240X240: Module<GC9A01> = Module {
+    controller: || GC9A01,
+    size: [240, 240],
+    offset: [0, 0],
+    mirrored: false,
+    inverted: true,
+    bgr: true,
+    rotation: Rotation::Deg0,
+};
+
+impl<M: Model> Module<M> {
+    /// Returns the module with its picture turned clockwise.
+    pub const fn rotated(&self, rotation: Rotation) -> Self {
+        let Module { controller, size, offset, mirrored, inverted, bgr, rotation: _ } = *self;
+        Module { controller, size, offset, mirrored, inverted, bgr, rotation }
+    }
+
+    fn options(&self) -> ModelOptions {
+        let mut options = ModelOptions::full_size::<M>();
+        let first = if self.mirrored { Orientation::new().flip_horizontal() } else { Orientation::new() };
+        options.orientation = first.rotate(self.rotation);
+        options.color_order = if self.bgr { ColorOrder::Bgr } else { ColorOrder::Rgb };
+        options.invert_colors = if self.inverted { ColorInversion::Inverted } else { ColorInversion::Normal };
+        options
+    }
+
+    /// Returns the address of the glass's first pixel, and the glass's columns and rows, as the picture is turned.
+    fn area(&self) -> [[u16; 2]; 2] {
+        let mut mode = [0];
+        // The command has one byte.
+        let _ = SetAddressMode::from(&self.options()).fill_params_buf(&mut mode);
+        let has = |bit: u8| mode[0] & bit != 0;
+        let ((wide, high), [x, y], [columns, rows]) = (M::FRAMEBUFFER_SIZE, self.offset, self.size);
+        let x = if has(REVERSE_COLUMNS) { wide - columns - x } else { x };
+        let y = if has(REVERSE_ROWS) { high - rows - y } else { y };
+        if has(SWAP_ROWS_AND_COLUMNS) { [[y, x], [rows, columns]] } else { [[x, y], [columns, rows]] }
+    }
+}
 
 /// An error of the display's bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,39 +158,79 @@ impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> Interface for Wires
 
 /// The display.
 #[derive(Debug)]
-pub struct St7789<S, D>(Wires<S, D>);
+pub struct ColorPanel<S, D> {
+    wires: Wires<S, D>,
+    /// The address of the glass's first pixel.
+    first: [u16; 2],
+    /// The glass's columns and rows.
+    size: [u16; 2],
+}
 
-impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> St7789<S, D> {
-    /// Sets the display up, which takes about 450 ms. The bus has at most 62.5 MHz and SPI mode 3: modules without a chip select need it, and
-    /// those with one take it too. `data` is the data/command pin, `reset` the pin of a wire to the panel's RES, which may also be absent:
-    /// the panel is reset by a command too. Returns `None` if bus or pin fails.
-    pub fn new(bus: S, data: D, reset: &mut impl OutputPin, delay: &mut impl DelayNs) -> Option<Self> {
+impl<S: SpiDevice<Error: Debug>, D: OutputPin<Error: Debug>> ColorPanel<S, D> {
+    /// Sets the display up, which takes about 500 ms, and darkens it. The bus has at most 62.5 MHz (an ILI9341 is specified for 10 MHz, and works
+    /// at 31 MHz) and SPI mode 3: modules without a chip select need it, and those with one take it too. `data` is the data/command pin, `reset` the
+    /// pin of a wire to the panel's RES, which may also be absent: the panel is reset by a command too. Returns `None` if bus or pin fails.
+    pub fn new<M: Model<ColorFormat = Rgb565>>(
+        module: Module<M>,
+        bus: S,
+        data: D,
+        reset: &mut impl OutputPin,
+        delay: &mut impl DelayNs,
+    ) -> Option<Self> {
         // At least 10 us low, then 120 ms until the first command (ST7789V data sheet, 7.4.5).
         reset.set_low().ok()?;
         delay.delay_us(RESET_LOW_US);
         reset.set_high().ok()?;
         delay.delay_ms(RESET_MS);
-        // IPS panels show inverted colours by default.
-        let builder = Builder::new(ST7789, Wires { bus, data }).invert_colors(ColorInversion::Inverted);
-        let display = builder.display_size(SIDE as u16, SIDE as u16).init(delay).ok()?;
-        Some(St7789(display.release().0))
+        let ([first, size], options) = (module.area(), module.options());
+        let builder = Builder::new((module.controller)(), Wires { bus, data }).orientation(options.orientation);
+        let builder = builder.color_order(options.color_order).invert_colors(options.invert_colors);
+        let display = builder.init(delay).ok()?;
+        let mut panel = ColorPanel { wires: display.release().0, first, size };
+        panel.darken().ok()?;
+        Some(panel)
     }
 
-    /// Sends what changed since the last call.
+    /// Addresses the pixels that are written next, by their first and last columns and rows on the glass.
+    fn address(&mut self, columns: [usize; 2], rows: [usize; 2]) -> Result<(), Error<S::Error, D::Error>> {
+        let [[left, right], [top, bottom]] =
+            [(columns, self.first[0]), (rows, self.first[1])].map(|(ends, first)| ends.map(|end| end as u16 + first));
+        self.wires.write_command(SetColumnAddress::new(left, right))?;
+        self.wires.write_command(SetPageAddress::new(top, bottom))?;
+        self.wires.write_command(WriteMemoryStart)
+    }
+
+    /// Darkens the whole glass: at power-on the memory holds random pixels, and a small framebuffer leaves margins.
+    fn darken(&mut self) -> Result<(), Error<S::Error, D::Error>> {
+        let [columns, rows] = self.size.map(usize::from);
+        self.address([0, columns - 1], [0, rows - 1])?;
+        // Not pixel by pixel, since each write takes time of its own.
+        const BLOCK: [u8; 64] = [0; 64];
+        let mut left = 2 * columns * rows;
+        while left > 0 {
+            let part = BLOCK.get(..left).unwrap_or(&BLOCK);
+            self.wires.bus.write(part).map_err(Error::Bus)?;
+            left -= part.len();
+        }
+        Ok(())
+    }
+
+    /// Sends what changed since the last call. Nothing is shown of a framebuffer that is larger than the glass.
     ///
     /// # Errors
     /// Bus or pin failed; the pixels not sent are lost until they change again.
     pub fn show<L: Layout<Ink: Into<Rgb565>>>(&mut self, frame: &mut Framebuffer<L>) -> Result<(), Error<S::Error, D::Error>> {
-        const { assert!(L::WIDTH == SIDE && L::HEIGHT == SIDE) };
-        let mut buffer = [[0; 2]; SIDE];
+        const { assert!(L::WIDTH <= MAX_WIDTH) };
+        let [columns, rows] = self.size.map(usize::from);
+        let (Some(wide), Some(high)) = (columns.checked_sub(L::WIDTH), rows.checked_sub(L::HEIGHT)) else { return Ok(()) };
+        let (x, y) = (wide / 2, high / 2);
+        let mut buffer = [[0; 2]; MAX_WIDTH];
         for Window { columns: [left, right], rows: [top, bottom] } in frame.send() {
-            self.0.write_command(SetColumnAddress::new(left as u16, right as u16))?;
-            self.0.write_command(SetPageAddress::new(top as u16, bottom as u16))?;
-            self.0.write_command(WriteMemoryStart)?;
+            self.address([x + left, x + right], [y + top, y + bottom])?;
             let row = buffer.get_mut(left..=right).unwrap_or_default();
             for y in top..=bottom {
                 encode::<L>(frame.cells(), L::cursor(left, y), row);
-                self.0.bus.write(row.as_flattened()).map_err(Error::Bus)?;
+                self.wires.bus.write(row.as_flattened()).map_err(Error::Bus)?;
             }
         }
         Ok(())
@@ -113,7 +247,7 @@ fn encode<L: Layout<Ink: Into<Rgb565>>>(cells: &[L::Cell], mut cursor: L::Cursor
     }
 }
 
-impl<L, S, D> Display<L> for St7789<S, D>
+impl<L, S, D> Display<L> for ColorPanel<S, D>
 where
     L: Layout<Ink: Into<Rgb565>>,
     S: SpiDevice<Error: Debug>,
@@ -128,6 +262,8 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const SIDE: usize = 240;
     use embedded_graphics::pixelcolor::{BinaryColor, Gray4, RgbColor};
     use embedded_hal::spi::Operation;
     use pantin_figure::surface::{Gray4Rows, MonoPages, Rgb565Rows, Surface};
@@ -248,7 +384,7 @@ mod tests {
     #[test]
     fn the_reset_pin_is_low_for_10_us_and_120_ms_pass_before_the_first_command() {
         let (panel, reset) = (RefCell::new(Panel::new()), Reset::default());
-        St7789::new(Bus(&panel), Pin(&panel), &mut ResetPin(&reset), &mut Time(&reset)).unwrap();
+        ColorPanel::new(ST7789_240X240, Bus(&panel), Pin(&panel), &mut ResetPin(&reset), &mut Time(&reset)).unwrap();
         let [(first, low), (second, high)] = reset.0.borrow()[..] else { panic!("the pin changes twice") };
         assert_eq!((first, second), ("low", "high"));
         assert!((10_000..1_000_000).contains(&low) && high >= 120_000_000);
@@ -264,8 +400,9 @@ mod tests {
     /// Shows three pictures of moving squares, and compares the panel's memory with each.
     fn shows<L: Layout<Ink: Into<Rgb565>>>(ink: L::Ink) {
         let panel = RefCell::new(Panel::new());
-        let mut display = St7789::new(Bus(&panel), Pin(&panel), &mut ResetPin(&Reset::default()), &mut NoTime).unwrap();
-        assert!(panel.borrow().commands.ends_with(&[0x29]), "it is on");
+        let mut display =
+            ColorPanel::new(ST7789_240X240, Bus(&panel), Pin(&panel), &mut ResetPin(&Reset::default()), &mut NoTime).unwrap();
+        assert!(panel.borrow().commands.contains(&0x29), "it is on");
         let mut frame = Box::new(Framebuffer::<L>::new());
         for at in [0, 100, 220] {
             frame.clear();

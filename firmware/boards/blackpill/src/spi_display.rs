@@ -1,20 +1,24 @@
-//! The ST7789: chip select on PA4, clock on PA5, data on PA7, data/command on PB0, reset on PB1.
+//! A display over SPI: chip select on PA4, clock on PA5, data on PA7, data/command on PB0, reset on PB1.
 
 use crate::board::CPU_HZ;
 use board_common::cortex_m::ClockDelay;
-use board_drivers::{Display, St7789};
+use board_drivers::{ColorPanel, Display};
 use embedded_hal::spi::MODE_3;
 use embedded_hal_bus::spi::ExclusiveDevice;
-use pantin_figure::surface::{Gray4Rows, MonoPages};
 use stm32f4xx_hal::gpio::{PA4, PA5, PA7, PB0, PB1, Speed};
 use stm32f4xx_hal::pac::SPI1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 
-/// The layout of the pictures: 16 greys, in 28,800 bytes. A picture in colour would leave too little RAM for the stack.
-pub type Picture = Gray4Rows<240, 240, 7200>;
+/// The module, as the features choose it.
+mod chosen {
+    include!(concat!(env!("OUT_DIR"), "/display.rs"));
+}
+
+/// The layout of the pictures: 16 greys, in 28,800 bytes for 240x240 pixels. A picture in colour would leave too little RAM for the stack.
+pub type Picture = chosen::Greys;
 /// The layout of the panic screen: after a panic there may be no RAM for a second picture in greys.
-pub type PanicPicture = MonoPages<240, 240, 7200>;
+pub type PanicPicture = chosen::Mono;
 
 /// The clock of the bus: a quarter of the chip's, 21 MHz, which jumper wires carry. With the feature `fast` it is half of the chip's, the fastest.
 const SPI_HZ: u32 = CPU_HZ / if cfg!(feature = "fast") { 2 } else { 4 };
@@ -31,7 +35,7 @@ pub fn new(
     let (select, data) = (select.into_push_pull_output().speed(fast), data.into_push_pull_output().speed(fast));
     let bus = spi.spi((Some(clock), SPI1::NoMiso, Some(out)), MODE_3, SPI_HZ.Hz(), clocks);
     let Ok(bus) = ExclusiveDevice::new_no_delay(bus, select);
-    match St7789::new(bus, data, &mut reset.into_push_pull_output(), &mut ClockDelay::<CPU_HZ>) {
+    match ColorPanel::new(chosen::MODULE, bus, data, &mut reset.into_push_pull_output(), &mut ClockDelay::<CPU_HZ>) {
         Some(display) => display,
         None => panic!("the display's bus fails"),
     }

@@ -1,0 +1,7 @@
+//! The memory map and the clips.
+
+fn main() {
+    // Their pictures leave too little of the 64 KiB for the stack.
+    let is_large = ["st7789-240x320", "ili9341"].into_iter().any(board_build::feature);
+    board_build::board_in(if is_large { "memory-128k.x" } else { "memory.x" }, &["--nmagic", "-Tlink.x"]);
+}

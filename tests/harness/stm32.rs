@@ -1,0 +1,139 @@
+//! A program of an STM32F411 in Unicorn (QEMU's processor without a machine) with models of the peripherals that it uses: `tests/stm32`.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+
+use crate::paths;
+
+/// The Rust target of its programs.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// The Python package of the emulator, and its version.
+const PACKAGE: &str = "unicorn==2.1.4";
+
+/// What to run, as `run.py` says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Request {
+    /// The program.
+    pub image: PathBuf,
+    /// The I2C address of a display; none for one over SPI.
+    pub display: Option<u8>,
+    /// Whether the crystal starts.
+    pub crystal: bool,
+    /// Letters before each picture but the first.
+    pub keys: Vec<Vec<u8>>,
+    /// Bytes of RAM.
+    pub ram: usize,
+    /// The file for the bus's bytes; [`Request::run`] sets it.
+    pub out: PathBuf,
+}
+
+/// A pin's registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub struct Pin {
+    /// 0 input, 1 output, 2 alternate function, 3 analog.
+    pub mode: u32,
+    /// Whether it is an open drain.
+    pub drain: u32,
+    /// 0 low to 3 very high.
+    pub speed: u32,
+    /// 1 is up, 2 is down.
+    pub pull: u32,
+    /// The alternate function.
+    pub function: u32,
+}
+
+/// The clocks when the processor's was switched to another source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub struct Switch {
+    /// The processor's clock.
+    pub core: u32,
+    /// The PLL's input and oscillator.
+    pub input: u32,
+    /// The PLL's oscillator.
+    pub vco: u32,
+    /// The clock of I2C1.
+    pub apb1: u32,
+    /// The clock of SPI1 and USART1.
+    pub apb2: u32,
+    /// The flash's wait states.
+    pub wait: u32,
+    /// The voltage scale in PWR_CR: 3 is the highest, 2 that after reset.
+    pub vos: u32,
+}
+
+/// What came of it.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Outcome {
+    /// Whether all pictures were sent.
+    pub done: bool,
+    /// What the data sheet forbids.
+    pub faults: Vec<String>,
+    /// Changes of the processor's clock.
+    pub switches: Vec<Switch>,
+    /// Pins that were set up.
+    pub pins: BTreeMap<String, Pin>,
+    /// How often the crystal was asked for.
+    pub crystal_polls: u32,
+    /// Whether the watchdog ran before the crystal was asked for.
+    pub watchdog_before_crystal: bool,
+    /// SPI mode and clock.
+    pub spi: crate::rp2040::Spi,
+    /// The serial port's rate.
+    pub baud: f64,
+    /// The bytes on the display's bus.
+    #[serde(skip)]
+    pub stream: Vec<u16>,
+}
+
+impl Request {
+    /// A program with an SSD1306 of usual address, a crystal, and 64 KiB of RAM.
+    pub fn new(image: &Path, keys: &[&[u8]]) -> Self {
+        let keys = keys.iter().map(|letters| letters.to_vec()).collect();
+        Request { image: image.to_owned(), display: Some(0x3c), crystal: true, keys, ram: 64 << 10, out: PathBuf::new() }
+    }
+
+    /// Runs it.
+    pub fn run(mut self) -> Result<Outcome> {
+        let folder = tempfile::Builder::new().prefix("pantin-stm32-").tempdir().context("cannot make a temporary folder")?;
+        self.out = folder.path().join("stream");
+        let request = folder.path().join("request.json");
+        std::fs::write(&request, serde_json::to_vec(&self)?).context("cannot write the request")?;
+        let mut command = Command::new(python()?);
+        command.arg(paths::root().join("tests/stm32/run.py")).arg(&request).env("PYTHONPATH", emulator()?);
+        let output = command.stdin(Stdio::null()).output().context("cannot start Python")?;
+        let words = String::from_utf8_lossy(&output.stderr);
+        ensure!(output.status.success(), "run.py ended with {}: {}", output.status, words.trim());
+        let mut outcome: Outcome = serde_json::from_slice(&output.stdout).context("run.py printed no JSON")?;
+        let stream = std::fs::read(&self.out).context("there is no stream")?;
+        outcome.stream = stream.chunks_exact(2).map(|word| u16::from_le_bytes([word[0], word[1]])).collect();
+        Ok(outcome)
+    }
+}
+
+fn python() -> Result<PathBuf> {
+    paths::program("python3").context("python3 is missing; install it with your system's package manager")
+}
+
+/// The emulator's folder, which pip fetches the first time.
+fn emulator() -> Result<PathBuf> {
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let folder = paths::root().join("target/unicorn").join(PACKAGE);
+    let fetched = folder.join("fetched");
+    if !fetched.exists() {
+        eprintln!("fetching Unicorn, the processor of the STM32's tests: pip install {PACKAGE}");
+        let mut command = Command::new(python()?);
+        command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--target"]);
+        let output = command.arg(&folder).arg(PACKAGE).stdin(Stdio::null()).output().context("cannot start Python")?;
+        let words = String::from_utf8_lossy(&output.stderr);
+        ensure!(output.status.success(), "`pip install {PACKAGE}` failed (is there a network?): {}", words.trim());
+        std::fs::write(&fetched, "").context("cannot note what was fetched")?;
+    }
+    Ok(folder)
+}
