@@ -20,6 +20,7 @@ mod paper;
 mod peers;
 mod plot;
 mod reference;
+mod short;
 mod size;
 mod table;
 mod tool;

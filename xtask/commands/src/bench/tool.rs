@@ -21,6 +21,8 @@ pub struct Converted {
     pub clip: PathBuf,
     /// Wall time that it took; `None` if the clip was there from an earlier run.
     pub seconds: Option<f64>,
+    /// The most memory that it had, in MB; `None` where the system does not say.
+    pub peak_mb: Option<f64>,
     /// What `pantin info` says.
     pub info: Info,
 }
@@ -67,9 +69,11 @@ impl Tool {
     pub fn convert(&self, motion: &Path, name: &str, options: &[String]) -> Result<Converted> {
         let clip = self.clip(name);
         let start = Instant::now();
-        self.run(Command::new(&self.program).arg("convert").arg(motion).arg("-q").arg("-o").arg(&clip).args(options))?;
+        let mut command = Command::new(&self.program);
+        command.arg("convert").arg(motion).arg("-q").arg("-o").arg(&clip).args(options);
+        let peak_mb = self.run_watched(&mut command)?;
         let seconds = Some(start.elapsed().as_secs_f64());
-        Ok(Converted { info: self.info(&clip)?, clip, seconds })
+        Ok(Converted { info: self.info(&clip)?, clip, seconds, peak_mb })
     }
 
     /// As [`Tool::convert`], but takes a clip that is newer than the program and the motion. The name must stand for the options.
@@ -78,7 +82,7 @@ impl Tool {
         let changed = |path: &Path| path.metadata().and_then(|data| data.modified());
         let newer = |path: &Path| matches!((changed(&clip), changed(path)), (Ok(made), Ok(source)) if made > source);
         if newer(&self.program) && newer(motion) {
-            return Ok(Converted { info: self.info(&clip)?, clip, seconds: None });
+            return Ok(Converted { info: self.info(&clip)?, clip, seconds: None, peak_mb: None });
         }
         self.convert(motion, name, options)
     }
@@ -101,6 +105,28 @@ impl Tool {
         })
     }
 
+    /// Runs a command to its end and returns the most memory that it had, in MB, where the system says so.
+    fn run_watched(&self, command: &mut Command) -> Result<Option<f64>> {
+        let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+        let child = child.with_context(|| format!("cannot start {}", self.program.display()))?;
+        let status = format!("/proc/{}/status", child.id());
+        let watch = std::thread::spawn(move || {
+            let mut peak = None;
+            // The file is empty of this line once the program has ended.
+            while let Some(now) = std::fs::read_to_string(&status).ok().and_then(|text| peak_of(&text)) {
+                peak = Some(now);
+                std::thread::sleep(EVERY);
+            }
+            peak
+        });
+        let output = child.wait_with_output()?;
+        let peak = watch.join().ok().flatten();
+        if !output.status.success() {
+            bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        Ok(peak)
+    }
+
     fn run(&self, command: &mut Command) -> Result<Vec<u8>> {
         let output = command.stdin(Stdio::null()).output();
         let output = output.with_context(|| format!("cannot start {}", self.program.display()))?;
@@ -109,6 +135,15 @@ impl Tool {
         }
         Ok(output.stdout)
     }
+}
+
+/// How often memory is looked at.
+const EVERY: std::time::Duration = std::time::Duration::from_millis(20);
+
+/// The peak in Linux's status of a program, in MB.
+fn peak_of(status: &str) -> Option<f64> {
+    let kib = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().strip_suffix("kB")?.trim();
+    Some(kib.parse::<f64>().ok()? * 1024e-6)
 }
 
 /// The options of a conversion: the bound, and the unit where it is known.
@@ -132,6 +167,12 @@ fn unit(cm_per_unit: Option<f64>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_peak_is_read_in_megabytes() {
+        assert_eq!(peak_of("VmPeak:\t  9 kB\nVmHWM:\t  125000 kB\n"), Some(128.0));
+        assert_eq!(peak_of("State:\tZ (zombie)\n"), None);
+    }
 
     #[test]
     fn names_with_points_are_apart() {
