@@ -132,7 +132,8 @@ fn the_cartoon_fills_its_shapes_and_moves_them_by_the_same_names() {
     };
     let (eyes, mouth) = (10..32, 32..HEIGHT);
     let neutral = drawn_of(CARTOON, &[]);
-    assert!(lit(&neutral, eyes.clone()) > 250 && lit(&neutral, mouth.clone()) > 200, "shapes are filled");
+    // Outlines alone would have less than half of that.
+    assert!(lit(&neutral, eyes.clone()) > 200 && lit(&neutral, mouth.clone()) > 200, "shapes are filled");
     // Two tones and the tongue between.
     let closed = drawn_of(CARTOON, &[("blink", "1")]);
     assert!(lit(&closed, eyes.clone()) * 3 < lit(&neutral, eyes.clone()), "closed eyes are dark");
@@ -144,7 +145,7 @@ fn the_cartoon_fills_its_shapes_and_moves_them_by_the_same_names() {
     };
     assert!(half(&wink, true) * 2 < half(&wink, false), "the face's left eye is on the right");
     let open = drawn_of(CARTOON, &[("open_mouth", "0.6")]);
-    let dark = |picture: &[[u8; WIDTH]; HEIGHT]| (WIDTH / 2 - 8..WIDTH / 2 + 8).filter(|&x| picture[50][x] == 0).count();
+    let dark = |picture: &[[u8; WIDTH]; HEIGHT]| (WIDTH / 2 - 8..WIDTH / 2 + 8).filter(|&x| picture[46][x] == 0).count();
     assert!(dark(&open) >= 12 && lit(&open, mouth.clone()) > 100, "an open mouth is dark inside");
     for name in ["joy", "sadness", "surprise", "angry", "pucker", "tongue_out", "look_left", "viseme_aa"] {
         assert!(drawn_of(CARTOON, &[(name, "1")]) != neutral, "{name}");

@@ -77,7 +77,7 @@ impl Figure {
             let from = std::mem::replace(&mut poses.places[joint][frame], place);
             if let Some(slot) = poses.turns[joint].get_mut(frame) {
                 let before = std::mem::replace(slot, turn);
-                changes.push((product(&turn, &transposed(&before)), from, place));
+                changes.push((orthonormal(&product(&turn, &transposed(&before))), from, place));
             }
         }
         for &below in &self.below[joint] {
@@ -149,6 +149,12 @@ impl Figure {
     }
 }
 
+/// The rotation that a matrix is up to rounding: without it, rounding doubles from joint to joint along a chain.
+fn orthonormal(m: &Matrix) -> Matrix {
+    let square = product(m, &product(&transposed(m), m));
+    std::array::from_fn(|row| std::array::from_fn(|column| 1.5 * m[row][column] - 0.5 * square[row][column]))
+}
+
 fn transposed(m: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| m[column][row]))
 }
@@ -209,6 +215,31 @@ mod tests {
     use super::*;
     use crate::fk::{from_exponential, positions};
     use crate::motion::Joint;
+
+    #[test]
+    fn rounding_does_not_grow_along_a_chain() {
+        let joint = |index: usize| Joint {
+            name: index.to_string(),
+            parent: index.checked_sub(1),
+            offset: [1.0, 2.0, 3.0],
+            kinds: vec![Kind::Zrotation, Kind::Xrotation],
+            end_site: false,
+            helper: false,
+        };
+        let rig = Rig { joints: (0..100).map(joint).collect(), cm_per_unit: 1.0, ..Rig::default() };
+        let mut values: Vec<Vec<f64>> = (0..200).map(|channel| vec![f64::from(channel), 3.0]).collect();
+        let figure = Figure::new(rig, 2);
+        let mut poses = figure.poses(|channel, frame| values[channel][frame]);
+        for update in 0..400 {
+            let channel = update * 7 % 200;
+            values[channel].iter_mut().for_each(|value| *value += 0.3);
+            figure.update(channel / 2, |channel, frame| values[channel][frame], &mut poses);
+        }
+        let expected = positions(&figure.rig, &values, 1);
+        for (places, expected) in poses.places.iter().zip(expected) {
+            assert!((0..3).all(|axis| (places[1][axis] - expected[axis]).abs() < 1e-9));
+        }
+    }
 
     #[test]
     fn joints_follow_the_changes_of_those_above_them() {
