@@ -70,7 +70,7 @@ pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
 }
 
 /// Joints that turn and carry nothing that stands away from them.
-fn unseen(rig: &Rig) -> Vec<usize> {
+pub fn unseen(rig: &Rig) -> Vec<usize> {
     let mut carries = vec![false; rig.joints.len()];
     for (index, joint) in rig.joints.iter().enumerate().rev() {
         let stands = joint.offset != [0.0; 3] || joint.kinds.iter().any(|kind| kind.is_position());

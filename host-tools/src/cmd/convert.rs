@@ -13,13 +13,13 @@ use crate::errors;
 use crate::fit::bounds::Bounds;
 use crate::fit::chain::Constraint;
 use crate::fit::descent::{Level, Plan};
-use crate::fit::parametrize::{Coding, Rotations, quaternions};
+use crate::fit::parametrize::{Coding, Rotations, has_choice, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import;
 use crate::motion::Motion;
 use crate::number::Number;
 use crate::output::{self, Wanted, detail, note, outln, refuse_foreign};
-use crate::verify::{compare, verify};
+use crate::verify::{compare, unseen, verify};
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
 use pantin::Up;
@@ -203,8 +203,17 @@ impl Arguments {
         ];
         let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
         let given = of_joints.into_iter().filter(|(_, given)| *given && no_joints).map(|(name, _)| (name, "joints"));
-        let of_scalars = (self.max_scalar_error.is_some() && no_scalars).then_some(("--max-scalar-error", "scalars"));
-        given.chain(of_scalars).map(|(name, what)| format!("{name} has no effect: the motion has no {what}")).collect()
+        let others = [
+            ("--max-scalar-error", self.max_scalar_error.is_some() && no_scalars, "scalars"),
+            (
+                "--max-rotation-error",
+                self.max_rotation_error.is_some() && !no_joints && unseen(&motion.rig).is_empty(),
+                "joint that turns and carries nothing away from it",
+            ),
+            ("--rotations", self.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
+        ];
+        let others = others.into_iter().filter(|(_, given, _)| *given).map(|(name, _, what)| (name, what));
+        given.chain(others).map(|(name, what)| format!("{name} has no effect: the motion has no {what}")).collect()
     }
 
     /// The same for one of several motions.

@@ -41,14 +41,14 @@ pub fn write(motion: &impl Frames, of: Columns, out: &mut impl Write) -> Result<
     let of_joint = |&joint: &usize| {
         columns(&rig.joints[joint], of).into_iter().map({
             let first = firsts[joint];
-            move |(_, at)| at.map(|at| first + at)
+            move |(kind, at)| (at.map(|at| first + at), if kind.is_position() { LENGTH_DECIMALS } else { ANGLE_DECIMALS })
         })
     };
-    let channels: Vec<Option<usize>> = order.iter().flat_map(of_joint).collect();
+    let channels: Vec<(Option<usize>, usize)> = order.iter().flat_map(of_joint).collect();
     motion.each(&mut |pose| {
-        for (index, channel) in channels.iter().enumerate() {
+        for (index, &(channel, decimals)) in channels.iter().enumerate() {
             text.push_str(if index == 0 { "" } else { " " });
-            number(&mut text, channel.map_or(0.0, |channel| pose[channel]))?;
+            number(&mut text, channel.map_or(0.0, |channel| pose[channel]), decimals)?;
         }
         text.push('\n');
         out.write_all(text.as_bytes())?;
@@ -117,7 +117,7 @@ fn open(rig: &Rig, of: Columns, index: usize, depth: usize, text: &mut String) -
     write!(text, "{indent}{{\n{indent}\tOFFSET")?;
     for x in joint.offset {
         text.push(' ');
-        number(text, x)?;
+        number(text, x, LENGTH_DECIMALS)?;
     }
     text.push('\n');
     if !joint.end_site {
@@ -150,9 +150,14 @@ fn name(rig: &Rig, index: usize) -> String {
     if plain.trim().is_empty() { format!("joint{index}") } else { plain }
 }
 
-fn number(text: &mut String, value: f64) -> Result<()> {
+/// Decimals of offsets and positions: figures may be 0.1 units high, and bounds a ten-thousandth of that.
+const LENGTH_DECIMALS: usize = 9;
+/// Decimals of angles: at the end of 100 m of bones what rounding takes is less than 1e-5 cm.
+const ANGLE_DECIMALS: usize = 7;
+
+fn number(text: &mut String, value: f64, decimals: usize) -> Result<()> {
     let start = text.len();
-    write!(text, "{value:.7}")?;
+    write!(text, "{value:.decimals$}")?;
     let kept = text[start..].trim_end_matches('0').trim_end_matches('.').len();
     text.truncate(start + kept);
     if &text[start..] == "-0" {
@@ -194,20 +199,20 @@ mod tests {
         let expected = "HIERARCHY
 ROOT a _b_
 {
-\tOFFSET 0 1.5 0
+\tOFFSET 0 1.5 -0.00000001
 \tCHANNELS 4 Xposition Zrotation Xrotation Yrotation
 \tJOINT left
 \t{
-\t\tOFFSET 0 1.5 0
+\t\tOFFSET 0 1.5 -0.00000001
 \t\tCHANNELS 3 Xrotation Zrotation Yrotation
 \t\tEnd Site
 \t\t{
-\t\t\tOFFSET 0 1.5 0
+\t\t\tOFFSET 0 1.5 -0.00000001
 \t\t}
 \t}
 \tJOINT right
 \t{
-\t\tOFFSET 0 1.5 0
+\t\tOFFSET 0 1.5 -0.00000001
 \t\tCHANNELS 3 Yrotation Zrotation Xrotation
 \t}
 }

@@ -5,8 +5,10 @@ use anyhow::Result;
 use std::collections::HashSet;
 use std::io::Write;
 
-/// Significant digits of a channel's greatest value: what rounding takes is at most 5e-8 of it.
+/// Significant digits of a channel's greatest value, at least: what rounding takes is at most 5e-8 of it.
 const DIGITS: i32 = 7;
+/// Decimals at least, so that rounding takes at most 5e-8 of the unit however great the values are: a clip's bound is not of them.
+const DECIMALS: i32 = 7;
 
 /// Writes `motion` as CSV: `time` in seconds, joints' channels as `hip.Xrotation` in their units, scalars by their names. A name that
 /// stands there already gets a number behind it, so that the table can be read again. A motion with events gets a last column of their names, with `|`
@@ -62,7 +64,7 @@ fn names(rig: &Rig) -> Vec<String> {
 
 /// Decimals that leave values up to `peak` their digits.
 fn decimals(peak: f64) -> usize {
-    if peak == 0.0 { 0 } else { (DIGITS - 1 - peak.log10().floor() as i32).max(0) as usize }
+    if peak == 0.0 { 0 } else { DECIMALS.max(DIGITS - 1 - peak.log10().floor() as i32) as usize }
 }
 
 fn number(value: f64, decimals: usize) -> String {
@@ -100,6 +102,15 @@ mod tests {
         write(&Motion { events: vec![event("step"), event("clap")], ..motion }, &mut out).unwrap();
         let expected = "time,hip.Xrotation,\"jaw, open\",still,events\n0,-370.125,0.3333333,0,\n0.033333333,12,0,0,step|clap\n";
         assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+
+    /// Places far from the origin, of which a bound may be a millionth.
+    #[test]
+    fn great_values_keep_small_parts() {
+        for value in [40_453.148_7, -9_208.5, 1_234_567.890_123_4, 1e-3 / 3.0] {
+            let text = number(value, decimals(value.abs()));
+            assert!((text.parse::<f64>().unwrap() - value).abs() <= 6e-8, "{value}: {text}");
+        }
     }
 
     #[test]

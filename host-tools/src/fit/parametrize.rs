@@ -150,6 +150,11 @@ struct Turning {
     slots: Vec<usize>,
 }
 
+/// Whether a joint has three rotations, which can be coded in several ways.
+pub fn has_choice(rig: &Rig) -> bool {
+    !turning(rig).is_empty()
+}
+
 fn turning(rig: &Rig) -> Vec<Turning> {
     let first = rig.first_channels();
     let of = |(joint, entry): (usize, &Joint)| {

@@ -315,6 +315,12 @@ fn options_that_do_not_apply_are_refused() {
     }
     let said = err(&folder.done(&["convert", "run.keys", "-o", "run.ptn", "--max-scalar-error", "1", "--effort", "fast"]));
     assert!(said.contains("--max-scalar-error has no effect: the motion has no scalars"), "{said}");
+    // No joint of this figure has three angles, and none turns without carrying another away.
+    let arguments = ["convert", "run.keys", "-o", "run.ptn", "--effort", "fast"];
+    for option in [&["--rotations", "quaternion"][..], &["--rotations", "exponential"], &["--max-rotation-error", "0.01"]] {
+        let said = err(&folder.done(&[&arguments, option].concat()));
+        assert!(said.contains(&format!("{} has no effect: the motion has no joint", option[0])), "{said}");
+    }
     // A rig that nothing needs.
     folder.done(&["convert", "run.keys", "-o", "apart.ptn", "--rig-out", "run.rig", "--effort", "fast"]);
     for arguments in [&["info", "a.ptn"][..], &["expand", "a.ptn", "-o", "a.bvh"], &["render", "a.ptn", "-o", "a.gif"]] {
