@@ -269,17 +269,20 @@ fn pairs(face: &Blueprint, unknowns: &[Unknown], ways: &[f64]) -> Pairs {
     pairs
 }
 
-/// Minimizes |gap - columns * change|^2 within the bounds, one unknown after the other.
+/// Minimizes |gap - columns * change|^2 within the bounds, one unknown after the other. The products of columns are taken once, for sweeps are
+/// many and columns long.
 fn descend(columns: &[Vec<f64>], gap: &[f64], unknowns: &[Unknown], ways: &mut [f64]) {
-    let mut gap = gap.to_vec();
-    let squares: Vec<f64> = columns.iter().map(|column| column.iter().map(|x| x * x).sum()).collect();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let products: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| product(a, b)).collect()).collect();
+    let mut slopes: Vec<f64> = columns.iter().map(|column| product(column, gap)).collect();
     for _ in 0..SWEEPS {
-        for ((column, &square), (unknown, way)) in columns.iter().zip(&squares).zip(unknowns.iter().zip(ways.iter_mut())) {
-            let slope: f64 = column.iter().zip(&gap).map(|(a, b)| a * b).sum::<f64>() - RIDGE * *way;
-            let next = (*way + slope / (square + RIDGE)).clamp(unknown.least, 1.0);
-            let change = next - *way;
-            *way = next;
-            column.iter().zip(&mut gap).for_each(|(a, b)| *b -= a * change);
+        for (index, unknown) in unknowns.iter().enumerate() {
+            let square = products[index][index];
+            let slope = slopes[index] - RIDGE * ways[index];
+            let next = (ways[index] + slope / (square + RIDGE)).clamp(unknown.least, 1.0);
+            let change = next - ways[index];
+            ways[index] = next;
+            slopes.iter_mut().zip(&products[index]).for_each(|(slope, product)| *slope -= product * change);
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::face::{Face, exact, fit, outside, points, pose};
 use crate::import;
 use crate::input;
 use crate::motion::Motion;
-use crate::output::{Wanted, check, is_json, outln, refuse_foreign, report, write_whole};
+use crate::output::{Wanted, check, is_json, outln, progress, refuse_foreign, report, write_whole};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{ChannelState, Player};
 use pantin_face::{Binding, Morph, VERTICES, Weights};
@@ -96,7 +96,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         place(),
         poses.rows.len()
     );
-    let fits = poses.rows.par_iter().map(|rows| fit::fit_rows(&face.blueprint, rows, limits)).collect::<Result<Vec<_>>>();
+    let bar = progress(poses.rows.len() as u64, "fitting {wide_bar} {percent} % {eta} left")?;
+    let fit = |rows: &Vec<_>| fit::fit_rows(&face.blueprint, rows, limits).inspect(|_| bar.inc(1));
+    let fits = poses.rows.par_iter().map(fit).collect::<Result<Vec<_>>>();
+    bar.finish_and_clear();
     let fits = fits.with_context(place)?;
     let Some(output) = &arguments.output else { return print(&face, &fits[0]) };
     // Sides that move alike have one weight.
