@@ -50,10 +50,10 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", hide_default_value = true)]
     dots: DotsOrAuto,
     /// The terminal's colours [default: from the environment]
-    #[arg(long)]
+    #[arg(long, conflicts_with = "plain")]
     colours: Option<Colours>,
     /// The picture's colours: a name, or paper and ink [see below]
-    #[arg(long, default_value = "phone")]
+    #[arg(long, default_value = "phone", conflicts_with = "plain")]
     palette: Palette,
     /// Side to see it from: front, side, left, right, back, quarter, or degrees
     /// [default: quarter; a face: front]
@@ -100,6 +100,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     rig_is_needed(arguments.rig.as_deref(), &clips)?;
     let joints = clips.iter().any(|clip| clip.rig().joint_count() > 0);
     ensure!(joints || arguments.up.is_none(), "--up has no effect: no clip has joints");
+    ensure!(joints || !arguments.fixed, "--fixed has no effect: no clip has joints");
+    let is_seen = |clip: &Clip| is_face(clip).map(|face| face || clip.rig().joint_count() > 0);
+    let seen = clips.iter().map(is_seen).collect::<Result<Vec<_>>>()?;
+    ensure!(seen.contains(&true) || arguments.view.is_none(), "--view has no effect: no clip has joints or a face");
     // Pictures are all that is printed there.
     take_stdout();
     let shown = |(clip, input): (&Clip, &PathBuf)| json!({"file": input.display().to_string(), "frames": clip.frames(), "seconds": clip.duration_ns() as f64 * 1e-9});

@@ -140,6 +140,17 @@ impl Blueprint {
         }
     }
 
+    /// Sets how units move, each once: see [`Blueprint::choose`].
+    pub fn choose_all(&mut self, choices: &[String]) -> Result<()> {
+        let mut seen = HashSet::new();
+        for choice in choices {
+            let unit = choice.split('=').next().unwrap_or_default();
+            ensure!(seen.insert(unit), "{unit} comes twice");
+            self.choose(choice)?;
+        }
+        Ok(())
+    }
+
     /// Sets how a unit moves, as `--interpolation` says it: `smile=linear`, `smile=spherical:40`. A unit with sides of its own has both set. Fails for units that do
     /// not exist, for unknown kinds, and where a spherical unit has no centre or an angle beyond [`Arc::LEAST`] to [`Arc::MOST`].
     pub fn choose(&mut self, choice: &str) -> Result<()> {

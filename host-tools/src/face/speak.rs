@@ -181,6 +181,17 @@ pub fn of_text(text: &str) -> Result<Vec<Spoken>> {
     track.finish("the text has no letters to speak")
 }
 
+/// Letters and digits of a text that [`of_text`] leaves out, each once, in their order.
+pub fn unspoken(text: &str) -> String {
+    let mut seen = String::new();
+    for letter in text.chars().filter(|letter| letter.is_alphanumeric() && !letter.is_ascii_alphabetic()) {
+        if !seen.contains(letter) {
+            seen.push(letter);
+        }
+    }
+    seen
+}
+
 /// A word without an e at its end that is not spoken.
 fn silent_end(word: &str) -> &str {
     let vowels = word.chars().filter(|letter| "aeiouy".contains(*letter)).count();

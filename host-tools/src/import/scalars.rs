@@ -8,7 +8,7 @@ use pantin::codec::layout::MAX_CHANNELS;
 /// Rows are put no farther on a grid: [`check_size`] refuses it long before.
 const FARTHEST: usize = 1 << 30;
 /// No full scale is smaller: of channels that never leave 0, nor of such as a clip's raw values could not tell from it.
-const LEAST_SCALE: f64 = 1e-6;
+pub const LEAST_SCALE: f64 = 1e-6;
 
 /// A motion of `names`, each with its full scale by the rule of its format and its value at every frame. A channel that goes beyond its
 /// full scale gets a larger one: nothing is clipped.

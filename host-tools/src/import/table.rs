@@ -4,8 +4,9 @@
 //! name at all). Without a time, `--fps` is needed; with a time, `--fps` takes the values on straight lines at that rate, and without it the rows must
 //! be even but for missing ones. Full scale is a channel's own greatest value, whatever its sign.
 
-use super::scalars::{self, Grid};
+use super::scalars::{self, Grid, LEAST_SCALE};
 use super::sheet::{Row, Sheet, delimiter};
+use super::text::shown;
 use super::{Options, Source};
 use crate::events;
 use crate::motion::Event;
@@ -19,6 +20,8 @@ const USUAL: [f64; 16] = [23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60
 
 /// A usual rate is an assumption where it is farther from the measured one, as a part of it.
 const ASSUMED: f64 = 5e-3;
+/// No usual rate is farther from the measured one than this part of it: two whole seconds are one frame a second.
+const FARTHEST: f64 = 0.5;
 /// Rows at a higher rate are refused: that is a unit of time other than seconds.
 const MOST_FPS: f64 = 1000.0;
 
@@ -43,7 +46,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let names: Vec<String> = channels.iter().map(|&column| sheet.header[column].clone()).collect();
     scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
     let rows = Rows::read(&mut sheet, &clock, &channels)?;
-    let (values, fps, warnings) = match (clock.time, options.fps) {
+    let (values, fps, mut warnings) = match (clock.time, options.fps) {
         (Some(_), Some(fps)) => (rows.at_rate(&sheet, fps)?, fps, Vec::new()),
         (Some(_), None) => rows.timed(&sheet)?,
         (None, Some(fps)) => {
@@ -52,6 +55,13 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         }
         (None, None) => return Err(sheet.error(1, "no column of times (`time`, in seconds); --fps gives the frames a second")),
     };
+    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    for (name, largest) in names.iter().zip(&values).map(|(name, values)| (name, largest(values))) {
+        if largest > 0.0 && largest < LEAST_SCALE {
+            let name = shown(Some(name.as_bytes()));
+            warnings.push(format!("column {name} stays within {largest:e}; the least full scale is {LEAST_SCALE:e}, and errors are parts of it: another unit keeps it"));
+        }
+    }
     let scales = vec![0.0; values.len()];
     let mut motion = scalars::motion(names, &scales, values, 1.0 / fps);
     let per_second = if clock.time.is_some() { fps } else { 1.0 };
@@ -233,7 +243,7 @@ fn usual_rate(grid: &Grid, times: &[f64]) -> (f64, bool) {
     let rounding = last_digit(times);
     let explains = |rate: &f64| {
         let place = |(&time, &frame): (&f64, &usize)| (time - times[0] - frame as f64 / rate).abs();
-        times.iter().zip(&grid.frames).all(|row| place(row) <= rounding)
+        far(rate) < FARTHEST && times.iter().zip(&grid.frames).all(|row| place(row) <= rounding)
     };
     let rate = USUAL.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).filter(explains).unwrap_or(measured);
     (rate, far(&rate) > ASSUMED)

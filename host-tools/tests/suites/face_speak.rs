@@ -138,3 +138,20 @@ fn damaged_recordings_are_refused() {
     speak::of_wav(&wav(1, 400, &[1; 400]), "test").unwrap();
     speak::of_wav(&wav(1, u32::MAX, &[1; 401]), "test").unwrap();
 }
+
+#[test]
+fn what_the_rules_cannot_speak_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let say = |text: &str| {
+        let out = Command::new(env!("CARGO_BIN_EXE_pantin"))
+            .args(["face", "speak", text, "--rules", "-o"])
+            .arg(folder.path().join("talk.keys"))
+            .output();
+        let out = out.unwrap();
+        assert!(out.status.success());
+        String::from_utf8_lossy(&out.stderr).into_owned()
+    };
+    let said = say("I have 212 dogs, cafés");
+    assert!(said.contains("left out") && said.trim_end().lines().any(|line| line.ends_with(": 21é")), "{said}");
+    assert!(!say("I have two dogs").contains("left out"));
+}

@@ -321,6 +321,21 @@ fn options_that_do_not_apply_are_refused() {
         let said = err(&folder.done(&[&arguments, option].concat()));
         assert!(said.contains(&format!("{} has no effect: the motion has no joint", option[0])), "{said}");
     }
+    // Options of pictures, of figures and of colours.
+    for option in [&["--size", "200x200"][..], &["--scale", "3"]] {
+        let said = folder.refused(&[&["face", "export", "-o", "joy.obj"], option].concat());
+        assert!(said.contains(option[0]) && said.contains(".png"), "{said}");
+    }
+    for option in [&["--fixed"][..], &["--view", "side"]] {
+        let said = folder.refused(&[&["play", "light.ptn", "--plain", "--once"], option].concat());
+        assert!(said.contains(&format!("{} has no effect", option[0])), "{said}");
+    }
+    for option in ["--palette=amber", "--colours=none"] {
+        let output = folder.run(&["play", "a.ptn", "--plain", "--once", option]);
+        assert!(output.status.code() == Some(2) && err(&output).contains("--plain"), "{option}: {}", err(&output));
+    }
+    let angles = ["face", "compare", "--angle", "smile=60", "--angle", "smile=61"];
+    assert!(folder.refused(&angles).contains("smile comes twice"));
     // A rig that nothing needs.
     folder.done(&["convert", "run.keys", "-o", "apart.ptn", "--rig-out", "run.rig", "--effort", "fast"]);
     for arguments in [&["info", "a.ptn"][..], &["expand", "a.ptn", "-o", "a.bvh"], &["render", "a.ptn", "-o", "a.gif"]] {

@@ -36,6 +36,24 @@ fn times_of_few_digits_give_the_rate_and_missing_rows_are_filled() {
 }
 
 #[test]
+fn two_whole_seconds_are_one_frame_a_second() {
+    for times in ["0,0\n1,1\n", "5.000,0\n6.000,1\n"] {
+        let (motion, warnings) = read_with("second", format!("time,lamp\n{times}"), None).unwrap();
+        assert_eq!((motion.frames, motion.frame_time, warnings.len()), (2, 1.0, 0));
+    }
+}
+
+#[test]
+fn a_channel_below_the_least_full_scale_is_named() {
+    let table = |value: &str| format!("time,tiny,lamp\n0,0,1\n0.1,{value},0\n");
+    let (motion, warnings) = read_with("tiny", table("-2e-9"), None).unwrap();
+    assert!(warnings.len() == 1 && warnings[0].contains("tiny") && warnings[0].contains("2e-9"), "{warnings:?}");
+    assert_eq!(motion.rig.scalars[0].full_scale, 1e-6);
+    let (motion, warnings) = read_with("small", table("2e-6"), None).unwrap();
+    assert_eq!((motion.rig.scalars[0].full_scale, warnings.len()), (2e-6, 0));
+}
+
+#[test]
 fn a_given_rate_resamples_times_and_counts_frames() {
     let (motion, _) = read_with("rate", "t,lamp\n0,0\n0.5,5\n0.6,5\n1,9\n", Some(10.0)).unwrap();
     let expected = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 5.0, 6.0, 7.0, 8.0, 9.0];

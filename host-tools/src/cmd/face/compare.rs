@@ -31,10 +31,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         check(&[], &[output])?;
     }
     let mut face = Face::new()?;
-    for angle in &arguments.angle {
+    let choice = |angle: &String| {
         let (unit, degrees) = angle.split_once('=').with_context(|| format!("{angle}: expected unit=degrees"))?;
-        face.blueprint.choose(&format!("{unit}=spherical:{degrees}"))?;
-    }
+        Ok(format!("{unit}=spherical:{degrees}"))
+    };
+    face.blueprint.choose_all(&arguments.angle.iter().map(choice).collect::<Result<Vec<_>>>()?)?;
     let jaws = METHODS.iter().map(|&(method, name)| Ok((name, jaw(&face, method)?))).collect::<Result<Vec<_>>>()?;
     let rows = TABLES.iter().flat_map(|table| table.actions.iter().map(move |action| (table, action)));
     let rows = rows.map(|(table, action)| Ok((table, action, pictures(&face, action)?.cells))).collect::<Result<Vec<_>>>()?;

@@ -24,11 +24,12 @@ pub struct Arguments {
     #[arg(long, default_value = "", value_name = "UNIT=WEIGHT,...")]
     pose: String,
     /// Columns and rows of a picture
-    #[arg(long, value_name = "COLUMNSxROWS", default_value = "128x64")]
-    size: Size,
+    /// [default: 128x64]
+    #[arg(long, value_name = "COLUMNSxROWS")]
+    size: Option<Size>,
     /// Magnify each pixel of a picture N times
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=64))]
-    scale: u16,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
+    scale: Option<u16>,
 }
 
 /// Runs the command.
@@ -36,7 +37,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     check(&[], &[&arguments.output])?;
     let face = Face::new()?;
     let pairs = pose::parse(&face.blueprint, &arguments.pose)?;
-    let bytes = match arguments.output.extension().and_then(|extension| extension.to_str()) {
+    let extension = arguments.output.extension().and_then(|extension| extension.to_str());
+    let of_pictures = arguments.size.as_ref().map(|_| "--size").or(arguments.scale.map(|_| "--scale"));
+    if let (Some(option), Some("glb" | "obj")) = (of_pictures, extension) {
+        bail!("{}: {option} is for pictures (.png)", arguments.output.display());
+    }
+    let bytes = match extension {
         Some("glb") => export::glb(&face, &pairs)?,
         Some("obj") => export::obj(&face, &pairs)?.into_bytes(),
         Some("png") => png(arguments, &face, &pairs)?,
@@ -47,12 +53,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// The face as a display of this size shows it.
 fn png(arguments: &Arguments, face: &Face, pairs: &pose::Pairs) -> Result<Vec<u8>> {
-    let [width, height] = arguments.size.0;
+    let [width, height] = arguments.size.as_ref().map_or([128, 64], |size| size.0);
     ensure!(width.max(height) <= MOST_PIXELS, "--size {width}x{height}: displays of pixels have at most {MOST_PIXELS} a side");
     let canvas = pantin_figure::Canvas { width: width as u16, height: height as u16 };
     let greys = picture(&face.model()?, &pose::weights(pairs), canvas, FaceView::default());
     let mut out = Vec::new();
     let image = Image::of(width, greys.into_iter().map(|grey| [grey; 3]).collect());
-    image.enlarged(usize::from(arguments.scale)).write_png(&mut out)?;
+    image.enlarged(usize::from(arguments.scale.unwrap_or(1))).write_png(&mut out)?;
     Ok(out)
 }

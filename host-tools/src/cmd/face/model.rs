@@ -66,9 +66,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             None => Face::new()?.blueprint,
         },
     };
-    for choice in &arguments.interpolation {
-        blueprint.choose(choice)?;
-    }
+    blueprint.choose_all(&arguments.interpolation)?;
     check_read(&files, &outputs)?;
     let bytes = compact::encode(&blueprint)?;
     let moved: usize = blueprint.shapes.iter().map(|shape| shape.deltas.len()).sum();

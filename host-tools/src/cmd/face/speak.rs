@@ -48,6 +48,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
                 Some(lines) => speak::of_phonemes(lines)?,
                 None => speak::of_text(text)?,
             };
+            let unspoken = speak::unspoken(text);
+            if phonemes.is_none() && !unspoken.is_empty() {
+                note!("warning: left out, as the rules of spelling are for the letters a to z: {unspoken}");
+            }
             note!(
                 "{} visemes, {}",
                 spoken.len(),

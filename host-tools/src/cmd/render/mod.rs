@@ -174,6 +174,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     } else {
         let joints = clip.rig().joint_count() > 0;
         ensure!(joints || arguments.up.is_none(), "{}: --up does not apply to a clip without joints", arguments.input.display());
+        ensure!(joints || !arguments.fixed, "{}: --fixed does not apply to a clip without joints", arguments.input.display());
         let look = arguments.look(kind)?;
         let mut memory = PlayerBuffers::of(&clip);
         let sides = arguments.sides(face);
@@ -210,7 +211,7 @@ impl Arguments {
             true => cartoon::build(&face.head, &face.blueprint, cartoon::TABLE)?,
             false => face.blueprint,
         };
-        self.interpolation.iter().try_for_each(|choice| blueprint.choose(choice))?;
+        blueprint.choose_all(&self.interpolation)?;
         compact::encode(&blueprint)
     }
 
