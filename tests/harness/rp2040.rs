@@ -37,6 +37,7 @@ pub struct Request {
     harm: Option<&'static str>,
     plugs: Option<Vec<(f64, &'static str)>>,
     noise: bool,
+    usb: bool,
     cut: Option<u64>,
     seconds: f64,
     save: Option<PathBuf>,
@@ -115,6 +116,8 @@ pub struct Outcome {
     pub answers: Vec<Answered>,
     /// Sectors erased and pages written.
     pub changes: u64,
+    /// The bytes that came over the USB port.
+    pub usb: Vec<u8>,
     /// The SPI bus of the ST7789 at the end.
     pub spi: Spi,
     /// The pins with a pull-up at the end.
@@ -145,6 +148,7 @@ impl Request {
             harm: None,
             plugs: None,
             noise: false,
+            usb: false,
             cut: None,
             seconds: 60.0,
             save: None,
@@ -222,6 +226,12 @@ impl Request {
     /// Sends a byte with a framing error before each byte of a message.
     pub fn noise(mut self) -> Request {
         self.noise = true;
+        self
+    }
+
+    /// Sends keys and messages over the USB port, and takes answers from it.
+    pub fn usb(mut self) -> Request {
+        self.usb = true;
         self
     }
 

@@ -7,6 +7,7 @@
 //   pictures  where it plays at its own pace: as many are waited for
 //   messages  or such that go over the line while it plays, arrays of bytes at the line's speed: the first after a picture, each other one when
 //             the one before was answered; after the last answer it waits for this number of pictures
+//   usb       whether keys and messages go over the USB port once it is open, and answers come over it. In step, playing begins over the pins
 //   servos    how many writes of pulse widths are waited for
 //   plugs     when what happens to the SSD1306's wires, in seconds: [[0.1, "out"], ...], as ssd1306.mjs says; or null
 //   noise     whether a byte with a framing error comes before each byte of a message
@@ -20,6 +21,7 @@ import { closeSync, openSync, readFileSync, writeFileSync, writeSync } from 'nod
 import { Chip } from './chip.mjs';
 import { Ssd1306 } from './ssd1306.mjs';
 import { St7789 } from './st7789.mjs';
+import { Pc } from './usb.mjs';
 
 const [IN_STEP, NEXT, SHOWN] = [0x16, 0x0a, 0x46];
 // Marked stretches of a frame: decode, place, draw, show.
@@ -57,17 +59,18 @@ machine.onStretch = (count) => {
   bytes = display?.bytes ?? 0;
   if (out) writeSync(out, Buffer.from(display.picture().buffer));
   if (request.messages) {
-    if (frames.length === 1) say(request.messages[0]);
+    if (frames.length === 1 && !request.usb) say(request.messages[0]);
     if (answers.length === request.messages.length && frames.length === answers.at(-1).frames + request.pictures) machine.end('done');
   } else if (!request.keys && frames.length === request.pictures) machine.end('done');
 };
 
 // Sends bytes one after the other.
-const say = ([byte, ...rest]) => {
+const say = (message) => (pc ? pc.send(message) : sayByLine(message));
+const sayByLine = ([byte, ...rest]) => {
   const alarm = chip.clock.createAlarm(() => {
     if (request.noise) line.feedByte(FRAMING_ERROR | (byte ^ 0xff));
     line.feedByte(byte);
-    if (rest.length > 0) say(rest);
+    if (rest.length > 0) sayByLine(rest);
   });
   alarm.schedule(BYTE);
 };
@@ -87,15 +90,28 @@ const hear = (byte) => {
 // The line's other end: a frame's number, in four bytes, is answered with letters and the wish for another picture.
 const told = [];
 line.onByte = (byte) => {
-  if (request.messages) return hear(byte);
+  if (request.messages) return request.usb ? undefined : hear(byte);
   told.push(byte);
   if (told[0] !== SHOWN) throw new Error(`the firmware sent 0x${byte.toString(16)} in place of a frame's number`);
   if (told.length < 5) return;
   frames.at(-1).number = Buffer.from(told.splice(0)).readUInt32LE(1);
   const letters = request.keys[frames.length - 1];
   if (!letters) return machine.end('done');
-  [...letters, NEXT].forEach((letter) => line.feedByte(letter));
+  const reply = [...letters, NEXT];
+  if (!pc) return reply.forEach((letter) => line.feedByte(letter));
+  if (pc.isOpen) return pc.send(reply);
+  pc.onOpen = () => pc.send(reply);
 };
+
+// What the board sends over USB. In step it says there what it says over the pins.
+const usb = [];
+const pc =
+  request.usb &&
+  new Pc(chip, (byte) => {
+    usb.push(byte);
+    if (request.messages) hear(byte);
+  });
+if (request.usb && request.messages) pc.onOpen = () => say(request.messages[0]);
 if (request.keys) {
   // As soon as it listens.
   const set = line.writeUint32.bind(line);
@@ -128,4 +144,4 @@ const [bus] = chip.spi;
 const spi = { mode: (bus.control0 >> 6) & 3, hz: bus.clockFrequency };
 const pulledUp = chip.gpio.flatMap((pin, index) => (pin.pullupEnabled ? [index] : []));
 const slices = chip.pwm.channels.map(({ top, div }) => ({ top, div }));
-console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, printed: Buffer.from(machine.printed).toString() }));
+console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, usb, printed: Buffer.from(machine.printed).toString() }));

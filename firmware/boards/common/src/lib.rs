@@ -21,7 +21,7 @@ mod run_forever;
 mod serial;
 mod shared_board;
 mod ticks;
-#[cfg(feature = "update")]
+#[cfg(feature = "buffered")]
 pub mod uart_rx;
 
 pub use board_drivers::Mono128x64;

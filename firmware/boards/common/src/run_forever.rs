@@ -16,7 +16,7 @@ const ERROR_PERIOD_NS: u32 = 100_000_000;
 /// Plays the clips at their own frame rates, forever: first the clip that the flash `F` stores, if there is one, then those that the program
 /// was built with. If a clip cannot be played, the display shows why until a byte is received or a button pressed; then the program starts again.
 ///
-/// Without the feature `update`, `F` is not used.
+/// Without the feature `update`, `F` is not used. With the feature `link`, the figure takes the poses that arrive over the serial line instead.
 pub fn run_forever<F: Flash, B: Board>(clips: &[Entry], mut board: B) -> ! {
     let mut framebuffer = Framebuffer::new();
     #[cfg(feature = "update")]
@@ -38,7 +38,12 @@ pub fn run_forever<F: Flash, B: Board>(clips: &[Entry], mut board: B) -> ! {
 
 fn options<B: Board>(board: &mut B) -> Options {
     let mode = if board.poll() == Some(IN_STEP) { Mode::Sync } else { Mode::Play };
-    Options { mode, ..Options::parse([]) }
+    Options {
+        mode,
+        #[cfg(feature = "link")]
+        link: true,
+        ..Options::parse([])
+    }
 }
 
 #[inline(never)]

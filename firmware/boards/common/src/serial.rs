@@ -8,7 +8,7 @@ pub trait SerialPort {
     /// Sends bytes, and waits where the port's buffer is full. There is no handshake: bytes that cannot be sent are dropped.
     fn send(&mut self, bytes: &[u8]);
 
-    /// Returns the next byte received, or `None` without waiting. With the feature `update` the program takes its bytes from `uart_rx` instead.
+    /// Returns the next byte received, or `None` without waiting. With the feature `buffered` the program takes its bytes from `uart_rx` instead.
     fn poll(&mut self) -> Option<u8>;
 }
 

@@ -80,9 +80,9 @@ where
 
     fn poll(&mut self) -> Option<u8> {
         (self.feed)();
-        #[cfg(feature = "update")]
+        #[cfg(feature = "buffered")]
         return crate::uart_rx::pop();
-        #[cfg(not(feature = "update"))]
+        #[cfg(not(feature = "buffered"))]
         self.serial.poll()
     }
 

@@ -18,6 +18,11 @@ pub fn push(byte: u8) {
     });
 }
 
+/// Returns how many bytes the buffer has room for.
+pub fn free() -> usize {
+    critical_section::with(|section| RECEIVED.borrow(section).try_borrow().map_or(0, |bytes| CAPACITY - bytes.len()))
+}
+
 /// Takes the next byte, if there is one.
 pub fn pop() -> Option<u8> {
     critical_section::with(|section| RECEIVED.borrow(section).try_borrow_mut().ok()?.pop_front())

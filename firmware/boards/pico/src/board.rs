@@ -25,15 +25,20 @@ pub fn new(
 ) -> impl Board<Layout = Picture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<PanicPicture> {
     let mut resets = parts.RESETS;
     let mut watchdog = Watchdog::new(parts.WATCHDOG);
-    clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
+    let usb_clock = clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
     let pins = Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
     let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
     // Without an adapter, the pull-up keeps the line idle. A line that is low is one break after the other.
     let (tx, rx) = (pins.gpio0.into_function(), pins.gpio1.into_function().into_pull_type::<PullUp>());
     let serial = UartPeripheral::new(parts.UART0, (tx, rx), &mut resets);
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
-    #[cfg(feature = "update")]
+    #[cfg(any(feature = "update", feature = "link", feature = "usb"))]
     let serial = crate::uart_rx::listen(serial);
+    let serial = NbSerial(serial);
+    #[cfg(feature = "usb")]
+    let serial = crate::usb::start(serial, (parts.USBCTRL_REGS, parts.USBCTRL_DPRAM), usb_clock, &mut resets);
+    #[cfg(not(feature = "usb"))]
+    let _ = usb_clock;
     #[cfg(not(feature = "spi"))]
     let display = {
         let (sda, scl) = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
@@ -53,5 +58,10 @@ pub fn new(
     ]);
     watchdog.pause_on_debug(true);
     watchdog.start(WATCHDOG_MS.millis());
-    SharedBoard::new(display, NbSerial(serial), buttons, SysTick::<CPU_HZ>::new(), move || watchdog.feed())
+    let feed = move || {
+        watchdog.feed();
+        #[cfg(feature = "usb")]
+        crate::usb::resume();
+    };
+    SharedBoard::new(display, serial, buttons, SysTick::<CPU_HZ>::new(), feed)
 }

@@ -10,5 +10,7 @@ mod i2c;
 mod panic;
 #[cfg(feature = "spi")]
 mod spi_display;
-#[cfg(feature = "update")]
+#[cfg(any(feature = "update", feature = "link", feature = "usb"))]
 mod uart_rx;
+#[cfg(feature = "usb")]
+mod usb;
