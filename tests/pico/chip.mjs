@@ -31,6 +31,12 @@ export class Chip {
     chip.core.PC = chip.readUint32(vectors + 4) & ~1;
     // Buttons are pulled up.
     for (const pin of [10, 11, 12, 13, 14]) chip.gpio[pin].setInputValue(true);
+    // The emulator enters a handler with the vector's lowest bit in the program counter, which handlers with tables of jumps add to.
+    const enter = chip.core.exceptionEntry.bind(chip.core);
+    chip.core.exceptionEntry = (number) => {
+      enter(number);
+      chip.core.PC &= ~1;
+    };
     this.chip = chip;
     this.ended = null;
     this.rom = new Rom(chip, { cut, end: this });

@@ -6,6 +6,11 @@ import { USBCDC } from 'rp2040js';
 // wires, and these are not modelled.
 const [SYSINFO, CHIP_ID, VERSION_2] = [0x40000, 0, 0x20002927];
 
+// A request to the first interface: the PC is ready (DTR, RTS). The emulator sends it to the device, to which it does not belong.
+const READY = Uint8Array.of(0x21, 0x22, 3, 0, 0, 0, 0, 0);
+// Nanoseconds until a program opens the port, and until it uses it.
+const OPENS = 1e6;
+
 export class Pc {
   // `onByte` hears what the board sends.
   constructor(chip, onByte) {
@@ -18,13 +23,22 @@ export class Pc {
     // Packets that arrived.
     this.packets = 0;
     this.unsent = [];
-    // The size of the buffer that the board waits with, or null.
-    this.room = null;
+    // The sizes of the buffers that the board waits with, by their endpoint.
+    this.rooms = new Map();
     const port = new USBCDC(this.usb);
     this.port = port;
-    port.onDeviceConnected = () => {
+    // A program opens the port some time after the PC has chosen the configuration.
+    const opens = chip.clock.createAlarm(() => {
+      this.usb.sendSetupPacket(READY);
+      opened.schedule(OPENS);
+    });
+    const opened = chip.clock.createAlarm(() => {
       this.isOpen = true;
       this.onOpen();
+    });
+    port.cdcSetControlLineState = () => {
+      port.initialized = true;
+      opens.schedule(OPENS);
     };
     port.onSerialData = (bytes) => {
       this.packets += 1;
@@ -32,8 +46,7 @@ export class Pc {
     };
     // The emulator answers at once, with an empty packet if there is no byte; a PC sends none of these.
     this.usb.onEndpointRead = (endpoint, size) => {
-      if (endpoint !== port.outEndpoint) return;
-      this.room = size;
+      this.rooms.set(endpoint, size);
       this.fill();
     };
   }
@@ -45,9 +58,10 @@ export class Pc {
   }
 
   fill() {
-    if (this.room === null || this.unsent.length === 0) return;
-    const packet = Uint8Array.from(this.unsent.splice(0, this.room));
-    this.room = null;
-    this.usb.endpointReadDone(this.port.outEndpoint, packet);
+    const endpoint = this.port.outEndpoint;
+    const room = this.rooms.get(endpoint);
+    if (!room || this.unsent.length === 0) return;
+    this.rooms.delete(endpoint);
+    this.usb.endpointReadDone(endpoint, Uint8Array.from(this.unsent.splice(0, room)));
   }
 }
