@@ -38,6 +38,7 @@ pub struct Request {
     plugs: Option<Vec<(f64, &'static str)>>,
     noise: bool,
     usb: bool,
+    packets: bool,
     cut: Option<u64>,
     seconds: f64,
     save: Option<PathBuf>,
@@ -149,6 +150,7 @@ impl Request {
             plugs: None,
             noise: false,
             usb: false,
+            packets: false,
             cut: None,
             seconds: 60.0,
             save: None,
@@ -232,6 +234,12 @@ impl Request {
     /// Sends keys and messages over the USB port, and takes answers from it.
     pub fn usb(mut self) -> Request {
         self.usb = true;
+        self
+    }
+
+    /// In step, the keys are all bytes that are sent, among which the wish for the next picture is between packets.
+    pub fn packets(mut self) -> Request {
+        self.packets = true;
         self
     }
 

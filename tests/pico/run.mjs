@@ -8,6 +8,7 @@
 //   messages  or such that go over the line while it plays, arrays of bytes at the line's speed: the first after a picture, each other one when
 //             the one before was answered; after the last answer it waits for this number of pictures
 //   usb       whether keys and messages go over the USB port once it is open, and answers come over it. In step, playing begins over the pins
+//   packets   whether keys have the wish for the next picture among them, as they share the line with packets
 //   servos    how many writes of pulse widths are waited for
 //   plugs     when what happens to the SSD1306's wires, in seconds: [[0.1, "out"], ...], as ssd1306.mjs says; or null
 //   noise     whether a byte with a framing error comes before each byte of a message
@@ -97,7 +98,7 @@ line.onByte = (byte) => {
   frames.at(-1).number = Buffer.from(told.splice(0)).readUInt32LE(1);
   const letters = request.keys[frames.length - 1];
   if (!letters) return machine.end('done');
-  const reply = [...letters, NEXT];
+  const reply = request.packets ? letters : [...letters, NEXT];
   if (!pc) return reply.forEach((letter) => line.feedByte(letter));
   if (pc.isOpen) return pc.send(reply);
   pc.onOpen = () => pc.send(reply);

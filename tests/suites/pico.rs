@@ -1,18 +1,21 @@
 //! The Raspberry Pi Pico's own flash image in rp2040js: what its displays show over their buses is what the same program shows on the host.
 
 use std::fmt::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use board_drivers::servo::{self, JointAngle, Law, Servo, SoftStart};
 use harness::build::Firmware;
 use harness::display::{Display, Picture};
+use harness::lossy::arrivals;
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request, Spi};
-use harness::{clips, paths, screen, setup, simulator};
+use harness::{clips, paths, screen, setup, simulator, sync};
 use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::TextScreen;
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Framebuffer, MonoPages};
+use pantin_tools::sender::{Line, Sender, Source};
 use tempfile::TempDir;
 
 /// Our walk, as converted now, and a greeting with body and face.
@@ -340,4 +343,51 @@ fn a_damaged_clip_is_told_on_the_display() {
     let (_folder, image) = program("pico", "", &[clip]);
     let outcome = Request::new(&image, OLED).seconds(0.05).run().unwrap();
     says(&outcome, "broken\ncannot be played:\na CRC does not match: the clip is damaged");
+}
+
+/// What the program says of frames in step.
+fn reports(frames: impl Iterator<Item = u32>) -> Vec<u8> {
+    frames.flat_map(|number| [&[pantin_app::SHOWN][..], &number.to_le_bytes()].concat()).collect()
+}
+
+#[test]
+fn keys_come_over_the_usb_port_and_the_port_reports_each_frame() {
+    if setup::host_only("keys over the Pico's USB port") {
+        return;
+    }
+    let (_folder, image) = image("face,usb");
+    let keys: [&[u8]; 6] = [b"", b"n", b"aw", b"h", b"n", b""];
+    let expected = expected(OLED, &keys);
+    let outcome = in_step(Request::new(&image, OLED).usb(), &keys);
+    equal(&outcome, &expected);
+    assert_eq!(outcome.usb, reports(expected.iter().map(|(number, _)| *number)));
+}
+
+#[test]
+fn poses_of_a_stream_come_over_the_usb_port() {
+    if setup::host_only("a stream over the Pico's USB port") {
+        return;
+    }
+    let clip = &CLIPS.1[2];
+    let (_folder, image) = program("pico", "face,usb,link", std::slice::from_ref(clip));
+    let bytes = fs::read(clip).unwrap();
+    let source = Source::new(&Clip::new_checked(&bytes).unwrap()).unwrap();
+    let wanted = Line { rate: 11520.0, ahead: 12, share: 1.0, cycle: 12, parity: false, key: None };
+    let fit = wanted.fitted(&source).expect("the line carries it");
+    let mut frames = arrivals(Sender::new(3).clip(&source, fit, Some(1)), &source, fit, |_, timed| timed.bytes);
+    frames.truncate(60);
+    let expected: Vec<(u32, Vec<bool>)> =
+        simulator::link(clip, &[], &frames).unwrap().into_iter().map(|(number, picture)| (number, lit(&picture))).collect();
+    assert!(expected.windows(2).filter(|pair| pair[0].1 != pair[1].1).count() > 20, "hardly anything moves");
+    let next = sync::letter(pantin_app::NEXT);
+    let lines: Vec<Vec<u8>> = frames.iter().map(|bytes| [&bytes[..], &next[..next.len()]].concat()).collect();
+    let outcome = in_step(Request::new(&image, OLED).usb().packets(), &lines.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let shown: Vec<(u32, Vec<bool>)> =
+        outcome.pictures.iter().zip(&outcome.frames).map(|(picture, frame)| (frame.number.unwrap(), lit(picture))).collect();
+    assert_eq!(shown, expected);
+}
+
+/// Which pixels are not dark: a picture in greys beside one in black and white.
+fn lit(picture: &Picture) -> Vec<bool> {
+    picture.pixels.iter().map(|pixel| *pixel != 0).collect()
 }

@@ -168,6 +168,25 @@ fn a_clip_comes_over_the_line_while_the_board_draws_and_stays() {
 }
 
 #[test]
+fn a_clip_comes_over_the_usb_port() {
+    if setup::host_only("a clip over the Pico's USB port") {
+        return;
+    }
+    let bench = &*BENCH;
+    let own = paths::root().join("motions/run.ptn");
+    let firmware = Firmware::featuring("usb,update", "pico", "pico", rp2040::TARGET, &[&own]).unwrap();
+    let (_folder, image) = rp2040::image(firmware.elf()).unwrap();
+    let saved = bench.folder.path().join("usb.bin");
+    let outcome = bench.sending(&image).usb().saving(&saved).run().unwrap();
+    assert_eq!(outcome.ended, "done");
+    assert_eq!(answered(&outcome, &bench.new), Response::Done { id: bench.new.info.crc });
+    assert_eq!(outcome.changes as usize, bench.changes());
+    bench.new.is(&bench.plays(&saved), "switched off and on");
+    let (first, last) = (&outcome.answers[0], outcome.answers.last().unwrap());
+    println!("{} bytes in {:.2} s over USB", bench.new.bytes.len(), (last.nanos - first.nanos) / 1e9);
+}
+
+#[test]
 fn bytes_with_framing_errors_are_no_part_of_a_message() {
     if setup::host_only("noise on the Pico's line") {
         return;
