@@ -39,6 +39,7 @@ pub struct Request {
     noise: bool,
     usb: bool,
     packets: bool,
+    deaf: Option<[usize; 2]>,
     cut: Option<u64>,
     seconds: f64,
     save: Option<PathBuf>,
@@ -119,6 +120,8 @@ pub struct Outcome {
     pub changes: u64,
     /// The bytes that came over the USB port.
     pub usb: Vec<u8>,
+    /// How often the USB port had to wait because the board's receive buffer was full.
+    pub held: u64,
     /// The SPI bus of the ST7789 at the end.
     pub spi: Spi,
     /// The pins with a pull-up at the end.
@@ -151,6 +154,7 @@ impl Request {
             noise: false,
             usb: false,
             packets: false,
+            deaf: None,
             cut: None,
             seconds: 60.0,
             save: None,
@@ -234,6 +238,12 @@ impl Request {
     /// Sends keys and messages over the USB port, and takes answers from it.
     pub fn usb(mut self) -> Request {
         self.usb = true;
+        self
+    }
+
+    /// In step, the PC takes nothing from the USB port between these pictures.
+    pub fn deaf(mut self, first: usize, last: usize) -> Request {
+        self.deaf = Some([first, last]);
         self
     }
 

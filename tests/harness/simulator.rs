@@ -45,18 +45,7 @@ pub fn play<R: RotationBackend>(
     let options = Options::parse(words.iter().copied().chain([sync::ARGUMENT]));
     let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     wishes.push_back(pantin_app::QUIT);
-    match (display.width, display.height, display.depth) {
-        (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, &entries, options, wishes),
-        (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, &entries, options, wishes),
-        (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, &entries, options, wishes),
-        (168, 168, Depth::Gray4) => simulate::<R, Gray4Rows<168, 168, 3528>>(display, &entries, options, wishes),
-        (240, 320, Depth::Gray4) => simulate::<R, Gray4Rows<240, 320, 9600>>(display, &entries, options, wishes),
-        (168, 168, Depth::Rgb565) => simulate::<R, Rgb565Rows<168, 168, 14112>>(display, &entries, options, wishes),
-        (240, 240, Depth::Gray4) => simulate::<R, Gray4Rows<240, 240, 7200>>(display, &entries, options, wishes),
-        (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, &entries, options, wishes),
-        (240, 160, Depth::Bgr555) => simulate::<R, IndexedRows<240, 160, 19200>>(display, &entries, options, wishes),
-        _ => anyhow::bail!("no machine has a display like {display:?}"),
-    }
+    simulate_on::<R>(display, &entries, options, wishes)
 }
 
 /// Passes the framebuffers to `present`, as a display's driver gets them: the first, and one after each of the keys' letters.
@@ -74,12 +63,37 @@ pub fn present<L: Layout>(clips: &[PathBuf], keys: &[&[u8]], present: impl FnMut
 
 /// The pictures of the OLED while `line` brings the motion of the clip's figure: the first, then one after each of the line's stretches.
 pub fn link(clip: &Path, words: &[&str], line: &[Vec<u8>]) -> Result<Vec<(u32, Picture)>> {
+    link_on(display::OLED, clip, words, line)
+}
+
+/// The same on another display.
+pub fn link_on(display: Display, clip: &Path, words: &[&str], line: &[Vec<u8>]) -> Result<Vec<(u32, Picture)>> {
     let file = File::read(clip)?;
     let entries = [Entry { name: &file.name, bytes: &file.bytes, rig: &[] }];
     let options = Options::parse(words.iter().copied().chain(["link", sync::ARGUMENT]));
     let ticks = line.iter().flat_map(|bytes| bytes.iter().copied().chain(sync::letter(pantin_app::NEXT)));
     let wishes = ticks.chain(sync::letter(pantin_app::QUIT)).collect();
-    simulate::<Rotation, Gray4Rows<128, 64, 1024>>(display::OLED, &entries, options, wishes)
+    simulate_on::<Rotation>(display, &entries, options, wishes)
+}
+
+fn simulate_on<R: RotationBackend>(
+    display: Display,
+    entries: &[Entry],
+    options: Options,
+    wishes: VecDeque<u8>,
+) -> Result<Vec<(u32, Picture)>> {
+    match (display.width, display.height, display.depth) {
+        (128, 64, Depth::Mono) => simulate::<R, MonoPages<128, 64, 1024>>(display, entries, options, wishes),
+        (128, 64, Depth::Gray4) => simulate::<R, Gray4Rows<128, 64, 1024>>(display, entries, options, wishes),
+        (176, 220, Depth::Rgb565) => simulate::<R, Rgb565Rows<176, 220, 19360>>(display, entries, options, wishes),
+        (168, 168, Depth::Gray4) => simulate::<R, Gray4Rows<168, 168, 3528>>(display, entries, options, wishes),
+        (240, 320, Depth::Gray4) => simulate::<R, Gray4Rows<240, 320, 9600>>(display, entries, options, wishes),
+        (168, 168, Depth::Rgb565) => simulate::<R, Rgb565Rows<168, 168, 14112>>(display, entries, options, wishes),
+        (240, 240, Depth::Gray4) => simulate::<R, Gray4Rows<240, 240, 7200>>(display, entries, options, wishes),
+        (240, 240, Depth::Rgb565) => simulate::<R, Rgb565Rows<240, 240, 28800>>(display, entries, options, wishes),
+        (240, 160, Depth::Bgr555) => simulate::<R, IndexedRows<240, 160, 19200>>(display, entries, options, wishes),
+        _ => anyhow::bail!("no machine has a display like {display:?}"),
+    }
 }
 
 fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(

@@ -8,6 +8,7 @@
 //   messages  or such that go over the line while it plays, arrays of bytes at the line's speed: the first after a picture, each other one when
 //             the one before was answered; after the last answer it waits for this number of pictures
 //   usb       whether keys and messages go over the USB port once it is open, and answers come over it. In step, playing begins over the pins
+//   deaf      [first, last]: after these pictures, and between them, the PC takes nothing from the USB port; else null
 //   packets   whether keys have the wish for the next picture among them, as they share the line with packets
 //   servos    how many writes of pulse widths are waited for
 //   plugs     when what happens to the SSD1306's wires, in seconds: [[0.1, "out"], ...], as ssd1306.mjs says; or null
@@ -31,6 +32,8 @@ const STRETCHES = 4;
 const COMPARE = 0x0c;
 // Nanoseconds of a byte on the line: ten bits of 115,200 a second.
 const BYTE = 10e9 / 115200;
+// Nanoseconds in which the last packet over USB arrives.
+const LAST = 1e6;
 // The bit of the port's data register beside a byte.
 const FRAMING_ERROR = 1 << 8;
 
@@ -97,7 +100,9 @@ line.onByte = (byte) => {
   if (told.length < 5) return;
   frames.at(-1).number = Buffer.from(told.splice(0)).readUInt32LE(1);
   const letters = request.keys[frames.length - 1];
-  if (!letters) return machine.end('done');
+  // What the board has sent over USB is still on its way.
+  if (!letters) return pc ? chip.clock.createAlarm(() => machine.end('done')).schedule(LAST) : machine.end('done');
+  if (request.deaf && pc.isOpen) pc.reads(frames.length <= request.deaf[0] || frames.length > request.deaf[1]);
   const reply = request.packets ? letters : [...letters, NEXT];
   if (!pc) return reply.forEach((letter) => line.feedByte(letter));
   if (pc.isOpen) return pc.send(reply);
@@ -145,4 +150,4 @@ const [bus] = chip.spi;
 const spi = { mode: (bus.control0 >> 6) & 3, hz: bus.clockFrequency };
 const pulledUp = chip.gpio.flatMap((pin, index) => (pin.pullupEnabled ? [index] : []));
 const slices = chip.pwm.channels.map(({ top, div }) => ({ top, div }));
-console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, usb, printed: Buffer.from(machine.printed).toString() }));
+console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, usb, held: pc?.held ?? 0, printed: Buffer.from(machine.printed).toString() }));

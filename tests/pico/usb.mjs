@@ -8,6 +8,10 @@ const [SYSINFO, CHIP_ID, VERSION_2] = [0x40000, 0, 0x20002927];
 
 // A request to the first interface: the PC is ready (DTR, RTS). The emulator sends it to the device, to which it does not belong.
 const READY = Uint8Array.of(0x21, 0x22, 3, 0, 0, 0, 0, 0);
+// The register that disables interrupts (NVIC_ICER), and the port's one, as a bit.
+const [DISABLE, INTERRUPT] = [0x180, 1 << 5];
+// The registers of buffers for the PC, and the bit that is set until it has taken one.
+const [IN_CONTROL, AVAILABLE] = [0x80, 1 << 10];
 // Nanoseconds until a program opens the port, and until it uses it.
 const OPENS = 1e6;
 
@@ -20,9 +24,12 @@ export class Pc {
     this.usb = chip.usbCtrl;
     this.isOpen = false;
     this.onOpen = () => {};
-    // Packets that arrived.
-    this.packets = 0;
+    // How often the board disabled the interrupt, because its receive buffer was full.
+    this.held = 0;
     this.unsent = [];
+    // What the board wants to send while no program on the PC reads, and the function that takes it.
+    this.unread = null;
+    this.isReading = true;
     // The sizes of the buffers that the board waits with, by their endpoint.
     this.rooms = new Map();
     const port = new USBCDC(this.usb);
@@ -40,9 +47,29 @@ export class Pc {
       port.initialized = true;
       opens.schedule(OPENS);
     };
+    // The emulator takes a packet as soon as the board offers it. A PC does that only while a program reads.
+    const take = this.usb.indicateBufferReady.bind(this.usb);
+    this.usb.indicateBufferReady = (endpoint, isOut) => {
+      if (this.isReading || isOut || endpoint !== port.inEndpoint) return take(endpoint, isOut);
+      const control = IN_CONTROL + 8 * endpoint;
+      const memory = chip.usbDPRAMView;
+      memory.setUint32(control, memory.getUint32(control, true) | AVAILABLE, true);
+      this.unread = {
+        taken: () => {
+          memory.setUint32(control, memory.getUint32(control, true) & ~AVAILABLE, true);
+          take(endpoint, isOut);
+        },
+      };
+    };
     port.onSerialData = (bytes) => {
-      this.packets += 1;
-      bytes.forEach((byte) => onByte(byte));
+      if (this.unread) this.unread.bytes = bytes;
+      else bytes.forEach((byte) => onByte(byte));
+    };
+    this.onByte = onByte;
+    const set = chip.ppb.writeUint32.bind(chip.ppb);
+    chip.ppb.writeUint32 = (offset, value) => {
+      if (offset === DISABLE && value & INTERRUPT) this.held += 1;
+      set(offset, value);
     };
     // The emulator answers at once, with an empty packet if there is no byte; a PC sends none of these.
     this.usb.onEndpointRead = (endpoint, size) => {
@@ -55,6 +82,16 @@ export class Pc {
   send(bytes) {
     this.unsent.push(...bytes);
     this.fill();
+  }
+
+  // Whether a program on the PC reads what arrives.
+  reads(isReading) {
+    this.isReading = isReading;
+    if (!isReading || !this.unread?.bytes) return;
+    const { bytes, taken } = this.unread;
+    this.unread = null;
+    bytes.forEach((byte) => this.onByte(byte));
+    taken();
   }
 
   fill() {

@@ -356,11 +356,41 @@ fn keys_come_over_the_usb_port_and_the_port_reports_each_frame() {
         return;
     }
     let (_folder, image) = image("face,usb");
-    let keys: [&[u8]; 6] = [b"", b"n", b"aw", b"h", b"n", b""];
+    // More letters at once than the receive buffer holds: each one counts.
+    let many = [&b"d"[..]; 1501].concat();
+    let keys: [&[u8]; 5] = [b"", b"n", b"aw", &many, b""];
     let expected = expected(OLED, &keys);
     let outcome = in_step(Request::new(&image, OLED).usb(), &keys);
     equal(&outcome, &expected);
     assert_eq!(outcome.usb, reports(expected.iter().map(|(number, _)| *number)));
+    assert!(outcome.held > 0, "the receive buffer was never full");
+}
+
+#[test]
+fn a_pc_that_does_not_read_the_usb_port_holds_the_board_up_once() {
+    // Pictures between which it does not read, and bytes that may wait for it: those of the board's buffer, also of the library's and a packet.
+    const DEAF: [usize; 2] = [4, 104];
+    const WAITING: std::ops::RangeInclusive<usize> = 256..=256 + 128 + 64;
+    if setup::host_only("a PC that does not read the Pico's USB port") {
+        return;
+    }
+    let (_folder, image) = image("face,usb");
+    let keys = [&b""[..]; 110];
+    let outcome = in_step(Request::new(&image, OLED).usb().deaf(DEAF[0], DEAF[1]), &keys);
+    let expected = expected(OLED, &keys);
+    equal(&outcome, &expected);
+    let mut gaps: Vec<f64> = outcome.frames.windows(2).map(|two| (two[1].nanos - two[0].nanos) / 1e6).skip(1).collect();
+    gaps.sort_by(f64::total_cmp);
+    let [.., usual, longest] = *gaps else { unreachable!() };
+    assert!(
+        usual < 5.0 && (50.0..60.0).contains(&longest),
+        "the longest times from picture to picture: {usual} and {longest} ms"
+    );
+    // It finds what waited, and what is sent after that.
+    let numbers = |from: usize| reports(expected[from..].iter().map(|(number, _)| *number));
+    let waited = outcome.usb.strip_suffix(&*numbers(DEAF[1] + 1)).expect("the port goes on");
+    assert!(numbers(0).starts_with(waited));
+    assert!(WAITING.contains(&(waited.len() - 5 * (DEAF[0] + 1))), "{} bytes", waited.len());
 }
 
 #[test]
@@ -376,18 +406,10 @@ fn poses_of_a_stream_come_over_the_usb_port() {
     let fit = wanted.fitted(&source).expect("the line carries it");
     let mut frames = arrivals(Sender::new(3).clip(&source, fit, Some(1)), &source, fit, |_, timed| timed.bytes);
     frames.truncate(60);
-    let expected: Vec<(u32, Vec<bool>)> =
-        simulator::link(clip, &[], &frames).unwrap().into_iter().map(|(number, picture)| (number, lit(&picture))).collect();
+    let expected = simulator::link_on(OLED, clip, &[], &frames).unwrap();
     assert!(expected.windows(2).filter(|pair| pair[0].1 != pair[1].1).count() > 20, "hardly anything moves");
     let next = sync::letter(pantin_app::NEXT);
     let lines: Vec<Vec<u8>> = frames.iter().map(|bytes| [&bytes[..], &next[..next.len()]].concat()).collect();
     let outcome = in_step(Request::new(&image, OLED).usb().packets(), &lines.iter().map(Vec::as_slice).collect::<Vec<_>>());
-    let shown: Vec<(u32, Vec<bool>)> =
-        outcome.pictures.iter().zip(&outcome.frames).map(|(picture, frame)| (frame.number.unwrap(), lit(picture))).collect();
-    assert_eq!(shown, expected);
-}
-
-/// Which pixels are not dark: a picture in greys beside one in black and white.
-fn lit(picture: &Picture) -> Vec<bool> {
-    picture.pixels.iter().map(|pixel| *pixel != 0).collect()
+    equal(&outcome, &expected);
 }

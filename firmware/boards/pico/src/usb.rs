@@ -9,7 +9,7 @@ use cortex_m::peripheral::NVIC;
 use critical_section::Mutex;
 use heapless::Deque;
 use rp2040_hal::clocks::UsbClock;
-use rp2040_hal::pac::{Interrupt, RESETS, USBCTRL_DPRAM, USBCTRL_REGS, interrupt};
+use rp2040_hal::pac::{Interrupt, RESETS, TIMER, USBCTRL_DPRAM, USBCTRL_REGS, interrupt};
 use rp2040_hal::usb::UsbBus;
 use usb_device::class_prelude::UsbBusAllocator;
 use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
@@ -21,9 +21,8 @@ const IDENTITY: UsbVidPid = UsbVidPid(0x16c0, 0x27dd);
 const PACKET: usize = 64;
 /// Bytes that wait until the PC takes them: more than the longest answer to an update.
 const CAPACITY: usize = 256;
-/// The processor's clocks between two tries to send, and the tries until the PC counts as one that does not read: 50 ms.
-const WAIT_CLOCKS: u32 = crate::clocks::CPU_HZ / 10_000;
-const MAX_WAITS: u32 = 500;
+/// The time after which a PC counts as one that does not read.
+const MAX_WAIT_US: u32 = 50_000;
 
 struct Line {
     device: UsbDevice<'static, UsbBus>,
@@ -46,6 +45,7 @@ pub fn start<S: SerialPort>(
 ) -> Both<S> {
     let bus = cortex_m::singleton!(: Option<UsbBusAllocator<UsbBus>> = None);
     if let Some(bus) = bus {
+        resets.reset().modify(|_, w| w.timer().clear_bit());
         let bus = &*bus.insert(UsbBusAllocator::new(UsbBus::new(registers, memory, clock, true, resets)));
         let port = usbd_serial::SerialPort::new(bus);
         let strings = StringDescriptors::default().manufacturer("Pantin").product("Pantin on the Raspberry Pi Pico");
@@ -70,6 +70,12 @@ pub fn resume() {
         // Safety: no critical section relies on this interrupt's mask.
         unsafe { NVIC::unmask(Interrupt::USBCTRL_IRQ) };
     }
+}
+
+/// Returns the chip's counter of microseconds.
+fn micros() -> u32 {
+    // Safety: nothing writes the timer, and this register is only read.
+    unsafe { &*TIMER::PTR }.timerawl().read().bits()
 }
 
 #[interrupt]
@@ -126,18 +132,18 @@ pub struct Both<S>(S);
 
 impl<S: SerialPort> SerialPort for Both<S> {
     fn send(&mut self, bytes: &[u8]) {
-        let mut rest = bytes;
-        for _ in 0..MAX_WAITS {
+        let (mut rest, begun) = (bytes, micros());
+        loop {
             // No line: nothing to wait for.
             let taken = with_line(|line| line.send(rest)).unwrap_or(rest.len());
             rest = rest.get(taken..).unwrap_or_default();
             if rest.is_empty() {
                 break;
             }
-            cortex_m::asm::delay(WAIT_CLOCKS);
-        }
-        if !rest.is_empty() {
-            with_line(|line| line.is_stuck = true);
+            if micros().wrapping_sub(begun) > MAX_WAIT_US {
+                with_line(|line| line.is_stuck = true);
+                break;
+            }
         }
         self.0.send(bytes);
     }
