@@ -69,3 +69,28 @@ fn a_decoder_written_from_the_format_alone_agrees() {
         banks.filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "ptb")).count();
     assert_eq!(told.lines().count(), vectors::load(&vectors::folder()).unwrap().len() + banks);
 }
+
+/// The JavaScript package: the vectors by steps and seeks, joints placed by matrices, and damaged files that the independent decoder reads too.
+#[test]
+fn the_decoder_for_the_web_agrees() {
+    if setup::host_only("the decoder of the npm package") {
+        return;
+    }
+    let script = paths::root().join("web/packages/decoder/test/vectors.mjs");
+    let output = Command::new(setup::emulator("node").unwrap()).arg(script).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn the_tables_of_the_decoder_for_the_web_are_those_of_the_format() {
+    if setup::host_only("the tables of the npm package") {
+        return;
+    }
+    let package = paths::root().join("web/packages/decoder");
+    let tables = std::fs::File::open(vectors::folder().join("tables.json")).unwrap();
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    let output = node.arg(package.join("make-tables.mjs")).stdin(tables).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.stdout, std::fs::read(package.join("tables.js")).unwrap(), "make-tables.mjs writes them");
+}
