@@ -12,6 +12,7 @@ pub fn check_name(name: &str) -> Result<()> {
     ensure!(!name.is_empty(), "an event without a name");
     ensure!(name.len() <= MOST_NAME_BYTES, "an event's name of {} bytes; at most {MOST_NAME_BYTES}", name.len());
     ensure!(!name.chars().any(char::is_control), "an event's name has a control character: {}", name.escape_debug());
+    ensure!(!name.contains('|'), "an event's name has a `|`, which is between names in tables: {name}");
     Ok(())
 }
 

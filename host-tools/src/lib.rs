@@ -23,6 +23,8 @@ pub mod input;
 pub mod keys;
 #[cfg(feature = "cli")]
 pub mod line;
+#[cfg(feature = "cli")]
+pub mod machine;
 pub mod motion;
 pub mod number;
 #[cfg(feature = "cli")]

@@ -58,6 +58,7 @@ enum Command {
     FlashImage(cmd::flash_image::Arguments),
     Info(cmd::info::Arguments),
     List(cmd::bank::List),
+    Machine(cmd::machine::Arguments),
     /// Print the manual page of pantin, or of one of its commands
     #[command(after_help = "Examples:\n  pantin man > pantin.1\n  pantin man convert | man -l -")]
     Man {
@@ -85,6 +86,7 @@ impl Command {
             Command::FlashImage(_) => "flash-image",
             Command::Info(_) => "info",
             Command::List(_) => "list",
+            Command::Machine(_) => "machine",
             Command::Man { .. } => "man",
             Command::Pack(_) => "pack",
             Command::Play(_) => "play",
@@ -116,6 +118,7 @@ fn main() -> ExitCode {
         Command::FlashImage(arguments) => cmd::flash_image::run(&arguments),
         Command::Info(arguments) => cmd::info::run(&arguments),
         Command::List(arguments) => cmd::bank::list(&arguments),
+        Command::Machine(arguments) => cmd::machine::run(&arguments),
         Command::Man { command } => manual(command.as_deref()),
         Command::Pack(arguments) => cmd::bank::pack(&arguments),
         Command::Play(arguments) => cmd::play::run(&arguments),

@@ -76,7 +76,8 @@ impl Counts {
         let number_prior = |i: usize| 0.5f64.powi(i.div_ceil(2) as i32).max(0.004);
         let (mut number_in, number) = join(numbers, NUMBER_TABLES, &number_prior);
 
-        let mut out = HEAD.replace("TRAINED_ON", trained_on);
+        let trained_on: String = trained_on.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let mut out = HEAD.replace("TRAINED_ON", &trained_on);
         let mut item = |doc: &str, name: &str, kind: String, value: String| {
             let _ = writeln!(out, "/// {doc}\n{name}: {kind} = {value};\n");
         };

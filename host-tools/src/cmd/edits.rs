@@ -173,8 +173,18 @@ impl Edits {
         }
         if let Some(path) = &self.with {
             let other = import::load(path, &import::Options { files: files.clone(), ..Default::default() })?.motion;
-            motion = join(&motion, &other).with_context(|| format!("--with {}", path.display()))?;
+            let before = motion;
+            motion = join(&before, &other).with_context(|| format!("--with {}", path.display()))?;
             said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));
+            if before.looped && !motion.looped {
+                said.push(
+                    "with: the clip is no loop any more, as the two are not loops of one length; --close-loop makes one".into(),
+                );
+            }
+            let lost = before.events.len() + other.events.len() - motion.events.len();
+            if lost > 0 {
+                said.push(format!("events: {lost} are behind the end of the shorter of the two, or in both"));
+            }
         }
         if self.close_loop && motion.looped {
             said.push("loop: it is one already".into());

@@ -158,7 +158,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Format::Bvh | Format::Csv => 2 * values,
     };
     output::check_size(output, least)?;
-    if clip.event_count() > 0 && !matches!(format, Format::H | Format::Rs) {
+    if clip.event_count() > 0 && matches!(format, Format::Bvh) {
         note!("{}: {} events are left out: this kind of file holds none here", output.display(), clip.event_count());
     }
     let mut out = Staged::create(output)?;

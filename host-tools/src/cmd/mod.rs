@@ -11,6 +11,7 @@ pub mod face;
 pub mod flash_image;
 pub mod info;
 mod joint_error;
+pub mod machine;
 pub mod play;
 pub mod render;
 mod same_form;

@@ -80,7 +80,7 @@ fn fork(rig: &Rig, a: usize, b: usize) -> Option<usize> {
 
 fn mapped(rig: &Rig, map: &str) -> Result<[Option<usize>; 15]> {
     let mut found = [None; 15];
-    for (number, line) in map.lines().enumerate() {
+    for (number, line) in map.trim_start_matches('\u{feff}').lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         let Some(display) = line.split_whitespace().next() else { continue };
         let place = || format!("line {} of the map", number + 1);
@@ -91,7 +91,10 @@ fn mapped(rig: &Rig, map: &str) -> Result<[Option<usize>; 15]> {
             anyhow!("{}: expected one of {}, found `{display}`", place(), names.join(", "))
         })?;
         let source = rig.joints.iter().position(|other| !other.end_site && other.name == joint);
-        found[index] = Some(source.with_context(|| format!("{}: the figure has no joint `{joint}`", place()))?);
+        let source = source.with_context(|| format!("{}: the figure has no joint `{joint}`", place()))?;
+        ensure!(found[index].is_none(), "{}: `{display}` has a joint already", place());
+        ensure!(!found.contains(&Some(source)), "{}: `{joint}` stands for another joint already", place());
+        found[index] = Some(source);
     }
     Ok(found)
 }
@@ -143,9 +146,13 @@ mod tests {
             "{error}"
         );
         assert_eq!(sources(&rig, "# mine\nHips a # the root\n\nrightfoot d\n").unwrap()[14], 15);
-        for (map, part) in
-            [("Hips", "line 1 of the map: expected `Hips JOINT`"), ("\nHip a", "found `Hip`"), ("Hips z", "no joint `z`")]
-        {
+        for (map, part) in [
+            ("Hips a\nHips b", "line 2 of the map: `Hips` has a joint"),
+            ("Hips a\nChest a", "line 2 of the map: `a` stands for"),
+            ("Hips", "line 1 of the map: expected `Hips JOINT`"),
+            ("\nHip a", "found `Hip`"),
+            ("Hips z", "no joint `z`"),
+        ] {
             let error = format!("{:#}", sources(&rig, map).unwrap_err());
             assert!(error.contains(part), "{error}");
         }

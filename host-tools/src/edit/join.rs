@@ -5,7 +5,8 @@ use super::resample::resample;
 use crate::motion::Motion;
 use anyhow::{Result, ensure};
 
-/// Adds the scalars of `other`, brought to the same rate, to `motion`; what is longer ends with what is shorter. Joints of `other` are left out.
+/// Adds the scalars and events of `other`, brought to the same rate, to `motion`; what is longer ends with what is shorter. Joints of `other` are left out. Two
+/// loops of one length are a loop.
 pub fn join(motion: &Motion, other: &Motion) -> Result<Motion> {
     ensure!(!other.rig.scalars.is_empty(), "it has no scalars");
     let known = |name: &str| motion.rig.scalars.iter().any(|scalar| scalar.name == name);
@@ -14,12 +15,15 @@ pub fn join(motion: &Motion, other: &Motion) -> Result<Motion> {
     }
     let other = resample(other, 1.0 / motion.frame_time)?;
     let frames = motion.frames.min(other.frames);
+    let looped = motion.looped && other.looped && motion.frames == other.frames;
     let whole = |motion: &Motion| cut(motion, None, Some(frames - 1));
     let (mut joined, other) = (whole(motion)?, whole(&other)?);
     let joints = other.rig.joint_channels();
     joined.rig.scalars.extend(other.rig.scalars);
     joined.values.extend(other.values.into_iter().skip(joints));
     joined.keys.extend(other.keys.into_iter().skip(joints));
+    joined.add_events(other.events);
+    joined.looped = looped;
     Ok(joined)
 }
 
@@ -43,5 +47,18 @@ mod tests {
             joined.values.iter().flatten().zip((0..16).cycle()).all(|(value, frame)| (value - frame as f64 / 30.0).abs() < 1e-9)
         );
         assert!(join(&joined, &scalars(&["b"], 5, 30.0)).is_err());
+    }
+    #[test]
+    fn events_of_both_are_kept_and_two_loops_of_one_length_are_a_loop() {
+        let event = |frame: usize, name: &str| crate::motion::Event { frame, name: name.into() };
+        let motion = |name: &str, frames: usize, fps: f64, looped: bool| Motion { looped, ..scalars(&[name], frames, fps) };
+        let one = Motion { events: vec![event(3, "left"), event(25, "late")], ..motion("a", 30, 30.0, true) };
+        let other = Motion { events: vec![event(4, "blink"), event(35, "end")], ..motion("b", 41, 60.0, true) };
+        let joined = join(&one, &other).unwrap();
+        let found: Vec<(usize, &str)> = joined.events.iter().map(|event| (event.frame, event.name.as_str())).collect();
+        assert_eq!(found, [(2, "blink"), (3, "left"), (18, "end")]);
+        assert!(!joined.looped);
+        assert!(join(&motion("a", 30, 30.0, true), &motion("b", 30, 30.0, true)).unwrap().looped);
+        assert!(!join(&motion("a", 30, 30.0, true), &motion("b", 30, 30.0, false)).unwrap().looped);
     }
 }

@@ -85,6 +85,27 @@ pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
     Ok(out)
 }
 
+/// A bank with a section of a type that only some programs read, in place of another of that type.
+pub fn with_section(bank: &[u8], kind: u8, body: &[u8]) -> Result<Vec<u8>> {
+    Bank::new_checked(bank)?;
+    let mut out = bank[..3].to_vec();
+    let mut rest = &bank[3..];
+    while !rest.is_empty() {
+        let whole = rest;
+        let (own, after) = rest.split_first().context("a section without a type")?;
+        let (len, after) = varint::get(after).context("a section without a length")?;
+        rest = after.get(len as usize..).context("a section that ends early")?;
+        if *own != kind {
+            out.extend_from_slice(&whole[..whole.len() - rest.len()]);
+        }
+    }
+    out.push(kind);
+    varint::put(&mut out, u32::try_from(body.len()).context("a section of 4 GiB or more")?);
+    out.extend_from_slice(body);
+    Bank::new_checked(&out).context("the bank that was just made does not open")?;
+    Ok(out)
+}
+
 /// The first difference between two rigs; `None` if they are the same.
 fn difference(one: &[u8], other: &[u8]) -> Result<Option<String>> {
     if one == other {

@@ -9,6 +9,18 @@ pub fn put(out: &mut Vec<u8>, mut value: u32) {
     out.push(value as u8);
 }
 
+/// A number, and the bytes behind it; `None` if it is cut short or has more than 32 bits.
+pub fn get(bytes: &[u8]) -> Option<(u32, &[u8])> {
+    let mut value = 0u64;
+    for (index, byte) in bytes.iter().enumerate().take(5) {
+        value |= u64::from(byte & 0x7f) << (7 * index);
+        if byte & 0x80 == 0 {
+            return Some((u32::try_from(value).ok()?, &bytes[index + 1..]));
+        }
+    }
+    None
+}
+
 /// A signed number as 0, -1, 1, -2, ...
 pub fn put_zigzag(out: &mut Vec<u8>, value: i32) {
     put(out, ((value << 1) ^ (value >> 31)) as u32);

@@ -44,6 +44,8 @@ impl Plan {
     }
 }
 
+/// Searches of fewer frames take less time than another thread takes to begin.
+const SHORT: usize = 16;
 /// Clips of fewer values have more passes, up to this many times more: a clip of 25 frames becomes 4 % smaller by four times as many.
 const VALUES_OF_A_PLAN: f64 = 40_000.0;
 const MOST_PASSES: f64 = 4.0;
@@ -433,7 +435,7 @@ impl<'m> Descent<'m> {
         }
         let one = || search(tube, guess.min(MAX_STEP), effort);
         let two = || if self.plan.both_steps { search(tube, other.min(MAX_STEP), effort) } else { None };
-        let (one, two) = rayon::join(one, two);
+        let (one, two) = if tube.x.len() < SHORT { (one(), two()) } else { rayon::join(one, two) };
         let best = [one, two].into_iter().flatten().min_by(|a, b| objective(a, tube).total_cmp(&objective(b, tube)));
         if best.is_some() || self.codes[channel].is_some() {
             return best;

@@ -193,9 +193,27 @@ impl Rows {
         Ok((self.filled(&grid), rate, self.gaps(&grid).into_iter().chain(warning).collect()))
     }
 
+    /// The times of the rows: of even ones that were rounded, those before rounding, at `fps` or a part of it if that explains them.
+    fn exact_times(&self, fps: f64) -> Vec<f64> {
+        let even = |grid: &Grid| {
+            let off = |row: usize| (self.times[row] - self.times[0]) / grid.period - grid.frames[row] as f64;
+            (1..self.times.len()).all(|row| off(row).abs() <= JITTER && grid.frames[row] > grid.frames[row - 1])
+        };
+        match Grid::of(&self.times).filter(even) {
+            None => self.times.clone(),
+            Some(grid) => {
+                let parts = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0].map(|part| [fps / part, fps * part]);
+                let given = parts.into_iter().flatten().find(|&rate| explains(rate, &grid, &self.times));
+                let rate = given.unwrap_or_else(|| usual_rate(&grid, &self.times).0);
+                grid.frames.iter().map(|&frame| frame as f64 / rate).collect()
+            }
+        }
+    }
+
     /// The values on straight lines between the rows, `fps` times a second.
     fn at_rate(&self, sheet: &Sheet, fps: f64) -> Result<Vec<Vec<f64>>> {
-        let (first, last) = (self.times[0], self.times[self.times.len() - 1]);
+        let times = self.exact_times(fps);
+        let (first, last) = (times[0], times[times.len() - 1]);
         // A last row that rounding puts just before a frame is that frame.
         let frames = ((last - first) * fps + 1e-6) as usize + 1;
         scalars::check_size(self.values.len(), frames).map_err(|error| sheet.error(1, error))?;
@@ -203,11 +221,12 @@ impl Rows {
             let mut row = 0;
             let mut at = |frame: usize| {
                 let time = first + frame as f64 / fps;
-                while row + 1 < self.times.len() && self.times[row + 1] <= time {
+                // A row that rounding puts just behind a frame is that frame's.
+                while row + 1 < times.len() && times[row + 1] <= time + 1e-6 / fps {
                     row += 1;
                 }
-                let Some(next) = self.times.get(row + 1) else { return values[row] };
-                let part = (time - self.times[row]) / (next - self.times[row]);
+                let Some(next) = times.get(row + 1) else { return values[row] };
+                let part = ((time - times[row]) / (next - times[row])).max(0.0);
                 values[row] + part * (values[row + 1] - values[row])
             };
             (0..frames).map(&mut at).collect()
@@ -235,18 +254,21 @@ fn frame_number(sheet: &Sheet, row: &Row, column: usize) -> Result<f64> {
     }
 }
 
-/// The usual rate nearest to the measured one, if it explains every time as far as its digits go; else the measured one. Returns also
-/// whether it is an assumption: another rate than the times give.
+/// The usual rate nearest to the measured one, if it [`explains`] the times; else the measured one. Returns also whether it is an assumption: another
+/// rate than the times give.
 fn usual_rate(grid: &Grid, times: &[f64]) -> (f64, bool) {
     let measured = grid.period.recip();
     let far = |rate: &f64| (rate / measured - 1.0).abs();
-    let rounding = last_digit(times);
-    let explains = |rate: &f64| {
-        let place = |(&time, &frame): (&f64, &usize)| (time - times[0] - frame as f64 / rate).abs();
-        far(rate) < FARTHEST && times.iter().zip(&grid.frames).all(|row| place(row) <= rounding)
-    };
-    let rate = USUAL.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).filter(explains).unwrap_or(measured);
+    let nearest = USUAL.into_iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+    let rate = nearest.filter(|&rate| explains(rate, grid, times)).unwrap_or(measured);
     (rate, far(&rate) > ASSUMED)
+}
+
+/// Whether rows at a rate have these times, as far as their digits go.
+fn explains(rate: f64, grid: &Grid, times: &[f64]) -> bool {
+    let rounding = last_digit(times);
+    let place = |(&time, &frame): (&f64, &usize)| (time - times[0] - frame as f64 / rate).abs();
+    (rate * grid.period - 1.0).abs() < FARTHEST && times.iter().zip(&grid.frames).all(|row| place(row) <= rounding)
 }
 
 /// The place value of the last decimal digit that any of `times` has. No two of them are closer.

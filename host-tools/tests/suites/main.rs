@@ -36,6 +36,7 @@ mod info_command;
 mod interchange;
 mod keyframes_input;
 mod livelink_input;
+mod machine;
 mod manners;
 mod mean_error;
 mod motions_library;

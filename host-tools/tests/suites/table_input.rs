@@ -35,6 +35,26 @@ fn times_of_few_digits_give_the_rate_and_missing_rows_are_filled() {
     assert_eq!((motion.rig.scalars.len(), motion.frame_time), (1, 1.0 / 120.0));
 }
 
+/// Times with three digits are rounded: the rows stand where they were before that.
+#[test]
+fn a_given_rate_takes_rounded_times_for_even_ones() {
+    let table = |count: usize, rate: f64, digits: usize| -> String {
+        let row = |index: usize| format!("{:.digits$},{}\n", index as f64 / rate, (index as f64 * 2.0).sin());
+        std::iter::once("time,a\n".to_string()).chain((0..count).map(row)).collect()
+    };
+    for (count, rate, digits) in [(60, 60.0, 3), (90, 30.0, 2), (60, 29.97, 3), (50, 50.0, 2)] {
+        let text = table(count, rate, digits);
+        let (given, _) = read_with("same", &text, Some(rate)).unwrap();
+        let (own, _) = read_with("own", &text, None).unwrap();
+        assert_eq!(given.frames, count, "{rate}");
+        let far = given.values[0].iter().zip(&own.values[0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(far < 1e-4, "{rate}: {far}");
+        let (twice, _) = read_with("twice", &text, Some(2.0 * rate)).unwrap();
+        assert_eq!(twice.frames, 2 * count - 1, "{rate}");
+        assert!(twice.values[0].iter().step_by(2).zip(&own.values[0]).all(|(a, b)| (a - b).abs() < 1e-4));
+    }
+}
+
 #[test]
 fn two_whole_seconds_are_one_frame_a_second() {
     for times in ["0,0\n1,1\n", "5.000,0\n6.000,1\n"] {

@@ -53,9 +53,13 @@ pub struct Arguments {
     #[arg(long, value_name = "MESH", requires = "points")]
     neutral: Option<PathBuf>,
     /// Frames a second of a folder of .obj files
-    #[arg(long, default_value_t = 30.0)]
-    fps: f64,
+    /// [default: 30]
+    #[arg(long)]
+    fps: Option<f64>,
 }
+
+/// Frames a second of a folder.
+const FPS: f64 = 30.0;
 
 /// Units that a fit may use.
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
@@ -87,7 +91,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         bail!("{}: {option} is for clips (.ptn)", place());
     }
     ensure!(arguments.most >= 1, "--most: expected 1 or more");
-    ensure!(arguments.fps.is_finite() && arguments.fps > 0.0, "--fps: expected a rate above 0");
+    ensure!(arguments.fps.is_none_or(|fps| fps.is_finite() && fps > 0.0), "--fps: expected a rate above 0");
+    ensure!(arguments.fps.is_none() || path.is_dir(), "{}: --fps is for a folder of .obj files", place());
     let limits = fit::Limits { paper: arguments.units == Units::Paper, most: arguments.most };
     let poses = poses(arguments, &face, extension.as_deref())?;
     ensure!(
@@ -154,7 +159,7 @@ fn poses(arguments: &Arguments, face: &Face, extension: Option<&str>) -> Result<
     if let Some(points) = &arguments.points {
         return of_others(arguments, face, extension, points);
     }
-    let fps = arguments.fps;
+    let fps = arguments.fps.unwrap_or(FPS);
     let rows = match extension {
         _ if path.is_dir() => objs(path)?.iter().map(|path| own(obj(path)?)).collect::<Result<_>>()?,
         Some("obj") => vec![own(obj(path)?)?],
@@ -236,7 +241,7 @@ fn of_others(arguments: &Arguments, face: &Face, extension: Option<&str>, points
         return Ok(Poses { rows, fps: rate(&motion) });
     }
     let rows = paths.iter().map(|path| rows(&outside::mesh(path, &files)?.points)).collect::<Result<_>>()?;
-    Ok(Poses { rows, fps: arguments.fps })
+    Ok(Poses { rows, fps: arguments.fps.unwrap_or(FPS) })
 }
 
 /// Prints the weights of one face.

@@ -1,0 +1,194 @@
+//! A state machine as a picture: states on a circle, transitions as arrows with their causes, as SVG.
+
+use super::source::{Source, State, Transition};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::fmt::Write;
+
+/// Width of a letter, height of a line and of a state, and space around, in units of the picture.
+const LETTER: f64 = 7.6;
+const LINE: f64 = 15.0;
+const STATE: f64 = 44.0;
+const MARGIN: f64 = 90.0;
+/// How far an arrow bends to its right, as a part of its length: there and back are two arrows.
+const BEND: f64 = 0.16;
+
+type Point = [f64; 2];
+
+struct Node {
+    name: String,
+    clip: String,
+    at: Point,
+    /// Half of its width and height.
+    half: Point,
+}
+
+/// The picture of a machine.
+pub fn svg(source: &Source) -> String {
+    let mut nodes = nodes(source);
+    let index = |name: &str| source.states.iter().position(|state| state.name.get_ref() == name);
+    // Arrows by their two ends, each with all its causes.
+    let mut arrows: Vec<(usize, usize, Vec<String>)> = Vec::new();
+    let mut add = |from: usize, row: &Transition| {
+        let Some(to) = index(&row.to) else { return };
+        match arrows.iter_mut().find(|arrow| (arrow.0, arrow.1) == (from, to)) {
+            Some(arrow) => arrow.2.push(cause(row)),
+            None => arrows.push((from, to, vec![cause(row)])),
+        }
+    };
+    for (from, state) in source.states.iter().enumerate() {
+        state.transitions.iter().for_each(|row| add(from, row.get_ref()));
+    }
+    if !source.any.is_empty() {
+        let from = nodes.len();
+        nodes.push(Node { name: "any state".into(), clip: String::new(), at: [0.0; 2], half: [44.0, 15.0] });
+        source.any.iter().for_each(|row| add(from, row.get_ref()));
+    }
+    let far = |axis: usize| nodes.iter().map(|node| node.at[axis].abs() + node.half[axis]).fold(0.0, f64::max) + MARGIN;
+    let (wide, high) = (far(0), far(1));
+    let mut out = String::new();
+    let _ = write!(
+        out,
+        r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="{:.0} {:.0} {:.0} {:.0}" width="{:.0}" height="{:.0}" font-family="sans-serif" font-size="13" text-anchor="middle">
+<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" markerHeight="8" orient="auto"><path d="M0 0L10 5L0 10z" fill="#345"/></marker></defs>
+<rect x="{:.0}" y="{:.0}" width="100%" height="100%" fill="#fff"/>
+"##,
+        -wide,
+        -high,
+        2.0 * wide,
+        2.0 * high,
+        2.0 * wide,
+        2.0 * high,
+        -wide,
+        -high
+    );
+    let start = source.start.as_ref().map_or(Some(0), |start| index(start.get_ref()));
+    let mut labels = String::new();
+    for (from, to, causes) in &arrows {
+        arrow(&mut out, &mut labels, &nodes[*from], &nodes[*to], causes);
+    }
+    for (number, node) in nodes.iter().enumerate() {
+        let ([x, y], [w, h]) = (node.at, node.half);
+        let (stroke, dash) = match number {
+            _ if number == source.states.len() => ("#789", r#" stroke-dasharray="4 3""#),
+            _ if Some(number) == start => ("#c40", ""),
+            _ => ("#345", ""),
+        };
+        let wider = if Some(number) == start { 3 } else { 1 };
+        let _ = writeln!(
+            out,
+            r##"<rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="9" fill="#f4f7fb" stroke="{stroke}" stroke-width="{wider}"{dash}/>"##,
+            x - w,
+            y - h,
+            2.0 * w,
+            2.0 * h
+        );
+        let up = if node.clip.is_empty() { 4.5 } else { -2.5 };
+        let _ = writeln!(out, r#"<text x="{x:.1}" y="{:.1}" font-weight="bold">{}</text>"#, y + up, escaped(&node.name));
+        if !node.clip.is_empty() {
+            let _ = writeln!(
+                out,
+                r##"<text x="{x:.1}" y="{:.1}" font-size="11" fill="#567">{}</text>"##,
+                y + 13.0,
+                escaped(&node.clip)
+            );
+        }
+    }
+    out.push_str(&labels);
+    out.push_str("</svg>\n");
+    out
+}
+
+fn nodes(source: &Source) -> Vec<Node> {
+    let clip = |state: &State| {
+        // A clip of the state's own name is not written twice.
+        let own = state.clip.as_ref().map_or("", |clip| clip.get_ref());
+        let with = state.blend.as_ref().map_or(String::new(), |blend| format!(" to {}", blend.get_ref().clip));
+        let speed = state.speed.filter(|&speed| speed != 1.0).map_or(String::new(), |speed| format!(" at {speed}"));
+        format!("{own}{with}{speed}")
+    };
+    let count = source.states.len();
+    let named: Vec<(String, String)> = source.states.iter().map(|state| (state.name.get_ref().clone(), clip(state))).collect();
+    let width = |(name, clip): &(String, String)| name.chars().count().max(clip.chars().count()) as f64 * LETTER + 24.0;
+    let widest = named.iter().map(width).fold(80.0, f64::max);
+    // Neighbours on the circle are a state and a label apart.
+    let radius = if count == 1 { 0.0 } else { (widest + 110.0) / (2.0 * (PI / count as f64).sin()) };
+    let angle = |index: usize| TAU * index as f64 / count as f64 - if count == 2 { PI } else { FRAC_PI_2 };
+    let node = |(index, (name, clip)): (usize, (String, String))| {
+        let half = [width(&(name.clone(), clip.clone())) / 2.0, STATE / 2.0];
+        Node { at: [radius * angle(index).cos() * 1.15, radius * angle(index).sin()], name, clip, half }
+    };
+    named.into_iter().enumerate().map(node).collect()
+}
+
+/// A cause in a few words.
+fn cause(row: &Transition) -> String {
+    let number = |sign: &str, (name, threshold): &(String, i16)| format!("{name} {sign} {threshold}");
+    let text = |prefix: &str, name: &String| format!("{prefix}{name}");
+    row.end
+        .map(|_| "end".to_string())
+        .or_else(|| row.input.as_ref().map(|name| text("", name)))
+        .or_else(|| row.released.as_ref().map(|name| text("no ", name)))
+        .or_else(|| row.event.as_ref().map(|name| text("event ", name)))
+        .or_else(|| row.above.as_ref().map(|above| number(">", above)))
+        .or_else(|| row.below.as_ref().map(|below| number("<", below)))
+        .unwrap_or_default()
+}
+
+/// Draws an arrow, and its label later, above all states.
+fn arrow(out: &mut String, labels: &mut String, from: &Node, to: &Node, causes: &[String]) {
+    let (a, b) = (from.at, to.at);
+    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+    let (path, middle) = if length < 1.0 {
+        // To itself: a loop on the side away from the centre.
+        let away = a[0].hypot(a[1]).max(1.0);
+        let [x, y] = if away > 1.0 { [a[0] / away, a[1] / away] } else { [0.0, -1.0] };
+        let top = [a[0] + x * (from.half[0] + 60.0), a[1] + y * (from.half[1] + 60.0)];
+        let (left, right) = ([top[0] - y * 40.0, top[1] + x * 40.0], [top[0] + y * 40.0, top[1] - x * 40.0]);
+        let (start, end) = (border(from, left), border(from, right));
+        let path = format!(
+            "M{:.1} {:.1}C{:.1} {:.1} {:.1} {:.1} {:.1} {:.1}",
+            start[0], start[1], left[0], left[1], right[0], right[1], end[0], end[1]
+        );
+        (path, [top[0] - x * 14.0, top[1] - y * 14.0])
+    } else {
+        let bend = [-(b[1] - a[1]) * BEND, (b[0] - a[0]) * BEND];
+        let over = [(a[0] + b[0]) / 2.0 + bend[0], (a[1] + b[1]) / 2.0 + bend[1]];
+        let (start, end) = (border(from, over), border(to, over));
+        let middle = [0, 1].map(|axis| 0.25 * start[axis] + 0.5 * over[axis] + 0.25 * end[axis]);
+        let path = format!("M{:.1} {:.1}Q{:.1} {:.1} {:.1} {:.1}", start[0], start[1], over[0], over[1], end[0], end[1]);
+        (path, middle)
+    };
+    let _ = writeln!(out, r##"<path d="{path}" fill="none" stroke="#345" marker-end="url(#head)"/>"##);
+    let top = middle[1] - LINE * (causes.len() - 1) as f64 / 2.0 + 4.0;
+    for (line, cause) in causes.iter().enumerate() {
+        let _ = writeln!(
+            labels,
+            r##"<text x="{:.1}" y="{:.1}" font-size="12" fill="#024" stroke="#fff" stroke-width="4" paint-order="stroke">{}</text>"##,
+            middle[0],
+            top + LINE * line as f64,
+            escaped(cause)
+        );
+    }
+}
+
+/// Where the way from a state's middle to a point leaves the state.
+fn border(node: &Node, towards: Point) -> Point {
+    let way = [towards[0] - node.at[0], towards[1] - node.at[1]];
+    let part = [0, 1].map(|axis| if way[axis] == 0.0 { f64::INFINITY } else { (node.half[axis] + 3.0) / way[axis].abs() });
+    let part = part[0].min(part[1]).min(1.0);
+    [node.at[0] + way[0] * part, node.at[1] + way[1] * part]
+}
+
+/// Text without what means something in SVG.
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars().filter(|c| !c.is_control()) {
+        match c {
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '&' => out.push_str("&amp;"),
+            c => out.push(c),
+        }
+    }
+    out
+}

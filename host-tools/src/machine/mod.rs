@@ -1,0 +1,10 @@
+//! State machines of `pantin-animator`: from a text file to the table in a bank, and a picture of their states.
+//!
+//! The text is TOML; `firmware/animator/MACHINE.md` describes it.
+
+pub mod graph;
+mod source;
+mod table;
+
+pub use source::Source;
+pub use table::{Made, make};

@@ -1,0 +1,342 @@
+//! A state machine's table: `firmware/animator/MACHINE.md`.
+
+use super::source::{Kind, Source, Start, State, Transition, line};
+use crate::import::text::shown;
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use pantin::codec::crc;
+use pantin::{Bank, Clip};
+use pantin_animator::machine::{INPUTS, PARAMETERS, STATES, Table, VERSION};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Bytes that a name may have.
+const NAME_BYTES: usize = 255;
+/// The length of a transition that states none.
+const SECONDS: f64 = 0.25;
+/// In place of a second clip, or of a first frame: none, and in step.
+const NONE: u8 = 255;
+/// Frames of a transition, and the greatest first frame.
+const MOST_FRAMES: u32 = 255;
+const MOST_START: u32 = 254;
+
+/// A table, and what its user should know.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// Its bytes, as a bank's section holds them.
+    pub table: Vec<u8>,
+    /// What is odd about it, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// The clips of a bank by their names.
+struct Clips<'b> {
+    all: Vec<(&'b str, Clip<'b>)>,
+}
+
+impl<'b> Clips<'b> {
+    fn of(bank: &Bank<'b>) -> Result<Clips<'b>> {
+        let open = |entry: pantin::BankEntry<'b>| {
+            let clip = bank.open(&entry).with_context(|| format!("clip {}", shown(Some(entry.name().as_bytes()))))?;
+            Ok((entry.name(), clip))
+        };
+        Ok(Clips { all: bank.entries().map(open).collect::<Result<_>>()? })
+    }
+
+    fn find(&self, name: &str) -> Result<u8> {
+        let found = self.all.iter().position(|(other, _)| *other == name);
+        let names: Vec<String> = self.all.iter().map(|(name, _)| shown(Some(name.as_bytes()))).collect();
+        let found = found.with_context(|| format!("the bank has no clip {}; it has {}", quoted(name), names.join(", ")))?;
+        let index = u8::try_from(found).ok().filter(|&index| index != NONE);
+        index.with_context(|| format!("clip {} is number {found} of the bank; a state machine uses the first 255", quoted(name)))
+    }
+}
+
+fn quoted(name: &str) -> String {
+    shown(Some(name.as_bytes()))
+}
+
+/// Builds the table of a machine for the clips of a bank. Errors begin with the line of `text`, from which `source` was read.
+pub fn make(source: &Source, text: &str, bank: &Bank<'_>) -> Result<Made> {
+    let clips = Clips::of(bank)?;
+    let mut names = BTreeMap::new();
+    let at = |span: Range<usize>| line(text, &span);
+    ensure!(!source.states.is_empty(), "a state machine has at least one [[state]]");
+    ensure!(source.states.len() <= STATES, "{} states; at most {STATES}", source.states.len());
+    ensure!(source.parameters.len() <= PARAMETERS, "{} parameters; at most {PARAMETERS}", source.parameters.len());
+    for (index, state) in source.states.iter().enumerate() {
+        let (name, place) = (state.name.get_ref(), at(state.name.span()));
+        check_name(name).with_context(|| place.to_string())?;
+        ensure!(names.insert(name.as_str(), index as u8).is_none(), "{place}: two states are called {}", quoted(name));
+    }
+    let mut parameters: Vec<&str> = Vec::new();
+    for parameter in &source.parameters {
+        let (name, place) = (parameter.name.get_ref(), at(parameter.name.span()));
+        check_name(name).with_context(|| place.to_string())?;
+        ensure!(!parameters.contains(&name.as_str()), "{place}: two parameters are called {}", quoted(name));
+        let [least, most] = parameter.range;
+        ensure!(least < most, "{place}: parameter {}: the range {least} to {most} is empty", quoted(name));
+        let first = parameter.first.unwrap_or(least);
+        ensure!(
+            (least..=most).contains(&first),
+            "{place}: parameter {}: {first} is outside its range {least} to {most}",
+            quoted(name)
+        );
+        parameters.push(name);
+    }
+    let mut maker = Maker { clips, names, parameters, inputs: Vec::new(), warnings: Vec::new() };
+    let first = match &source.start {
+        None => 0,
+        Some(start) => maker.state(start.get_ref()).map_err(|error| anyhow!("{}: start: {error}", at(start.span())))?,
+    };
+    let mut rows = Vec::new();
+    for entry in &source.any {
+        let row = maker.transition(entry.get_ref(), source, None);
+        rows.push(row.map_err(|error| anyhow!("{}: {error:#}", at(entry.span())))?);
+    }
+    let mut states = Vec::new();
+    for state in &source.states {
+        let place = at(state.name.span());
+        let begin = rows.len();
+        states.push(maker.state_row(state, begin, &at).map_err(|error| anyhow!("{error:#}"))?);
+        for entry in &state.transitions {
+            let row = maker.transition(entry.get_ref(), source, Some(state));
+            let row = row.map_err(|error| anyhow!("{}: state {}: {error:#}", at(entry.span()), quoted(state.name.get_ref())))?;
+            let same = rows[begin..].iter().any(|other: &[u8; 8]| other[..4] == row[..4]);
+            ensure!(
+                !same,
+                "{}: state {}: two transitions have this cause, and only the first would happen",
+                at(entry.span()),
+                quoted(state.name.get_ref())
+            );
+            rows.push(row);
+        }
+        maker.check_end(state, source, place)?;
+    }
+    for (index, entry) in source.any.iter().enumerate() {
+        let same = rows[..index].iter().any(|other| other[..4] == rows[index][..4]);
+        ensure!(!same, "{}: two transitions from any state have this cause, and only the first would happen", at(entry.span()));
+    }
+    ensure!(rows.len() <= MOST_FRAMES as usize, "{} transitions; at most {MOST_FRAMES}", rows.len());
+    ensure!(maker.inputs.len() <= INPUTS, "{} inputs; at most {INPUTS}", maker.inputs.len());
+    let mut out = vec![
+        VERSION,
+        states.len() as u8,
+        rows.len() as u8,
+        maker.parameters.len() as u8,
+        maker.inputs.len() as u8,
+        first,
+        source.any.len() as u8,
+        0,
+    ];
+    states.iter().chain(&rows).for_each(|row| out.extend(row));
+    for parameter in &source.parameters {
+        let [least, most] = parameter.range;
+        [least, most, parameter.first.unwrap_or(least)].iter().for_each(|value| out.extend(value.to_le_bytes()));
+    }
+    let state_names = source.states.iter().map(|state| state.name.get_ref().as_str());
+    for name in state_names.chain(maker.parameters.iter().copied()).chain(maker.inputs.iter().map(String::as_str)) {
+        out.push(name.len() as u8);
+        out.extend(name.as_bytes());
+    }
+    out.extend(crc::of(&out).to_le_bytes());
+    match Table::new(&out, bank.len()) {
+        Ok(_) => {}
+        Err(pantin_animator::machine::TableError::Unreachable(state)) => {
+            let state = &source.states[usize::from(state)].name;
+            bail!("{}: no transition leads to state {}", at(state.span()), quoted(state.get_ref()));
+        }
+        Err(error) => bail!("{error}"),
+    }
+    Ok(Made { table: out, warnings: maker.warnings })
+}
+
+fn check_name(name: &str) -> Result<()> {
+    ensure!(!name.is_empty(), "a name is empty");
+    ensure!(name.len() <= NAME_BYTES, "the name {} has {} bytes; at most {NAME_BYTES}", quoted(name), name.len());
+    Ok(())
+}
+
+struct Maker<'s, 'b> {
+    clips: Clips<'b>,
+    /// States and their indices.
+    names: BTreeMap<&'s str, u8>,
+    parameters: Vec<&'s str>,
+    /// In the order in which transitions name them.
+    inputs: Vec<String>,
+    warnings: Vec<String>,
+}
+
+impl<'s> Maker<'s, '_> {
+    fn state(&self, name: &str) -> Result<u8> {
+        let names: Vec<String> = self.names.keys().map(|name| quoted(name)).collect();
+        self.names.get(name).copied().with_context(|| format!("no state {}; there are {}", quoted(name), names.join(", ")))
+    }
+
+    fn parameter(&self, name: &str) -> Result<u8> {
+        let found = self.parameters.iter().position(|other| *other == name);
+        found.map(|index| index as u8).with_context(|| format!("no [[parameter]] {}", quoted(name)))
+    }
+
+    fn input(&mut self, name: &str) -> Result<u8> {
+        check_name(name)?;
+        let found = self.inputs.iter().position(|other| other == name);
+        Ok(found.unwrap_or_else(|| {
+            self.inputs.push(name.into());
+            self.inputs.len() - 1
+        }) as u8)
+    }
+
+    /// The clip that a state plays: its index.
+    fn clip_of(&self, state: &State) -> Result<u8> {
+        let name = state.clip.as_ref().map_or(state.name.get_ref(), |clip| clip.get_ref());
+        self.clips.find(name)
+    }
+
+    fn state_row(&mut self, state: &'s State, first: usize, at: &dyn Fn(Range<usize>) -> usize) -> Result<[u8; 8]> {
+        let name = quoted(state.name.get_ref());
+        let place = at(state.clip.as_ref().unwrap_or(&state.name).span());
+        let clip = self.clip_of(state).map_err(|error| anyhow!("{place}: state {name}: {error}"))?;
+        let (mut other, mut parameter) = (NONE, 0);
+        if let Some(blend) = &state.blend {
+            let place = at(blend.span());
+            let blend = blend.get_ref();
+            let named = self.clips.find(&blend.clip).and_then(|clip| Ok((clip, self.parameter(&blend.by)?)));
+            (other, parameter) = named.map_err(|error| anyhow!("{place}: state {name}: blend: {error}"))?;
+            let [own, its] = [clip, other].map(|index| &self.clips.all[usize::from(index)]);
+            if own.1.form().check(its.1.form_ref()).is_err() {
+                bail!(
+                    "{place}: state {name}: the clips {} and {} have different forms; `pantin convert --same-form` makes them equal",
+                    quoted(own.0),
+                    quoted(its.0)
+                );
+            }
+            let steps =
+                |clip: &Clip| clip.event_id(pantin::LEFT_FOOT_DOWN).is_some() || clip.event_id(pantin::RIGHT_FOOT_DOWN).is_some();
+            if !steps(&own.1) || !steps(&its.1) {
+                self.warnings.push(format!(
+                    "state {name}: without events of footsteps in both clips the second shows the frame of the same number; `pantin convert --footsteps` finds them"
+                ));
+            }
+        }
+        let speed = state.speed.unwrap_or(1.0);
+        ensure!((-4.0..=4.0).contains(&speed), "{place}: state {name}: the speed {speed} is outside -4 to 4");
+        let [low, high] = ((speed * 256.0).round() as i16).to_le_bytes();
+        let [first, count] = [first, state.transitions.len()].map(|number| u8::try_from(number).unwrap_or(u8::MAX));
+        Ok([clip, other, parameter, 0, low, high, first, count])
+    }
+
+    /// A row of the transitions; `from` is `None` for any state.
+    fn transition(&mut self, row: &Transition, source: &'s Source, from: Option<&'s State>) -> Result<[u8; 8]> {
+        let to = self.state(&row.to)?;
+        let (cause, argument, threshold) = self.cause(row, source, from)?;
+        let target = &source.states[usize::from(to)];
+        let clip = self.clips.all[usize::from(self.clip_of(target).with_context(|| format!("state {}", quoted(&row.to)))?)].1;
+        let (kind, frames) = match row.kind {
+            Kind::Cut => {
+                ensure!(row.frames.is_none() && row.seconds.is_none(), "a cut has no length");
+                (0, 0)
+            }
+            kind => (if kind == Kind::Inertialized { 1 } else { 2 }, length(row, &clip)?),
+        };
+        let start = match &row.start {
+            Start::Named(name) if name == "in-step" => NONE,
+            Start::Named(name) => bail!("start: expected a frame's number or \"in-step\", found {}", quoted(name)),
+            &Start::Frame(frame) => {
+                ensure!(frame <= MOST_START, "start: frame {frame}; at most {MOST_START}");
+                ensure!(
+                    frame < clip.frames(),
+                    "start: frame {frame}; the clip of state {} has {}",
+                    quoted(&row.to),
+                    clip.frames()
+                );
+                frame as u8
+            }
+        };
+        let [low, high] = threshold.to_le_bytes();
+        Ok([cause, argument, low, high, to, kind, frames, start])
+    }
+
+    /// A cause, its argument and its threshold.
+    fn cause(&mut self, row: &Transition, source: &Source, from: Option<&State>) -> Result<(u8, u8, i16)> {
+        let given = [
+            row.end.is_some(),
+            row.input.is_some(),
+            row.released.is_some(),
+            row.event.is_some(),
+            row.above.is_some(),
+            row.below.is_some(),
+        ];
+        let count = given.into_iter().filter(|given| *given).count();
+        ensure!(count == 1, "a transition has one of end, input, released, event, above and below; this one has {count}");
+        if let Some(end) = row.end {
+            ensure!(end, "end = false is no cause");
+            if let Some(from) = from {
+                let clip = &self.clips.all[usize::from(self.clip_of(from)?)];
+                ensure!(!clip.1.looped(), "the clip {} is a loop, which has no end", quoted(clip.0));
+            }
+            return Ok((0, 0, 0));
+        }
+        if let Some(name) = &row.input {
+            return Ok((1, self.input(name)?, 0));
+        }
+        if let Some(name) = &row.released {
+            return Ok((2, self.input(name)?, 0));
+        }
+        if let Some(name) = &row.event {
+            return Ok((3, self.event(name, source, from)?, 0));
+        }
+        let (cause, (name, threshold)) = match (&row.above, &row.below) {
+            (Some(above), _) => (4, above),
+            (_, Some(below)) => (5, below),
+            _ => bail!("a transition has no cause"),
+        };
+        Ok((cause, self.parameter(name)?, *threshold))
+    }
+
+    /// The id of an event in the clips of the states that a transition leaves, which must be one.
+    fn event(&self, name: &str, source: &Source, from: Option<&State>) -> Result<u8> {
+        let states = from.map_or_else(|| source.states.iter().collect(), |from| vec![from]);
+        let mut ids: Vec<u32> = Vec::new();
+        for state in states {
+            let (_, clip) = &self.clips.all[usize::from(self.clip_of(state)?)];
+            ids.extend(clip.event_id(name).filter(|id| !ids.contains(id)));
+        }
+        match ids[..] {
+            [id] => u8::try_from(id).map_err(|_| anyhow!("event {} has the id {id}; at most 255", quoted(name))),
+            [] => bail!("no clip that plays there has an event {}; `pantin info CLIP` prints a clip's events", quoted(name)),
+            _ => bail!("event {} has different ids in the clips; a transition of each state names it there", quoted(name)),
+        }
+    }
+
+    /// Warns of a state at whose end the figure stands still.
+    fn check_end(&mut self, state: &State, source: &Source, place: usize) -> Result<()> {
+        let (name, clip) = &self.clips.all[usize::from(self.clip_of(state)?)];
+        if !clip.looped() && state.transitions.is_empty() && source.any.is_empty() {
+            self.warnings.push(format!(
+                "line {place}: state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",
+                quoted(state.name.get_ref()),
+                quoted(name)
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The length of a transition in frames of the clip that it leads to.
+fn length(row: &Transition, clip: &Clip) -> Result<u8> {
+    let frames = match (row.frames, row.seconds) {
+        (Some(_), Some(_)) => bail!("frames and seconds: a transition has one length"),
+        (Some(frames), None) => frames,
+        (None, seconds) => {
+            let seconds = seconds.unwrap_or(SECONDS);
+            let frames = (seconds * 1e9 / f64::from(clip.frame_time_ns())).round();
+            ensure!(frames.is_finite() && frames >= 0.0, "seconds: expected a time above 0, found {seconds}");
+            frames as u32
+        }
+    };
+    ensure!(
+        (1..=MOST_FRAMES).contains(&frames),
+        "a transition of {frames} frames; expected 1 to {MOST_FRAMES} (kind = \"cut\" has none)"
+    );
+    Ok(frames as u8)
+}

@@ -1,0 +1,261 @@
+//! `pantin machine`: a table in a bank that `pantin-animator` plays, a picture of it, and errors that name file and line.
+
+use pantin::Bank;
+use pantin_animator::machine::{Cause, Machine, SECTION, Table};
+use pantin_animator::{Animator, Transition, Workspace};
+use pantin_tools::encode::bank::{self, CheckedRig, Named};
+use pantin_tools::machine::{Source, graph, make};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::Arc;
+
+fn motions() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions")
+}
+
+/// A bank of the walk and the run in their committed clips, which have one rig.
+fn small_bank() -> Vec<u8> {
+    let named = |name: &str| {
+        let bytes = std::fs::read(motions().join(name).with_extension("ptn")).unwrap();
+        let rig: Arc<[u8]> = bank::rig_of(&bytes).unwrap().into();
+        let clip = bank::without_rig(&bytes, &CheckedRig::new(&rig).unwrap()).unwrap();
+        Named { name: name.into(), place: name.into(), clip, rig }
+    };
+    bank::encode(&[named("walk"), named("run")]).unwrap()
+}
+
+fn error(text: &str) -> String {
+    let bytes = small_bank();
+    let made = Source::parse(text).and_then(|source| make(&source, text, &Bank::new_checked(&bytes).unwrap()));
+    format!("{:#}", made.unwrap_err())
+}
+
+const SMALL: &str = r#"
+bank = "moves.ptb"
+start = "go"
+
+[[parameter]]
+name = "speed"
+range = [0, 100]
+first = 30
+
+[[any]]
+to = "stop"
+input = "halt"
+kind = "faded"
+frames = 7
+
+[[state]]
+name = "stop"
+clip = "walk"
+speed = 0.5
+transitions = [{ to = "go", input = "go", start = 3, seconds = 0.5 }, { to = "run", above = ["speed", 50], kind = "cut" }]
+
+[[state]]
+name = "go"
+clip = "walk"
+transitions = [{ to = "stop", released = "go" }]
+
+[[state]]
+name = "run"
+transitions = [{ to = "go", below = ["speed", 20], start = "in-step" }]
+"#;
+
+#[test]
+fn the_table_says_what_the_text_says() {
+    let bytes = small_bank();
+    let bank = Bank::new_checked(&bytes).unwrap();
+    let made = make(&Source::parse(SMALL).unwrap(), SMALL, &bank).unwrap();
+    assert!(made.warnings.is_empty(), "{:?}", made.warnings);
+    let table = Table::new(&made.table, bank.len()).unwrap();
+    let names: Vec<&str> = (0..table.states() as u8).map(|state| table.state_name(state)).collect();
+    assert_eq!(names, ["stop", "go", "run"]);
+    assert_eq!((table.parameter("speed"), table.input("halt"), table.input("go")), (Some(0), Some(0), Some(1)));
+    assert_eq!(Machine::new(table).state(), 1);
+    assert_eq!(Machine::new(table).get(0), 30);
+    let [stop, run] = [0, 2].map(|state| table.state(state).unwrap());
+    assert_eq!((stop.clip, stop.speed.to_num::<f64>(), run.clip), (0, 0.5, 1));
+    let row = |index: usize| table.transition(index).unwrap();
+    assert_eq!((row(0).cause, row(0).to, row(0).transition), (Cause::Input(0), 0, Transition::Faded(7)));
+    // Half a second in frames of the clip that it leads to.
+    let frames = (0.5e9 / f64::from(bank.clip("walk").unwrap().frame_time_ns())).round() as u8;
+    assert_eq!(
+        (row(1).cause, row(1).first_frame, row(1).transition),
+        (Cause::Input(1), Some(3), Transition::Inertialized(frames))
+    );
+    assert_eq!((row(2).cause, row(2).transition), (Cause::Above(0, 50), Transition::Cut));
+    assert_eq!((row(3).cause, row(3).to), (Cause::Released(1), 0));
+    assert_eq!((row(4).cause, row(4).first_frame), (Cause::Below(0, 20), None));
+}
+
+/// A bank that is already one with a machine gets the new one in its place; its clips stay.
+#[test]
+fn a_bank_holds_one_machine() {
+    let bytes = small_bank();
+    let one = bank::with_section(&bytes, SECTION, b"one").unwrap();
+    let two = bank::with_section(&one, SECTION, b"second").unwrap();
+    assert_eq!(two, bank::with_section(&bytes, SECTION, b"second").unwrap());
+    assert_eq!(&two[..bytes.len()], bytes);
+    assert!(bank::with_section(&bytes[..bytes.len() - 1], SECTION, b"").is_err());
+}
+
+#[test]
+fn what_is_wrong_is_named_with_its_line() {
+    let state = "[[state]]\nname = \"walk\"\n";
+    for (text, part) in [
+        (format!("{state}clip = \"fly\"\n"), "3: state `walk`: the bank has no clip `fly`; it has `walk`, `run`"),
+        (format!("{state}transitions = [{{ to = \"x\", input = \"a\" }}]\n"), "3: state `walk`: no state `x`; there are `walk`"),
+        (format!("{state}transitions = [{{ to = \"walk\" }}]\n"), "3: state `walk`: a transition has one of end,"),
+        (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", end = true }}]\n"), "this one has 2"),
+        (format!("{state}transitions = [{{ to = \"walk\", end = true }}]\n"), "the clip `walk` is a loop, which has no end"),
+        (
+            format!("{state}transitions = [{{ to = \"walk\", event = \"clap\" }}]\n"),
+            "no clip that plays there has an event `clap`",
+        ),
+        (format!("{state}transitions = [{{ to = \"walk\", above = [\"v\", 1] }}]\n"), "no [[parameter]] `v`"),
+        (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", frames = 0 }}]\n"), "a transition of 0 frames"),
+        (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", frames = 256 }}]\n"), "a transition of 256 frames"),
+        (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", seconds = -1.0 }}]\n"), "expected a time above 0"),
+        (
+            format!("{state}transitions = [{{ to = \"walk\", input = \"a\", kind = \"cut\", frames = 3 }}]\n"),
+            "a cut has no length",
+        ),
+        (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", start = 160 }}]\n"), "start: frame 160"),
+        (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", start = \"here\" }}]\n"), "\"in-step\", found `here`"),
+        (
+            format!(
+                "{state}transitions = [{{ to = \"walk\", input = \"a\" }}, {{ to = \"walk\", input = \"a\", frames = 3 }}]\n"
+            ),
+            "two transitions have this cause",
+        ),
+        (format!("{state}{state}"), "4: two states are called `walk`"),
+        (format!("{state}[[state]]\nname = \"run\"\n"), "4: no transition leads to state `run`"),
+        (format!("{state}speed = 5\n"), "the speed 5 is outside -4 to 4"),
+        (format!("{state}speed = nan\n"), "outside -4 to 4"),
+        (format!("start = \"run\"\n{state}"), "1: start: no state `run`"),
+        (format!("{state}[[parameter]]\nname = \"v\"\nrange = [3, 3]\n"), "4: parameter `v`: the range 3 to 3 is empty"),
+        (format!("{state}[[parameter]]\nname = \"v\"\nrange = [3, 4]\nfirst = 5\n"), "5 is outside its range 3 to 4"),
+        (format!("{state}blend = {{ clip = \"run\", by = \"v\" }}\n"), "3: state `walk`: blend: no [[parameter]] `v`"),
+        ("[[state]]\nname = \"\"\nclip = \"walk\"\n".into(), "2: a name is empty"),
+        ("[[state]]\nname = 3\n".into(), "2: "),
+        ("[[state]]\nname = \"walk\"\ncolour = 3\n".into(), "3: unknown field `colour`"),
+        ("[[state]\n".into(), "1: "),
+        (String::new(), "missing field `state`"),
+        ("state = []\n".into(), "at least one [[state]]"),
+    ] {
+        let error = error(&text);
+        assert!(error.contains(part), "{text}\n{error}");
+    }
+}
+
+fn pantin(arguments: &[&std::ffi::OsStr]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pantin")).args(arguments).output().unwrap()
+}
+
+/// The committed character: as a program it is steered through each of its states.
+#[test]
+fn our_character_goes_through_all_its_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let [library, bank, graph] = ["library.ptb", "character.ptb", "character.svg"].map(|name| folder.path().join(name));
+    let (source, toml) = (motions().join("library"), motions().join("character.toml"));
+    let convert =
+        ["convert".as_ref(), source.as_os_str(), "--same-form".as_ref(), "--effort".as_ref(), "fast".as_ref(), "-o".as_ref()];
+    let out = pantin(&[&convert[..], &[library.as_os_str()]].concat());
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let machine = ["machine".as_ref(), toml.as_os_str(), "--bank".as_ref(), library.as_os_str(), "-o".as_ref(), bank.as_os_str()];
+    let out = pantin(&[&machine[..], &["--graph".as_ref(), graph.as_os_str()]].concat());
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(out.status.success() && said.contains("15 states, 28 transitions") && !said.contains("warning"), "{said}");
+    let picture = std::fs::read_to_string(&graph).unwrap();
+    let document = roxmltree::Document::parse(&picture).unwrap();
+    let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
+    assert!(["idle", "get_up", "no dance", "trip"].iter().all(|text| texts.contains(text)), "{texts:?}");
+    let bytes = std::fs::read(&bank).unwrap();
+    let (bank, table) = (Bank::new_checked(&bytes).unwrap(), Table::of_bank(&bytes).unwrap());
+    let mut machine = Machine::new(table);
+    let mut memory = Workspace::<80, 100>::new();
+    let mut animator = Animator::new(machine.first_clip(&bank).unwrap(), memory.lend()).unwrap();
+    let mut visited = vec![machine.state()];
+    // Inputs held or fired, and for how many pictures.
+    let script: [(&[&str], &str, usize); 21] = [
+        (&["go"], "", 90),
+        (&["go", "fast"], "", 60),
+        (&["go"], "", 40),
+        (&[], "", 90),
+        (&[], "jump", 80),
+        (&[], "wave", 90),
+        (&[], "bow", 90),
+        (&[], "left", 60),
+        (&[], "right", 60),
+        (&["dance"], "", 90),
+        (&[], "", 40),
+        (&[], "sit", 90),
+        (&[], "stand", 70),
+        (&["go"], "", 60),
+        (&["go"], "trip", 60),
+        (&["go"], "", 40),
+        (&[], "", 120),
+        (&["go"], "jump", 40),
+        (&[], "", 90),
+        (&[], "wave", 20),
+        (&[], "", 90),
+    ];
+    for (held, fired, pictures) in script {
+        for input in ["go", "fast", "dance"] {
+            machine.hold(table.input(input).unwrap(), held.contains(&input));
+        }
+        if let Some(input) = table.input(fired) {
+            machine.fire(input);
+        }
+        for _ in 0..pictures {
+            let updated = machine.update(33_333, &bank, &mut animator, None).unwrap();
+            visited.extend(updated.entered);
+        }
+    }
+    let mut names: Vec<&str> = visited.iter().map(|&state| table.state_name(state)).collect();
+    assert_eq!(names[..6], ["idle", "start", "walk", "run", "walk", "stop"]);
+    assert_eq!(*names.last().unwrap(), "idle");
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), table.states(), "{names:?}");
+}
+
+#[test]
+fn the_command_refuses_what_it_cannot_do_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let bank = put("moves.ptb", &small_bank());
+    let good = put("good.toml", SMALL.as_bytes());
+    let run = |arguments: &[&str]| {
+        let out = Command::new(env!("CARGO_BIN_EXE_pantin")).arg("machine").args(arguments).current_dir(folder.path()).output();
+        let out = out.unwrap();
+        (out.status.code(), String::from_utf8_lossy(&out.stderr).into_owned())
+    };
+    put("lone.toml", b"[[state]]\nname = \"walk\"\n");
+    put("line.toml", b"bank = \"moves.ptb\"\n[[state]]\nname = \"fly\"\n");
+    put("clip.ptb", &std::fs::read(motions().join("walk.ptn")).unwrap());
+    put("bad.toml", b"\xff\xfe");
+    for (arguments, code, part) in [
+        (&["lone.toml", "-o", "a.ptb"][..], 1, "lone.toml: no bank; write `bank = \"FILE.ptb\"`"),
+        (&["line.toml", "-o", "a.ptb"], 1, "line.toml:3: state `fly`: the bank has no clip `fly`"),
+        (&["lone.toml", "--bank", "clip.ptb", "-o", "a.ptb"], 1, "clip.ptb: not a bank"),
+        (&["bad.toml", "-o", "a.ptb"], 1, "bad.toml: not text"),
+        (&["moves.ptb", "-o", "a.ptb"], 1, "moves.ptb: a bank; the state machine is a .toml file"),
+        (&["good.toml", "-o", "moves.ptb"], 1, "moves.ptb"),
+        (&["good.toml", "-o", "a.bvh"], 1, "a.bvh"),
+        (&["good.toml", "-o", "a.ptb", "--graph", "a.png"], 1, "the graph is written as .svg"),
+        (&["good.toml"], 2, "--output"),
+    ] {
+        let (got, said) = run(arguments);
+        assert!(got == Some(code) && said.contains(part), "{arguments:?}: {said}");
+        assert!(!folder.path().join("a.ptb").exists());
+    }
+    assert_eq!(std::fs::read(&bank).unwrap(), small_bank());
+    assert_eq!(run(&["good.toml", "-o", "a.ptb"]).0, Some(0));
+    assert!(good.exists() && Table::of_bank(&std::fs::read(folder.path().join("a.ptb")).unwrap()).is_ok());
+    let _ = graph::svg(&Source::parse(SMALL).unwrap());
+}
