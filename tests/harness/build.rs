@@ -63,6 +63,35 @@ impl Firmware {
 
     /// Builds a program with features of its package, separated by commas.
     pub fn featuring(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
+        Self::built(features, package, program, target, clips, Default::default())
+    }
+
+    /// Builds a program to give away: without a log for debug probes, and without paths of this machine. It is built in a folder of its own.
+    pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
+        let mut flags = vec![];
+        let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cargo"));
+        let cargo = std::env::var_os("CARGO_HOME").map(PathBuf::from).or(home);
+        let sources = cargo.map(|cargo| cargo.join("registry/src"));
+        for (from, to) in sources.map(|folder| (folder, "crates")).into_iter().chain([(paths::root(), "pantin")]) {
+            flags.push(format!("--remap-path-prefix={}={to}", from.display()));
+        }
+        let folder =
+            paths::firmware().join("target").join(if setup::is_from_source(target) { "released-core" } else { "released" });
+        let arguments = ["--locked", "--no-default-features", "--config", "profile.release.strip='debuginfo'"];
+        let environment = [("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f").into()), ("CARGO_TARGET_DIR", folder.into_os_string())];
+        let settings = (arguments.map(OsString::from).into(), environment.map(|(name, value)| (name.into(), value)).into());
+        Self::built(features, package, program, target, clips, settings)
+    }
+
+    /// `settings` are further arguments for cargo, and variables.
+    fn built(
+        features: &str,
+        package: &str,
+        program: &str,
+        target: &str,
+        clips: &[&Path],
+        settings: (Vec<OsString>, Vec<(OsString, OsString)>),
+    ) -> Result<Self> {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -76,8 +105,8 @@ impl Firmware {
             ["--release", "--package", package, "--bin", program, "--target", target, "--features", features].into_iter();
         let product = cargo(&Build {
             workspace: paths::firmware(),
-            arguments: arguments.map(OsString::from).chain(core.arguments).collect(),
-            environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).chain(core.environment).collect(),
+            arguments: arguments.map(OsString::from).chain(core.arguments).chain(settings.0).collect(),
+            environment: clip.into_iter().chain([("DEFMT_LOG".into(), log)]).chain(core.environment).chain(settings.1).collect(),
             product: program.into(),
         })?;
         let directory = tempfile::Builder::new().prefix("pantin-elf-").tempdir().context("cannot make a temporary folder")?;

@@ -1,6 +1,8 @@
 //! Emulators, screens and images of the firmware, for tests and for `cargo xtask`.
 
 pub mod build;
+#[cfg(feature = "full")]
+pub mod chip;
 pub mod clips;
 #[cfg(feature = "full")]
 pub mod conformance;
@@ -9,6 +11,8 @@ pub mod defmt_log;
 #[cfg(feature = "full")]
 pub mod differential;
 pub mod display;
+#[cfg(feature = "full")]
+pub mod download;
 #[cfg(feature = "full")]
 pub mod equal;
 #[cfg(feature = "full")]

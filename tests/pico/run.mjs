@@ -95,6 +95,8 @@ const hear = (byte) => {
 const told = [];
 line.onByte = (byte) => {
   if (request.messages) return request.usb ? undefined : hear(byte);
+  // At its own pace it sends the message of a panic, if anything.
+  if (!request.keys) return;
   told.push(byte);
   if (told[0] !== SHOWN) throw new Error(`the firmware sent 0x${byte.toString(16)} in place of a frame's number`);
   if (told.length < 5) return;

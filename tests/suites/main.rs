@@ -3,6 +3,7 @@
 mod conformance;
 mod differential;
 mod display;
+mod download;
 mod examples;
 mod face_display;
 mod gba;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use harness::qemu::BOARDS;
-use harness::{clips, paths, setup, uf2};
+use harness::{chip, clips, paths, setup, uf2};
 
 use crate::images::{self, Image};
 use xtask::packages::Package;
@@ -69,6 +69,7 @@ fn made(image: &Image, clips: &[&Path]) -> Result<[String; 5]> {
     let firmware = image.build(clips)?;
     let [flash, ram] = images::flash_and_ram(&firmware)?;
     let elf = std::fs::read(firmware.elf()).context("the image cannot be read")?;
+    chip::check(&image.package, &elf)?;
     if image.package == "pico" {
         write(&format!("{}.uf2", image.name), &uf2::of_elf(&elf).with_context(|| image.name.clone())?)?;
     }

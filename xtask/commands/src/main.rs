@@ -5,6 +5,7 @@ mod bindings;
 mod blender;
 mod campaign;
 mod conformance;
+mod downloads;
 mod firmware;
 mod fuzz;
 mod gallery;
@@ -34,6 +35,7 @@ enum Command {
     Fuzz(fuzz::Fuzz),
     Gallery(gallery::Gallery),
     Gba(gba::Gba),
+    Images(downloads::Images),
     #[command(hide = true)]
     Log(log::Log),
     Miri(campaign::Miri),
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Command::Fuzz(fuzz) => fuzz.run(),
         Command::Gallery(gallery) => gallery.run(),
         Command::Gba(gba) => gba.run(),
+        Command::Images(images) => images.run(),
         Command::Log(log) => log.run(),
         Command::Miri(miri) => miri.run(),
         Command::MutantsDifferential(differential) => differential.run(),

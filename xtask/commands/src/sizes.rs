@@ -13,7 +13,7 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use harness::size_tables::{DOCUMENTS, filled};
 use harness::sizes::{FREE, Sizes};
-use harness::{paths, stack};
+use harness::{chip, paths, stack};
 use pantin_tools::output::write_whole;
 
 use crate::images;
@@ -91,6 +91,8 @@ fn measured(calls: bool) -> Result<Sizes> {
     for board in images::boards(&[])? {
         for image in images::of(&board) {
             let firmware = image.build(&[])?;
+            let elf = std::fs::read(firmware.elf()).context("the image cannot be read")?;
+            chip::check(&image.package, &elf)?;
             let [flash, ram] = images::flash_and_ram(&firmware)?;
             let stack = stack::worst(firmware.elf()).with_context(|| image.name.clone())?;
             if calls {

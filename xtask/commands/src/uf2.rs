@@ -11,6 +11,7 @@ use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use harness::build::Firmware;
+use harness::download::DISPLAYS;
 use harness::{clips, image, rp2040, uf2};
 
 /// Makes a file to drag onto a board's drive
@@ -22,7 +23,7 @@ pub struct Uf2 {
     #[arg(long, value_name = "FILE")]
     clip: Vec<PathBuf>,
     /// Its display
-    #[arg(long, default_value = DISPLAYS[0], value_parser = PossibleValuesParser::new(DISPLAYS))]
+    #[arg(long, default_value = DISPLAYS[0].name, value_parser = PossibleValuesParser::new(DISPLAYS.map(|display| display.name)))]
     display: String,
     /// Keep clips in a reserved part of the flash, which `pantin update` and `pantin flash-image` replace
     #[arg(long)]
@@ -38,10 +39,6 @@ enum Board {
     Pico,
 }
 
-/// The displays: docs/BOARDS.md. The first is that of an image without a feature for another.
-const DISPLAYS: [&str; 8] =
-    ["ssd1306", "sh1106", "st7789", "st7789-135x240", "st7789-170x320", "st7789-240x320", "ili9341", "gc9a01"];
-
 impl Uf2 {
     /// Builds the program and writes the file.
     pub fn run(self) -> Result<()> {
@@ -49,9 +46,9 @@ impl Uf2 {
         let clips: Vec<&Path> = self.clip.iter().map(PathBuf::as_path).collect();
         // Our own come with faces.
         let face = if clips.is_empty() { "face" } else { clips::feature(&clips)? };
-        let display = if self.display == DISPLAYS[0] { "" } else { &self.display };
+        let display = DISPLAYS.iter().find(|display| display.name == self.display).map_or("", |display| display.feature);
         let update = if self.update { "update" } else { "" };
-        let firmware = Firmware::featuring(&[face, display, update, "usb"].join(","), "pico", "pico", rp2040::TARGET, &clips)?;
+        let firmware = Firmware::released(&[face, display, update, "usb"].join(","), "pico", "pico", rp2040::TARGET, &clips)?;
         let elf = std::fs::read(firmware.elf()).context("the program cannot be read")?;
         let file = uf2::of_elf(&elf)?;
         let out = self.out.unwrap_or("pico.uf2".into());

@@ -5,7 +5,7 @@
 mod board;
 mod flash;
 mod panic;
-#[cfg(feature = "update")]
+#[cfg(any(feature = "update", feature = "link"))]
 mod uart_rx;
 
 use esp_hal::clock::CpuClock;

@@ -8,7 +8,7 @@ mod flash;
 mod leds;
 mod panic;
 mod serial;
-#[cfg(feature = "update")]
+#[cfg(any(feature = "update", feature = "link"))]
 mod uart_rx;
 mod watchdog;
 

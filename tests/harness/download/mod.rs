@@ -1,0 +1,214 @@
+//! Images to flash a board with that one need not build: for each board and display a file as the board takes it.
+
+mod page;
+mod wires;
+
+use std::fmt::Write;
+
+use anyhow::{Context, Result, ensure};
+use object::Endianness;
+use object::elf::{FileHeader32, PT_LOAD};
+use object::read::elf::{ElfFile, ProgramHeader};
+use sha2::{Digest, Sha256};
+
+use crate::build::Firmware;
+use crate::{chip, gba, uf2};
+
+pub use page::page;
+pub use wires::{BOARDS, Board, Bus, Wiring};
+
+/// A display that an image is for.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown {
+    /// The feature of the boards' crates; none for the SSD1306.
+    pub feature: &'static str,
+    /// As it is in a file's name.
+    pub name: &'static str,
+    /// As makers know it.
+    pub title: &'static str,
+    /// How it is connected.
+    pub bus: Bus,
+}
+
+/// The displays by name: docs/BOARDS.md.
+pub const DISPLAYS: [Shown; 8] = [
+    Shown { feature: "", name: "ssd1306", title: "SSD1306, 128x64 (0.96\")", bus: Bus::I2c },
+    Shown { feature: "sh1106", name: "sh1106", title: "SH1106, 128x64 (1.3\")", bus: Bus::I2c },
+    Shown { feature: "st7789", name: "st7789", title: "ST7789, 240x240 (1.3\", 1.54\")", bus: Bus::Spi },
+    Shown { feature: "st7789-135x240", name: "st7789-135x240", title: "ST7789, 135x240 (1.14\")", bus: Bus::Spi },
+    Shown { feature: "st7789-170x320", name: "st7789-170x320", title: "ST7789, 170x320 (1.9\")", bus: Bus::Spi },
+    Shown { feature: "st7789-240x320", name: "st7789-240x320", title: "ST7789, 240x320 (2\", 2.4\")", bus: Bus::Spi },
+    Shown { feature: "ili9341", name: "ili9341", title: "ILI9341, 240x320 (2.4\", 2.8\")", bus: Bus::Spi },
+    Shown { feature: "gc9a01", name: "gc9a01", title: "GC9A01, round, 240x240 (1.28\")", bus: Bus::Spi },
+];
+
+/// How a board takes an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A file to drag onto the drive of the RP2040.
+    Uf2,
+    /// Intel HEX, to drag onto the drive of a debug chip.
+    Hex,
+    /// The flash's bytes from this address on.
+    Bin(u32),
+    /// The linked program, which `espflash` takes.
+    Elf,
+    /// A cartridge.
+    Gba,
+}
+
+impl Format {
+    /// The file name's extension.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Format::Uf2 => "uf2",
+            Format::Hex => "hex",
+            Format::Bin(_) => "bin",
+            Format::Elf => "elf",
+            Format::Gba => "gba",
+        }
+    }
+}
+
+/// An image of a board.
+#[derive(Clone, Copy, Debug)]
+pub struct Image {
+    /// The board.
+    pub board: &'static Board,
+    /// The program of the board's package.
+    pub program: &'static str,
+    /// Its display, unless the board has its own.
+    pub display: Option<Shown>,
+}
+
+/// A file of the folder.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// What it is.
+    pub image: Image,
+    /// Its name.
+    pub name: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// How many bytes of flash it takes.
+    pub flash: u64,
+}
+
+impl Board {
+    /// The images of a board: its program for each display, and its further programs for the first.
+    pub fn images(&'static self) -> Vec<Image> {
+        let image = |program, display| Image { board: self, program, display };
+        if self.wirings.is_empty() {
+            return vec![image(self.package, None)];
+        }
+        let displays = DISPLAYS.into_iter().filter(|display| self.wiring(display.bus).is_some());
+        let programs = displays.map(|display| image(self.package, Some(display)));
+        programs.chain(self.programs.iter().map(|program| image(program, Some(DISPLAYS[0])))).collect()
+    }
+
+    /// The wires of a display's bus, if the board has it.
+    pub fn wiring(&self, bus: Bus) -> Option<&'static Wiring> {
+        self.wirings.iter().find(|wiring| wiring.bus == Some(bus))
+    }
+}
+
+impl Image {
+    /// The file's name without extension.
+    fn stem(&self) -> String {
+        let name = if self.program == self.board.package { String::new() } else { format!("-{}", self.program) };
+        let display = self.display.map_or(String::new(), |display| format!("-{}", display.name));
+        format!("pantin-{}{name}{display}", self.board.package)
+    }
+
+    /// Builds it with its own clips.
+    pub fn build(&self) -> Result<File> {
+        let name = format!("{}.{}", self.stem(), self.board.format.extension());
+        let features = if self.program == self.board.package { self.board.features } else { "" };
+        let features = [features, self.display.map_or("", |display| display.feature)].join(",");
+        let Board { package, target, .. } = *self.board;
+        let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
+        let clips = if self.board.format == Format::Gba { gba::motions(folder.path())? } else { vec![] };
+        let clips: Vec<_> = clips.iter().map(std::path::PathBuf::as_path).collect();
+        let firmware = Firmware::released(&features, package, self.program, target, &clips).with_context(|| name.clone())?;
+        let flash = crate::image::loaded(firmware.elf())?;
+        let elf = std::fs::read(firmware.elf()).context("the program cannot be read")?;
+        chip::check(package, &elf)?;
+        let bytes = written(&elf, self.board.format).with_context(|| name.clone())?;
+        Ok(File { image: *self, name, bytes, flash })
+    }
+}
+
+impl File {
+    /// Its SHA-256.
+    pub fn sum(&self) -> String {
+        Sha256::digest(&self.bytes).iter().fold(String::new(), |mut text, byte| {
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+    }
+}
+
+/// The file `SHA256SUMS`, which `sha256sum --check` reads.
+pub fn sums(files: &[File]) -> String {
+    files.iter().map(|file| format!("{}  {}\n", file.sum(), file.name)).collect()
+}
+
+/// A linked program as the board takes it.
+fn written(elf: &[u8], format: Format) -> Result<Vec<u8>> {
+    match format {
+        Format::Uf2 => uf2::of_elf(elf),
+        Format::Hex => hex(elf),
+        Format::Bin(start) => bin(elf, start),
+        Format::Elf => Ok(elf.to_vec()),
+        Format::Gba => gba::of_elf(elf),
+    }
+}
+
+/// The parts of a program that are loaded, by their addresses in the flash.
+fn parts(elf: &[u8]) -> Result<Vec<(u32, &[u8])>> {
+    let file = ElfFile::<FileHeader32<Endianness>>::parse(elf).context("the program is no ELF file")?;
+    let mut parts = vec![];
+    for segment in file.elf_program_headers().iter().filter(|segment| segment.p_type(file.endian()) == PT_LOAD) {
+        let bytes = segment.data(file.endian(), elf).ok().context("a segment lies beyond the file")?;
+        // What lies in RAM alone has no bytes.
+        if !bytes.is_empty() {
+            parts.push((segment.p_paddr(file.endian()), bytes));
+        }
+    }
+    parts.sort_by_key(|(address, _)| *address);
+    ensure!(!parts.is_empty(), "the program is empty");
+    Ok(parts)
+}
+
+fn bin(elf: &[u8], start: u32) -> Result<Vec<u8>> {
+    let mut image = vec![];
+    for (address, bytes) in parts(elf)? {
+        let from = address.checked_sub(start).context("a segment lies before the flash")? as usize;
+        ensure!(from >= image.len() && from < 1 << 24, "a segment lies at {address:#010x}, which is not in the flash");
+        image.resize(from, 0xff);
+        image.extend(bytes);
+    }
+    Ok(image)
+}
+
+fn hex(elf: &[u8]) -> Result<Vec<u8>> {
+    const RECORD: usize = 16;
+    let (mut records, mut upper) = (vec![], None);
+    for (address, bytes) in parts(elf)? {
+        // Records do not cross a multiple of 64 KiB: their addresses begin at one of `RECORD`.
+        let mut at = address;
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let (line, after) = rest.split_at(rest.len().min(RECORD - at as usize % RECORD));
+            if upper != Some(at >> 16) {
+                upper = Some(at >> 16);
+                records.push(ihex::Record::ExtendedLinearAddress((at >> 16) as u16));
+            }
+            records.push(ihex::Record::Data { offset: at as u16, value: line.to_vec() });
+            at += line.len() as u32;
+            rest = after;
+        }
+    }
+    records.push(ihex::Record::EndOfFile);
+    Ok(ihex::create_object_file_representation(&records)?.into_bytes())
+}

@@ -1,0 +1,303 @@
+//! Which pin of a part goes to which pin of a board. A test compares the pins with those of the boards' crates and READMEs.
+
+use super::Format;
+
+/// How a display is connected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bus {
+    /// By two wires: SSD1306, SH1106.
+    I2c,
+    /// By five: the colour displays.
+    Spi,
+}
+
+/// The wires of a part.
+#[derive(Debug)]
+pub struct Wiring {
+    /// The part.
+    pub part: &'static str,
+    /// The bus, if the part is a display.
+    pub bus: Option<Bus>,
+    /// The part's pins, and the board's.
+    pub wires: &'static [[&'static str; 2]],
+    /// The file of the board's crate that sets the pins up, and the code that does, with `{}` in place of each pin.
+    pub source: [&'static str; 2],
+}
+
+/// A board that images are made for.
+#[derive(Debug)]
+pub struct Board {
+    /// Its package, and the name of its program.
+    pub package: &'static str,
+    /// Its folder under `firmware/boards`.
+    pub folder: &'static str,
+    /// Its name.
+    pub title: &'static str,
+    /// The Rust target.
+    pub target: &'static str,
+    /// How it takes an image.
+    pub format: Format,
+    /// Features of all of its images.
+    pub features: &'static str,
+    /// Programs beside that of the package's name, for the first display.
+    pub programs: &'static [&'static str],
+    /// How an image gets onto it, in HTML. `FILE` is the image.
+    pub flashing: &'static str,
+    /// The pins that a display is supplied from: 3.3 V and ground.
+    pub supply: [&'static str; 2],
+    /// The wires of each part. Without any, the display is the board's own.
+    pub wirings: &'static [Wiring],
+}
+
+impl Board {
+    /// How the board's crate names a pin.
+    pub fn spelled(&self, pin: &str) -> String {
+        match (self.package, pin) {
+            ("pico", _) => pin.replace("GP", "gpio"),
+            ("blackpill", _) => pin.replace("PA", "a.pa").replace("PB", "b.pb"),
+            // Schematic of the micro:bit v2.
+            ("microbit-v2", "P19") => "p0.p0_26".into(),
+            ("microbit-v2", "P20") => "p1.p1_00".into(),
+            _ => pin.into(),
+        }
+    }
+}
+
+const I2C_PART: &str = "SSD1306 or SH1106";
+const SPI_PART: &str = "colour display (BL, the light, goes to 3.3 V; a module without CS works too)";
+const BUTTONS: &str = "buttons to GND (optional)";
+const SERIAL: &str = "serial adapter, 3.3 V, 115200 baud (optional)";
+
+/// The boards that one can buy, and the Game Boy Advance.
+pub const BOARDS: [Board; 5] = [
+    Board {
+        package: "pico",
+        folder: "pico",
+        title: "Raspberry Pi Pico",
+        target: "thumbv6m-none-eabi",
+        format: Format::Uf2,
+        features: "face,update,usb",
+        programs: &["servo"],
+        flashing: "Hold BOOTSEL while you plug the board in, and drag <code>FILE</code> onto the drive RPI-RP2. The board's USB port is then a serial \
+                   port (<code>/dev/ttyACM0</code>, <code>COM3</code>): <code>cargo pantin update walk.ptn --to serial:/dev/ttyACM0</code> \
+                   gives it another clip.",
+        supply: ["3V3 (OUT)", "GND"],
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SDA", "GP4"], ["SCL", "GP5"]],
+                source: ["src/board.rs", "let (sda, scl) = (pins.{}.reconfigure(), pins.{}.reconfigure());"],
+            },
+            Wiring {
+                part: SPI_PART,
+                bus: Some(Bus::Spi),
+                wires: &[["CS", "GP17"], ["SCL (SCK)", "GP18"], ["SDA (MOSI)", "GP19"], ["DC", "GP20"], ["RES", "GP21"]],
+                source: ["src/board.rs", "parts.SPI0, (pins.{}, pins.{}, pins.{}, pins.{}, pins.{}), &mut resets"],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[["up", "GP10"], ["down", "GP11"], ["left", "GP12"], ["right", "GP13"], ["select", "GP14"]],
+                source: [
+                    "src/board.rs",
+                    "five_buttons([ pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
+                     pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
+                     pins.{}.into_pull_up_input().into_dyn_pin(), ])",
+                ],
+            },
+            Wiring {
+                part: SERIAL,
+                bus: None,
+                wires: &[["RX", "GP0"], ["TX", "GP1"]],
+                source: ["src/board.rs", "let (tx, rx) = (pins.{}.into_function(), pins.{}.into_function()"],
+            },
+            Wiring {
+                part: "servos (images pantin-pico-servo; supplied with 5 V of their own, with a common GND)",
+                bus: None,
+                wires: &[["left thigh", "GP6"], ["right thigh", "GP7"], ["left arm", "GP8"], ["right arm", "GP9"]],
+                source: [
+                    "src/bin/servo.rs",
+                    "legs.channel_a.output_to(pins.{}); legs.channel_b.output_to(pins.{}); \
+                     arms.channel_a.output_to(pins.{}); arms.channel_b.output_to(pins.{});",
+                ],
+            },
+        ],
+    },
+    Board {
+        package: "blackpill",
+        folder: "blackpill",
+        title: "STM32F411 \"Black Pill\"",
+        target: "thumbv7em-none-eabihf",
+        format: Format::Bin(0x0800_0000),
+        features: "face",
+        programs: &[],
+        flashing: "Hold BOOT0, press and release NRST, release BOOT0: the chip's boot loader is on the USB port. Then \
+                   <code>dfu-util -a 0 -s 0x08000000:leave -D FILE</code>, or STM32CubeProgrammer with the address 0x08000000.",
+        supply: ["3V3", "GND"],
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SCL", "PB6"], ["SDA", "PB7"]],
+                source: ["src/board.rs", "let pins = ({}.internal_pull_up(true), {}.internal_pull_up(true));"],
+            },
+            Wiring {
+                part: SPI_PART,
+                bus: Some(Bus::Spi),
+                wires: &[["CS", "PA4"], ["SCL (SCK)", "PA5"], ["SDA (MOSI)", "PA7"], ["DC", "PB0"], ["RES", "PB1"]],
+                source: ["src/board.rs", "parts.SPI1, ({}, {}, {}, {}, {}), &mut clocks"],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up", "PB12"],
+                    ["down", "PB13"],
+                    ["left", "PB14"],
+                    ["right", "PB15"],
+                    ["select, on the board: KEY", "PA0"],
+                ],
+                source: [
+                    "src/board.rs",
+                    "five_buttons([ {}.into_pull_up_input().erase(), {}.into_pull_up_input().erase(), {}.into_pull_up_input().erase(), \
+                     {}.into_pull_up_input().erase(), {}.into_pull_up_input().erase(), ])",
+                ],
+            },
+            Wiring {
+                part: SERIAL,
+                bus: None,
+                wires: &[["RX", "PA9"], ["TX", "PA10"]],
+                source: ["src/board.rs", "Serial::new(parts.USART1, ({}, {}.internal_pull_up(true))"],
+            },
+        ],
+    },
+    Board {
+        package: "microbit-v2",
+        folder: "microbit-v2",
+        title: "BBC micro:bit v2",
+        target: "thumbv7em-none-eabihf",
+        format: Format::Hex,
+        features: "face,update",
+        programs: &[],
+        flashing: "Plug it in, and drag <code>FILE</code> onto the drive MICROBIT. The board's own 5x5 LEDs show a small figure; the display is \
+                   optional. Buttons and serial port are the board's. A first micro:bit (without a loudspeaker) has too little memory.",
+        supply: ["3V", "0V"],
+        wirings: &[Wiring {
+            part: I2C_PART,
+            bus: Some(Bus::I2c),
+            wires: &[["SCL", "P19"], ["SDA", "P20"]],
+            source: ["src/board.rs", "oled(parts.TWIM0, {}.into_floating_input().degrade(), {}.into_floating_input().degrade())"],
+        }],
+    },
+    Board {
+        package: "esp32-c3",
+        folder: "esp32c3",
+        title: "ESP32-C3",
+        target: "riscv32imc-unknown-none-elf",
+        format: Format::Elf,
+        features: "face,update",
+        programs: &[],
+        flashing: "<code>cargo install espflash --locked</code>, once; then <code>espflash flash --monitor FILE</code>. If the board is not found, \
+                   hold BOOT while you plug it in.",
+        supply: ["3V3", "GND"],
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SDA", "GPIO5"], ["SCL", "GPIO6"]],
+                source: ["src/board.rs", "i2c.with_sda(parts.{}).with_scl(parts.{})"],
+            },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up", "GPIO0"],
+                    ["down", "GPIO1"],
+                    ["left", "GPIO3"],
+                    ["right", "GPIO4"],
+                    ["select, on the board: BOOT", "GPIO9"],
+                ],
+                source: [
+                    "src/board.rs",
+                    "five_buttons([ Input::new(parts.{}, pull_up), Input::new(parts.{}, pull_up), Input::new(parts.{}, pull_up), \
+                     Input::new(parts.{}, pull_up), Input::new(parts.{}, pull_up), ])",
+                ],
+            },
+            Wiring {
+                part: SERIAL,
+                bus: None,
+                wires: &[["RX", "GPIO21"], ["TX", "GPIO20"]],
+                source: ["src/board.rs", "serial.with_tx(parts.{}).with_rx(parts.{})"],
+            },
+        ],
+    },
+    Board {
+        package: "gba",
+        folder: "gba",
+        title: "Game Boy Advance",
+        target: crate::gba::TARGET,
+        format: Format::Gba,
+        features: "face",
+        programs: &[],
+        flashing: "Open <code>FILE</code> in an emulator. A console also needs the logo in the cartridge's header, which \
+                   <code>gbafix FILE</code> adds. It has all our motions.",
+        supply: ["", ""],
+        wirings: &[],
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paths;
+
+    fn read(board: &Board, file: &str) -> String {
+        std::fs::read_to_string(paths::firmware().join("boards").join(board.folder).join(file)).unwrap()
+    }
+
+    /// A line's words, without what is between or around them.
+    fn has_word(line: &str, word: &str) -> bool {
+        line.match_indices(word).any(|(at, _)| {
+            let around = [line[..at].chars().next_back(), line[at + word.len()..].chars().next()];
+            around.iter().flatten().all(|letter| !letter.is_alphanumeric())
+        })
+    }
+
+    #[test]
+    fn the_boards_crates_set_up_the_pins_of_the_page() {
+        for board in &BOARDS {
+            for wiring in board.wirings {
+                let [file, code] = wiring.source;
+                let pins = wiring.wires.iter().map(|[_, pin]| board.spelled(pin));
+                let code = pins.fold(code.to_owned(), |code, pin| code.replacen("{}", &pin, 1));
+                assert!(!code.contains("{}"), "{}: {}: a pin is missing", board.package, wiring.part);
+                let source = read(board, file).split_whitespace().collect::<Vec<_>>().join(" ");
+                assert!(source.contains(&code), "{}: {file} does not contain `{code}`", board.package);
+            }
+        }
+        // What the five pins of a colour display are.
+        for board in &BOARDS[..2] {
+            assert!(read(board, "src/spi_display.rs").contains("(select, clock, out, data, reset)"));
+        }
+    }
+
+    #[test]
+    fn the_boards_readmes_have_the_pins_of_the_page() {
+        for board in &BOARDS {
+            let text = read(board, "README.md");
+            let rows: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+            let has = |pin: &str| rows.iter().any(|row| has_word(row, pin));
+            for wiring in board.wirings {
+                for [part, pin] in wiring.wires {
+                    assert!(has(pin), "{}: {part} {pin}", board.package);
+                }
+            }
+            assert!(
+                board.wirings.is_empty() || rows.iter().any(|row| row.contains(&board.supply.join(", "))),
+                "{}",
+                board.package
+            );
+        }
+    }
+}
