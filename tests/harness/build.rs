@@ -71,8 +71,9 @@ impl Firmware {
         let mut flags = vec![];
         let home = std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cargo"));
         let cargo = std::env::var_os("CARGO_HOME").map(PathBuf::from).or(home);
-        let sources = cargo.map(|cargo| cargo.join("registry/src"));
-        for (from, to) in sources.map(|folder| (folder, "crates")).into_iter().chain([(paths::root(), "pantin")]) {
+        let sources = cargo.map(|cargo| (cargo.join("registry/src"), "crates".into()));
+        // Where Rust's own sources are installed, their paths are other ones than where they are not.
+        for (from, to) in sources.into_iter().chain([(paths::root(), "pantin".into()), rust_sources()?]) {
             flags.push(format!("--remap-path-prefix={}={to}", from.display()));
         }
         let folder =
@@ -119,6 +120,19 @@ impl Firmware {
     pub fn elf(&self) -> &Path {
         &self.elf
     }
+}
+
+/// The folder of Rust's own sources, and its name in programs on machines that have none.
+fn rust_sources() -> Result<(PathBuf, String)> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
+    let printed = |words: &[&str]| {
+        let output = Command::new(&rustc).args(words).current_dir(paths::root()).output().context("cannot start rustc")?;
+        anyhow::Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let version = printed(&["-vV"])?;
+    let commit = version.lines().find_map(|line| line.strip_prefix("commit-hash: ")).context("rustc does not name its commit")?;
+    let folder = Path::new(printed(&["--print", "sysroot"])?.trim()).join("lib/rustlib/src/rust");
+    Ok((folder, format!("/rustc/{commit}")))
 }
 
 /// Builds the host tool and returns its path. It uses the tests' profile, which is optimized, so that a fresh clone

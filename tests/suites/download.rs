@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use harness::build::Firmware;
-use harness::display::Display;
-use harness::download::{self, BOARDS, DISPLAYS};
-use harness::rp2040::{OLED, Request, TARGET};
+use harness::download::{self, BOARDS, DISPLAYS, File};
+use harness::rp2040::{OLED, Request};
 use harness::{paths, setup};
 use xtask::packages;
 
@@ -30,30 +28,29 @@ fn an_image_has_the_same_bytes_each_time_and_none_of_this_machine() {
     if setup::host_only("an image to give away") {
         return;
     }
-    let image = BOARDS[0].images()[0];
-    let file = image.build().unwrap();
-    // Another program in the same folder, so that the first is built again.
-    let clip = paths::root().join("motions/run.ptn");
-    let features = BOARDS[0].features;
-    let other = Firmware::released(features, "pico", "pico", TARGET, &[&clip]).unwrap();
-    assert!(std::fs::read(other.elf()).is_ok());
-    let again = image.build().unwrap();
+    let images = BOARDS[0].images();
+    let file = images[0].build().unwrap();
+    // Another program of the same folder, after which the first is built again.
+    let other = images[2].build().unwrap();
+    let again = images[0].build().unwrap();
     assert!(file.bytes == again.bytes, "two builds differ");
     let home = std::env::var("HOME").unwrap_or("/nowhere".into());
     for path in [paths::root().to_string_lossy().into_owned(), format!("{home}/.")] {
-        assert!(!file.bytes.windows(path.len()).any(|bytes| bytes == path.as_bytes()), "the image contains {path}");
+        for File { name, bytes, .. } in [&file, &other] {
+            assert!(!bytes.windows(path.len()).any(|bytes| bytes == path.as_bytes()), "{name} contains {path}");
+        }
     }
     let page = download::page(std::slice::from_ref(&file));
     assert!(page.contains("<td>GP4</td>") && page.contains(&file.sum()) && page.contains("BOOTSEL"));
     assert_eq!(download::sums(std::slice::from_ref(&file)), format!("{}  pantin-pico-ssd1306.uf2\n", file.sum()));
-    says_why_it_panics_over_usb(&file.bytes, OLED);
+    says_why_it_panics_over_usb(&file.bytes);
 }
 
-fn says_why_it_panics_over_usb(image: &[u8], display: Display) {
+fn says_why_it_panics_over_usb(image: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
     let path: &Path = &folder.path().join("image.uf2");
     std::fs::write(path, image).unwrap();
-    let outcome = Request::new(path, display).pictures(usize::MAX).usb().seconds(0.2).harm("fault").run().unwrap();
+    let outcome = Request::new(path, OLED).pictures(usize::MAX).usb().seconds(0.2).harm("fault").run().unwrap();
     let text = String::from_utf8_lossy(&outcome.usb).into_owned();
     assert!(text.contains("processor fault: an invalid access, or a stack overflow"), "{text:?}");
 }
