@@ -85,3 +85,30 @@ fn varint(mut value: u32, put: &mut dyn FnMut(u8)) {
 fn zigzag(value: i32, put: &mut dyn FnMut(u8)) {
     varint((value << 1 ^ value >> 31) as u32, put);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_snapshot_is_the_last_of_no_later_frame() {
+        // Two snapshots, 10 frames apart, at 5 and 12.
+        let input = Input(&[10, 2, 5, 7]);
+        let at = |target| nearest(&input, target).map(|entry| (entry.frame, entry.position));
+        assert_eq!([0, 9, 10, 19, 20, 1000].map(at), [None, None, Some((10, 5)), Some((10, 5)), Some((20, 12)), Some((20, 12))]);
+        assert_eq!(nearest(&Input(&[10, 0]), 100), None);
+    }
+
+    #[test]
+    fn a_snapshot_never_leads_back_before_the_first_segment() {
+        // A position, a state, then a channel: its mode and sign, frames to its next segment, p, v, w and k.
+        let input = Input(&[9, 1, 2, 3, 0xff, 4, 2, 4, 6, 8]);
+        let (mut states, mut pose) = ([ChannelState::NEW], [0]);
+        let mut position = PlayState::default();
+        let mut channels = Channels { states: &mut states, pose: &mut pose };
+        restore(&input, Entry { frame: 300, position: 0 }, &mut position, &mut channels);
+        assert_eq!((position.frame, position.cursor), (300, Cursor::at(9, 0x01_0203)));
+        let state = ChannelState { v: 2, w: 3, k: 4, due: 48, mode: START_MODE - 1, prev_sign: 1, ..ChannelState::NEW };
+        assert_eq!((states, pose), ([state], [1]));
+    }
+}

@@ -229,3 +229,31 @@ impl PlayState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::entropy::LOW;
+
+    #[test]
+    fn a_segment_is_read_where_it_is_sure_to_be_whole() {
+        for (dry_at, read) in [(9, false), (10, true), (11, true)] {
+            let (mut states, mut pose) = ([ChannelState::NEW], [0]);
+            let mut channels = Channels { states: &mut states, pose: &mut pose };
+            let mut position = PlayState { cursor: Cursor::at(10, LOW), frame: 0, next: 0 };
+            assert_eq!(position.read_due(&mut channels, &Input(&[0; 64]), dry_at, None), read, "{dry_at}");
+            assert_eq!((position.next, states[0] == ChannelState::NEW), (u16::from(read), !read), "{dry_at}");
+        }
+    }
+
+    #[test]
+    fn frames_share_a_list_where_they_are_a_whole_number_of_lists_apart() {
+        let mut calendar: Calendar = [0; LISTS];
+        for frame in 0..=255 {
+            *list(&mut calendar, frame) += 1;
+        }
+        assert_eq!(calendar, [4; LISTS]);
+        *list(&mut calendar, 65) = 7;
+        assert_eq!((calendar[1], *list(&mut calendar, 129)), (7, 7));
+    }
+}

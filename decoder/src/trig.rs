@@ -148,4 +148,20 @@ mod tests {
             assert!(f64::from(atan2(y, x).wrapping_sub(truth.round() as i64 as i32)).abs() <= 16.0, "{y} {x}");
         }
     }
+
+    /// Pictures are compared pixel for pixel: they need the same values on every machine and in every version.
+    #[test]
+    fn values_are_the_same_to_the_last_bit() {
+        let mut crc = crate::crc::INITIAL;
+        let mut note = |values: [i32; 4]| values.iter().for_each(|value| crc = crate::crc::update(crc, &value.to_le_bytes()));
+        for step in 0..500 {
+            let raw = (step as u32).wrapping_mul(0x9e37_79b9) as i32;
+            let (sin, cos) = sin_cos(raw);
+            note([sin, cos, atan2(sin, cos), atan2_coarse(sin, cos)]);
+            // Along the axes, with and without bits to spare.
+            let length = (1 << (step % 31)) | raw.unsigned_abs() as i32 >> (step % 31 + 1);
+            note([atan2(0, length), atan2(0, -length), atan2(length, 0), atan2(-length, 0)]);
+        }
+        assert_eq!(crc, 64_138);
+    }
 }

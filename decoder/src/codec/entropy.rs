@@ -135,3 +135,25 @@ impl Symbols<'_> {
         value
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_read_only_while_the_state_is_below_its_range() {
+        // The state before, the bits that are read, then the state and the number of bytes that were shifted in.
+        for (state, bits, after, bytes) in [
+            (LOW << 4, 4, LOW, 0),
+            ((LOW << 4) - 1, 4, ((LOW - 1) << 8) | 0xa0, 1),
+            // 2^8, and a byte of 0: the state is at the lower end of its range after the first one.
+            (LOW, 8, LOW, 1),
+            (LOW - 1, 8, (0xff << 16) | 0xa0b0, 2),
+        ] {
+            let input = Input(if after == LOW { &[0, 0xb0] } else { &[0xa0, 0xb0] });
+            let mut symbols = Symbols { at: Cursor { position: 0, state }, input };
+            symbols.bits(bits);
+            assert_eq!((symbols.at.state, symbols.at.position), (after, bytes), "{state:#x}");
+        }
+    }
+}

@@ -165,3 +165,20 @@ fn far(symbols: &mut Symbols<'_>) -> u32 {
     // At most 2^32 + 2^7: it may wrap, but no well-formed number is so large.
     (group(GROUPS + 1) - 1).wrapping_add(1 << bits).wrapping_add(symbols.long_bits(bits))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_symbols_are_the_mode_of_a_channel_without_segments() {
+        let last = |high: u32| {
+            // The last symbol of the modes' alphabet: another one follows.
+            let at = Cursor::at(0, high << 12 | 0xfff);
+            mode(&mut Symbols { at, input: Input(&[0; 8]) }, START_MODE)
+        };
+        let modes: Vec<u32> = (1 << 4..1 << 12).map(last).collect();
+        assert_eq!(modes.iter().max(), Some(&(u32::from(START_MODE) - 1)));
+        assert!(modes.iter().all(|&mode| mode >= DIRECT_MODES));
+    }
+}

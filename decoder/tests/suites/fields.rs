@@ -3,7 +3,7 @@
 use super::common::varint;
 use pantin::codec::crc;
 use pantin::codec::layout::*;
-use pantin::{ChannelState, Clip, Form, OpenError, PartialClip, Player};
+use pantin::{ChannelState, Clip, Form, Memory, OpenError, PartialClip, Player, Progress, Stream, TooSmall};
 
 static WALK: &[u8] = include_bytes!("../walk.ptn");
 
@@ -148,6 +148,127 @@ fn symbols_that_may_not_all_be_there_wait_for_the_next_block() {
     let first = bytes.len() - clip.motion_len() + BLOCK_BYTES + CRC_BYTES;
     assert_eq!(PartialClip::new(&bytes[..first]).err(), Some(OpenError::Truncated));
     assert!(PartialClip::new(&bytes).is_ok());
+}
+
+/// A head with this number of events, each of two bytes.
+fn head_with_events(events: usize) -> Vec<u8> {
+    [&[1, 10, 0][..], &varint(events), &[0, 1].repeat(events)].concat()
+}
+
+/// Events whose symbols begin at the last position at which a start is sure to be whole, with one block at hand: 32 bytes before its end.
+const EVENTS_AT_LIMIT: usize = 110;
+
+#[test]
+fn a_partial_clip_opens_with_its_first_block() {
+    for (events, opens) in [(EVENTS_AT_LIMIT - 1, true), (EVENTS_AT_LIMIT, true), (EVENTS_AT_LIMIT + 1, false)] {
+        let bytes = file(HAS_EVENTS, &[&head_with_events(events)[..], &[0; BLOCK_BYTES]].concat());
+        let first = bytes.len() - Clip::new_checked(&bytes).unwrap().motion_len() + BLOCK_BYTES + CRC_BYTES;
+        for len in [first, first + 1, first + 100] {
+            let error = (!opens).then_some(OpenError::Truncated);
+            assert_eq!(PartialClip::new(&bytes[..len]).err(), error, "{events} events, {len} bytes");
+        }
+        assert_eq!(PartialClip::new(&bytes[..first - 1]).err(), Some(OpenError::Truncated));
+    }
+}
+
+#[test]
+fn events_past_the_bytes_at_hand_are_truncated_and_past_the_motion_malformed() {
+    let bytes = file(HAS_EVENTS, &[&head_with_events(300)[..], &[0; BLOCK_BYTES]].concat());
+    let first = bytes.len() - Clip::new_checked(&bytes).unwrap().motion_len() + BLOCK_BYTES + CRC_BYTES;
+    assert_eq!(PartialClip::new(&bytes[..first]).err(), Some(OpenError::Truncated));
+    assert!(PartialClip::new(&bytes).is_ok());
+    let cut = file(HAS_EVENTS, &head_with_events(300)[..400]);
+    assert_eq!(PartialClip::new(&cut).err(), Some(OpenError::Malformed));
+}
+
+/// Steps of a stream that is fed `bytes` up to where it needs more, fails or shows a frame.
+fn streamed(bytes: &[u8]) -> Vec<Progress> {
+    let rig = Clip::new_checked(WALK).unwrap().rig();
+    let (mut buffer, mut states, mut values) = ([0; 2 * Stream::BUFFER], [ChannelState::NEW; 32], [0; 32]);
+    let mut stream = Stream::new(rig, &mut buffer, &mut states, &mut values).unwrap();
+    assert_eq!(stream.feed(bytes), bytes.len());
+    let mut steps = vec![];
+    loop {
+        let step = stream.step();
+        steps.push(step);
+        if !matches!(step, Progress::Opened | Progress::Event(_)) {
+            return steps;
+        }
+    }
+}
+
+#[test]
+fn a_stream_reads_events_as_far_as_they_are_sure_to_be_whole() {
+    let bytes = file(HAS_EVENTS, &[&head_with_events(EVENTS_AT_LIMIT + 9)[..], &[0; BLOCK_BYTES]].concat());
+    let first = bytes.len() - Clip::new_checked(&bytes).unwrap().motion_len() + BLOCK_BYTES + CRC_BYTES;
+    let steps = streamed(&bytes[..first]);
+    // The last one begins at the limit.
+    assert_eq!((steps.len(), steps.last()), (1 + EVENTS_AT_LIMIT + 1 + 1, Some(&Progress::NeedMore)));
+}
+
+#[test]
+fn a_streams_events_end_in_the_motion() {
+    let whole = [1, 10, 0, 2, 1, 0xac, 2, 2, 5];
+    let steps = streamed(&file(HAS_EVENTS, &whole));
+    let events: Vec<_> =
+        steps.iter().filter_map(|step| if let Progress::Event(event) = step { Some(event.id) } else { None }).collect();
+    assert_eq!((events, steps.last()), (vec![300, 5], Some(&Progress::Frame)));
+    for len in 4..whole.len() {
+        let steps = streamed(&file(HAS_EVENTS, &whole[..len]));
+        assert_eq!(steps.last(), Some(&Progress::Damaged(OpenError::Malformed)), "{len} bytes");
+    }
+}
+
+#[test]
+fn a_stream_refuses_an_empty_motion_and_a_damaged_one() {
+    let whole = file(0, &[1, 10, 0]);
+    let motion = Clip::new_checked(&whole).unwrap().motion_len();
+    let empty = [&whole[..whole.len() - motion - 1], &[0]].concat();
+    assert_eq!(streamed(&empty), [Progress::Damaged(OpenError::Malformed)]);
+    let mut damaged = whole.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    assert_eq!(streamed(&damaged), [Progress::Damaged(OpenError::BadCrc)]);
+}
+
+#[test]
+fn a_stream_states_what_its_clip_states() {
+    for (bytes, looped) in [(file(0, &[2, 10, 0]), false), (file(LOOPED, &[2, 10, 0]), true)] {
+        let clip = Clip::new_checked(&bytes).unwrap();
+        let (mut buffer, mut states, mut values) = ([0; Stream::BUFFER], [ChannelState::NEW; 32], [0; 32]);
+        let mut stream = Stream::new(clip.rig(), &mut buffer, &mut states, &mut values).unwrap();
+        assert_eq!((stream.frames(), stream.frame_time_ns(), stream.looped()), (0, 0, false));
+        assert_eq!((stream.feed(&bytes), stream.step()), (bytes.len(), Progress::Opened));
+        assert_eq!((stream.frames(), stream.frame_time_ns(), stream.looped()), (10, FRAME_TIMES_NS[2], looped));
+    }
+}
+
+#[test]
+fn finishing_checks_what_follows_the_motion() {
+    let Some(bytes) = vector("event-names") else { return };
+    let mut partial = PartialClip::new(&bytes).unwrap();
+    assert_eq!(partial.clip().event_name(0), None);
+    let mut damaged = bytes.clone();
+    *damaged.last_mut().unwrap() ^= 1;
+    assert_eq!(partial.finish(&bytes[..bytes.len() - 1]), Err(OpenError::Truncated));
+    assert_eq!(PartialClip::new(&damaged).unwrap().finish(&damaged), Err(OpenError::BadCrc));
+    assert_eq!((partial.finish(&bytes), partial.clip().event_name(0)), (Ok(()), Some(pantin::LEFT_FOOT_DOWN)));
+    // A motion of which blocks were not checked.
+    let long = file(HAS_EVENTS, &[&head_with_events(EVENTS_AT_LIMIT)[..], &[0; BLOCK_BYTES]].concat());
+    let mut partial = PartialClip::new(&long[..long.len() - 1]).unwrap();
+    assert_eq!(partial.finish(&long), Err(OpenError::BadCrc));
+    assert_eq!((partial.extend(&long), partial.finish(&long)), (Ok(()), Ok(())));
+}
+
+#[test]
+fn a_streams_buffer_may_be_larger_than_needed_but_not_smaller() {
+    let rig = Clip::new_checked(WALK).unwrap().rig();
+    let (mut buffer, mut states, mut values) = ([0; Stream::BUFFER + 1], [ChannelState::NEW; 32], [0; 32]);
+    for given in [Stream::BUFFER, Stream::BUFFER + 1] {
+        assert!(Stream::new(rig, &mut buffer[..given], &mut states, &mut values).is_ok());
+    }
+    let given = Stream::BUFFER - 1;
+    let short = Stream::new(rig, &mut buffer[..given], &mut states, &mut values).map(drop);
+    assert_eq!(short, Err(TooSmall { memory: Memory::Buffer, needed: Stream::BUFFER, given }));
 }
 
 #[test]

@@ -9,4 +9,6 @@ mod golden;
 mod matrices;
 mod playing;
 mod poses;
+mod rigs;
+mod seeking;
 mod statements;

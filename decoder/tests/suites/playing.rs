@@ -23,6 +23,19 @@ fn frames(file: &[u8]) -> Vec<Vec<i32>> {
     frames
 }
 
+/// The states of the moving channels at each frame.
+fn states(file: &[u8]) -> Vec<Vec<ChannelState>> {
+    let clip = Clip::new_checked(file).unwrap();
+    let mut room = Memories::new();
+    let mut player = room.player(clip).unwrap();
+    let mut states = vec![player.states().to_vec()];
+    for _ in 1..clip.frames() {
+        player.step();
+        states.push(player.states().to_vec());
+    }
+    states
+}
+
 #[test]
 fn memory_can_be_a_static_and_serves_clips_in_turn() {
     static ROOM: std::sync::Mutex<Memories> = std::sync::Mutex::new(Room::new());
@@ -238,7 +251,7 @@ fn the_packages_clips_are_the_repositorys() {
 #[test]
 fn steps_are_taken_back_with_any_memory() {
     for file in [WALK, RUN] {
-        let truth = frames(file);
+        let (truth, states) = (frames(file), states(file));
         let last = truth.len().min(if cfg!(miri) { 16 } else { 60 }) - 4;
         for (undos, marks) in [(0, 0), (0, 2), (1, 0), (2, 1), (7, 0), (300, 3)] {
             let mut room = Memories::new();
@@ -256,6 +269,7 @@ fn steps_are_taken_back_with_any_memory() {
                 for back in (to / 2..player.frame() as usize).rev() {
                     player.step_back(&mut memory);
                     assert_eq!(player.pose().values, truth[back], "frame {back} from {to}, {undos} undos");
+                    assert_eq!(player.states(), states[back], "frame {back} from {to}, {undos} undos");
                 }
             }
             player.rewind();
@@ -268,6 +282,7 @@ fn steps_are_taken_back_with_any_memory() {
                     player.step_back(&mut memory);
                     assert_eq!(player.frame() as usize, back);
                     assert_eq!(player.pose().values, truth[back], "frame {back}, {undos} undos, {marks} snapshots");
+                    assert_eq!(player.states(), states[back], "frame {back}, {undos} undos, {marks} snapshots");
                     // What was read is not read twice.
                     for ahead in 1..=3 {
                         player.step_with(&mut memory);
