@@ -105,8 +105,8 @@ fn every_way_to_a_frame_gives_the_recorded_pose() {
         let (mut states, mut pose) = (vec![ChannelState::NEW; moving], vec![0; channels]);
         let mut player = Player::new(clip, &mut states, &mut pose).unwrap();
         let mut stepped = vec![];
-        for frame in 0..crcs.len() {
-            assert_eq!(crc_of(player.pose().values), crcs[frame], "{}, frame {frame} by stepping", vector.name);
+        for (frame, &crc) in crcs.iter().enumerate() {
+            assert_eq!(crc_of(player.pose().values), crc, "{}, frame {frame} by stepping", vector.name);
             stepped.push(player.states().to_vec());
             player.step();
         }

@@ -122,9 +122,11 @@ fn scalars_are_found_by_their_names_not_by_hashes() {
     // Both names have the same hash.
     let (name, other) = ("liquid", "costarring");
     assert_eq!(pantin::names::hash(name.as_bytes()), pantin::names::hash(other.as_bytes()));
-    let bytes = rig(&[root()], &[scalar("first"), scalar(name)]);
+    let small = [&[-7_i8 as u8][..], &scalar(name)[1..]].concat();
+    let bytes = rig(&[root()], &[scalar("first"), small]);
     let rig = Rig::new_checked(&bytes).unwrap();
-    assert_eq!(rig.find_scalar(name).map(|found| found.channel()), Some(2));
+    let found = |name: &str| rig.find_scalar(name).map(|found| (found.channel(), found.exponent()));
+    assert_eq!((found("first"), found(name)), (Some((1, 0)), Some((2, -7))));
     assert!(rig.find_scalar(other).is_none());
 }
 
