@@ -194,26 +194,25 @@ impl Arguments {
 
     /// Bounds that were given and bound nothing in this motion, a sentence each.
     fn without_effect(&self, motion: &Motion) -> Vec<String> {
-        let of_joints = [
-            ("--max-error", self.max_error.is_some()),
-            ("--mean-error", self.mean_error.is_some()),
-            ("--max-rotation-error", self.max_rotation_error.is_some()),
-            ("--cm-per-unit", self.cm_per_unit.is_some()),
-            ("--up", self.up.is_some()),
-        ];
         let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
-        let given = of_joints.into_iter().filter(|(_, given)| *given && no_joints).map(|(name, _)| (name, "joints"));
-        let others = [
+        let nothing_unseen = || unseen(&motion.rig).is_empty();
+        // Options, whether they are given for nothing, and what is missing.
+        let given = [
+            ("--max-error", self.max_error.is_some() && no_joints, "joints"),
+            ("--mean-error", self.mean_error.is_some() && no_joints, "joints"),
+            ("--max-rotation-error", self.max_rotation_error.is_some() && no_joints, "joints"),
+            ("--cm-per-unit", self.cm_per_unit.is_some() && no_joints, "joints"),
+            ("--up", self.up.is_some() && no_joints, "joints"),
             ("--max-scalar-error", self.max_scalar_error.is_some() && no_scalars, "scalars"),
             (
                 "--max-rotation-error",
-                self.max_rotation_error.is_some() && !no_joints && unseen(&motion.rig).is_empty(),
+                self.max_rotation_error.is_some() && !no_joints && nothing_unseen(),
                 "joint that turns and carries nothing away from it",
             ),
             ("--rotations", self.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
         ];
-        let others = others.into_iter().filter(|(_, given, _)| *given).map(|(name, _, what)| (name, what));
-        given.chain(others).map(|(name, what)| format!("{name} has no effect: the motion has no {what}")).collect()
+        let given = given.into_iter().filter(|(_, for_nothing, _)| *for_nothing);
+        given.map(|(name, _, what)| format!("{name} has no effect: the motion has no {what}")).collect()
     }
 
     /// The same for one of several motions.

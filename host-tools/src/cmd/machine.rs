@@ -3,7 +3,7 @@
 use super::bank::is_bank_name;
 use crate::encode::bank;
 use crate::input;
-use crate::machine::{Source, graph, make};
+use crate::machine::{Source, Text, graph, make};
 use crate::open::is_bank;
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -63,8 +63,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let text = input::read(&arguments.input)?;
     let text = String::from_utf8(text).map_err(|_| anyhow!("{place}: not text (UTF-8)"))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    // A line's number follows the name, as in all errors about text.
-    let source = Source::parse(text).map_err(|error| anyhow!("{place}:{error:#}"))?;
+    let file = Text { name: &place, text };
+    let source = Source::parse(&file)?;
     let beside = |path: &PathBuf| arguments.input.parent().unwrap_or(Path::new("")).join(path);
     let path = arguments.bank.clone().or_else(|| source.bank.as_ref().map(beside));
     let path =
@@ -75,12 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         bail!("{}: not a bank; `pantin convert --same-form` and `pantin pack` make one", path.display());
     }
     let bank = Bank::new_checked(&bytes).with_context(|| path.display().to_string())?;
-    let made = make(&source, text, &bank).map_err(|error| {
-        let error = format!("{error:#}");
-        // An error of a line begins with its number.
-        let joint = if error.starts_with(|c: char| c.is_ascii_digit()) { ":" } else { ": " };
-        anyhow!("{place}{joint}{error}")
-    })?;
+    let made = make(&source, &file, &bank)?;
     let whole = bank::with_section(&bytes, SECTION, &made.table)?;
     let picture = graph::svg(&source);
     let files = [(&arguments.output, whole.as_slice()), (&arguments.graph, picture.as_bytes())];

@@ -93,8 +93,8 @@ pub fn with_section(bank: &[u8], kind: u8, body: &[u8]) -> Result<Vec<u8>> {
     while !rest.is_empty() {
         let whole = rest;
         let (own, after) = rest.split_first().context("a section without a type")?;
-        let (len, after) = varint::get(after).context("a section without a length")?;
-        rest = after.get(len as usize..).context("a section that ends early")?;
+        let (len, digits) = varint::get(after).context("a section without a length")?;
+        rest = after.get(digits + len as usize..).context("a section that ends early")?;
         if *own != kind {
             out.extend_from_slice(&whole[..whole.len() - rest.len()]);
         }
@@ -149,7 +149,7 @@ impl<'a> Parts<'a> {
             if !present {
                 return Ok(&[]);
             }
-            let (len, digits) = number(rest).context("the clip is truncated")?;
+            let (len, digits) = varint::get(rest).context("the clip is truncated")?;
             let (part, after) = rest[digits..].split_at_checked(len as usize).context("the clip is truncated")?;
             rest = after;
             Ok(part)
@@ -158,18 +158,6 @@ impl<'a> Parts<'a> {
         let index = part(flags & HAS_INDEX != 0)?;
         Ok(Parts { flags, rig, motion, index, names: rest })
     }
-}
-
-/// A varint and how many bytes it takes.
-fn number(bytes: &[u8]) -> Option<(u32, usize)> {
-    let mut value = 0;
-    for (digit, &byte) in bytes.iter().enumerate().take(5) {
-        value |= u32::from(byte & 0x7f) << (7 * digit);
-        if byte & 0x80 == 0 || digit == 4 {
-            return Some((value, digit + 1));
-        }
-    }
-    None
 }
 
 /// Bytes in blocks without their CRCs.
@@ -190,7 +178,7 @@ fn converted(file: &[u8], rig: &CheckedRig, whole: bool) -> Result<Vec<u8>> {
     ensure!(whole || parts.rig == rig.bytes, "the clip has another rig");
     let mut motion = payload(parts.motion);
     let times = if motion.first() == Some(&0) { 5 } else { 1 };
-    let (_, frames) = motion.get(times..).and_then(number).context("the clip is truncated")?;
+    let (_, frames) = motion.get(times..).and_then(varint::get).context("the clip is truncated")?;
     let id_at = times + frames + 1;
     // A head may end behind the payload: a decoder reads zeros there.
     motion.resize(motion.len().max(id_at + if whole { 4 } else { 0 }), 0);
@@ -199,7 +187,7 @@ fn converted(file: &[u8], rig: &CheckedRig, whole: bool) -> Result<Vec<u8>> {
     } else {
         motion.splice(id_at..id_at, rig.rig.id().to_le_bytes());
     }
-    let spacing = (!parts.index.is_empty()).then(|| number(&payload(parts.index))).flatten().map(|(spacing, _)| spacing);
+    let spacing = (!parts.index.is_empty()).then(|| varint::get(&payload(parts.index))).flatten().map(|(spacing, _)| spacing);
     let flags = parts.flags & !(HAS_RIG | HAS_INDEX) | if whole { HAS_RIG } else { 0 };
     let file = |flags: u8, index: Option<&[u8]>| {
         let mut out = assembled(flags, rig.bytes, &motion, index);

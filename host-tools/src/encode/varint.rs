@@ -9,13 +9,13 @@ pub fn put(out: &mut Vec<u8>, mut value: u32) {
     out.push(value as u8);
 }
 
-/// A number, and the bytes behind it; `None` if it is cut short or has more than 32 bits.
-pub fn get(bytes: &[u8]) -> Option<(u32, &[u8])> {
-    let mut value = 0u64;
-    for (index, byte) in bytes.iter().enumerate().take(5) {
-        value |= u64::from(byte & 0x7f) << (7 * index);
-        if byte & 0x80 == 0 {
-            return Some((u32::try_from(value).ok()?, &bytes[index + 1..]));
+/// A number and how many bytes it takes, at most 5; bits beyond 32 are left out. `None` if it is cut short.
+pub fn get(bytes: &[u8]) -> Option<(u32, usize)> {
+    let mut value = 0;
+    for (digit, &byte) in bytes.iter().enumerate().take(5) {
+        value |= u32::from(byte & 0x7f) << (7 * digit);
+        if byte & 0x80 == 0 || digit == 4 {
+            return Some((value, digit + 1));
         }
     }
     None

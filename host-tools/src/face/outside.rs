@@ -5,7 +5,7 @@ use super::head::{Vector, cross, minus, plus, unit};
 use super::paper::shape;
 use crate::import::Files;
 use crate::import::gltf::mesh::{self, Mesh};
-use crate::import::text::{number_in, shown};
+use crate::import::text::{number_in, quoted};
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use pantin_face::shape::Interpolation;
 use std::fmt::Display;
@@ -80,9 +80,8 @@ pub fn obj(path: &Path, text: &str) -> Result<Mesh> {
     for (line, words) in text.lines().filter(|(_, words)| words[0] == "f") {
         let corner = |word: &&str| -> Result<usize> {
             let index = word.split('/').next().and_then(|index| index.parse::<i64>().ok());
-            let index = index.ok_or_else(|| {
-                text.error(line, format!("expected the number of a vertex, found {}", shown(Some(word.as_bytes()))))
-            })?;
+            let index =
+                index.ok_or_else(|| text.error(line, format!("expected the number of a vertex, found {}", quoted(word))))?;
             // Numbers from 1; negative ones count from the end.
             let place = if index < 0 { (points.len() as i64).checked_add(index) } else { index.checked_sub(1) };
             let place = place.and_then(|place| usize::try_from(place).ok()).filter(|&place| place < points.len());
@@ -118,7 +117,7 @@ pub fn wfm(path: &Path, text: &str) -> Result<Mesh> {
     let triangle = |(line, words): &Line| {
         let corner = |word: &str| {
             let place = word.parse().ok().filter(|&place: &usize| place < points.len());
-            let wrong = || format!("expected a vertex of 0 to {}, found {}", points.len() - 1, shown(Some(word.as_bytes())));
+            let wrong = || format!("expected a vertex of 0 to {}, found {}", points.len() - 1, quoted(word));
             place.ok_or_else(|| text.error(*line, wrong()))
         };
         let [a, b, c] = words[..] else { return Err(text.error(*line, "expected a face of three vertices")) };

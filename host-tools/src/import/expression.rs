@@ -8,7 +8,7 @@
 //! atom    = number | name | function "(" sum ["," sum] ")" | "(" sum ")"
 //! ```
 
-use super::text::shown;
+use super::text::quoted;
 
 /// Longest expression in bytes, and how deep it nests: parser and evaluation call themselves for each level.
 pub const LONGEST: usize = 1000;
@@ -124,7 +124,7 @@ impl Parser<'_> {
     fn expected(&mut self, what: &str) -> String {
         self.peek();
         let rest = &self.text[self.at..];
-        let found = if rest.is_empty() { "the end of the expression".into() } else { shown(Some(rest.as_bytes())) };
+        let found = if rest.is_empty() { "the end of the expression".into() } else { quoted(rest) };
         format!("expected {what}, found {found}")
     }
 

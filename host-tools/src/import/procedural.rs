@@ -2,7 +2,7 @@
 //! the text.
 
 use super::expression::{Expression, is_free};
-use super::text::shown;
+use super::text::quoted;
 use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, rig, wrong};
 use super::{Options, Source};
 use crate::budget;
@@ -49,7 +49,7 @@ impl written::Reader for Reader {
         }
         let line = [&[first], rest].concat().join(" ");
         let Some((name, expression)) = line.split_once('=') else {
-            return wrong(format!("expected {HEADINGS}, let or `CHANNEL = EXPRESSION`, found {}", shown(Some(line.as_bytes()))));
+            return wrong(format!("expected {HEADINGS}, let or `CHANNEL = EXPRESSION`, found {}", quoted(&line)));
         };
         self.begin()?;
         match name.trim().strip_prefix("let ") {
@@ -91,7 +91,7 @@ impl Reader {
 
     fn name(&mut self, name: &str, expression: &str) -> Read<()> {
         if !is_free(name) || self.names.contains_key(name) {
-            let name = shown(Some(name.as_bytes()));
+            let name = quoted(name);
             return wrong(format!("expected a new name of letters, digits and `_` after `let`, found {name}"));
         }
         if self.names.len() >= MOST_NAMES {

@@ -6,7 +6,7 @@
 
 use super::scalars::{self, Grid, LEAST_SCALE};
 use super::sheet::{Row, Sheet, delimiter};
-use super::text::shown;
+use super::text::quoted;
 use super::{Options, Source};
 use crate::events;
 use crate::motion::Event;
@@ -58,7 +58,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     for (name, largest) in names.iter().zip(&values).map(|(name, values)| (name, largest(values))) {
         if largest > 0.0 && largest < LEAST_SCALE {
-            let name = shown(Some(name.as_bytes()));
+            let name = quoted(name);
             warnings.push(format!("column {name} stays within {largest:e}; the least full scale is {LEAST_SCALE:e}, and errors are parts of it: another unit keeps it"));
         }
     }
@@ -169,9 +169,7 @@ impl Rows {
             return Err(sheet.error(self.lines[0], "one row tells no frame rate; --fps gives the frames a second"));
         };
         scalars::check_size(self.values.len(), grid.len()).map_err(|error| sheet.error(1, error))?;
-        let off = |row: usize| (self.times[row] - self.times[0]) / grid.period - grid.frames[row] as f64;
-        let uneven = (1..self.times.len()).find(|&row| off(row).abs() > JITTER || grid.frames[row] == grid.frames[row - 1]);
-        if let Some(row) = uneven {
+        if let Some(row) = self.first_uneven(&grid) {
             let message = format!(
                 "this time is between the frames of rows {:.6} s apart; --fps takes the values at an even rate",
                 grid.period
@@ -193,13 +191,15 @@ impl Rows {
         Ok((self.filled(&grid), rate, self.gaps(&grid).into_iter().chain(warning).collect()))
     }
 
+    /// The first row that is too far from its frame, or has another's.
+    fn first_uneven(&self, grid: &Grid) -> Option<usize> {
+        let off = |row: usize| (self.times[row] - self.times[0]) / grid.period - grid.frames[row] as f64;
+        (1..self.times.len()).find(|&row| off(row).abs() > JITTER || grid.frames[row] == grid.frames[row - 1])
+    }
+
     /// The times of the rows: of even ones that were rounded, those before rounding, at `fps` or a part of it if that explains them.
     fn exact_times(&self, fps: f64) -> Vec<f64> {
-        let even = |grid: &Grid| {
-            let off = |row: usize| (self.times[row] - self.times[0]) / grid.period - grid.frames[row] as f64;
-            (1..self.times.len()).all(|row| off(row).abs() <= JITTER && grid.frames[row] > grid.frames[row - 1])
-        };
-        match Grid::of(&self.times).filter(even) {
+        match Grid::of(&self.times).filter(|grid| self.first_uneven(grid).is_none()) {
             None => self.times.clone(),
             Some(grid) => {
                 let parts = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0].map(|part| [fps / part, fps * part]);

@@ -161,6 +161,11 @@ fn is_mark(byte: u8) -> bool {
     matches!(byte, b'{' | b'}' | b':')
 }
 
+/// A text as an error quotes it: see [`shown`].
+pub fn quoted(text: &str) -> String {
+    shown(Some(text.as_bytes()))
+}
+
 /// A word as an error quotes it: short, and readable when it is not text.
 pub fn shown(word: Option<&[u8]>) -> String {
     const LONGEST: usize = 40;

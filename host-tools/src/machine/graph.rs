@@ -1,6 +1,7 @@
 //! A state machine as a picture: states on a circle, transitions as arrows with their causes, as SVG.
 
-use super::source::{Source, State, Transition};
+use super::source::{Cause, Source, State, Transition};
+use crate::render::svg::escaped;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
@@ -122,16 +123,15 @@ fn nodes(source: &Source) -> Vec<Node> {
 
 /// A cause in a few words.
 fn cause(row: &Transition) -> String {
-    let number = |sign: &str, (name, threshold): &(String, i16)| format!("{name} {sign} {threshold}");
-    let text = |prefix: &str, name: &String| format!("{prefix}{name}");
-    row.end
-        .map(|_| "end".to_string())
-        .or_else(|| row.input.as_ref().map(|name| text("", name)))
-        .or_else(|| row.released.as_ref().map(|name| text("no ", name)))
-        .or_else(|| row.event.as_ref().map(|name| text("event ", name)))
-        .or_else(|| row.above.as_ref().map(|above| number(">", above)))
-        .or_else(|| row.below.as_ref().map(|below| number("<", below)))
-        .unwrap_or_default()
+    match row.causes().first() {
+        Some(Cause::End(_)) => "end".into(),
+        Some(Cause::Input(name)) => (*name).into(),
+        Some(Cause::Released(name)) => format!("no {name}"),
+        Some(Cause::Event(name)) => format!("event {name}"),
+        Some(Cause::Above(name, threshold)) => format!("{name} > {threshold}"),
+        Some(Cause::Below(name, threshold)) => format!("{name} < {threshold}"),
+        None => String::new(),
+    }
 }
 
 /// Draws an arrow, and its label later, above all states.
@@ -177,18 +177,4 @@ fn border(node: &Node, towards: Point) -> Point {
     let part = [0, 1].map(|axis| if way[axis] == 0.0 { f64::INFINITY } else { (node.half[axis] + 3.0) / way[axis].abs() });
     let part = part[0].min(part[1]).min(1.0);
     [node.at[0] + way[0] * part, node.at[1] + way[1] * part]
-}
-
-/// Text without what means something in SVG.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars().filter(|c| !c.is_control()) {
-        match c {
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            c => out.push(c),
-        }
-    }
-    out
 }

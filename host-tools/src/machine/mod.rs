@@ -6,5 +6,5 @@ pub mod graph;
 mod source;
 mod table;
 
-pub use source::Source;
+pub use source::{Source, Text};
 pub use table::{Made, make};

@@ -125,15 +125,63 @@ impl Default for Start {
 
 impl Source {
     /// Reads the file's text. Errors name the line.
-    pub fn parse(text: &str) -> Result<Source> {
-        toml::from_str(text).map_err(|error| match error.span() {
-            Some(span) => anyhow!("{}: {}", line(text, &span), error.message()),
-            None => anyhow!("{}", error.message()),
+    pub fn parse(file: &Text) -> Result<Source> {
+        toml::from_str(file.text).map_err(|error| match error.span() {
+            Some(span) => anyhow!("{}: {}", file.at(span), error.message()),
+            None => anyhow!("{}: {}", file.name, error.message()),
         })
     }
 }
 
-/// The line of a place in a text, from 1.
-pub fn line(text: &str, span: &Range<usize>) -> usize {
-    text.as_bytes().iter().take(span.start).filter(|&&byte| byte == b'\n').count() + 1
+/// A file's text, and the name of the file as errors have it.
+#[derive(Clone, Copy, Debug)]
+pub struct Text<'t> {
+    /// The name.
+    pub name: &'t str,
+    /// The text.
+    pub text: &'t str,
+}
+
+impl Text<'_> {
+    /// The file, and the line of a place in its text.
+    pub fn at(&self, span: Range<usize>) -> String {
+        format!("{}:{}", self.name, self.line(span))
+    }
+
+    /// The line of a place, from 1.
+    pub fn line(&self, span: Range<usize>) -> usize {
+        self.text.as_bytes().iter().take(span.start).filter(|&&byte| byte == b'\n').count() + 1
+    }
+}
+
+/// What makes a transition happen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause<'s> {
+    /// The clip's end; `end = false` is none.
+    End(bool),
+    /// An input is fired or held.
+    Input(&'s str),
+    /// An input is not held.
+    Released(&'s str),
+    /// An event is passed.
+    Event(&'s str),
+    /// A parameter is greater.
+    Above(&'s str, i16),
+    /// A parameter is less.
+    Below(&'s str, i16),
+}
+
+impl Transition {
+    /// The causes that the file gives; one is right.
+    pub fn causes(&self) -> Vec<Cause<'_>> {
+        let causes = [
+            self.end.map(Cause::End),
+            self.input.as_deref().map(Cause::Input),
+            self.released.as_deref().map(Cause::Released),
+            self.event.as_deref().map(Cause::Event),
+            self.above.as_ref().map(|(name, threshold)| Cause::Above(name, *threshold)),
+            self.below.as_ref().map(|(name, threshold)| Cause::Below(name, *threshold)),
+        ];
+        causes.into_iter().flatten().collect()
+    }
 }

@@ -1,13 +1,13 @@
 //! A state machine's table: `firmware/animator/MACHINE.md`.
 
-use super::source::{Kind, Source, Start, State, Transition, line};
-use crate::import::text::shown;
+use super::source::{Cause, Kind, Source, Start, State, Text, Transition};
+use crate::import::text::quoted;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin::codec::crc;
 use pantin::{Bank, Clip};
 use pantin_animator::machine::{INPUTS, PARAMETERS, STATES, Table, VERSION};
 use std::collections::BTreeMap;
-use std::ops::Range;
+use toml::Spanned;
 
 /// Bytes that a name may have.
 const NAME_BYTES: usize = 255;
@@ -15,9 +15,12 @@ const NAME_BYTES: usize = 255;
 const SECONDS: f64 = 0.25;
 /// In place of a second clip, or of a first frame: none, and in step.
 const NONE: u8 = 255;
-/// Frames of a transition, and the greatest first frame.
+/// Frames of a transition, the greatest first frame, and transitions of a table.
 const MOST_FRAMES: u32 = 255;
 const MOST_START: u32 = 254;
+const MOST_TRANSITIONS: usize = 255;
+/// The bytes of a transition's row that are its cause.
+const CAUSE_BYTES: usize = 4;
 
 /// A table, and what its user should know.
 #[derive(Clone, Debug)]
@@ -36,7 +39,7 @@ struct Clips<'b> {
 impl<'b> Clips<'b> {
     fn of(bank: &Bank<'b>) -> Result<Clips<'b>> {
         let open = |entry: pantin::BankEntry<'b>| {
-            let clip = bank.open(&entry).with_context(|| format!("clip {}", shown(Some(entry.name().as_bytes()))))?;
+            let clip = bank.open(&entry).with_context(|| format!("clip {}", quoted(entry.name())))?;
             Ok((entry.name(), clip))
         };
         Ok(Clips { all: bank.entries().map(open).collect::<Result<_>>()? })
@@ -44,34 +47,30 @@ impl<'b> Clips<'b> {
 
     fn find(&self, name: &str) -> Result<u8> {
         let found = self.all.iter().position(|(other, _)| *other == name);
-        let names: Vec<String> = self.all.iter().map(|(name, _)| shown(Some(name.as_bytes()))).collect();
+        let names: Vec<String> = self.all.iter().map(|(name, _)| quoted(name)).collect();
         let found = found.with_context(|| format!("the bank has no clip {}; it has {}", quoted(name), names.join(", ")))?;
         let index = u8::try_from(found).ok().filter(|&index| index != NONE);
         index.with_context(|| format!("clip {} is number {found} of the bank; a state machine uses the first 255", quoted(name)))
     }
 }
 
-fn quoted(name: &str) -> String {
-    shown(Some(name.as_bytes()))
-}
-
-/// Builds the table of a machine for the clips of a bank. Errors begin with the line of `text`, from which `source` was read.
-pub fn make(source: &Source, text: &str, bank: &Bank<'_>) -> Result<Made> {
+/// Builds the table of a machine for the clips of a bank. Errors name the `file` from which `source` was read, and the line.
+pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     let clips = Clips::of(bank)?;
     let mut names = BTreeMap::new();
-    let at = |span: Range<usize>| line(text, &span);
-    ensure!(!source.states.is_empty(), "a state machine has at least one [[state]]");
-    ensure!(source.states.len() <= STATES, "{} states; at most {STATES}", source.states.len());
-    ensure!(source.parameters.len() <= PARAMETERS, "{} parameters; at most {PARAMETERS}", source.parameters.len());
+    let name = file.name;
+    ensure!(!source.states.is_empty(), "{name}: a state machine has at least one [[state]]");
+    ensure!(source.states.len() <= STATES, "{name}: {} states; at most {STATES}", source.states.len());
+    ensure!(source.parameters.len() <= PARAMETERS, "{name}: {} parameters; at most {PARAMETERS}", source.parameters.len());
     for (index, state) in source.states.iter().enumerate() {
-        let (name, place) = (state.name.get_ref(), at(state.name.span()));
-        check_name(name).with_context(|| place.to_string())?;
+        let (name, place) = (state.name.get_ref(), file.at(state.name.span()));
+        check_name(name).with_context(|| place.clone())?;
         ensure!(names.insert(name.as_str(), index as u8).is_none(), "{place}: two states are called {}", quoted(name));
     }
     let mut parameters: Vec<&str> = Vec::new();
     for parameter in &source.parameters {
-        let (name, place) = (parameter.name.get_ref(), at(parameter.name.span()));
-        check_name(name).with_context(|| place.to_string())?;
+        let (name, place) = (parameter.name.get_ref(), file.at(parameter.name.span()));
+        check_name(name).with_context(|| place.clone())?;
         ensure!(!parameters.contains(&name.as_str()), "{place}: two parameters are called {}", quoted(name));
         let [least, most] = parameter.range;
         ensure!(least < most, "{place}: parameter {}: the range {least} to {most} is empty", quoted(name));
@@ -86,38 +85,17 @@ pub fn make(source: &Source, text: &str, bank: &Bank<'_>) -> Result<Made> {
     let mut maker = Maker { clips, names, parameters, inputs: Vec::new(), warnings: Vec::new() };
     let first = match &source.start {
         None => 0,
-        Some(start) => maker.state(start.get_ref()).map_err(|error| anyhow!("{}: start: {error}", at(start.span())))?,
+        Some(start) => maker.state(start.get_ref()).with_context(|| format!("{}: start", file.at(start.span())))?,
     };
-    let mut rows = Vec::new();
-    for entry in &source.any {
-        let row = maker.transition(entry.get_ref(), source, None);
-        rows.push(row.map_err(|error| anyhow!("{}: {error:#}", at(entry.span())))?);
-    }
+    let mut rows = maker.transitions(&source.any, source, file, None)?;
     let mut states = Vec::new();
     for state in &source.states {
-        let place = at(state.name.span());
-        let begin = rows.len();
-        states.push(maker.state_row(state, begin, &at).map_err(|error| anyhow!("{error:#}"))?);
-        for entry in &state.transitions {
-            let row = maker.transition(entry.get_ref(), source, Some(state));
-            let row = row.map_err(|error| anyhow!("{}: state {}: {error:#}", at(entry.span()), quoted(state.name.get_ref())))?;
-            let same = rows[begin..].iter().any(|other: &[u8; 8]| other[..4] == row[..4]);
-            ensure!(
-                !same,
-                "{}: state {}: two transitions have this cause, and only the first would happen",
-                at(entry.span()),
-                quoted(state.name.get_ref())
-            );
-            rows.push(row);
-        }
-        maker.check_end(state, source, place)?;
+        states.push(maker.state_row(state, rows.len(), file)?);
+        rows.extend(maker.transitions(&state.transitions, source, file, Some(state))?);
+        maker.check_end(state, source, file)?;
     }
-    for (index, entry) in source.any.iter().enumerate() {
-        let same = rows[..index].iter().any(|other| other[..4] == rows[index][..4]);
-        ensure!(!same, "{}: two transitions from any state have this cause, and only the first would happen", at(entry.span()));
-    }
-    ensure!(rows.len() <= MOST_FRAMES as usize, "{} transitions; at most {MOST_FRAMES}", rows.len());
-    ensure!(maker.inputs.len() <= INPUTS, "{} inputs; at most {INPUTS}", maker.inputs.len());
+    ensure!(rows.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", rows.len());
+    ensure!(maker.inputs.len() <= INPUTS, "{name}: {} inputs; at most {INPUTS}", maker.inputs.len());
     let mut out = vec![
         VERSION,
         states.len() as u8,
@@ -143,9 +121,9 @@ pub fn make(source: &Source, text: &str, bank: &Bank<'_>) -> Result<Made> {
         Ok(_) => {}
         Err(pantin_animator::machine::TableError::Unreachable(state)) => {
             let state = &source.states[usize::from(state)].name;
-            bail!("{}: no transition leads to state {}", at(state.span()), quoted(state.get_ref()));
+            bail!("{}: no transition leads to state {}", file.at(state.span()), quoted(state.get_ref()));
         }
-        Err(error) => bail!("{error}"),
+        Err(error) => bail!("{name}: {error}"),
     }
     Ok(Made { table: out, warnings: maker.warnings })
 }
@@ -192,16 +170,16 @@ impl<'s> Maker<'s, '_> {
         self.clips.find(name)
     }
 
-    fn state_row(&mut self, state: &'s State, first: usize, at: &dyn Fn(Range<usize>) -> usize) -> Result<[u8; 8]> {
+    fn state_row(&mut self, state: &'s State, first: usize, file: &Text) -> Result<[u8; 8]> {
         let name = quoted(state.name.get_ref());
-        let place = at(state.clip.as_ref().unwrap_or(&state.name).span());
-        let clip = self.clip_of(state).map_err(|error| anyhow!("{place}: state {name}: {error}"))?;
+        let place = file.at(state.clip.as_ref().unwrap_or(&state.name).span());
+        let clip = self.clip_of(state).with_context(|| format!("{place}: state {name}"))?;
         let (mut other, mut parameter) = (NONE, 0);
         if let Some(blend) = &state.blend {
-            let place = at(blend.span());
+            let place = file.at(blend.span());
             let blend = blend.get_ref();
             let named = self.clips.find(&blend.clip).and_then(|clip| Ok((clip, self.parameter(&blend.by)?)));
-            (other, parameter) = named.map_err(|error| anyhow!("{place}: state {name}: blend: {error}"))?;
+            (other, parameter) = named.with_context(|| format!("{place}: state {name}: blend"))?;
             let [own, its] = [clip, other].map(|index| &self.clips.all[usize::from(index)]);
             if own.1.form().check(its.1.form_ref()).is_err() {
                 bail!(
@@ -223,6 +201,28 @@ impl<'s> Maker<'s, '_> {
         let [low, high] = ((speed * 256.0).round() as i16).to_le_bytes();
         let [first, count] = [first, state.transitions.len()].map(|number| u8::try_from(number).unwrap_or(u8::MAX));
         Ok([clip, other, parameter, 0, low, high, first, count])
+    }
+
+    /// The rows of the transitions of a state, or of any state.
+    fn transitions(
+        &mut self,
+        entries: &[Spanned<Transition>],
+        source: &'s Source,
+        file: &Text,
+        from: Option<&'s State>,
+    ) -> Result<Vec<[u8; 8]>> {
+        let mut rows: Vec<[u8; 8]> = Vec::new();
+        for entry in entries {
+            let place = || match from {
+                Some(state) => format!("{}: state {}", file.at(entry.span()), quoted(state.name.get_ref())),
+                None => file.at(entry.span()),
+            };
+            let row = self.transition(entry.get_ref(), source, from).with_context(place)?;
+            let twin = rows.iter().any(|other| other[..CAUSE_BYTES] == row[..CAUSE_BYTES]);
+            ensure!(!twin, "{}: two transitions have this cause, and only the first would happen", place());
+            rows.push(row);
+        }
+        Ok(rows)
     }
 
     /// A row of the transitions; `from` is `None` for any state.
@@ -258,39 +258,25 @@ impl<'s> Maker<'s, '_> {
 
     /// A cause, its argument and its threshold.
     fn cause(&mut self, row: &Transition, source: &Source, from: Option<&State>) -> Result<(u8, u8, i16)> {
-        let given = [
-            row.end.is_some(),
-            row.input.is_some(),
-            row.released.is_some(),
-            row.event.is_some(),
-            row.above.is_some(),
-            row.below.is_some(),
-        ];
-        let count = given.into_iter().filter(|given| *given).count();
-        ensure!(count == 1, "a transition has one of end, input, released, event, above and below; this one has {count}");
-        if let Some(end) = row.end {
-            ensure!(end, "end = false is no cause");
-            if let Some(from) = from {
-                let clip = &self.clips.all[usize::from(self.clip_of(from)?)];
-                ensure!(!clip.1.looped(), "the clip {} is a loop, which has no end", quoted(clip.0));
-            }
-            return Ok((0, 0, 0));
-        }
-        if let Some(name) = &row.input {
-            return Ok((1, self.input(name)?, 0));
-        }
-        if let Some(name) = &row.released {
-            return Ok((2, self.input(name)?, 0));
-        }
-        if let Some(name) = &row.event {
-            return Ok((3, self.event(name, source, from)?, 0));
-        }
-        let (cause, (name, threshold)) = match (&row.above, &row.below) {
-            (Some(above), _) => (4, above),
-            (_, Some(below)) => (5, below),
-            _ => bail!("a transition has no cause"),
+        let causes = row.causes();
+        let [cause] = causes[..] else {
+            bail!("a transition has one of end, input, released, event, above and below; this one has {}", causes.len());
         };
-        Ok((cause, self.parameter(name)?, *threshold))
+        Ok(match cause {
+            Cause::End(end) => {
+                ensure!(end, "end = false is no cause");
+                if let Some(from) = from {
+                    let clip = &self.clips.all[usize::from(self.clip_of(from)?)];
+                    ensure!(!clip.1.looped(), "the clip {} is a loop, which has no end", quoted(clip.0));
+                }
+                (0, 0, 0)
+            }
+            Cause::Input(name) => (1, self.input(name)?, 0),
+            Cause::Released(name) => (2, self.input(name)?, 0),
+            Cause::Event(name) => (3, self.event(name, source, from)?, 0),
+            Cause::Above(name, threshold) => (4, self.parameter(name)?, threshold),
+            Cause::Below(name, threshold) => (5, self.parameter(name)?, threshold),
+        })
     }
 
     /// The id of an event in the clips of the states that a transition leaves, which must be one.
@@ -309,11 +295,12 @@ impl<'s> Maker<'s, '_> {
     }
 
     /// Warns of a state at whose end the figure stands still.
-    fn check_end(&mut self, state: &State, source: &Source, place: usize) -> Result<()> {
+    fn check_end(&mut self, state: &State, source: &Source, file: &Text) -> Result<()> {
         let (name, clip) = &self.clips.all[usize::from(self.clip_of(state)?)];
         if !clip.looped() && state.transitions.is_empty() && source.any.is_empty() {
             self.warnings.push(format!(
-                "line {place}: state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",
+                "line {}: state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",
+                file.line(state.name.span()),
                 quoted(state.name.get_ref()),
                 quoted(name)
             ));

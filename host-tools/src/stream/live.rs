@@ -1,7 +1,7 @@
 //! A face that is recorded now: Live Link Face's datagrams, or lines of its CSV on stdin.
 
 use crate::import::livelink::live_link_name;
-use crate::import::text::shown;
+use crate::import::text::quoted;
 use crate::input;
 use anyhow::{Context, Result, bail, ensure};
 use std::io::{self, BufRead, BufReader, ErrorKind};
@@ -101,11 +101,7 @@ impl Feed {
                     cells.iter().map(|cell| cell.parse().ok().filter(|value: &f64| value.is_finite())).collect();
                 match values.filter(|values| values.len() == names.len()) {
                     Some(values) => return Ok(Some(values)),
-                    None => bail!(
-                        "--live -: expected a timecode, a count and {} numbers, found {}",
-                        names.len(),
-                        shown(Some(line.as_bytes()))
-                    ),
+                    None => bail!("--live -: expected a timecode, a count and {} numbers, found {}", names.len(), quoted(&line)),
                 }
             },
             Feed::Datagrams(socket) => {

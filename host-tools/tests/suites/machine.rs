@@ -4,7 +4,7 @@ use pantin::Bank;
 use pantin_animator::machine::{Cause, Machine, SECTION, Table};
 use pantin_animator::{Animator, Transition, Workspace};
 use pantin_tools::encode::bank::{self, CheckedRig, Named};
-use pantin_tools::machine::{Source, graph, make};
+use pantin_tools::machine::{Source, Text, graph, make};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
@@ -26,7 +26,8 @@ fn small_bank() -> Vec<u8> {
 
 fn error(text: &str) -> String {
     let bytes = small_bank();
-    let made = Source::parse(text).and_then(|source| make(&source, text, &Bank::new_checked(&bytes).unwrap()));
+    let file = Text { name: "a.toml", text };
+    let made = Source::parse(&file).and_then(|source| make(&source, &file, &Bank::new_checked(&bytes).unwrap()));
     format!("{:#}", made.unwrap_err())
 }
 
@@ -65,7 +66,8 @@ transitions = [{ to = "go", below = ["speed", 20], start = "in-step" }]
 fn the_table_says_what_the_text_says() {
     let bytes = small_bank();
     let bank = Bank::new_checked(&bytes).unwrap();
-    let made = make(&Source::parse(SMALL).unwrap(), SMALL, &bank).unwrap();
+    let file = Text { name: "a.toml", text: SMALL };
+    let made = make(&Source::parse(&file).unwrap(), &file, &bank).unwrap();
     assert!(made.warnings.is_empty(), "{:?}", made.warnings);
     let table = Table::new(&made.table, bank.len()).unwrap();
     let names: Vec<&str> = (0..table.states() as u8).map(|state| table.state_name(state)).collect();
@@ -257,5 +259,5 @@ fn the_command_refuses_what_it_cannot_do_and_writes_nothing() {
     assert_eq!(std::fs::read(&bank).unwrap(), small_bank());
     assert_eq!(run(&["good.toml", "-o", "a.ptb"]).0, Some(0));
     assert!(good.exists() && Table::of_bank(&std::fs::read(folder.path().join("a.ptb")).unwrap()).is_ok());
-    let _ = graph::svg(&Source::parse(SMALL).unwrap());
+    let _ = graph::svg(&Source::parse(&Text { name: "good.toml", text: SMALL }).unwrap());
 }

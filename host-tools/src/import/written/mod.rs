@@ -3,7 +3,7 @@
 pub mod rig;
 
 use super::Options;
-use super::text::{number_in, shown};
+use super::text::{number_in, quoted};
 use crate::budget;
 use crate::events;
 use crate::motion::{Event, Rig};
@@ -142,7 +142,7 @@ impl Header {
         for word in frames {
             match word.parse::<usize>() {
                 Ok(frame) if frame < count => self.events.push(Event { frame, name: (*name).into() }),
-                _ => return wrong(format!("expected a frame of 0 to {}, found {}", count - 1, shown(Some(word.as_bytes())))),
+                _ => return wrong(format!("expected a frame of 0 to {}, found {}", count - 1, quoted(word))),
             }
         }
         Ok(())
@@ -184,6 +184,6 @@ pub fn positive(name: &str, words: &[&str]) -> Read<f64> {
     let [word] = words else { return wrong(format!("expected one number after `{name}`")) };
     match number(word)? {
         number if number > 0.0 => Ok(number),
-        _ => wrong(format!("expected a number above 0 after `{name}`, found {}", shown(Some(word.as_bytes())))),
+        _ => wrong(format!("expected a number above 0 after `{name}`, found {}", quoted(word))),
     }
 }
