@@ -4,10 +4,9 @@
 use std::ops::Range;
 
 use anyhow::{Context, Result, ensure};
-use object::Endianness;
-use object::elf::{FileHeader32, PT_LOAD};
-use object::read::elf::{ElfFile, ProgramHeader};
 use object::{Object, ObjectSymbol};
+
+use crate::segments::{self, Segment};
 
 /// A chip.
 #[derive(Debug)]
@@ -63,21 +62,15 @@ pub fn check(board: &str, elf: &[u8]) -> Result<()> {
 }
 
 fn taken(elf: &[u8]) -> Result<Taken> {
-    let file = ElfFile::<FileHeader32<Endianness>>::parse(elf).context("the image is no ELF file")?;
+    let file = object::File::parse(elf).context("the image is no ELF file")?;
     let mut taken = Taken::default();
-    for segment in file.elf_program_headers().iter().filter(|segment| segment.p_type(file.endian()) == PT_LOAD) {
-        let [load, run, bytes, size] = [
-            segment.p_paddr(file.endian()),
-            segment.p_vaddr(file.endian()),
-            segment.p_filesz(file.endian()),
-            segment.p_memsz(file.endian()),
-        ]
-        .map(u64::from);
-        if bytes > 0 {
-            taken.loaded.push(load..load + bytes);
+    for Segment { load, bytes, run } in segments::of_elf(elf)? {
+        let load = u64::from(load);
+        if !bytes.is_empty() {
+            taken.loaded.push(load..load + bytes.len() as u64);
         }
-        if size > 0 {
-            taken.used.push(run..run + size);
+        if !run.is_empty() {
+            taken.used.push(run);
         }
     }
     let symbol = |name| file.symbols().find(|symbol| symbol.name() == Ok(name)).map(|symbol| symbol.address());

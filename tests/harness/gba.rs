@@ -6,13 +6,11 @@ use std::process::{Command, Stdio};
 use std::sync::Mutex;
 
 use anyhow::{Context, Result, ensure};
-use object::Endianness;
-use object::elf::{FileHeader32, PT_LOAD};
-use object::read::elf::{ElfFile, ProgramHeader};
 use tempfile::TempDir;
 
 use crate::build::{self, Firmware};
 use crate::display::{Depth, Display, Picture, Way};
+use crate::segments::{self, Segment};
 use crate::{paths, setup};
 
 /// The Rust target of its programs.
@@ -72,13 +70,10 @@ pub fn image(clips: &[&Path]) -> Result<Vec<u8>> {
 
 /// Returns the cartridge's image of a linked program.
 pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
-    let file = ElfFile::<FileHeader32<Endianness>>::parse(elf).context("the program is no ELF file")?;
     let mut image = vec![];
-    for segment in file.elf_program_headers().iter().filter(|segment| segment.p_type(file.endian()) == PT_LOAD) {
-        let bytes = segment.data(file.endian(), elf).ok().context("a segment lies beyond the file")?;
-        // What lies in RAM alone has no bytes.
+    for Segment { load, bytes, .. } in segments::of_elf(elf)? {
         if !bytes.is_empty() {
-            let start = u64::from(segment.p_paddr(file.endian())).checked_sub(CARTRIDGE);
+            let start = u64::from(load).checked_sub(CARTRIDGE);
             let start = start.context("a segment lies before the cartridge")? as usize;
             image.resize(image.len().max(start + bytes.len()), 0);
             image[start..start + bytes.len()].copy_from_slice(bytes);

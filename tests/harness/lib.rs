@@ -30,6 +30,10 @@ pub mod qmp;
 #[cfg(feature = "full")]
 pub mod rp2040;
 pub mod screen;
+#[cfg(feature = "full")]
+mod segments;
+#[cfg(feature = "full")]
+mod sha256;
 #[cfg(feature = "simulator")]
 pub mod simulator;
 #[cfg(feature = "full")]

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, ensure};
-use object::Endianness;
-use object::elf::{FileHeader32, PT_LOAD};
-use object::read::elf::{FileHeader, ProgramHeader};
 use pantin_tools::update::uf2::{self, PAGE};
+
+use crate::segments::{self, Segment};
 
 /// The family.
 const RP2040: u32 = 0xe48b_ff56;
@@ -30,15 +29,11 @@ pub fn of_bare_elf(elf: &[u8]) -> Result<Vec<u8>> {
 
 /// The pages that a file's segments touch, by address.
 fn pages(elf: &[u8]) -> Result<BTreeMap<u32, [u8; PAGE]>> {
-    let header = FileHeader32::<Endianness>::parse(elf).context("the image is no ELF file of 32 bits")?;
-    let endian = header.endian().context("the image is no ELF file")?;
     let mut pages = BTreeMap::new();
-    for segment in header.program_headers(endian, elf).context("the image has no segments")? {
-        let data = segment.data(endian, elf).ok().context("a segment lies outside the file")?;
-        if segment.p_type(endian) != PT_LOAD || data.is_empty() {
+    for Segment { load: start, bytes: data, .. } in segments::of_elf(elf)? {
+        if data.is_empty() {
             continue;
         }
-        let start = segment.p_paddr(endian);
         let end = u64::from(start) + data.len() as u64;
         ensure!(
             FLASH.contains(&start) && end <= u64::from(FLASH.end),
@@ -64,7 +59,7 @@ fn is_second_stage(page: &[u8; PAGE]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use object::elf::{self, Ident, ProgramHeader32};
+    use object::elf::{self, FileHeader32, Ident, PT_LOAD, ProgramHeader32};
     use object::{LittleEndian as LE, U16, U32, pod::bytes_of};
     use pantin_tools::update::uf2::{BLOCK, END, FAMILY, MAGIC};
 

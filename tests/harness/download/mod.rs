@@ -3,16 +3,10 @@
 mod page;
 mod wires;
 
-use std::fmt::Write;
-
 use anyhow::{Context, Result, ensure};
-use object::Endianness;
-use object::elf::{FileHeader32, PT_LOAD};
-use object::read::elf::{ElfFile, ProgramHeader};
-use sha2::{Digest, Sha256};
 
 use crate::build::Firmware;
-use crate::{chip, gba, uf2};
+use crate::{chip, gba, segments, sha256, uf2};
 
 pub use page::page;
 pub use wires::{BOARDS, Board, Bus, Wiring};
@@ -141,16 +135,13 @@ impl Image {
 impl File {
     /// Its SHA-256.
     pub fn sum(&self) -> String {
-        Sha256::digest(&self.bytes).iter().fold(String::new(), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+        sha256::hex(&self.bytes)
     }
 }
 
 /// The file `SHA256SUMS`, which `sha256sum --check` reads.
 pub fn sums(files: &[File]) -> String {
-    files.iter().map(|file| format!("{}  {}\n", file.sum(), file.name)).collect()
+    files.iter().map(|file| sha256::line(&file.bytes, &file.name)).collect()
 }
 
 /// A linked program as the board takes it.
@@ -166,15 +157,8 @@ fn written(elf: &[u8], format: Format) -> Result<Vec<u8>> {
 
 /// The parts of a program that are loaded, by their addresses in the flash.
 fn parts(elf: &[u8]) -> Result<Vec<(u32, &[u8])>> {
-    let file = ElfFile::<FileHeader32<Endianness>>::parse(elf).context("the program is no ELF file")?;
-    let mut parts = vec![];
-    for segment in file.elf_program_headers().iter().filter(|segment| segment.p_type(file.endian()) == PT_LOAD) {
-        let bytes = segment.data(file.endian(), elf).ok().context("a segment lies beyond the file")?;
-        // What lies in RAM alone has no bytes.
-        if !bytes.is_empty() {
-            parts.push((segment.p_paddr(file.endian()), bytes));
-        }
-    }
+    let mut parts: Vec<_> = segments::of_elf(elf)?.into_iter().map(|segment| (segment.load, segment.bytes)).collect();
+    parts.retain(|(_, bytes)| !bytes.is_empty());
     parts.sort_by_key(|(address, _)| *address);
     ensure!(!parts.is_empty(), "the program is empty");
     Ok(parts)

@@ -1,13 +1,12 @@
 //! The SHA-256 of each golden vector, as `sha256sum --check` reads them.
 
-use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use sha2::{Digest, Sha256};
 
 use super::constants;
+use crate::sha256;
 
 /// The file's name.
 pub const NAME: &str = "SHA256SUMS";
@@ -19,11 +18,5 @@ pub fn text(folder: &Path) -> Result<String> {
     let mut names = entries.map(name).collect::<Result<Vec<String>>>()?;
     names.retain(|name| name != NAME && name != constants::NAME);
     names.sort();
-    let mut text = String::new();
-    for name in names {
-        let digest = Sha256::digest(fs::read(folder.join(&name)).with_context(|| name.clone())?);
-        digest.iter().try_for_each(|byte| write!(text, "{byte:02x}"))?;
-        writeln!(text, "  {name}")?;
-    }
-    Ok(text)
+    names.iter().map(|name| Ok(sha256::line(&fs::read(folder.join(name)).with_context(|| name.clone())?, name))).collect()
 }
