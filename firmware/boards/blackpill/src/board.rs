@@ -43,7 +43,7 @@ pub fn new(
     let serial =
         Serial::new(parts.USART1, (a.pa9, a.pa10.internal_pull_up(true)), Config::default().baudrate(BAUD.bps()), &mut clocks);
     let Ok(serial) = serial else { unreachable!("the port supports this baud rate") };
-    #[cfg(any(feature = "update", feature = "link"))]
+    #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
     #[cfg(not(feature = "spi"))]
     let display = {

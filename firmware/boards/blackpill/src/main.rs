@@ -7,7 +7,7 @@ mod flash;
 mod panic;
 #[cfg(feature = "spi")]
 mod spi_display;
-#[cfg(any(feature = "update", feature = "link"))]
+#[cfg(feature = "buffered")]
 mod uart_rx;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));

@@ -37,7 +37,7 @@ pub fn new(
     let (Ok(i2c), Ok(serial)) = (i2c, serial) else { unreachable!("bus and port support these rates") };
     let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
     let display = new(i2c.with_sda(parts.GPIO5).with_scl(parts.GPIO6));
-    #[cfg(any(feature = "update", feature = "link"))]
+    #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
     let (mut rx, mut tx) = serial.with_tx(parts.GPIO21).with_rx(parts.GPIO20).split();
     let send = move |mut bytes: &[u8]| {

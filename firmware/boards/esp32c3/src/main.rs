@@ -5,7 +5,7 @@
 mod board;
 mod flash;
 mod panic;
-#[cfg(any(feature = "update", feature = "link"))]
+#[cfg(feature = "buffered")]
 mod uart_rx;
 
 use esp_hal::clock::CpuClock;

@@ -8,7 +8,7 @@ mod flash;
 mod leds;
 mod panic;
 mod serial;
-#[cfg(any(feature = "update", feature = "link"))]
+#[cfg(feature = "buffered")]
 mod uart_rx;
 mod watchdog;
 

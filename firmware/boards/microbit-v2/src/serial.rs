@@ -26,9 +26,9 @@ pub fn new(uarte: UARTE0, txd: Pin<Output<PushPull>>, rxd: Pin<Input<Floating>>)
             while tx.flush().is_err() {}
         }
     };
-    #[cfg(not(any(feature = "update", feature = "link")))]
+    #[cfg(not(feature = "buffered"))]
     let poll = move || rx.read().ok();
-    #[cfg(any(feature = "update", feature = "link"))]
+    #[cfg(feature = "buffered")]
     let poll = {
         let _ = rx.read();
         crate::uart_rx::listen(rx);

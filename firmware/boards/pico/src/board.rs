@@ -32,7 +32,7 @@ pub fn new(
     let (tx, rx) = (pins.gpio0.into_function(), pins.gpio1.into_function().into_pull_type::<PullUp>());
     let serial = UartPeripheral::new(parts.UART0, (tx, rx), &mut resets);
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
-    #[cfg(any(feature = "update", feature = "link", feature = "usb"))]
+    #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
     let serial = NbSerial(serial);
     #[cfg(feature = "usb")]

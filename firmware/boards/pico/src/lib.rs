@@ -10,7 +10,7 @@ mod i2c;
 mod panic;
 #[cfg(feature = "spi")]
 mod spi_display;
-#[cfg(any(feature = "update", feature = "link", feature = "usb"))]
+#[cfg(feature = "buffered")]
 mod uart_rx;
 #[cfg(feature = "usb")]
 mod usb;
