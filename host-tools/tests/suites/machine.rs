@@ -150,6 +150,15 @@ fn what_is_wrong_is_named_with_its_line() {
     }
 }
 
+/// What begins with a count is no line.
+#[test]
+fn too_many_of_anything_is_an_error_of_the_file() {
+    let states: String = (0..65).map(|index| format!("[[state]]\nname = \"s{index}\"\nclip = \"walk\"\n")).collect();
+    assert_eq!(error(&states), "a.toml: 65 states; at most 64");
+    let parameters: String = (0..9).map(|index| format!("[[parameter]]\nname = \"p{index}\"\nrange = [0, 1]\n")).collect();
+    assert_eq!(error(&format!("[[state]]\nname = \"walk\"\n{parameters}")), "a.toml: 9 parameters; at most 8");
+}
+
 fn pantin(arguments: &[&std::ffi::OsStr]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_pantin")).args(arguments).output().unwrap()
 }
