@@ -128,6 +128,8 @@ fn everything_on_the_page_can_be_used() {
     if !skipped("the page's controls") {
         drive("controls", json!({ "clip": own("run.ptn"), "frames": 26 }));
         drive("quiet", json!({}));
+        drive("embed", json!({}));
+        drive("crowd", json!({}));
         let vector = |name: &str| paths::root().join("tests/vectors").join(name);
         drive("bank", json!({ "bank": vector("bank.ptb"), "events": vector("event-names.ptn") }));
     }

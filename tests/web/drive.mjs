@@ -155,6 +155,216 @@ const cases = {
     assert.deepEqual(still.troubles, []);
   },
 
+  // The element on a page of another's: with a strict security policy, moved, removed, in large numbers, in other colors.
+  async embed(page, browser) {
+    const context = await browser.newContext({ viewport: { width: 800, height: 600 } });
+    const plain = await context.newPage();
+    plain.on("pageerror", (error) => page.troubles.push(`embedded: ${error.message}`));
+    plain.on("console", (message) => message.type() === "error" && page.troubles.push(`embedded: ${message.text()}`));
+    await plain.addInitScript(HELPERS);
+    await plain.addInitScript(() => {
+      window.memories = [];
+      const { instantiate } = WebAssembly;
+      WebAssembly.instantiate = async (...given) => {
+        const made = await instantiate.apply(WebAssembly, given);
+        window.memories.push(made.instance.exports.memory);
+        return made;
+      };
+      window.until = async (holds, what) => {
+        for (let turns = 0; !holds(); turns++) {
+          if (turns > 250) throw new Error(`never: ${what ?? holds}`);
+          await new Promise((go) => setTimeout(go, 20));
+        }
+      };
+      window.same = (got, expected) => {
+        if (JSON.stringify(got) !== JSON.stringify(expected)) throw new Error(`${JSON.stringify(got)} in place of ${JSON.stringify(expected)}`);
+      };
+      window.made = (attributes = {}) => {
+        const player = document.createElement("pantin-player");
+        for (const [name, value] of Object.entries(attributes)) player.setAttribute(name, value);
+        document.body.append(player);
+        return player;
+      };
+      window.outcome = (promise) => promise.then(() => "", (error) => error.name);
+    });
+    const policy = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; require-trusted-types-for 'script'; trusted-types 'none'";
+    const body = "<!doctype html><title>another's page</title><link rel=icon href=data:,><body><pantin-player id=early></pantin-player>";
+    await plain.route("**/plain.html", (route) => route.fulfill({ body, contentType: "text/html", headers: { "Content-Security-Policy": policy.replace("default-src 'self'", "default-src 'self' data:") } }));
+    await plain.route("**/late.ptn", async (route) => {
+      await new Promise((go) => setTimeout(go, 200));
+      await route.continue({ url: `${args.site}clips/walk.ptn` });
+    });
+    let fails = true;
+    await plain.route("**/pantin-face.wasm", (route) => ((fails = !fails), fails ? route.continue() : route.fulfill({ status: 503 })));
+    await plain.goto(`${args.site}plain.html`);
+
+    // Properties from before the definition count; a second copy is no error; the canvas keeps its size.
+    await plain.evaluate(async () => {
+      const early = document.querySelector("#early");
+      Object.assign(early, { speed: 2, loop: true, orbit: 20, currentTime: 0.5, src: new URL("clips/walk.ptn", location) });
+      await import("/pantin-player.js");
+      await import("/pantin-player.js?another");
+      await until(() => early.playable > 1 && early.frame > 0);
+      same([early.speed, early.loop, early.orbit, early.currentTime > 0.4 && early.currentTime <= 0.5, early.paused], [2, true, 20, true, true]);
+      const { offsetHeight } = early;
+      await new Promise((go) => setTimeout(go, 200));
+      same(early.offsetHeight, offsetHeight);
+      same([early.canvas.height, early.stage.clientHeight], [early.stage.clientWidth / 2, early.stage.clientWidth / 2]);
+      if (window.seen(early).colours < 10) throw new Error("nothing is drawn");
+      // As high as the page says, the bar included.
+      early.style.height = "300px";
+      await until(() => early.canvas.height < 280 && early.canvas.height > 200);
+      same(early.output.getBoundingClientRect().bottom < early.getBoundingClientRect().bottom, true);
+      early.remove();
+    });
+
+    // Its life: moved, removed, attached again, never attached, another clip instead, another try.
+    await plain.evaluate(async () => {
+      const one = made({ loop: "" });
+      const other = document.body.appendChild(document.createElement("div"));
+      let loading = one.load("late.ptn");
+      one.seek(30);
+      one.play();
+      other.append(one);
+      same(await outcome(loading), "");
+      same([one.frame >= 30 && one.frame < 40, one.paused], [true, false]);
+      await until(() => one.frame > 41, "it plays after it was moved while it loaded");
+      document.body.append(one);
+      await new Promise((go) => setTimeout(go, 50));
+      const { frame } = one;
+      same(one.paused, false);
+      await until(() => one.frame !== frame, "it plays on after it was moved");
+      loading = one.load("late.ptn");
+      const next = one.load(new URL("clips/run.ptn", location));
+      same([await outcome(loading), await outcome(next)], ["AbortError", ""]);
+      one.play();
+      one.remove();
+      await Promise.resolve();
+      same(one.paused, true);
+      one.src = "late.ptn";
+      await new Promise((go) => setTimeout(go, 10));
+      other.append(one);
+      await until(() => one.playable > 40);
+      one.src = "late.ptn";
+      one.remove();
+      await new Promise((go) => setTimeout(go, 300));
+      same(one.playable, 0);
+      other.append(one);
+      await until(() => one.playable > 40, "it loads again what its removal stopped");
+      one.removeAttribute("src");
+      same([one.frames, one.received, one.src], [0, 0, null]);
+      // A face's module fails once.
+      same(await outcome(one.load("clips/greet.ptn")), "Error");
+      same(await outcome(one.load("clips/greet.ptn")), "");
+      same(await outcome(one.load("http://[")), "TypeError");
+      const never = document.createElement("pantin-player");
+      never.currentTime = 0.5;
+      same(await outcome(never.load("clips/walk.ptn")), "");
+      same([never.playable === never.frames, never.currentTime > 0.4], [true, true]);
+      // What playing tells.
+      const told = [];
+      for (const name of ["play", "pause", "ended", "loop", "timeupdate"]) one.addEventListener(name, () => told.at(-1) === name || told.push(name));
+      await one.load("clips/run.ptn");
+      one.speed = 8;
+      one.play();
+      await until(() => told.includes("loop"));
+      one.loop = false;
+      await until(() => told.includes("ended"));
+      same([told[0], ...told.slice(-2)], ["play", "pause", "ended"]);
+      // The scrubber holds the frame while it is held.
+      one.loop = true;
+      one.speed = 1;
+      one.play();
+      one.range.dispatchEvent(new PointerEvent("pointerdown"));
+      one.seek(9);
+      await new Promise((go) => setTimeout(go, 150));
+      same([one.frame, one.paused], [9, false]);
+      one.range.dispatchEvent(new PointerEvent("pointerup"));
+      await until(() => one.frame > 9);
+      document.body.replaceChildren();
+    });
+    page.troubles = page.troubles.filter((trouble) => !/503/.test(trouble));
+
+    // 300 players in the memory of two modules; where none of them can be seen, none plays; what is gone gives its memory back.
+    const crowd = () => plain.evaluate(async () => {
+      const all = Array.from({ length: 300 }, () => made({ bare: "", loop: "", autoplay: "", src: "clips/walk.ptn" }));
+      for (const one of all) one.style.width = "100px";
+      await until(() => all.every((one) => one.playable > 40));
+      await until(() => all.some((one) => one.frame > 2));
+      scrollTo(0, 0);
+      await new Promise((go) => setTimeout(go, 100));
+      const hidden = all.filter((one) => one.getBoundingClientRect().top > innerHeight + 200);
+      const before = hidden.map((one) => one.frame);
+      await new Promise((go) => setTimeout(go, 100));
+      same([hidden.length > 250, hidden.map((one) => one.frame)], [true, before]);
+      document.body.replaceChildren();
+      return window.memories.map((memory) => memory.buffer.byteLength);
+    });
+    const first = await crowd();
+    assert.ok(first.length === 2 && first[0] / 300 < 100 << 10, `${first}`);
+    const session = await context.newCDPSession(plain);
+    await plain.waitForTimeout(50);
+    await session.send("HeapProfiler.collectGarbage");
+    await plain.waitForTimeout(50);
+    const second = await crowd();
+    assert.ok(second[0] < 1.2 * first[0], `${first}, then ${second}`);
+
+    // Colors: of a dark page that says nothing of it, of properties, forced ones; no ground at all.
+    const light = await plain.evaluate(async () => {
+      window.one = made();
+      await one.load("clips/walk.ptn");
+      const isDark = () => one.stage.classList.contains("dark");
+      same(isDark(), false);
+      document.body.style.color = "white";
+      await until(isDark);
+      document.body.style.color = "";
+      await until(() => !isDark());
+      const has = (color) => {
+        const { data } = one.context.getImageData(0, 0, one.canvas.width, one.canvas.height);
+        for (let at = 0; at < data.length; at += 4) if (color.every((value, index) => Math.abs(value - data[at + index]) < 60)) return true;
+        return false;
+      };
+      same([has([0, 255, 0, 255]), one.context.getImageData(0, 0, 1, 1).data[3]], [false, 0]);
+      one.style.setProperty("--pantin-left", "rgb(0 255 0)");
+      one.style.setProperty("--pantin-paper", "transparent");
+      one.turn(1, 0);
+      same([has([0, 255, 0, 255]), getComputedStyle(one.stage).backgroundColor], [true, "rgba(0, 0, 0, 0)"]);
+      return has([0, 255, 0, 255]);
+    });
+    assert.equal(light, true);
+    await plain.emulateMedia({ forcedColors: "active" });
+    await plain.evaluate(async () => {
+      one.turn(1, 0);
+      const style = getComputedStyle(one.stage);
+      same([style.fill, style.stroke], [style.color, style.color]);
+    });
+    await context.close();
+  },
+
+  // A gallery of 1,000 clips: each small picture is drawn once, when it comes near the screen, by one player.
+  async crowd(page, browser) {
+    const many = await (await browser.newContext({ viewport: { width: 1280, height: 900 } })).newPage();
+    many.on("pageerror", (error) => page.troubles.push(error.message));
+    const list = Array.from({ length: 1000 }, (_, index) => ({ name: `clip ${index}`, file: "clips/walk.ptn", bytes: 1 }));
+    await many.route("**/clips.json", (route) => route.fulfill({ json: list }));
+    await many.goto(args.site);
+    // A canvas that was not drawn has the usual width.
+    const drawn = (most) => many.waitForFunction((most) => {
+      const all = [...document.querySelectorAll("#clips canvas")];
+      return all.length === 1000 && all.filter((picture) => picture.width < 300).length > most && all.filter((picture) => picture.width < 300).length;
+    }, most).then((count) => count.jsonValue());
+    const first = await drawn(8);
+    assert.ok(first < 500, `${first} drawn`);
+    assert.equal(await many.evaluate(() => document.querySelectorAll("pantin-player").length < 6), true);
+    assert.equal(await many.evaluate(() => {
+      const picture = document.querySelector("#clips canvas");
+      return picture.getContext("2d").getImageData(0, 0, picture.width, picture.height).data.some(Boolean);
+    }), true, "it shows something");
+    await many.evaluate(() => scrollTo(0, document.documentElement.scrollHeight / 2));
+    await drawn(first + 8);
+    await many.close();
+  },
+
   // A server that sends a piece now and then: frames become playable, and are played, before the rest is there.
   async slow(page) {
     await page.evaluate((clip) => {

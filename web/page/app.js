@@ -94,6 +94,45 @@ async function show(clip, name = null) {
   }
 }
 
+// One player draws all small pictures, each once it comes near the screen; another one plays where the pointer is.
+const [sketch, moving] = ["sketch", "moving"].map((name) => {
+  const small = document.createElement("pantin-player");
+  Object.assign(small, { className: name, inert: true, loop: true });
+  small.setAttribute("bare", "");
+  return small;
+});
+$("sketch").append(sketch);
+const waiting = [];
+let drawing = false;
+
+async function drawAll() {
+  if (drawing) return;
+  drawing = true;
+  for (let picture; (picture = waiting.shift()); ) {
+    try {
+      await sketch.load(picture.clip.file);
+    } catch {
+      continue;
+    }
+    sketch.seek(sketch.frames >> 1);
+    const { width, height } = sketch.canvas;
+    Object.assign(picture, { width, height });
+    picture.getContext("2d").drawImage(sketch.canvas, 0, 0);
+  }
+  drawing = false;
+}
+
+const near = new IntersectionObserver((entries) => {
+  for (const { isIntersecting, target } of entries) {
+    if (!isIntersecting) continue;
+    near.unobserve(target);
+    waiting.push(target);
+  }
+  drawAll();
+}, { rootMargin: "200px" });
+// In other colors, all are drawn again.
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => document.querySelectorAll("#clips canvas").forEach((picture) => near.observe(picture)));
+
 async function gallery() {
   const list = await (await fetch("clips.json")).json();
   for (const clip of list) {
@@ -101,19 +140,19 @@ async function gallery() {
     clip.button = document.createElement("button");
     clip.button.type = "button";
     clip.button.onclick = () => show(clip);
-    const [small, name, size] = ["pantin-player", "strong", "small"].map((tag) => document.createElement(tag));
-    small.setAttribute("bare", "");
-    small.inert = true;
-    small.loop = true;
-    small.addEventListener("ready", () => small.seek(small.frames >> 1), { once: true });
-    small.setAttribute("src", clip.file);
-    clip.button.onpointerenter = () => small.play();
-    clip.button.onpointerleave = () => small.pause();
+    const [picture, name, size] = ["canvas", "strong", "small"].map((tag) => document.createElement(tag));
+    picture.clip = clip;
+    clip.button.onpointerenter = () => {
+      picture.after(moving);
+      moving.load(clip.file).then(() => moving.play(), () => {});
+    };
+    clip.button.onpointerleave = () => moving.remove();
     name.textContent = clip.name;
     size.textContent = bytes(clip.bytes);
-    clip.button.append(small, name, size);
+    clip.button.append(picture, name, size);
     item.append(clip.button);
     $("clips").append(item);
+    near.observe(picture);
   }
   const wanted = new URLSearchParams(location.search).get("clip");
   show(list.find((clip) => clip.name === wanted) ?? list.find((clip) => clip.name === "greet") ?? list[0]);
@@ -182,6 +221,7 @@ function save(link, name, content, type) {
 
 async function shown({ report, clip, header, rig, poses, seconds }, file) {
   $("result").hidden = false;
+  $("result").scrollIntoView({ block: "nearest", behavior: "smooth" });
   const stem = file.name.replace(/\.[^.]*$/, "");
   save($("save"), `${stem}.ptn`, clip, "application/octet-stream");
   save($("save-c"), `${stem}.h`, header, "text/x-c");

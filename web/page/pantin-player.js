@@ -1,14 +1,9 @@
-// <pantin-player src="walk.ptn" autoplay loop look="oled|lines" speed="1"></pantin-player>: plays a Pantin clip while its bytes arrive.
-//
-// Properties: frame, frames, playable, received, total, paused, backwards, speed, orbit, tilt, facts, events, clips. Methods: load(what, clip), play(), pause(),
-// seek(frame), step(by), grey(). `what` is a URL, a Response, a ReadableStream, bytes, or a table { rig, poses, frames, frameTime, lengthExponent }; of a bank
-// (.ptb), `clip` or the URL's #fragment names the clip, and `clips` then lists the names of all. Events: progress, frame, ready, error, change, and heard with
-// detail { frame, id, name } for each of the clip's `events` that playing or stepping passes.
-// Keys: space plays, arrows step (with shift they turn the view), Home, End, R backwards, L look, + and - speed, 0 the usual view.
+// <pantin-player src="walk.ptn" autoplay loop look="oled|lines" speed="1"></pantin-player>: plays a Pantin clip while its bytes arrive. docs/WEB.md lists
+// its attributes, properties, methods and events.
 
 const MOST = 64 << 20;
-const BANK = [0x50, 0x62];
 const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars", "scalarsAt", "scalarsLength", "pose", "eventFrame", "eventId", "eventNameAt", "eventNameLength"];
+const none = () => Object.fromEntries(WORDS.map((word) => [word, 0]));
 // Events of a clip that are heard, at most.
 const MOST_EVENTS = 4096;
 // Bytes of a stroke, and how many of them there is room for.
@@ -18,40 +13,91 @@ const TROUBLES = [
   "the clip contradicts itself", "the clip's rig is in another file", "the clip has more joints or channels than there is room for", "there is nothing to show",
 ];
 const HOME = { orbit: -50, tilt: 12 };
-const LOOKS = {
-  light: { paper: [250, 250, 247], tones: [[105, 118, 126], [38, 44, 52], [198, 92, 8], [0, 104, 168], [38, 44, 52], [105, 118, 126]] },
-  dark: { paper: [19, 22, 27], tones: [[170, 190, 195], [255, 240, 215], [255, 166, 77], [96, 196, 255], [255, 240, 215], [170, 190, 195]] },
-};
+// What is behind the figure where the ground is transparent, on a light page and a dark one.
+const PAPERS = [[250, 250, 247], [19, 22, 27]];
+// The axes that `up` names.
+const AXES = { x: 1, y: 2, z: 3 };
+// Properties that may be set before the element is defined.
+const SETTABLE = ["look", "loop", "autoplay", "fit", "up", "speed", "backwards", "orbit", "tilt", "src", "currentTime"];
 
-const compiled = {};
-const compile = async (url) => {
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status}`);
-  return WebAssembly.compile(await response.arrayBuffer());
-};
-// A module's exports, in an instance of its own.
-const instance = async (name) => (await WebAssembly.instantiate(await (compiled[name] ??= compile(new URL(name, import.meta.url))))).exports;
 const bytes = (wasm, place, length) => new Uint8Array(wasm.memory.buffer, place, length);
 
-const TEMPLATE = `<style>
-:host { display: block; font: 14px/1.4 system-ui, sans-serif; color: CanvasText; }
+// The instance of a module that all players share. Its memory is divided here, in blocks that are used again. What failed is tried again by the next clip.
+const modules = {};
+const open = (url) => (modules[url] ??= start(url).catch((error) => {
+  delete modules[url];
+  throw error;
+}));
+async function start(url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: ${response.status}`);
+  const { instance } = await WebAssembly.instantiate(await response.arrayBuffer());
+  const free = {};
+  let end = (instance.exports.base() + 15) & -16;
+  return {
+    ...instance.exports,
+    // The address of so many bytes, a multiple of 16.
+    take(size) {
+      const known = free[size]?.pop();
+      if (known) return known;
+      const { memory } = instance.exports;
+      const missing = end + size - memory.buffer.byteLength;
+      if (missing > 0) memory.grow(Math.ceil(missing / 65536));
+      end += size;
+      return end - size;
+    },
+    give: (place, size) => (free[size] ??= []).push(place),
+  };
+}
+// Blocks of a file have sizes of powers of two.
+const block = (size) => 2 ** Math.max(12, Math.ceil(Math.log2(size)));
+
+// Returns the memory of a player that is gone.
+function release(seat) {
+  for (const [wasm, place, size] of seat.blocks) wasm.give(place, size);
+  seat.blocks = [];
+}
+const gone = globalThis.FinalizationRegistry && new FinalizationRegistry(release);
+
+const CSS = `
+:host { display: flex; flex-direction: column; font: 14px/1.4 system-ui, sans-serif; transition: color 1ms; }
 :host([hidden]) { display: none; }
-.stage { position: relative; aspect-ratio: 2; border-radius: 10px; overflow: hidden; touch-action: pan-y; cursor: grab; outline-offset: 3px; }
+.stage { --p: #fafaf7; --m: #262c34; --l: #c65c08; --r: #0068a8; --g: #69767e; }
+.dark { --p: #13161b; --m: #fff0d7; --l: #ffa64d; --r: #60c4ff; --g: #aabec3; }
+.stage { position: relative; flex: 1 1 auto; min-height: 0; aspect-ratio: 2; border-radius: 10px; overflow: hidden; touch-action: pan-y; cursor: grab; outline-offset: 3px; background: var(--pantin-paper, var(--p)); color: var(--pantin-body, var(--m)); fill: var(--pantin-left, var(--l)); stroke: var(--pantin-right, var(--r)); stop-color: var(--pantin-ground, var(--g)); }
 .stage:active { cursor: grabbing; }
-canvas { width: 100%; height: 100%; display: block; }
+canvas { position: absolute; inset: 0; width: 100%; height: 100%; }
 :host([look=oled]) .stage { background: #000; }
 :host([look=oled]) canvas { image-rendering: pixelated; }
 :host([look=oled]) .stage::after { content: ""; position: absolute; inset: 0; background: #bff1ff; mix-blend-mode: multiply; pointer-events: none; }
 .bar { display: flex; gap: .6em; align-items: center; margin-top: .5em; }
 button { font: inherit; width: 2.6em; height: 2.2em; border: 1px solid color-mix(in srgb, currentColor 30%, transparent); border-radius: 7px; background: none; color: inherit; cursor: pointer; }
-input { flex: 1; min-width: 4em; accent-color: #c65c08; }
+input { flex: 1; min-width: 4em; accent-color: var(--pantin-accent, #c65c08); }
 output { font-variant-numeric: tabular-nums; min-width: 6em; text-align: right; }
 p { margin: .3em 0 0; min-height: 1.4em; }
 :host([bare]) .bar, :host([bare]) p { display: none; }
-</style>
-<div class="stage" part="stage" tabindex="0" role="img" aria-label="animated figure"><canvas></canvas></div>
-<div class="bar" part="bar"><button type="button" aria-label="Play"><svg viewBox="0 0 10 10" width="14" height="14" fill="currentColor" aria-hidden="true"><path/></svg></button><input type="range" min="0" max="0" step="1" value="0" aria-label="Frame"><output></output></div>
-<p role="status"></p>`;
+@media (forced-colors: active) { .stage { forced-color-adjust: none; background: Canvas; color: CanvasText; fill: CanvasText; stroke: CanvasText; stop-color: GrayText; } button { forced-color-adjust: auto; } }
+`;
+let sheet;
+let pixel;
+
+// A color of CSS as red, green, blue and opacity, 0 to 255.
+function parts(color) {
+  pixel ??= Object.assign(document.createElement("canvas"), { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
+  pixel.clearRect(0, 0, 1, 1);
+  pixel.fillStyle = color;
+  pixel.fillRect(0, 0, 1, 1);
+  return [...pixel.getImageData(0, 0, 1, 1).data];
+}
+
+function make(parent, name, attributes, space = "http://www.w3.org/1999/xhtml") {
+  const element = document.createElementNS(space, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  parent.append(element);
+  return element;
+}
+
+const SVG = "http://www.w3.org/2000/svg";
 
 // The clips of a bank (decoder/FORMAT.md 16): its rig, and each clip's name and file.
 function bankOf(file) {
@@ -84,128 +130,264 @@ function bankOf(file) {
   }
   return { rig, clips: found };
 }
-const isBank = (file) => file[0] === BANK[0] && file[1] === BANK[1];
+const isBank = (file) => file[0] === 0x50 && file[1] === 0x62;
 
-const mix = (paper, ink, part) => `rgb(${paper.map((value, index) => Math.round(value + (ink[index] - value) * part))})`;
-
-export class PantinPlayer extends HTMLElement {
-  static observedAttributes = ["src", "look", "speed"];
-  #root = this.attachShadow({ mode: "open" });
-  #wasm = null;
-  #face = null;
+// Where there is no page, as in Node, the class can be imported but not used.
+export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
+  static observedAttributes = ["src", "look", "speed", "fit", "up"];
+  #seat = null;
   #abort = null;
+  // Where the last clip that removal kept from loading is to be loaded from.
+  #cut = false;
+  // A source that waits until the element is seen.
+  #lazy = null;
   #request = 0;
   #before = 0;
   #at = 0;
+  // A frame, or seconds, that were asked for and have not come.
+  #wanted = null;
+  #seen = false;
+  #held = false;
+  #tones = [];
   #inks = {};
-  paused = true;
-  backwards = false;
-  speed = 1;
+  #paused = true;
+  #backwards = false;
+  #speed = 1;
+  #told = 0;
+  #orbit = HOME.orbit;
+  #tilt = HOME.tilt;
   received = 0;
   total = 0;
-  orbit = HOME.orbit;
-  tilt = HOME.tilt;
+  trouble = "";
   events = [];
   clips = [];
-  facts = Object.fromEntries(WORDS.map((word) => [word, 0]));
+  facts = none();
 
   constructor() {
     super();
-    this.#root.innerHTML = TEMPLATE;
-    const find = (what) => this.#root.querySelector(what);
-    [this.stage, this.canvas, this.button, this.range, this.output, this.status] = [".stage", "canvas", "button", "input", "output", "p"].map(find);
+    const root = this.attachShadow({ mode: "open" });
+    if (!sheet) (sheet = new CSSStyleSheet()).replaceSync(CSS);
+    root.adoptedStyleSheets = [sheet];
+    this.stage = make(root, "div", { class: "stage", part: "stage", tabindex: 0, role: "img", "aria-label": "animated figure" });
+    this.canvas = make(this.stage, "canvas", {});
+    const bar = make(root, "div", { class: "bar", part: "bar" });
+    this.button = make(bar, "button", { type: "button" });
+    this.icon = make(make(this.button, "svg", { viewBox: "0 0 10 10", width: 14, height: 14, fill: "currentColor", "aria-hidden": true }, SVG), "path", {}, SVG);
+    this.range = make(bar, "input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Frame" });
+    this.output = make(bar, "output", {});
+    this.status = make(root, "p", { role: "status" });
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });
-    this.button.onclick = () => (this.paused ? this.play() : this.pause());
+    this.button.onclick = () => this.#toggle();
     this.range.oninput = () => this.seek(+this.range.value);
+    // While the scrubber is held, the frame is held.
+    this.range.onpointerdown = () => (this.#held = true);
+    this.range.onpointerup = this.range.onpointercancel = () => (this.#held = false);
     this.addEventListener("keydown", (event) => this.#key(event));
-    this.stage.onpointerdown = (event) => this.stage.setPointerCapture(event.pointerId);
-    this.stage.onpointermove = (event) => {
-      if (event.buttons & 1) this.turn(-event.movementX / 2, event.movementY / 3);
+    // The page's text has another color.
+    this.addEventListener("transitionend", ({ target }) => target === this && this.#aim());
+    let from;
+    const place = ({ clientX, clientY }) => [clientX, clientY];
+    this.stage.onpointerdown = (event) => {
+      from = place(event);
+      this.stage.setPointerCapture(event.pointerId);
     };
-    this.#told();
+    this.stage.onpointermove = (event) => {
+      if (!(event.buttons & 1) || !from) return;
+      const [[x, y], [oldX, oldY]] = [place(event), from];
+      from = [x, y];
+      this.turn((oldX - x) / 2, (y - oldY) / 3);
+    };
+    this.#tell();
   }
 
   connectedCallback() {
+    for (const name of SETTABLE.filter((name) => Object.hasOwn(this, name))) {
+      const value = this[name];
+      delete this[name];
+      this[name] = value;
+    }
     this.resizing = new ResizeObserver(() => this.#aim());
     this.resizing.observe(this.stage);
-    this.dark = matchMedia("(prefers-color-scheme: dark)");
-    this.dark.onchange = () => this.draw();
+    // Who cannot be seen does not play.
+    this.watching = new IntersectionObserver((entries) => this.#see(entries.at(-1).isIntersecting), { rootMargin: "100px" });
+    this.watching.observe(this.stage);
+    const { src } = this;
+    if (this.#cut && src !== null) this.#load(src);
+    this.#cut = false;
   }
 
   disconnectedCallback() {
-    this.pause();
-    this.#abort?.abort();
     this.resizing.disconnect();
-    this.dark.onchange = null;
+    this.watching.disconnect();
+    // A player that is moved within the page goes on.
+    queueMicrotask(() => {
+      if (this.isConnected) return;
+      this.pause();
+      this.#seen = false;
+      this.#cut = this.#abort && !this.#abort.done;
+      if (this.#cut) this.#abort.abort();
+    });
   }
 
   attributeChangedCallback(name, old, value) {
-    if (name === "src" && value !== null) this.load(value).catch(() => {});
-    if (name === "speed") this.speed = +value || 1;
-    if (name === "look") {
+    if (name === "src") {
+      if (value === null) this.#unload();
+      else if (this.getAttribute("loading") === "lazy" && !this.#seen) this.#lazy = value;
+      else this.#load(value);
+    } else if (name === "speed") this.#speed = +value || 1;
+    else {
       this.#aim();
-      this.#tell("change");
+      this.#dispatch("change");
     }
   }
 
+  get src() { return this.getAttribute("src"); }
+  set src(src) { this.setAttribute("src", src); }
   get frames() { return this.facts.frames; }
   get playable() { return this.facts.playable; }
   get frame() { return this.facts.frame; }
+  get paused() { return this.#paused; }
   get look() { return this.getAttribute("look") === "oled" ? "oled" : "lines"; }
   set look(look) { this.setAttribute("look", look); }
   get loop() { return this.hasAttribute("loop"); }
   set loop(loop) { this.toggleAttribute("loop", loop); }
+  get autoplay() { return this.hasAttribute("autoplay"); }
+  set autoplay(autoplay) { this.toggleAttribute("autoplay", autoplay); }
+  get fit() { return this.getAttribute("fit") === "whole" ? "whole" : "follow"; }
+  set fit(fit) { this.setAttribute("fit", fit); }
+  get up() { return this.getAttribute("up") ?? ""; }
+  set up(up) { this.setAttribute("up", up); }
+  get speed() { return this.#speed; }
+  set speed(speed) { this.#speed = +speed || 1; }
+  get backwards() { return this.#backwards; }
+  set backwards(backwards) { this.#backwards = !!backwards; }
+  get orbit() { return this.#orbit; }
+  set orbit(orbit) { this.turn(orbit - this.#orbit, 0); }
+  get tilt() { return this.#tilt; }
+  set tilt(tilt) { this.turn(0, tilt - this.#tilt); }
+  // Seconds. In a loop, the last frame lasts as long as the others.
+  get duration() { return this.frames ? ((this.frames - !this.facts.looped) * this.facts.frameTime) / 1e9 : NaN; }
+  get currentTime() { return (this.frame * this.facts.frameTime) / 1e9; }
+  set currentTime(seconds) { this.#want([seconds, true]); }
 
   // Loads a clip in place of the one before, or one of a bank's; resolves when all of it is there, and rejects with what is wrong with it.
   async load(what, clip = null) {
+    if (this.#abort) this.#wanted = null;
     this.#abort?.abort();
     const abort = (this.#abort = new AbortController());
     this.pause();
-    Object.assign(this, { received: 0, total: 0, trouble: "", events: [], clips: [] });
-    if (typeof what === "string") clip ??= decodeURIComponent(new URL(what, document.baseURI).hash.slice(1)) || null;
+    Object.assign(this, { received: 0, total: 0, trouble: "", events: [], clips: [], facts: none() });
+    this.#lazy = null;
     this.#at = 0;
-    // Clip and module come at the same time.
     const { signal } = abort;
-    const coming = typeof what === "string" ? fetch(new URL(what, document.baseURI), { signal }) : Promise.resolve(what);
-    coming.catch(() => {});
     try {
-      const wasm = await instance("pantin-player.wasm");
-      if (signal.aborted) return;
-      this.#wasm = wasm;
-      this.#face = null;
+      let coming = what;
+      if (typeof what === "string" || what instanceof URL) {
+        const url = new URL(what, document.baseURI);
+        clip ??= decodeURIComponent(url.hash.slice(1)) || null;
+        // Clip and module come at the same time.
+        coming = fetch(url, { signal });
+        coming.catch(() => {});
+      }
+      const wasm = await open(new URL("./pantin-player.wasm", import.meta.url));
+      signal.throwIfAborted();
+      this.#sit(wasm);
       this.#aim();
-      await (what.poses ? this.#table(what) : this.#receive(await coming, signal, clip));
-      if (!signal.aborted) this.#tell("ready");
+      await (what.poses ? this.#table(what, signal) : this.#receive(await coming, signal, clip));
+      signal.throwIfAborted();
+      this.#want(this.#wanted);
+      abort.done = true;
+      this.#dispatch("ready");
     } catch (error) {
-      if (signal.aborted) return;
+      // Another clip was loaded instead, or the element was removed.
+      if (signal.aborted) throw signal.reason;
+      this.#wanted = null;
+      abort.done = true;
       this.trouble = error.message;
-      this.#told();
-      this.#tell("error", error.message);
+      this.#tell();
+      this.#dispatch("error", error.message);
       throw error;
     }
   }
 
-  async #table({ rig, poses, frames, frameTime, lengthExponent }) {
-    const wasm = this.#wasm;
+  #load(src) {
+    this.load(src).catch(() => {});
+  }
+
+  // Without a clip.
+  #unload() {
+    this.#abort?.abort();
+    [this.#abort, this.#lazy, this.#wanted, this.#at] = [null, null, null, 0];
+    this.pause();
+    if (this.#seat) release(this.#seat);
+    this.#seat = null;
+    Object.assign(this, { received: 0, total: 0, trouble: "", events: [], clips: [], facts: none() });
+    this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    this.#tell();
+    this.#dispatch("change");
+  }
+
+  // Memory of a player without a clip.
+  #sit(wasm) {
+    if (this.#seat) release(this.#seat);
+    else {
+      this.#seat = {};
+      gone?.register(this, this.#seat);
+    }
+    const seat = this.#seat;
+    Object.assign(seat, { wasm, face: null, file: 0, size: 0, blocks: [] });
+    seat.at = this.#take(wasm, wasm.slot());
+    wasm.start(seat.at);
+  }
+
+  #take(wasm, size) {
+    let place;
+    try {
+      place = wasm.take(size);
+    } catch {
+      throw new Error("there is not enough memory");
+    }
+    this.#seat.blocks.push([wasm, place, size]);
+    return place;
+  }
+
+  // The address of the file, with room for so many bytes; what has come stays.
+  #room(size) {
+    const seat = this.#seat;
+    const { wasm, file } = seat;
+    if (size > MOST) throw new Error(`a clip may have ${MOST} bytes here`);
+    if (size > seat.size) {
+      seat.file = this.#take(wasm, (seat.size = block(size)));
+      bytes(wasm, seat.file).set(bytes(wasm, file, this.received));
+      // The clip goes on to read the old block until it knows of the new one, in the same task.
+      const old = seat.blocks.findIndex(([, place]) => place === file);
+      if (file) wasm.give(...seat.blocks.splice(old, 1)[0].slice(1));
+    }
+    return seat.file;
+  }
+
+  async #table({ rig, poses, frames, frameTime, lengthExponent }, signal) {
+    const { wasm, at } = this.#seat;
     const start = Math.ceil(rig.length / 4) * 4;
-    const place = wasm.room(start + poses.byteLength);
-    if (!place) throw new Error("there is not enough memory for the poses");
+    const size = start + poses.byteLength;
+    const place = this.#take(wasm, block(size));
     bytes(wasm, place).set(rig);
     new Int32Array(wasm.memory.buffer, place + start).set(poses);
-    this.#check(wasm.poses(rig.length, frames, frameTime, lengthExponent));
-    await this.#meet();
+    this.#check(wasm.poses(at, place, size, rig.length, frames, frameTime, lengthExponent));
+    await this.#meet(signal);
     this.#shown();
   }
 
   // The face of a clip that may drive one: it is loaded only then. Until it has loaded, no event reports the clip.
-  async #meet() {
-    const wasm = this.#wasm;
+  async #meet(signal) {
     const { channels, scalars, scalarsAt, scalarsLength } = this.#known();
-    if (this.#face || !scalars) return;
-    const face = await instance("pantin-face.wasm");
-    if (wasm !== this.#wasm) return;
-    bytes(face, face.room(scalarsLength)).set(bytes(wasm, scalarsAt, scalarsLength));
-    this.#face = { ...face, drawn: face.bind(scalarsLength, scalars, channels - scalars) };
+    if (this.#seat.face || !scalars) return;
+    const face = await open(new URL("./pantin-face.wasm", import.meta.url));
+    signal.throwIfAborted();
+    const at = this.#take(face, face.slot());
+    const pose = this.#take(face, block(Math.max(scalarsLength, 4 * channels)));
+    bytes(face, pose).set(bytes(this.#seat.wasm, scalarsAt, scalarsLength));
+    this.#seat.face = { face, at, pose, drawn: face.bind(at, pose, scalarsLength, scalars, channels - scalars) };
     this.facts = this.#known();
     this.#aim();
   }
@@ -219,45 +401,50 @@ export class PantinPlayer extends HTMLElement {
     }
     if (!(what instanceof ReadableStream)) what = new Blob([what]).stream();
     if (this.total > MOST) throw new Error(`the file has ${this.total} bytes; a clip may have ${MOST} here`);
+    const { wasm, at } = this.#seat;
     const reader = what.getReader();
-    let [trouble, whole] = [0, null];
-    for (;;) {
-      let { done, value } = await reader.read().catch(() => ({ done: true }));
-      if (signal.aborted) return reader.cancel();
-      if (!this.received && value && isBank(value)) whole = [];
-      if (whole) {
-        // A bank's clips may lie anywhere in it.
-        if (!done) {
-          whole.push(value);
-          if (whole.reduce((sum, part) => sum + part.length, 0) > MOST) throw new Error(`a bank may have ${MOST} bytes here`);
-          continue;
+    try {
+      let [trouble, whole, eager] = [0, null, this.autoplay && !matchMedia("(prefers-reduced-motion: reduce)").matches];
+      for (;;) {
+        let { done, value } = await reader.read().catch(() => ({ done: true }));
+        signal.throwIfAborted();
+        if (!this.received && value && isBank(value)) whole = [];
+        if (whole) {
+          // A bank's clips may lie anywhere in it.
+          if (!done) {
+            whole.push(value);
+            if (whole.reduce((sum, part) => sum + part.length, 0) > MOST) throw new Error(`a bank may have ${MOST} bytes here`);
+            continue;
+          }
+          value = this.#chosen(new Uint8Array(await new Blob(whole).arrayBuffer()), clip);
+          signal.throwIfAborted();
+          [done, whole] = [false, null];
         }
-        value = this.#chosen(new Uint8Array(await new Blob(whole).arrayBuffer()), clip);
-        [done, whole] = [false, null];
+        if (done) break;
+        const file = this.#room(Math.max(this.total, this.received + value.length));
+        bytes(wasm, file + this.received).set(value);
+        this.received += value.length;
+        // A file may have moved, whatever is wrong with it.
+        trouble = wasm.arrived(at, file, this.received) || trouble;
+        await this.#meet(signal);
+        this.#shown();
+        this.#want(this.#wanted);
+        if (eager && this.playable > 1) {
+          this.play();
+          eager = false;
+        }
+        this.#dispatch("progress");
+        // A file of another kind need not be read to its end.
+        if (trouble && !this.frames && !this.playable) break;
       }
-      if (done) break;
-      const place = this.#wasm.room(this.received + value.length);
-      if (!place) {
-        reader.cancel();
-        throw new Error(`a clip may have ${MOST} bytes here`);
-      }
-      bytes(this.#wasm, place + this.received).set(value);
-      this.received += value.length;
-      trouble ||= this.#wasm.arrived(this.received);
-      await this.#meet();
-      if (signal.aborted) return reader.cancel();
+      if (!trouble || this.playable) trouble = wasm.finish(at) || trouble;
+      this.events = this.#events();
+      this.total ||= this.received;
       this.#shown();
-      if (this.hasAttribute("autoplay") && this.paused && !this.#at && this.playable > 1 && !matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
-      this.#tell("progress");
-      // A file of another kind need not be read to its end.
-      if (trouble && !this.frames && !this.playable) break;
+      this.#check(trouble);
+    } finally {
+      reader.cancel().catch(() => {});
     }
-    if (!trouble || this.playable) trouble = this.#wasm.finish() || trouble;
-    this.events = this.#events();
-    reader.cancel().catch(() => {});
-    this.total ||= this.received;
-    this.#shown();
-    this.#check(trouble);
   }
 
   // Puts a bank's rig into the module's memory, and returns the clip that was asked for, or the first, behind it.
@@ -267,7 +454,7 @@ export class PantinPlayer extends HTMLElement {
     const clip = name === null ? clips[0] : clips.find((clip) => clip.name === name);
     const names = this.clips.join(", ");
     if (!clip) throw new Error(`the bank has no clip ${name}; it has ${names}`);
-    this.#wasm.apart(rig.length);
+    this.#seat.wasm.apart(this.#seat.at, rig.length);
     const both = new Uint8Array(rig.length + clip.file.length);
     both.set(rig);
     both.set(clip.file, rig.length);
@@ -277,8 +464,8 @@ export class PantinPlayer extends HTMLElement {
 
   // The clip's events, in the order of their frames.
   #events() {
-    const [wasm, events] = [this.#wasm, []];
-    while (events.length < MOST_EVENTS && wasm.event(events.length)) {
+    const [{ wasm, at }, events] = [this.#seat, []];
+    while (events.length < MOST_EVENTS && wasm.event(at, events.length)) {
       const { eventFrame, eventId, eventNameAt, eventNameLength } = this.#known();
       events.push({ frame: eventFrame, id: eventId, name: new TextDecoder().decode(bytes(wasm, eventNameAt, eventNameLength)) });
     }
@@ -290,7 +477,7 @@ export class PantinPlayer extends HTMLElement {
     const count = this.playable || 1;
     const way = (frame) => (((backwards ? from - frame : frame - from) + 2 * count - 1) % count) + 1;
     const passed = this.events.filter(({ frame }) => way(frame) <= way(to));
-    (backwards ? passed.reverse() : passed).sort((a, b) => way(a.frame) - way(b.frame)).forEach((event) => this.#tell("heard", event));
+    (backwards ? passed.reverse() : passed).sort((a, b) => way(a.frame) - way(b.frame)).forEach((event) => this.#dispatch("heard", event));
   }
 
   #check(code) {
@@ -300,33 +487,67 @@ export class PantinPlayer extends HTMLElement {
   }
 
   #aim() {
-    if (!this.#wasm || !this.isConnected) return;
+    if (!this.#seat?.wasm || !this.isConnected) return;
+    const { wasm, at, face: known } = this.#seat;
     const scale = Math.min(devicePixelRatio || 1, 2047 / this.stage.clientWidth);
     const [width, height] = this.look === "oled" ? [128, 64] : [this.stage.clientWidth, this.stage.clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
-    Object.assign(this.canvas, { width, height });
-    const [orbit, tilt] = [Math.round(this.orbit), Math.round(this.tilt)];
+    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    this.#colors();
+    const [orbit, tilt] = [Math.round(this.#orbit), Math.round(this.#tilt)];
     // A face stands beside the body as the firmware divides its displays, or has all of the picture.
-    const [face, wide] = [this.#face?.drawn, 2 * width >= 3 * height];
+    const [face, wide] = [known?.drawn, 2 * width >= 3 * height];
     const side = !this.facts.joints ? width : wide ? height : Math.floor(width / 5) * 2;
-    this.#wasm.aim(!face ? width : !this.facts.joints ? 0 : wide ? width - side : width, height, orbit, tilt);
-    if (face) this.#face.aim(side, this.facts.joints ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
+    wasm.aim(at, !face ? width : !this.facts.joints ? 0 : wide ? width - side : width, height, orbit, tilt, (this.fit === "whole") + 2 * (AXES[this.up] ?? 0));
+    if (face) known.face.aim(known.at, side, this.facts.joints ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
     this.#shown();
+  }
+
+  // Takes the colors from the style sheets. A page is dark if its text is light.
+  #colors() {
+    const [red, green, blue] = parts(getComputedStyle(this).color);
+    const dark = red + 2 * green + blue > 512;
+    this.stage.classList.toggle("dark", dark);
+    const { backgroundColor, color, fill, stroke, stopColor } = getComputedStyle(this.stage);
+    const [paper, middle, left, right, ground] = [backgroundColor, color, fill, stroke, stopColor].map(parts);
+    this.#tones = [ground, middle, left, right, middle, ground, paper[3] ? paper : PAPERS[+dark]];
+    this.#inks = {};
+  }
+
+  #see(seen) {
+    this.#seen = seen;
+    if (!seen) return;
+    if (this.#lazy !== null) this.#load(this.#lazy);
+    this.#run();
   }
 
   // Orbits and tilts the camera, in degrees.
   turn(orbit, tilt) {
-    this.orbit = ((this.orbit + orbit + 540) % 360) - 180;
-    this.tilt = Math.max(-30, Math.min(85, this.tilt + tilt));
+    this.#orbit = ((this.#orbit + orbit + 540) % 360) - 180;
+    this.#tilt = Math.max(-30, Math.min(85, this.#tilt + tilt));
     this.#aim();
-    this.#tell("change");
+    this.#dispatch("change");
   }
 
-  // Shows exactly this frame, or the last one that is playable.
+  // Shows exactly this frame. One that has not come is shown once it has, and until then the last one that has.
   seek(frame) {
-    this.#at = Math.max(0, Math.min(frame, this.playable - 1));
-    this.#wasm?.go(this.#at);
+    this.#want([frame]);
+  }
+
+  #want(wanted) {
+    this.#wanted = wanted;
+    if (!wanted || !this.frames) return;
+    const [value, seconds] = wanted;
+    const frame = Math.max(0, Math.min(seconds ? Math.floor((value * 1e9) / this.facts.frameTime + 1e-6) : value, this.frames - 1));
+    if (frame < this.playable) this.#wanted = null;
+    this.#go(Math.min(frame, this.playable - 1));
+  }
+
+  #go(frame) {
+    if (frame < 0) return;
+    this.#at = frame;
+    this.#seat.wasm.go(this.#seat.at, frame);
     this.#shown();
-    this.#tell("frame");
+    this.#dispatch("frame");
   }
 
   step(by) {
@@ -336,53 +557,83 @@ export class PantinPlayer extends HTMLElement {
     this.#hear(before, this.frame, by < 0);
   }
 
+  // Before there is a clip, it begins once there is one.
   play() {
-    if (!this.#wasm || !this.paused) return;
-    this.paused = false;
+    if (!this.#paused) return;
+    this.#paused = false;
     const last = this.playable - 1;
-    const ended = this.playable === this.frames && !this.loop && this.frame === (this.backwards ? 0 : last);
-    this.#at = ended ? (this.backwards ? last : 0) : this.frame;
-    this.#before = performance.now();
-    this.#request = requestAnimationFrame((now) => this.#tick(now));
-    this.#told();
-    this.#tell("change");
+    const ended = this.playable && this.playable === this.frames && !this.loop && this.frame === (this.#backwards ? 0 : last);
+    this.#at = ended ? (this.#backwards ? last : 0) : this.frame;
+    this.#run();
+    this.#tell();
+    this.#dispatch("play");
+    this.#dispatch("change");
     // What happens at the first frame happens when it begins.
-    if (this.frame === (this.backwards ? last : 0)) this.events.filter(({ frame }) => frame === this.frame).forEach((event) => this.#tell("heard", event));
+    if (this.frame === (this.#backwards ? last : 0)) this.events.filter(({ frame }) => frame === this.frame).forEach((event) => this.#dispatch("heard", event));
   }
 
   pause() {
     cancelAnimationFrame(this.#request);
-    if (this.paused) return;
-    this.paused = true;
-    this.#told();
-    this.#tell("change");
+    this.#request = 0;
+    if (this.#paused) return;
+    this.#paused = true;
+    this.#tell();
+    this.#dispatch("pause");
+    this.#dispatch("change");
+  }
+
+  #toggle() {
+    if (this.#paused) this.play();
+    else this.pause();
+  }
+
+  // Goes on playing, unless it goes on already.
+  #run() {
+    if (this.#paused || this.#request || !this.#seen) return;
+    this.#before = performance.now();
+    const turn = (now) => {
+      this.#request = 0;
+      if (this.#paused || !this.#seen) return;
+      this.#tick(now);
+      if (!this.#paused) this.#request = requestAnimationFrame(turn);
+    };
+    this.#request = requestAnimationFrame(turn);
   }
 
   #tick(now) {
     const { frames, playable, frameTime } = this.facts;
     const passed = Math.max(0, now - this.#before) * 1e6 / (frameTime || 1e9);
     this.#before = now;
-    let at = this.#at + passed * this.speed * (this.backwards ? -1 : 1);
+    if (!playable || this.#held || this.#wanted) return;
+    let at = this.#at + passed * this.#speed * (this.#backwards ? -1 : 1);
     // Time waits for frames that have not come.
     if (playable < frames && at >= playable) at = playable - 0.001;
-    if (playable && (at < 0 || at >= playable)) {
-      if (this.loop) at = ((at % playable) + playable) % playable;
-      else {
+    let looped = false;
+    if (at < 0 || at >= playable) {
+      if (this.loop) {
+        at = ((at % playable) + playable) % playable;
+        looped = true;
+      } else {
         const end = at < 0 ? 0 : playable - 1;
         const before = this.frame;
-        if (before !== end) this.seek(end), this.#hear(before, end, this.backwards);
-        return this.pause();
+        if (before !== end) this.#go(end), this.#hear(before, end, this.#backwards);
+        this.pause();
+        this.#dispatch("ended");
+        return;
       }
     }
-    this.#at = at;
-    if (Math.floor(at) !== this.frame) {
+    const frame = Math.floor(at);
+    if (frame !== this.frame) {
       const before = this.frame;
-      this.#wasm.go(Math.floor(at));
-      this.#shown();
-      this.#tell("frame");
-      this.#hear(before, this.frame, this.backwards);
+      this.#go(frame);
+      this.#hear(before, frame, this.#backwards);
     }
-    this.#request = requestAnimationFrame((next) => this.#tick(next));
+    this.#at = at;
+    if (looped) this.#dispatch("loop");
+    if (now - this.#told > 250) {
+      this.#told = now;
+      this.#dispatch("timeupdate");
+    }
   }
 
   #key(event) {
@@ -392,56 +643,59 @@ export class PantinPlayer extends HTMLElement {
     if ((on === this.button && event.key === " ") || (on === this.range && event.key.startsWith("Arrow"))) return;
     const [turn, step] = [event.shiftKey, event.shiftKey ? 15 : 1];
     const act = {
-      " ": () => (this.paused ? this.play() : this.pause()),
+      " ": () => this.#toggle(),
       ArrowLeft: () => (turn ? this.turn(-step, 0) : this.step(-1)),
       ArrowRight: () => (turn ? this.turn(step, 0) : this.step(1)),
       ArrowUp: () => this.turn(0, 5),
       ArrowDown: () => this.turn(0, -5),
       Home: () => this.seek(0),
       End: () => this.seek(this.playable - 1),
-      r: () => (this.backwards = !this.backwards),
+      r: () => (this.backwards = !this.#backwards),
       l: () => (this.look = this.look === "oled" ? "lines" : "oled"),
-      "+": () => (this.speed = Math.min(8, this.speed * 2)),
-      "-": () => (this.speed = Math.max(1 / 8, this.speed / 2)),
-      0: () => this.turn(HOME.orbit - this.orbit, HOME.tilt - this.tilt),
+      "+": () => (this.#speed = Math.min(8, this.#speed * 2)),
+      "-": () => (this.#speed = Math.max(1 / 8, this.#speed / 2)),
+      0: () => this.turn(HOME.orbit - this.#orbit, HOME.tilt - this.#tilt),
     }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     event.preventDefault();
     act();
-    this.#tell("change");
+    this.#dispatch("change");
   }
 
   // The greys of the 128x64 display, 17 times 0 to 15; in that look alone.
   grey() {
     const count = this.#gather();
-    return bytes(this.#wasm, this.#wasm.grey(count), 128 * 64);
+    const { wasm } = this.#seat;
+    return bytes(wasm, wasm.grey(count), 128 * 64);
   }
 
   // Puts the frame's strokes into the module's memory, from far to near, and counts them.
   #gather() {
-    const [wasm, face] = [this.#wasm, this.#face];
-    const count = wasm.strokes();
-    if (!face?.drawn || !this.playable) return count;
+    const { wasm, at, face: known } = this.#seat;
+    const count = wasm.strokes(at);
+    if (!known?.drawn || !this.playable) return count;
     const { channels, pose } = this.facts;
-    bytes(face, face.room(4 * channels)).set(bytes(wasm, pose, 4 * channels));
-    const more = Math.min(face.place(channels), STROKES - count);
+    const { face } = known;
+    bytes(face, known.pose).set(bytes(wasm, pose, 4 * channels));
+    const more = Math.min(face.place(known.at, known.pose, channels), STROKES - count);
     bytes(wasm, wasm.picture() + STROKE * count).set(bytes(face, face.picture(), STROKE * more));
     return count + more;
   }
 
   #known() {
-    const words = new Uint32Array(this.#wasm.memory.buffer, this.#wasm.facts());
+    const { wasm, at } = this.#seat;
+    const words = new Uint32Array(wasm.memory.buffer, wasm.facts(at));
     return Object.fromEntries(WORDS.map((word, index) => [word, words[index]]));
   }
 
   #shown() {
     this.facts = this.#known();
     this.draw();
-    this.#told();
+    this.#tell();
   }
 
   draw() {
-    if (!this.#wasm) return;
+    if (!this.#seat?.wasm) return;
     if (this.look === "oled") return this.#drawGrey();
     this.#drawLines();
   }
@@ -455,17 +709,18 @@ export class PantinPlayer extends HTMLElement {
 
   #drawLines() {
     const { context, canvas } = this;
-    const look = LOOKS[this.dark?.matches ? "dark" : "light"];
     const end = this.#gather() * STROKE;
-    const view = new DataView(this.#wasm.memory.buffer, this.#wasm.picture(), end);
-    context.fillStyle = mix(look.paper, look.paper, 0);
-    context.fillRect(0, 0, canvas.width, canvas.height);
+    const { wasm } = this.#seat;
+    const view = new DataView(wasm.memory.buffer, wasm.picture(), end);
+    const paper = this.#tones[6];
+    const mix = (ink, part) => `rgb(${[0, 1, 2].map((index) => Math.round(paper[index] + (ink[index] - paper[index]) * part))})`;
+    context.clearRect(0, 0, canvas.width, canvas.height);
     context.lineCap = context.lineJoin = "round";
     const thin = Math.max(1, canvas.height / 280);
     for (let place = 0, before = ""; place < end; place += STROKE) {
       const [x, y, u, v] = [0, 2, 4, 6].map((offset) => view.getInt16(place + offset, true) / 16);
       const [shade, what, width] = [8, 9, 10].map((offset) => view.getUint8(place + offset));
-      const ink = (this.#inks[look.paper + [what, shade]] ??= mix(look.paper, look.tones[what], shade / 255));
+      const ink = (this.#inks[[what, shade]] ??= mix(this.#tones[what], shade / 255));
       const style = ink + width;
       if (style !== before || what > 3) {
         if (before) context.stroke();
@@ -474,16 +729,21 @@ export class PantinPlayer extends HTMLElement {
         context.lineWidth = what === 0 ? thin / 1.5 : Math.max(thin, width);
       }
       before = style;
-      if (what === 4) context.arc(x, y, u, 0, 7), context.fill();
-      else context.moveTo(x, y), context.lineTo(u, v);
+      if (what === 4) {
+        // A head hides what is behind it.
+        context.arc(x, y, u, 0, 7);
+        context.globalCompositeOperation = "destination-out";
+        context.fill();
+        context.globalCompositeOperation = "source-over";
+      } else context.moveTo(x, y), context.lineTo(u, v);
     }
     context.stroke();
   }
 
-  #told() {
+  #tell() {
     const { frame, frames, playable } = this.facts;
-    this.button.querySelector("path").setAttribute("d", this.paused ? "M2 1v8l7-4z" : "M2 1h2v8H2zM6 1h2v8H6z");
-    this.button.setAttribute("aria-label", this.paused ? "Play" : "Pause");
+    this.icon.setAttribute("d", this.#paused ? "M2 1v8l7-4z" : "M2 1h2v8H2zM6 1h2v8H6z");
+    this.button.setAttribute("aria-label", this.#paused ? "Play" : "Pause");
     this.range.max = Math.max(0, playable - 1);
     this.range.value = frame;
     this.output.textContent = frames ? `${frame + 1} / ${frames}` : "";
@@ -492,9 +752,10 @@ export class PantinPlayer extends HTMLElement {
     if (this.status.textContent !== words) this.status.textContent = words;
   }
 
-  #tell(name, detail = null) {
+  #dispatch(name, detail = null) {
     this.dispatchEvent(new CustomEvent(name, { detail }));
   }
 }
 
-customElements.define("pantin-player", PantinPlayer);
+// Another copy of this script may have defined it.
+if (globalThis.customElements && !customElements.get("pantin-player")) customElements.define("pantin-player", PantinPlayer);

@@ -22,7 +22,7 @@ use crate::{paths, setup};
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
 /// For the smallest player: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
-const SMALL: &str = "-Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
+const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
 
 /// The modules' packages, the profiles that they are built in, and their names in the site.
 pub const MODULES: [(&str, &str, &str); 3] = [

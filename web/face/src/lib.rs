@@ -1,11 +1,13 @@
-//! Draws the face of one clip, next to the player's module: a page loads this module when a clip may drive a face. An instance is for one clip.
+//! Draws the faces of clips, next to the player's module: a page loads this module when a clip may drive a face. One instance draws all faces of a page, each
+//! in a slot of memory that the page divides.
 //!
 //! ```text
-//! room(bytes)              -> address where the page writes a rig's scalars, and later poses
-//! bind(bytes, count, first) -> whether these scalars drive a face
-//! aim(w, h, shift, o, t)   sets the picture in pixels, its shift to the right, the view in degrees
-//! place(channels)          -> number of strokes of the pose that the page wrote
-//! picture()                -> address of the strokes
+//! base()                   -> the first address of the page's memory, all of which it divides and has grown itself
+//! slot()                   -> bytes of a slot, whose address is a multiple of 16
+//! bind(slot, scalars, bytes, count, first) -> whether these scalars, which the page wrote, drive a face
+//! aim(slot, w, h, shift, o, t) sets the picture in pixels, its shift to the right, the view in degrees
+//! place(slot, pose, channels) -> number of strokes of the pose that the page wrote
+//! picture()                -> address of the strokes, which all faces share
 //! ```
 #![no_std]
 // The page calls these functions, and finds and writes memory by plain addresses.
@@ -14,48 +16,55 @@
 use pantin::Scalars;
 use pantin_face::{Binding, FaceRenderer, FaceView, MODEL, Model, Morph, VERTICES, Weights};
 use pantin_figure::Canvas;
-use pantin_web_module::memory::{room as make_room, written};
+use pantin_web_module::memory::{base as free_from, written};
 use pantin_web_module::{Only, Stroke};
 
 /// Maximum number of lines of a face, including its mesh.
 const STROKES: usize = 3072;
 
-struct Face {
+#[repr(C, align(16))]
+struct Slot {
     model: Option<Model<'static>>,
     binding: Binding,
     morph: Morph<VERTICES>,
     renderer: FaceRenderer<VERTICES>,
-    strokes: [Stroke; STROKES],
 }
 
 /// Zeros, so that the module's file does not store them.
-static FACE: Only<Face> = Only::new(Face {
-    model: None,
-    binding: Binding::EMPTY,
-    morph: Morph::EMPTY,
-    renderer: FaceRenderer::EMPTY,
-    strokes: [Stroke::NONE; STROKES],
-});
+static PICTURE: Only<[Stroke; STROKES]> = Only::new([Stroke::NONE; STROKES]);
 
-fn face() -> &'static mut Face {
+fn picture_of_all() -> &'static mut [Stroke; STROKES] {
     // SAFETY: exports are the only callers, none of them calls another or the page, and the memory has no threads.
-    unsafe { FACE.get() }
+    unsafe { PICTURE.get() }
 }
 
-/// Reserves a number of bytes and returns their address; 0 if that exceeds the limit.
+/// Returns the first address of the page's memory.
 // SAFETY: nothing else is named so; this holds for every export below.
 #[unsafe(no_mangle)]
-extern "C" fn room(bytes: usize) -> *mut u8 {
-    make_room(bytes)
+extern "C" fn base() -> *const u8 {
+    free_from()
 }
 
-/// Returns whether `count` scalars, the first of which is channel `first`, drive a face. The page has written the rig's bytes from these scalars on.
-/// Must be called once.
+/// Returns the number of bytes of a slot.
 #[unsafe(no_mangle)]
-extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
-    let face = face();
+extern "C" fn slot() -> usize {
+    size_of::<Slot>()
+}
+
+/// Makes a face in a slot with any content. Returns whether `count` scalars, the first of which is channel `first`, drive it. The page has written the rig's
+/// bytes from these scalars on.
+#[unsafe(no_mangle)]
+extern "C" fn bind(slot: *mut Slot, scalars: *const u8, bytes: usize, count: usize, first: usize) -> bool {
+    let face = Slot { model: None, binding: Binding::EMPTY, morph: Morph::EMPTY, renderer: FaceRenderer::EMPTY };
+    // SAFETY: the page passes an address of its own with room for a slot, and no other call has it.
+    let face = unsafe {
+        slot.write(face);
+        &mut *slot
+    };
     let Ok(model) = Model::new_checked(MODEL) else { return false };
-    face.binding.bind_scalars(Scalars::of_bytes(written(bytes), count), first, &model);
+    // SAFETY: the page has written them, and they are read in this call only.
+    let scalars = unsafe { written(scalars, bytes) };
+    face.binding.bind_scalars(Scalars::of_bytes(scalars, count), first, &model);
     face.model = Some(model);
     face.binding.is_face() && face.morph.set_up(&model).is_ok()
 }
@@ -63,19 +72,22 @@ extern "C" fn bind(bytes: usize, count: usize, first: usize) -> bool {
 /// Sets the camera up for a part of the picture of `width` x `height` pixels (at most 2047), `right` of the picture's left edge, seen from `orbit`
 /// degrees around the face and `tilt` degrees above the horizon.
 #[unsafe(no_mangle)]
-extern "C" fn aim(width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
-    let Face { model: Some(model), renderer, .. } = face() else { return };
+extern "C" fn aim(slot: *mut Slot, width: u32, height: u32, right: u32, orbit: i32, tilt: i32) {
+    // SAFETY: the page passes a slot that is bound.
+    let Slot { model: Some(model), renderer, .. } = (unsafe { &mut *slot }) else { return };
     let canvas = Canvas { width: width.clamp(1, 2047) as u16, height: height.clamp(1, 2047) as u16 };
     renderer.set_up(model, canvas, FaceView { orbit: orbit as i16, tilt: tilt as i16 });
     renderer.shift(right as i16, 0);
 }
 
-/// Reads a pose with this number of values, collects its strokes, and returns their number.
+/// Reads a pose with this number of values, at a multiple of 4, collects its strokes, and returns their number.
 #[unsafe(no_mangle)]
-extern "C" fn place(channels: usize) -> usize {
-    let Face { model: Some(model), binding, morph, renderer, strokes } = face() else { return 0 };
-    // SAFETY: any bits are integers.
-    let (_, pose, _) = unsafe { written(channels.saturating_mul(4)).align_to::<i32>() };
+extern "C" fn place(slot: *mut Slot, pose: *const u8, channels: usize) -> usize {
+    // SAFETY: the page passes a slot that is bound.
+    let Slot { model: Some(model), binding, morph, renderer } = (unsafe { &mut *slot }) else { return 0 };
+    // SAFETY: the page has written it, and it is read in this call only; any bits are integers.
+    let (_, pose, _) = unsafe { written(pose, channels.saturating_mul(4)).align_to::<i32>() };
+    let strokes = picture_of_all();
     let mut weights = Weights::new();
     binding.read(pose, &mut weights);
     morph.apply(model, &weights);
@@ -93,5 +105,5 @@ extern "C" fn place(channels: usize) -> usize {
 /// Returns the address of the strokes.
 #[unsafe(no_mangle)]
 extern "C" fn picture() -> *const Stroke {
-    face().strokes.as_ptr()
+    picture_of_all().as_ptr()
 }

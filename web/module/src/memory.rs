@@ -1,12 +1,6 @@
-//! A module's memory: statics of fixed size, and above them what the page writes, which may grow.
+//! A module's memory: statics of fixed size. What lies above them is the page's, which divides it, has it grown and writes it.
 
-use core::arch::wasm32;
 use core::cell::UnsafeCell;
-
-/// Maximum number of bytes that the page may write.
-pub const MOST_BYTES: usize = 64 << 20;
-
-const PAGE: usize = 1 << 16;
 
 /// A static that only one user at a time changes.
 pub struct Only<T>(UnsafeCell<T>);
@@ -36,31 +30,16 @@ unsafe extern "C" {
     static __heap_base: u8;
 }
 
-fn base() -> *mut u8 {
-    (&raw const __heap_base).cast_mut()
+/// Returns the first address of the memory that the page divides.
+pub fn base() -> *const u8 {
+    &raw const __heap_base
 }
 
-fn start() -> usize {
-    (base() as usize).next_multiple_of(16)
-}
-
-/// The bytes above the statics.
-fn space() -> usize {
-    wasm32::memory_size(0) * PAGE - start()
-}
-
-/// Reserves a number of bytes and returns their address, a multiple of 16; null if there is not enough memory.
-pub fn room(bytes: usize) -> *mut u8 {
-    let missing = bytes.saturating_sub(space()).div_ceil(PAGE);
-    if bytes > MOST_BYTES || (missing > 0 && wasm32::memory_grow(0, missing) == usize::MAX) {
-        return core::ptr::null_mut();
-    }
-    base().wrapping_add(start() - base() as usize)
-}
-
-/// Returns the `bytes` bytes that the page wrote. While they are in use, the page writes only behind them.
-pub fn written(bytes: usize) -> &'static [u8] {
-    let bytes = bytes.min(space());
-    // SAFETY: it lies above the statics and below the memory's end; the page writes behind what it has said to be there only.
-    unsafe { core::slice::from_raw_parts(room(0), bytes) }
+/// Returns the `bytes` bytes from `place` on, which the page wrote.
+///
+/// # Safety
+/// They must lie in memory of the page, and the page must not change them while they are in use.
+pub unsafe fn written(place: *const u8, bytes: usize) -> &'static [u8] {
+    // SAFETY: the caller's promise.
+    unsafe { core::slice::from_raw_parts(place, bytes) }
 }

@@ -1,7 +1,7 @@
 //! A clip that plays while it is received.
 
 use crate::facts::Trouble;
-use crate::memory::{past, seat};
+use crate::memory::Buffers;
 use pantin::{Clip, PartialClip, Player, Pose, SeekCache};
 
 /// The received beginning of a file, and its player.
@@ -16,16 +16,15 @@ pub struct Arriving {
 }
 
 impl Arriving {
-    /// Opens the received beginning of a file, whose rig is `rig` if it has none; `None` while frame 0 has not arrived. Must not be called again after it succeeded.
+    /// Opens the received beginning of a file, whose rig is `rig` if it has none; `None` while frame 0 has not arrived.
     #[inline(never)]
-    pub fn new(file: &'static [u8], rig: &'static [u8]) -> Result<Option<Arriving>, Trouble> {
+    pub fn new(file: &'static [u8], rig: &'static [u8], buffers: &'static mut Buffers) -> Result<Option<Arriving>, Trouble> {
         let front = match PartialClip::with_rig(file, rig) {
             Err(pantin::OpenError::Truncated) => return Ok(None),
             front => front?,
         };
-        // SAFETY: whoever sat there is gone.
-        let (seat, past) = unsafe { (seat(), past()) };
-        let Some(player) = front.player(&mut seat.states, &mut seat.pose)? else { return Ok(None) };
+        let Buffers { states, pose, past } = buffers;
+        let Some(player) = front.player(states, pose)? else { return Ok(None) };
         let memory = SeekCache::new(&player, &mut [], &mut past.marks, &mut past.states, &mut past.values);
         Ok(Some(Arriving { front, player, memory, playable: 1, whole: false }))
     }

@@ -1,16 +1,18 @@
-//! Plays one clip in a web page. An instance of this module plays one clip, and is then dropped with its memory.
+//! Plays clips in a web page. One instance of this module plays all clips of a page: each has a slot and a file in memory that the page divides.
 //!
 //! ```text
-//! room(bytes)          -> address for the file; the page writes the received bytes there
-//! arrived(bytes)       reports the number of received bytes: frames become playable while the rest is loading
-//! apart(rig)           says, before anything else, that a rig of that many bytes comes before a file without one
-//! finish()             reports the end of the file: the whole clip is checked
-//! event(n)             -> 1 if the clip has an n-th event, which `facts` then has; names are there after `finish`
-//! aim(w, h, o, t)      sets the picture in pixels and the view in degrees
-//! go(frame)            moves to exactly that frame, forwards or backwards
-//! strokes()            -> number of strokes of the frame; the page may append those of a face
-//! picture()            -> address of the strokes
-//! grey(strokes)        -> address of the 128x64 display's pixels for them
+//! base()                     -> the first address of the page's memory, all of which it divides and has grown itself
+//! slot()                     -> bytes of a slot, whose address is a multiple of 16
+//! start(slot)                makes a player without a clip
+//! arrived(slot, file, bytes) reports where the file is and how many bytes of it have arrived: frames become playable while the rest is loading
+//! apart(slot, rig)           says, before anything else, that a rig of that many bytes comes before a file without one
+//! finish(slot)               reports the end of the file: the whole clip is checked
+//! event(slot, n)             -> 1 if the clip has an n-th event, which `facts` then has; names are there after `finish`
+//! aim(slot, w, h, o, t, how) sets the picture in pixels, the view in degrees, and how the camera stands
+//! go(slot, frame)            moves to exactly that frame, forwards or backwards
+//! strokes(slot)              -> number of strokes of the frame; the page may append those of a face
+//! picture()                  -> address of the strokes, which all players share
+//! grey(strokes)              -> address of the 128x64 display's pixels for them
 //! ```
 //! `arrived`, `finish`, `poses` and `aim` return a [`Trouble`], 0 for none. [`Facts`] describes the clip and the frame.
 #![no_std]
@@ -27,89 +29,118 @@ mod source;
 mod world;
 
 use facts::{Facts, Trouble};
-use pantin_web_module::memory::{room as make_room, written};
-use pantin_web_module::{Only, Stroke};
+use memory::Slot;
+use pantin_web_module::Stroke;
+use pantin_web_module::memory::{base as free_from, written};
 use world::World;
 
-/// Mostly zeros, which the module's file does not store.
-static WORLD: Only<World> = Only::new(World::NEW);
-
-fn with<T>(act: impl FnOnce(&mut World) -> T) -> T {
-    // SAFETY: exports are the only callers, none of them calls another or the page, and the memory has no threads.
-    act(unsafe { WORLD.get() })
+/// Acts on the player of a slot.
+fn with<T>(slot: *mut Slot, act: impl FnOnce(&mut World) -> T) -> T {
+    // SAFETY: the page passes a slot that it has started. Exports are the only callers, none of them calls another or the page, and the memory has no
+    // threads.
+    act(unsafe { &mut (*slot).world })
 }
 
 fn code(outcome: Result<(), Trouble>) -> u32 {
     outcome.err().map_or(0, |trouble| trouble as u32)
 }
 
-/// Reserves memory for a file of a number of bytes and returns its address; 0 if that exceeds the limit. Bytes that are there already stay.
+/// Returns the first address of the page's memory.
 // SAFETY: nothing else is named so; this holds for every export below.
 #[unsafe(no_mangle)]
-extern "C" fn room(bytes: usize) -> *mut u8 {
-    make_room(bytes)
+extern "C" fn base() -> *const u8 {
+    free_from()
 }
 
-/// Handles that the file's first `bytes` bytes have arrived.
+/// Returns the number of bytes of a slot.
 #[unsafe(no_mangle)]
-extern "C" fn arrived(bytes: usize) -> u32 {
-    with(|world| code(world.arrived(written(bytes))))
+extern "C" fn slot() -> usize {
+    size_of::<Slot>()
+}
+
+/// Makes a player without a clip, in memory with any content.
+#[unsafe(no_mangle)]
+extern "C" fn start(slot: *mut Slot) {
+    // SAFETY: the page passes an address of its own with room for a slot.
+    unsafe { (&raw mut (*slot).world).write(World::NEW) }
+}
+
+/// Handles that the file at `file`, a multiple of 16, has its first `bytes` bytes. The file may have moved since the last call.
+#[unsafe(no_mangle)]
+extern "C" fn arrived(slot: *mut Slot, file: *const u8, bytes: usize) -> u32 {
+    // SAFETY: the page writes behind what it has reported, in a file that stays until its slot is started again or it has moved.
+    let file = unsafe { written(file, bytes) };
+    // SAFETY: the address of a field of the page's slot.
+    let buffers = unsafe { &raw mut (*slot).buffers };
+    with(slot, |world| code(world.arrived(file, buffers)))
 }
 
 /// Handles that the first `rig` bytes are the rig of the file that follows.
 #[unsafe(no_mangle)]
-extern "C" fn apart(rig: usize) {
-    with(|world| world.apart(rig));
+extern "C" fn apart(slot: *mut Slot, rig: usize) {
+    with(slot, |world| world.apart(rig));
 }
 
 /// Looks an event up by its place. Returns 0 after the last one.
 #[unsafe(no_mangle)]
-extern "C" fn event(index: usize) -> u32 {
-    with(|world| world.event(index).into())
+extern "C" fn event(slot: *mut Slot, index: usize) -> u32 {
+    with(slot, |world| world.event(index).into())
 }
 
 /// Handles the end of the file.
 #[unsafe(no_mangle)]
-extern "C" fn finish() -> u32 {
-    with(|world| code(world.finish()))
+extern "C" fn finish(slot: *mut Slot) -> u32 {
+    with(slot, |world| code(world.finish()))
 }
 
-/// Plays a table instead of a clip: a rig of `rig` bytes, then from the next multiple of 4 on `frames` poses of raw values.
+/// Plays a table instead of a clip: `bytes` bytes at `file`, which are a rig of `rig` bytes, then from the next multiple of 4 on `frames` poses of raw
+/// values.
 #[unsafe(no_mangle)]
-extern "C" fn poses(rig: usize, frames: usize, frame_time_ns: u32, length_exponent: i32) -> u32 {
-    with(|world| code(world.poses(rig, frames, frame_time_ns, length_exponent as i8)))
+extern "C" fn poses(
+    slot: *mut Slot,
+    file: *const u8,
+    bytes: usize,
+    rig: usize,
+    frames: usize,
+    frame_time_ns: u32,
+    length_exponent: i32,
+) -> u32 {
+    // SAFETY: as in `arrived`.
+    let file = unsafe { written(file, bytes) };
+    with(slot, |world| code(world.poses(file, rig, frames, frame_time_ns, length_exponent as i8)))
 }
 
-/// Sets the camera up for a picture of `width` x `height` pixels (at most 2047; no width shows no bars), seen from `orbit` degrees around the figure and `tilt` degrees
-/// above the horizon.
+/// Sets the camera up for a picture of `width` x `height` pixels (at most 2047; no width shows no bars), seen from `orbit` degrees around the figure and `tilt`
+/// degrees above the horizon. `how` is 1 for a camera that stands still, 0 for one that follows the figure, plus twice the axis that is up: 1 x, 2 y, 3 z; 0
+/// for the rig's.
 #[unsafe(no_mangle)]
-extern "C" fn aim(width: u32, height: u32, orbit: i32, tilt: i32) -> u32 {
-    with(|world| code(world.aim(width as u16, height as u16, orbit as i16, tilt as i16)))
+extern "C" fn aim(slot: *mut Slot, width: u32, height: u32, orbit: i32, tilt: i32, how: u32) -> u32 {
+    with(slot, |world| code(world.aim(width as u16, height as u16, orbit as i16, tilt as i16, how)))
 }
 
 /// Moves to a frame, or to the last playable one.
 #[unsafe(no_mangle)]
-extern "C" fn go(frame: u32) {
-    with(|world| world.go(frame));
+extern "C" fn go(slot: *mut Slot, frame: u32) {
+    with(slot, |world| world.go(frame));
 }
 
 /// Returns the address of the [`Facts`].
 #[unsafe(no_mangle)]
-extern "C" fn facts() -> *const Facts {
-    with(|world| world.facts() as *const Facts)
+extern "C" fn facts(slot: *mut Slot) -> *const Facts {
+    with(slot, |world| world.facts() as *const Facts)
 }
 
 /// Collects the strokes of the frame and returns their number.
 #[unsafe(no_mangle)]
-extern "C" fn strokes() -> usize {
-    // SAFETY: as of the world.
-    with(|world| world.strokes(unsafe { memory::picture() }))
+extern "C" fn strokes(slot: *mut Slot) -> usize {
+    // SAFETY: as of the slot.
+    with(slot, |world| world.strokes(unsafe { memory::picture() }))
 }
 
 /// Returns the address of the strokes. The buffer holds [`picture::STROKES`].
 #[unsafe(no_mangle)]
 extern "C" fn picture() -> *const Stroke {
-    // SAFETY: as of the world; what is returned is the page's, which reads and writes it between calls.
+    // SAFETY: as of the slot; what is returned is the page's, which reads and writes it between calls.
     unsafe { memory::picture() }.strokes.as_ptr()
 }
 
@@ -117,6 +148,6 @@ extern "C" fn picture() -> *const Stroke {
 /// size.
 #[unsafe(no_mangle)]
 extern "C" fn grey(strokes: usize) -> *const u8 {
-    // SAFETY: as of the world.
+    // SAFETY: as of the slot.
     unsafe { memory::picture() }.draw(strokes).as_ptr()
 }

@@ -1,46 +1,35 @@
-//! The module's statics.
+//! Memory of a player, which the page provides, and of the picture, which all players share.
 
 use crate::picture::Picture;
+use crate::world::World;
 use core::mem::MaybeUninit;
 use pantin::codec::layout::MAX_CHANNELS;
 use pantin::{ChannelState, SnapshotPos};
 use pantin_web_module::Only;
 
-/// Memory of a player for any clip.
-pub struct FigureBuffers {
+/// One player: the page provides [`size_of`] this many bytes, a multiple of 16, and calls `start` before anything else.
+#[repr(C, align(16))]
+pub struct Slot {
+    pub world: World,
+    pub buffers: Buffers,
+}
+
+/// What a clip is played with. It is made of integers: any bits are values.
+pub struct Buffers {
     pub states: [ChannelState; MAX_CHANNELS],
     pub pose: [i32; MAX_CHANNELS],
+    pub past: Past,
 }
 
-/// Memory for stepping back and seeking: for 22 channels, a snapshot at each of 512 frames.
+/// Memory for stepping back and seeking: for 22 moving channels, 93 snapshots.
 pub struct Past {
-    pub marks: [SnapshotPos; 512],
-    pub states: [ChannelState; 32768],
-    pub values: [i32; 32768],
+    pub marks: [SnapshotPos; 128],
+    pub states: [ChannelState; 2048],
+    pub values: [i32; 2048],
 }
 
-macro_rules! zeroed {
-    ($name:ident: $kind:ty) => {
-        static $name: Only<MaybeUninit<$kind>> = Only::new(MaybeUninit::zeroed());
-    };
-}
-zeroed!(SEAT: FigureBuffers);
-zeroed!(PAST: Past);
-zeroed!(PICTURE: Picture);
-
-/// # Safety
-/// No other user may hold it.
-pub unsafe fn seat() -> &'static mut FigureBuffers {
-    // SAFETY: the caller's promise; a seat is made of integers, for which zeros are values.
-    unsafe { SEAT.get().assume_init_mut() }
-}
-
-/// # Safety
-/// No other user may hold it.
-pub unsafe fn past() -> &'static mut Past {
-    // SAFETY: the caller's promise; it is made of integers, for which zeros are values.
-    unsafe { PAST.get().assume_init_mut() }
-}
+/// Integers, for which zeros are values.
+static PICTURE: Only<MaybeUninit<Picture>> = Only::new(MaybeUninit::zeroed());
 
 /// # Safety
 /// No other reference to it may be in use.

@@ -4,12 +4,14 @@ use crate::actor::Actor;
 use crate::arriving::Arriving;
 use crate::facts::{Facts, Trouble};
 use crate::grey::DISPLAY;
+use crate::memory::Buffers;
 use crate::picture::Picture;
 use crate::source::{Source, Table};
+use pantin::Up;
+use pantin_figure::camera::Track;
 use pantin_figure::{Canvas, View};
-use pantin_web_module::memory;
 
-/// The whole state of an instance.
+/// The whole state of a player.
 pub struct World {
     source: Source,
     actor: Actor,
@@ -38,20 +40,28 @@ impl World {
         finished: false,
     };
 
-    /// Handles a longer beginning of the file. Camera and scale are those of the frames that are playable: they are computed again whenever these have doubled.
-    pub fn arrived(&mut self, file: &'static [u8]) -> Result<(), Trouble> {
+    /// Handles a longer beginning of the file, which may have moved. Camera and scale are those of the frames that are playable: they are computed again
+    /// whenever these have doubled.
+    pub fn arrived(&mut self, file: &'static [u8], buffers: *mut Buffers) -> Result<(), Trouble> {
         if self.finished {
             return Ok(());
         }
+        let shown = self.source.frame();
         let (rig, file) = file.split_at_checked(self.rig_len).unwrap_or((&[], &[]));
+        if self.file.as_ptr() != file.as_ptr() {
+            self.source = Source::Nothing;
+        }
         self.file = file;
-        if matches!(self.source, Source::Nothing)
-            && let Some(clip) = Arriving::new(file, rig)?
-        {
-            self.source = Source::Clip(clip);
+        if matches!(self.source, Source::Nothing) {
+            // SAFETY: the slot's buffers; the player that had them is gone.
+            let buffers = unsafe { &mut *buffers };
+            if let Some(clip) = Arriving::new(file, rig, buffers)? {
+                self.source = Source::Clip(clip);
+            }
         }
         let Source::Clip(clip) = &mut self.source else { return Ok(()) };
         let outcome = clip.extend(file);
+        self.go(shown);
         if self.source.playable() > 2 * self.surveyed {
             self.look()?;
         }
@@ -90,15 +100,24 @@ impl World {
     }
 
     /// Plays a table instead of a clip.
-    pub fn poses(&mut self, rig: usize, frames: usize, frame_time_ns: u32, length_exponent: i8) -> Result<(), Trouble> {
+    pub fn poses(
+        &mut self,
+        file: &'static [u8],
+        rig: usize,
+        frames: usize,
+        frame_time_ns: u32,
+        length_exponent: i8,
+    ) -> Result<(), Trouble> {
         self.finished = true;
-        self.source = Source::Table(Table::new(memory::written(usize::MAX), rig, frames, frame_time_ns, length_exponent)?);
+        self.source = Source::Table(Table::new(file, rig, frames, frame_time_ns, length_exponent)?);
         self.look()
     }
 
-    pub fn aim(&mut self, width: u16, height: u16, orbit: i16, tilt: i16) -> Result<(), Trouble> {
+    pub fn aim(&mut self, width: u16, height: u16, orbit: i16, tilt: i16, how: u32) -> Result<(), Trouble> {
         self.canvas = Canvas { width: width.min(2047), height: height.clamp(1, 2047) };
-        self.view = Some(View { orbit, tilt, ..View::default() });
+        let track = if how & 1 == 0 { Track::Follow } else { Track::Fixed };
+        let up = (how >> 1).checked_sub(1).and_then(|axis| Up::new(axis as usize, false));
+        self.view = Some(View { orbit, tilt, track, up });
         self.look()
     }
 
