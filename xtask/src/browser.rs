@@ -1,15 +1,13 @@
 //! Chromium, driven by `tests/web/drive.mjs`.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 
-use crate::paths;
 use crate::setup::{self, HOST_ONLY, install_emulator};
+use crate::{npm, paths};
 
 /// Chromium and what drives it, installed.
 pub struct Browser {
@@ -48,29 +46,9 @@ impl Browser {
     }
 }
 
-/// The folder in which the locked packages are; npm installs them once.
+/// The folder in which the locked packages are.
 fn playwright() -> Result<PathBuf> {
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let (wanted, folder) = (paths::root().join("tests/web"), paths::root().join("target/playwright"));
-    let lock = fs::read(wanted.join("package-lock.json")).context("tests/web/package-lock.json")?;
-    let done = folder.join("installed-lock.json");
-    if fs::read(&done).is_ok_and(|installed| installed == lock) {
-        return Ok(folder);
-    }
-    fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    for name in ["package.json", "package-lock.json"] {
-        fs::copy(wanted.join(name), folder.join(name)).with_context(|| name.to_owned())?;
-    }
-    npm(&folder)?;
-    fs::write(&done, lock).with_context(|| done.display().to_string())?;
+    let folder = paths::root().join("target/playwright");
+    npm::install(&paths::root().join("tests/web"), &folder)?;
     Ok(folder)
-}
-
-fn npm(folder: &Path) -> Result<()> {
-    eprintln!("installing what drives Chromium: npm ci");
-    let npm = install_emulator("npm")?;
-    let status = Command::new(npm).args(["ci", "--no-audit", "--no-fund"]).current_dir(folder).stdout(Stdio::null()).status();
-    ensure!(status.context("cannot start npm")?.success(), "`npm ci` failed in {}", folder.display());
-    Ok(())
 }

@@ -3,6 +3,7 @@
 pub mod browser;
 pub mod clip;
 pub mod core_library;
+pub mod npm;
 pub mod packages;
 pub mod paths;
 pub mod setup;

@@ -1,8 +1,10 @@
 //! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
 
+pub mod npm;
 mod pack;
 mod script;
 pub mod slow;
+pub mod tools;
 
 use std::ffi::OsString;
 use std::net::TcpListener;
@@ -54,11 +56,12 @@ pub fn build(out: &Path) -> Result<()> {
     for (package, profile, name) in MODULES {
         write(&out.join(name), &module(package, profile)?)?;
     }
-    for entry in listed(&paths::root().join("web/page"))? {
+    let page = listed(&paths::root().join("web/page"))?;
+    for entry in page.into_iter().chain([paths::root().join("web/packages/player").join(PLAYER[0])]) {
         let name = entry.file_name().unwrap_or_default();
         let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
         let scripted = entry.extension().is_some_and(|extension| extension == "js");
-        write(&out.join(name), &if scripted { script::shortened(&bytes)? } else { bytes })?;
+        write(&out.join(name), &if scripted { tools::minified(script::shortened(&bytes)?)? } else { bytes })?;
     }
     clips(out)
 }
@@ -95,6 +98,8 @@ fn module(package: &str, profile: &str) -> Result<Vec<u8>> {
         product: package.replace('-', "_"),
     })?;
     let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
+    // The converter works for seconds, and the optimizer would take minutes for it.
+    let bytes = if profile == "release" { tools::optimized(bytes)? } else { bytes };
     pack::pack(&bytes).with_context(|| product.display().to_string())
 }
 

@@ -24,7 +24,7 @@ const SIGN = 5;
 const ENDS = 6;
 const STEP = 7;
 const LEADER = 8;
-const WORDS = 9;
+const STATE = 9;
 // Leaders that are none: the channel reads its own segments, or stands still.
 const OWN = -1;
 // A player keeps about this many snapshots, at least this many frames apart.
@@ -291,8 +291,8 @@ const play = (clip, payload, at) => {
       leader = channels.length - 1 - bitsOf(5);
       if (leader < 0) leader = -2;
       else {
-        rest = start[leader * WORDS];
-        velocity = start[leader * WORDS + V];
+        rest = start[leader * STATE];
+        velocity = start[leader * STATE + V];
       }
     } else if (status) {
       step = symbolOf(STEP_CHANGE);
@@ -351,16 +351,16 @@ const play = (clip, payload, at) => {
   const step = () => {
     const reads = frame + 2 < frames;
     if (frame + 1 >= frames) return false;
-    for (let base = 0, index = 0; base < state.length; base += WORDS) {
+    for (let base = 0, index = 0; base < state.length; base += STATE) {
       if (reads && state[base + ENDS] === frame) {
-        const leader = state[base + LEADER] * WORDS;
+        const leader = state[base + LEADER] * STATE;
         if (leader >= 0) {
           // The leader has made its step already: its acceleration before it is what the follower has.
           state[base + K] = state[leader + K];
           state[base + W] = state[leader + W] - state[leader + K];
           state[base + TYPE] = state[leader + TYPE];
           state[base + ENDS] = state[leader + ENDS];
-        } else if (leader === OWN * WORDS) segment(base);
+        } else if (leader === OWN * STATE) segment(base);
       }
       raw[channels[index++]] = state[base] += state[base + V];
       state[base + V] += state[base + W];
@@ -376,7 +376,7 @@ const play = (clip, payload, at) => {
     if (to < frame || known[0] > frame) {
       [frame, at, x] = known;
       state.set(known[3]);
-      channels.forEach((channel, index) => (raw[channel] = state[index * WORDS]));
+      channels.forEach((channel, index) => (raw[channel] = state[index * STATE]));
     }
     while (frame < to) step();
     return player;

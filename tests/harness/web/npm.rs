@@ -1,0 +1,109 @@
+//! The npm packages: built from the site's files, packed, and used by a clean project.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use serde_json::Value;
+use xtask::npm;
+
+use super::{FACE, PLAYER, tools};
+use crate::{paths, setup};
+
+/// The packages, those that others need first.
+pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
+const CHECK: [&str; 5] = ["check.mjs", "check.ts", "index.html", "main.ts", "tsconfig.json"];
+
+/// A packed package.
+pub struct Packed {
+    /// Its name.
+    pub name: String,
+    /// What is published.
+    pub file: PathBuf,
+    /// Bytes of that, and of its content.
+    pub sizes: [u64; 2],
+}
+
+/// Packs all packages into a folder, from a site that was built. Each has every file that its manifest names.
+pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
+    ensure!(tools::installed(), "the packages need terser and wasm-opt, which npm could not install");
+    let mut packed = vec![];
+    for package in PACKAGES {
+        let (source, folder) = (paths::root().join("web/packages").join(package), out.join(package));
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let manifest: Value = serde_json::from_slice(&read(&source.join("package.json"))?).context("package.json")?;
+        let files = manifest["files"].as_array().context("package.json names no files")?;
+        for name in files.iter().filter_map(Value::as_str).chain(["package.json"]) {
+            let bytes = match name {
+                "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
+                "decoder.min.js" => decoder(&source)?,
+                name if PLAYER.contains(&name) || FACE.contains(&name) => read(&site.join(name))?,
+                name => read(&source.join(name))?,
+            };
+            super::write(&folder.join(name), &bytes)?;
+        }
+        let told = npm::run(&folder, &["pack", "--json", "--pack-destination", ".."])?;
+        let told: Value = serde_json::from_str(&told).context("npm pack")?;
+        // A list, or an object by the packages' names.
+        let told = told.get(0).or_else(|| told.as_object()?.values().next()).context("npm packed nothing")?;
+        let contents = told["files"].as_array().context("npm packed no files")?;
+        for name in files {
+            ensure!(contents.iter().any(|file| file["path"] == *name), "{package}: {name} is not in the package");
+        }
+        packed.push(Packed {
+            name: manifest["name"].as_str().unwrap_or_default().to_owned(),
+            file: out.join(told["filename"].as_str().context("npm's file")?),
+            sizes: ["size", "unpackedSize"].map(|field| told[field].as_u64().unwrap_or_default()),
+        });
+    }
+    Ok(packed)
+}
+
+/// Uses the packages in a project of their own: in Node, with strict types, and in a bundle of Vite's. Returns what was measured there.
+pub fn check(packed: &[Packed], folder: &Path) -> Result<Value> {
+    let source = paths::root().join("web/packages/check");
+    npm::install(&source, folder)?;
+    for name in CHECK {
+        super::write(&folder.join(name), &read(&source.join(name))?)?;
+    }
+    let files: Vec<String> = packed.iter().map(|package| package.file.display().to_string()).collect();
+    let mut arguments = vec!["install", "--no-save", "--no-audit", "--no-fund"];
+    arguments.extend(files.iter().map(String::as_str));
+    npm::run(folder, &arguments)?;
+    let measured = node(folder, "check.mjs", &[paths::root().join("motions/walk.ptn")])?;
+    node(folder, "node_modules/typescript/bin/tsc", &["--project".into(), ".".into()])?;
+    node(folder, "node_modules/vite/bin/vite.js", &["build".into(), "--logLevel".into(), "error".into()])?;
+    let assets = std::fs::read_dir(folder.join("dist/assets")).context("Vite's assets")?;
+    let names: Vec<String> = assets.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned())).collect();
+    for module in [PLAYER[1], FACE[0]] {
+        let stem = module.trim_end_matches(".wasm");
+        let is_there = names.iter().any(|name| name.starts_with(stem) && name.ends_with(".wasm"));
+        ensure!(is_there, "Vite did not emit {module}: {names:?}");
+    }
+    serde_json::from_str(&measured).context("check.mjs")
+}
+
+fn node(folder: &Path, program: &str, arguments: &[PathBuf]) -> Result<String> {
+    let output = Command::new(setup::emulator("node")?).arg(program).args(arguments).current_dir(folder).output();
+    let output = output.context("cannot start node")?;
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    ensure!(output.status.success(), "{program}: {out}{err}");
+    Ok(out)
+}
+
+/// The decoder and its tables as one script.
+fn decoder(source: &Path) -> Result<Vec<u8>> {
+    let [tables, index] = ["tables.js", "index.js"].map(|name| read(&source.join(name)));
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).context("a script that is not UTF-8");
+    let (tables, index) = (text(tables?)?, text(index?)?);
+    let (import, rest) = index.split_once("\";\n").context("index.js has no import")?;
+    let import = import.lines().last().unwrap_or_default();
+    ensure!(import.contains("./tables.js"), "index.js begins with another import: {import}");
+    let head = &index[..index.find(import).unwrap_or(0)];
+    let joined = format!("{head}{}{rest}", tables.replace("export const", "const"));
+    tools::minified(joined.into_bytes())
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).with_context(|| path.display().to_string())
+}

@@ -1,0 +1,75 @@
+// The packages as a program in Node uses them: `node check.mjs CLIP`. Prints what was measured.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { openClip } from "@pantin/decoder";
+import * as min from "@pantin/decoder/min";
+import { PantinPlayer } from "@pantin/player";
+import { PantinPose, toAnimationClip } from "@pantin/three";
+import { AnimationMixer, Bone, Float32BufferAttribute, BufferGeometry, Group, Mesh, Skeleton, Vector3 } from "three";
+
+const bytes = readFileSync(process.argv[2]);
+const clip = openClip(bytes);
+const short = min.openClip(bytes).play();
+for (const player = clip.play(); player.step() && short.step(); ) assert.deepEqual(player.raw, short.raw);
+
+// Without a page, the element is a class and nothing more.
+assert.equal(typeof PantinPlayer, "function");
+
+// A figure of bones: below an armature that turns, scales and is elsewhere, the joints are where they are without it.
+function figure(inside = new Group()) {
+  const root = new Group().add(inside);
+  const bones = clip.joints.map(({ name, offset }) => Object.assign(new Bone(), { name: name && `mixamorig${name}` }).translateX(offset[0]).translateY(offset[1]).translateZ(offset[2]));
+  const { scale } = inside;
+  clip.joints.forEach(({ parent }, index) => {
+    bones[index].position.divide(scale);
+    (parent < 0 ? inside : bones[parent]).add(bones[index]);
+  });
+  return { root, bones };
+}
+const places = ({ root, bones }) => (root.updateMatrixWorld(true), bones.map((bone) => new Vector3().setFromMatrixPosition(bone.matrixWorld)));
+const map = (name) => `mixamorig${name}`;
+const armature = new Group();
+armature.rotation.set(-Math.PI / 2, 0.3, 0);
+armature.scale.setScalar(0.01);
+armature.position.set(4, 5, 6);
+const [plain, turned] = [figure(), figure(armature)];
+const poses = [plain, turned].map(({ root }) => new PantinPose(clip, root, { map }));
+assert.deepEqual(poses[0].missing, { joints: [], scalars: [] });
+const mixers = [plain, turned].map(({ root }) => {
+  const mixer = new AnimationMixer(root);
+  mixer.clipAction(toAnimationClip(clip, root, { map })).play();
+  return mixer;
+});
+const player = clip.play();
+let farthest = 0;
+for (let frame = 0; frame < clip.frames; frame += 7) {
+  const world = player.seek(frame).world();
+  const compare = (figure) => places(figure).forEach((place, joint) => clip.joints[joint].isEnd || (farthest = Math.max(farthest, place.distanceTo(new Vector3().fromArray(world, 3 * joint)))));
+  poses.forEach((pose) => pose.setTime((frame * clip.frameTimeNs) / 1e9 + 1e-7));
+  [plain, turned].forEach(compare);
+  mixers.forEach((mixer) => mixer.setTime((frame * clip.frameTimeNs) / 1e9));
+  [plain, turned].forEach(compare);
+}
+const size = Math.max(...clip.joints.map(({ offset }) => Math.hypot(...offset)));
+assert.ok(farthest < 1e-4 * size, `a joint is ${farthest} away, where a bone has ${size}`);
+assert.throws(() => new PantinPose(clip, new Group()), /map/);
+assert.ok(new PantinPose(clip, new Skeleton(plain.bones), { map }).joints.length > 10);
+
+// Scalars move morph targets; frames of 100 characters are decoded and posed.
+if (clip.scalars.length) {
+  const geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute([0, 0, 0], 3));
+  geometry.morphAttributes.position = clip.scalars.map(({ name }) => Object.assign(new Float32BufferAttribute([0, 0, 0], 3), { name }));
+  const mesh = new Mesh(geometry);
+  new PantinPose(clip, mesh).setTime(clip.duration / 2);
+  assert.ok(mesh.morphTargetInfluences.some(Boolean));
+}
+const crowd = Array.from({ length: 100 }, (_, index) => new PantinPose(clip, figure().root, { map }).setTime(index / 50));
+const frames = 200;
+let begun = 0;
+for (let frame = -60; frame < frames; frame++) {
+  if (!frame) begun = performance.now();
+  for (const pose of crowd) pose.update(pose.time + 1 / 60 < clip.duration || clip.looped ? 1 / 60 : -pose.time);
+}
+const ms = (performance.now() - begun) / frames;
+assert.ok(ms < 8, `${ms} ms a frame`);
+console.log(JSON.stringify({ characters: crowd.length, joints: clip.joints.filter(({ isEnd }) => !isEnd).length, ms, farthest, size }));

@@ -1,0 +1,26 @@
+// What the packages' types allow, and what they do not.
+import { openBank, openClip, type Clip, type Player } from "@pantin/decoder";
+import { openClip as openShort } from "@pantin/decoder/min";
+import { PantinPlayer, type Heard } from "@pantin/player";
+import { PantinPose, toAnimationClip } from "@pantin/three";
+import { AnimationMixer, Object3D, Skeleton } from "three";
+
+export async function use(bytes: ArrayBuffer, root: Object3D): Promise<number> {
+  const clip: Clip = openClip(bytes);
+  openShort(new Uint8Array(bytes)).play().step();
+  openBank(bytes).open("walk");
+  const player: Player = clip.play().seek(3);
+  const turns: Float32Array = player.rotation(0, new Float32Array(4));
+  new AnimationMixer(root).clipAction(toAnimationClip(clip, root, { name: "walk", map: { Hips: "hips", Toe: null } })).play();
+  const pose = new PantinPose(clip, new Skeleton([]), { morphs: (name) => name.toLowerCase(), scale: 0.01 }).update(0.1);
+  const element: PantinPlayer = document.createElement("pantin-player");
+  element.src = "walk.ptn";
+  element.addEventListener("heard", ({ detail }) => console.log((detail satisfies Heard).name));
+  element.addEventListener("ended", () => element.pause());
+  await element.load(new URL("walk.ptn", location.href), "walk");
+  // @ts-expect-error It can only be read.
+  element.frame = 4;
+  // @ts-expect-error There is no such look.
+  element.look = "cubes";
+  return turns.length + pose.missing.joints.length;
+}

@@ -1,0 +1,101 @@
+/** A marker of a clip that playing passed. */
+export interface Heard {
+  readonly frame: number;
+  readonly id: number;
+  readonly name: string;
+}
+
+/** Raw poses in place of a clip: a rig, and one value per channel and frame. */
+export interface PoseTable {
+  rig: Uint8Array;
+  poses: Int32Array;
+  frames: number;
+  /** Nanoseconds. */
+  frameTime: number;
+  lengthExponent: number;
+}
+
+/** What a player is loaded from. */
+export type Source = string | URL | Response | ReadableStream<Uint8Array> | Blob | ArrayBuffer | Uint8Array<ArrayBuffer> | PoseTable;
+
+/** Numbers of the clip that is loaded; zeros before its first frame has arrived. */
+export interface Facts {
+  readonly frames: number;
+  readonly playable: number;
+  readonly frame: number;
+  /** Nanoseconds. */
+  readonly frameTime: number;
+  readonly looped: number;
+  readonly channels: number;
+  readonly moving: number;
+  readonly rigBytes: number;
+  readonly motionBytes: number;
+  readonly joints: number;
+  readonly scalars: number;
+}
+
+export interface PantinPlayerEventMap extends HTMLElementEventMap {
+  play: CustomEvent<null>;
+  pause: CustomEvent<null>;
+  ended: CustomEvent<null>;
+  loop: CustomEvent<null>;
+  timeupdate: CustomEvent<null>;
+  frame: CustomEvent<null>;
+  ready: CustomEvent<null>;
+  heard: CustomEvent<Heard>;
+}
+
+/** The element <pantin-player>. */
+export declare class PantinPlayer extends HTMLElement {
+  src: string | null;
+  autoplay: boolean;
+  loop: boolean;
+  look: "lines" | "oled";
+  fit: "follow" | "whole";
+  /** x, y or z; empty for the clip's own. */
+  up: string;
+  /** A multiple of the clip's own speed. */
+  speed: number;
+  backwards: boolean;
+  /** Degrees. */
+  orbit: number;
+  tilt: number;
+  /** Seconds. */
+  currentTime: number;
+  /** Seconds; NaN without a clip. */
+  readonly duration: number;
+  readonly frame: number;
+  readonly frames: number;
+  /** Frames that can be shown already. */
+  readonly playable: number;
+  readonly paused: boolean;
+  /** Bytes. */
+  readonly received: number;
+  readonly total: number;
+  readonly facts: Facts;
+  readonly events: readonly Heard[];
+  /** Names of a bank's clips. */
+  readonly clips: readonly string[];
+  /**
+   * Resolves when all of the clip has arrived. Rejects with what is wrong with it, or with an AbortError if it is given up for another one.
+   * `clip` names one of a bank's clips.
+   */
+  load(what: Source, clip?: string | null): Promise<void>;
+  play(): void;
+  pause(): void;
+  /** Shows a frame exactly; one that has not arrived is shown once it has. */
+  seek(frame: number): void;
+  step(by: number): void;
+  /** Orbits and tilts the camera by degrees. */
+  turn(orbit: number, tilt: number): void;
+  /** The greys of the 128x64 display, in that look alone. */
+  grey(): Uint8Array;
+  addEventListener<K extends keyof PantinPlayerEventMap>(type: K, listener: (this: PantinPlayer, event: PantinPlayerEventMap[K]) => unknown, options?: boolean | AddEventListenerOptions): void;
+  addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "pantin-player": PantinPlayer;
+  }
+}

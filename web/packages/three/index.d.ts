@@ -1,0 +1,45 @@
+import type { Clip, Joint, Player } from "@pantin/decoder";
+import type { AnimationClip, Object3D, Skeleton } from "three";
+
+/** A node, its name, or null for a joint that is to be left out. */
+export type Target = Object3D | string | null | undefined;
+
+/** How the names of a clip lead to nodes and morph targets. */
+export interface Options {
+  /** The node of a joint, by the joint's name. Joints that are not in the map are looked up by their own names; capital letters make no difference. */
+  map?: Readonly<Record<string, Target>> | ((name: string, joint: Joint) => Target);
+  /** The morph target of a scalar, by the scalar's name. Scalars that are not in the map are looked up by their own names. */
+  morphs?: Readonly<Record<string, string | null>> | ((name: string) => string | null | undefined);
+  /** Factor of the clip's translations, where its unit is not that of the scene. */
+  scale?: number;
+}
+
+/** A character that shows the frames of a clip. */
+export declare class PantinPose {
+  /** Throws an Error if no joint and no scalar of the clip is found below `root`. */
+  constructor(clip: Clip, root: Object3D | Skeleton, options?: Options);
+  readonly clip: Clip;
+  readonly player: Player;
+  /** Seconds. */
+  readonly time: number;
+  /** Names of the clip that have no node or morph target. */
+  readonly missing: { readonly joints: readonly string[]; readonly scalars: readonly string[] };
+  /** Goes on by so many seconds. A looped clip repeats; another one stays at its last frame. */
+  update(seconds: number): this;
+  /** Shows the frame at a time in seconds. */
+  setTime(seconds: number): this;
+  /** Puts the frame of `player` on the nodes, after it was moved by its own methods. */
+  apply(): void;
+}
+
+/** The clip as keyframe tracks, for an AnimationMixer on `root`. */
+export declare function toAnimationClip(
+  clip: Clip,
+  root: Object3D | Skeleton,
+  options?: Options & {
+    /** The name of the AnimationClip. */
+    name?: string;
+    /** Whether there are poses between frames, the default. */
+    interpolate?: boolean;
+  },
+): AnimationClip;
