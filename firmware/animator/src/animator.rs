@@ -3,7 +3,8 @@
 use crate::Error;
 use crate::events::{EventQueue, EventsLost};
 use crate::groups::{self, Group, Shape, nearest};
-use crate::layer::{Weight, mix_group};
+use crate::layer::{Weight, blend, mix_group};
+use crate::mask::Mask;
 use crate::math;
 use crate::offset::{AGAIN, Cubic, Offset};
 use crate::root::{Heading, Placement, Root, Travel};
@@ -370,12 +371,27 @@ impl<'a, 'm> Animator<'a, 'm> {
             let (Some(own), Some(to)) = (self.pose.get_mut(range.clone()), pose.values.get(range)) else { continue };
             mix_group(group.shape, own, to, weight);
         }
+        self.leave_place();
+        Ok(())
+    }
+
+    /// Puts a layer over the pose of this instant, where the mask says, but not over the root's horizontal place. Its form has to be that of the
+    /// clip that plays. It lasts until the next update.
+    pub fn layer(&mut self, values: &[i32], form: FormRef<'_>, mask: &Mask<'_>, weight: Weight) -> Result<(), WrongForm> {
+        let own = self.form();
+        let groups = self.groups.get(..self.used_groups).unwrap_or_default();
+        blend(self.pose, groups, own, Pose { values, form }, mask, weight)?;
+        self.leave_place();
+        Ok(())
+    }
+
+    /// Takes the root's horizontal place out of the pose.
+    fn leave_place(&mut self) {
         for channel in self.root.place.iter().flatten() {
             if let Some(value) = self.pose.get_mut(usize::from(*channel)) {
                 *value = 0;
             }
         }
-        Ok(())
     }
 
     /// Goes over to a clip of the same rig, from a frame (from the last one if there are fewer) and at a speed of -4 to 4 (others are cut off).

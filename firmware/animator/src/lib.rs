@@ -59,7 +59,8 @@
 //! | reach for something | [`Limb`] |
 //! | look at something | [`Look`] |
 //! | mix a walk and a run in step | [`Track::sync_to`], or a state that blends |
-//! | leave all this to a table | [`machine::Machine`] |
+//! | leave all this to a table | [`Character`], or a [`machine::Machine`] with an animator of one's own |
+//! | play recorded inputs | [`session::Replay`] |
 //! | place several figures | [`Scene`] |
 //!
 //! # The order of work in a frame
@@ -72,6 +73,7 @@
 
 mod animator;
 mod chain;
+mod character;
 mod error;
 mod events;
 mod foot;
@@ -85,12 +87,14 @@ mod offset;
 pub mod procedural;
 mod root;
 mod scene;
+pub mod session;
 mod sync;
 mod track;
 mod two_bone;
 mod vector;
 
 pub use animator::{Animator, Memory, RootMotion, Transition, Workspace};
+pub use character::{Character, LayerMemory, visit_poses};
 pub use error::Error;
 pub use events::{EVENTS, EventQueue, EventsLost, Fired};
 pub use foot::FootLock;

@@ -41,11 +41,14 @@ pub const STATES: usize = 64;
 pub const PARAMETERS: usize = 8;
 /// Most inputs of a table.
 pub const INPUTS: usize = 32;
+/// Most layers of a table.
+pub const LAYERS: usize = 4;
 
 const HEADER: usize = 8;
 const STATE: usize = 8;
 const TRANSITION: usize = 8;
 const PARAMETER: usize = 6;
+const LAYER: usize = 12;
 /// In place of a second clip.
 const NONE: u8 = 255;
 /// In place of a first frame: in step with the old clip.
@@ -62,9 +65,9 @@ pub enum TableError {
     BadCrc,
     /// The table's version is not [`VERSION`].
     UnsupportedVersion(u8),
-    /// There are no states, or more states, parameters or inputs than there may be, or a reserved byte is not 0.
+    /// There are no states, or more states, parameters, inputs or layers than there may be.
     BadCount,
-    /// A state names a clip that the bank lacks.
+    /// A state, or a layer (counted after the states), names a clip that the bank lacks.
     NoSuchClip {
         /// The state.
         state: u8,
@@ -96,7 +99,9 @@ impl core::fmt::Display for TableError {
             TableError::Truncated => f.write_str("the state machine's table has another length than it says"),
             TableError::BadCrc => f.write_str("the state machine's table is damaged"),
             TableError::UnsupportedVersion(version) => write!(f, "state machine version {version} is not supported"),
-            TableError::BadCount => f.write_str("the state machine has no states, or too many states, parameters or inputs"),
+            TableError::BadCount => {
+                f.write_str("the state machine has no states, or too many states, parameters, inputs or layers")
+            }
             TableError::NoSuchClip { state } => write!(f, "state {state} plays a clip that the bank lacks"),
             TableError::NoSuchState(state) => write!(f, "there is no state {state}"),
             TableError::NoSuchInput(input) => write!(f, "there is no parameter or input {input}"),
@@ -140,6 +145,21 @@ pub struct TransitionRow {
     pub first_frame: Option<u8>,
 }
 
+/// A row of the table's layers: a clip that an input plays over some joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerRow<'a> {
+    /// The clip's index in the bank.
+    pub clip: u8,
+    /// The input.
+    pub input: u8,
+    /// How long it takes to come and to go.
+    pub fade_us: u32,
+    /// A bit for each state in which it may play.
+    pub states: u64,
+    /// Patterns of [`crate::Mask::set`], one a line.
+    pub joints: &'a str,
+}
+
 /// A row of the table's states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StateRow {
@@ -176,18 +196,19 @@ impl<'a> Table<'a> {
             return Err(TableError::BadCrc);
         }
         let table = Table { bytes: body };
-        let &[version, states, _, parameters, inputs, first, any, reserved, ..] = body else {
+        let &[version, states, _, parameters, inputs, first, any, layers, ..] = body else {
             return Err(TableError::Truncated);
         };
         if version != VERSION {
             return Err(TableError::UnsupportedVersion(version));
         }
         let (states, parameters, inputs) = (usize::from(states), usize::from(parameters), usize::from(inputs));
-        if !(1..=STATES).contains(&states) || parameters > PARAMETERS || inputs > INPUTS || reserved != 0 {
+        let layers = usize::from(layers);
+        if !(1..=STATES).contains(&states) || parameters > PARAMETERS || inputs > INPUTS || layers > LAYERS {
             return Err(TableError::BadCount);
         }
         let mut rest = body.get(table.names_at()..).ok_or(TableError::Truncated)?;
-        for _ in 0..states + parameters + inputs {
+        for _ in 0..states + parameters + inputs + layers {
             let (len, after) = rest.split_first().ok_or(TableError::Truncated)?;
             rest = after.get(usize::from(*len)..).ok_or(TableError::Truncated)?;
         }
@@ -201,6 +222,15 @@ impl<'a> Table<'a> {
             let [least, most, initial] = table.parameter_row(parameter);
             if least >= most || !(least..=most).contains(&initial) {
                 return Err(TableError::BadValue);
+            }
+        }
+        for index in 0..layers {
+            let row = table.layer(index).ok_or(TableError::BadValue)?;
+            if usize::from(row.clip) >= clips {
+                return Err(TableError::NoSuchClip { state: (states + index) as u8 });
+            }
+            if usize::from(row.input) >= inputs {
+                return Err(TableError::NoSuchInput(row.input));
             }
         }
         table.check_list(NONE, (0, any))?;
@@ -287,8 +317,30 @@ impl<'a> Table<'a> {
         self.transitions_at() + TRANSITION * self.counted(2)
     }
 
-    fn names_at(&self) -> usize {
+    fn layers_at(&self) -> usize {
         self.parameters_at() + PARAMETER * self.counted(3)
+    }
+
+    fn names_at(&self) -> usize {
+        self.layers_at() + LAYER * self.counted(7)
+    }
+
+    /// Number of layers.
+    pub fn layers(&self) -> usize {
+        self.counted(7)
+    }
+
+    /// A layer; `None` if there is none of this index.
+    pub fn layer(&self, index: usize) -> Option<LayerRow<'a>> {
+        let at = self.layers_at() + LAYER * index;
+        if index >= self.layers() {
+            return None;
+        }
+        let &[clip, input, fade, reserved, ref states @ ..] = self.bytes.get(at..at + LAYER)? else { return None };
+        let states = u64::from_le_bytes(states.try_into().ok()?);
+        let before = self.counted(1) + self.counted(3) + self.counted(4);
+        let joints = core::str::from_utf8(self.names().nth(before + index)?).ok()?;
+        (reserved == 0).then_some(LayerRow { clip, input, fade_us: u32::from(fade) * 15_625, states, joints })
     }
 
     /// A state; `None` if there is none of this index.
@@ -338,7 +390,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The names of states, parameters and inputs, in this order.
+    /// The names of states, parameters and inputs, and the patterns of layers, in this order.
     fn names(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
         let mut rest = self.bytes.get(self.names_at()..).unwrap_or_default();
         core::iter::from_fn(move || {
@@ -357,6 +409,34 @@ impl<'a> Table<'a> {
     /// The name of a state; empty if it has none, or one that is not UTF-8.
     pub fn state_name(&self, state: u8) -> &'a str {
         let name = self.names().take(self.counted(1)).nth(state.into()).unwrap_or_default();
+        core::str::from_utf8(name).unwrap_or("")
+    }
+
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.counted(3)
+    }
+
+    /// The name of a parameter; empty if it has none, or one that is not UTF-8.
+    pub fn parameter_name(&self, parameter: u8) -> &'a str {
+        let name = self.names().skip(self.counted(1)).take(self.counted(3)).nth(parameter.into()).unwrap_or_default();
+        core::str::from_utf8(name).unwrap_or("")
+    }
+
+    /// The least, the greatest and the first value of a parameter; zeros for one that the table lacks.
+    pub fn range(&self, parameter: u8) -> [i16; 3] {
+        if usize::from(parameter) < self.counted(3) { self.parameter_row(parameter.into()) } else { [0; 3] }
+    }
+
+    /// Number of inputs.
+    pub fn inputs(&self) -> usize {
+        self.counted(4)
+    }
+
+    /// The name of an input; empty if it has none, or one that is not UTF-8.
+    pub fn input_name(&self, input: u8) -> &'a str {
+        let before = self.counted(1) + self.counted(3);
+        let name = self.names().skip(before).take(self.counted(4)).nth(input.into()).unwrap_or_default();
         core::str::from_utf8(name).unwrap_or("")
     }
 
@@ -402,6 +482,8 @@ pub struct Machine<'a> {
     table: Table<'a>,
     parameters: [i16; PARAMETERS],
     fired: u32,
+    /// The inputs that the last update saw: fired or held.
+    seen: u32,
     held: u32,
     state: u8,
     /// Whether the second track plays this state's second clip.
@@ -425,7 +507,7 @@ impl<'a> Machine<'a> {
             let [_, _, initial] = table.parameter_row(index);
             *parameter = initial;
         }
-        Machine { table, parameters, fired: 0, held: 0, state: table.counted(5) as u8, blending: false }
+        Machine { table, parameters, fired: 0, seen: 0, held: 0, state: table.counted(5) as u8, blending: false }
     }
 
     /// The clip of the state, for [`Animator::new`].
@@ -455,6 +537,16 @@ impl<'a> Machine<'a> {
         self.held = if down { self.held | bit } else { self.held & !bit };
     }
 
+    /// Whether an input is held.
+    pub fn is_held(&self, input: u8) -> bool {
+        self.held & 1u32.checked_shl(input.into()).unwrap_or(0) != 0
+    }
+
+    /// Whether the last update saw an input, fired or held.
+    pub fn was_seen(&self, input: u8) -> bool {
+        self.seen & 1u32.checked_shl(input.into()).unwrap_or(0) != 0
+    }
+
     /// Sets a parameter, within its range. One that the table lacks does nothing.
     pub fn set(&mut self, parameter: u8, value: i16) {
         let index = usize::from(parameter);
@@ -482,7 +574,7 @@ impl<'a> Machine<'a> {
     ) -> Result<Updated, Error> {
         let lost = animator.update(elapsed_us).err();
         let entered = self.enter(bank, animator);
-        self.fired = 0;
+        (self.seen, self.fired) = (self.fired | self.held, 0);
         let entered = entered?;
         if let (Some(second), Some(row)) = (second, self.table.state(self.state)) {
             self.blend(&row, entered.is_some(), bank, animator, second)?;
@@ -563,7 +655,7 @@ impl<'a> Machine<'a> {
 }
 
 /// A clip of a bank.
-fn clip<'b>(bank: &Bank<'b>, index: u8) -> Result<Clip<'b>, Error> {
+pub(crate) fn clip<'b>(bank: &Bank<'b>, index: u8) -> Result<Clip<'b>, Error> {
     let entry = bank.entries().nth(index.into()).ok_or(Error::Clip(OpenError::NoSuchClip))?;
     Ok(bank.open(&entry)?)
 }

@@ -32,6 +32,7 @@
 //! | draw a clip into a display driver | [`FigureRenderer::of_clip`], then [`FigureRenderer::draw`] for each frame |
 //! | do so with little stack | [`FigureRenderer::empty`], [`FigureRenderer::set_up`] and [`FigureRenderer::aim`] |
 //! | draw several figures side by side | a renderer each, [`FigureRenderer::shift`] and [`FigureRenderer::draw_over`] |
+//! | draw a figure that stands somewhere in the world | [`FigureRenderer::set_pose_at`] |
 //! | look from elsewhere | [`View`] with [`FigureRenderer::aim`] |
 //! | draw lines yourself | [`FigureRenderer::lines`] |
 //! | draw faster into memory of a display's own layout | [`surface::Framebuffer`] with [`FigureRenderer::draw_on`] |
@@ -64,7 +65,7 @@ pub use camera::{Canvas, Track, View};
 pub use draw::{DrawError, DrawStyle};
 pub use ink::Ink;
 pub use joint_info::JointInfo;
-pub use renderer::FigureRenderer;
+pub use renderer::{FigureRenderer, Stand};
 pub use skeleton::{Detail, Skeleton};
 pub use world::{ChainError, JointChain, WorldJoint};
 

@@ -9,7 +9,7 @@ use crate::rotation::{Rotation, RotationBackend, Vector};
 use crate::skeleton::{Detail, Part, Skeleton};
 use crate::{Error, RIG_JOINTS};
 use heapless::Vec;
-use pantin::{Player, Pose, WrongForm};
+use pantin::{Angle, Player, Pose, WrongForm};
 
 /// A figure of at most `N` joints before its camera.
 #[derive(Clone, Debug)]
@@ -26,6 +26,45 @@ pub struct FigureRenderer<const N: usize, R: RotationBackend = Rotation> {
     visible: Vec<Visible, N>,
     /// Indices of the bones that are drawn, the farthest first.
     order: Vec<u8, N>,
+}
+
+/// Where a figure stands in the world, beyond what its pose says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stand {
+    /// Along the horizontal axes that follow the vertical one in the cycle x, y, z (for y up: z, x), in the unit of the pose's positions: 2^[`pantin::Form::length_exponent`]
+    /// units of the source.
+    pub place: [i64; 2],
+    /// How far the figure is turned about the rig's vertical axis, before it is put to its place.
+    pub heading: Angle,
+}
+
+/// Where the poses stand with which a camera is set up: at the origin, or anywhere. A program pays for what it uses.
+trait Standing: Copy {
+    fn place_in_world<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>);
+    fn place_in_view<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>);
+}
+
+/// At the origin.
+impl Standing for () {
+    fn place_in_world<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
+        renderer.joints.set_pose(&renderer.skeleton, values);
+    }
+
+    fn place_in_view<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
+        renderer.set_values(values);
+    }
+}
+
+impl Standing for Stand {
+    fn place_in_world<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
+        let (turned, [x, y, z]) = renderer.stand(self);
+        let origin = renderer.back(self, [-x, -y, -z]);
+        renderer.joints.place_in(&renderer.skeleton, values, &turned, origin, renderer.skeleton.bones.len());
+    }
+
+    fn place_in_view<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
+        renderer.set_values_at(values, self);
+    }
 }
 
 /// Scale at which a clip is looked at before the final scale is known: 2^14 sixteenths of a pixel a size.
@@ -83,7 +122,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
             let mut frame = 0;
             while frame < frames {
                 player.seek(frame);
-                visit(player.pose().values);
+                visit(player.pose().values, ());
                 frame += stride;
             }
         });
@@ -99,16 +138,23 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     }
 
     /// [`FigureRenderer::new`] in place, for the skeleton that it has.
-    pub fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+    pub fn look_at(&mut self, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+        self.canvas = canvas;
+        self.choose();
+        self.frame(view, |visit| poses(&mut |values| visit(values, ())));
+    }
+
+    /// [`FigureRenderer::look_at`] for poses that stand somewhere in the world.
+    pub fn look_at_stands(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32], Stand))) {
         self.canvas = canvas;
         self.choose();
         self.frame(view, poses);
     }
 
-    fn frame(&mut self, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+    fn frame<S: Standing>(&mut self, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32], S))) {
         let mut bounds = Bounds::new();
-        poses(&mut |pose| {
-            self.joints.set_pose(&self.skeleton, pose);
+        poses(&mut |values, stand| {
+            stand.place_in_world(values, self);
             bounds.include(&self.skeleton, &self.joints);
         });
         let orientation = bounds.orientation(view.up.unwrap_or(self.skeleton.up));
@@ -123,8 +169,8 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         self.orientation = orientation;
         set_camera(self, TRIAL_SCALE);
         let mut frame = Extent::default();
-        poses(&mut |pose| {
-            self.set_values(pose);
+        poses(&mut |values, stand| {
+            stand.place_in_view(values, self);
             frame.include(self);
         });
         let scale = frame.scale(self.canvas);
@@ -145,6 +191,58 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         let hips = self.skeleton.hips;
         self.target = self.camera.target(self.joints.place_one(&self.skeleton, pose, hips));
         self.joints.place_in(&self.skeleton, pose, &self.view, self.target, self.skeleton.bones.len());
+        self.see();
+    }
+
+    /// Takes a pose of a figure that stands somewhere in the world: the ground and a camera that is fixed stay where they are. A pose of
+    /// another form than the clip's is refused.
+    pub fn set_pose_at(&mut self, pose: Pose<'_>, stand: Stand) -> Result<(), WrongForm> {
+        self.skeleton.form().check(pose.form)?;
+        self.set_values_at(pose.values, stand);
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn set_values_at(&mut self, pose: &[i32], stand: Stand) {
+        let (turned, place) = self.stand(stand);
+        let hips = self.joints.place_one(&self.skeleton, pose, self.skeleton.hips);
+        let [x, y, z] = turned.rotate_any(hips);
+        let [place_x, place_y, place_z] = place;
+        let world = [x.wrapping_add(place_x), y.wrapping_add(place_y), z.wrapping_add(place_z)];
+        self.target = self.camera.target(world);
+        let [x, y, z] = self.target;
+        // The target as the figure sees it, and the camera's axes as they are to a figure that is not turned.
+        let origin = self.back(stand, [x.wrapping_sub(place_x), y.wrapping_sub(place_y), z.wrapping_sub(place_z)]);
+        let mut view = self.view;
+        view.turn(self.skeleton.up.axis() % 3, stand.heading.to_bits());
+        self.joints.place_in(&self.skeleton, pose, &view, origin, self.skeleton.bones.len());
+        self.see();
+    }
+
+    /// The turn of a stand, and its place, in figure units.
+    fn stand(&self, stand: Stand) -> (R, Vector) {
+        let axis = self.skeleton.up.axis() % 3;
+        let mut turned = R::NONE;
+        turned.turn(axis, stand.heading.to_bits());
+        let shift = self.skeleton.position_shift;
+        let mut place = [0; 3];
+        for (at, raw) in [(axis + 1) % 3, (axis + 2) % 3].into_iter().zip(stand.place) {
+            let scaled = if shift >= 0 { raw >> shift.min(63) } else { raw.wrapping_shl(shift.unsigned_abs()) };
+            place[at] = scaled.clamp(-(1 << 30), 1 << 30) as i32;
+        }
+        (turned, place)
+    }
+
+    /// A vector of the world as a figure sees it that is turned so.
+    fn back(&self, stand: Stand, v: Vector) -> Vector {
+        let mut back = R::NONE;
+        back.turn(self.skeleton.up.axis() % 3, stand.heading.to_bits().wrapping_neg());
+        back.rotate_any(v)
+    }
+
+    /// Where the camera sees the joints that were placed.
+    #[inline(always)]
+    fn see(&mut self) {
         self.visible.clear();
         let camera = &self.camera;
         // One a joint: there is room.
@@ -230,6 +328,11 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     /// The lines and dots of a pose, gathered.
     pub fn lines(&mut self, pose: Pose<'_>) -> Result<Lines<N>, WrongForm> {
         self.set_pose(pose)?;
+        Ok(self.placed_lines())
+    }
+
+    /// The lines and dots of the pose that was placed last, gathered.
+    pub fn placed_lines(&mut self) -> Lines<N> {
         self.sort();
         let mut lines = Lines::default();
         // There is room for all of them.
@@ -246,7 +349,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
             let _ = lines.bones.push(line);
         });
         lines.head = self.head();
-        Ok(lines)
+        lines
     }
 
     /// The ground.

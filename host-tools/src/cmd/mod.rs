@@ -16,6 +16,7 @@ pub mod play;
 pub mod render;
 mod same_form;
 pub mod serve;
+pub mod steer;
 pub mod stream;
 mod stream_live;
 pub mod train;

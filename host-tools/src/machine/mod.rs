@@ -3,6 +3,7 @@
 //! The text is TOML; `firmware/animator/MACHINE.md` describes it.
 
 pub mod graph;
+pub mod playback;
 mod source;
 mod table;
 

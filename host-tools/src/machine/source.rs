@@ -20,6 +20,9 @@ pub struct Source {
     /// Transitions from any state.
     #[serde(default)]
     pub any: Vec<Spanned<Transition>>,
+    /// Clips that inputs play over the states'.
+    #[serde(default, rename = "layer")]
+    pub layers: Vec<Spanned<Layer>>,
     /// States, in the order of their indices.
     #[serde(rename = "state")]
     pub states: Vec<State>,
@@ -35,6 +38,22 @@ pub struct Parameter {
     pub range: [i16; 2],
     /// Its value at the start: the least one without it.
     pub first: Option<i16>,
+}
+
+/// A clip that an input plays over some joints.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Layer {
+    /// The clip.
+    pub clip: String,
+    /// The input.
+    pub input: String,
+    /// Patterns of the joints' names.
+    pub joints: Vec<String>,
+    /// States in which it plays: all without it.
+    pub states: Option<Vec<String>>,
+    /// How long it takes to come, and to go.
+    pub seconds: Option<f64>,
 }
 
 /// A state.

@@ -1,11 +1,12 @@
 //! A state machine's table: `firmware/animator/MACHINE.md`.
 
-use super::source::{Cause, Kind, Source, Start, State, Text, Transition};
+use super::source::{Cause, Kind, Layer, Source, Start, State, Text, Transition};
 use crate::import::text::quoted;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin::codec::crc;
 use pantin::{Bank, Clip};
-use pantin_animator::machine::{INPUTS, PARAMETERS, STATES, Table, VERSION};
+use pantin_animator::Mask;
+use pantin_animator::machine::{INPUTS, LAYERS, PARAMETERS, STATES, Table, VERSION};
 use std::collections::BTreeMap;
 use toml::Spanned;
 
@@ -13,6 +14,8 @@ use toml::Spanned;
 const NAME_BYTES: usize = 255;
 /// The length of a transition that states none.
 const SECONDS: f64 = 0.25;
+/// The longest that a layer takes to come: 255 of 64 parts of a second.
+const MOST_FADE: f64 = 255.0 / 64.0;
 /// In place of a second clip, or of a first frame: none, and in step.
 const NONE: u8 = 255;
 /// Frames of a transition, the greatest first frame, and transitions of a table.
@@ -95,6 +98,12 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         maker.check_end(state, source, file)?;
     }
     ensure!(rows.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", rows.len());
+    ensure!(source.layers.len() <= LAYERS, "{name}: {} layers; at most {LAYERS}", source.layers.len());
+    let layer = |layer: &'_ Spanned<Layer>| (file.at(layer.span()), layer.get_ref().clone());
+    let mut layers = Vec::new();
+    for (place, layer) in source.layers.iter().map(layer) {
+        layers.push(maker.layer_row(&layer).with_context(|| format!("{place}: layer"))?);
+    }
     ensure!(maker.inputs.len() <= INPUTS, "{name}: {} inputs; at most {INPUTS}", maker.inputs.len());
     let mut out = vec![
         VERSION,
@@ -104,17 +113,22 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         maker.inputs.len() as u8,
         first,
         source.any.len() as u8,
-        0,
+        layers.len() as u8,
     ];
     states.iter().chain(&rows).for_each(|row| out.extend(row));
     for parameter in &source.parameters {
         let [least, most] = parameter.range;
         [least, most, parameter.first.unwrap_or(least)].iter().for_each(|value| out.extend(value.to_le_bytes()));
     }
+    layers.iter().for_each(|(row, _)| out.extend(row));
     let state_names = source.states.iter().map(|state| state.name.get_ref().as_str());
     for name in state_names.chain(maker.parameters.iter().copied()).chain(maker.inputs.iter().map(String::as_str)) {
         out.push(name.len() as u8);
         out.extend(name.as_bytes());
+    }
+    for (_, joints) in &layers {
+        out.push(joints.len() as u8);
+        out.extend(joints.as_bytes());
     }
     out.extend(crc::of(&out).to_le_bytes());
     match Table::new(&out, bank.len()) {
@@ -201,6 +215,34 @@ impl<'s> Maker<'s, '_> {
         let [low, high] = ((speed * 256.0).round() as i16).to_le_bytes();
         let [first, count] = [first, state.transitions.len()].map(|number| u8::try_from(number).unwrap_or(u8::MAX));
         Ok([clip, other, parameter, 0, low, high, first, count])
+    }
+
+    /// The row of a layer, and the patterns of its joints, one a line.
+    fn layer_row(&mut self, layer: &Layer) -> Result<([u8; 12], String)> {
+        let clip = self.clips.find(&layer.clip)?;
+        let input = self.input(&layer.input)?;
+        let seconds = layer.seconds.unwrap_or(SECONDS);
+        ensure!((0.0..=MOST_FADE).contains(&seconds), "seconds: expected 0 to {MOST_FADE}, found {seconds}");
+        let rig = self.clips.all[usize::from(clip)].1.rig();
+        let mut words = vec![0; Mask::words(&rig)];
+        let mut mask = Mask::new(&rig, &mut words)?;
+        ensure!(!layer.joints.is_empty(), "joints: it has none");
+        for pattern in &layer.joints {
+            mask.set(&rig, pattern, true).with_context(|| format!("joints: {}", quoted(pattern)))?;
+        }
+        let joints = layer.joints.join("\n");
+        ensure!(joints.len() <= NAME_BYTES, "joints: {} bytes of patterns; at most {NAME_BYTES}", joints.len());
+        let mut states = u64::MAX;
+        if let Some(names) = &layer.states {
+            states = 0;
+            for name in names {
+                states |= 1 << self.state(name)?;
+            }
+        }
+        let mut row = [0; 12];
+        (row[0], row[1], row[2]) = (clip, input, (seconds * 64.0).round() as u8);
+        row[4..].copy_from_slice(&states.to_le_bytes());
+        Ok((row, joints))
     }
 
     /// The rows of the transitions of a state, or of any state.

@@ -75,9 +75,15 @@ pub struct Scene {
 impl Scene {
     /// The frame of a pose, `factor` times as big as the stage has it.
     pub fn of<const N: usize>(renderer: &mut FigureRenderer<N>, pose: Pose<'_>, factor: f32) -> Scene {
+        renderer.set_pose(pose).expect("the renderer was set up for this clip");
+        Scene::of_placed(renderer, factor)
+    }
+
+    /// The frame of the pose that the renderer placed last.
+    pub fn of_placed<const N: usize>(renderer: &mut FigureRenderer<N>, factor: f32) -> Scene {
         let unit = factor / f32::from(1u8 << PIXEL_BITS);
         let height = renderer.camera().length(renderer.skeleton().size) as f32 * unit;
-        let lines = renderer.lines(pose).expect("the renderer was set up for this clip");
+        let lines = renderer.placed_lines();
         let place = |[x, y]: [i16; 2]| [f32::from(x) * unit, f32::from(y) * unit];
         let stroke = |line: &Line, width: f32| Stroke {
             from: place(line.from),

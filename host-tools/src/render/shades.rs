@@ -61,6 +61,11 @@ impl Shades {
     /// Draws a pose as the firmware does: on a display of two colours, or of more.
     pub fn draw<const N: usize>(&mut self, renderer: &mut FigureRenderer<N>, pose: Pose<'_>, ground: bool, mono: bool) {
         renderer.set_pose(pose).expect("the renderer was set up for this clip");
+        self.draw_placed(renderer, ground, mono);
+    }
+
+    /// Draws the pose that the renderer placed last.
+    pub fn draw_placed<const N: usize>(&mut self, renderer: &mut FigureRenderer<N>, ground: bool, mono: bool) {
         self.marks.fill(Mark::DARK);
         let look = pantin_figure::DrawStyle { ground, smooth: false };
         if mono {

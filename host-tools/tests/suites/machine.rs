@@ -270,3 +270,29 @@ fn the_command_refuses_what_it_cannot_do_and_writes_nothing() {
     assert!(good.exists() && Table::of_bank(&std::fs::read(folder.path().join("a.ptb")).unwrap()).is_ok());
     let _ = graph::svg(&Source::parse(&Text { name: "good.toml", text: SMALL }).unwrap());
 }
+
+#[test]
+fn a_layer_is_checked_as_a_state_is() {
+    let state = "[[state]]\nname = \"walk\"\n";
+    let layer = |rest: &str| format!("[[layer]]\nclip = \"run\"\ninput = \"go\"\n{rest}\n{state}");
+    for (text, part) in [
+        (layer(""), "missing field `joints`"),
+        (layer("joints = []"), "layer: joints: it has none"),
+        (layer("joints = [\"wing\"]"), "layer: joints: `wing`"),
+        (layer("joints = [\"*\"]\nstates = [\"fly\"]"), "layer: no state `fly`; there are `walk`"),
+        (layer("joints = [\"*\"]\nseconds = 4.5"), "seconds: expected 0 to 3.98"),
+        (layer("joints = [\"*\"]").replace("\"run\"", "\"fly\""), "the bank has no clip `fly`"),
+    ] {
+        let error = error(&text);
+        assert!(error.contains(part), "{text}\n{error}");
+    }
+    let bytes = small_bank();
+    let bank = Bank::new_checked(&bytes).unwrap();
+    let text = layer("joints = [\"*\"]\nstates = [\"walk\"]\nseconds = 0.5");
+    let file = Text { name: "a.toml", text: &text };
+    let made = make(&Source::parse(&file).unwrap(), &file, &bank).unwrap();
+    let table = Table::new(&made.table, bank.len()).unwrap();
+    let row = table.layer(0).unwrap();
+    assert_eq!((table.layers(), row.clip, row.fade_us, row.states, row.joints), (1, 1, 500_000, 1, "*"));
+    assert_eq!((table.inputs(), table.input_name(row.input)), (1, "go"));
+}

@@ -54,6 +54,7 @@ mod same_form;
 mod scalars_command;
 mod serve;
 mod source_places;
+mod steer;
 mod table_input;
 mod terminal;
 mod update_command;

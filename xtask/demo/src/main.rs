@@ -8,6 +8,7 @@
 mod board;
 mod conversion;
 mod report;
+mod steer;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,7 @@ Options:
       --max-scalar-error <PERCENT>    Largest error of channels that move no joint, such as a face's, in percent of full scale
       --cm-per-unit <CM_PER_UNIT>     Length of the file's unit in cm, if the guess is wrong
       --frames <FRAMES>               Frames to show (default: 600)
+      --steer                         Play a recorded session of our character's state machine instead, on this machine
   -h, --help                          Print help";
 
 /// Pictures on the contact sheet.
@@ -65,6 +67,7 @@ struct Demo {
     out: PathBuf,
     bounds: Bounds,
     frames: usize,
+    steer: bool,
 }
 
 impl Demo {
@@ -76,6 +79,7 @@ impl Demo {
             out: "demo".into(),
             bounds: Bounds::default(),
             frames: 600,
+            steer: false,
         };
         let mut parser = lexopt::Parser::from_args(arguments);
         while let Some(argument) = parser.next()? {
@@ -86,6 +90,7 @@ impl Demo {
                 Arg::Long("max-scalar-error") => demo.bounds.scalar_percent = Some(parser.value()?.parse()?),
                 Arg::Long("cm-per-unit") => demo.bounds.cm_per_unit = Some(parser.value()?.parse()?),
                 Arg::Long("frames") => demo.frames = parser.value()?.parse()?,
+                Arg::Long("steer") => demo.steer = true,
                 Arg::Short('h') | Arg::Long("help") => {
                     println!("{USAGE}");
                     return Ok(None);
@@ -102,6 +107,9 @@ impl Demo {
     /// Converts, plays, writes the pictures, prints the table.
     #[cfg_attr(feature = "simulator", expect(unused_variables))]
     fn run(self, arguments: &[OsString]) -> Result<()> {
+        if self.steer {
+            return steer::run(&self.out);
+        }
         let machine = qemu::board(&self.board)?;
         std::fs::create_dir_all(&self.out).with_context(|| format!("cannot make {}", self.out.display()))?;
         say(&format!("converting {}", self.motion.display()));

@@ -1,0 +1,218 @@
+//! A state machine with all that it plays with: the animator, the second clip of a blend, and layers.
+
+use crate::animator::{Animator, Memory};
+use crate::layer::{Ramp, Weight};
+use crate::machine::{LAYERS, LayerRow, Machine, Table, Updated, clip};
+use crate::mask::Mask;
+use crate::root::{Placement, Root};
+use crate::track::Track;
+use crate::{Error, machine::TableError};
+use fixed::types::I16F16;
+use heapless::Vec;
+use pantin::{Bank, ChannelState, Clip, Player, Pose};
+
+/// Memory for a layer of a [`Character`].
+#[derive(Debug)]
+pub struct LayerMemory<'m> {
+    /// An element for each moving channel of the layer's clip.
+    pub states: &'m mut [ChannelState],
+    /// An element for each channel of the rig.
+    pub values: &'m mut [i32],
+    /// An element for each channel of the rig.
+    pub sampled: &'m mut [i32],
+    /// As [`Mask::new`] says.
+    pub words: &'m mut [u32],
+}
+
+/// A layer of the machine's table.
+#[derive(Debug)]
+struct Layer<'a, 'm> {
+    row: LayerRow<'a>,
+    track: Track<'a, 'm>,
+    sampled: &'m mut [i32],
+    mask: Mask<'m>,
+    ramp: Ramp,
+    state: LayerState,
+}
+
+/// What a layer does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LayerState {
+    Rests,
+    Plays,
+    Fades,
+}
+
+/// A figure that a state machine moves. The caller lends the memory of each part.
+#[derive(Debug)]
+pub struct Character<'a, 'm> {
+    bank: Bank<'a>,
+    machine: Machine<'a>,
+    animator: Animator<'a, 'm>,
+    second: Option<Track<'a, 'm>>,
+    layers: Vec<Layer<'a, 'm>, LAYERS>,
+}
+
+impl<'a, 'm> Character<'a, 'm> {
+    /// Starts the state machine of a bank, whose bytes these are. States do not blend before [`Character::lend_second`], and a layer does not play
+    /// before [`Character::lend_layer`].
+    pub fn new(bytes: &'a [u8], memory: Memory<'m>) -> Result<Self, Error> {
+        let bank = Bank::new_checked(bytes)?;
+        let machine = Machine::new(Table::of_bank(bytes)?);
+        let animator = Animator::new(machine.first_clip(&bank)?, memory)?;
+        Ok(Character { bank, machine, animator, second: None, layers: Vec::new() })
+    }
+
+    /// Lends what the second clips of blends need: `states` as [`Memory::states`], `values` as [`Memory::values`].
+    pub fn lend_second(&mut self, states: &'m mut [ChannelState], values: &'m mut [i32]) -> Result<(), Error> {
+        self.second = Some(Track::new(self.machine.first_clip(&self.bank)?, states, values)?);
+        Ok(())
+    }
+
+    /// Lends what the table's next layer needs: the first call is for the first layer. A pattern that matches nothing is
+    /// [`Error::NothingMatches`].
+    pub fn lend_layer(&mut self, memory: LayerMemory<'m>) -> Result<(), Error> {
+        let LayerMemory { states, values, sampled, words } = memory;
+        let missing = Error::Machine(TableError::BadCount);
+        let row = self.machine.table().layer(self.layers.len()).ok_or(missing)?;
+        let clip = clip(&self.bank, row.clip)?;
+        let (rig, needed) = (clip.rig(), clip.rig().channels());
+        let given = sampled.len();
+        let sampled = sampled.get_mut(..needed).ok_or(Error::TooSmall { what: "values of a layer", needed, given })?;
+        let mut mask = Mask::new(&rig, words)?;
+        for pattern in row.joints.split('\n') {
+            mask.set(&rig, pattern, true)?;
+        }
+        let track = Track::new(clip, states, values)?;
+        let layer = Layer { row, track, sampled, mask, ramp: Ramp::at(Weight::ZERO), state: LayerState::Rests };
+        self.layers.push(layer).map_err(|_| missing)
+    }
+
+    /// The machine, for inputs and parameters.
+    pub fn machine(&mut self) -> &mut Machine<'a> {
+        &mut self.machine
+    }
+
+    /// The state that plays.
+    pub fn state(&self) -> u8 {
+        self.machine.state()
+    }
+
+    /// The value of a parameter.
+    pub fn parameter(&self, parameter: u8) -> i16 {
+        self.machine.get(parameter)
+    }
+
+    /// Whether an input is held.
+    pub fn is_held(&self, input: u8) -> bool {
+        self.machine.is_held(input)
+    }
+
+    /// The machine's table.
+    pub fn table(&self) -> &Table<'a> {
+        self.machine.table()
+    }
+
+    /// The animator.
+    pub fn animator(&mut self) -> &mut Animator<'a, 'm> {
+        &mut self.animator
+    }
+
+    /// The pose of this instant, whose root stands at the origin, and where the figure is.
+    pub fn pose(&self) -> (Pose<'_>, Placement) {
+        (self.animator.pose(), self.animator.placement())
+    }
+
+    /// How much of a layer there is now.
+    pub fn layer_weight(&self, layer: usize) -> Weight {
+        self.layers.get(layer).map_or(Weight::ZERO, |layer| layer.ramp.weight())
+    }
+
+    /// Lets time pass: [`Machine::update`], then the layers. Events that were not taken are dropped first.
+    pub fn update(&mut self, elapsed_us: u32) -> Result<Updated, Error> {
+        self.animator.events().clear();
+        let updated = self.machine.update(elapsed_us, &self.bank, &mut self.animator, self.second.as_mut())?;
+        for layer in &mut self.layers {
+            layer.update(elapsed_us, &self.machine, &self.bank, &mut self.animator)?;
+        }
+        Ok(updated)
+    }
+}
+
+impl<'a> Layer<'a, '_> {
+    fn update(
+        &mut self,
+        elapsed_us: u32,
+        machine: &Machine<'a>,
+        bank: &Bank<'a>,
+        animator: &mut Animator<'a, '_>,
+    ) -> Result<(), Error> {
+        let allowed = self.row.states >> (machine.state() % 64) & 1 != 0;
+        match self.state {
+            LayerState::Rests if allowed && machine.was_seen(self.row.input) => {
+                self.track.start(clip(bank, self.row.clip)?, 0, I16F16::ONE)?;
+                self.ramp.go_to(Weight::ONE, self.row.fade_us);
+                self.state = LayerState::Plays;
+            }
+            LayerState::Rests => return Ok(()),
+            LayerState::Plays | LayerState::Fades => {
+                self.track.update(elapsed_us);
+                self.ramp.advance(elapsed_us);
+            }
+        }
+        if self.state == LayerState::Plays && (!allowed || self.is_over(machine)) {
+            self.ramp.go_to(Weight::ZERO, self.row.fade_us);
+            self.state = LayerState::Fades;
+        }
+        let weight = self.ramp.weight();
+        if self.state == LayerState::Fades && weight == Weight::ZERO {
+            self.state = LayerState::Rests;
+            return Ok(());
+        }
+        self.track.sample(self.sampled);
+        animator.layer(self.sampled, self.track.clip().form_ref(), &self.mask, weight)?;
+        Ok(())
+    }
+
+    /// Whether the layer is to go: a loop when its input is let go, another clip when what is left of it is the time that it takes to go.
+    fn is_over(&self, machine: &Machine<'_>) -> bool {
+        let clip = self.track.clip();
+        if clip.looped() {
+            return !machine.is_held(self.row.input);
+        }
+        let left = u64::from(clip.frames().saturating_sub(self.track.frame() + 1));
+        self.track.ended() || left * u64::from(clip.frame_time_ns()) <= u64::from(self.row.fade_us) * 1000
+    }
+}
+
+/// Poses of a clip that [`visit_poses`] visits.
+const VISITS: u32 = 24;
+
+/// Visits some poses of every state's clip, with the root at the origin as in [`Animator::pose`], for a camera that is to show all of
+/// them. The memory is as that of an animator; it may be the one that is lent to it later.
+pub fn visit_poses<'a>(
+    bytes: &'a [u8],
+    states: &mut [ChannelState],
+    values: &mut [i32],
+    visit: &mut dyn FnMut(&Clip<'a>, &[i32]),
+) -> Result<(), Error> {
+    let bank = Bank::new_checked(bytes)?;
+    let table = Table::of_bank(bytes)?;
+    for state in (0..table.states()).filter_map(|state| table.state(state as u8)) {
+        let clip = clip(&bank, state.clip)?;
+        let place = Root::of(&clip.rig(), &[]).map_or([None; 2], |root| root.place);
+        let (needed, given) = (clip.rig().channels(), values.len());
+        let values = values.get_mut(..needed).ok_or(Error::TooSmall { what: "values", needed, given })?;
+        let frames = clip.frames();
+        for frame in (0..frames).step_by(frames.div_ceil(VISITS).max(1) as usize) {
+            Player::new(clip, states, values)?.seek(frame);
+            for channel in place.iter().flatten() {
+                if let Some(value) = values.get_mut(usize::from(*channel)) {
+                    *value = 0;
+                }
+            }
+            visit(&clip, values);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,155 @@
+//! `pantin steer`: a recorded session of our own character, whose feet stay on the ground and whose joints do not jump.
+
+use pantin_animator::machine::Table;
+use pantin_animator::session::{Fault, Replay, Session};
+use pantin_figure::View;
+use pantin_tools::machine::playback::{Stage, joints, play};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::LazyLock;
+
+fn motions() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions")
+}
+
+fn pantin(arguments: &[&str], paths: &[&Path]) -> std::process::Output {
+    Command::new(env!("CARGO_BIN_EXE_pantin")).args(arguments).args(paths).output().unwrap()
+}
+
+/// Our character's bank, made once.
+static BANK: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let [library, bank] = ["library.ptb", "character.ptb"].map(|name| folder.path().join(name));
+    let made = pantin(&["convert", "--same-form", "--max-error", "0.5cm", "-o"], &[&library, &motions().join("library")]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let made = pantin(&["machine", "-o"], &[&bank, "--bank".as_ref(), &library, &motions().join("character.toml")]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    std::fs::read(bank).unwrap()
+});
+
+fn session() -> String {
+    std::fs::read_to_string(motions().join("steer.txt")).unwrap()
+}
+
+const RATE: u16 = 30;
+const CM_OF_GROUND: f64 = 1.0;
+/// How far the tips of the toes may be below the ground while a transition mixes two steps: nothing holds them there.
+const CM_IN_TRANSITIONS: f64 = 5.0;
+
+#[test]
+fn the_recorded_session_visits_what_it_names_and_stands_on_the_ground() {
+    let text = session();
+    let table = Table::of_bank(&BANK).unwrap();
+    let replay = Replay::new(Session::new_checked(&text, &table).unwrap(), RATE);
+    let (mut states, mut waved, mut last): (Vec<&str>, bool, Option<Vec<[f64; 3]>>) = (Vec::new(), false, None);
+    let (mut fastest, mut lowest, mut pictures) = (0f64, f64::MAX, 0);
+    play(&BANK, replay, |character| {
+        let state = table.state_name(character.state());
+        if states.last() != Some(&state) {
+            states.push(state);
+        }
+        waved |= state == "walk" && character.layer_weight(0).to_bits() == 1 << 15;
+        let places = joints(character);
+        let least = places.iter().map(|[_, y, _]| *y).fold(f64::MAX, f64::min);
+        let mixed = character.animator().transition_left() > 0;
+        lowest = lowest.min(least);
+        assert!(least > -if mixed { CM_IN_TRANSITIONS } else { CM_OF_GROUND }, "{state}: {least} cm");
+        // A foot is on the ground, or the figure runs or jumps, or changes over from that.
+        let in_the_air = ["run", "jump"].contains(&state) || mixed;
+        assert!(in_the_air || least < CM_OF_GROUND, "{state}: {least} cm above the ground");
+        if let Some(last) = &last {
+            let far = |(a, b): (&[f64; 3], &[f64; 3])| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            fastest = places.iter().zip(last).map(far).fold(fastest, f64::max);
+        }
+        last = Some(places);
+        pictures += 1;
+        Ok(())
+    })
+    .unwrap();
+    for wanted in ["idle", "start", "walk", "run", "jump", "stop", "turn_left", "bow"] {
+        assert!(states.contains(&wanted), "{wanted}: {states:?}");
+    }
+    assert!(waved, "it waves while it walks");
+    // The toes of the run move by 48 cm in a picture by themselves.
+    assert!(fastest < 50.0, "{fastest} cm in a picture");
+    assert_eq!(pictures, replay.pictures());
+    println!("{states:?}, lowest {lowest:.2} cm, fastest {fastest:.1} cm a picture");
+}
+
+#[test]
+fn the_renderer_draws_a_figure_where_it_stands_as_it_draws_one_at_the_origin() {
+    let text = session();
+    let table = Table::of_bank(&BANK).unwrap();
+    let replay = Replay::new(Session::new_checked(&text, &table).unwrap(), RATE);
+    let mut stage = Stage::new(&BANK, [128, 128], View::default(), None).unwrap();
+    let (mut turned, mut pairs) = (0, Vec::new());
+    play(&BANK, replay, |character| {
+        let [hips_x, _, hips_z] = joints(character)[1];
+        let (_, placement) = character.pose();
+        let renderer = stage.place(character)?;
+        // The camera's target is the hips, but for the height.
+        let [x, _, z] = renderer.target().map(f64::from);
+        pairs.push([[x, z], [hips_x, hips_z]]);
+        turned += u32::from(placement.heading != pantin::Angle::ZERO);
+        Ok(())
+    })
+    .unwrap();
+    // Figure units in a centimetre.
+    let [[_, far], [_, far_cm]] = *pairs.last().unwrap();
+    let unit = far / far_cm;
+    assert!(far_cm > 1500.0, "{far_cm}");
+    for [seen, cm] in pairs {
+        let apart = (seen[0] / unit - cm[0]).hypot(seen[1] / unit - cm[1]);
+        assert!(apart < 0.1, "{apart} cm");
+    }
+    assert!(turned > 100, "{turned}");
+}
+
+#[test]
+fn what_is_wrong_with_a_session_is_named_with_its_line() {
+    let table = Table::of_bank(&BANK).unwrap();
+    for (text, line, fault) in [
+        ("", 0, Fault::NoEnd),
+        ("1 hold go", 1, Fault::NoEnd),
+        ("x hold go", 1, Fault::Time),
+        ("-1 hold go", 1, Fault::Time),
+        ("1. hold go", 1, Fault::Time),
+        ("3601 end", 1, Fault::Time),
+        ("\n2 hold go\n1 end", 3, Fault::Order),
+        ("1 push go", 1, Fault::Word),
+        ("1", 1, Fault::Word),
+        ("1 press fly", 1, Fault::NoSuchInput),
+        ("1 set speed 3", 1, Fault::NoSuchParameter),
+        ("1 press go now", 1, Fault::TooLong),
+        ("1 end now", 1, Fault::TooLong),
+        ("1 end\n2 hold go", 2, Fault::AfterEnd),
+    ] {
+        let error = Session::new_checked(text, &table).unwrap_err();
+        assert_eq!((error.line, error.fault), (line, fault), "{text:?}");
+    }
+    let session = Session::new_checked("# a comment\n\n1.25 end # here", &table).unwrap();
+    assert_eq!((session.end_us(), Replay::new(session, 30).pictures()), (1_250_000, 38));
+}
+
+#[test]
+fn the_command_writes_pictures_and_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("c.ptb"), &*BANK).unwrap();
+    std::fs::write(path("s.txt"), "0.1 hold go\n0.5 end\n").unwrap();
+    for name in ["a.gif", "a.apng", "a.png", "a.csv"] {
+        let made = pantin(&["steer", "-o"], &[&path(name), &path("c.ptb"), &path("s.txt")]);
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    }
+    let table = std::fs::read_to_string(path("a.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 16);
+    assert!(table.starts_with("seconds,state,clip_frame,heading_degrees,root_x,"));
+    let fixed = pantin(&["steer", "--fixed", "-o"], &[&path("f.gif"), &path("c.ptb"), &path("s.txt")]);
+    assert!(fixed.status.success(), "{}", String::from_utf8_lossy(&fixed.stderr));
+    std::fs::write(path("wrong.txt"), "0.1 hold go\n0.2 press fly\n1 end").unwrap();
+    let wrong = pantin(&["steer", "-o"], &[&path("b.gif"), &path("c.ptb"), &path("wrong.txt")]);
+    let error = String::from_utf8_lossy(&wrong.stderr).into_owned();
+    assert!(error.contains("wrong.txt:2: the state machine has no such input: 0.2 press fly"), "{error}");
+    let no_machine = pantin(&["steer", "-o"], &[&path("b.gif"), &motions().join("walk.ptn"), &path("s.txt")]);
+    assert!(String::from_utf8_lossy(&no_machine.stderr).contains("no bank with a state machine"));
+}

@@ -1,0 +1,46 @@
+//! `cargo xtask demo --steer`: our character's state machine, steered by a recorded session.
+
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use harness::{build, paths};
+use xtask::steps::say;
+
+/// Columns and rows of a picture.
+const SIZE: &str = "240x240";
+/// Pictures a second of the animation, and pictures on the sheet.
+const RATE: &str = "25";
+const SHEET: &str = "36";
+
+/// Makes the bank and its machine, and leaves `steer.gif`, `steer-sheet.png` and the bank in `out`.
+pub fn run(out: &Path) -> Result<()> {
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    let tool = build::host_tool()?;
+    let pantin = |words: &[&Path], options: &[&str]| -> Result<()> {
+        let status =
+            Command::new(&tool).args(words).args(options).arg("--quiet").status().context("cannot start the host tool")?;
+        ensure!(status.success(), "pantin failed, see above");
+        Ok(())
+    };
+    let motions = paths::root().join("motions");
+    let (library, bank) = (out.join("library.ptb"), out.join("character.ptb"));
+    say("converting motions/library");
+    pantin(&["convert".as_ref(), &motions.join("library"), "-o".as_ref(), &library], &["--same-form", "--max-error", "0.5cm"])?;
+    let machine = motions.join("character.toml");
+    pantin(&["machine".as_ref(), &machine, "--bank".as_ref(), &library, "-o".as_ref(), &bank], &[])?;
+    say("playing motions/steer.txt");
+    let session = motions.join("steer.txt");
+    for (name, options) in [
+        ("steer.gif", &["--size", SIZE, "--palette", "phone", "--fps", RATE][..]),
+        ("steer-sheet.png", &["--size", SIZE, "--palette", "phone", "--sheet", SHEET][..]),
+    ] {
+        pantin(&["steer".as_ref(), &bank, &session, "-o".as_ref(), &out.join(name)], options)?;
+    }
+    let bytes = std::fs::metadata(&bank).map_or(0, |file| file.len());
+    say(&format!(
+        "wrote {} and steer-sheet.png; the bank with its state machine has {bytes} bytes",
+        out.join("steer.gif").display()
+    ));
+    Ok(())
+}
