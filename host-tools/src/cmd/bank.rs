@@ -3,10 +3,12 @@
 use crate::budget;
 use crate::encode::bank::{self, CheckedRig, Named};
 use crate::input;
+use crate::machine::playback::has_machine;
 use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
+use pantin_animator::machine::{Machine, Table};
 use serde_json::json;
 use std::collections::HashMap;
 use std::io::Write;
@@ -250,7 +252,11 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
             })
         };
         let clips: Vec<_> = rows.iter().map(object).collect();
-        output::report(json!({"clips": clips, "rig_bytes": bank.rig_bytes().len(), "file_bytes": bytes.len()}));
+        let mut object = json!({"clips": clips, "rig_bytes": bank.rig_bytes().len(), "file_bytes": bytes.len()});
+        if let Some(table) = machine(path, bytes)? {
+            object["machine"] = facts_of(&table, &rows);
+        }
+        output::report(object);
         return Ok(());
     }
     let wide = rows.iter().map(|(entry, _)| clean(shown(entry)).chars().count()).max().unwrap_or(0).max(4);
@@ -261,5 +267,52 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
         outln!("{name:wide$} {frames:7} {:7} {:9.3} {events:7} {len:9}{looped}", fps(clip), seconds(clip))?;
     }
     outln!("{} clips, {} bytes, of which {} are the rig", rows.len(), bytes.len(), bank.rig_bytes().len())?;
+    if let Some(table) = machine(path, bytes)? {
+        let facts = facts_of(&table, &rows);
+        let words = |list: &serde_json::Value| {
+            let names = list.as_array().map_or(&[][..], Vec::as_slice).iter();
+            names.filter_map(|name| name.as_str().or(name["name"].as_str()).map(clean)).collect::<Vec<_>>().join(", ")
+        };
+        outln!("")?;
+        outln!("state machine")?;
+        let list = ["states", "inputs", "parameters", "layers", "events"].map(|field| (field, words(&facts[field])));
+        for (field, words) in list.into_iter().filter(|(_, words)| !words.is_empty()) {
+            outln!("  {field:11} {words}")?;
+        }
+        outln!("  {:11} {}", "starts in", clean(table.state_name(Machine::new(table).state())))?;
+    }
     Ok(())
+}
+
+/// The table of a bank's state machine, if it has one; a damaged one is an error.
+fn machine<'a>(path: &Path, bytes: &'a [u8]) -> Result<Option<Table<'a>>> {
+    if !has_machine(bytes) {
+        return Ok(None);
+    }
+    Ok(Some(Table::of_bank(bytes).with_context(|| path.display().to_string())?))
+}
+
+/// What a state machine has: names of its states and their clips, inputs, parameters, layers, and the events of its clips.
+fn facts_of(table: &Table<'_>, rows: &[(pantin::BankEntry<'_>, pantin::Clip<'_>)]) -> serde_json::Value {
+    let clip = |index: u8| rows.get(usize::from(index)).map_or("", |(entry, _)| entry.name());
+    let states = (0..table.states() as u8).filter_map(|state| Some((state, table.state(state)?)));
+    let mut events: Vec<String> = Vec::new();
+    for (_, row) in states.clone() {
+        let own = rows.get(usize::from(row.clip)).map_or(Vec::new(), |(_, clip)| crate::events::of_clip(clip));
+        events.extend(own.into_iter().map(|event| event.name).filter(|name| !name.is_empty()));
+    }
+    events.sort();
+    events.dedup();
+    let parameter = |index: u8| {
+        let [least, most, first] = table.range(index);
+        json!({"name": table.parameter_name(index), "range": [least, most], "first": first})
+    };
+    let layers = (0..table.layers()).filter_map(|layer| table.layer(layer));
+    json!({
+        "states": states.map(|(state, row)| json!({"name": table.state_name(state), "clip": clip(row.clip)})).collect::<Vec<_>>(),
+        "inputs": (0..table.inputs() as u8).map(|input| table.input_name(input)).collect::<Vec<_>>(),
+        "parameters": (0..table.parameters() as u8).map(parameter).collect::<Vec<_>>(),
+        "layers": layers.map(|row| json!({"name": clip(row.clip), "input": table.input_name(row.input)})).collect::<Vec<_>>(),
+        "events": events,
+    })
 }

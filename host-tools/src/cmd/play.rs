@@ -5,6 +5,8 @@ use super::up_axis;
 use super::{Files, rig_is_needed};
 use crate::expand::expand;
 use crate::face::cast::is_face;
+use crate::machine::playback::{Room as SteeringRoom, has_machine};
+use crate::open::is_bank;
 use crate::output::{noticed, report, take_stdout};
 use crate::play::cells::Dots;
 use crate::play::clock::Clock;
@@ -15,10 +17,11 @@ use crate::play::picture::{Show, Title, draw};
 use crate::play::playback::{Playback, Room};
 use crate::play::session::{Outcome, Session};
 use crate::play::settings::Settings;
+use crate::play::steering::Steering;
 use crate::play::terminal::Terminal;
 use crate::render::figure::PlayerBuffers;
 use crate::render::palette::Palette;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use pantin::Clip;
 use pantin::Up;
 use pantin_figure::{Track, View};
@@ -27,20 +30,22 @@ use std::io::{IsTerminal, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Play clips in the terminal, drawn by the firmware's own figure code.
+/// Play clips, or a bank's state machine, in the terminal, drawn by the firmware's own figure code.
 ///
-/// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
+/// A bank with a state machine is steered by keys: arrows and letters make its inputs, ? lists them, and the last row shows the state, the inputs that are held and the parameters.
+/// /// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
 /// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, b braille or half blocks, ? help, q quit.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin play walk.ptn
   pantin play walk.ptn run.ptn --palette amber --dots half
+  pantin play character.ptb
   pantin play walk.ptn --plain --once --frames 10 --size 60x20 > frames.txt
 
 Palettes: grey, mono, phone (a hue for each side of the figure), oled, amber, green, blueprint, paper, dusk, or colours: RRGGBB,RRGGBB (paper and ink).
 COLORTERM and TERM determine the number of colours; NO_COLOR disables them.")]
 pub struct Arguments {
-    /// The clips
+    /// The clips, or one bank with a state machine
     #[arg(required = true)]
     inputs: Vec<PathBuf>,
     /// The rig of clips that were made with --rig-out
@@ -94,6 +99,9 @@ enum DotsOrAuto {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let files =
         arguments.inputs.iter().map(|input| Files::read_to_show(input, arguments.rig.as_deref())).collect::<Result<Vec<_>>>()?;
+    if files.iter().any(|file| is_bank(file.clip()) && has_machine(file.clip())) {
+        return arguments.steer(&files);
+    }
     let opened =
         files.iter().zip(&arguments.inputs).map(|(file, input)| file.open().with_context(|| input.display().to_string()));
     let clips: Vec<Clip> = opened.collect::<Result<_>>()?;
@@ -161,6 +169,40 @@ impl Arguments {
             ..View::default()
         };
         Settings { view, ground: true, dots, colours, palette: self.palette.clone(), help: false }
+    }
+
+    /// Plays a bank's state machine.
+    fn steer(&self, files: &[Files]) -> Result<()> {
+        let [file] = files else { bail!("a bank with a state machine plays alone") };
+        let place = || self.inputs[0].display().to_string();
+        ensure!(self.rig.is_none(), "{}: --rig has no effect: a bank holds its rig", place());
+        ensure!(!self.once, "{}: --once has no effect: a state machine does not end", place());
+        ensure!(self.up.is_none(), "{}: --up has no effect: a figure that travels goes by its rig's up", place());
+        let name = self.inputs[0].file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut steering = Steering::new(file.clip(), name).with_context(place)?;
+        take_stdout();
+        report(json!({"file": place()}));
+        if self.plain {
+            let frames =
+                self.frames.with_context(|| format!("{}: --plain needs --frames: a state machine does not end", place()))?;
+            let settings = Settings { colours: Colours::None, ..self.settings() };
+            let mut room = SteeringRoom::of(file.clip())?;
+            let mut character = room.character(file.clip()).with_context(place)?;
+            let mut out = stdout().lock();
+            for _ in 0..frames {
+                let grid = steering.draw(&character, &settings, self.size.0).with_context(place)?;
+                noticed(out.write_all(grid.text().as_bytes())).context("the text cannot be written")?;
+                character.update(33_333).with_context(place)?;
+            }
+            return Ok(());
+        }
+        ensure!(
+            stdin().is_terminal() && stdout().is_terminal(),
+            "play needs a terminal for its pictures and keys; --plain writes text, and pantin steer pictures of a session"
+        );
+        let settings = self.settings();
+        let mut session = Session::new(Terminal::enter(settings.colours)?, settings, false, self.frames);
+        steering.play(&mut session).with_context(place)
     }
 
     /// The view from which a face is looked in the eyes.

@@ -10,4 +10,5 @@ pub mod picture;
 pub mod playback;
 pub mod session;
 pub mod settings;
+pub mod steering;
 pub mod terminal;

@@ -30,13 +30,13 @@ pub enum Outcome {
 
 /// What stays from clip to clip.
 pub struct Session {
-    terminal: Terminal,
-    settings: Settings,
+    pub(super) terminal: Terminal,
+    pub(super) settings: Settings,
     clock: Clock,
     begun: Instant,
     once: bool,
     /// Pictures that may still be shown, if they are counted.
-    left: Option<u32>,
+    pub(super) left: Option<u32>,
 }
 
 impl Session {

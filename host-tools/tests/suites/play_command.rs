@@ -190,6 +190,105 @@ fn keys_do_what_they_say_and_the_terminal_is_left_as_it_was() {
     assert!(seat.is_restored());
 }
 
+/// A machine of the walk and the run, with an input that is held, one that is fired, and a parameter.
+const MACHINE: &str = r#"
+bank = "moves.ptb"
+
+[[parameter]]
+name = "speed"
+range = [0, 100]
+
+[[state]]
+name = "stroll"
+clip = "walk"
+transitions = [{ to = "sprint", input = "go" }, { to = "hop", input = "jump" }, { to = "sprint", above = ["speed", 25], kind = "cut" }]
+
+[[state]]
+name = "sprint"
+clip = "run"
+transitions = [{ to = "stroll", released = "go" }]
+
+[[state]]
+name = "hop"
+clip = "run"
+transitions = [{ to = "stroll", input = "wave" }]
+"#;
+
+impl Folder {
+    /// With a bank that has a state machine.
+    fn with_machine(name: &str) -> Folder {
+        let folder = Folder::new(name);
+        folder.text(&["pack", "walk.ptn", "run.ptn", "-o", "moves.ptb"]);
+        std::fs::write(folder.0.join("m.toml"), MACHINE).unwrap();
+        folder.text(&["machine", "m.toml", "-o", "m.ptb"]);
+        folder
+    }
+}
+
+#[test]
+fn a_state_machine_is_steered_by_keys() {
+    let folder = Folder::with_machine("machine");
+    let mut seat = Seat::new(&folder.0, PANTIN, &["play", "m.ptb"]);
+    seat.status(&[" m ", "state stroll", "speed 0", "orbit -50 tilt 12 follow"]);
+    // `go` is the arrow up, and is held until a second press.
+    seat.press("\x1b[A");
+    seat.status(&["state sprint", "[go]"]);
+    seat.press("\x1b[A");
+    assert!(!seat.status(&["state stroll"]).contains("[go]"));
+    // `jump` is the space bar and is fired; `wave` has a letter.
+    seat.press(" ");
+    seat.status(&["state hop"]);
+    seat.press("w");
+    seat.status(&["state stroll"]);
+    seat.press("++");
+    seat.status(&["state stroll", "speed 20"]);
+    seat.press("-----");
+    seat.status(&["speed 0"]);
+    seat.press("V");
+    seat.status(&["orbit 0"]);
+    seat.press("F");
+    seat.status(&["fixed"]);
+    seat.press("?");
+    seat.shows("up go (on, off)");
+    seat.shows("space jump");
+    seat.shows("w wave");
+    seat.press("R\x1b[A");
+    seat.status(&["state sprint"]);
+    seat.press("q");
+    assert!(seat.wait().success());
+    assert!(seat.is_restored());
+}
+
+#[test]
+fn a_state_machine_is_printed_and_described() {
+    let folder = Folder::with_machine("machine-text");
+    let text = folder.text(&["play", "m.ptb", "--plain", "--frames", "3", "--size", "60x20"]);
+    assert_eq!(text.lines().count(), 60);
+    assert_eq!(text.lines().filter(|line| line.contains("state stroll")).count(), 3);
+    for (arguments, reason) in [
+        (&["play", "m.ptb", "--plain"][..], "--plain needs --frames"),
+        (&["play", "m.ptb", "walk.ptn"], "plays alone"),
+        (&["play", "m.ptb", "--once"], "does not end"),
+    ] {
+        let output = folder.pantin(arguments);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && error.contains(reason), "{error}");
+    }
+    let text = folder.text(&["info", "m.ptb"]);
+    for line in [
+        "state machine",
+        "  states      stroll, sprint, hop",
+        "  inputs      go, jump, wave",
+        "  parameters  speed",
+        "  starts in   stroll",
+    ] {
+        assert!(text.lines().any(|own| own == line), "{line}: {text}");
+    }
+    let object: serde_json::Value = serde_json::from_str(&folder.text(&["info", "m.ptb", "--json"])).unwrap();
+    assert_eq!(object["machine"]["states"][2], serde_json::json!({"name": "hop", "clip": "run"}));
+    assert_eq!(object["machine"]["parameters"][0]["range"], serde_json::json!([0, 100]));
+}
+
 #[test]
 fn the_figure_fills_a_terminal_that_grows_and_shrinks() {
     let folder = Folder::new("resize");

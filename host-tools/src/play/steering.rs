@@ -1,0 +1,282 @@
+//! A bank's state machine in the terminal, steered by keys.
+
+use super::cells::{Dots, Grid};
+use super::keys::Action;
+use super::session::Session;
+use super::settings::Settings;
+use crate::machine::playback::{Room, Stage};
+use crate::output::clean;
+use crate::render::figure::MOST_PIXELS;
+use anyhow::Result;
+use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use pantin_animator::Character;
+use pantin_animator::machine::{Cause, Table};
+use pantin_figure::View;
+use std::time::{Duration, Instant};
+
+/// Time between pictures.
+const PICTURE: Duration = Duration::from_nanos(33_333_333);
+/// Most time that passes in a picture: the figure waits while the program is stopped.
+const MOST: Duration = Duration::from_millis(250);
+/// Keys are looked for so long at least.
+const BRIEFLY: Duration = Duration::from_millis(1);
+/// Parts of a parameter's range that a key passes.
+const PARTS: i32 = 10;
+/// Names of inputs that an arrow key is for.
+const UP: [&str; 5] = ["go", "walk", "forward", "forwards", "up"];
+const DOWN: [&str; 5] = ["back", "backward", "backwards", "down", "stop"];
+/// Letters that no input gets.
+const TAKEN: &str = "q?+-";
+
+/// A key of an input.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct InputKey {
+    code: KeyCode,
+    input: u8,
+    /// Whether a second press lets it go: a terminal does not report that a key is released.
+    toggles: bool,
+}
+
+/// Which key makes which input.
+#[derive(Clone, Debug)]
+pub struct Keys {
+    keys: Vec<InputKey>,
+}
+
+impl Keys {
+    /// An arrow for inputs of such names, the space bar for a jump, and else a letter of the input's name, or any letter.
+    pub fn of(table: &Table<'_>) -> Keys {
+        let held = |input: u8| {
+            let mut rows = (0..).map_while(|index| table.transition(index));
+            rows.any(|row| row.cause == Cause::Released(input))
+        };
+        let mut keys: Vec<InputKey> = Vec::new();
+        for input in 0..table.inputs() as u8 {
+            let name = table.input_name(input).to_lowercase();
+            let arrow = match name.as_str() {
+                "left" => Some(KeyCode::Left),
+                "right" => Some(KeyCode::Right),
+                "jump" => Some(KeyCode::Char(' ')),
+                name if UP.contains(&name) => Some(KeyCode::Up),
+                name if DOWN.contains(&name) => Some(KeyCode::Down),
+                _ => None,
+            };
+            let letters = name.chars().filter(char::is_ascii_lowercase).chain('a'..='z');
+            let letters = letters.filter(|letter| !TAKEN.contains(*letter)).map(KeyCode::Char);
+            let free = |code: &KeyCode| keys.iter().all(|key| key.code != *code);
+            if let Some(code) = arrow.into_iter().chain(letters).find(free) {
+                keys.push(InputKey { code, input, toggles: held(input) });
+            }
+        }
+        Keys { keys }
+    }
+
+    fn find(&self, code: KeyCode) -> Option<&InputKey> {
+        self.keys.iter().find(|key| key.code == code)
+    }
+
+    /// What the help says: a key and its input each, then the others.
+    fn help(&self, table: &Table<'_>) -> Vec<String> {
+        let name = |code: KeyCode| match code {
+            KeyCode::Char(' ') => "space".to_string(),
+            KeyCode::Char(letter) => letter.to_string(),
+            code => format!("{code:?}").to_lowercase(),
+        };
+        let mut help: Vec<String> = self
+            .keys
+            .iter()
+            .map(|key| {
+                let toggles = if key.toggles { " (on, off)" } else { "" };
+                format!("{} {}{toggles}", name(key.code), clean(table.input_name(key.input)))
+            })
+            .collect();
+        if table.parameters() > 0 {
+            help.push("+ - parameter".into());
+        }
+        if table.parameters() > 1 {
+            help.push("tab next parameter".into());
+        }
+        help.extend(["< > orbit", "V view", "F follow", "G ground", "B dots", "R restart", "? help", "q quit"].map(String::from));
+        help
+    }
+}
+
+/// What a key that is no input's asks for.
+enum Asked {
+    Show(Action),
+    Parameter(i32),
+    NextParameter,
+    Restart,
+    Quit,
+}
+
+fn asked(key: KeyEvent) -> Option<Asked> {
+    if key.modifiers.contains(KeyModifiers::CONTROL) {
+        return matches!(key.code, KeyCode::Char('c' | 'C' | 'd' | 'D')).then_some(Asked::Quit);
+    }
+    Some(match key.code {
+        KeyCode::Char('+' | '=') => Asked::Parameter(1),
+        KeyCode::Char('-' | '_') => Asked::Parameter(-1),
+        KeyCode::Tab => Asked::NextParameter,
+        KeyCode::Char('<' | ',') => Asked::Show(Action::Orbit(-15)),
+        KeyCode::Char('>' | '.') => Asked::Show(Action::Orbit(15)),
+        KeyCode::Char('V') => Asked::Show(Action::View),
+        KeyCode::Char('F') => Asked::Show(Action::Follow),
+        KeyCode::Char('G') => Asked::Show(Action::Ground),
+        KeyCode::Char('B') => Asked::Show(Action::Dots),
+        KeyCode::Char('?') => Asked::Show(Action::Help),
+        KeyCode::Char('R') => Asked::Restart,
+        KeyCode::Char('q' | 'Q') | KeyCode::Esc => Asked::Quit,
+        _ => return None,
+    })
+}
+
+/// A character that is shown.
+pub struct Steering<'b> {
+    bytes: &'b [u8],
+    name: String,
+    keys: Keys,
+    /// The parameter that keys change.
+    parameter: u8,
+    stage: Option<(Stage, [usize; 2], View)>,
+}
+
+impl<'b> Steering<'b> {
+    /// The machine of a bank, which has one.
+    pub fn new(bytes: &'b [u8], name: String) -> Result<Steering<'b>> {
+        Ok(Steering { bytes, name, keys: Keys::of(&crate::machine::playback::table(bytes)?), parameter: 0, stage: None })
+    }
+
+    /// Plays until a key ends it.
+    pub fn play(&mut self, session: &mut Session) -> Result<()> {
+        loop {
+            let mut room = Room::of(self.bytes)?;
+            let mut character = room.character(self.bytes)?;
+            if !self.play_once(session, &mut character)? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Plays from the start; whether it is to play from there again.
+    fn play_once(&mut self, session: &mut Session, character: &mut Character<'b, '_>) -> Result<bool> {
+        let mut before = Instant::now();
+        loop {
+            if session.left == Some(0) {
+                return Ok(false);
+            }
+            let size = session.terminal.size()?;
+            session.terminal.show(self.draw(character, &session.settings, size)?)?;
+            session.left = session.left.map(|left| left - 1);
+            let due = before + PICTURE;
+            let mut patience = due.saturating_duration_since(Instant::now()).max(BRIEFLY);
+            while event::poll(patience)? {
+                match event::read()? {
+                    Event::Resize(..) => session.terminal.forget(),
+                    Event::Key(key) if key.kind != KeyEventKind::Release => {
+                        match self.key(key, character, &mut session.settings, size[1]) {
+                            Some(Asked::Quit) => return Ok(false),
+                            Some(Asked::Restart) => return Ok(true),
+                            _ => {}
+                        }
+                    }
+                    _ => {}
+                }
+                patience = due.saturating_duration_since(Instant::now()).max(BRIEFLY);
+            }
+            let now = Instant::now();
+            character.update(now.duration_since(before).min(MOST).as_micros() as u32)?;
+            before = now;
+        }
+    }
+
+    /// Does what a key asks for, if it is not to end.
+    fn key(&mut self, key: KeyEvent, character: &mut Character<'_, '_>, settings: &mut Settings, rows: usize) -> Option<Asked> {
+        let control = key.modifiers.contains(KeyModifiers::CONTROL);
+        if let Some(own) = self.keys.find(key.code).filter(|_| !control) {
+            let machine = character.machine();
+            if own.toggles {
+                machine.hold(own.input, !machine.is_held(own.input));
+            } else {
+                machine.fire(own.input);
+            }
+            return None;
+        }
+        match asked(key)? {
+            Asked::Show(action) => {
+                settings.apply(action, rows.saturating_sub(1));
+            }
+            Asked::Parameter(way) => {
+                let [least, most, _] = character.table().range(self.parameter).map(i32::from);
+                let to = i32::from(character.parameter(self.parameter)) + way * ((most - least) / PARTS).max(1);
+                character.machine().set(self.parameter, to.clamp(least, most) as i16);
+            }
+            Asked::NextParameter => {
+                let count = character.table().parameters().max(1);
+                self.parameter = ((usize::from(self.parameter) + 1) % count) as u8;
+            }
+            ends => return Some(ends),
+        }
+        None
+    }
+
+    /// The state, the inputs that are held, and the parameters.
+    fn status(&self, character: &Character<'_, '_>, settings: &Settings) -> String {
+        let table = character.table();
+        let mut line = format!(" {}  state {}", self.name, clean(table.state_name(character.state())));
+        for input in (0..table.inputs() as u8).filter(|&input| character.is_held(input)) {
+            line += &format!("  [{}]", clean(table.input_name(input)));
+        }
+        for layer in (0..table.layers()).filter(|&layer| character.layer_weight(layer).to_bits() > 0) {
+            let input = table.layer(layer).map_or("", |row| table.input_name(row.input));
+            line += &format!("  +{}", clean(input));
+        }
+        for parameter in 0..table.parameters() as u8 {
+            let chosen = if parameter == self.parameter && table.parameters() > 1 { "*" } else { "" };
+            line += &format!("  {}{chosen} {}", clean(table.parameter_name(parameter)), character.parameter(parameter));
+        }
+        line + &format!("  {}", settings.view_words())
+    }
+
+    /// A picture with its status line, the last row.
+    pub fn draw(&mut self, character: &Character<'_, '_>, settings: &Settings, [columns, rows]: [usize; 2]) -> Result<Grid> {
+        let palette = &settings.palette;
+        let mut grid = Grid::new(columns, rows, palette);
+        let last = rows.saturating_sub(1);
+        if last > 0 && columns > 0 {
+            let dots: Dots = settings.dots(last);
+            let [across, down] = dots.pixels();
+            let size = [columns * across, last * down].map(|pixels| pixels.min(MOST_PIXELS));
+            if self.stage.as_ref().is_none_or(|(_, own, view)| (*own, *view) != (size, settings.view)) {
+                self.stage = Some((Stage::new(self.bytes, size, settings.view, None)?, size, settings.view));
+            }
+            if let Some((stage, ..)) = &mut self.stage {
+                let shades = stage.shades(character, settings.ground, settings.in_bits())?;
+                grid.show(&shades, last, dots, palette, settings.coloured());
+            }
+        }
+        let (ink, paper) = (palette.letters(), palette.margin());
+        if settings.help {
+            let mut lines: Vec<String> = Vec::new();
+            for entry in self.keys.help(character.table()) {
+                match lines.last_mut().filter(|line| line.chars().count() + 2 + entry.chars().count() < columns) {
+                    Some(line) => *line += &format!("  {entry}"),
+                    None => lines.push(entry),
+                }
+            }
+            let shown = lines.len().min(last);
+            for (line, row) in lines.iter().zip(last - shown..last) {
+                grid.write_text(0, row, &" ".repeat(columns), ink, palette.paper());
+                grid.write_text(1, row, line, ink, palette.paper());
+            }
+        }
+        grid.write_text(0, last, &" ".repeat(columns), ink, paper);
+        let status = self.status(character, settings);
+        grid.write_text(0, last, &status, ink, paper);
+        let hint = "? help ";
+        if columns > status.chars().count() + hint.len() {
+            grid.write_text(columns - hint.len(), last, hint, ink, paper);
+        }
+        Ok(grid)
+    }
+}
