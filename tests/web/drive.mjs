@@ -443,6 +443,73 @@ const cases = {
     return outcomes;
   },
 
+  // What was converted is converted again with other values; files that are left out are named; a link carries a clip.
+  async again(page, browser) {
+    const result = () => page.evaluate(() => ({ report: document.querySelector("#report").innerText, said: document.querySelector("#said").innerText, trouble: document.querySelector("#trouble").textContent, hidden: document.querySelector("#result").hidden }));
+    const converts = async (act) => {
+      await page.evaluate(() => (document.querySelector("#report").textContent = ""));
+      await act();
+      await page.waitForFunction(() => document.querySelector("#working").hidden && (document.querySelector("#report").textContent || document.querySelector("#trouble").textContent), null, { timeout: 60000 });
+      return result();
+    };
+    const clipBytes = ({ report }) => +/clip\s+([\d,]+) bytes/.exec(report)[1].replace(",", "");
+    await page.locator("#effort").selectOption("fast");
+    const files = (...paths) => converts(() => page.locator("#files").setInputFiles(paths));
+    const first = await converts(() => page.locator("#try").click());
+    assert.equal(first.trouble, "");
+    // Another error, from the slider and from the field; the file is not asked for.
+    const coarse = await converts(() => page.locator("#cm").fill("5").then(() => page.locator("#cm").press("Enter")));
+    assert.ok(clipBytes(coarse) < clipBytes(first), `${first.report} ${coarse.report}`);
+    const fine = await converts(() => page.locator("#slide").fill("-1.3"));
+    assert.ok(clipBytes(fine) > clipBytes(first), fine.report);
+    assert.equal(await page.locator("#cm").inputValue(), "0.05");
+    await page.locator("#cm").fill("0.5");
+    // Text that is dropped takes nothing away.
+    await page.evaluate(() => {
+      const data = new DataTransfer();
+      data.setData("text/plain", "a word");
+      document.querySelector("#drop").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+    });
+    const kept = await result();
+    assert.deepEqual([kept.trouble, kept.hidden], ["That was no file.", false]);
+    // Two bodies; a body and a face; a file that nothing needs.
+    const two = await files(args.bvh, args.other, args.text);
+    assert.match(two.said, /other\.bvh was left out: one body/);
+    assert.match(two.said, /notes\.txt was left out: nothing refers to it/);
+    const both = await files(args.face, args.bvh);
+    assert.match(both.said, /body and face are one clip/);
+    assert.deepEqual(await page.evaluate(() => [converted.facts.joints > 10, converted.facts.scalars]), [true, 2]);
+    assert.equal(await page.locator("#save").getAttribute("download"), "our-walk.ptn");
+    // A glTF file's animations.
+    const gltf = await files(args.gltf);
+    assert.doesNotMatch(gltf.said + gltf.trouble, /--/);
+    assert.deepEqual(await page.locator("#animation option").allTextContents(), ["Turn", "animation 1"]);
+    const shown = await page.evaluate(() => converted.duration);
+    await converts(() => page.locator("#animation").selectOption("1"));
+    assert.ok(await page.evaluate(() => converted.duration) > 1.5 * shown);
+    // Messages have the page's words.
+    for (const path of args.alone) {
+      const alone = await files(path);
+      assert.ok(alone.trouble.length > 10 && !/--|`/.test(alone.trouble), alone.trouble);
+      assert.equal(alone.hidden, true);
+    }
+    // A clip in a link.
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+    await page.locator("#files").setInputFiles(args.clip);
+    await page.waitForFunction(() => player.frames === 26 && player.playable === 26);
+    await page.locator("#share").click();
+    await page.waitForFunction(() => document.querySelector("#share").textContent === "Copied");
+    const link = await page.evaluate(() => navigator.clipboard.readText());
+    assert.ok(link.length < 1000, link);
+    const received = await page.context().newPage();
+    await received.goto(link);
+    await received.waitForFunction(() => player.playable === 26);
+    await page.locator("#clips button", { hasText: "walk" }).click();
+    assert.match(page.url(), /\?clip=walk$/);
+    await page.locator("#copy").click();
+    assert.match(await page.evaluate(() => navigator.clipboard.readText()), /^<script.*<pantin-player/);
+  },
+
   async cancel(page) {
     await page.locator("#effort").selectOption("best");
     await page.locator("#files").setInputFiles(args.file);

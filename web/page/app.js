@@ -27,10 +27,10 @@ function told() {
   table($("facts"), [
     ["received", player.total > player.received ? `${player.received.toLocaleString("en")} of ${bytes(player.total)}` : bytes(player.received)],
     ["frames playable", `${playable.toLocaleString("en")} of ${frames.toLocaleString("en")}`],
-    frames && ["length", `${seconds.toFixed(2)} s at ${(1e9 / frameTime).toFixed(1).replace(".0", "")} a second`],
+    frames && ["length", `${seconds.toFixed(2)} s at ${(1e9 / frameTime).toFixed(1).replace(".0", "")} frames per second`],
     moving && ["channels moving", `${moving} of ${channels}`],
     moving && ["motion, rig", `${motionBytes} + ${rigBytes} bytes`],
-    moving && ["motion a second", `${(motionBytes / seconds).toFixed(0)} bytes`],
+    moving && ["motion per second", `${(motionBytes / seconds).toFixed(0)} bytes`],
     player.events.length > 0 && ["events", player.events.length + last],
   ]);
   const names = player.clips;
@@ -61,6 +61,42 @@ button("home", () => player.turn(-50 - player.orbit, 12 - player.tilt));
 $("speed").onchange = () => (player.speed = +$("speed").value);
 $("link").onchange = () => show(current);
 
+// ---- links
+
+// A clip of at most so many bytes fits into a link.
+const MOST_SHARED = 6000;
+const base64 = (bytes) => btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+const unbase64 = (text) => Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
+
+async function copy(button, text) {
+  const words = button.textContent;
+  try {
+    await navigator.clipboard.writeText(text);
+    button.textContent = "Copied";
+  } catch {
+    button.textContent = "Cannot copy here";
+  }
+  setTimeout(() => (button.textContent = words), 1500);
+}
+
+// A link to what plays: by its name in the gallery, or with the clip itself.
+async function link() {
+  const url = new URL(location.pathname, location);
+  if (!current) return url.href;
+  if (current.data) {
+    const data = new Uint8Array(current.data);
+    if (data.length > MOST_SHARED) return null;
+    url.hash = `ptn=${base64(data)}`;
+  } else url.searchParams.set("clip", current.name);
+  return url.href;
+}
+$("share").onclick = async () => {
+  const text = await link();
+  if (text) copy($("share"), text);
+  else trouble(`The clip is too large for a link: ${bytes(current.data.byteLength)}, at most ${bytes(MOST_SHARED)}.`);
+};
+$("copy").onclick = () => copy($("copy"), $("embed").textContent);
+
 // ---- the gallery
 
 let current = null;
@@ -85,6 +121,7 @@ async function show(clip, name = null) {
   [current, heard] = [clip, null];
   document.querySelectorAll("#clips [aria-current]").forEach((other) => other.removeAttribute("aria-current"));
   clip.button?.setAttribute("aria-current", "true");
+  if (clip.button?.matches(":focus, :hover")) history.replaceState(null, "", `?clip=${encodeURIComponent(clip.name)}`);
   const baud = +$("link").value;
   try {
     const what = clip.data ?? clip.file;
@@ -154,6 +191,8 @@ async function gallery() {
     $("clips").append(item);
     near.observe(picture);
   }
+  const [start, shared] = location.hash.split("=");
+  if (start === "#ptn") return show({ name: "shared", data: unbase64(shared).buffer });
   const wanted = new URLSearchParams(location.search).get("clip");
   show(list.find((clip) => clip.name === wanted) ?? list.find((clip) => clip.name === "greet") ?? list[0]);
 }
@@ -164,8 +203,16 @@ gallery().catch((error) => table($("facts"), [["gallery", error.message]]));
 
 let worker = null;
 
-// The encoder speaks of the host tool's options: here they are fields.
-const here = (text) => text.replaceAll("--fps", "\u201cFrames a second\u201d").replaceAll("--cm-per-unit", "\u201ccm a unit\u201d");
+// The encoder speaks of the host tool's options: here they are fields, or files.
+const WORDS = [
+  ["--fps", "\u201cFrames per second\u201d"],
+  ["--cm-per-unit", "\u201ccm per unit\u201d"],
+  ["--animation takes another, --list shows all", "\u201cAnimation\u201d takes another"],
+  ["--skeleton FILE gives one", "drop it together with the motion"],
+  ["this pantin is built without FBX; build it with `--features fbx`, which needs a C compiler", "this page does not read FBX; export the motion as glTF or BVH"],
+  ["`pantin expand` turns a clip back into one", "drop it alone to play it"],
+];
+const here = (text) => WORDS.reduce((text, [theirs, ours]) => text.replaceAll(theirs, ours), text);
 
 function trouble(text) {
   $("trouble").textContent = here(text);
@@ -177,41 +224,104 @@ function done() {
   $("working").hidden = true;
 }
 
+// What was converted last: files with their content.
+let last = null;
+
+// The animations of a glTF file, by their names.
+function animationsOf({ name, bytes }) {
+  try {
+    const isBinary = /\.glb$/i.test(name);
+    if (!isBinary && !/\.gltf$/i.test(name)) return [];
+    const view = new DataView(bytes);
+    const json = isBinary ? new Uint8Array(bytes, 20, view.getUint32(12, true)) : new Uint8Array(bytes);
+    return (JSON.parse(new TextDecoder().decode(json)).animations ?? []).map(({ name }, index) => name || `animation ${index}`);
+  } catch {
+    // The importer says what is wrong with it.
+    return [];
+  }
+}
+
 async function take(files) {
+  files = [...files];
+  // Text, or a link, was dropped: what there is stays.
+  if (!files.length) return trouble("That was no file.");
   done();
   trouble("");
-  $("result").hidden = true;
-  files = [...files];
-  if (!files.length) return trouble("That was no file.");
   const size = files.reduce((sum, file) => sum + file.size, 0);
   const [first] = files;
-  if (size > MOST) return trouble(`${first.name}: ${bytes(size)}; the page reads motions of at most ${bytes(MOST)}. \`pantin convert\` takes any.`);
   const empty = files.find((file) => !file.size);
-  if (empty) return trouble(`${empty.name}: the file is empty; expected a motion.`);
-  if (/\.pt[nb]$/i.test(first.name)) {
+  const clip = files.find((file) => /\.pt[nb]$/i.test(file.name));
+  if (size > MOST) trouble(`${first.name}: ${bytes(size)}; the page reads motions of at most ${bytes(MOST)}. The command-line tool reads larger ones.`);
+  else if (empty) trouble(`${empty.name}: the file is empty; expected a motion.`);
+  else if (clip) {
+    const others = files.filter((file) => file !== clip).map((file) => file.name);
+    if (others.length) trouble(`${clip.name} is played; ${others.join(", ")} ${others.length > 1 ? "were" : "was"} left out.`);
     scrollTo({ top: 0, behavior: "smooth" });
-    return show({ name: first.name, data: await first.arrayBuffer() });
+    return show({ name: clip.name, data: await clip.arrayBuffer() });
+  } else {
+    $("working").hidden = false;
+    $("step").textContent = `reading ${first.name}`;
+    const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() }))).catch(() => null);
+    if (given) {
+      last = given;
+      const names = given.flatMap(animationsOf);
+      $("animations").hidden = names.length < 2;
+      $("animation").replaceChildren(...names.map((name, index) => new Option(name, index)));
+      return convert();
+    }
+    done();
+    trouble(`${first.name}: cannot be read.`);
   }
+  $("result").hidden = true;
+}
+
+// Converts the last files, as the fields say. What was converted before stays until there is something else.
+function convert(effort = $("effort").value) {
+  done();
+  trouble("");
   $("working").hidden = false;
   $("progress").removeAttribute("value");
-  $("step").textContent = `reading ${first.name}`;
-  const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() }))).catch(() => null);
-  if (!given) return done(), trouble(`${first.name}: cannot be read.`);
-  const options = { max_error_cm: +$("cm").value, effort: $("effort").value, fps: +$("fps").value || null, cm_per_unit: +$("unit").value || null };
+  $("step").textContent = "reading the motion";
+  const [given, animation] = [last, $("animations").hidden ? null : $("animation").value];
+  const options = { max_error_cm: +$("cm").value, effort, fps: +$("fps").value || null, cm_per_unit: +$("unit").value || null, animation };
   worker = new Worker("converter.js", { type: "module" });
-  worker.onerror = (event) => (done(), trouble(`The converter stopped: ${event.message ?? "it could not be loaded"}`));
+  const failed = (text) => {
+    done();
+    trouble(text);
+    $("result").hidden = true;
+  };
+  worker.onerror = (event) => failed(`The converter stopped: ${event.message ?? "it could not be loaded"}`);
   worker.onmessage = ({ data }) => {
     if (data.progress !== undefined) {
       $("progress").value = data.progress;
       $("step").textContent = `fitting, ${Math.floor(100 * data.progress)} %`;
-    } else {
+    } else if (data.error) failed(data.error);
+    else {
       done();
-      if (data.error) trouble(data.error);
-      else shown(data, first).catch((error) => trouble(error.message));
+      shown(data, given).catch((error) => trouble(error.message));
     }
   };
   worker.postMessage({ files: given, options });
 }
+
+// Other values convert again. While the slider moves, quickly.
+let soon = 0;
+function again(effort) {
+  clearTimeout(soon);
+  if (last) soon = setTimeout(() => convert(effort), 150);
+}
+$("slide").oninput = () => {
+  $("cm").value = +(10 ** $("slide").value).toPrecision(2);
+  again("fast");
+};
+$("slide").onchange = () => again();
+$("cm").oninput = () => ($("slide").value = Math.log10(+$("cm").value || 0.5));
+for (const id of ["cm", "effort", "fps", "unit", "animation"]) $(id).onchange = () => again();
+$("try").onclick = async () => {
+  const response = await fetch("clips/walk.bvh").catch(() => null);
+  if (!response?.ok) return trouble("Our walk cannot be fetched.");
+  take([new File([await response.arrayBuffer()], "walk.bvh")]);
+};
 
 function save(link, name, content, type) {
   if (link.href) URL.revokeObjectURL(link.href);
@@ -219,21 +329,24 @@ function save(link, name, content, type) {
   link.download = name;
 }
 
-async function shown({ report, clip, header, rig, poses, seconds }, file) {
+async function shown({ report, clip, header, rig, poses, seconds }, files) {
+  const isNew = $("result").hidden;
   $("result").hidden = false;
-  $("result").scrollIntoView({ block: "nearest", behavior: "smooth" });
-  const stem = file.name.replace(/\.[^.]*$/, "");
+  if (isNew) $("result").scrollIntoView({ block: "nearest", behavior: "smooth" });
+  const { stem } = report;
+  const size = files.reduce((sum, file) => sum + file.bytes.byteLength, 0);
+  const at = converted.currentTime;
   save($("save"), `${stem}.ptn`, clip, "application/octet-stream");
   save($("save-c"), `${stem}.h`, header, "text/x-c");
   const { frames, channels, frame_time_ns, length_exponent } = report;
   const raw = frames * channels * 2;
   table($("report"), [
     ["clip", bytes(clip.length)],
-    ["of the file", `${((100 * clip.length) / file.size).toFixed(clip.length < file.size / 100 ? 2 : 1)} % of ${bytes(file.size)}`],
-    ["of 16 bits a value", `${((100 * clip.length) / raw).toFixed(1)} %`],
-    report.max_error_cm !== undefined && ["error, greatest", `${report.max_error_cm.toFixed(3)} cm (${report.worst_joint}, frame ${report.worst_frame})`],
+    [files.length > 1 ? "of the files" : "of the file", `${((100 * clip.length) / size).toFixed(clip.length < size / 100 ? 2 : 1)} % of ${bytes(size)}`],
+    ["of 16 bits per value", `${((100 * clip.length) / raw).toFixed(1)} %`],
+    report.max_error_cm !== undefined && ["error, largest", `${report.max_error_cm.toFixed(3)} cm (${report.worst_joint}, frame ${report.worst_frame})`],
     report.max_error_cm !== undefined && ["error, mean", `${report.mean_error_cm.toFixed(3)} cm`],
-    report.max_scalar_error_percent !== undefined && ["values' error, greatest", `${report.max_scalar_error_percent.toFixed(2)} % of full scale`],
+    report.max_scalar_error_percent !== undefined && ["values' error, largest", `${report.max_scalar_error_percent.toFixed(2)} % of full scale`],
     ["frames, channels", `${frames}, ${channels}`],
     ["converted in", `${seconds.toFixed(1)} s`],
   ]);
@@ -244,6 +357,7 @@ async function shown({ report, clip, header, rig, poses, seconds }, file) {
   }));
   const table_ = { rig, poses, frames, frameTime: frame_time_ns, lengthExponent: length_exponent };
   await Promise.all([original.load(table_), converted.load(clip)]);
+  if (!isNew) converted.currentTime = at;
   follow();
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) converted.play();
 }

@@ -13,7 +13,12 @@ use std::thread;
 
 pub use xtask::browser;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
+use pantin_tools::encode::{clip, rig};
+use pantin_tools::export;
+use pantin_tools::fit::descent::Level;
+use pantin_tools::fit::fit;
+use pantin_tools::import::{self, Options};
 use pantin_tools::serve::{Site, serve};
 use serde_json::json;
 
@@ -25,6 +30,9 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 
 /// For the smallest player: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
 const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
+
+/// Largest error of scalars, as a fraction of their full scale: the host tool's default.
+const SCALAR_PART: f64 = 0.02;
 
 /// The modules' packages, the profiles that they are built in, and their names in the site.
 pub const MODULES: [(&str, &str, &str); 3] = [
@@ -103,7 +111,12 @@ fn module(package: &str, profile: &str) -> Result<Vec<u8>> {
     pack::pack(&bytes).with_context(|| product.display().to_string())
 }
 
-/// Our own clips, and the list of them that the page reads.
+/// Motions of our library, which share a rig: one after the other, they are a clip that takes a while to arrive over a slow line.
+const MEDLEY: [&str; 8] = ["idle", "wave", "bow", "dance", "jump", "sit_down", "stand_up", "turn_left"];
+/// The error of that clip.
+const MEDLEY_CM: f64 = 0.05;
+
+/// Our own clips, the list of them that the page reads, and a motion file for who has none.
 fn clips(out: &Path) -> Result<()> {
     let mut list = vec![];
     for folder in ["motions", "motions/face"] {
@@ -116,7 +129,35 @@ fn clips(out: &Path) -> Result<()> {
             }
         }
     }
+    let medley = medley()?;
+    write(&out.join("clips/medley.ptn"), &medley)?;
+    list.push(json!({ "name": "medley", "file": "clips/medley.ptn", "bytes": medley.len() }));
+    let walk = import::load(&paths::root().join("motions/walk.keys"), &Options::default())?.motion;
+    let mut bvh = vec![];
+    export::bvh::write(&walk, export::bvh::Columns::ThreeRotations, &mut bvh)?;
+    write(&out.join("clips/walk.bvh"), &bvh)?;
     write(&out.join("clips.json"), json!(list).to_string().as_bytes())
+}
+
+/// Several motions in turn, within [`MEDLEY_CM`].
+fn medley() -> Result<Vec<u8>> {
+    let load = |name: &&str| {
+        let path = paths::root().join("motions/library").join(name).with_extension("keys");
+        anyhow::Ok(import::load(&path, &Options::default())?.motion)
+    };
+    let motions = MEDLEY.iter().map(load).collect::<Result<Vec<_>>>()?;
+    let [first, others @ ..] = &motions[..] else { return Ok(vec![]) };
+    let mut whole = first.clone();
+    for motion in others {
+        ensure!(motion.rig == whole.rig && motion.frame_time == whole.frame_time, "motions of the library have different rigs");
+        whole.frames += motion.frames;
+        whole.values.iter_mut().zip(&motion.values).for_each(|(values, more)| values.extend(more));
+    }
+    (whole.looped, whole.events) = (false, vec![]);
+    whole.keys.fill(None);
+    let rig = rig::encode(&whole.rig)?;
+    let coded = fit(&whole, Level::Fast.plan(MEDLEY_CM), SCALAR_PART, &mut |_| {})?;
+    clip::encode(&coded, &rig, false)
 }
 
 fn listed(folder: &Path) -> Result<Vec<PathBuf>> {

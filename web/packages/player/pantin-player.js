@@ -76,7 +76,8 @@ input { flex: 1; min-width: 4em; accent-color: var(--pantin-accent, #c65c08); }
 output { font-variant-numeric: tabular-nums; min-width: 6em; text-align: right; }
 p { margin: .3em 0 0; min-height: 1.4em; }
 :host([bare]) .bar, :host([bare]) p { display: none; }
-@media (forced-colors: active) { .stage { forced-color-adjust: none; background: Canvas; color: CanvasText; fill: CanvasText; stroke: CanvasText; stop-color: GrayText; } button { forced-color-adjust: auto; } }
+@media (pointer: coarse), (max-width: 40rem) { button { width: 44px; height: 44px; } input { height: 44px; } }
+@media (forced-colors: active) { .stage { forced-color-adjust: none; background: Canvas; color: CanvasText; fill: CanvasText; stroke: CanvasText; stop-color: GrayText; } }
 `;
 let sheet;
 let pixel;
@@ -297,6 +298,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       signal.throwIfAborted();
       this.#want(this.#wanted);
       abort.done = true;
+      this.#tell();
       this.#dispatch("ready");
     } catch (error) {
       // Another clip was loaded instead, or the element was removed.
@@ -747,7 +749,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.range.max = Math.max(0, playable - 1);
     this.range.value = frame;
     this.output.textContent = frames ? `${frame + 1} / ${frames}` : "";
-    const coming = this.received && playable < frames ? `${this.received} bytes, ${playable} of ${frames} frames` : "";
+    const loads = this.#abort && !this.#abort.done && this.received;
+    const coming = !loads ? "" : !playable ? `${this.received} bytes; the first pose is still to come` : playable < frames ? `${this.received} bytes, ${playable} of ${frames} frames` : "";
     const words = this.trouble || coming;
     if (this.status.textContent !== words) this.status.textContent = words;
   }
