@@ -545,6 +545,54 @@ const cases = {
         return shown;
       }, args.clips[0]));
     }
+    // The same over slow lines, of a page with preload links: from the request of the page to the first figure.
+    const slow = {};
+    for (const [line, latency, kilobits] of args.lines) {
+      const context = await browser.newContext();
+      const one = await context.newPage();
+      const session = await context.newCDPSession(one);
+      await session.send("Network.enable");
+      await session.send("Network.emulateNetworkConditions", { offline: false, latency, downloadThroughput: (kilobits * 1000) / 8, uploadThroughput: (kilobits * 1000) / 8 });
+      await one.addInitScript(() => {
+        const look = () => (document.querySelector("pantin-player")?.playable ? (window.first = performance.now()) : requestAnimationFrame(look));
+        look();
+      });
+      await one.goto(`${args.site}embed.html`, { waitUntil: "commit" });
+      slow[line] = await one.waitForFunction(() => window.first, null, { timeout: 60000 }).then((time) => time.jsonValue());
+      await context.close();
+    }
+    // The part of a core's time that 30 players on the screen take, and 30 that cannot be seen.
+    const crowd = {};
+    for (const [where, top] of [["on screen", 0], ["off screen", 5000]]) {
+      const context = await browser.newContext({ viewport: { width: 1280, height: 900 } });
+      const one = await context.newPage();
+      await one.goto(`${args.site}clips.json`);
+      await one.evaluate(async ({ clip, top }) => {
+        await import("/pantin-player.js");
+        document.body.replaceChildren();
+        document.body.style.cssText = `margin: ${top}px 0 0; display: grid; grid-template-columns: repeat(6, 1fr); gap: 4px`;
+        const all = Array.from({ length: 30 }, () => {
+          const player = document.createElement("pantin-player");
+          for (const name of ["bare", "loop", "autoplay"]) player.setAttribute(name, "");
+          player.setAttribute("src", clip);
+          document.body.append(player);
+          return player;
+        });
+        while (!all.every((player) => player.playable > 1)) await new Promise((go) => setTimeout(go, 20));
+      }, { clip: args.clips[0], top });
+      const session = await context.newCDPSession(one);
+      await session.send("Performance.enable");
+      const busy = async () => {
+        const { metrics } = await session.send("Performance.getMetrics");
+        return ["TaskDuration", "Timestamp"].map((name) => metrics.find((metric) => metric.name === name).value);
+      };
+      await one.waitForTimeout(500);
+      const [before, begun] = await busy();
+      await one.waitForTimeout(3000);
+      const [after, ended] = await busy();
+      crowd[where] = (after - before) / (ended - begun);
+      await context.close();
+    }
     const frames = {};
     for (const clip of args.clips) {
       assert.equal(await load(page, clip), "");
@@ -561,7 +609,7 @@ const cases = {
         }, look);
       }
     }
-    return { first: first.sort((a, b) => a - b)[2], frames };
+    return { first: first.sort((a, b) => a - b)[2], slow, crowd, frames };
   },
 };
 

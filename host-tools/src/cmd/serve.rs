@@ -4,7 +4,7 @@ use crate::output::{self, outln};
 use crate::serve::{Site, serve};
 use anyhow::{Context, Result};
 use serde_json::json;
-use std::net::{IpAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, TcpListener};
 use std::path::PathBuf;
 
 /// Serve the page that `cargo xtask web` builds, to show clips in a browser.
@@ -16,7 +16,8 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   pantin serve
   pantin serve walk.ptn run.ptn
-  pantin serve clips/*.ptn --port 8080 --bind 0.0.0.0")]
+  pantin serve clips/*.ptn --port 8080 --bind 0.0.0.0
+  pantin serve --cors")]
 pub struct Arguments {
     /// Clips to show, instead of our own
     files: Vec<PathBuf>,
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// The folder of the page
     #[arg(long)]
     site: Option<PathBuf>,
+    /// Let pages of other sites load the player and the clips
+    #[arg(long)]
+    cors: bool,
 }
 
 /// Runs the command.
@@ -37,10 +41,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if !arguments.files.is_empty() {
         site.show(&arguments.files)?;
     }
+    site.shared = arguments.cors;
     let place = (arguments.bind, arguments.port);
     let listener = TcpListener::bind(place);
     let listener = listener.with_context(|| format!("cannot listen on {}, port {}: --port takes another", place.0, place.1))?;
-    let address = listener.local_addr()?;
+    let mut address = listener.local_addr()?;
+    // No browser opens the address that stands for all.
+    if address.ip().is_unspecified() {
+        address.set_ip(if address.is_ipv4() { Ipv4Addr::LOCALHOST.into() } else { Ipv6Addr::LOCALHOST.into() });
+    }
     output::report(json!({"url": format!("http://{address}/"), "clips": arguments.files.len()}));
     if output::is_json() {
         // The command has no end of its own.

@@ -4,7 +4,7 @@
 //! request, and has not, gives up its place to the next one; if all of them take their answers, the next one is refused. Both get the status 503, and the time
 //! to read it.
 
-use super::Site;
+use super::{CODINGS, File, Site};
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -176,11 +176,14 @@ impl Drop for Guest {
 #[derive(Clone, Copy)]
 enum Status {
     Good,
+    Part,
+    Unchanged,
     Malformed,
     Forbidden,
     Missing,
     Method,
     Late,
+    Beyond,
     TooLong,
     Busy,
 }
@@ -189,11 +192,14 @@ impl Status {
     fn line(self) -> &'static str {
         match self {
             Status::Good => "200 OK",
+            Status::Part => "206 Partial Content",
+            Status::Unchanged => "304 Not Modified",
             Status::Malformed => "400 Bad Request",
             Status::Forbidden => "403 Forbidden",
             Status::Missing => "404 Not Found",
             Status::Method => "405 Method Not Allowed",
             Status::Late => "408 Request Timeout",
+            Status::Beyond => "416 Range Not Satisfiable",
             Status::TooLong => "431 Request Header Fields Too Large",
             Status::Busy => "503 Service Unavailable",
         }
@@ -207,16 +213,20 @@ fn attend(stream: &TcpStream, site: &Site, local: Option<SocketAddr>, mut guest:
     let request = if refused { Err(Status::Busy) } else { head(stream, &mut buffer, &guest) };
     let kept = !refused && guest.go_on(Stage::Answered);
     match request {
-        _ if !kept => answer(stream, Status::Busy, None, true, CLOSE_TIME)?,
-        Err(status) => answer(stream, status, None, true, ANSWER_TIME)?,
+        _ if !kept => refuse(stream, Status::Busy, true, CLOSE_TIME)?,
+        Err(status) => refuse(stream, status, true, ANSWER_TIME)?,
         Ok(Request { hosts, .. }) if !local.is_none_or(|local| hosts.iter().all(|host| is_here(host, local))) => {
-            answer(stream, Status::Forbidden, None, true, ANSWER_TIME)?;
+            refuse(stream, Status::Forbidden, true, ANSWER_TIME)?;
         }
-        Ok(Request { method, path, .. }) => match site.file(path.split('?').next().unwrap_or_default()) {
-            _ if method != "GET" && method != "HEAD" => answer(stream, Status::Method, None, true, ANSWER_TIME)?,
-            None => answer(stream, Status::Missing, None, method == "GET", ANSWER_TIME)?,
-            file => answer(stream, Status::Good, file, method == "GET", ANSWER_TIME)?,
-        },
+        Ok(request) => {
+            let path = request.path.split('?').next().unwrap_or_default();
+            let (wants_body, allowed) = (request.method == "GET", ["GET", "HEAD"].contains(&request.method));
+            match site.file(path) {
+                _ if !allowed => refuse(stream, Status::Method, true, ANSWER_TIME)?,
+                None => refuse(stream, Status::Missing, wants_body, ANSWER_TIME)?,
+                Some(file) => send(stream, site, path, file, &request)?,
+            }
+        }
     }
     if kept {
         guest.go_on(Stage::Closing);
@@ -229,6 +239,10 @@ struct Request<'b> {
     path: &'b str,
     /// What its headers `Host` say.
     hosts: Vec<&'b [u8]>,
+    /// What the client has, takes and asks for: headers `If-None-Match`, `Accept-Encoding` and `Range`, empty without them.
+    tags: &'b str,
+    codings: &'b str,
+    range: &'b str,
 }
 
 /// Whether a header `Host` names the server at the loopback address `local`.
@@ -278,26 +292,84 @@ fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD], guest: &Gue
     let parsed = request.parse(&buffer[..len]);
     match (parsed, request.method, request.path) {
         (Ok(_), Some(method), Some(path)) => {
-            let hosts = request.headers.iter().filter(|header| header.name.eq_ignore_ascii_case("host"));
-            Ok(Request { method, path, hosts: hosts.map(|header| header.value).collect() })
+            let named = |name: &'static str| request.headers.iter().filter(move |header| header.name.eq_ignore_ascii_case(name));
+            let text = |name| named(name).next().and_then(|header| std::str::from_utf8(header.value).ok()).unwrap_or_default();
+            let hosts = named("host").map(|header| header.value).collect();
+            let [tags, codings, range] = ["if-none-match", "accept-encoding", "range"].map(text);
+            Ok(Request { method, path, hosts, tags, codings, range })
         }
         _ => Err(Status::Malformed),
     }
 }
 
-/// Writes an answer within `time` and what a file's length adds to it.
-fn answer(stream: &TcpStream, status: Status, file: Option<&super::File>, body: bool, time: Duration) -> io::Result<()> {
-    let line = status.line();
+/// Sends a file: in a coding that the client takes, or a part of it, or word that it has not changed.
+fn send(stream: &TcpStream, site: &Site, path: &str, file: &File, request: &Request<'_>) -> io::Result<()> {
+    // A part of a file is one of its own bytes.
+    let mut codings = CODINGS.iter().filter(|coding| request.range.is_empty() && takes(request.codings, coding.name));
+    let coded = codings.find_map(|coding| Some((coding, site.coded(path, coding)?)));
+    let tag = coded.as_ref().map_or(&file.tag, |(_, file)| &file.tag);
+    let mut head = format!("Content-Type: {}\r\nETag: {tag}\r\nAccept-Ranges: bytes\r\nVary: Accept-Encoding\r\n", file.kind);
+    if site.shared {
+        head += "Access-Control-Allow-Origin: *\r\n";
+    }
+    let all = file.bytes.as_slice();
+    let (status, bytes) = match (&coded, part(request.range, all.len())) {
+        _ if request.tags.split(',').any(|known| known.trim().trim_start_matches("W/") == tag) => (Status::Unchanged, &[][..]),
+        (Some((coding, file)), _) => {
+            head += &format!("Content-Encoding: {}\r\n", coding.name);
+            (Status::Good, file.bytes.as_slice())
+        }
+        (None, Some(Some((from, to)))) => {
+            head += &format!("Content-Range: bytes {from}-{}/{}\r\n", to - 1, all.len());
+            (Status::Part, all.get(from..to).unwrap_or_default())
+        }
+        (None, Some(None)) => {
+            head += &format!("Content-Range: bytes */{}\r\n", all.len());
+            (Status::Beyond, &[][..])
+        }
+        (None, None) => (Status::Good, all),
+    };
+    answer(stream, status, &head, bytes, request.method == "GET", ANSWER_TIME)
+}
+
+/// Whether a header `Accept-Encoding` names a coding, and not with the weight 0.
+fn takes(header: &str, coding: &str) -> bool {
+    header.split(',').any(|choice| {
+        let mut parts = choice.split(';').map(str::trim);
+        let named = parts.next().is_some_and(|name| name.eq_ignore_ascii_case(coding));
+        named && !parts.any(|part| part.strip_prefix("q=").is_some_and(|weight| weight.parse() == Ok(0.0)))
+    })
+}
+
+/// The bytes that a header `Range` asks for, from one to before another; `Some(None)` if the file has none of them, `None` for all. Several ranges get all.
+fn part(header: &str, len: usize) -> Option<Option<(usize, usize)>> {
+    let (from, to) = header.strip_prefix("bytes=")?.split_once('-')?;
+    let number = |text: &str| text.trim().parse::<usize>();
+    let range = match (number(from), number(to)) {
+        (Ok(from), Ok(to)) if to >= from => (from, to.saturating_add(1).min(len)),
+        (Ok(from), Err(_)) if to.trim().is_empty() => (from, len),
+        (Err(_), Ok(last)) if from.trim().is_empty() => (len.saturating_sub(last), len),
+        _ => return None,
+    };
+    Some(Some(range).filter(|(from, to)| from < to))
+}
+
+/// Writes an answer without a file.
+fn refuse(stream: &TcpStream, status: Status, body: bool, time: Duration) -> io::Result<()> {
     let help = match status {
         Status::Forbidden => "The Host header names another server. Open the URL that `pantin serve` prints.\n",
         _ => "",
     };
-    let own = format!("{line}\n{help}");
-    let (bytes, kind) = file.map_or((own.as_bytes(), "text/plain"), |file| (&file.bytes, file.kind));
     let allow = if let Status::Method = status { "Allow: GET, HEAD\r\n" } else { "" };
+    let text = format!("{}\n{help}", status.line());
+    answer(stream, status, &format!("Content-Type: text/plain\r\n{allow}"), text.as_bytes(), body, time)
+}
+
+/// Writes an answer within `time` and what its length adds to it.
+fn answer(stream: &TcpStream, status: Status, head: &str, bytes: &[u8], body: bool, time: Duration) -> io::Result<()> {
     let head = format!(
-        "HTTP/1.1 {line}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{allow}X-Content-Type-Options: nosniff\r\n\
-         Cache-Control: no-cache\r\nConnection: close\r\n\r\n",
+        "HTTP/1.1 {}\r\nContent-Length: {}\r\n{head}X-Content-Type-Options: nosniff\r\nCache-Control: no-cache\r\nConnection: close\r\n\r\n",
+        status.line(),
         bytes.len()
     );
     let until = Instant::now() + time + Duration::from_secs((bytes.len() / SLOWEST) as u64);

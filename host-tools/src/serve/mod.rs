@@ -4,4 +4,4 @@ mod http;
 mod site;
 
 pub use http::{ANSWER_TIME, MOST_CONNECTIONS, MOST_HEAD, PATIENCE, SLOWEST, serve};
-pub use site::{File, Site};
+pub use site::{CODINGS, Coding, File, Site};

@@ -21,13 +21,27 @@ pub struct File {
     pub bytes: Vec<u8>,
     /// Its media type.
     pub kind: &'static str,
+    /// What stands for its content in an `ETag`: equal for equal content.
+    pub tag: String,
 }
+
+/// A content coding of HTTP, and what ends the name of a file that holds another one's content in it.
+pub struct Coding {
+    /// Its name in headers.
+    pub name: &'static str,
+    extension: &'static str,
+}
+
+/// The codings that are served, the smallest first. Files in them are made when the site is built.
+pub const CODINGS: [Coding; 2] = [Coding { name: "br", extension: ".br" }, Coding { name: "gzip", extension: ".gz" }];
 
 /// Files by their paths: `/app.js`.
 #[derive(Default)]
 pub struct Site {
     files: BTreeMap<String, File>,
     bytes: usize,
+    /// Whether pages of other sites may read the files.
+    pub shared: bool,
 }
 
 impl Site {
@@ -83,20 +97,34 @@ impl Site {
         self.files.get(if path == "/" { "/index.html" } else { path })
     }
 
+    /// The content of a request's path in a coding, if the site has it.
+    pub fn coded(&self, path: &str, coding: &Coding) -> Option<&File> {
+        let path = if path == "/" { "/index.html" } else { path };
+        self.files.get(&format!("{path}{}", coding.extension))
+    }
+
     /// Adds a file.
     pub fn add(&mut self, path: String, bytes: Vec<u8>) -> Result<()> {
         self.bytes += bytes.len();
         ensure!(self.bytes <= MOST_BYTES, "{path}: all files together have more than {MOST_BYTES} bytes");
-        let kind = kind(&path);
-        self.files.insert(path, File { bytes, kind });
+        // What was made of other content is no longer the file's.
+        CODINGS.iter().for_each(|coding| drop(self.files.remove(&format!("{path}{}", coding.extension))));
+        let (kind, tag) = (kind(&path), tag(&bytes));
+        self.files.insert(path, File { bytes, kind, tag });
         Ok(())
     }
 
     /// Adds the files in `folder`, except links that lead out of the site's folder `root`.
     fn add_folder(&mut self, root: &Path, folder: &Path, prefix: &str) -> Result<()> {
         let entries = fs::read_dir(folder).with_context(|| format!("{}: cannot be read", folder.display()))?;
+        let mut found = vec![];
         for entry in entries {
             let path = entry.with_context(|| folder.display().to_string())?.path();
+            found.push(path);
+        }
+        // A file comes before what was made of it.
+        found.sort();
+        for path in found {
             if let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|_| path.is_file()) {
                 if !path.canonicalize().is_ok_and(|file| file.starts_with(root)) {
                     note!("warning: {}: not served, because it is a link to a file outside of the site's folder", path.display());
@@ -108,6 +136,12 @@ impl Site {
         }
         Ok(())
     }
+}
+
+/// A hash of 64 bits (FNV-1a) and the length.
+fn tag(bytes: &[u8]) -> String {
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3));
+    format!("\"{hash:016x}-{:x}\"", bytes.len())
 }
 
 fn kind(path: &str) -> &'static str {

@@ -68,6 +68,71 @@ fn pages_are_served_and_heads_without_bodies() {
 }
 
 #[test]
+fn unchanged_files_parts_and_codings_are_answered_as_asked() {
+    let mut site = Site::default();
+    site.add("/index.html".into(), PAGE.to_vec()).unwrap();
+    site.add("/index.html.gz".into(), b"gzipped".to_vec()).unwrap();
+    site.add("/index.html.br".into(), b"brotli".to_vec()).unwrap();
+    site.add("/0.ptn".into(), (0..100).collect()).unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let place = listener.local_addr().unwrap();
+    thread::spawn(move || serve(&listener, site));
+    let ask = |path: &str, headers: &str| {
+        let answer = talk(place, format!("GET {path} HTTP/1.1\r\n{headers}\r\n").as_bytes());
+        (status(&answer), String::from_utf8_lossy(&answer).into_owned(), body(&answer).to_vec())
+    };
+    // The smallest coding that the client takes.
+    for (codings, coding, expected) in [
+        ("gzip, deflate, br", "br", &b"brotli"[..]),
+        ("br;q=0, gzip;q=0.5", "gzip", b"gzipped"),
+        ("gzip", "gzip", b"gzipped"),
+        ("identity", "", PAGE),
+    ] {
+        let (status, text, body) = ask("/", &format!("Accept-Encoding: {codings}\r\n"));
+        assert_eq!((status.as_str(), &body[..]), ("200", expected), "{codings}");
+        assert!(text.contains("Content-Type: text/html") && text.contains("Vary: Accept-Encoding\r\n"), "{text}");
+        assert_eq!(text.contains(&format!("Content-Encoding: {coding}\r\n")), !coding.is_empty(), "{text}");
+    }
+    // What has not changed is not sent again.
+    let (_, text, _) = ask("/0.ptn", "");
+    let tag = text.lines().find_map(|line| line.strip_prefix("ETag: ")).unwrap().to_owned();
+    for tags in [tag.clone(), format!("W/{tag}"), format!("\"other\", {tag}")] {
+        let (status, _, body) = ask("/0.ptn", &format!("If-None-Match: {tags}\r\n"));
+        assert_eq!((status.as_str(), body.len()), ("304", 0), "{tags}");
+    }
+    assert_eq!(ask("/0.ptn", "If-None-Match: \"other\"\r\n").0, "200");
+    // Parts of a file.
+    let all: Vec<u8> = (0..100).collect();
+    for (range, expected, told) in [
+        ("bytes=10-19", &all[10..20], "bytes 10-19/100"),
+        ("bytes=90-", &all[90..], "bytes 90-99/100"),
+        ("bytes=-5", &all[95..], "bytes 95-99/100"),
+        ("bytes=50-4000", &all[50..], "bytes 50-99/100"),
+    ] {
+        let (status, text, body) = ask("/0.ptn", &format!("Range: {range}\r\n"));
+        assert_eq!((status.as_str(), &body[..]), ("206", expected), "{range}");
+        assert!(text.contains(&format!("Content-Range: {told}\r\n")), "{text}");
+    }
+    assert_eq!(ask("/0.ptn", "Range: bytes=100-\r\n").0, "416");
+    for range in ["bytes=9-3", "bytes=0-1,4-5", "lines=1-2", "bytes=x-"] {
+        assert_eq!(ask("/0.ptn", &format!("Range: {range}\r\n")).2, all, "{range}");
+    }
+    assert!(!text.contains("Access-Control"), "{text}");
+}
+
+#[test]
+fn other_sites_read_only_what_is_shared() {
+    let mut site = Site::default();
+    site.shared = true;
+    site.add("/index.html".into(), PAGE.to_vec()).unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let place = listener.local_addr().unwrap();
+    thread::spawn(move || serve(&listener, site));
+    let answer = talk(place, b"GET / HTTP/1.1\r\n\r\n");
+    assert!(String::from_utf8_lossy(&answer).contains("Access-Control-Allow-Origin: *\r\n"));
+}
+
+#[test]
 fn what_was_not_given_is_not_there() {
     let place = server();
     let paths = [

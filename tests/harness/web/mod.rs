@@ -71,7 +71,8 @@ pub fn build(out: &Path) -> Result<()> {
         let scripted = entry.extension().is_some_and(|extension| extension == "js");
         write(&out.join(name), &if scripted { tools::minified(script::shortened(&bytes)?)? } else { bytes })?;
     }
-    clips(out)
+    clips(out)?;
+    tools::compress(out)
 }
 
 /// Builds the site into `target/web` and serves it, with some more files by their paths, as long as this program runs; returns the page's

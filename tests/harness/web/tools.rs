@@ -68,6 +68,31 @@ fn with_let(script: &str) -> String {
     out
 }
 
+/// Writes what a server may send in place of files of the site: each with brotli and gzip, where node is there.
+pub fn compress(folder: &Path) -> Result<()> {
+    const SCRIPT: &str = r#"
+        import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+        import { brotliCompressSync, constants, gzipSync } from "node:zlib";
+        const [, folder] = process.argv;
+        for (const name of readdirSync(folder).filter((name) => /\.(html|css|js|json|wasm)$/.test(name))) {
+          const bytes = readFileSync(`${folder}/${name}`);
+          // The converter takes seconds at the best quality.
+          const [quality, level] = bytes.length < 1 << 19 ? [11, 9] : [9, 6];
+          const params = { [constants.BROTLI_PARAM_QUALITY]: quality, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length };
+          writeFileSync(`${folder}/${name}.br`, brotliCompressSync(bytes, { params }));
+          writeFileSync(`${folder}/${name}.gz`, gzipSync(bytes, { level }));
+        }
+    "#;
+    let Ok(node) = setup::emulator("node") else {
+        eprintln!("note: the site's files are not compressed, because node is missing");
+        return Ok(());
+    };
+    let output = Command::new(node).args(["--input-type=module", "--eval", SCRIPT]).arg(folder).output();
+    let output = output.context("cannot start node")?;
+    ensure!(output.status.success(), "compression: {}", String::from_utf8_lossy(&output.stderr).trim());
+    Ok(())
+}
+
 fn run(program: &str, kind: &str, bytes: Vec<u8>, arguments: impl Fn(&Path, &Path) -> Vec<PathBuf>) -> Result<Vec<u8>> {
     let Some(programs) = PROGRAMS.as_ref() else { return Ok(bytes) };
     let folder = tempfile::tempdir().context("a folder for a program of npm")?;
