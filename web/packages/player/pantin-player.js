@@ -135,7 +135,7 @@ const isBank = (file) => file[0] === 0x50 && file[1] === 0x62;
 
 // Where there is no page, as in Node, the class can be imported but not used.
 export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
-  static observedAttributes = ["src", "look", "speed", "fit", "up"];
+  static observedAttributes = ["src", "look", "speed", "fit", "up", "bare"];
   #seat = null;
   #abort = null;
   // Where the last clip that removal kept from loading is to be loaded from.
@@ -152,6 +152,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #tones = [];
   #inks = {};
   #paused = true;
+  // What the button shows: whether it plays or pauses.
+  #offered = null;
   #backwards = false;
   #speed = 1;
   #told = 0;
@@ -744,8 +746,13 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
 
   #tell() {
     const { frame, frames, playable } = this.facts;
-    this.icon.setAttribute("d", this.#paused ? "M2 1v8l7-4z" : "M2 1h2v8H2zM6 1h2v8H6z");
-    this.button.setAttribute("aria-label", this.#paused ? "Play" : "Pause");
+    if (this.#paused !== this.#offered) {
+      this.#offered = this.#paused;
+      this.icon.setAttribute("d", this.#paused ? "M2 1v8l7-4z" : "M2 1h2v8H2zM6 1h2v8H6z");
+      this.button.setAttribute("aria-label", this.#paused ? "Play" : "Pause");
+    }
+    // Nobody sees the bar of a bare player, which may be one of many.
+    if (this.hasAttribute("bare")) return;
     this.range.max = Math.max(0, playable - 1);
     this.range.value = frame;
     this.output.textContent = frames ? `${frame + 1} / ${frames}` : "";
