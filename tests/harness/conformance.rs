@@ -12,7 +12,7 @@ use crate::qemu::{LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, SX1, VIRT}
 use crate::rp2040::{self, Request};
 use crate::vectors::record::{self, Crcs};
 use crate::vectors::{self, Vector};
-use crate::{paths, setup};
+use crate::{paths, setup, steered};
 
 /// A way to play the vectors.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,9 @@ impl Expected {
         let folder = vectors::folder();
         let vectors = vectors::load(&folder)?;
         let crcs = vectors.iter().map(|vector| Ok((vector.name.clone(), record::read(&folder, &vector.name)?)));
-        Ok(Expected { crcs: crcs.collect::<Result<_>>()?, vectors })
+        let mut crcs: BTreeMap<String, Crcs> = crcs.collect::<Result<_>>()?;
+        crcs.insert(conformance::STEERED.into(), steered::recorded()?);
+        Ok(Expected { crcs, vectors })
     }
 
     /// Plays all vectors on a core, and compares every pose.
@@ -92,7 +94,9 @@ impl Expected {
     fn here(&self) -> Result<(Duration, BTreeMap<String, Crcs>)> {
         let started = Instant::now();
         let found = self.vectors.iter().map(|vector| Ok((vector.name.clone(), record::crcs(&vector.open()?)?)));
-        Ok((started.elapsed(), found.collect::<Result<_>>()?))
+        let mut found: BTreeMap<String, Crcs> = found.collect::<Result<_>>()?;
+        found.insert(conformance::STEERED.into(), steered::crcs()?);
+        Ok((started.elapsed(), found))
     }
 }
 

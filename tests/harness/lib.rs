@@ -45,6 +45,8 @@ pub mod soak;
 #[cfg(feature = "full")]
 pub mod stack;
 #[cfg(feature = "full")]
+pub mod steered;
+#[cfg(feature = "full")]
 pub mod stm32;
 pub mod sync;
 #[cfg(feature = "full")]

@@ -20,6 +20,7 @@ mod qemu;
 mod shape;
 mod sizes;
 mod soak;
+mod steered;
 mod stm32;
 mod update;
 mod vectors;

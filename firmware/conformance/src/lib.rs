@@ -1,8 +1,10 @@
-//! Plays a clip, step by step and by seeking, and tells the CRC of every pose: what all machines must agree on.
+//! Plays a clip, step by step and by seeking, and a state machine by a session, and tells the CRC of every pose: what all machines must agree on.
 #![cfg_attr(not(test), no_std)]
 
 use pantin::codec::crc;
 use pantin::{ChannelState, Clip, Player, TooSmall};
+use pantin_animator::session::{Replay, Session};
+use pantin_animator::{Character, LayerMemory, Memory};
 
 /// How a pose was come by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +49,42 @@ pub fn play(
         tell(Play::Seek, crc_of(player.pose().values));
     }
     Ok(())
+}
+
+/// Name of the session in the list of vectors, and its pictures in a second.
+pub const STEERED: &str = "steered";
+/// Pictures of the session in a second.
+pub const RATE: u16 = 30;
+
+/// Plays a session of a bank's state machine, and tells for each picture the CRC of the pose and of the figure's place and heading. False if
+/// something of it cannot be played.
+pub fn steer<'a, 'm>(
+    bank: &'a [u8],
+    session: &'a str,
+    memory: Memory<'m>,
+    layer: LayerMemory<'m>,
+    tell: &mut dyn FnMut(Play, u16),
+) -> bool {
+    let Ok(mut character) = Character::new(bank, memory) else { return false };
+    if character.table().layers() > 0 && character.lend_layer(layer).is_err() {
+        return false;
+    }
+    let Ok(session) = Session::new_checked(session, character.table()) else { return false };
+    let mut replay = Replay::new(session, RATE);
+    loop {
+        match replay.next(&mut character) {
+            Ok(true) => tell(Play::Progress, crc_of_character(&character)),
+            Ok(false) => return true,
+            Err(_) => return false,
+        }
+    }
+}
+
+/// The CRC of a pose, and of the place and the heading behind it, little-endian.
+pub fn crc_of_character(character: &Character<'_, '_>) -> u16 {
+    let (pose, placement) = character.pose();
+    let crc = placement.place.iter().fold(crc_of(pose.values), |crc, x| crc::update(crc, &x.to_le_bytes()));
+    crc::update(crc, &placement.heading.to_bits().to_le_bytes())
 }
 
 #[cfg(test)]

@@ -102,7 +102,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     let layer = |layer: &'_ Spanned<Layer>| (file.at(layer.span()), layer.get_ref().clone());
     let mut layers = Vec::new();
     for (place, layer) in source.layers.iter().map(layer) {
-        layers.push(maker.layer_row(&layer).with_context(|| format!("{place}: layer"))?);
+        layers.push(maker.layer_row(&layer, source).with_context(|| format!("{place}: layer"))?);
     }
     ensure!(maker.inputs.len() <= INPUTS, "{name}: {} inputs; at most {INPUTS}", maker.inputs.len());
     let mut out = vec![
@@ -218,7 +218,7 @@ impl<'s> Maker<'s, '_> {
     }
 
     /// The row of a layer, and the patterns of its joints, one a line.
-    fn layer_row(&mut self, layer: &Layer) -> Result<([u8; 12], String)> {
+    fn layer_row(&mut self, layer: &Layer, source: &Source) -> Result<([u8; 12], String)> {
         let clip = self.clips.find(&layer.clip)?;
         let input = self.input(&layer.input)?;
         let seconds = layer.seconds.unwrap_or(SECONDS);
@@ -232,6 +232,18 @@ impl<'s> Maker<'s, '_> {
         }
         let joints = layer.joints.join("\n");
         ensure!(joints.len() <= NAME_BYTES, "joints: {} bytes of patterns; at most {NAME_BYTES}", joints.len());
+        for state in &source.states {
+            let names = layer.states.as_ref();
+            let (name, under) = &self.clips.all[usize::from(self.clip_of(state)?)];
+            let played = names.is_none_or(|names| names.contains(state.name.get_ref()));
+            if played && under.form().check(self.clips.all[usize::from(clip)].1.form_ref()).is_err() {
+                bail!(
+                    "the clips {} and {} have different forms; `pantin convert --same-form` makes them equal",
+                    quoted(name),
+                    quoted(&layer.clip)
+                );
+            }
+        }
         let mut states = u64::MAX;
         if let Some(names) = &layer.states {
             states = 0;

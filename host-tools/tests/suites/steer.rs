@@ -31,6 +31,16 @@ fn session() -> String {
     std::fs::read_to_string(motions().join("steer.txt")).unwrap()
 }
 
+/// `PANTIN_UPDATE=1` writes it again, after a change of the motions, the fit, the formats or the machine.
+#[test]
+fn the_committed_bank_is_what_the_tool_makes() {
+    let path = motions().join("character.ptb");
+    if std::env::var_os("PANTIN_UPDATE").is_some() {
+        std::fs::write(&path, &*BANK).unwrap();
+    }
+    assert!(std::fs::read(path).unwrap() == *BANK, "motions/character.ptb is not what the tool makes; PANTIN_UPDATE=1 writes it");
+}
+
 const RATE: u16 = 30;
 const CM_OF_GROUND: f64 = 1.0;
 /// How far the tips of the toes may be below the ground while a transition mixes two steps: nothing holds them there.

@@ -3,8 +3,11 @@
 use fixed::types::I16F16;
 use pantin::{Angle, Bank, Clip};
 use pantin_animator::layer::{Weight, add, blend};
-use pantin_animator::machine::{Machine, Table};
-use pantin_animator::{Animator, FootLock, Group, Limb, Limits, Look, Mask, Share, Track, Transition, Workspace};
+use pantin_animator::machine::{LAYERS, Machine, SECTION, Table};
+use pantin_animator::session::Session;
+use pantin_animator::{
+    Animator, Character, FootLock, Group, LayerMemory, Limb, Limits, Look, Mask, Share, Track, Transition, Workspace,
+};
 
 use crate::noise::Noise;
 
@@ -34,7 +37,55 @@ pub fn animator(bytes: &[u8]) -> bool {
     if let Some((body, crc)) = mended.split_last_chunk_mut::<2>() {
         *crc = pantin::codec::crc::of(body).to_le_bytes();
     }
-    machine(&mended, bytes, &bank) || read
+    let mut read = machine(&mended, bytes, &bank) || read;
+    read |= character(&mended, bytes);
+    read
+}
+
+/// The same table with its layers, steered by a session of random text.
+fn character(table: &[u8], seed: &[u8]) -> bool {
+    let mut bytes = BANK.to_vec();
+    bytes.push(SECTION);
+    // A length in three digits of seven bits.
+    let len = table.len() as u32;
+    if len >= 1 << 21 {
+        return false;
+    }
+    bytes.extend([len as u8 | 0x80, (len >> 7) as u8 | 0x80, (len >> 14) as u8]);
+    bytes.extend(table);
+    let mut memory = Workspace::<512, 512>::new();
+    let mut rooms = [(); LAYERS].map(|()| ([pantin::ChannelState::NEW; 512], [0; 512], [0; 512], [0; 32]));
+    let Ok(mut character) = Character::new(&bytes, memory.lend()) else { return false };
+    for (states, values, sampled, words) in &mut rooms {
+        let _ = character.lend_layer(LayerMemory { states, values, sampled, words });
+    }
+    let mut noise = noise_of(seed);
+    let _ = Session::new_checked(&String::from_utf8_lossy(seed), character.table());
+    let words = ["press", "hold", "release", "set", "end", ""];
+    let mut text = String::new();
+    for line in 0..noise.below(20) {
+        let name = match noise.below(3) {
+            0 => character.table().parameter_name(noise.below(8) as u8),
+            _ => character.table().input_name(noise.below(32) as u8),
+        };
+        text += &format!("{}.{} {} {name} {}\n", line / 8, noise.below(99), words[noise.below(6)], noise.below(200));
+    }
+    for text in [text.clone(), text + "5 end"] {
+        if let Ok(session) = Session::new_checked(&text, character.table()) {
+            assert!(session.inputs().count() <= text.lines().count());
+        }
+    }
+    for _ in 0..STEPS / 2 {
+        match noise.below(4) {
+            0 => character.machine().fire(noise.below(32) as u8),
+            1 => character.machine().hold(noise.below(32) as u8, noise.below(2) == 1),
+            // Clips of a bank can have different forms, over which a layer does not go.
+            _ => drop(character.update(word(&mut noise) >> noise.below(32))),
+        }
+        let (pose, _) = character.pose();
+        assert!(pose.values.len() <= 512);
+    }
+    true
 }
 
 fn machine(table: &[u8], seed: &[u8], bank: &Bank<'_>) -> bool {

@@ -2,6 +2,7 @@
 
 use conformance::Play;
 use pantin::{ChannelState, Clip};
+use pantin_animator::{LayerMemory, Workspace};
 
 /// Channels that the memory here suffices for.
 const CHANNELS: usize = 300;
@@ -15,8 +16,30 @@ struct Vector {
 
 const VECTORS: &[Vector] = include!(concat!(env!("OUT_DIR"), "/vectors.rs"));
 
-/// Plays all vectors and gives `print` the lines; false if one does not play.
+/// Our character and a session of it.
+static BANK: &[u8] = include_bytes!("../../../../motions/character.ptb");
+const SESSION: &str = include_str!("../../../../motions/steer.txt");
+/// Channels of the character.
+const CHARACTER: usize = 64;
+
+/// Plays all vectors and the session, and gives `print` the lines; false if one does not play.
 pub fn run(print: &mut dyn FnMut(&[u8])) -> bool {
+    clips(print) && steer(print)
+}
+
+#[inline(never)]
+fn steer(print: &mut dyn FnMut(&[u8])) -> bool {
+    let mut memory = Workspace::<CHARACTER, CHARACTER>::new();
+    let (mut states, mut values, mut sampled) = ([ChannelState::NEW; CHARACTER], [0; CHARACTER], [0; CHARACTER]);
+    let mut words = [0; 2];
+    let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
+    print(conformance::STEERED.as_bytes());
+    print(b"\n");
+    conformance::steer(BANK, SESSION, memory.lend(), layer, &mut |way, crc| print(&line(way, crc)))
+}
+
+#[inline(never)]
+fn clips(print: &mut dyn FnMut(&[u8])) -> bool {
     let mut states = [ChannelState::default(); CHANNELS];
     let mut pose = [0; CHANNELS];
     for vector in VECTORS {
