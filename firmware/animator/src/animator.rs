@@ -296,7 +296,8 @@ impl<'a, 'm> Animator<'a, 'm> {
     fn solve_again(&mut self) {
         if AGAIN.contains(&self.left) {
             let cubic = Cubic::new(self.left);
-            self.offsets.iter_mut().filter(|offset| !offset.is_zero()).for_each(|offset| cubic.solve(offset));
+            // Those that are at zero too: what is left of their acceleration would lead away again.
+            self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
         }
     }
 
@@ -338,16 +339,12 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// [`Animator::compose`] on a whole frame, with a step of the transition, in one pass.
     #[inline(never)]
     fn compose_step(&mut self) {
-        let values = self.track.values();
-        if let Some(values) = values.get(..self.pose.len()) {
-            self.pose.copy_from_slice(values);
-        }
-        for (out, offset) in self.pose.iter_mut().zip(self.offsets.iter_mut()) {
-            if offset.is_zero() {
-                continue;
-            }
-            offset.step();
-            *out = out.wrapping_add(offset.d);
+        for ((out, value), offset) in self.pose.iter_mut().zip(self.track.values()).zip(self.offsets.iter_mut()) {
+            // Field by field: they stay in registers.
+            let Offset { d, v, w, k } = *offset;
+            let now = d.wrapping_add(v);
+            (offset.d, offset.v, offset.w) = (now, v.wrapping_add(w), w.wrapping_add(k));
+            *out = value.wrapping_add(now);
         }
         self.finish();
     }

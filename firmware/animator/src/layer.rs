@@ -100,29 +100,42 @@ pub fn blend(
 /// Mixes the channels of a group.
 #[inline(always)]
 pub(crate) fn mix_group(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
-    if shape != Shape::Free {
-        own_nearest(shape, own, to, weight);
+    // Three angles or a map, as most joints have, and near each other, as they are mostly: each is read once.
+    if let ([a, b, c], &[x, y, z]) = (&mut *own, to)
+        && shape != Shape::Quaternion
+    {
+        let (d, e, f) = (x.wrapping_sub(*a), y.wrapping_sub(*b), z.wrapping_sub(*c));
+        if shape == Shape::Free || weight == Weight::ONE || !(is_far(d) | is_far(e) | is_far(f)) {
+            *a = a.wrapping_add(weight.of(d));
+            *b = b.wrapping_add(weight.of(e));
+            *c = c.wrapping_add(weight.of(f));
+            return;
+        }
     }
-    for (own, to) in own.iter_mut().zip(to) {
-        *own = own.wrapping_add(weight.of(to.wrapping_sub(*own)));
-    }
+    mix_any(shape, own, to, weight);
 }
 
 /// A quarter turn.
 const FAR: u32 = 1 << 30;
 
-/// Before a mix: the pose's own channels as what is the same rotation nearest to the layer's, if they are far from them. At weight 1 nothing
-/// of them is left.
+/// Whether a difference is more than a quarter turn either way.
 #[inline(always)]
-fn own_nearest(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
-    if weight != Weight::ONE {
-        let mut far = shape == Shape::Quaternion;
-        for (own, to) in own.iter().zip(to) {
-            far |= to.wrapping_sub(*own).unsigned_abs() > FAR;
-        }
-        if far {
+fn is_far(difference: i32) -> bool {
+    difference.wrapping_add(FAR as i32) as u32 > 2 * FAR
+}
+
+/// [`mix_group`] for any number of channels, however far. Of the pose's own channels what is the same rotation nearest to the layer's is taken, if
+/// they are far from them; at weight 1 nothing of them is left.
+#[inline(never)]
+fn mix_any(shape: Shape, own: &mut [i32], to: &[i32], weight: Weight) {
+    if shape != Shape::Free && weight != Weight::ONE {
+        let far = |(own, to): (&i32, &i32)| is_far(to.wrapping_sub(*own));
+        if shape == Shape::Quaternion || own.iter().zip(to).any(far) {
             nearest(shape, own, to);
         }
+    }
+    for (own, to) in own.iter_mut().zip(to) {
+        *own = own.wrapping_add(weight.of(to.wrapping_sub(*own)));
     }
 }
 
