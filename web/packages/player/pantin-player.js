@@ -719,20 +719,16 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const paper = this.#tones[6];
     const mix = (ink, part) => `rgb(${[0, 1, 2].map((index) => Math.round(paper[index] + (ink[index] - paper[index]) * part))})`;
     context.clearRect(0, 0, canvas.width, canvas.height);
-    context.lineCap = context.lineJoin = "round";
     const thin = Math.max(1, canvas.height / 280);
-    for (let place = 0, before = ""; place < end; place += STROKE) {
+    for (let place = 0; place < end; place += STROKE) {
       const [x, y, u, v] = [0, 2, 4, 6].map((offset) => view.getInt16(place + offset, true) / 16);
       const [shade, what, width] = [8, 9, 10].map((offset) => view.getUint8(place + offset));
-      const ink = (this.#inks[[what, shade]] ??= mix(this.#tones[what], shade / 255));
-      const style = ink + width;
-      if (style !== before || what > 3) {
-        if (before) context.stroke();
-        context.beginPath();
-        context.strokeStyle = ink;
-        context.lineWidth = what === 0 ? thin / 1.5 : Math.max(thin, width);
-      }
-      before = style;
+      context.strokeStyle = this.#inks[[what, shade]] ??= mix(this.#tones[what], shade / 255);
+      // A path of its own for each, without round ends and one pixel wide where nobody sees the difference: a face has 900 lines, and browsers take several
+      // times as long for one path of them all.
+      context.lineWidth = what === 0 || (width < 2 && shade < 128) ? 1 : Math.max(thin, width);
+      context.lineCap = width > 1 ? "round" : "butt";
+      context.beginPath();
       if (what === 4) {
         // A head hides what is behind it.
         context.arc(x, y, u, 0, 7);
@@ -740,8 +736,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
         context.fill();
         context.globalCompositeOperation = "source-over";
       } else context.moveTo(x, y), context.lineTo(u, v);
+      context.stroke();
     }
-    context.stroke();
   }
 
   #tell() {
