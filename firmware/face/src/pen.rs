@@ -1,5 +1,6 @@
 //! Draws the strokes of a face on a surface: many short lines, whose set-up costs more than their pixels.
 
+use pantin_figure::camera::PIXEL_BITS;
 use pantin_figure::draw::stroke;
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::lines::{Line, pixel};
@@ -12,6 +13,9 @@ pub(crate) trait StrokeSink {
     fn begin(&mut self, shade: u8);
     /// Adds a line; ends are in sixteenths of a pixel.
     fn line(&mut self, from: [i16; 2], to: [i16; 2]);
+    /// Adds the part of a row of pixels from one column to another, which is not to the left of it; columns are in sixteenths of a pixel, `row` is
+    /// one that a display can have.
+    fn span(&mut self, row: i32, columns: [i16; 2]);
     /// Ends the stroke.
     fn end(&mut self) {}
 }
@@ -37,6 +41,12 @@ impl<F: FnMut(Line)> StrokeSink for EachLine<F> {
     #[inline(always)]
     fn line(&mut self, from: [i16; 2], to: [i16; 2]) {
         (self.out)(line(from, to, self.shade));
+    }
+
+    #[inline(always)]
+    fn span(&mut self, row: i32, [from, to]: [i16; 2]) {
+        let middle = ((row << PIXEL_BITS) + (1 << (PIXEL_BITS - 1))) as i16;
+        self.line([from, middle], [to, middle]);
     }
 }
 
@@ -117,6 +127,17 @@ impl<S: Surface> StrokeSink for Pen<'_, S> {
         let cursor = self.surface.cursor(start[0], start[1]);
         let pace = Pace::new(steep, aside < 0, along, aside.abs());
         walk(self.surface, cursor, pace, count, self.ink);
+    }
+
+    #[inline(always)]
+    fn span(&mut self, row: i32, [from, to]: [i16; 2]) {
+        let [columns, rows] = self.surface.size();
+        let (from, to) = (pixel(from).max(0), pixel(to).min(columns - 1));
+        if row < rows && from <= to {
+            self.cover([from, row]);
+            self.cover([to, row]);
+            self.surface.span(row, [from, to], self.ink);
+        }
     }
 
     #[inline(always)]

@@ -136,6 +136,13 @@ impl ProjectedFace<'_> {
             return;
         }
         let mut corners = Polygon::new();
+        if fine.is_empty() {
+            let image = model.image();
+            for index in curve.vertices() {
+                corners.add(self.vertex(if mirrored { image.of(index) } else { index }).at);
+            }
+            return corners.fill(out);
+        }
         let mut ends = [at(len - 1), at(0), at(1), at(2)];
         for segment in 0..len {
             corners.add(ends[1].at);

@@ -33,6 +33,16 @@ pub trait Layout {
     fn cursor(x: usize, y: usize) -> Self::Cursor;
     /// Sets a pixel. A cursor that has left the memory changes nothing.
     fn put(cells: &mut [Self::Cell], cursor: Self::Cursor, ink: Self::Ink);
+    /// Sets the pixels of row `y` from column `from` to column `to`; all are inside. See [`Surface::span`].
+    #[inline]
+    fn span(cells: &mut [Self::Cell], y: usize, [from, to]: [usize; 2], ink: Self::Ink) {
+        let mut cursor = Self::cursor(from, y);
+        for _ in from..to {
+            Self::put(cells, cursor, ink);
+            cursor.across(true);
+        }
+        Self::put(cells, cursor, ink);
+    }
     /// See [`Surface::blend`].
     fn blend(cells: &mut [Self::Cell], cursor: Self::Cursor, ink: Self::Ink, cover: u32);
     /// What a pixel shows.
@@ -182,6 +192,11 @@ impl<L: Layout> Surface for Framebuffer<L> {
     #[inline(always)]
     fn put(&mut self, cursor: L::Cursor, ink: L::Ink) {
         L::put(self.cells.as_mut(), cursor, ink);
+    }
+
+    #[inline(always)]
+    fn span(&mut self, y: i32, columns: [i32; 2], ink: L::Ink) {
+        L::span(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
     }
 
     #[inline(always)]

@@ -72,6 +72,23 @@ impl<const WIDTH: usize, const HEIGHT: usize, const WORDS: usize> Layout for Gra
         *cell ^= (*cell ^ everywhere(ink)) & cursor.mask;
     }
 
+    /// Whole words, and parts of the first and the last one.
+    #[inline(always)]
+    fn span(cells: &mut [u32], y: usize, [from, to]: [usize; 2], ink: Gray4) {
+        let (first, last) = ((y * WIDTH + from) / 8, (y * WIDTH + to) / 8);
+        let (head, tail) = (u32::MAX >> (from % 8 * 4), u32::MAX << (28 - to % 8 * 4));
+        let grey = everywhere(ink);
+        match cells.get_mut(first..last.wrapping_add(1)).unwrap_or_default() {
+            [] => {}
+            [only] => *only ^= (*only ^ grey) & head & tail,
+            [left, middle @ .., right] => {
+                *left ^= (*left ^ grey) & head;
+                middle.iter_mut().for_each(|cell| *cell = grey);
+                *right ^= (*right ^ grey) & tail;
+            }
+        }
+    }
+
     #[inline(always)]
     fn blend(cells: &mut [u32], cursor: Nibble<WIDTH>, ink: Gray4, cover: u32) {
         let was = Self::get(cells, cursor).luma();

@@ -43,6 +43,17 @@ pub trait Surface {
     /// Sets a pixel.
     fn put(&mut self, cursor: Self::Cursor, ink: Self::Ink);
 
+    /// Sets the pixels of row `y` from column `from` to column `to`, which belongs to them. All are inside, and `from` is at most `to`.
+    #[inline]
+    fn span(&mut self, y: i32, [from, to]: [i32; 2], ink: Self::Ink) {
+        let mut cursor = self.cursor(from, y);
+        for _ in from..to {
+            self.put(cursor, ink);
+            cursor.across(true);
+        }
+        self.put(cursor, ink);
+    }
+
     /// Brightens a pixel towards the ink: `cover` of 16 parts of it, and never darker than it was.
     fn blend(&mut self, cursor: Self::Cursor, ink: Self::Ink, cover: u32);
 

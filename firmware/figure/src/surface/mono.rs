@@ -60,6 +60,18 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
         *cell = if ink.is_on() { *cell | cursor.mask as u8 } else { *cell & !cursor.mask as u8 };
     }
 
+    /// The same bit of consecutive bytes.
+    #[inline(always)]
+    fn span(cells: &mut [u8], y: usize, [from, to]: [usize; 2], ink: BinaryColor) {
+        let (row, mask) = (y / BAND * WIDTH, 1u8 << (y % BAND));
+        let cells = cells.get_mut(row + from..(row + to).wrapping_add(1)).unwrap_or_default();
+        if ink.is_on() {
+            cells.iter_mut().for_each(|cell| *cell |= mask);
+        } else {
+            cells.iter_mut().for_each(|cell| *cell &= !mask);
+        }
+    }
+
     /// More than half of a pixel lights it.
     #[inline(always)]
     fn blend(cells: &mut [u8], cursor: Bit<WIDTH>, ink: BinaryColor, cover: u32) {

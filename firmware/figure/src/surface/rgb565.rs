@@ -52,6 +52,25 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Rgb
         }
     }
 
+    /// Whole pairs, and halves of the first and the last one.
+    #[inline(always)]
+    fn span(cells: &mut [Pair], y: usize, [from, to]: [usize; 2], ink: Rgb565) {
+        let colour = RawU16::from(ink).into_inner();
+        let (first, last) = (y * WIDTH + from, y * WIDTH + to);
+        match cells.get_mut(first / 2..(last / 2).wrapping_add(1)).unwrap_or_default() {
+            [] => {}
+            [Pair(only)] => {
+                only[first % 2] = colour;
+                only[last % 2] = colour;
+            }
+            [Pair(left), middle @ .., Pair(right)] => {
+                (left[first % 2], left[1]) = (colour, colour);
+                middle.iter_mut().for_each(|pair| *pair = Pair([colour; 2]));
+                (right[0], right[last % 2]) = (colour, colour);
+            }
+        }
+    }
+
     #[inline(always)]
     fn blend(cells: &mut [Pair], cursor: InRows<WIDTH>, ink: Rgb565, cover: u32) {
         let was = Self::get(cells, cursor);
