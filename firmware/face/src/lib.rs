@@ -5,7 +5,7 @@
 //!
 //! | task | type |
 //! |---|---|
-//! | the face itself | [`MODEL`], checked by [`Model::new_checked`] |
+//! | the face itself | [`MODEL`], or [`SMALL`] for small displays, checked by [`Model::new_checked`] |
 //! | weights by name, such as `"smile"` or ARKit's `"jawOpen"` | [`Weights::set`]; [`NAMES`] lists the names |
 //! | weights from a clip of the `pantin` crate | [`Binding`] |
 //! | from weights to vertices | [`Morph`] |
@@ -82,6 +82,13 @@ pub use weights::{FULL_WEIGHT, Weight, Weights};
 /// The model of Pantin's own face, for [`Model::new_checked`]. `pantin face model` writes it; docs/FACE.md describes its units.
 pub static MODEL: &[u8] = include_bytes!("../face.model");
 
+/// [`MODEL`] without what canvases of at most [`SMALL_HEIGHT`] rows do not show: there its pictures are the same, and it takes less RAM and time.
+/// `pantin face model --small` writes it.
+pub static SMALL: &[u8] = include_bytes!("../small.model");
+
+/// Rows of the highest canvas on which [`SMALL`] looks like [`MODEL`]: the face has fewer than 96 pixels.
+pub const SMALL_HEIGHT: u16 = 102;
+
 /// A face of filled shapes in two tones for small displays, driven by the same names as [`MODEL`]. `pantin face model --cartoon` writes it.
 pub static CARTOON: &[u8] = include_bytes!("../cartoon.model");
 
@@ -95,3 +102,9 @@ pub static NAMES: &str = include_str!("../face.names");
 
 /// Number of vertices for which [`Morph`] and [`FaceRenderer`] need space to hold Pantin's own face (it has 239). Other models may need more.
 pub const VERTICES: usize = 240;
+
+/// Like [`VERTICES`], for [`SMALL`].
+pub const SMALL_VERTICES: usize = 195;
+
+/// Like [`VERTICES`], for [`CARTOON`].
+pub const CARTOON_VERTICES: usize = 77;

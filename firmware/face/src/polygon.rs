@@ -148,9 +148,8 @@ mod tests {
                 by_rows.send().count();
                 // Inside, beyond the edges, and far outside.
                 let beyond = [0, 200, 20_000][series % 3];
-                let corners: std::vec::Vec<_> = (0..next(1, 12))
-                    .map(|_| [next(-beyond, width + beyond), next(-beyond / 4, height + beyond / 4)])
-                    .collect();
+                let corners: std::vec::Vec<_> =
+                    (0..next(1, 12)).map(|_| [next(-beyond, width + beyond), next(-beyond / 4, height + beyond / 4)]).collect();
                 let mut polygon = Polygon::new();
                 corners.iter().for_each(|&corner| polygon.add(corner));
                 for shade in [200, 0] {
@@ -162,7 +161,10 @@ mod tests {
                     pen.begin(shade);
                     fill_by_lines(&corners, &mut pen);
                     pen.end();
-                    assert!(by_rows.cells() == by_lines.cells(), "series {series}, picture {picture}, brightness {shade}: {corners:?}");
+                    assert!(
+                        by_rows.cells() == by_lines.cells(),
+                        "series {series}, picture {picture}, brightness {shade}: {corners:?}"
+                    );
                     if shade == 0 {
                         continue;
                     }

@@ -45,12 +45,22 @@ pub struct Shape {
     pub kind: ShapeKind,
     /// Whether it has a left and a right version.
     pub sided: bool,
+    /// At least the largest coordinate of a displacement for which deltas are stored: the model keeps 127ths of it. 0 where the deltas themselves
+    /// decide.
+    pub reach: f64,
     /// Points and their displacements at full weight of the stored side.
     pub deltas: Vec<(usize, Vector)>,
     /// Its rotations.
     pub turns: Vec<Turn>,
     /// About what the spherical interpolation moves its deltas; without it, deltas cannot be spherical.
     pub arc: Option<Arc>,
+}
+
+impl Shape {
+    /// The displacement of which the model keeps 127ths.
+    pub fn longest(&self) -> f64 {
+        self.deltas.iter().flat_map(|(_, way)| way).fold(self.reach, |longest, x| longest.max(x.abs()))
+    }
 }
 
 /// A name, and the sides of a shape that a channel with this name drives.

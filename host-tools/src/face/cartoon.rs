@@ -2,6 +2,7 @@
 
 use super::blueprint::{Blueprint, Curve, Opening, Shape};
 use super::head::{Head, Vector, minus, plus};
+use super::small;
 use super::subject::distance;
 use anyhow::{Context, Result, bail, ensure};
 
@@ -42,6 +43,11 @@ fn part(label: &str) -> Option<Part> {
 
 /// Builds a face from a table, given the head and its face. Fails with the line that cannot be read.
 pub fn build(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
+    Ok(small::reduced(&whole(head, face, table)?))
+}
+
+/// Builds a face with all that is in the eyes and the mouth, whether it is drawn or not. Otherwise like [`build`].
+pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     let (mut view, mut zooms, mut curves, mut jaw) = (None, Vec::new(), Vec::new(), 1.0);
     for (number, line) in table.lines().enumerate() {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();

@@ -220,8 +220,7 @@ impl Writer {
 
 /// Steps of a delta of 1, Q8, rounded up to a whole number so that the largest displacement is at most 127.
 fn scale(shape: &Shape, step: f64) -> f64 {
-    let longest = shape.deltas.iter().flat_map(|(_, way)| way).fold(0f64, |longest, x| longest.max(x.abs()));
-    (longest * step / 127.0 * 256.0).ceil()
+    (shape.longest() * step / 127.0 * 256.0).ceil()
 }
 
 /// Runs of entries of consecutive points, at most 255 each, which do not cross the borders between middle, left and right.

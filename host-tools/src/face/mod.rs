@@ -22,6 +22,7 @@ pub mod points;
 pub mod pose;
 pub mod sheet;
 mod skin;
+pub mod small;
 pub mod speak;
 pub mod subject;
 

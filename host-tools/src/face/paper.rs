@@ -207,7 +207,16 @@ fn encloses(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
 
 /// Returns a shape without deltas and rotations.
 pub fn shape(name: &str, interpolation: Interpolation, sided: bool) -> Shape {
-    Shape { name: name.into(), interpolation, kind: ShapeKind::Unsigned, sided, deltas: Vec::new(), turns: Vec::new(), arc: None }
+    Shape {
+        name: name.into(),
+        interpolation,
+        kind: ShapeKind::Unsigned,
+        sided,
+        reach: 0.0,
+        deltas: Vec::new(),
+        turns: Vec::new(),
+        arc: None,
+    }
 }
 
 /// Feature points on the left, and their images.

@@ -1,10 +1,12 @@
 //! The model that devices play: the committed bytes, the device's arithmetic against full precision, hostile bytes, names.
 
 use pantin_face::model::{ModelError, hash};
-use pantin_face::{Binding, FaceRenderer, FaceView, Model, Morph, Target, VERTICES, Weights};
+use pantin_face::{
+    Binding, CARTOON_VERTICES, FaceRenderer, FaceView, Model, Morph, SMALL_HEIGHT, SMALL_VERTICES, Target, VERTICES, Weights,
+};
 use pantin_figure::Canvas;
 use pantin_tools::face::cast::{Cast, is_face};
-use pantin_tools::face::{Face, cartoon, error, exact, export, fit, onmesh, outside, points, pose};
+use pantin_tools::face::{Face, cartoon, error, exact, export, fit, onmesh, outside, points, pose, small};
 use pantin_tools::import;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -64,6 +66,72 @@ fn the_committed_cartoon_is_what_its_table_makes() {
         let refused = format!("{:#}", cartoon::build(&face.head, &face.blueprint, table).unwrap_err());
         assert!(refused.contains(wanted), "{table}: {refused}");
     }
+}
+
+/// Compares the lines of two models with equal shapes over mixtures of weights, views and canvases of these heights.
+fn assert_same_lines(one: &[u8], other: &[u8], heights: &[u16]) {
+    let [one, other] = [one, other].map(|bytes| Model::new_checked(bytes).unwrap());
+    let [mut a, mut b] = [Morph::<512>::new(&one).unwrap(), Morph::<512>::new(&other).unwrap()];
+    let (mut state, mut seen) = (11u32, 0);
+    let mut random = |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % below
+    };
+    for &height in heights {
+        for width in [height, 2 * height, height / 2] {
+            for _ in 0..40 {
+                let view = FaceView { orbit: random(361) as i16 - 180, tilt: random(121) as i16 - 60 };
+                let view = if random(3) == 0 { FaceView::default() } else { view };
+                let canvas = pantin_figure::Canvas { width, height };
+                let mut renderers = [&one, &other].map(|model| FaceRenderer::<512>::new(model, canvas, view));
+                for _ in 0..5 {
+                    let mut weights = Weights::new();
+                    for _ in 0..random(12) {
+                        let sides = [[true, true], [true, false], [false, true]][random(3) as usize];
+                        weights
+                            .add_to(Target::new(random(one.shape_count() as u32) as u8, sides), random(98_304) as i32 - 32_768);
+                    }
+                    a.apply(&one, &weights);
+                    b.apply(&other, &weights);
+                    let mut lines = [Vec::new(), Vec::new()];
+                    for (((model, morph), renderer), lines) in
+                        [(&one, &a), (&other, &b)].into_iter().zip(&mut renderers).zip(&mut lines)
+                    {
+                        renderer.project(model, morph);
+                        renderer.each_line(model, |line| lines.push(line));
+                    }
+                    seen += usize::from(!lines[0].is_empty());
+                    assert!(lines[0] == lines[1], "{width}x{height}, {view:?}, {weights:?}");
+                }
+            }
+        }
+    }
+    assert!(seen > 100 * heights.len(), "{seen} pictures show a face");
+}
+
+#[test]
+fn the_face_of_small_displays_is_the_same_with_fewer_vertices() {
+    let face = Face::new().unwrap();
+    let small = small::small(&face.blueprint);
+    let bytes = pantin_tools::face::compact::encode(&small).unwrap();
+    assert!(pantin_face::SMALL == bytes, "write it again by `pantin face model --small -o firmware/face/small.model`");
+    assert_eq!(small.vertices(), SMALL_VERTICES);
+    assert!(face.blueprint.vertices() <= VERTICES && small.vertices() + 40 <= face.blueprint.vertices());
+    let error = error::greatest(&small, &bytes).unwrap();
+    assert!(error.part < 0.001, "{error:?}");
+    assert_eq!(small.name_list(), face.blueprint.name_list());
+    assert_same_lines(&face.bytes, &bytes, &[16, 48, 64, SMALL_HEIGHT]);
+}
+
+#[test]
+fn points_that_a_cartoon_does_not_draw_change_nothing() {
+    let face = Face::new().unwrap();
+    let whole = cartoon::whole(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
+    let reduced = cartoon::build(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
+    assert!(reduced.vertices() < whole.vertices(), "{} vertices", reduced.vertices());
+    assert_eq!(reduced.vertices(), CARTOON_VERTICES);
+    let [whole, reduced] = [whole, reduced].map(|face| pantin_tools::face::compact::encode(&face).unwrap());
+    assert_same_lines(&whole, &reduced, &[32, 64, 160, 240]);
 }
 
 /// Plays and draws a model, whatever it is.

@@ -12,12 +12,12 @@ use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{DrawStyle, View};
 
 /// A body and its face.
-struct Both<'a, R> {
+struct Both<'a, R, const N: usize> {
     renderer: &'a mut R,
-    face: Face<'a>,
+    face: Face<'a, N>,
 }
 
-impl<L: Layout, R: Renderer> Content<L> for Both<'_, R> {
+impl<L: Layout, R: Renderer, const N: usize> Content<L> for Both<'_, R, N> {
     fn set_pose(&mut self, pose: Pose<'_>) {
         Renderer::set_pose(self.renderer, pose);
         self.face.set_pose(pose);
@@ -49,12 +49,17 @@ pub(super) fn build<B: Board>(
     }
     Renderer::aim(&mut renderer, player, context.view_state.view);
     info!("{} joints drawn", renderer.bones());
-    add_face(player, &mut renderer, areas, context, then)
+    if face::is_small::<B::Layout>() {
+        add_face::<B, { face::small::VERTICES }>(face::small::MODEL, player, &mut renderer, areas, context, then)
+    } else {
+        add_face::<B, { face::large::VERTICES }>(face::large::MODEL, player, &mut renderer, areas, context, then)
+    }
 }
 
 /// Builds the face after the body is set up. Not inlined: the face's buffers are not yet on the stack while that uses its workspace.
 #[inline(never)]
-fn add_face<B: Board>(
+fn add_face<B: Board, const N: usize>(
+    model: &'static [u8],
     player: &mut Player,
     renderer: &mut BoardRenderer<B>,
     areas: Areas,
@@ -63,7 +68,8 @@ fn add_face<B: Board>(
 ) -> Outcome {
     let rig = player.clip().rig();
     let views = [context.view_state.view, context.view_state.ahead];
-    let outcome =
-        face::with(&rig, areas.face, areas.face_column, views, |face| then(player, &mut Both { renderer, face }, context));
+    let outcome = face::with::<N, _>(model, &rig, areas.face, areas.face_column, views, |face| {
+        then(player, &mut Both { renderer, face }, context)
+    });
     outcome.unwrap_or_else(face::bad_model)
 }

@@ -14,7 +14,7 @@ pub(crate) fn build<B: Board>(
     then: impl FnOnce(&mut Player, &mut AnyContent<B>, &mut PlayContext<B>) -> Outcome,
 ) -> Outcome {
     #[cfg(feature = "face")]
-    if face::is_in(player.clip()) {
+    if face::is_in::<B::Layout>(player.clip()) {
         return match player.clip().rig().joint_count() {
             0 => face::build(player, context, then),
             _ => both::build(player, context, then),

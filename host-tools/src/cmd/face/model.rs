@@ -3,7 +3,7 @@
 use super::face_picture;
 use crate::cmd::check_read;
 use crate::face::blueprint::Blueprint;
-use crate::face::{Face, cartoon, compact, error, onmesh, outside, points, sheet};
+use crate::face::{Face, cartoon, compact, error, onmesh, outside, points, sheet, small};
 use crate::import::Files;
 use crate::output::{Wanted, check, note, refuse_foreign, report, write_together};
 use anyhow::{Context, Result};
@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
   pantin face model -o robot.model robot.obj --points robot.points --sheet robot.png
   pantin face model -o face.model --interpolation smile=spherical:40 --interpolation puff_cheeks=linear
   pantin face model -o cartoon.model --cartoon
+  pantin face model -o small.model --small
   pantin face model -o cube.model cube.glb")]
 pub struct Arguments {
     /// A mesh instead of Pantin's face: .obj, .wfm, .glb or .gltf with --points; without it the first mesh with morph targets of a .glb or .gltf
@@ -32,6 +33,9 @@ pub struct Arguments {
     /// A face of filled shapes instead of the wireframe head: Pantin's cartoon face, or that of a text file (docs/FACE.md)
     #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with = "mesh")]
     cartoon: Option<Option<PathBuf>>,
+    /// Leave out what a face of fewer than 96 pixels does not show: the same pictures on small displays, with less memory
+    #[arg(long)]
+    small: bool,
     /// Also draw each unit to this picture (PNG)
     #[arg(long, value_name = "FILE")]
     sheet: Option<PathBuf>,
@@ -67,6 +71,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         },
     };
     blueprint.choose_all(&arguments.interpolation)?;
+    if arguments.small {
+        blueprint = small::small(&blueprint);
+    }
     check_read(&files, &outputs)?;
     let bytes = compact::encode(&blueprint)?;
     let moved: usize = blueprint.shapes.iter().map(|shape| shape.deltas.len()).sum();
