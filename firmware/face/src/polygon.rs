@@ -129,9 +129,8 @@ mod tests {
     }
 
     /// Fills shapes of every kind both ways on a display of this layout.
-    fn compare<L: Layout>(seed: u64)
+    fn compare<L: Layout + Clone>(seed: u64)
     where
-        L: Clone,
         L::Cell: PartialEq,
     {
         let mut state = seed;
