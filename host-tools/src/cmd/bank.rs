@@ -8,7 +8,7 @@ use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
-use pantin_animator::machine::{Machine, Table};
+use pantin_animator::machine::{Machine, Table, TableError};
 use serde_json::json;
 use std::collections::HashMap;
 use std::io::Write;
@@ -212,7 +212,11 @@ pub fn unpack(arguments: &Unpack) -> Result<()> {
         }
     }
     let written: Vec<_> = files.iter().map(|(_, path)| path.display().to_string()).collect();
-    output::report(json!({"written": written}));
+    let machine = !matches!(Table::of_bank(&bytes), Err(pantin_animator::Error::Machine(TableError::Missing)));
+    if machine {
+        note!("warning: {}: the bank's state machine stays in it: clips hold none", place());
+    }
+    output::report(json!({"written": written, "state_machine_left": machine}));
     note!("{}: {} clips written to {}", place(), files.len(), folder.display());
     Ok(())
 }

@@ -25,6 +25,7 @@ type Line<'a> = (usize, Vec<&'a str>);
 
 impl<'a> Text<'a> {
     fn new(path: &'a Path, content: &'a str) -> Result<Text<'a>> {
+        let content = content.strip_prefix('\u{feff}').unwrap_or(content);
         let text = Text { path, content };
         let zero = (1..).zip(content.lines()).find(|(_, line)| line.contains('\0'));
         zero.map_or(Ok(text), |(line, _)| Err(Text { path, content }.error(line, "a NUL byte; expected text")))
@@ -184,4 +185,15 @@ pub fn normals(mesh: &Mesh) -> Vec<Vector> {
         corners.into_iter().for_each(|corner| sums[corner] = plus(sums[corner], normal, 1.0));
     }
     sums.into_iter().map(unit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_byte_order_mark_hides_no_point() {
+        let points = obj_points(Path::new("a.obj"), "\u{feff}v 1 2 3\nv 4 5 6\n").unwrap();
+        assert_eq!(points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    }
 }

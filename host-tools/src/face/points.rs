@@ -6,8 +6,12 @@ use std::collections::HashMap;
 /// Feature points: the number, such as `8.3`, and the index of a vertex from 0.
 pub type Points = HashMap<String, usize>;
 
+/// The number of feature points of each group, from group 2 on (ISO/IEC 14496-2, annex C).
+const GROUPS: [u8; 10] = [14, 14, 6, 4, 4, 1, 10, 15, 10, 6];
+
 /// Parses the content of a file of either kind.
 pub fn parse(text: &str) -> Result<Points> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if text.contains("<xfdp") { fdp(text) } else { own(text) }
 }
 
@@ -20,7 +24,7 @@ fn own(text: &str) -> Result<Points> {
         match words[..] {
             [] => {}
             [name, vertex] => {
-                ensure!(is_number(name), "{}: {name} is no MPEG-4 number such as 8.3", place());
+                ensure!(is_number(name), "{}: {name} is no number of an MPEG-4 feature point, 2.1 to 11.6", place());
                 let vertex = vertex.parse().with_context(|| format!("{}: {vertex} is no vertex", place()))?;
                 ensure!(points.insert(name.into(), vertex).is_none(), "{}: {name} is given twice", place());
             }
@@ -32,7 +36,11 @@ fn own(text: &str) -> Result<Points> {
 }
 
 fn is_number(name: &str) -> bool {
-    name.split_once('.').is_some_and(|(group, number)| [group, number].iter().all(|part| part.parse::<u8>().is_ok()))
+    let numbers = |(group, number): (&str, &str)| Some((group.parse::<u8>().ok()?, number.parse::<u8>().ok()?));
+    let Some((group, number)) = name.split_once('.').and_then(numbers) else { return false };
+    let count = GROUPS.get(usize::from(group).wrapping_sub(2));
+    // Written as the rules look it up.
+    count.is_some_and(|count| (1..=*count).contains(&number)) && name == format!("{group}.{number}")
 }
 
 /// The points of an `.fdp` that lie on the part of the mesh that most of them lie on: the others' vertices are counted in parts of their own.
@@ -60,9 +68,17 @@ mod tests {
             <fdp affects=\"teeth\" index=\"0\" name=\"2.1\"/><fdp affects=\"skin\" index=\"7\" name=\"2.1\"/></xfdp>";
         let fdp = parse(text).unwrap();
         assert_eq!((fdp["8.3"], fdp["2.1"], fdp.len()), (35, 7, 2));
-        for (text, wanted) in
-            [("8.3", "line 1"), ("8.3 x", "no vertex"), ("lip 3", "MPEG-4"), ("8.3 1\n8.3 2", "twice"), ("", "no feature")]
-        {
+        for (text, wanted) in [
+            ("8.3", "line 1"),
+            ("8.3 1\n99.3 1", "line 2: 99.3 is no"),
+            ("2.15 3", "2.15 is no"),
+            ("08.3 3", "08.3 is no"),
+            ("1.1 3", "MPEG-4"),
+            ("8.3 x", "no vertex"),
+            ("lip 3", "MPEG-4"),
+            ("8.3 1\n8.3 2", "twice"),
+            ("", "no feature"),
+        ] {
             let error = format!("{:#}", parse(text).unwrap_err());
             assert!(error.contains(wanted), "{text}: {error}");
         }

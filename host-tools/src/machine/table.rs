@@ -22,8 +22,11 @@ const NONE: u8 = 255;
 const MOST_FRAMES: u32 = 255;
 const MOST_START: u32 = 254;
 const MOST_TRANSITIONS: usize = 255;
-/// The bytes of a transition's row that are its cause.
-const CAUSE_BYTES: usize = 4;
+/// The speed 1, as a state's row stores it.
+const SPEED_ONE: f64 = 256.0;
+/// The causes in a transition's row that have a threshold.
+const ABOVE: u8 = 4;
+const BELOW: u8 = 5;
 
 /// A table, and what its user should know.
 #[derive(Clone, Debug)]
@@ -90,11 +93,12 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         None => 0,
         Some(start) => maker.state(start.get_ref()).with_context(|| format!("{}: start", file.at(start.span())))?,
     };
-    let mut rows = maker.transitions(&source.any, source, file, None)?;
+    let any = maker.transitions(&source.any, source, file, None, &[])?;
+    let mut rows = any.clone();
     let mut states = Vec::new();
     for state in &source.states {
         states.push(maker.state_row(state, rows.len(), file)?);
-        rows.extend(maker.transitions(&state.transitions, source, file, Some(state))?);
+        rows.extend(maker.transitions(&state.transitions, source, file, Some(state), &any)?);
         maker.check_end(state, source, file)?;
     }
     ensure!(rows.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", rows.len());
@@ -212,7 +216,13 @@ impl<'s> Maker<'s, '_> {
         }
         let speed = state.speed.unwrap_or(1.0);
         ensure!((-4.0..=4.0).contains(&speed), "{place}: state {name}: the speed {speed} is outside -4 to 4");
-        let [low, high] = ((speed * 256.0).round() as i16).to_le_bytes();
+        let rounded = (speed * SPEED_ONE).round();
+        ensure!(
+            speed == 0.0 || rounded != 0.0,
+            "{place}: state {name}: the speed {speed} would be stored as 0; the slowest is {}",
+            1.0 / SPEED_ONE
+        );
+        let [low, high] = (rounded as i16).to_le_bytes();
         let [first, count] = [first, state.transitions.len()].map(|number| u8::try_from(number).unwrap_or(u8::MAX));
         Ok([clip, other, parameter, 0, low, high, first, count])
     }
@@ -257,14 +267,26 @@ impl<'s> Maker<'s, '_> {
         Ok((row, joints))
     }
 
-    /// The rows of the transitions of a state, or of any state.
+    /// The index of a transition's parameter. Fails if the parameter's range never reaches the threshold.
+    fn possible(&self, name: &str, source: &Source, threshold: i16, above: bool) -> Result<u8> {
+        let index = self.parameter(name)?;
+        let [least, most] = source.parameters[usize::from(index)].range;
+        let name = quoted(name);
+        ensure!(!above || threshold < most, "parameter {name} is at most {most}, so it is never above {threshold}");
+        ensure!(above || threshold > least, "parameter {name} is at least {least}, so it is never below {threshold}");
+        Ok(index)
+    }
+
+    /// The rows of the transitions of a state, before which those of any state are tried; or the rows of any state.
     fn transitions(
         &mut self,
         entries: &[Spanned<Transition>],
         source: &'s Source,
         file: &Text,
         from: Option<&'s State>,
+        any: &[[u8; 8]],
     ) -> Result<Vec<[u8; 8]>> {
+        let own = from.map(|state| self.names[state.name.get_ref().as_str()]);
         let mut rows: Vec<[u8; 8]> = Vec::new();
         for entry in entries {
             let place = || match from {
@@ -272,8 +294,11 @@ impl<'s> Maker<'s, '_> {
                 None => file.at(entry.span()),
             };
             let row = self.transition(entry.get_ref(), source, from).with_context(place)?;
-            let twin = rows.iter().any(|other| other[..CAUSE_BYTES] == row[..CAUSE_BYTES]);
-            ensure!(!twin, "{}: two transitions have this cause, and only the first would happen", place());
+            let hidden = rows.iter().any(|other| hides(other, &row));
+            ensure!(!hidden, "{}: a transition before this one happens whenever this one could", place());
+            // A transition of any state does not happen in the state that it leads to.
+            let hidden = any.iter().any(|other| Some(other[4]) != own && hides(other, &row));
+            ensure!(!hidden, "{}: a transition of any state ([[any]]) happens whenever this one could", place());
             rows.push(row);
         }
         Ok(rows)
@@ -313,6 +338,8 @@ impl<'s> Maker<'s, '_> {
     /// A cause, its argument and its threshold.
     fn cause(&mut self, row: &Transition, source: &Source, from: Option<&State>) -> Result<(u8, u8, i16)> {
         let causes = row.causes();
+        let still = from.is_some_and(stands) && (row.end.is_some() || row.event.is_some());
+        ensure!(!still, "the state's speed is 0, so its clip has no end and passes no event");
         let [cause] = causes[..] else {
             bail!("a transition has one of end, input, released, event, above and below; this one has {}", causes.len());
         };
@@ -323,23 +350,43 @@ impl<'s> Maker<'s, '_> {
                     let clip = &self.clips.all[usize::from(self.clip_of(from)?)];
                     ensure!(!clip.1.looped(), "the clip {} is a loop, which has no end", quoted(clip.0));
                 }
+                let mut ends = false;
+                for state in &source.states {
+                    ends |= !self.clips.all[usize::from(self.clip_of(state)?)].1.looped() && !stands(state);
+                }
+                ensure!(ends, "every state plays a loop or stands still, and has no end");
                 (0, 0, 0)
             }
             Cause::Input(name) => (1, self.input(name)?, 0),
             Cause::Released(name) => (2, self.input(name)?, 0),
-            Cause::Event(name) => (3, self.event(name, source, from)?, 0),
-            Cause::Above(name, threshold) => (4, self.parameter(name)?, threshold),
-            Cause::Below(name, threshold) => (5, self.parameter(name)?, threshold),
+            Cause::Event(name) => (3, self.event(name, source, from, &row.to)?, 0),
+            Cause::Above(name, threshold) => (ABOVE, self.possible(name, source, threshold, true)?, threshold),
+            Cause::Below(name, threshold) => (BELOW, self.possible(name, source, threshold, false)?, threshold),
         })
     }
 
-    /// The id of an event in the clips of the states that a transition leaves, which must be one.
-    fn event(&self, name: &str, source: &Source, from: Option<&State>) -> Result<u8> {
-        let states = from.map_or_else(|| source.states.iter().collect(), |from| vec![from]);
-        let mut ids: Vec<u32> = Vec::new();
+    /// The id of an event in the clips of the states that a transition leaves, which must be one and the event's alone.
+    fn event(&self, name: &str, source: &Source, from: Option<&State>, to: &str) -> Result<u8> {
+        let left = |state: &&State| from.is_some() || state.name.get_ref() != to;
+        let states: Vec<&State> = from.map_or_else(|| source.states.iter().filter(left).collect(), |from| vec![from]);
+        let mut clips = Vec::new();
         for state in states {
-            let (_, clip) = &self.clips.all[usize::from(self.clip_of(state)?)];
-            ids.extend(clip.event_id(name).filter(|id| !ids.contains(id)));
+            clips.push(&self.clips.all[usize::from(self.clip_of(state)?)]);
+        }
+        let mut ids: Vec<u32> = clips.iter().filter_map(|(_, clip)| clip.event_id(name)).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        if let [id] = ids[..] {
+            let other =
+                clips.iter().find(|(_, clip)| clip.event_name(id) != Some(name) && clip.events().any(|event| event.id == id));
+            if let Some((clip, held)) = other {
+                let its = held.event_name(id).map_or("a nameless event".into(), quoted);
+                bail!(
+                    "event {} has the id {id}, which is {its} in the clip {}; a transition of each state names it there",
+                    quoted(name),
+                    quoted(clip)
+                );
+            }
         }
         match ids[..] {
             [id] => u8::try_from(id).map_err(|_| anyhow!("event {} has the id {id}; at most 255", quoted(name))),
@@ -361,6 +408,22 @@ impl<'s> Maker<'s, '_> {
         }
         Ok(())
     }
+}
+
+/// Whether a state shows one frame of its clip.
+fn stands(state: &State) -> bool {
+    state.speed == Some(0.0)
+}
+
+/// Whether a transition happens whenever one behind it could.
+fn hides(first: &[u8; 8], second: &[u8; 8]) -> bool {
+    let [first_threshold, second_threshold] = [first, second].map(|row| i16::from_le_bytes([row[2], row[3]]));
+    first[..2] == second[..2]
+        && match first[0] {
+            ABOVE => second_threshold >= first_threshold,
+            BELOW => second_threshold <= first_threshold,
+            _ => true,
+        }
 }
 
 /// The length of a transition in frames of the clip that it leads to.

@@ -84,6 +84,20 @@ fn hex([r, g, b]: Rgb) -> String {
 
 /// Text without what means something in XML, and without control characters, which it cannot hold.
 pub fn escaped(text: &str) -> String {
-    let text: String = text.chars().filter(|letter| !letter.is_control()).collect();
+    let text: String =
+        text.chars().filter(|&letter| !letter.is_control() && !matches!(letter, '\u{fffe}' | '\u{ffff}')).collect();
     text.replace('&', "&amp;").replace('<', "&lt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_name_leaves_a_document_whole() {
+        let name: String = ('\0'..='\u{ffff}').collect();
+        let document = format!("<text>{}</text>", escaped(&name));
+        assert!(roxmltree::Document::parse(&document).is_ok());
+        assert_eq!(escaped("a\u{fffe}<&"), "a&lt;&amp;");
+    }
 }

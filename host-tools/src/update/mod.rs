@@ -13,6 +13,7 @@ use crate::output::{clean, is_hostile, note};
 use anyhow::{Context, Result, anyhow};
 use pantin::codec::layout::BANK_MAGIC;
 use pantin::{Bank, Clip, OpenError};
+use pantin_animator::machine::{Table, TableError};
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
@@ -37,6 +38,9 @@ pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
             bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
         }
         note!("{}: a bank of {} clips, for firmware that is built with feature `bank`", place(), bank.len());
+        if !matches!(Table::of_bank(&clip), Err(pantin_animator::Error::Machine(TableError::Missing))) {
+            note!("warning: {}: the boards' firmware plays the clips one after the other, not the state machine", place());
+        }
     } else {
         Clip::new_checked(&clip).map_err(|error| match error {
             OpenError::WrongRig => anyhow!("{}: a clip without its rig (--rig-out), which a board cannot open", place()),

@@ -103,7 +103,8 @@ fn a_bank_holds_one_machine() {
 
 #[test]
 fn what_is_wrong_is_named_with_its_line() {
-    let state = "[[state]]\nname = \"walk\"\n";
+    let [state, run] = ["walk", "run"].map(|name| format!("[[state]]\nname = \"{name}\"\n"));
+    let v = "[[parameter]]\nname = \"v\"\nrange = [0, 9]\n";
     for (text, part) in [
         (format!("{state}clip = \"fly\"\n"), "3: state `walk`: the bank has no clip `fly`; it has `walk`, `run`"),
         (format!("{state}transitions = [{{ to = \"x\", input = \"a\" }}]\n"), "3: state `walk`: no state `x`; there are `walk`"),
@@ -128,8 +129,32 @@ fn what_is_wrong_is_named_with_its_line() {
             format!(
                 "{state}transitions = [{{ to = \"walk\", input = \"a\" }}, {{ to = \"walk\", input = \"a\", frames = 3 }}]\n"
             ),
-            "two transitions have this cause",
+            "3: state `walk`: a transition before this one happens whenever this one could",
         ),
+        (
+            format!(
+                "{state}transitions = [{{ to = \"walk\", above = [\"v\", 3] }}, {{ to = \"walk\", above = [\"v\", 5] }}]\n{v}"
+            ),
+            "a transition before this one",
+        ),
+        (
+            format!(
+                "{state}transitions = [{{ to = \"walk\", below = [\"v\", 5] }}, {{ to = \"walk\", below = [\"v\", 5] }}]\n{v}"
+            ),
+            "a transition before this one",
+        ),
+        (
+            format!("[[any]]\nto = \"run\"\ninput = \"a\"\n{state}transitions = [{{ to = \"run\", input = \"a\" }}]\n{run}"),
+            "6: state `walk`: a transition of any state ([[any]]) happens",
+        ),
+        (
+            format!("{state}transitions = [{{ to = \"walk\", above = [\"v\", 9] }}]\n{v}"),
+            "3: state `walk`: parameter `v` is at most 9,",
+        ),
+        (format!("{state}transitions = [{{ to = \"walk\", below = [\"v\", 0] }}]\n{v}"), "parameter `v` is at least 0, so"),
+        (format!("[[any]]\nto = \"walk\"\nend = true\n{state}"), "every state plays a loop or stands still"),
+        (format!("{state}speed = 0\ntransitions = [{{ to = \"walk\", end = true }}]\n"), "the state's speed is 0"),
+        (format!("{state}speed = -0.001\n"), "the speed -0.001 would be stored as 0; the slowest is 0.00390625"),
         (format!("{state}{state}"), "4: two states are called `walk`"),
         (format!("{state}[[state]]\nname = \"run\"\n"), "4: no transition leads to state `run`"),
         (format!("{state}speed = 5\n"), "the speed 5 is outside -4 to 4"),
@@ -148,6 +173,66 @@ fn what_is_wrong_is_named_with_its_line() {
         let error = error(&text);
         assert!(error.contains(part), "{text}\n{error}");
     }
+}
+
+/// A transition that a like one hides in one state only can happen in the others; so can the two sides of a threshold.
+#[test]
+fn what_can_happen_is_no_error() {
+    let [state, run] = ["walk", "run"].map(|name| format!("[[state]]\nname = \"{name}\"\n"));
+    let text = format!(
+        "[[any]]\nto = \"run\"\ninput = \"a\"\n{state}transitions = [{{ to = \"walk\", above = [\"v\", 5] }}, {{ to = \"walk\", above = [\"v\", 3] }}]\n\
+         {run}transitions = [{{ to = \"walk\", input = \"a\" }}, {{ to = \"walk\", below = [\"v\", 1] }}]\n\
+         [[parameter]]\nname = \"v\"\nrange = [0, 9]\n"
+    );
+    let (bytes, file) = (small_bank(), Text { name: "a.toml", text: &text });
+    make(&Source::parse(&file).unwrap(), &file, &Bank::new_checked(&bytes).unwrap()).unwrap();
+}
+
+/// The table has ids, and clips give their names ids of their own.
+#[test]
+fn an_id_that_is_another_event_elsewhere_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, event) in [("a", "clap"), ("b", "boom")] {
+        let text = format!(
+            "keyframes 1\nfps 30\nframes 20\ncm-per-unit 1\njoint hip offset 0 90 0 channels Xrotation\nend parent hip offset 0 -45 0\n\
+             event {event} 5\nkeys linear hip\n 0 -20\n 10 20\n 19 -20\n"
+        );
+        std::fs::write(folder.path().join(name).with_extension("keys"), text).unwrap();
+    }
+    let run = |arguments: &[&str]| {
+        let out = Command::new(env!("CARGO_BIN_EXE_pantin")).args(arguments).current_dir(folder.path()).output().unwrap();
+        (out.status.code(), String::from_utf8_lossy(&out.stderr).into_owned())
+    };
+    let (code, said) = run(&["convert", "a.keys", "b.keys", "--same-form", "--effort", "fast", "-o", "ab.ptb"]);
+    assert_eq!(code, Some(0), "{said}");
+    let states =
+        "bank = \"ab.ptb\"\n[[state]]\nname = \"a\"\ntransitions = [{ to = \"b\", event = \"clap\" }]\n[[state]]\nname = \"b\"\n";
+    std::fs::write(folder.path().join("own.toml"), format!("{states}transitions = [{{ to = \"a\", event = \"boom\" }}]\n"))
+        .unwrap();
+    assert_eq!(run(&["machine", "own.toml", "-o", "own.ptb"]).0, Some(0));
+    // In the state that it leads to it does not happen, whatever its id is there.
+    std::fs::write(
+        folder.path().join("to.toml"),
+        format!("{states}[[any]]\nto = \"b\"\nevent = \"clap\"\n").replace("event = \"clap\" }", "end = true }"),
+    )
+    .unwrap();
+    let (code, said) = run(&["machine", "to.toml", "-o", "to.ptb"]);
+    assert_eq!(code, Some(0), "{said}");
+    std::fs::write(
+        folder.path().join("any.toml"),
+        format!("{states}[[state]]\nname = \"c\"\nclip = \"a\"\n[[any]]\nto = \"c\"\nevent = \"clap\"\n"),
+    )
+    .unwrap();
+    let (code, said) = run(&["machine", "any.toml", "-o", "any.ptb"]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("event `clap` has the id 0, which is `boom` in the clip `b`"), "{said}");
+    // Clips hold no machine, and today's boards play none: both is said.
+    let (code, said) = run(&["unpack", "own.ptb", "-o", "clips"]);
+    assert!(code == Some(0) && said.contains("own.ptb: the bank's state machine stays in it"), "{said}");
+    let (code, said) = run(&["flash-image", "own.ptb", "--board", "pico", "-o", "own.uf2"]);
+    assert!(code == Some(0) && said.contains("not the state machine"), "{said}");
+    let out = Command::new(env!("CARGO_BIN_EXE_pantin")).args(["list", "own.ptb"]).current_dir(folder.path()).output().unwrap();
+    assert!(String::from_utf8_lossy(&out.stdout).contains("state machine"), "{out:?}");
 }
 
 /// What begins with a count is no line.

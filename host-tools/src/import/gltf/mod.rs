@@ -20,7 +20,7 @@ use super::{Files, Options, Source, units};
 use crate::budget;
 use crate::events;
 use crate::motion::{Event, Keys, Kind, Motion, Rig};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use file::{File, one_line};
 use gltf::json::Root;
 use gltf::json::animation::Property;
@@ -80,7 +80,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     if motion.rig.channels() == 0 && motion.frames > 1 {
         bail!(file.error(&format!("animations[{number}]"), "no channel moves a node of the scene, so nothing moves"));
     }
-    motion.add_events(events(&file.root.animations[number], &grid, motion.frames));
+    motion.add_events(events(&file.root.animations[number], &grid, motion.frames, &mut warnings));
     let error = from_transforms::error(&motion, &worlds.iter().map(Vec::as_slice).collect::<Vec<_>>());
     warnings.extend(doubts(&file, &tree, &motion, options));
     Ok(Source { motion, unit_known: true, error, warnings })
@@ -105,19 +105,27 @@ fn named(number: usize, name: &Option<String>) -> String {
     name.as_ref().map_or_else(|| number.to_string(), |name| format!("{number} ({name})"))
 }
 
-/// Events in an animation's `extras`: `events` or `markers`, a list of objects with `time` in seconds and `name`. Others are left out: what an exporter keeps
-/// there is its own.
-fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize) -> Vec<Event> {
+/// Events in an animation's `extras`: `events` or `markers`, a list of objects with `time` in seconds and `name`. Other objects are left out: what an
+/// exporter keeps there is its own.
+fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize, warnings: &mut Vec<String>) -> Vec<Event> {
     let extras = animation.extras.as_ref().and_then(|extras| serde_json::from_str::<serde_json::Value>(extras.get()).ok());
     let Some(extras) = extras else { return Vec::new() };
     let lists = ["events", "markers"].into_iter().filter_map(|key| extras[key].as_array());
+    let entries = lists.flatten().filter(|entry| !entry["time"].is_null() && !entry["name"].is_null());
     let event = |entry: &serde_json::Value| {
-        let (time, name) = (entry["time"].as_f64()?, entry["name"].as_str()?);
+        let time = entry["time"].as_f64().context("a time that is no number")?;
+        let name = entry["name"].as_str().context("a name that is no text")?;
+        events::check_name(name)?;
         let frame = ((time - grid.first) / grid.frame_time).round();
-        let fits = (0.0..frames as f64).contains(&frame) && events::check_name(name).is_ok();
-        fits.then(|| Event { frame: frame as usize, name: name.into() })
+        ensure!((0.0..frames as f64).contains(&frame), "a time of {time} s, outside the animation");
+        Ok(Event { frame: frame as usize, name: name.into() })
     };
-    lists.flatten().filter_map(event).collect()
+    let (events, errors): (Vec<Result<Event>>, Vec<Result<Event>>) = entries.map(event).partition(Result::is_ok);
+    if let Some(error) = errors.iter().find_map(|error| error.as_ref().err()) {
+        let count = errors.len();
+        warnings.push(format!("{count} of the animation's events are left out; of the first: {}", one_line(&error.to_string())));
+    }
+    events.into_iter().flatten().collect()
 }
 
 /// What moves a node or a mesh's weights.
