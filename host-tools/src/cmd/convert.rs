@@ -466,7 +466,18 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
     }
     check_fit(&motion, arguments.effort, &options.files).with_context(place)?;
     let mut bound = match arguments.channels.bounds(&motion)? {
-        Some(bounds) => Bound::Channels(bounds),
+        Some(bounds) => {
+            // Bounds of channels do not see where the joints are.
+            let usual = joint_error::DEFAULT.cm(&motion).unwrap_or(1.0);
+            ensure!(
+                imported.error_cm < 0.5 * usual,
+                "{}: the file's joints are only known within {:.3e} cm; a bound of channels needs them within {:.3e} cm",
+                place(),
+                imported.error_cm,
+                0.5 * usual
+            );
+            Bound::Channels(bounds)
+        }
         None => {
             Bound::Distance(Distance::of(arguments, &motion).and_then(|bound| bound.less(imported.error_cm)).with_context(place)?)
         }

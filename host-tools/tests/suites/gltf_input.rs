@@ -509,6 +509,25 @@ fn a_clip_expands_to_glb() {
     assert!(gltf::Gltf::from_slice(&export::gltf::write(&expanded).unwrap()).is_ok());
 }
 
+/// What stands still below a moving joint moves it, turned or not: its place is in the joint's channels.
+#[test]
+fn a_still_armature_carries_the_joints_that_move() {
+    let turned = [0.0, std::f64::consts::FRAC_1_SQRT_2, 0.0, std::f64::consts::FRAC_1_SQRT_2];
+    for (rotation, wanted) in [([0.0, 0.0, 0.0, 1.0], [3.0, 1.25, 0.5]), (turned, [3.5, 1.25, 0.0])] {
+        let mut builder = Builder::new(json!([
+            {"name": "Armature", "translation": [3, 1, 0], "rotation": rotation, "children": [1]},
+            {"name": "hips", "children": [2]}, {"name": "leg", "translation": [0, -1, 0]},
+        ]));
+        builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 0.25, 0.5]);
+        let imported = builder.load("armature");
+        assert!(imported.error_cm < 1e-4, "{} cm", imported.error_cm);
+        let motion = imported.motion;
+        let hips = motion.rig.joints.iter().position(|joint| joint.name == "hips").unwrap();
+        let last = fk::positions(&motion.rig, &motion.values, motion.frames - 1)[hips];
+        assert!((0..3).all(|axis| (last[axis] - wanted[axis]).abs() < 1e-6), "{last:?}, expected {wanted:?}");
+    }
+}
+
 #[test]
 fn events_stand_in_the_extras_of_an_animation() {
     let mut builder = spline();

@@ -241,8 +241,11 @@ fn vectors(curves: &[Vec<f64>; 3]) -> Vec<[f64; 3]> {
 
 /// Pieces of the place along `axis`: those of all three own axes, which begin alike, as the base mixes them.
 fn along(axis: usize, curves: &[Vec<Piece>; 3], base: &Base) -> Vec<Piece> {
-    let Some(linear) = base.linear(0) else { return curves[axis].clone() };
-    let mixed = |n: usize, part: fn(&Piece) -> f64| (0..3).map(|i| linear[axis][i] * part(&curves[i][n])).sum::<f64>();
+    let linear = base.linear(0);
+    let mixed = |n: usize, part: fn(&Piece) -> f64| match &linear {
+        Some(linear) => (0..3).map(|i| linear[axis][i] * part(&curves[i][n])).sum::<f64>(),
+        None => part(&curves[axis][n]),
+    };
     let piece = |n: usize| Piece {
         start: curves[axis][n].start,
         p: base.place[axis] + mixed(n, |piece| piece.p),

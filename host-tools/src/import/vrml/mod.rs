@@ -43,6 +43,11 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let mut warnings = vec![grid.sentence.clone()];
     warnings.extend(figure.warnings);
     warnings.extend(doubts(&world, &clocks, &chosen));
+    let outside = |time: &&f64| !(0.0..=chosen[0].seconds * (1.0 + 1e-6)).contains(*time);
+    if let Some(time) = tracks.times().into_iter().flatten().find(outside) {
+        let part = time / chosen[0].seconds;
+        warnings.push(format!("keys outside the cycle are never reached, as one at {part:.3}; a cycle goes from 0 to 1"));
+    }
     Ok(Source { motion: figure.motion, unit_known: false, error: figure.error, warnings })
 }
 
@@ -62,9 +67,9 @@ pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
     clock::clocks(&world).with_context(|| path.display().to_string())?.iter().map(entry).collect()
 }
 
+/// Frames of a whole cycle: the figure holds its first and last key.
 fn frames(tracks: &Tracks, clock: &Clock, fps: Option<f64>) -> Result<Grid> {
-    let times = tracks.times();
-    grid::paced(&times, fps, track::distance(&times, clock.seconds))
+    grid::between(0.0, clock.seconds, fps, track::distance(&tracks.times(), clock.seconds))
 }
 
 fn open<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<(Words<'a>, World)> {
