@@ -31,6 +31,11 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl ChannelBound {
+    /// Whether any of them is given.
+    pub fn is_given(&self) -> bool {
+        self.exact || self.max_channel_error.is_some() || self.max_accel_error.is_some()
+    }
+
     /// Whether curves are coded as they are.
     pub fn is_exact(&self) -> bool {
         self.exact

@@ -99,10 +99,10 @@ pub struct Arguments {
     rotations: Rotations,
     /// Largest error of channels that move no joint, in percent of their full scale
     /// [default: 2]
-    #[arg(long, value_name = "PERCENT", value_parser = above_zero)]
+    #[arg(long, value_name = "PERCENT", conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = above_zero)]
     max_scalar_error: Option<f64>,
     /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = above_zero)]
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = above_zero)]
     max_rotation_error: Option<f64>,
     #[command(flatten)]
     channels: ChannelBound,
@@ -212,7 +212,16 @@ impl Arguments {
             ("--rotations", self.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
         ];
         let given = given.into_iter().filter(|(_, for_nothing, _)| *for_nothing);
-        given.map(|(name, _, what)| format!("{name} has no effect: the motion has no {what}")).collect()
+        let mut said: Vec<String> =
+            given.map(|(name, _, what)| format!("{name} has no effect: the motion has no {what}")).collect();
+        if self.channels.is_given() {
+            let given = [("--effort", self.effort != Level::Default), ("--rotations", self.rotations == Rotations::Exponential)];
+            let given = given.into_iter().filter(|(_, given)| *given);
+            said.extend(
+                given.map(|(name, _)| format!("{name} has no effect: channels with bounds of their own are coded as they are")),
+            );
+        }
+        said
     }
 
     /// The same for one of several motions.
@@ -448,6 +457,13 @@ pub(super) struct Prepared {
 
 /// Imports one file and applies the edits.
 pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
+    let mut prepared = prepare_without_footsteps(arguments)?;
+    prepared.find_footsteps(arguments)?;
+    Ok(prepared)
+}
+
+/// The same before footsteps are found: they depend on the direction that is up, on which several motions agree first.
+pub(super) fn prepare_without_footsteps(arguments: &Arguments) -> Result<Prepared> {
     let options = arguments.import_options();
     let imported = import::load(&arguments.input, &options)?;
     let mut notes = Notes::of(arguments);
@@ -487,9 +503,6 @@ pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
         closed_sentences(&closed, &motion).into_iter().for_each(|sentence| notes.say(sentence));
         motion = closed.motion;
     }
-    if let Some(sentence) = arguments.edits.add_footsteps(&mut motion).with_context(place)? {
-        notes.say(sentence);
-    }
     let rig = rig::encode(&motion.rig)?;
     let (warnings, notes) = (imported.warnings, notes.said);
     Ok(Prepared { motion, rig, read, warnings, notes, bound, retarget_max_cm: edited.retarget_max_cm })
@@ -500,6 +513,17 @@ impl Prepared {
     pub fn set_up(&mut self, up: Up) -> Result<()> {
         self.motion.rig.up = up;
         self.rig = rig::encode(&self.motion.rig)?;
+        Ok(())
+    }
+
+    /// Adds the events of footsteps, if they are asked for.
+    pub fn find_footsteps(&mut self, arguments: &Arguments) -> Result<()> {
+        let found = arguments.edits.add_footsteps(&mut self.motion);
+        if let Some(sentence) = found.with_context(|| arguments.input.display().to_string())? {
+            let mut notes = Notes::of(arguments);
+            notes.say(sentence);
+            self.notes.append(&mut notes.said);
+        }
         Ok(())
     }
 
@@ -717,6 +741,14 @@ fn by_channel(
     let not_written = || format!("{}: not written", arguments.output().display());
     let coded = channelwise::fit_exponent(motion, bounds, coding.length_exponent, &step).with_context(not_written)?;
     let mut notes = Notes::of(arguments);
+    if let Some((channel, asked)) = bounds.raised(motion) {
+        notes.say(format!(
+            "warning: the figure is so far from its origin that positions have steps of {:.3e}: {} and channels like it keep this bound, not the {asked:.3e} \
+             that was asked for",
+            bounds.greatest[channel],
+            motion.rig.channel_name(channel)
+        ));
+    }
     let bytes = file(arguments, &coded, rig, &mut notes)?;
     let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;
     let worst = &report.worst;

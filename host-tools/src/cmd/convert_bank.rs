@@ -2,7 +2,7 @@
 
 use super::bank::said;
 use super::batch;
-use super::convert::{Arguments, Made, Prepared, prepare, say_of_each, shared_coding};
+use super::convert::{Arguments, Made, Prepared, prepare_without_footsteps, say_of_each, shared_coding};
 use crate::budget;
 use crate::encode::bank::{self, Named};
 use crate::encode::same_rig::difference;
@@ -33,7 +33,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let held = AtomicUsize::new(0);
     let prepare = |task: &Task| {
-        let prepared = prepare(&task.arguments)?;
+        let prepared = prepare_without_footsteps(&task.arguments)?;
         let values = prepared.motion.frames * (prepared.motion.rig.channels() + 1);
         budget::check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
         Ok(prepared)
@@ -44,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
     bar.finish_and_clear();
     agree_on_up(&mut prepared, arguments.up_is_given())?;
+    tasks.iter().zip(&mut prepared).try_for_each(|(task, prepared)| prepared.find_footsteps(&task.arguments))?;
     let labels: Vec<String> = tasks.iter().map(|task| task.label.clone()).collect();
     of_one_rig(&prepared, &labels, "a bank holds clips of one rig")?;
     let shared = arguments.same_form.then(|| shared_coding(&prepared, arguments));

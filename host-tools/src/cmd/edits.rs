@@ -145,7 +145,11 @@ impl Edits {
         if self.from.is_some() || self.to.is_some() {
             let frame = |moment: Moment| moment.nearest(motion.frame_time);
             let before = motion.events.len();
+            let looped = motion.looped;
             motion = cut(&motion, self.from.map(frame), self.to.map(frame))?;
+            if looped && !motion.looped && !self.looped && !self.close_loop {
+                said.push("loop: a part of a loop is no loop; --loop or --close-loop makes one".into());
+            }
             let left_out = before - motion.events.len();
             if left_out > 0 {
                 said.push(format!("events: {left_out} of {before} are not between --from and --to"));
@@ -172,7 +176,9 @@ impl Edits {
             motion = done.motion;
         }
         if let Some(path) = &self.with {
-            let other = import::load(path, &import::Options { files: files.clone(), ..Default::default() })?.motion;
+            let imported = import::load(path, &import::Options { files: files.clone(), ..Default::default() })?;
+            said.extend(imported.warnings.iter().map(|warning| format!("with: warning: {warning}")));
+            let other = imported.motion;
             let before = motion;
             motion = join(&before, &other).with_context(|| format!("--with {}", path.display()))?;
             said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));

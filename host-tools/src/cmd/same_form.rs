@@ -1,7 +1,7 @@
 //! `pantin convert A B C --same-form -o FOLDER`: clips of one rig which one figure renderer plays in turn.
 
 use super::batch::regular;
-use super::convert::{Arguments, Made, Prepared, prepare, shared_coding};
+use super::convert::{Arguments, Made, Prepared, prepare_without_footsteps, shared_coding};
 use super::convert_bank::{agree_on_up, of_one_rig};
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
@@ -21,8 +21,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     output::make_folder(folder)?;
     tasks.iter().try_for_each(|task| regular(task.output()))?;
     output::check(&inputs, &outputs)?;
-    let mut prepared = tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?;
+    let mut prepared = tasks.iter().map(prepare_without_footsteps).collect::<Result<Vec<_>>>()?;
     agree_on_up(&mut prepared, arguments.up_is_given())?;
+    tasks.iter().zip(&mut prepared).try_for_each(|(task, prepared)| prepared.find_footsteps(task))?;
     let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
     of_one_rig(&prepared, &labels, "--same-form needs one rig")?;
     let coding = shared_coding(&prepared, arguments);

@@ -135,7 +135,7 @@ impl Sample {
         let bytes = rig::encode(&self.motion.rig)?;
         let coded = if self.counts == Counted::Keyed {
             let greatest = vec![self.bound; self.motion.values.len()];
-            let bounds = Bounds { constraint: Constraint::Positions, exact: true, greatest };
+            let bounds = Bounds { constraint: Constraint::Positions, exact: true, asked: greatest.clone(), greatest };
             channelwise::fit(&self.motion, &bounds, &|| ())?
         } else {
             fit(&self.motion, TRAINING.plan(self.bound), 0.02, &mut |_| ())?

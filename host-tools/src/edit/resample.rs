@@ -54,9 +54,11 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
         }
     }
     for (channel, (_, kind)) in kinds.into_iter().enumerate() {
-        if kind == Kind::Scalar {
+        // Known curves are what they are; between frames a cubic may pass the scale that the frames keep.
+        if kind == Kind::Scalar && keys[channel].is_none() {
             let full = motion.rig.scalars[channel - motion.rig.joint_channels()].full_scale;
-            values[channel].iter_mut().for_each(|value| *value = value.clamp(-full, full));
+            let most = motion.values[channel].iter().fold(full, |most, value| most.max(value.abs()));
+            values[channel].iter_mut().for_each(|value| *value = value.clamp(-most, most));
         }
     }
     let events = events::resample(&motion.events, factor, times.len() - 1);

@@ -19,13 +19,15 @@ pub struct Bounds {
     pub exact: bool,
     /// The greatest error of each channel in the motion's units, of accelerations in those a frame^2.
     pub greatest: Vec<f64>,
+    /// What was asked for: less where a position's step is coarser.
+    pub asked: Vec<f64>,
 }
 
 impl Bounds {
     /// `error` degrees for rotations and exponential maps, `error` percent of the [`range`] for all others, but no less than the
     /// clip's own step there (2^-30 of the farthest position).
     pub fn of(motion: &Motion, constraint: Constraint, error: f64) -> Bounds {
-        Bounds { constraint, exact: false, greatest: greatest(motion, error, error / 100.0) }
+        Bounds::at_least(motion, constraint, false, error, error / 100.0)
     }
 
     /// Of a motion whose curves are known, rounding alone: every channel that moves has keys.
@@ -38,7 +40,21 @@ impl Bounds {
                 motion.rig.channel_name(channel)
             );
         }
-        Ok(Bounds { constraint: Constraint::Positions, exact: true, greatest: greatest(motion, EXACT_DEGREES, EXACT_PART) })
+        Ok(Bounds::at_least(motion, Constraint::Positions, true, EXACT_DEGREES, EXACT_PART))
+    }
+
+    fn at_least(motion: &Motion, constraint: Constraint, exact: bool, degrees: f64, part: f64) -> Bounds {
+        let asked = asked(motion, degrees, part);
+        let mut bounds = Bounds { constraint, exact, greatest: asked.clone(), asked };
+        bounds.at_least_steps(motion, raw::clip_length_exponent(&motion.rig, &motion.values));
+        bounds
+    }
+
+    /// A moving channel of positions whose bound is a step instead of the less that was asked for, and that bound.
+    pub fn raised(&self, motion: &Motion) -> Option<(usize, f64)> {
+        let raised = |&channel: &usize| self.greatest[channel] > self.asked[channel] && range(motion, channel) > 0.0;
+        let channel = (0..self.asked.len()).find(raised)?;
+        Some((channel, self.asked[channel]))
     }
 
     /// Raises bounds of positions below the step of a clip with this length exponent to that step.
@@ -52,13 +68,11 @@ impl Bounds {
     }
 }
 
-fn greatest(motion: &Motion, degrees: f64, part: f64) -> Vec<f64> {
-    let kinds = motion.rig.channel_kinds();
-    let steps = raw::scales(&motion.rig, raw::clip_length_exponent(&motion.rig, &motion.values));
-    let of = |(channel, &(_, kind)): (usize, &(Option<usize>, Kind))| {
-        if kind.is_rotation() || kind.is_exponential() { degrees } else { (part * range(motion, channel)).max(steps[channel]) }
+fn asked(motion: &Motion, degrees: f64, part: f64) -> Vec<f64> {
+    let of = |(channel, (_, kind)): (usize, (Option<usize>, Kind))| {
+        if kind.is_rotation() || kind.is_exponential() { degrees } else { part * range(motion, channel) }
     };
-    kinds.iter().enumerate().map(of).collect()
+    motion.rig.channel_kinds().into_iter().enumerate().map(of).collect()
 }
 
 /// What a percentage of a channel is of: a position's way from its least to its greatest value, a scalar's full scale, 2 for

@@ -86,7 +86,7 @@ fn at_line_end(word: Option<&&[u8]>) -> String {
 
 fn numbers<const N: usize>(words: &Words, values: &[&[u8]]) -> Result<[f64; N]> {
     let mut out = [0.0; N];
-    if values.len() < N {
+    if values.len() != N {
         return Err(words.error(format!(
             "expected {N} number{} after the keyword, found {}",
             if N == 1 { "" } else { "s" },
@@ -126,7 +126,7 @@ fn bone_line(words: &Words, file: &mut File, key: &str, line: &[&[u8]]) -> Resul
         "direction" => bone.direction = Some(numbers(words, values)?),
         "length" => bone.length = Some(numbers::<1>(words, values)?[0]),
         "axis" => {
-            bone.angles = numbers(words, values)?;
+            bone.angles = numbers(words, values.get(..3).unwrap_or(values))?;
             bone.order = order(words, values.get(3))?;
         }
         "dof" => bone.dofs = dofs(words, values)?,

@@ -25,12 +25,19 @@ impl Entry {
 }
 
 /// The animation that the user names among those called `names`: by its name, in any case of letters if none is the same exactly, or by
-/// its number from 0.
+/// its number from 0. `None` if several have the name.
 pub(super) fn choose<'n>(wanted: &str, names: impl Iterator<Item = Option<&'n str>> + Clone) -> Option<usize> {
-    let exact = || names.clone().position(|name| name == Some(wanted));
-    let folded = || names.clone().position(|name| name.is_some_and(|name| name.to_lowercase() == wanted.to_lowercase()));
-    let number = || wanted.parse().ok().filter(|&number: &usize| number < names.clone().count());
-    exact().or_else(folded).or_else(number)
+    let called = |same: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        let numbered = names.clone().enumerate();
+        numbered.filter(|(_, name)| name.is_some_and(same)).map(|(number, _)| number).collect()
+    };
+    let exact = called(&|name| name == wanted);
+    let folded = || called(&|name| name.to_lowercase() == wanted.to_lowercase());
+    match &*(if exact.is_empty() { folded() } else { exact }) {
+        [one] => Some(*one),
+        [] => wanted.parse().ok().filter(|&number: &usize| number < names.clone().count()),
+        _ => None,
+    }
 }
 
 /// Whether files of this extension hold animations to choose from.

@@ -282,6 +282,8 @@ fn broken_skeletons_are_refused() {
     refused(" \n", AMC, "asf:2", "no bones; expected an ASF file");
     refused_asf("angle deg", "angle grad", 7, "expected `deg` or `rad` after `angle`, found `grad`");
     refused_asf("length 0.5", "length 0", 6, "expected a length above 0 in `:units`, found 0");
+    refused_asf("length 0.5", "length 0.5 0.9", 6, "expected 1 number after the keyword, found 2");
+    refused_asf("direction 0 -1 0\n", "direction 9 0 -1 0\n", 26, "expected 3 numbers after the keyword, found 4");
     refused_asf("length 0.5", "length", 6, "expected 1 number after the keyword, found 0");
     refused_asf("order TX TY TZ RX RY RZ", "", 47, "expected `order` in `:root`");
     refused_asf("RX RY RZ", "RX RY RW", 11, "expected tx, ty, tz, rx, ry, rz or l, found `RW`");

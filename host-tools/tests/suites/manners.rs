@@ -442,3 +442,48 @@ fn a_line_without_room_for_refreshes_is_named() {
     let said = folder.refused(&["stream", "a.ptn", "--to", "tcp:127.0.0.1:1@1000000", "--refresh", "0.0001"]);
     assert!(said.contains("a larger --refresh"), "{said}");
 }
+
+/// What was given is used, refused, or named: beside bounds of channels, of several animations of one name, of a companion file, of a scale.
+#[test]
+fn nothing_that_was_given_is_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let run = |line: &str| {
+        let out = std::process::Command::new(env!("CARGO_BIN_EXE_pantin"))
+            .args(line.split(' '))
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        (out.status.code(), String::from_utf8_lossy(&out.stderr).into_owned() + &String::from_utf8_lossy(&out.stdout))
+    };
+    put("nat.keys", "keyframes 1\nfps 30\nframes 31\nscalar smile scale 1\nkeys natural smile\n 0 0\n 10 1\n 20 1\n 30 0\n");
+    for option in ["--max-scalar-error 0.1", "--max-rotation-error 0.01"] {
+        let (code, said) = run(&format!("convert nat.keys -o n.ptn --max-channel-error 5 {option}"));
+        assert!(code == Some(2) && said.contains("cannot be used with"), "{said}");
+    }
+    let (code, said) = run("convert nat.keys -o n.ptn --exact --effort best");
+    assert!(code == Some(0) && said.contains("--effort has no effect"), "{said}");
+    // The curve passes its scale between keys, at any rate.
+    for fps in ["30", "60"] {
+        let (code, said) = run(&format!("convert nat.keys -o n{fps}.ptn --exact --fps {fps}"));
+        assert_eq!(code, Some(0), "{said}");
+        let (_, table) = run(&format!("expand n{fps}.ptn --format csv -o -"));
+        let most = table.lines().flat_map(|line| line.rsplit(',').next()?.parse::<f64>().ok()).fold(0.0, f64::max);
+        assert!((most - 1.15).abs() < 1e-3, "{most} at {fps} frames a second");
+    }
+    // At 1e7 cm a hundredth of one is less than a step.
+    put(
+        "far.keys",
+        "keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\njoint root offset 0 0 0 channels Xposition\nend parent root offset 0 1 0\nkeys linear root\n 0 10000000\n 30 10000000.01\n",
+    );
+    let (code, said) = run("convert far.keys -o far.ptn --max-channel-error 0.5 --json");
+    assert!(code == Some(0) && said.contains("root.Xposition and channels like it keep this bound"), "{said}");
+    // A Live Link header with one blend shape under two names.
+    let row = |time: &str| format!("{time},2,0.1,0.2\n");
+    put(
+        "twice.csv",
+        &format!("Timecode,BlendshapeCount,EyeBlinkLeft,eyeBlink_L\n{}{}", row("00:00:00:00.000"), row("00:00:00:01.000")),
+    );
+    let (code, said) = run("convert twice.csv -o twice.ptn");
+    assert!(code == Some(1) && said.contains("`EyeBlinkLeft` and `eyeBlink_L` are one blend shape"), "{said}");
+}

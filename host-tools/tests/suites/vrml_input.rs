@@ -163,7 +163,8 @@ fn four_digits_of_a_rate_are_seen_through() {
         values.join(",")
     );
     let read = load(&world).unwrap();
-    assert_eq!((read.motion.frame_time, read.motion.frames), (1.0 / fps, 1132));
+    // The cycle of 1,131.75 frames ends between two.
+    assert_eq!((read.motion.frame_time, read.motion.frames), (1.0 / fps, 1133));
 }
 
 #[test]
@@ -255,4 +256,45 @@ fn a_prototype_that_contains_itself_is_named() {
     with(&chain).unwrap();
     let deep: String = (0..150).map(|index| format!("PROTO N{index} [] {{ {}", "Group { } ".repeat(300))).collect();
     with(&format!("{deep}{}", "}".repeat(150))).unwrap();
+}
+
+/// Joints in the style of the standard: all places in `center`, no translations.
+#[test]
+fn joints_of_h_anim_are_at_their_centers() {
+    let world = "#VRML V2.0 utf8
+PROTO Joint [ exposedField SFVec3f center 0 0 0 exposedField SFRotation rotation 0 0 1 0 exposedField MFNode children [ ] exposedField SFVec3f translation 0 0 0 ]
+{ Transform { center IS center rotation IS rotation translation IS translation children IS children } }
+PROTO Humanoid [ exposedField MFNode humanoidBody [ ] ] { Transform { children IS humanoidBody } }
+DEF man Humanoid { humanoidBody [ DEF hip Joint { center 0 2 0 children [ DEF knee Joint { center 0 1 0 children [ DEF ankle Joint { center 0 0.5 0 } ] } ] } ] }
+DEF T TimeSensor { cycleInterval 2 }
+DEF O OrientationInterpolator { key [ 0, 1 ] keyValue [ 0 0 1 0, 0 0 1 1.57079632679 ] }
+ROUTE T.fraction_changed TO O.set_fraction ROUTE O.value_changed TO knee.set_rotation";
+    let man = load(world).unwrap();
+    let last = man.motion.frames - 1;
+    near(place(&man, "hip", last), [0.0, 2.0, 0.0]);
+    near(place(&man, "knee", last), [0.0, 1.0, 0.0]);
+    near(place(&man, "ankle", 0), [0.0, 0.5, 0.0]);
+    near(place(&man, "ankle", last), [0.5, 1.0, 0.0]);
+}
+
+/// A cycle is a cycle, and what does not fit is named.
+#[test]
+fn a_cycle_is_whole_and_what_is_odd_in_it_is_named() {
+    let world = |keys: &str, place: &str| {
+        format!(
+            "#VRML V2.0 utf8\nDEF A Transform {{ translation {place} children [ DEF B Transform {{ translation 0 1 0 }} ] }}
+DEF T TimeSensor {{ cycleInterval 4 loop TRUE }}
+DEF P PositionInterpolator {{ key [{keys}] keyValue [0 0 0, 0 1 0, 0 0 0] }}
+ROUTE T.fraction_changed TO P.set_fraction ROUTE P.value_changed TO A.set_translation"
+        )
+    };
+    let held = load(&world("0.25 0.5 0.75", "0 0 0")).unwrap();
+    assert_eq!((held.motion.frames, held.motion.frame_time), (121, 1.0 / 30.0));
+    let odd = load(&world("0.25 0.5 1.75", "2 1")).unwrap();
+    assert_eq!(odd.motion.frames, 121);
+    for part in
+        ["keys outside the cycle are never reached, as one at 1.750", "have a translation or the like without its 3 numbers"]
+    {
+        assert!(odd.warnings.iter().any(|warning| warning.contains(part)), "{part}: {:?}", odd.warnings);
+    }
 }

@@ -71,6 +71,9 @@ pub const FIELDS: [(&str, usize); 5] =
 /// Index of [`FIELDS`] of the scale.
 pub const SCALE: usize = 2;
 
+/// Index of [`FIELDS`] of the center.
+const CENTER: usize = 4;
+
 /// The tracks that move nodes, by node and index of [`FIELDS`].
 pub type Moves = HashMap<(usize, usize), Track>;
 
@@ -91,6 +94,8 @@ pub struct Needed {
     node: usize,
     /// Index among those that are needed.
     parent: Option<usize>,
+    /// Whether it is a joint of H-Anim.
+    joint: bool,
     rest: Rest,
 }
 
@@ -107,7 +112,12 @@ pub fn needed(world: &World, stands: &[Stand], kept: &[usize]) -> Vec<Needed> {
     let entry = |(index, &stand): (usize, &usize)| {
         index_of[stand] = Some(index);
         let Stand { node, parent } = stands[stand];
-        Needed { node, parent: parent.and_then(|parent| index_of[parent]), rest: rest(world, node) }
+        Needed {
+            node,
+            parent: parent.and_then(|parent| index_of[parent]),
+            joint: is_joint(world.kind(node)),
+            rest: rest(world, node),
+        }
     };
     order.iter().enumerate().map(entry).collect()
 }
@@ -122,25 +132,32 @@ fn rest(world: &World, node: usize) -> Rest {
     })
 }
 
-/// World transforms at a time.
+/// World transforms at a time. A joint of H-Anim is where its center is: it turns about it, and its translation is mostly 0.
 pub fn evaluate(stands: &[Needed], moves: &Moves, time: f64) -> Vec<Affine> {
     let mut worlds: Vec<Affine> = Vec::with_capacity(stands.len());
     for stand in stands {
         let above = stand.parent.map_or(UNMOVED, |parent| worlds[parent]);
         worlds.push(chained(&above, &local(stand, moves, time)));
     }
+    for (world, stand) in worlds.iter_mut().zip(stands).filter(|(_, stand)| stand.joint) {
+        let [x, y, z, _] = field(stand, moves, CENTER, time);
+        let center = [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
+        *world = chained(world, &center);
+    }
     worlds
+}
+
+/// A field of a node at a time.
+fn field(stand: &Needed, moves: &Moves, index: usize, time: f64) -> [f64; 4] {
+    let Some(track) = moves.get(&(stand.node, index)) else { return stand.rest[index] };
+    let value = track.at(time);
+    std::array::from_fn(|i| value.get(i).copied().unwrap_or(0.0))
 }
 
 /// Translation, center, rotation, scale in its own orientation, and back from the center.
 fn local(stand: &Needed, moves: &Moves, time: f64) -> Affine {
-    let field = |index: usize| -> [f64; 4] {
-        let Some(track) = moves.get(&(stand.node, index)) else { return stand.rest[index] };
-        let value = track.at(time);
-        std::array::from_fn(|i| value.get(i).copied().unwrap_or(0.0))
-    };
     let turn = |[x, y, z, w]: [f64; 4]| from_quaternion([w, x, y, z]);
-    let [place, rotation, scale, leaning, center] = [0, 1, 2, 3, 4].map(field);
+    let [place, rotation, scale, leaning, center] = [0, 1, 2, 3, CENTER].map(|index| field(stand, moves, index, time));
     let (rotation, leaning) = (turn(rotation), turn(leaning));
     let stretch: Matrix =
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| leaning[i][k] * scale[k] * leaning[j][k]).sum()));

@@ -19,7 +19,7 @@ use clock::{Clock, Tracks};
 use lexer::Words;
 use std::collections::HashSet;
 use std::path::Path;
-use world::World;
+use world::{World, is_transform};
 
 /// Whether `head` begins a world.
 pub fn begins(head: &[u8]) -> bool {
@@ -122,7 +122,7 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
     let stands = figure::needed(world, &stands, &kept);
     for frame in 0..if joints.is_empty() { 0 } else { grid.frames } {
         let worlds = figure::evaluate(&stands, &tracks.moves, seconds(frame));
-        joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, world)| joint.worlds.push(*world));
+        joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, place)| joint.worlds.push(*place));
     }
     let scalar = |(name, track): &(String, track::Track)| {
         let values: Vec<f64> = (0..grid.frames).map(|frame| track.at(seconds(frame))[0]).collect();
@@ -145,6 +145,31 @@ fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<String> {
             let (name, line) = (world.name(clock.node), world.nodes[clock.node].line);
             doubts.push(format!("`{name}` (line {line}) has the cycleInterval {wrong}; expected more than 0, and 1 s is taken"));
         }
+    }
+    let wrong = |index: usize| {
+        let width = |(name, width): &(&str, usize)| {
+            let given = world.field(index, name).filter(|value| value.is.is_none());
+            given.is_some_and(|value| !value.numbers.is_empty() && value.numbers.len() != *width)
+        };
+        figure::FIELDS.iter().find(|field| width(field)).map(|(name, width)| (index, *name, *width))
+    };
+    let wrong: Vec<(usize, &str, usize)> =
+        (0..world.nodes.len()).filter(|&node| is_transform(world.kind(node))).filter_map(wrong).collect();
+    if let Some((node, name, width)) = wrong.first() {
+        let (count, line) = (wrong.len(), world.nodes[*node].line);
+        doubts.push(format!(
+            "{count} nodes (one in line {line}) have a {name} or the like without its {width} numbers; it counts as not given"
+        ));
+    }
+    let mut driven = HashSet::new();
+    let drives = chosen.iter().flat_map(|clock| &clock.drives);
+    let twice = drives.filter_map(|drive| Some((drive.target, drive.place(world)?))).find(|&place| !driven.insert(place));
+    if let Some((target, place)) = twice {
+        let (name, line) = (world.name(target), world.nodes[target].line);
+        doubts.push(format!(
+            "two interpolators move the {} of `{name}` (line {line}); the last one counts",
+            figure::FIELDS[place].0
+        ));
     }
     let used: HashSet<usize> = clocks.iter().flat_map(|clock| &clock.drives).map(|drive| drive.interpolator).collect();
     let interpolators = (0..world.nodes.len()).filter(|&node| world.kind(node).ends_with("Interpolator"));
