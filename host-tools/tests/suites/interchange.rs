@@ -234,7 +234,7 @@ fn every_animation_of_a_file_becomes_a_clip() {
 pub const WORLD: &str = "#VRML V2.0 utf8
 PROTO Humanoid [ exposedField SFFloat smile 0 ] { Transform { } }
 DEF Face Humanoid { }
-DEF Hip HAnimJoint { name \"hip\" children [ DEF Arm HAnimJoint { name \"arm\" center 0 1 0 translation 0 1 0 children [ DEF Hand HAnimJoint { name \"hand\" translation 0 1 0 } ] } ] }
+DEF Hip HAnimJoint { name \"hip\" children [ DEF Arm HAnimJoint { name \"arm\" center 0 1 0 translation 0 1 0 children [ DEF Hand HAnimJoint { name \"hand\" translation 0 2 0 } ] } ] }
 DEF Smile TimeSensor { cycleInterval 1 }
 DEF Mouth ScalarInterpolator { key [ 0 1 ] keyValue [ 0 1 ] }
 ROUTE Smile.fraction_changed TO Mouth.set_fraction
