@@ -63,8 +63,8 @@ fn frames(clip: &PathBuf) -> usize {
     pantin::Clip::new_checked(&bytes).unwrap().frames() as usize
 }
 
-/// Pictures after which none is dropped: with a face, some of the first ones take longer than a frame of the display.
-const BEGUN: usize = 8;
+/// Pictures after which none is dropped: with a face, the first one takes longer than a frame of the display.
+const BEGUN: usize = 4;
 
 /// Plays a clip alone for a minute: each picture of the host is on the display for exactly one of its frames.
 fn drops_no_frame(name: &str) {
