@@ -140,13 +140,16 @@ fn walk_so<S: Surface, const STEEP: bool, const BACK: bool>(
     surface: &mut S,
     mut cursor: S::Cursor,
     mut pace: Pace,
-    left: i32,
+    mut left: i32,
     ink: S::Ink,
 ) {
-    surface.put(cursor, ink);
-    for _ in 0..left {
-        pace.step(&mut cursor, STEEP, BACK);
+    loop {
         surface.put(cursor, ink);
+        left -= 1;
+        if left < 0 {
+            return;
+        }
+        pace.step(&mut cursor, STEEP, BACK);
     }
 }
 
