@@ -171,7 +171,7 @@ fn every_fuzz_target_has_its_program() {
 #[test]
 fn the_fuzz_targets_have_the_dependencies_of_their_lock_file() {
     let mut lock = Command::new("cargo");
-    lock.args(["update", "--workspace", "--locked", "--offline", "--manifest-path"]).arg(paths::root().join("fuzz/Cargo.toml"));
+    lock.args(["update", "--workspace", "--locked", "--manifest-path"]).arg(paths::root().join("fuzz/Cargo.toml"));
     let output = lock.output().unwrap();
     let words = String::from_utf8_lossy(&output.stderr);
     assert!(
