@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use conformance::RATE;
+use pantin_animator::Character;
+use pantin_animator::machine::Table;
 use pantin_animator::session::Replay;
 use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::{DrawStyle, View};
-use pantin_tools::machine::playback::{Stage, play, session, table};
+use pantin_tools::machine::playback::{Stage, play, session};
 
 use crate::display::{OLED, Picture};
 use crate::paths;
@@ -36,12 +38,16 @@ pub fn recorded() -> Result<Crcs> {
     Ok(Crcs { stepped: text.lines().map(crc).collect::<Result<_>>()?, sought: vec![] })
 }
 
+/// Plays the session by the bank's state machine.
+fn played(bytes: &[u8], show: impl FnMut(&mut Character<'_, '_>) -> Result<()>) -> Result<()> {
+    let text = std::fs::read_to_string(script())?;
+    play(bytes, Replay::new(session(&text, "steer.txt", &Table::of_bank(bytes)?)?, RATE), show)
+}
+
 /// The same, played here.
 pub fn crcs() -> Result<Crcs> {
-    let (bytes, text) = (std::fs::read(bank())?, std::fs::read_to_string(script())?);
-    let replay = Replay::new(session(&text, "steer.txt", &table(&bytes)?)?, RATE);
     let mut stepped = vec![];
-    play(&bytes, replay, |character| {
+    played(&std::fs::read(bank())?, |character| {
         stepped.push(conformance::crc_of_character(character));
         Ok(())
     })?;
@@ -50,12 +56,11 @@ pub fn crcs() -> Result<Crcs> {
 
 /// What the reference board's display shows of it, picture by picture, drawn here.
 pub fn pictures() -> Result<Vec<Picture>> {
-    let (bytes, text) = (std::fs::read(bank())?, std::fs::read_to_string(script())?);
-    let replay = Replay::new(session(&text, "steer.txt", &table(&bytes)?)?, RATE);
+    let bytes = std::fs::read(bank())?;
     let mut stage = Stage::new(&bytes, [OLED.width, OLED.height], View::default(), None)?;
     let mut framebuffer = Framebuffer::<Gray4Rows<128, 64, 1024>>::new();
     let mut shown = vec![];
-    play(&bytes, replay, |character| {
+    played(&bytes, |character| {
         framebuffer.clear();
         stage.place(character)?.draw_on(&mut framebuffer, DrawStyle::default());
         let value = |index: usize| {

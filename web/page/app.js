@@ -63,7 +63,7 @@ $("link").onchange = () => show(current);
 
 // ---- links
 
-// A clip of at most so many bytes fits into a link.
+// The most bytes of a clip that fits into a link.
 const MOST_SHARED = 6000;
 const base64 = (bytes) => btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 const unbase64 = (text) => Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));

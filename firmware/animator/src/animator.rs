@@ -368,7 +368,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             let (Some(own), Some(to)) = (self.pose.get_mut(range.clone()), pose.values.get(range)) else { continue };
             mix_group(group.shape, own, to, weight);
         }
-        self.leave_place();
+        self.root.leave_place(self.pose);
         Ok(())
     }
 
@@ -378,17 +378,8 @@ impl<'a, 'm> Animator<'a, 'm> {
         let own = self.form();
         let groups = self.groups.get(..self.used_groups).unwrap_or_default();
         blend(self.pose, groups, own, Pose { values, form }, mask, weight)?;
-        self.leave_place();
+        self.root.leave_place(self.pose);
         Ok(())
-    }
-
-    /// Takes the root's horizontal place out of the pose.
-    fn leave_place(&mut self) {
-        for channel in self.root.place.iter().flatten() {
-            if let Some(value) = self.pose.get_mut(usize::from(*channel)) {
-                *value = 0;
-            }
-        }
     }
 
     /// Goes over to a clip of the same rig, from a frame (from the last one if there are fewer) and at a speed of -4 to 4 (others are cut off).

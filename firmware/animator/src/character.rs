@@ -200,16 +200,14 @@ pub fn visit_poses<'a>(
     let table = Table::of_bank(bytes)?;
     for state in (0..table.states()).filter_map(|state| table.state(state as u8)) {
         let clip = clip(&bank, state.clip)?;
-        let place = Root::of(&clip.rig(), &[]).map_or([None; 2], |root| root.place);
+        let root = Root::of(&clip.rig(), &[]);
         let (needed, given) = (clip.rig().channels(), values.len());
         let values = values.get_mut(..needed).ok_or(Error::TooSmall { what: "values", needed, given })?;
         let frames = clip.frames();
         for frame in (0..frames).step_by(frames.div_ceil(VISITS).max(1) as usize) {
             Player::new(clip, states, values)?.seek(frame);
-            for channel in place.iter().flatten() {
-                if let Some(value) = values.get_mut(usize::from(*channel)) {
-                    *value = 0;
-                }
+            if let Some(root) = &root {
+                root.leave_place(values);
             }
             visit(&clip, values);
         }

@@ -406,10 +406,15 @@ impl<'a> Table<'a> {
         self.counted(1)
     }
 
+    /// The name at an index among `count` that stand behind `before` others; empty for none, or one that is not UTF-8.
+    fn name(&self, before: usize, count: usize, index: u8) -> &'a str {
+        let name = self.names().skip(before).take(count).nth(index.into()).unwrap_or_default();
+        core::str::from_utf8(name).unwrap_or("")
+    }
+
     /// The name of a state; empty if it has none, or one that is not UTF-8.
     pub fn state_name(&self, state: u8) -> &'a str {
-        let name = self.names().take(self.counted(1)).nth(state.into()).unwrap_or_default();
-        core::str::from_utf8(name).unwrap_or("")
+        self.name(0, self.counted(1), state)
     }
 
     /// Number of parameters.
@@ -419,8 +424,7 @@ impl<'a> Table<'a> {
 
     /// The name of a parameter; empty if it has none, or one that is not UTF-8.
     pub fn parameter_name(&self, parameter: u8) -> &'a str {
-        let name = self.names().skip(self.counted(1)).take(self.counted(3)).nth(parameter.into()).unwrap_or_default();
-        core::str::from_utf8(name).unwrap_or("")
+        self.name(self.counted(1), self.counted(3), parameter)
     }
 
     /// The least, the greatest and the first value of a parameter; zeros for one that the table lacks.
@@ -435,9 +439,7 @@ impl<'a> Table<'a> {
 
     /// The name of an input; empty if it has none, or one that is not UTF-8.
     pub fn input_name(&self, input: u8) -> &'a str {
-        let before = self.counted(1) + self.counted(3);
-        let name = self.names().skip(before).take(self.counted(4)).nth(input.into()).unwrap_or_default();
-        core::str::from_utf8(name).unwrap_or("")
+        self.name(self.counted(1) + self.counted(3), self.counted(4), input)
     }
 
     /// The index of a parameter by its name.
@@ -528,23 +530,22 @@ impl<'a> Machine<'a> {
 
     /// Fires an input: it is seen by the next update alone. One that the table lacks does nothing.
     pub fn fire(&mut self, input: u8) {
-        self.fired |= 1u32.checked_shl(input.into()).unwrap_or(0);
+        self.fired |= bit(input);
     }
 
     /// Holds an input down, or lets it go.
     pub fn hold(&mut self, input: u8, down: bool) {
-        let bit = 1u32.checked_shl(input.into()).unwrap_or(0);
-        self.held = if down { self.held | bit } else { self.held & !bit };
+        self.held = if down { self.held | bit(input) } else { self.held & !bit(input) };
     }
 
     /// Whether an input is held.
     pub fn is_held(&self, input: u8) -> bool {
-        self.held & 1u32.checked_shl(input.into()).unwrap_or(0) != 0
+        self.held & bit(input) != 0
     }
 
     /// Whether the last update saw an input, fired or held.
     pub fn was_seen(&self, input: u8) -> bool {
-        self.seen & 1u32.checked_shl(input.into()).unwrap_or(0) != 0
+        self.seen & bit(input) != 0
     }
 
     /// Sets a parameter, within its range. One that the table lacks does nothing.
@@ -609,7 +610,6 @@ impl<'a> Machine<'a> {
     }
 
     fn happens(&self, cause: Cause, animator: &mut Animator<'_, '_>) -> bool {
-        let bit = |input: u8| 1u32.checked_shl(input.into()).unwrap_or(0);
         match cause {
             Cause::End => animator.track().ended(),
             Cause::Input(input) => (self.fired | self.held) & bit(input) != 0,
@@ -652,6 +652,11 @@ impl<'a> Machine<'a> {
         animator.mix(second, weight)?;
         Ok(())
     }
+}
+
+/// The bit of an input in a set of them; 0 for one that no table has.
+fn bit(input: u8) -> u32 {
+    1u32.checked_shl(input.into()).unwrap_or(0)
 }
 
 /// A clip of a bank.

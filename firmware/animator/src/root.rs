@@ -106,6 +106,15 @@ impl<'a> Root<'a> {
         Some(Root { joint, place: [channel(up + 1), channel(up + 2)], order, axis, turns })
     }
 
+    /// Takes the horizontal place out of a pose.
+    pub(crate) fn leave_place(&self, values: &mut [i32]) {
+        for channel in self.place.iter().flatten() {
+            if let Some(value) = values.get_mut(usize::from(*channel)) {
+                *value = 0;
+            }
+        }
+    }
+
     pub(crate) fn place_of(&self, values: &[i32]) -> [i32; 2] {
         self.place.map(|channel| channel.and_then(|channel| values.get(usize::from(channel)).copied()).unwrap_or(0))
     }

@@ -8,7 +8,7 @@ use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
-use pantin_animator::machine::{Machine, Table, TableError};
+use pantin_animator::machine::{Machine, Table};
 use serde_json::json;
 use std::collections::HashMap;
 use std::io::Write;
@@ -212,7 +212,7 @@ pub fn unpack(arguments: &Unpack) -> Result<()> {
         }
     }
     let written: Vec<_> = files.iter().map(|(_, path)| path.display().to_string()).collect();
-    let machine = !matches!(Table::of_bank(&bytes), Err(pantin_animator::Error::Machine(TableError::Missing)));
+    let machine = has_machine(&bytes);
     if machine {
         note!("warning: {}: the bank's state machine stays in it: clips hold none", place());
     }

@@ -31,6 +31,9 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 impl ChannelBound {
+    /// The options' names for clap.
+    pub const OPTIONS: [&str; 3] = ["max_channel_error", "max_accel_error", "exact"];
+
     /// Whether any of them is given.
     pub fn is_given(&self) -> bool {
         self.exact || self.max_channel_error.is_some() || self.max_accel_error.is_some()

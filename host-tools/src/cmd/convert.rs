@@ -89,7 +89,7 @@ pub struct Arguments {
     max_error: Option<JointError>,
     /// Mean distance of the joints, End Sites left out, from their original positions, in the same units: the clip is as small as its
     /// mean allows, instead of filling --max-error, which still holds for every joint
-    #[arg(long, conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = joint_error::parse)]
+    #[arg(long, conflicts_with_all = ChannelBound::OPTIONS, value_parser = joint_error::parse)]
     mean_error: Option<JointError>,
     /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
@@ -99,10 +99,10 @@ pub struct Arguments {
     rotations: Rotations,
     /// Largest error of channels that move no joint, in percent of their full scale
     /// [default: 2]
-    #[arg(long, value_name = "PERCENT", conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = above_zero)]
+    #[arg(long, value_name = "PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
     max_scalar_error: Option<f64>,
     /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
-    #[arg(long, value_name = "DEGREES", conflicts_with_all = ["max_channel_error", "max_accel_error", "exact"], value_parser = above_zero)]
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
     max_rotation_error: Option<f64>,
     #[command(flatten)]
     channels: ChannelBound,

@@ -33,7 +33,8 @@ use std::time::Duration;
 /// Play clips, or a bank's state machine, in the terminal, drawn by the firmware's own figure code.
 ///
 /// A bank with a state machine is steered by keys: arrows and letters make its inputs, ? lists them, and the last row shows the state, the inputs that are held and the parameters.
-/// /// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
+///
+/// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
 /// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, b braille or half blocks, ? help, q quit.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:

@@ -1,9 +1,9 @@
 //! `pantin steer`
 
 use super::format_of;
-use super::render::{Side, Size};
+use super::render::{EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, Size, easy_scale, is_smooth};
 use crate::input;
-use crate::machine::playback::{Stage, has_machine, joints, play, session, table};
+use crate::machine::playback::{Stage, has_machine, joints, play, session};
 use crate::output::{Staged, Wanted, check, commit, note, progress, refuse_foreign, report};
 use crate::render::animation::Animation;
 use crate::render::apng::{self, Apng};
@@ -12,18 +12,13 @@ use crate::render::palette::Palette;
 use crate::render::sheet::{Layout, arrange};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin_animator::Character;
+use pantin_animator::machine::Table;
 use pantin_animator::session::Replay;
 use pantin_figure::{Track, View};
 use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// Pixels on the shorter side from which lines are smooth.
-const SMOOTH_FROM: usize = 240;
-/// Columns that a picture of pixels has about, enlarged: of an animation, and on a sheet.
-const EASY_TO_SEE: usize = 512;
-const EASY_TO_SEE_IN_A_SHEET: usize = 256;
-const MOST_ENLARGED: usize = 4;
 /// Pictures in a row of a sheet.
 const COLUMNS: usize = 6;
 
@@ -99,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let place = || path.display().to_string();
     ensure!(has_machine(&bytes), "{}: no bank with a state machine; `pantin machine` makes one", place());
     let text = String::from_utf8(input::read(script)?).map_err(|_| anyhow!("{}: not text (UTF-8)", script.display()))?;
-    let table = table(&bytes).with_context(place)?;
+    let table = Table::of_bank(&bytes).with_context(place)?;
     let session = session(&text, &script.display().to_string(), &table)?;
     let pictures = Replay::new(session, arguments.fps).pictures();
     let mut file = Staged::create(output)?;
@@ -137,9 +132,9 @@ impl<'a> Shown<'a> {
 
     /// Whether lines are smooth, and by what pixels are enlarged.
     fn look(&self, easy: usize) -> (bool, usize) {
-        let [width, height] = self.arguments.size.0;
-        let smooth = width.min(height) >= SMOOTH_FROM && !self.arguments.palette.is_mono();
-        (smooth, if smooth { 1 } else { (easy / width).clamp(1, MOST_ENLARGED) })
+        let size = self.arguments.size.0;
+        let smooth = is_smooth(size, &self.arguments.palette);
+        (smooth, if smooth { 1 } else { easy_scale(easy, size) })
     }
 
     fn animation(&self, format: Format, mut out: &mut impl Write) -> Result<()> {

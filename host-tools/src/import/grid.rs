@@ -1,9 +1,9 @@
 //! The frames on which keys in time are sampled.
 //!
-//! Rule: the first key of all is frame 0, and where the file has a cycle, its begin. Without --fps, a frame is as long as the commonest distance between two keys of a track that
-//! follow each other; a usual rate within 0.05 % of it is meant. Keys farther apart than [`LONGEST`] are poses, not frames:
-//! then there are [`PLAIN_FPS`]. The last frame is the first one at or after the last key,
-//! or the end of the cycle.
+//! Rule: the first key of all is frame 0, and where the file has a cycle, its begin. Without --fps, a frame is as long as the commonest
+//! distance between two keys of a track that follow each other; a usual rate within 0.05 % of it is meant. Keys farther apart than
+//! [`LONGEST`] are poses, not frames: then there are [`PLAIN_FPS`]. The last frame is the first one at or after the last key, or the end
+//! of the cycle.
 
 use anyhow::{Result, ensure};
 use pantin::codec::layout::MAX_FRAMES;
@@ -37,15 +37,9 @@ pub struct Grid {
 /// The frames for tracks with keys at these `times`, of which there is at least one.
 #[cfg(any(feature = "fbx", feature = "gltf"))]
 pub fn grid(tracks: &[&[f64]], fps: Option<f64>) -> Result<Grid> {
-    paced(tracks, fps, common(tracks))
-}
-
-/// The same where the distance of keys, in seconds, is known.
-#[cfg(any(feature = "fbx", feature = "gltf"))]
-fn paced(tracks: &[&[f64]], fps: Option<f64>, distance: Option<f64>) -> Result<Grid> {
     let times = || tracks.iter().flat_map(|times| times.iter());
     let (first, last) = times().fold((f64::MAX, f64::MIN), |(first, last), &time| (first.min(time), last.max(time)));
-    let mut grid = between(first, last, fps, distance)?;
+    let mut grid = between(first, last, fps, common(tracks))?;
     if first > 0.5 * grid.frame_time {
         grid.sentence = format!("{}; the clip begins with the first key, at {first:.3} s", grid.sentence);
     }

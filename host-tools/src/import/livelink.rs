@@ -5,10 +5,11 @@
 
 use super::scalars::{self, Grid};
 use super::sheet::{Sheet, delimiter};
-use super::text::shown;
+use super::text::{quoted, shown};
 use super::timecode::{Clock, NTSC, Timecode};
 use super::{Options, Source};
 use anyhow::{Context, Result};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Full scale of weights, and of angles in radians.
@@ -34,12 +35,14 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         return Err(sheet.error(1, "expected `Timecode,BlendshapeCount,` and names of blend shapes"));
     }
     let names: Vec<String> = sheet.header[FIRST..].iter().map(|name| live_link_name(name)).collect();
-    let twice = (1..names.len()).find_map(|later| Some((names[..later].iter().position(|name| *name == names[later])?, later)));
-    if let Some((first, later)) = twice {
-        let [first, later] = [first, later].map(|column| crate::import::text::quoted(&sheet.header[FIRST + column]));
-        return Err(sheet.error(1, format!("the columns {first} and {later} are one blend shape")));
-    }
     scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
+    let mut columns = HashMap::new();
+    for (column, name) in names.iter().enumerate() {
+        if let Some(other) = columns.insert(name, column) {
+            let [first, later] = [other, column].map(|column| quoted(&sheet.header[FIRST + column]));
+            return Err(sheet.error(1, format!("the columns {first} and {later} are one blend shape")));
+        }
+    }
     let rows = Rows::read(&mut sheet, names.len())?;
     let (grid, fps, mut warnings) = rows.grid(&sheet, names.len())?;
     if rows.untracked > 0 {

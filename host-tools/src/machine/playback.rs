@@ -75,11 +75,6 @@ pub fn has_machine(bytes: &[u8]) -> bool {
     !matches!(Table::of_bank(bytes), Err(Error::Machine(TableError::Missing) | Error::Clip(_)))
 }
 
-/// The table of a bank's state machine.
-pub fn table(bytes: &[u8]) -> Result<Table<'_>> {
-    Ok(Table::of_bank(bytes)?)
-}
-
 /// Reads a session for a table; errors name the file and the line.
 pub fn session<'a>(text: &'a str, name: &str, table: &Table<'a>) -> Result<Session<'a>> {
     Session::new_checked(text, table).map_err(|error| {

@@ -103,10 +103,10 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     }
     ensure!(rows.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", rows.len());
     ensure!(source.layers.len() <= LAYERS, "{name}: {} layers; at most {LAYERS}", source.layers.len());
-    let layer = |layer: &'_ Spanned<Layer>| (file.at(layer.span()), layer.get_ref().clone());
     let mut layers = Vec::new();
-    for (place, layer) in source.layers.iter().map(layer) {
-        layers.push(maker.layer_row(&layer, source).with_context(|| format!("{place}: layer"))?);
+    for layer in &source.layers {
+        let row = maker.layer_row(layer.get_ref(), source);
+        layers.push(row.with_context(|| format!("{}: layer", file.at(layer.span())))?);
     }
     ensure!(maker.inputs.len() <= INPUTS, "{name}: {} inputs; at most {INPUTS}", maker.inputs.len());
     let mut out = vec![
@@ -162,7 +162,7 @@ struct Maker<'s, 'b> {
     warnings: Vec<String>,
 }
 
-impl<'s> Maker<'s, '_> {
+impl<'s, 'b> Maker<'s, 'b> {
     fn state(&self, name: &str) -> Result<u8> {
         let names: Vec<String> = self.names.keys().map(|name| quoted(name)).collect();
         self.names.get(name).copied().with_context(|| format!("no state {}; there are {}", quoted(name), names.join(", ")))
@@ -186,6 +186,11 @@ impl<'s> Maker<'s, '_> {
     fn clip_of(&self, state: &State) -> Result<u8> {
         let name = state.clip.as_ref().map_or(state.name.get_ref(), |clip| clip.get_ref());
         self.clips.find(name)
+    }
+
+    /// The clip that a state plays, and its name.
+    fn played(&self, state: &State) -> Result<&(&'b str, Clip<'b>)> {
+        Ok(&self.clips.all[usize::from(self.clip_of(state)?)])
     }
 
     fn state_row(&mut self, state: &'s State, first: usize, file: &Text) -> Result<[u8; 8]> {
@@ -242,23 +247,21 @@ impl<'s> Maker<'s, '_> {
         }
         let joints = layer.joints.join("\n");
         ensure!(joints.len() <= NAME_BYTES, "joints: {} bytes of patterns; at most {NAME_BYTES}", joints.len());
-        for state in &source.states {
-            let names = layer.states.as_ref();
-            let (name, under) = &self.clips.all[usize::from(self.clip_of(state)?)];
-            let played = names.is_none_or(|names| names.contains(state.name.get_ref()));
-            if played && under.form().check(self.clips.all[usize::from(clip)].1.form_ref()).is_err() {
-                bail!(
-                    "the clips {} and {} have different forms; `pantin convert --same-form` makes them equal",
-                    quoted(name),
-                    quoted(&layer.clip)
-                );
-            }
-        }
         let mut states = u64::MAX;
         if let Some(names) = &layer.states {
             states = 0;
             for name in names {
                 states |= 1 << self.state(name)?;
+            }
+        }
+        for (_, state) in source.states.iter().enumerate().filter(|(index, _)| states >> index & 1 != 0) {
+            let (name, under) = self.played(state)?;
+            if under.form().check(self.clips.all[usize::from(clip)].1.form_ref()).is_err() {
+                bail!(
+                    "the clips {} and {} have different forms; `pantin convert --same-form` makes them equal",
+                    quoted(name),
+                    quoted(&layer.clip)
+                );
             }
         }
         let mut row = [0; 12];
@@ -347,12 +350,12 @@ impl<'s> Maker<'s, '_> {
             Cause::End(end) => {
                 ensure!(end, "end = false is no cause");
                 if let Some(from) = from {
-                    let clip = &self.clips.all[usize::from(self.clip_of(from)?)];
+                    let clip = self.played(from)?;
                     ensure!(!clip.1.looped(), "the clip {} is a loop, which has no end", quoted(clip.0));
                 }
                 let mut ends = false;
                 for state in &source.states {
-                    ends |= !self.clips.all[usize::from(self.clip_of(state)?)].1.looped() && !stands(state);
+                    ends |= !self.played(state)?.1.looped() && !stands(state);
                 }
                 ensure!(ends, "every state plays a loop or stands still, and has no end");
                 (0, 0, 0)
@@ -371,7 +374,7 @@ impl<'s> Maker<'s, '_> {
         let states: Vec<&State> = from.map_or_else(|| source.states.iter().filter(left).collect(), |from| vec![from]);
         let mut clips = Vec::new();
         for state in states {
-            clips.push(&self.clips.all[usize::from(self.clip_of(state)?)]);
+            clips.push(self.played(state)?);
         }
         let mut ids: Vec<u32> = clips.iter().filter_map(|(_, clip)| clip.event_id(name)).collect();
         ids.sort_unstable();
@@ -397,7 +400,7 @@ impl<'s> Maker<'s, '_> {
 
     /// Warns of a state at whose end the figure stands still.
     fn check_end(&mut self, state: &State, source: &Source, file: &Text) -> Result<()> {
-        let (name, clip) = &self.clips.all[usize::from(self.clip_of(state)?)];
+        let (name, clip) = self.played(state)?;
         if !clip.looped() && state.transitions.is_empty() && source.any.is_empty() {
             self.warnings.push(format!(
                 "line {}: state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",

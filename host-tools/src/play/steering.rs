@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 const PICTURE: Duration = Duration::from_nanos(33_333_333);
 /// Most time that passes in a picture: the figure waits while the program is stopped.
 const MOST: Duration = Duration::from_millis(250);
-/// Keys are looked for so long at least.
+/// The least time for which keys are looked for.
 const BRIEFLY: Duration = Duration::from_millis(1);
 /// Parts of a parameter's range that a key passes.
 const PARTS: i32 = 10;
@@ -144,7 +144,7 @@ pub struct Steering<'b> {
 impl<'b> Steering<'b> {
     /// The machine of a bank, which has one.
     pub fn new(bytes: &'b [u8], name: String) -> Result<Steering<'b>> {
-        Ok(Steering { bytes, name, keys: Keys::of(&crate::machine::playback::table(bytes)?), parameter: 0, stage: None })
+        Ok(Steering { bytes, name, keys: Keys::of(&Table::of_bank(bytes)?), parameter: 0, stage: None })
     }
 
     /// Plays until a key ends it.

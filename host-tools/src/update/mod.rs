@@ -8,12 +8,12 @@ pub mod uf2;
 pub use send::{Outcome, RetryPolicy, TransferError, send};
 
 use crate::input;
+use crate::machine::playback::has_machine;
 use crate::open::no_clip;
 use crate::output::{clean, is_hostile, note};
 use anyhow::{Context, Result, anyhow};
 use pantin::codec::layout::BANK_MAGIC;
 use pantin::{Bank, Clip, OpenError};
-use pantin_animator::machine::{Table, TableError};
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
@@ -38,7 +38,7 @@ pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
             bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
         }
         note!("{}: a bank of {} clips, for firmware that is built with feature `bank`", place(), bank.len());
-        if !matches!(Table::of_bank(&clip), Err(pantin_animator::Error::Machine(TableError::Missing))) {
+        if has_machine(&clip) {
             note!("warning: {}: the boards' firmware plays the clips one after the other, not the state machine", place());
         }
     } else {

@@ -4,6 +4,8 @@
 const MOST = 64 << 20;
 const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars", "scalarsAt", "scalarsLength", "pose", "eventFrame", "eventId", "eventNameAt", "eventNameLength"];
 const none = () => Object.fromEntries(WORDS.map((word) => [word, 0]));
+// What a player without a clip knows.
+const empty = () => ({ received: 0, total: 0, trouble: "", events: [], clips: [], facts: none() });
 // Events of a clip that are heard, at most.
 const MOST_EVENTS = 4096;
 // Bytes of a stroke, and how many of them there is room for.
@@ -36,7 +38,7 @@ async function start(url) {
   let end = (instance.exports.base() + 15) & -16;
   return {
     ...instance.exports,
-    // The address of so many bytes, a multiple of 16.
+    // The address of a new block of `size` bytes, a multiple of 16.
     take(size) {
       const known = free[size]?.pop();
       if (known) return known;
@@ -279,7 +281,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.#abort?.abort();
     const abort = (this.#abort = new AbortController());
     this.pause();
-    Object.assign(this, { received: 0, total: 0, trouble: "", events: [], clips: [], facts: none() });
+    Object.assign(this, empty());
     this.#lazy = null;
     this.#at = 0;
     const { signal } = abort;
@@ -325,7 +327,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     this.pause();
     if (this.#seat) release(this.#seat);
     this.#seat = null;
-    Object.assign(this, { received: 0, total: 0, trouble: "", events: [], clips: [], facts: none() });
+    Object.assign(this, empty());
     this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.#tell();
     this.#dispatch("change");
@@ -355,7 +357,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     return place;
   }
 
-  // The address of the file, with room for so many bytes; what has come stays.
+  // The address of the file, with room for its bytes; what has come stays.
   #room(size) {
     const seat = this.#seat;
     const { wasm, file } = seat;

@@ -24,7 +24,7 @@ export declare class PantinPose {
   readonly time: number;
   /** Names of the clip that have no node or morph target. */
   readonly missing: { readonly joints: readonly string[]; readonly scalars: readonly string[] };
-  /** Goes on by so many seconds. A looped clip repeats; another one stays at its last frame. */
+  /** Goes on by a number of seconds. A looped clip repeats; another one stays at its last frame. */
   update(seconds: number): this;
   /** Shows the frame at a time in seconds. */
   setTime(seconds: number): this;

@@ -96,7 +96,7 @@ export class PantinPose {
     this.apply();
   }
 
-  /** Goes on by so many seconds. */
+  /** Goes on by a number of seconds. */
   update(seconds) {
     return this.setTime(this.time + seconds);
   }

@@ -23,6 +23,10 @@ use std::path::{Path, PathBuf};
 
 /// Pixels on the shorter side from which lines are smooth by default.
 const SMOOTH_FROM: usize = 240;
+/// Columns that a picture of pixels has about, enlarged: alone or in an animation, and in a sheet.
+pub(super) const EASY_TO_SEE: usize = 512;
+pub(super) const EASY_TO_SEE_IN_A_SHEET: usize = 256;
+const MOST_ENLARGED: usize = 4;
 /// Columns and rows of a picture without --size.
 const SIZE: &str = "128x64";
 /// The name of the face of filled shapes.
@@ -190,6 +194,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
+/// Whether lines of pictures of this size are smooth by default.
+pub(super) fn is_smooth([width, height]: [usize; 2], palette: &Palette) -> bool {
+    width.min(height) >= SMOOTH_FROM && !palette.is_mono()
+}
+
+/// How many times each pixel is enlarged, so that the picture has about `easy` columns.
+pub(super) fn easy_scale(easy: usize, [width, _]: [usize; 2]) -> usize {
+    (easy / width).clamp(1, MOST_ENLARGED)
+}
+
 impl Arguments {
     /// The bytes of the face's model.
     fn model(&self) -> Result<Vec<u8>> {
@@ -282,7 +296,7 @@ impl Arguments {
 
     fn look(&self, kind: Kind) -> Result<LineStyle> {
         let [width, height] = self.size.0;
-        let smooth = self.smooth || !self.pixels && width.min(height) >= SMOOTH_FROM && !self.palette.is_mono();
+        let smooth = self.smooth || !self.pixels && is_smooth(self.size.0, &self.palette);
         ensure!(!(self.smooth && self.palette.is_mono()), "the palette mono has no colours between that make lines smooth");
         let pixels = width.max(height) <= MOST_PIXELS || kind == Kind::Svg;
         ensure!(smooth || pixels, "--size {width}x{height}: displays of pixels have at most {MOST_PIXELS} a side; --smooth more");

@@ -1,6 +1,6 @@
 //! What is shown of the clip, and in which file format.
 
-use super::{Arguments, Side};
+use super::{Arguments, EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, easy_scale};
 use crate::output::{note, progress};
 use crate::render::animation::{Animation, Timing};
 use crate::render::apng::{self, Apng};
@@ -23,10 +23,6 @@ const MOST_PIXELS: usize = 64 << 20;
 const LEAST_A_SECOND: f64 = 0.1;
 /// Most pictures of an animation: ten minutes at the most that displays show in a second.
 const MOST_PICTURES: f64 = 36_000.0;
-/// Pixels are enlarged so far that a picture has about as many columns.
-const EASY_TO_SEE: usize = 512;
-const EASY_TO_SEE_IN_A_SHEET: usize = 256;
-const MOST_ENLARGED: usize = 4;
 /// The fractional part of the golden ratio: its multiples leave no two alike gaps in step with anything.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
@@ -81,7 +77,7 @@ impl Output<'_, '_> {
     }
 
     fn scale(&self, easy: usize) -> usize {
-        let own = if self.look == LineStyle::Smooth { 1 } else { (easy / self.arguments.size.0[0]).clamp(1, MOST_ENLARGED) };
+        let own = if self.look == LineStyle::Smooth { 1 } else { easy_scale(easy, self.arguments.size.0) };
         self.arguments.scale.map_or(own, usize::from)
     }
 

@@ -112,7 +112,7 @@ fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize, warning
     let Some(extras) = extras else { return Vec::new() };
     let lists = ["events", "markers"].into_iter().filter_map(|key| extras[key].as_array());
     let entries = lists.flatten().filter(|entry| !entry["time"].is_null() && !entry["name"].is_null());
-    let event = |entry: &serde_json::Value| {
+    let read = |entry: &serde_json::Value| {
         let time = entry["time"].as_f64().context("a time that is no number")?;
         let name = entry["name"].as_str().context("a name that is no text")?;
         events::check_name(name)?;
@@ -120,12 +120,18 @@ fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize, warning
         ensure!((0.0..frames as f64).contains(&frame), "a time of {time} s, outside the animation");
         Ok(Event { frame: frame as usize, name: name.into() })
     };
-    let (events, errors): (Vec<Result<Event>>, Vec<Result<Event>>) = entries.map(event).partition(Result::is_ok);
-    if let Some(error) = errors.iter().find_map(|error| error.as_ref().err()) {
-        let count = errors.len();
-        warnings.push(format!("{count} of the animation's events are left out; of the first: {}", one_line(&error.to_string())));
+    let (mut found, mut errors) = (Vec::new(), Vec::new());
+    for entry in entries {
+        match read(entry) {
+            Ok(event) => found.push(event),
+            Err(error) => errors.push(error),
+        }
     }
-    events.into_iter().flatten().collect()
+    if let Some(first) = errors.first() {
+        let (count, first) = (errors.len(), one_line(&first.to_string()));
+        warnings.push(format!("{count} of the animation's events are left out; of the first: {first}"));
+    }
+    found
 }
 
 /// What moves a node or a mesh's weights.

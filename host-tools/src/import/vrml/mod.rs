@@ -122,7 +122,7 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
     let stands = figure::needed(world, &stands, &kept);
     for frame in 0..if joints.is_empty() { 0 } else { grid.frames } {
         let worlds = figure::evaluate(&stands, &tracks.moves, seconds(frame));
-        joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, place)| joint.worlds.push(*place));
+        joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, world)| joint.worlds.push(*world));
     }
     let scalar = |(name, track): &(String, track::Track)| {
         let values: Vec<f64> = (0..grid.frames).map(|frame| track.at(seconds(frame))[0]).collect();
