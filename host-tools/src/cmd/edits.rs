@@ -10,6 +10,7 @@ use crate::motion::{Event, Motion};
 use crate::number::Number;
 use anyhow::{Context, Result};
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Changes of the motion. They apply in this order: --rate, --fps, --event, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop, --footsteps.
@@ -63,6 +64,11 @@ pub struct Edits {
 struct Marker {
     name: String,
     moment: Moment,
+}
+
+/// How many events a clip of the motion has: those of one name at one frame are one.
+fn distinct(motion: &Motion) -> usize {
+    motion.events.iter().map(|event| (event.frame, &event.name)).collect::<HashSet<_>>().len()
 }
 
 /// Frames per second that a clip can have: its frame time takes 32 bits of nanoseconds.
@@ -132,7 +138,14 @@ impl Edits {
         }
         if let Some(fps) = fps {
             let before = (motion.frames, 1.0 / motion.frame_time);
+            let events = distinct(&motion);
             motion = resample(&motion, fps)?;
+            let merged = events - distinct(&motion);
+            if merged > 0 {
+                said.push(format!(
+                    "events: {merged} of {events} come to a frame that has one of their name, and are one with it"
+                ));
+            }
             if (before.1 / fps - 1.0).abs() > 1e-3 {
                 said.push(format!("{} frames at {:.3} a second became {} at {}", before.0, before.1, motion.frames, Number(fps)));
             }

@@ -161,6 +161,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if clip.event_count() > 0 && matches!(format, Format::Bvh) {
         note!("{}: {} events are left out: this kind of file holds none here", output.display(), clip.event_count());
     }
+    if matches!(format, Format::Bvh) {
+        let names = export::bvh::names(rig);
+        let changed = rig.joints.iter().zip(&names).filter(|(joint, name)| !joint.end_site && joint.name != **name);
+        for (joint, name) in changed {
+            note!(
+                "{}: the joint `{}` is called `{name}`: BVH takes no braces, control characters or empty names",
+                output.display(),
+                joint.name
+            );
+        }
+    }
     let mut out = Staged::create(output)?;
     let bar = output::progress(format.plays() * expanded.frames() as u64, "writing {wide_bar} {percent} % {eta} left")?;
     let watched = Watched { of: &expanded, bar: &bar };

@@ -4,6 +4,7 @@
 use crate::motion::Motion;
 use crate::motion::{Frames, Joint, Kind, Rig};
 use anyhow::{Context, Result, bail};
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::io::Write;
 #[cfg(feature = "cli")]
@@ -72,6 +73,7 @@ fn columns(joint: &Joint, of: Columns) -> Vec<(Kind, Option<usize>)> {
 
 /// Writes the joints depth first, as BVH nests them, and returns their indices in that order.
 fn hierarchy(rig: &Rig, of: Columns, text: &mut String) -> Result<Vec<usize>> {
+    let names = names(rig);
     if let Some(scalar) = rig.scalars.first() {
         bail!("channel `{}` moves no joint, so BVH cannot hold it", scalar.name);
     }
@@ -97,7 +99,7 @@ fn hierarchy(rig: &Rig, of: Columns, text: &mut String) -> Result<Vec<usize>> {
             writeln!(text, "{}}}", "\t".repeat(depth))?;
             continue;
         };
-        open(rig, of, joint, depth, text)?;
+        open(rig, of, joint, &names[joint], depth, text)?;
         order.push(joint);
         depth += 1;
         left.push(None);
@@ -106,13 +108,13 @@ fn hierarchy(rig: &Rig, of: Columns, text: &mut String) -> Result<Vec<usize>> {
     Ok(order)
 }
 
-fn open(rig: &Rig, of: Columns, index: usize, depth: usize, text: &mut String) -> Result<()> {
+fn open(rig: &Rig, of: Columns, index: usize, name: &str, depth: usize, text: &mut String) -> Result<()> {
     let joint = &rig.joints[index];
     let indent = "\t".repeat(depth);
     match (joint.end_site, joint.parent) {
         (true, _) => writeln!(text, "{indent}End Site")?,
-        (false, None) => writeln!(text, "{indent}ROOT {}", name(rig, index))?,
-        (false, Some(_)) => writeln!(text, "{indent}JOINT {}", name(rig, index))?,
+        (false, None) => writeln!(text, "{indent}ROOT {name}")?,
+        (false, Some(_)) => writeln!(text, "{indent}JOINT {name}")?,
     }
     write!(text, "{indent}{{\n{indent}\tOFFSET")?;
     for x in joint.offset {
@@ -143,11 +145,30 @@ fn word(kind: Kind) -> Option<&'static str> {
     })
 }
 
-/// A joint's name on one line; braces would end it for a reader.
-fn name(rig: &Rig, index: usize) -> String {
-    let name = &rig.joints[index].name;
-    let plain: String = name.chars().map(|c| if c.is_control() || matches!(c, '{' | '}') { '_' } else { c }).collect();
-    if plain.trim().is_empty() { format!("joint{index}") } else { plain }
+/// The joints' names as the file has them: on one line, and without braces, which would end them for a reader. A name that this changes
+/// becomes none that another joint has.
+pub fn names(rig: &Rig) -> Vec<String> {
+    let plain = |(index, joint): (usize, &Joint)| {
+        let plain: String = joint.name.chars().map(|c| if c.is_control() || matches!(c, '{' | '}') { '_' } else { c }).collect();
+        if plain.trim().is_empty() { format!("joint{index}") } else { plain }
+    };
+    let mut names: Vec<String> = rig.joints.iter().enumerate().map(plain).collect();
+    let changed = |index: usize, name: &str| !rig.joints[index].end_site && rig.joints[index].name != name;
+    let mut taken: HashSet<String> =
+        (0..names.len()).filter(|&index| !changed(index, &names[index])).map(|index| names[index].clone()).collect();
+    let mut numbers: HashMap<String, u32> = HashMap::new();
+    for index in 0..names.len() {
+        if !changed(index, &names[index]) {
+            continue;
+        }
+        let plain = names[index].clone();
+        let number = numbers.entry(plain.clone()).or_insert(1);
+        while !taken.insert(names[index].clone()) {
+            *number += 1;
+            names[index] = format!("{plain}_{number}");
+        }
+    }
+    names
 }
 
 /// Decimals of offsets and positions: figures may be 0.1 units high, and bounds a ten-thousandth of that.

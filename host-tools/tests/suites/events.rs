@@ -4,9 +4,10 @@ use pantin::{Clip, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use pantin_tools::edit::footsteps::footsteps;
 use pantin_tools::edit::mirror::mirror;
 use pantin_tools::events;
+use pantin_tools::export::bvh;
 use pantin_tools::fk::positions;
 use pantin_tools::import::{self, Options};
-use pantin_tools::motion::Motion;
+use pantin_tools::motion::{Kind, Motion};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -83,6 +84,15 @@ fn edits_move_events_with_the_frames() {
     // 26 frames of 36 a second; the frames of --event are those after --fps.
     assert!(convert(&own("run"), &clip, &["--fps", "72", "--event", "a@50"]).status.success());
     assert_eq!(of(&clip), [(50, "a".to_string())]);
+    // Frames 3 and 4 of 36 a second are both frame 1 of 12.
+    std::fs::write(
+        folder.path().join("many.keys"),
+        "keyframes 1\nfps 36\nframes 9\nevent clap 3 4\nscalar a scale 1\nkeys linear a\n 0 0\n 8 1\n",
+    )
+    .unwrap();
+    let merged = convert(&folder.path().join("many.keys"), &clip, &["--fps", "12"]);
+    assert!(String::from_utf8_lossy(&merged.stderr).contains("events: 1 of 2 come to a frame"), "{merged:?}");
+    assert_eq!(of(&clip), [(1, "clap".to_string())]);
 }
 
 #[test]
@@ -190,4 +200,36 @@ fn footsteps_are_events_of_the_clip() {
     let ids = [LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN].map(|name| clip.event_id(name).unwrap());
     assert!(clip.events().all(|event| ids.contains(&event.id)));
     assert_eq!(clip.event_count(), 2);
+}
+
+#[test]
+fn footsteps_are_found_along_the_axis_that_all_clips_share() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    // Without a statement of the file, a figure that lies on its back looks as if z were up.
+    let put = |name: &str, own_name: &str, turn: f64| {
+        let mut motion = load(&own(own_name));
+        motion.rig.joints[0].kinds.push(Kind::Xrotation);
+        motion.values.insert(1, vec![turn; motion.frames]);
+        motion.keys.insert(1, None);
+        bvh::save(&motion, &path(name)).unwrap();
+        path(name)
+    };
+    let files = [put("walk.bvh", "walk", 0.0), put("run.bvh", "run", 0.0), put("lying.bvh", "run", 90.0)];
+    let run = |options: &[&str], inputs: &[PathBuf], out: &Path| {
+        let output = Command::new(env!("CARGO_BIN_EXE_pantin"))
+            .arg("convert")
+            .args(inputs)
+            .args(options)
+            .arg("-o")
+            .arg(out)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let said = run(&["--same-form", "--footsteps", "--max-error", "3cm"], &files, &path("out"));
+    assert!(said.contains("another axis were up"), "{said}");
+    run(&["--up", "y", "--footsteps", "--max-error", "3cm"], &files[2..], &path("alone.ptn"));
+    assert_eq!(of(&path("out").join("lying.ptn")), of(&path("alone.ptn")));
 }

@@ -46,6 +46,19 @@ fn a_leg_in_metres_and_z_up_is_turned_to_cm_and_y_up() {
     assert!(leg.warnings.iter().any(|warning| warning.contains("1 cameras")), "{:?}", leg.warnings);
 }
 
+#[test]
+fn a_unit_that_is_none_is_said() {
+    for unit in ["0", "-1"] {
+        let leg = load(&LEG.replace(
+            "\"UnitScaleFactor\", \"double\", \"Number\", \"\",100",
+            &format!("\"UnitScaleFactor\", \"double\", \"Number\", \"\",{unit}"),
+        ))
+        .unwrap();
+        assert!(leg.warnings.iter().any(|warning| warning.contains(&format!("UnitScaleFactor is {unit}"))), "{:?}", leg.warnings);
+    }
+    assert!(!load(LEG).unwrap().warnings.iter().any(|warning| warning.contains("UnitScaleFactor")));
+}
+
 /// [`LEG`] with one more curve of two keys: an axis of a property of a node.
 fn with_curve(file: &str, id: u32, node: u32, property: &str, axis: &str, keys: &str) -> String {
     let default = u8::from(property == "Lcl Scaling");

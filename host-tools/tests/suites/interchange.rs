@@ -60,6 +60,21 @@ fn exported_bvh_has_three_rotations_a_joint() {
     assert!(lines.len() == 2 && lines.iter().all(|line| line.matches("rotation").count() == 3), "{lines:?}");
 }
 
+#[test]
+fn joints_that_bvh_cannot_name_are_said_and_stay_apart() {
+    let folder = Folder::new();
+    let joints =
+        "joint {a} offset 0 1 0 channels Xrotation\njoint _a_ parent {a} offset 0 1 0\njoint a}} parent {a} offset 1 0 0\n";
+    folder.put("names.keys", format!("keyframes 1\nfps 30\nframes 2\n{joints}keys linear {{a}}.Xrotation\n 0 0\n 1 9\n"));
+    folder.done(&["convert", "names.keys", "-o", "names.ptn"]);
+    let said = err(&folder.done(&["expand", "names.ptn", "-o", "names.bvh"]));
+    assert!(said.contains("`{a}` is called `_a__2`") && said.contains("`a}}` is called `a__`"), "{said}");
+    let text = String::from_utf8(folder.get("names.bvh")).unwrap();
+    for joint in ["ROOT _a__2\n", "JOINT _a_\n", "JOINT a__\n"] {
+        assert!(text.contains(joint), "{text}");
+    }
+}
+
 fn json_of(bytes: &[u8]) -> Value {
     serde_json::from_slice(&gltf::Glb::from_slice(bytes).unwrap().json).unwrap()
 }

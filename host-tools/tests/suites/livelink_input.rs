@@ -1,5 +1,6 @@
 //! Live Link Face CSV: small recordings are read as they say, and mistakes are named with their place.
 
+use super::outputs::{Folder, err};
 use anyhow::Result;
 use pantin_tools::import::{Options, load};
 use pantin_tools::motion::Motion;
@@ -102,4 +103,14 @@ fn what_is_wrong_is_named_with_its_place() {
     assert!(unnamed.contains(".csv:1: no channels"), "{unnamed}");
     let strange = format!("{:#}", read_as("strange", b"Timecode,BlendshapeCount,Eye\xff\n").unwrap_err());
     assert!(strange.contains(".csv:1: column 3: `Eye\u{fffd}` is not UTF-8"), "{strange}");
+}
+
+#[test]
+fn warnings_of_a_face_beside_a_body_are_said() {
+    let folder = Folder::new();
+    let codes = (0..90u32).filter(|frame| !(40..43).contains(frame)).map(|frame| (frame, 50 + frame / 60, f64::from(frame % 60)));
+    folder.put("face.csv", recording(codes));
+    let walk = concat!(env!("CARGO_MANIFEST_DIR"), "/../motions/walk.keys");
+    let said = err(&folder.done(&["convert", walk, "--with", "face.csv", "--fps", "60", "-o", "both.ptn", "--effort", "fast"]));
+    assert!(said.contains("with: warning: 3 of 90 frames were dropped"), "{said}");
 }

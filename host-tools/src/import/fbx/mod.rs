@@ -38,6 +38,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let grid = grid(&scene, stack, options.fps).with_context(place)?;
     let (figure, left_out) = motion(&scene, stack, &grid).with_context(place)?;
     let mut warnings = vec![grid.sentence];
+    let unit = ufbx::find_prop(&scene.settings.props, "UnitScaleFactor").map_or(1.0, |unit| unit.value_vec4.x);
+    if !(unit.is_finite() && unit > 0.0) {
+        warnings.push(format!("UnitScaleFactor is {unit}, which is no unit: taken as cm"));
+    }
     let stacks = scene.anim_stacks.len();
     if options.animation.is_none() && stacks > 1 {
         let name = one_line(&stack.element.name);
