@@ -153,19 +153,16 @@ pub fn names(rig: &Rig) -> Vec<String> {
         if plain.trim().is_empty() { format!("joint{index}") } else { plain }
     };
     let mut names: Vec<String> = rig.joints.iter().enumerate().map(plain).collect();
-    let changed = |index: usize, name: &str| !rig.joints[index].end_site && rig.joints[index].name != name;
+    let changed: Vec<bool> = rig.joints.iter().zip(&names).map(|(joint, name)| !joint.end_site && joint.name != *name).collect();
     let mut taken: HashSet<String> =
-        (0..names.len()).filter(|&index| !changed(index, &names[index])).map(|index| names[index].clone()).collect();
+        names.iter().zip(&changed).filter(|(_, changed)| !**changed).map(|(name, _)| name.clone()).collect();
     let mut numbers: HashMap<String, u32> = HashMap::new();
-    for index in 0..names.len() {
-        if !changed(index, &names[index]) {
-            continue;
-        }
-        let plain = names[index].clone();
+    for (name, _) in names.iter_mut().zip(changed).filter(|(_, changed)| *changed) {
+        let plain = name.clone();
         let number = numbers.entry(plain.clone()).or_insert(1);
-        while !taken.insert(names[index].clone()) {
+        while !taken.insert(name.clone()) {
             *number += 1;
-            names[index] = format!("{plain}_{number}");
+            *name = format!("{plain}_{number}");
         }
     }
     names
