@@ -71,6 +71,12 @@ impl<'a> Curve<'a> {
         }
     }
 
+    /// The indices of its vertices, if each takes one byte.
+    #[inline(always)]
+    pub(crate) fn bytes(&self) -> Option<&'a [u8]> {
+        (!self.wide).then_some(self.indices)
+    }
+
     /// Walks the indices of its vertices.
     #[inline(always)]
     pub fn vertices(&self) -> impl Iterator<Item = u16> + '_ {

@@ -73,10 +73,12 @@ impl<const N: usize> Morph<N> {
 #[inline(never)]
 fn apply_shapes(model: &Model, weights: &Weights, vertices: &mut [Vertex]) -> ([i32; 3], Vertex) {
     let (mut head, mut pivot) = ([0i32; 3], [0; 3]);
-    for (shape, pair) in model.shapes().zip(weights.pairs()) {
-        if pair == [0; 2] && shape.kind != ShapeKind::Head {
+    let mut shapes = model.shapes();
+    for pair in weights.pairs() {
+        if pair == [0; 2] && shapes.skip_unless_head() {
             continue;
         }
+        let Some(shape) = shapes.next() else { break };
         let pair = if shape.kind == ShapeKind::Unsigned { [pair[0].max(0), pair[1].max(0)] } else { pair };
         if shape.kind == ShapeKind::Head {
             for rotation in shape.rotations() {

@@ -1,6 +1,6 @@
 //! Clips what lies behind lids and lips: irises, teeth and the tongue are drawn no farther than the edges of their opening.
 
-use crate::bytes::{Bytes, indices};
+use crate::bytes::{Bytes, each_index, indices};
 use crate::model::Model;
 use crate::opening::Opening;
 use crate::vertex::Vertex;
@@ -21,12 +21,13 @@ pub(crate) fn clip_members(model: &Model, vertices: &mut [Vertex], weights: &Wei
             }
             let image = |index| usize::from(if mirrored { model.mirror(index) } else { index });
             let (mut upper, mut lower) = (Edge::EMPTY, Edge::EMPTY);
-            indices(opening.upper, wide).for_each(|index| upper.add(vertices, image(index)));
-            indices(opening.lower, wide).for_each(|index| lower.add(vertices, image(index)));
+            each_index(opening.upper, wide, |index| upper.add(vertices, image(index)));
+            each_index(opening.lower, wide, |index| lower.add(vertices, image(index)));
             let (above, below) = (upper.inner(), lower.inner());
+            let [least, most] = upper.ends(&above);
             indices(opening.members, wide).for_each(|index| {
                 let Some(vertex) = vertices.get_mut(image(index)) else { return };
-                let (x, mut y) = (i32::from(vertex[0]).max(upper.least).min(upper.most), i32::from(vertex[1]));
+                let (x, mut y) = (i32::from(vertex[0]).max(least).min(most), i32::from(vertex[1]));
                 if !above.holds(x) || y > above.lowest {
                     y = y.min(upper.height(x));
                 }
@@ -45,18 +46,23 @@ const EDGE: usize = 10;
 /// A row of vertices from one corner to the other.
 struct Edge {
     vertices: Vec<[i16; 2], EDGE>,
-    least: i32,
-    most: i32,
 }
 
 impl Edge {
-    const EMPTY: Edge = Edge { vertices: Vec::new(), least: i32::MAX, most: i32::MIN };
+    const EMPTY: Edge = Edge { vertices: Vec::new() };
 
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn add(&mut self, vertices: &[Vertex], index: usize) {
         let Some(&[x, y, _]) = vertices.get(index) else { return };
         let _ = self.vertices.push([x, y]);
-        (self.least, self.most) = (self.least.min(x.into()), self.most.max(x.into()));
+    }
+
+    /// The least and the greatest x of all vertices, given the extent of those between the corners.
+    #[inline(always)]
+    fn ends(&self, inner: &Inner) -> [i32; 2] {
+        let corners = [self.vertices.first(), self.vertices.last()];
+        let corners = corners.into_iter().flatten().map(|corner| i32::from(corner[0]));
+        corners.fold([inner.least, inner.most], |[least, most], x| [least.min(x), most.max(x)])
     }
 
     /// The extent of the vertices between the corners.

@@ -7,10 +7,10 @@ use heapless::Vec;
 
 /// Brightness.
 const SHADE: u8 = 200;
-/// Maximum number of triangles that are kept from frame to frame; if there are more, all are searched for in every frame.
+/// Maximum number of triangles that are kept from frame to frame; if there are more, or the model is wide, all are searched for in every frame.
 const KEPT: usize = 48;
 /// Lines for which the surface is marked at once. Mirror images follow each other, so the rectangles are as wide as the face anyway.
-const LINES_PER_MARK: usize = 2;
+const LINES_PER_MARK: usize = 4;
 
 /// The triangles that make the outline while the head does not rotate.
 #[derive(Clone, Debug)]
@@ -22,8 +22,8 @@ pub(crate) struct Outline {
 /// A triangle that the outline crosses.
 #[derive(Clone, Copy, Debug)]
 struct Crossed {
-    /// The corner that is alone on its side, and the two others.
-    corners: [u16; 3],
+    /// The corner that is alone on its side, and the two others. One byte each: the triangles of wide models are not kept.
+    corners: [u8; 3],
     /// The part of the edges to these two, Q8, at which the surface turns away.
     parts: [u8; 2],
 }
@@ -33,16 +33,25 @@ impl Crossed {
     fn new(corners: [u16; 3], facing: &[i8]) -> Self {
         let of = |index: u16| i32::from(facing.get(usize::from(index)).copied().unwrap_or(0));
         let [apex, one, other] = corners;
-        Crossed { corners, parts: [one, other].map(|index| zero_crossing(of(apex), of(index)).min(255) as u8) }
+        Crossed {
+            corners: [apex as u8, one as u8, other as u8],
+            parts: [one, other].map(|index| zero_crossing(of(apex), of(index)).min(255) as u8),
+        }
     }
 
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn draw(&self, points: &[[i16; 2]], out: &mut impl StrokeSink) {
-        let at = |index: u16| points.get(usize::from(index)).copied().unwrap_or_default();
         let [apex, one, other] = self.corners;
-        let apex = at(apex);
-        out.line(between(apex, at(one), self.parts[0].into()), between(apex, at(other), self.parts[1].into()));
+        draw_between([apex.into(), one.into(), other.into()], self.parts, points, out);
     }
+}
+
+/// Draws the line through a triangle: between points on the edges from its first corner to the others.
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+fn draw_between([apex, one, other]: [u16; 3], parts: [u8; 2], points: &[[i16; 2]], out: &mut impl StrokeSink) {
+    let at = |index: u16| points.get(usize::from(index)).copied().unwrap_or_default();
+    let apex = at(apex);
+    out.line(between(apex, at(one), parts[0].into()), between(apex, at(other), parts[1].into()));
 }
 
 impl Outline {
@@ -53,7 +62,10 @@ impl Outline {
     #[inline(never)]
     pub fn find(&mut self, model: &Model, facing: &[i8]) {
         self.triangles.clear();
-        self.overflown = false;
+        self.overflown = model.wide;
+        if model.wide {
+            return;
+        }
         each_crossed(model, facing, &mut |corners| self.keep(corners, facing));
     }
 
@@ -62,14 +74,14 @@ impl Outline {
         self.overflown |= self.triangles.push(Crossed::new(corners, facing)).is_err();
     }
 
-    /// Whether there are more triangles than are kept.
+    /// Whether there are more triangles than are kept, or they cannot be.
     pub fn overflown(&self) -> bool {
         self.overflown
     }
 
     /// Visits the corners of the triangles that are kept.
     pub fn each_corner(&self, mut visit: impl FnMut(u16)) {
-        self.triangles.iter().flat_map(|crossed| crossed.corners).for_each(&mut visit);
+        self.triangles.iter().flat_map(|crossed| crossed.corners).for_each(|index| visit(u16::from(index)));
     }
 
     /// Draws the lines, given the vertices on the display and which of them face the camera.
@@ -92,7 +104,7 @@ impl Outline {
 #[inline(never)]
 fn draw_all(model: &Model, points: &[[i16; 2]], facing: &[i8], out: &mut impl StrokeSink) {
     each_crossed(model, facing, &mut |corners| {
-        Crossed::new(corners, facing).draw(points, out);
+        draw_between(corners, Crossed::new(corners, facing).parts, points, out);
         out.end();
     });
 }
@@ -170,8 +182,10 @@ pub(crate) fn each_triangle(model: &Model, most: usize, wanted: impl Fn([u16; 3]
 mod tests {
     use super::*;
     use crate::camera::{Camera, FaceView};
+    use crate::pen::EachLine;
     use crate::projection::{facing, towards};
     use crate::{MODEL, VERTICES};
+    use pantin_figure::lines::Line;
 
     /// What is slower by a fifth for larger models is not needed for our own.
     #[test]
@@ -192,5 +206,33 @@ mod tests {
             }
         }
         assert!(most > KEPT / 2, "{most} triangles at most");
+    }
+
+    /// The lines of an outline, as they are drawn.
+    fn lines(outline: &Outline, model: &Model, points: &[[i16; 2]], cosines: &[i8]) -> std::vec::Vec<Line> {
+        let mut lines = std::vec::Vec::new();
+        outline.draw(model, points, cosines, &mut EachLine::new(|line| lines.push(line)));
+        lines
+    }
+
+    #[test]
+    fn an_outline_that_is_not_kept_is_the_same() {
+        let model = Model::new_checked(MODEL).unwrap();
+        let points: [[i16; 2]; VERTICES] = core::array::from_fn(|index| [(index * 37 % 2048) as i16, (index * 91 % 1024) as i16]);
+        for orbit in (-180..180).step_by(15) {
+            let mut camera = Camera::EMPTY;
+            camera.aim(FaceView { orbit, tilt: orbit / 6 });
+            let mut cosines = [0; VERTICES];
+            facing(&model, towards(&camera, [0; 3]), &mut cosines);
+            let mut outline = Outline::EMPTY;
+            outline.find(&model, &cosines);
+            let kept = lines(&outline, &model, &points, &cosines);
+            assert!(kept.len() > 10 && !outline.overflown(), "{orbit} degrees");
+            outline.overflown = true;
+            assert_eq!(kept, lines(&outline, &model, &points, &cosines), "{orbit} degrees");
+        }
+        let mut outline = Outline::EMPTY;
+        outline.find(&Model { wide: true, ..model }, &[0; VERTICES]);
+        assert!(outline.overflown() && outline.triangles.is_empty());
     }
 }

@@ -104,8 +104,9 @@ impl<S: Surface> StrokeSink for Pen<'_, S> {
     #[inline(never)]
     fn line(&mut self, from: [i16; 2], to: [i16; 2]) {
         let (a, b) = ([pixel(from[0]), pixel(from[1])], [pixel(to[0]), pixel(to[1])]);
+        // Where the previous line ended is on the surface.
         let goes_on = a == self.at;
-        if !self.holds(a) || !self.holds(b) {
+        if !(goes_on || self.holds(a)) || !self.holds(b) {
             return self.cut(from, to);
         }
         if !goes_on {

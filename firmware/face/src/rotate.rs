@@ -34,21 +34,24 @@ pub(crate) fn rotate(rotation: &AxisRotation, interpolation: Interpolation, side
             vertices.get_mut(range).into_iter().flatten().for_each(|vertex| move_about(rotation, c_s, vertex));
             continue;
         }
+        let c_s = coefficients(rotation.angle, members.part, interpolation, stored);
         if stored != 0 {
-            let c_s = coefficients(rotation.angle, members.part, interpolation, stored);
             vertices.get_mut(range.clone()).into_iter().flatten().for_each(|vertex| move_about(rotation, c_s, vertex));
         }
         let to_right = first < sides.middles + sides.pairs;
         let other = |index: usize| if to_right { index + sides.pairs } else { index.wrapping_sub(sides.pairs) };
         if mirrored != 0 {
-            let c_s = coefficients(image.angle, members.part, interpolation, mirrored);
+            let is_same = image.angle == rotation.angle && mirrored == stored;
+            let c_s = if is_same { c_s } else { coefficients(image.angle, members.part, interpolation, mirrored) };
             let range = other(range.start)..other(range.end);
             vertices.get_mut(range).into_iter().flatten().for_each(|vertex| move_about(&image, c_s, vertex));
         }
     }
 }
 
-/// c and s (Q15) of a part (255ths) of an angle (2^-16 turns) at a weight (Q15).
+/// c and s (Q15) of a part (255ths) of an angle (2^-16 turns) at a weight (Q15). In a function of its own: as a part of the loop over members it takes
+/// more stack, and prepares interpolations that the shape does not have.
+#[inline(never)]
 pub(crate) fn coefficients(angle: i16, part: u8, interpolation: Interpolation, weight: i32) -> [i32; 2] {
     // 255 is the whole.
     let angle = (i32::from(angle) * (i32::from(part) + i32::from(part >> 7))) >> 8;

@@ -45,6 +45,9 @@ pub enum ShapeKind {
     Head,
 }
 
+/// [`ShapeKind::Head`] in a model's bytes.
+const HEAD: u8 = 2;
+
 /// A shape: what one unit of the face moves. It has two weights: one moves the shape as stored (its left side, if it has sides), the other
 /// its mirror image.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +111,7 @@ impl<'a> Shape<'a> {
         let kind = match head >> 2 {
             0 => ShapeKind::Unsigned,
             1 => ShapeKind::Signed,
-            2 => ShapeKind::Head,
+            HEAD => ShapeKind::Head,
             _ => return Err(ModelError::Malformed),
         };
         let (scale, deltas, rotations) = (u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d]), u16::from_le_bytes([e, f]));
@@ -124,7 +127,10 @@ impl<'a> Shape<'a> {
     #[inline(always)]
     pub fn runs(&self) -> impl Iterator<Item = Run<'a>> {
         let (mut bytes, wide) = (Bytes(self.deltas), self.wide);
-        core::iter::from_fn(move || run(&mut bytes, wide).ok())
+        core::iter::from_fn(move || {
+            let (first, count) = bytes.index_and_byte(wide)?;
+            Some(Run { first, deltas: bytes.next(usize::from(count) * 3)?.as_chunks().0 })
+        })
     }
 
     /// Walks its rotations.
@@ -152,13 +158,13 @@ fn arc(bytes: &mut Bytes) -> Result<Arc, ModelError> {
 }
 
 fn rotation<'a>(bytes: &mut Bytes<'a>, wide: bool) -> Result<AxisRotation<'a>, ModelError> {
-    let [axis, runs] = bytes.array()?;
-    let [x, y, z, angle] = [(); 4].map(|()| bytes.i16());
+    let [axis, runs, a, b, c, d, e, f, g, h] = bytes.array()?;
+    let [x, y, z, angle] = [[a, b], [c, d], [e, f], [g, h]].map(i16::from_le_bytes);
     if axis > 2 {
         return Err(ModelError::Malformed);
     }
     let members = bytes.take(usize::from(runs) * (3 + usize::from(wide)))?;
-    Ok(AxisRotation { axis: usize::from(axis), centre: [x?, y?, z?], angle: angle?, members, wide })
+    Ok(AxisRotation { axis: usize::from(axis), centre: [x, y, z], angle, members, wide })
 }
 
 impl AxisRotation<'_> {
@@ -166,8 +172,8 @@ impl AxisRotation<'_> {
     pub fn members(&self) -> impl Iterator<Item = Members> + '_ {
         let (mut bytes, wide) = (Bytes(self.members), self.wide);
         core::iter::from_fn(move || {
-            let first = bytes.index(wide).ok()?;
-            let [count, part] = bytes.array().ok()?;
+            let (first, count) = bytes.index_and_byte(wide)?;
+            let &[part] = bytes.next(1)? else { return None };
             Some(Members { first, count, part })
         })
     }
@@ -202,6 +208,22 @@ impl<'a> Shapes<'a> {
             }
         }
         Ok(())
+    }
+}
+
+impl Shapes<'_> {
+    /// Passes over the next shape unless it rotates the head; returns whether it did.
+    #[inline(always)]
+    pub(crate) fn skip_unless_head(&mut self) -> bool {
+        let [head, _, _, a, b, c, d, rest @ ..] = self.bytes.0 else { return false };
+        let len = usize::from(u16::from_le_bytes([*a, *b])) + usize::from(u16::from_le_bytes([*c, *d]));
+        match (rest.get(len..), self.left.checked_sub(1)) {
+            (Some(rest), Some(left)) if head >> 2 != HEAD => {
+                (self.bytes, self.left) = (Bytes(rest), left);
+                true
+            }
+            _ => false,
+        }
     }
 }
 

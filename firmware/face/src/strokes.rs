@@ -87,6 +87,7 @@ impl ProjectedFace<'_> {
     }
 
     /// Draws the edges of triangles that face the camera. An edge is part of two triangles, in opposite directions: one of them draws it.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     fn mesh(&self, model: &Model, out: &mut impl StrokeSink) {
         out.begin(MESH);
         each_triangle(
@@ -114,10 +115,15 @@ impl ProjectedFace<'_> {
         let end = |index| self.vertex(if mirrored { image.of(index) } else { index });
         let first = end(curve.vertex(0));
         let mut from = first;
-        for index in curve.vertices().skip(1) {
+        let mut line_to = |index| {
             let to = end(index);
             visible(from, to, out);
             from = to;
+        };
+        // Most models are not wide: their indices need no choice for each of them.
+        match curve.bytes() {
+            Some(bytes) => bytes.iter().skip(1).for_each(|&index| line_to(u16::from(index))),
+            None => curve.vertices().skip(1).for_each(line_to),
         }
         if curve.closed {
             visible(from, first, out);
@@ -152,7 +158,8 @@ impl ProjectedFace<'_> {
         corners.fill(out);
     }
 
-    /// Draws a curve that bends through its vertices.
+    /// Draws a curve that bends through its vertices. In a function of its own: what it prepares is work that straight lines do not need.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(never))]
     fn smooth(&self, model: &Model, curve: &Curve, mirrored: bool, fine: &[[i32; 4]], out: &mut impl StrokeSink) {
         let len = curve.len();
         let at = |position: usize| {

@@ -140,16 +140,13 @@ fn walk_so<S: Surface, const STEEP: bool, const BACK: bool>(
     surface: &mut S,
     mut cursor: S::Cursor,
     mut pace: Pace,
-    mut left: i32,
+    left: i32,
     ink: S::Ink,
 ) {
-    loop {
-        surface.put(cursor, ink);
-        left -= 1;
-        if left < 0 {
-            return;
-        }
+    surface.put(cursor, ink);
+    for _ in 0..left {
         pace.step(&mut cursor, STEEP, BACK);
+        surface.put(cursor, ink);
     }
 }
 
