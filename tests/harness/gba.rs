@@ -65,7 +65,10 @@ fn convert(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
 
 /// Builds the program with these clips and returns the cartridge's image.
 pub fn image(clips: &[&Path]) -> Result<Vec<u8>> {
-    of_elf(&std::fs::read(Firmware::featuring("face", "gba", "gba", TARGET, clips)?.elf()).context("the program cannot be read")?)
+    of_elf(
+        &std::fs::read(Firmware::featuring("face,steer", "gba", "gba", TARGET, clips)?.elf())
+            .context("the program cannot be read")?,
+    )
 }
 
 /// Returns the cartridge's image of a linked program.

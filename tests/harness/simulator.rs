@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use board_drivers::indexed::{Indexed, IndexedRows};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
-use pantin_app::{Board, Entry, Exit, Options};
+use pantin_app::{Board, Entry, Exit, Options, SteerKey};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
@@ -54,7 +54,7 @@ pub fn present<L: Layout>(clips: &[PathBuf], keys: &[&[u8]], present: impl FnMut
     let entries: Vec<Entry> = files.iter().map(|file| Entry { name: &file.name, bytes: &file.bytes, rig: &[] }).collect();
     let mut wishes: VecDeque<u8> = keys.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     wishes.push_back(pantin_app::QUIT);
-    let mut simulator = Simulator::<Rotation, L, _> { wishes, told: vec![], present, kind: PhantomData };
+    let mut simulator = Simulator::<Rotation, L, _> { wishes, ..Simulator::new(present) };
     let mut frame = Box::new(Framebuffer::<L>::new());
     let exit = pantin_app::run(&entries, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "a clip cannot be played");
@@ -74,6 +74,29 @@ pub fn link_on(display: Display, clip: &Path, words: &[&str], line: &[Vec<u8>]) 
     let ticks = line.iter().flat_map(|bytes| bytes.iter().copied().chain(sync::letter(pantin_app::NEXT)));
     let wishes = ticks.chain(sync::letter(pantin_app::QUIT)).collect();
     simulate_on::<Rotation>(display, &entries, options, wishes)
+}
+
+/// What a program reads before a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// The timer's ticks since the picture before.
+    pub ticks: u32,
+    /// Buttons that are held.
+    pub held: u16,
+}
+
+/// The pictures of the Game Boy Advance's display while `keys` steer the character of a bank: one for each reading.
+pub fn steer(bank: &[u8], keys: &[SteerKey], readings: &[Reading]) -> Result<Vec<Picture>> {
+    /// In place of the buttons that leave.
+    const LEAVE: u16 = 1 << 15;
+    let mut pictures = vec![];
+    let present =
+        |framebuffer: &mut Framebuffer<IndexedRows<240, 160, 19200>>| pictures.push(picture(crate::gba::LCD, framebuffer));
+    let readings = readings.iter().copied().chain([Reading { ticks: 1, held: LEAVE }]).collect();
+    let mut simulator = Simulator::<Rotation, _, _> { readings, ..Simulator::new(present) };
+    let exit = pantin_app::steer::<_, 64>(bank, keys, LEAVE, &mut Framebuffer::new(), &mut simulator);
+    ensure!(exit == Exit::Done, "the character cannot be played");
+    Ok(pictures)
 }
 
 fn simulate_on<R: RotationBackend>(
@@ -103,12 +126,8 @@ fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
     wishes: VecDeque<u8>,
 ) -> Result<Vec<(u32, Picture)>> {
     let mut shown = vec![];
-    let present = |framebuffer: &mut Framebuffer<L>| {
-        let Display { width, height, .. } = display;
-        let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
-        shown.push(Picture { display, pixels });
-    };
-    let mut simulator = Simulator::<R, L, _> { wishes, told: vec![], present, kind: PhantomData };
+    let present = |framebuffer: &mut Framebuffer<L>| shown.push(picture(display, framebuffer));
+    let mut simulator = Simulator::<R, L, _> { wishes, ..Simulator::new(present) };
     // The display's memory and the player's would be much of a test thread's stack.
     let mut frame = Box::new(Framebuffer::<L>::new());
     let exit = pantin_app::run(entries, options, &mut frame, &mut simulator);
@@ -119,14 +138,29 @@ fn simulate<R: RotationBackend, L: Layout<Ink: Value>>(
     Ok(numbers.zip(shown).collect())
 }
 
+/// What a framebuffer shows.
+fn picture<L: Layout<Ink: Value>>(display: Display, framebuffer: &Framebuffer<L>) -> Picture {
+    let Display { width, height, .. } = display;
+    let pixels = (0..width * height).map(|index| framebuffer.pixel(index % width, index / width).value()).collect();
+    Picture { display, pixels }
+}
+
 /// The board.
 struct Simulator<R, L, P> {
     /// Bytes that the other end of the line sends.
     wishes: VecDeque<u8>,
     /// Bytes that it gets.
     told: Vec<u8>,
+    /// Of ticks and buttons; without any it ticks at once.
+    readings: VecDeque<Reading>,
     present: P,
     kind: PhantomData<(R, L)>,
+}
+
+impl<R, L, P> Simulator<R, L, P> {
+    fn new(present: P) -> Self {
+        Simulator { wishes: VecDeque::new(), told: vec![], readings: VecDeque::new(), present, kind: PhantomData }
+    }
 }
 
 impl<R: RotationBackend, L: Layout, P: FnMut(&mut Framebuffer<L>)> Board for Simulator<R, L, P> {
@@ -141,7 +175,10 @@ impl<R: RotationBackend, L: Layout, P: FnMut(&mut Framebuffer<L>)> Board for Sim
     fn start_timer(&mut self, _period_ns: u32) {}
 
     fn ticks(&mut self) -> u32 {
-        1
+        if self.readings.len() > 1 {
+            self.readings.pop_front();
+        }
+        self.readings.front().map_or(1, |reading| reading.ticks)
     }
 
     fn send(&mut self, bytes: &[u8]) {
@@ -154,6 +191,10 @@ impl<R: RotationBackend, L: Layout, P: FnMut(&mut Framebuffer<L>)> Board for Sim
 
     fn poll(&mut self) -> Option<u8> {
         None
+    }
+
+    fn held(&mut self) -> u16 {
+        self.readings.front().map_or(0, |reading| reading.held)
     }
 }
 

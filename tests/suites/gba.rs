@@ -6,7 +6,9 @@ use std::sync::LazyLock;
 
 use harness::display::Picture;
 use harness::gba::{self, Console, FRAME_CYCLES, LCD, MOST};
+use harness::simulator::Reading;
 use harness::{screen, setup, simulator};
+use pantin_app::SteerKey;
 use pantin_figure::rotation::Rotation;
 use tempfile::TempDir;
 
@@ -19,11 +21,13 @@ static CARTRIDGE: LazyLock<(TempDir, Vec<PathBuf>, Vec<u8>)> = LazyLock::new(|| 
 });
 
 const A: u16 = 1 << 0;
+const B: u16 = 1 << 1;
 const SELECT: u16 = 1 << 2;
 const START: u16 = 1 << 3;
 const RIGHT: u16 = 1 << 4;
 const LEFT: u16 = 1 << 5;
 const UP: u16 = 1 << 6;
+const R: u16 = 1 << 8;
 
 /// Frames that a button is held in a test, and after which the next one is pressed: the camera is set up meanwhile.
 const HELD: u32 = 6;
@@ -124,6 +128,90 @@ fn a_figure_plays_for_a_minute_and_no_frame_is_dropped() {
 #[test]
 fn a_face_plays_for_a_minute_and_no_frame_is_dropped() {
     drops_no_frame("hello");
+}
+
+/// What the buttons do to the character: as in `firmware/boards/gba/src/keys.rs`.
+const STEER: [SteerKey<'static>; 5] = {
+    const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
+        SteerKey { button, input, holds }
+    }
+    [key(UP, "go", true), key(B, "fast", true), key(A, "jump", false), key(LEFT, "left", false), key(R, "wave", false)]
+};
+
+/// Buttons, and for how many frames they are held: idle, walk, wave while walking, run, jump while running, stop, jump, turn, wave.
+const SESSION: [(u16, u32); 13] = [
+    (0, 60),
+    (UP, 100),
+    (UP | R, 5),
+    (UP, 100),
+    (UP | B, 110),
+    (UP | B | A, 5),
+    (UP | B, 60),
+    (0, 100),
+    (A, 5),
+    (0, 120),
+    (LEFT, 5),
+    (0, 100),
+    (R, 30),
+];
+
+#[test]
+fn the_buttons_steer_the_character() {
+    if setup::host_only("a character on the Game Boy Advance") {
+        return;
+    }
+    // The start screen is there. The character is there long before the session begins.
+    const BUTTON: u32 = 60;
+    const BEGIN: u32 = 300;
+    let mut console = Console::new(&CARTRIDGE.2).unwrap().hold(BUTTON, A).hold(BUTTON + 4, 0);
+    let mut end = BEGIN;
+    for (keys, frames) in SESSION {
+        console = console.hold(end, keys);
+        end += frames;
+    }
+    // The program marks four stretches a picture: motion, kinematics, drawing and, to the display's blank, the page; what comes after the
+    // blank is the fifth, in the first frame that shows the picture.
+    let stretches = console.stretches(end).unwrap();
+    let steers = stretches.iter().position(|stretch| stretch.frame > BUTTON).unwrap();
+    let pictures: Vec<_> = stretches[steers..].chunks_exact(5).collect();
+    let blanks: Vec<u32> = pictures.iter().map(|picture| picture[4].frame).collect();
+    let first = blanks[0];
+    assert!(first < BEGIN, "the character is there after {} s", (first - BUTTON) as f32 / 60.0);
+    // A picture shows the buttons and the time of the blank at which the one before it was shown.
+    let held = |frame: u32| {
+        let mut begun = BEGIN;
+        SESSION.iter().take_while(|(_, frames)| (begun <= frame, begun += frames).0).last().map_or(0, |(keys, _)| *keys)
+    };
+    let mut readings = vec![Reading { ticks: 0, held: 0 }, Reading { ticks: 1, held: 0 }];
+    readings.extend(blanks.windows(2).map(|pair| Reading { ticks: pair[1] - pair[0], held: held(pair[1]) }));
+    let bank = std::fs::read(harness::steered::bank()).unwrap();
+    let expected = simulator::steer(&bank, &STEER, &readings).unwrap();
+    let expected: Vec<Vec<u8>> = expected.iter().map(gba::pixels).collect();
+    let mut next = 0;
+    let mut shown = 0;
+    console
+        .run(end, |frame, pixels| {
+            while next < blanks.len() && blanks[next] <= frame {
+                next += 1;
+            }
+            let Some(index) = next.checked_sub(1) else { return };
+            if pixels != expected[index] {
+                let difference = screen::difference(&gba::picture(pixels), &gba::picture(&expected[index]));
+                panic!("picture {index} in frame {frame}: {}", difference.unwrap());
+            }
+            shown += 1;
+        })
+        .unwrap();
+    let frames = end - first;
+    assert_eq!(shown, frames);
+    let late = blanks.windows(2).filter(|pair| pair[1] - pair[0] > 1).count();
+    let longest = blanks.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap();
+    println!(
+        "{frames} frames of a steered character are equal; of {} pictures {late} took longer than a frame, the longest {longest}",
+        blanks.len()
+    );
+    // Those of a switch to another clip.
+    assert!(late <= 20 && longest <= 4);
 }
 
 #[test]

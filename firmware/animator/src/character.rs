@@ -189,11 +189,12 @@ impl<'a> Layer<'a, '_> {
 const VISITS: u32 = 24;
 
 /// Visits some poses of every state's clip, with the root at the origin as in [`Animator::pose`], for a camera that is to show all of
-/// them. The memory is as that of an animator; it may be the one that is lent to it later.
+/// them. The memory is as that of a layer; it may be the one that is lent to it later.
 pub fn visit_poses<'a>(
     bytes: &'a [u8],
     states: &mut [ChannelState],
     values: &mut [i32],
+    sampled: &mut [i32],
     visit: &mut dyn FnMut(&Clip<'a>, &[i32]),
 ) -> Result<(), Error> {
     let bank = Bank::new_checked(bytes)?;
@@ -201,15 +202,19 @@ pub fn visit_poses<'a>(
     for state in (0..table.states()).filter_map(|state| table.state(state as u8)) {
         let clip = clip(&bank, state.clip)?;
         let root = Root::of(&clip.rig(), &[]);
-        let (needed, given) = (clip.rig().channels(), values.len());
-        let values = values.get_mut(..needed).ok_or(Error::TooSmall { what: "values", needed, given })?;
+        let (needed, given) = (clip.rig().channels(), sampled.len());
+        let sampled = sampled.get_mut(..needed).ok_or(Error::TooSmall { what: "values", needed, given })?;
         let frames = clip.frames();
+        let mut player = Player::new(clip, states, values)?;
         for frame in (0..frames).step_by(frames.div_ceil(VISITS).max(1) as usize) {
-            Player::new(clip, states, values)?.seek(frame);
-            if let Some(root) = &root {
-                root.leave_place(values);
+            while player.frame() < frame {
+                player.step();
             }
-            visit(&clip, values);
+            sampled.iter_mut().zip(player.pose().values).for_each(|(out, value)| *out = *value);
+            if let Some(root) = &root {
+                root.leave_place(sampled);
+            }
+            visit(&clip, sampled);
         }
     }
     Ok(())

@@ -70,6 +70,12 @@ pub trait Board {
         None
     }
 
+    /// Returns the buttons that are held, each in a bit that the board chooses: as they were at the last tick.
+    #[cfg(feature = "steer")]
+    fn held(&mut self) -> u16 {
+        0
+    }
+
     /// Begins a section whose instructions an emulator counts. An implementation costs one instruction without effect.
     #[inline(always)]
     fn mark_start(&mut self) {}

@@ -83,6 +83,14 @@ pub trait Renderer {
     /// Sets the camera up for a view. The player stays at its frame.
     fn aim(&mut self, player: &mut Player, view: View);
 
+    /// Sets the camera up for poses that `poses` passes to its argument: it is called twice and must pass the same ones.
+    #[cfg(feature = "steer")]
+    fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32])));
+
+    /// Takes the pose to draw of a figure that stands somewhere in the world.
+    #[cfg(feature = "steer")]
+    fn set_pose_at(&mut self, pose: Pose<'_>, stand: pantin_figure::Stand);
+
     /// Moves the picture on the display by columns and rows.
     fn shift(&mut self, columns: i16, rows: i16);
 
@@ -111,6 +119,19 @@ impl<const N: usize, R: RotationBackend> Renderer for FigureRenderer<N, R> {
     #[inline(always)]
     fn aim(&mut self, player: &mut Player, view: View) {
         FigureRenderer::aim(self, player, view);
+    }
+
+    #[cfg(feature = "steer")]
+    #[inline(always)]
+    fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+        FigureRenderer::look_at(self, canvas, view, poses);
+    }
+
+    #[cfg(feature = "steer")]
+    #[inline(always)]
+    fn set_pose_at(&mut self, pose: Pose<'_>, stand: pantin_figure::Stand) {
+        // The pose is of the rig that the renderer was set up for.
+        let _ = FigureRenderer::set_pose_at(self, pose, stand);
     }
 
     #[inline(always)]

@@ -39,8 +39,13 @@ pub(crate) fn show<B: Board>(
         #[cfg(feature = "link")]
         Status::Link(status) => link(&mut top, &mut bottom, name, status),
     }
-    if !board.overlay([&top, &bottom]) {
-        draw([&top, &bottom], target);
+    lines([&top, &bottom], target, board);
+}
+
+/// Shows a line at the top and one at the bottom.
+pub(crate) fn lines<B: Board>(lines: [&str; 2], target: &mut Framebuffer<B::Layout>, board: &mut B) {
+    if !board.overlay(lines) {
+        draw(lines, target);
     }
 }
 

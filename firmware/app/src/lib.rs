@@ -6,7 +6,8 @@
 //!
 //! - [`run`](run()) plays clips one after the other;
 //! - `run_stored` (feature `update`) also plays a clip from flash, which `pantin update` replaces over the serial line;
-//! - [`multi`](multi()) plays several clips side by side.
+//! - [`multi`](multi()) plays several clips side by side;
+//! - `steer` (feature `steer`) plays the state machine of a bank, which the buttons steer.
 //!
 //! With the feature `link`, [`run`](run()) can play poses that arrive over the serial line instead of a clip's. With the feature `events`,
 //! `Board::event` hears footfalls, sounds and other events when their frames are shown. With the feature `bank`, `run_stored` plays all clips of a
@@ -66,7 +67,7 @@
 //! A frame passes through them in this order: a *source* (clip or link) gives a pose, a *content* (body, face or both) draws it on the
 //! framebuffer, and the board presents that. [`run`](run()) holds the only loop over frames. Modules import only modules that stand
 //! before them here: `commands`, `capacity`, `events`, `board`, `options`, `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
-//! `multi`, `stored`.
+//! `multi`, `stored`, `steer`.
 //!
 //! A function that needs a large workspace or buffer keeps it in a stack frame of its own and is marked `#[inline(never)]`: the stack then
 //! holds the largest of them, not their sum.
@@ -87,6 +88,8 @@ mod options;
 mod run;
 mod session;
 mod source;
+#[cfg(feature = "steer")]
+mod steer;
 #[cfg(feature = "update")]
 mod stored;
 mod text_screen;
@@ -104,6 +107,8 @@ pub use options::Key;
 pub use options::{Mode, Options};
 pub use run::{NEXT, QUIT, SHOWN, run};
 pub use session::Entry;
+#[cfg(feature = "steer")]
+pub use steer::{SteerKey, steer};
 #[cfg(feature = "update")]
 pub use stored::run_stored;
 pub use text_screen::TextScreen;

@@ -116,11 +116,12 @@ impl Stage {
         let mut failed = None;
         match session.filter(|_| view.track == Track::Fixed) {
             None => renderer.look_at(canvas, view, |visit| {
-                let (states, values) = (&mut room.states, &mut room.values);
-                let visited = visit_poses(bytes, states, values, &mut |clip: &Clip, values| match form.check(clip.form_ref()) {
-                    Ok(()) => visit(values),
-                    Err(error) => failed = Some(anyhow::Error::from(error)),
-                });
+                let Room { states, values, pose, .. } = &mut room;
+                let visited =
+                    visit_poses(bytes, states, values, pose, &mut |clip: &Clip, values| match form.check(clip.form_ref()) {
+                        Ok(()) => visit(values),
+                        Err(error) => failed = Some(anyhow::Error::from(error)),
+                    });
                 failed = failed.take().or(visited.err().map(Into::into));
             }),
             Some(replay) => renderer.look_at_stands(canvas, view, |visit| {

@@ -13,6 +13,12 @@ pub trait ButtonSource {
 
     /// Returns the command that the last [`read`](ButtonSource::read) found, once.
     fn take(&mut self) -> Option<Command>;
+
+    /// Returns the buttons that were held at the last [`read`](ButtonSource::read), each in its bit.
+    #[cfg(feature = "steer")]
+    fn held(&self) -> u16 {
+        0
+    }
 }
 
 /// A board without buttons.
@@ -88,6 +94,11 @@ impl<R: FnMut() -> u32> ButtonSource for Buttons<R> {
 
     fn take(&mut self) -> Option<Command> {
         self.command.take()
+    }
+
+    #[cfg(feature = "steer")]
+    fn held(&self) -> u16 {
+        self.held as u16
     }
 }
 

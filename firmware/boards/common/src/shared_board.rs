@@ -90,6 +90,11 @@ where
         self.buttons.take()
     }
 
+    #[cfg(feature = "steer")]
+    fn held(&mut self) -> u16 {
+        self.buttons.held()
+    }
+
     #[inline(always)]
     fn mark_start(&mut self) {
         markers::start();

@@ -3,10 +3,12 @@
 use crate::registers::KEYS;
 use board_common::ButtonSource;
 use pantin_app::Command;
+#[cfg(feature = "steer")]
+use pantin_app::SteerKey;
 
-const A: u16 = 1 << 0;
+pub const A: u16 = 1 << 0;
 const B: u16 = 1 << 1;
-const SELECT: u16 = 1 << 2;
+pub const SELECT: u16 = 1 << 2;
 const START: u16 = 1 << 3;
 const RIGHT: u16 = 1 << 4;
 const LEFT: u16 = 1 << 5;
@@ -41,6 +43,28 @@ const WITH_SELECT: [(u16, Command); 9] = [
     (R, Command::Faster),
     (L, Command::Slower),
 ];
+
+/// What the buttons do to our character.
+#[cfg(feature = "steer")]
+pub const STEER: [SteerKey<'static>; 11] = {
+    const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
+        SteerKey { button, input, holds }
+    }
+    [
+        key(UP, "go", true),
+        key(B, "fast", true),
+        key(A, "jump", false),
+        key(LEFT, "left", false),
+        key(RIGHT, "right", false),
+        // Each state knows one of them.
+        key(DOWN, "sit", false),
+        key(DOWN, "stand", false),
+        key(DOWN, "trip", false),
+        key(R, "wave", false),
+        key(L, "bow", false),
+        key(START, "dance", true),
+    ]
+};
 
 /// Returns the buttons that are held.
 pub fn held() -> u16 {
@@ -81,5 +105,10 @@ impl ButtonSource for Keys {
 
     fn take(&mut self) -> Option<Command> {
         self.command.take()
+    }
+
+    #[cfg(feature = "steer")]
+    fn held(&self) -> u16 {
+        self.held
     }
 }

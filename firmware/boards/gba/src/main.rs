@@ -19,7 +19,10 @@ use pantin_figure::surface::Framebuffer;
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// What the start screen shows.
+#[cfg(not(feature = "steer"))]
 const HELP: &str = "\n Pantin\n\n A, B          next, previous clip\n arrows        turn, tilt\n L, R          slower, faster\n Start         pause\n Select        front, side, behind\n\n Select and\n  arrows       step, follow, reverse\n  A, B, Start  smooth, ground, text\n\n Press a button.";
+#[cfg(feature = "steer")]
+const HELP: &str = "\n              Pantin\n\n A: steer a character\n  up, with B  walk, run\n  left, right turn\n  down        sit down, stand up\n  A, L, R     jump, bow, wave\n  Start       dance\n  Select      the motions\n\n Others: the motions\n  A, B, Start  next, previous, pause\n  arrows, L, R turn, slower, faster\n  Select       view; with others more";
 /// How long it is shown if no button is pressed: 5 s.
 const HELP_BLANKS: u32 = 300;
 
@@ -30,6 +33,12 @@ fn main() -> ! {
     let begun = start::blanks();
     while keys::held() == 0 && start::blanks().wrapping_sub(begun) < HELP_BLANKS {
         start::sleep();
+    }
+    #[cfg(feature = "steer")]
+    if keys::held() & keys::A != 0 {
+        framebuffer.clear();
+        pantin_app::steer::<_, CHANNELS>(CHARACTER, &keys::STEER, keys::SELECT, &mut framebuffer, &mut board);
+        board.overlay([""; 2]);
     }
     loop {
         let options = Options { hud: true, ..Options::parse([]) };
@@ -42,6 +51,13 @@ fn main() -> ! {
         }
     }
 }
+
+/// The character that is steered: a bank with a state machine.
+#[cfg(feature = "steer")]
+static CHARACTER: &[u8] = include_bytes!("../../../../motions/character.ptb");
+/// Channels of its rig, at most.
+#[cfg(feature = "steer")]
+const CHANNELS: usize = 64;
 
 fn show(text: &str, framebuffer: &mut Framebuffer<Lcd>, board: &mut impl Board<Layout = Lcd>) {
     // Writing on a text screen cannot fail.

@@ -36,7 +36,7 @@ fn play() -> Option<()> {
     let (mut states, mut values, mut sampled) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS], [0; CHANNELS]);
     let mut words = [0; 2];
     let mut renderer = FigureRenderer::<JOINTS>::empty();
-    aim(&mut renderer, &mut states, &mut values)?;
+    aim(&mut renderer, &mut states, &mut values, &mut sampled)?;
     let mut character = Character::new(BANK, memory.lend()).ok()?;
     let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
     character.lend_layer(layer).ok()?;
@@ -60,13 +60,18 @@ fn play() -> Option<()> {
 
 /// Sets the camera up for the clips of all states.
 #[inline(never)]
-fn aim(renderer: &mut FigureRenderer<JOINTS>, states: &mut [ChannelState], values: &mut [i32]) -> Option<()> {
+fn aim(
+    renderer: &mut FigureRenderer<JOINTS>,
+    states: &mut [ChannelState],
+    values: &mut [i32],
+    sampled: &mut [i32],
+) -> Option<()> {
     let first = first_clip()?;
     let player = Player::new(first, states, values).ok()?;
     renderer.skeleton_mut().set_up(&first.rig(), Detail::Body, player.pose(), &mut [JointInfo::default(); JOINTS]).ok()?;
     let mut visited = Some(());
     renderer.look_at(Canvas { width: 128, height: 64 }, View::default(), |visit| {
-        visited = visited.and(visit_poses(BANK, states, values, &mut |_, values| visit(values)).ok());
+        visited = visited.and(visit_poses(BANK, states, values, sampled, &mut |_, values| visit(values)).ok());
     });
     visited
 }

@@ -1,0 +1,127 @@
+//! A character that the user steers: the board's buttons are the inputs of its state machine.
+
+use crate::board::{Board, BoardRenderer, Exit};
+use crate::capacity::Renderer;
+use crate::hud;
+use pantin::{Bank, ChannelState, Clip, Player};
+use pantin_animator::machine::{Machine, Table};
+use pantin_animator::{Character, Error, LayerMemory, Workspace, visit_poses};
+use pantin_figure::surface::{Framebuffer, Layout};
+use pantin_figure::{Canvas, DrawStyle, Stand, View};
+
+/// What a button does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SteerKey<'a> {
+    /// The button's bit in [`Board::held`].
+    pub button: u16,
+    /// The input that it gives. A state machine without such an input passes over it.
+    pub input: &'a str,
+    /// Whether it holds the input as long as it is held, or fires it once.
+    pub holds: bool,
+}
+
+/// Time between two pictures that are due. A board that is too slow for it shows fewer; the motion keeps its speed.
+const PERIOD_NS: u32 = 16_666_668;
+const PERIOD_US: u32 = PERIOD_NS / 1000;
+/// Words of a layer's mask: a bit for each joint.
+const MASK_WORDS: usize = crate::RIG.div_ceil(32);
+
+/// Plays the state machine of a bank until a button in `leave` is pressed. The rig has at most `CHANNELS` channels. The machine's first layer plays;
+/// further layers, and the second clips of blends, do not.
+///
+/// Returns [`Exit::BadClip`] for a bank without a state machine, one that is damaged, or a rig that is too large.
+#[inline(never)]
+pub fn steer<B: Board, const CHANNELS: usize>(
+    bank: &[u8],
+    keys: &[SteerKey],
+    leave: u16,
+    framebuffer: &mut Framebuffer<B::Layout>,
+    board: &mut B,
+) -> Exit {
+    match play::<B, CHANNELS>(bank, keys, leave, framebuffer, board) {
+        Ok(()) => Exit::Done,
+        Err(_) => Exit::BadClip,
+    }
+}
+
+fn play<B: Board, const CHANNELS: usize>(
+    bank: &[u8],
+    keys: &[SteerKey],
+    leave: u16,
+    framebuffer: &mut Framebuffer<B::Layout>,
+    board: &mut B,
+) -> Result<(), Error> {
+    let mut memory = Workspace::<CHANNELS, CHANNELS>::new();
+    let (mut states, mut values, mut sampled) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS], [0; CHANNELS]);
+    let mut words = [0; MASK_WORDS];
+    let mut renderer = BoardRenderer::<B>::empty();
+    aim::<B>(bank, &mut renderer, &mut states, &mut values, &mut sampled)?;
+    let mut character = Character::new(bank, memory.lend())?;
+    if character.table().layer(0).is_some() {
+        let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
+        character.lend_layer(layer)?;
+    }
+    board.start_timer(PERIOD_NS);
+    let (mut held, mut ticks) = (board.held(), 0u32);
+    loop {
+        let now = board.held();
+        if now & !held & leave != 0 {
+            return Ok(());
+        }
+        steer_by(keys, held, now, character.machine());
+        held = now;
+        board.mark_start();
+        character.update(ticks.saturating_mul(PERIOD_US))?;
+        board.mark_stop();
+        let (pose, placement) = character.pose();
+        board.mark_start();
+        renderer.set_pose_at(pose, Stand { place: placement.place, heading: placement.heading });
+        board.mark_stop();
+        board.mark_start();
+        framebuffer.clear();
+        renderer.draw(framebuffer, DrawStyle::default());
+        board.mark_stop();
+        hud::lines(["", character.table().state_name(character.state())], framebuffer, board);
+        board.mark_start();
+        board.present(framebuffer);
+        board.mark_stop();
+        ticks = board.wait_ticks();
+    }
+}
+
+/// Gives the machine what changed between two readings of the buttons.
+fn steer_by(keys: &[SteerKey], before: u16, now: u16, machine: &mut Machine) {
+    for key in keys.iter().filter(|key| (before ^ now) & key.button != 0) {
+        let Some(input) = machine.table().input(key.input) else { continue };
+        let pressed = now & key.button != 0;
+        if key.holds {
+            machine.hold(input, pressed);
+        } else if pressed {
+            machine.fire(input);
+        }
+    }
+}
+
+/// Sets the figure up, and the camera for the clips of all states.
+#[inline(never)]
+fn aim<B: Board>(
+    bytes: &[u8],
+    renderer: &mut BoardRenderer<B>,
+    states: &mut [ChannelState],
+    values: &mut [i32],
+    sampled: &mut [i32],
+) -> Result<(), Error> {
+    let canvas = Canvas { width: B::Layout::WIDTH as u16, height: B::Layout::HEIGHT as u16 };
+    let mut player = Player::new(first_clip(bytes)?, states, values)?;
+    renderer.set_up(&mut player, canvas).map_err(|_| Error::NoSuchJoint)?;
+    let mut visited = Ok(());
+    renderer.look_at(canvas, View::default(), |visit| {
+        visited = visited.and(visit_poses(bytes, states, values, sampled, &mut |_, values| visit(values)));
+    });
+    visited
+}
+
+/// The clip that the state machine begins with.
+fn first_clip(bytes: &[u8]) -> Result<Clip<'_>, Error> {
+    Machine::new(Table::of_bank(bytes)?).first_clip(&Bank::new_checked(bytes)?)
+}
