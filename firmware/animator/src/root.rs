@@ -61,6 +61,19 @@ impl Heading {
         let narrow = |q30: i64| (q30 + (1 << 29)) >> 30;
         [narrow(times(a, self.cos) - times(b, self.sin)), narrow(times(a, self.sin) + times(b, self.cos))]
     }
+
+    /// The same of a way below 2^61, beyond the range of a channel: in parts of 2^30, whose products are whole.
+    fn rotate_wide(&self, [a, b]: [i64; 2]) -> [i64; 2] {
+        if self.angle == Angle::ZERO {
+            return [a, b];
+        }
+        let low = |x: i64| (x & ((1 << 30) - 1)) as i32;
+        let high = |x: i64| (x >> 30) as i32;
+        let ([low_x, low_y], [a, b]) = (self.rotate([low(a), low(b)]), [high(a), high(b)]);
+        let times = |x: i32, y: i32| i64::from(x) * i64::from(y);
+        let (x, y) = (times(a, self.cos) - times(b, self.sin), times(a, self.sin) + times(b, self.cos));
+        [low_x.wrapping_add(x), low_y.wrapping_add(y)]
+    }
 }
 
 /// The channels that place a figure: those of the first joint that has any.
@@ -185,7 +198,7 @@ impl RootSample {
 /// Between the last frame of a loop and its first: where a lap takes the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Seam {
-    pub(crate) place: [i32; 2],
+    pub(crate) place: [i64; 2],
     pub(crate) yaw: Angle,
     /// Where the loop begins.
     pub(crate) first: [i32; 2],
@@ -198,15 +211,15 @@ const RETURNS_TURN: u32 = 59_652_323;
 
 impl Seam {
     pub(crate) fn between(root: &Root<'_>, first: &RootSample, next: &RootSample, clip: &Clip<'_>) -> Seam {
-        let ([a, b], [first_a, first_b]) = (next.place, first.place);
-        let (a, b) = (a.wrapping_sub(first_a), b.wrapping_sub(first_b));
+        let ([a, b], [first_a, first_b]) = (next.place.map(i64::from), first.place.map(i64::from));
+        let (a, b) = (a - first_a, b - first_b);
         let micro_cm = i64::from(clip.rig().unit_micro_cm());
         // In 2^exponent units: 5 cm.
         let shift = i32::from(clip.length_exponent());
         let units = RETURNS_CM * 1_000_000;
         let bound = if shift >= 0 { units >> shift } else { units.checked_shl(shift.unsigned_abs().min(40)).unwrap_or(units) };
         let bound = bound.checked_div(micro_cm).unwrap_or(0).max(0).unsigned_abs();
-        let near = u64::from(a.unsigned_abs()) <= bound && u64::from(b.unsigned_abs()) <= bound;
+        let near = a.unsigned_abs() <= bound && b.unsigned_abs() <= bound;
         let yaw = next.yaw - first.yaw;
         let turns = yaw.to_bits().unsigned_abs() > RETURNS_TURN && root.place.iter().all(Option::is_some);
         Seam {
@@ -250,7 +263,7 @@ impl Travel {
             if seam.yaw != Angle::ZERO {
                 self.lap_heading = Heading::new(Angle::from_bits(seam.yaw.to_bits().wrapping_mul(self.laps)));
             }
-            let way = self.lap_heading.rotate(seam.place);
+            let way = self.lap_heading.rotate_wide(seam.place);
             for (sum, way) in self.lap_place.iter_mut().zip(way) {
                 *sum = sum.wrapping_add(if laps < 0 { -way } else { way });
             }
@@ -267,13 +280,12 @@ impl Travel {
     pub(crate) fn placement(&self, place: [i32; 2], seam: Option<Seam>) -> Placement {
         // About the place where the loop begins, which is where a lap's turn happens.
         let first = seam.map_or([0; 2], |seam| seam.first);
-        let ([x, y], [first_x, first_y]) = (place, first);
-        let [turned_x, turned_y] = self.lap_heading.rotate([x.wrapping_sub(first_x), y.wrapping_sub(first_y)]);
+        let ([x, y], [first_x, first_y]) = (place.map(i64::from), first.map(i64::from));
+        let [turned_x, turned_y] = self.lap_heading.rotate_wide([x - first_x, y - first_y]);
         let ([lap_x, lap_y], [origin_x, origin_y]) = (self.lap_place, self.origin);
-        let x = turned_x.wrapping_add(first_x.into()).wrapping_add(lap_x).wrapping_sub(origin_x);
-        let y = turned_y.wrapping_add(first_y.into()).wrapping_add(lap_y).wrapping_sub(origin_y);
-        let narrow = |x: i64| x.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32;
-        let [x, y] = if self.heading.angle == Angle::ZERO { [x, y] } else { self.heading.rotate([narrow(x), narrow(y)]) };
+        let x = turned_x.wrapping_add(first_x).wrapping_add(lap_x).wrapping_sub(origin_x);
+        let y = turned_y.wrapping_add(first_y).wrapping_add(lap_y).wrapping_sub(origin_y);
+        let [x, y] = self.heading.rotate_wide([x, y]);
         let [anchor_x, anchor_y] = self.anchor;
         Placement {
             place: [anchor_x.wrapping_add(x), anchor_y.wrapping_add(y)],

@@ -217,3 +217,36 @@ fn time_does_not_drift() {
         / u128::from(clip.frame_time_ns());
     assert_eq!(u128::from(animator.track().frame()), due % u128::from(clip.frames()));
 }
+
+#[test]
+fn a_turned_figure_travels_without_end() {
+    let clip = walk();
+    let mut room = Room::new();
+    let mut animator = Animator::new(clip, room.lend()).unwrap();
+    let lap = |animator: &mut Animator<'_, '_>| {
+        let before = animator.placement().place;
+        (0..clip.frames()).for_each(|_| animator.step().unwrap_or_default());
+        let [x, y] = animator.placement().place;
+        [x - before[0], y - before[1]]
+    };
+    let degrees = |of: i64| pantin::Angle::from_bits((of * (1 << 32) / 360) as u32 as i32);
+    animator.set_placement(Placement { place: [0; 2], heading: degrees(40) });
+    // Far beyond the range of a channel.
+    let [first_x, first_y] = lap(&mut animator);
+    let way = first_x.abs().max(first_y.abs());
+    let laps = (8i64 << 31) / way;
+    for round in 0..laps {
+        let [x, y] = lap(&mut animator);
+        assert!((x - first_x).abs() <= 2 && (y - first_y).abs() <= 2, "lap {round}: {x} {y}, the first {first_x} {first_y}");
+    }
+    let [x, y] = animator.placement().place;
+    assert!(x.abs().max(y.abs()) > 4i64 << 31);
+    // And the same way back.
+    animator.set_speed(speed(-1.0));
+    let frame_us = clip.frame_time_ns().div_ceil(1000);
+    for _ in 0..laps {
+        (0..clip.frames()).for_each(|_| animator.update(frame_us).unwrap_or_default());
+    }
+    let back = animator.placement().place;
+    assert!((back[0] - first_x).abs().max((back[1] - first_y).abs()) <= 2 * way, "{back:?}");
+}
