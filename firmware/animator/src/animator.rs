@@ -7,7 +7,7 @@ use crate::layer::{Weight, blend, mix_group};
 use crate::mask::Mask;
 use crate::math;
 use crate::offset::{AGAIN, Cubic, Offset};
-use crate::root::{Heading, Placement, Root, Travel};
+use crate::root::{self, Heading, Placement, Root, Travel};
 use crate::track::Track;
 use fixed::types::{I16F16, U0F16};
 use pantin::{ChannelState, Clip, FormRef, Pose, WrongForm};
@@ -105,6 +105,8 @@ pub struct Animator<'a, 'm> {
     /// Frames of the transition that are left, and the time in the frame that runs, in ns.
     left: u8,
     rest_ns: u32,
+    /// Index of the joint that carries the figure.
+    carrier: usize,
     root: Root<'a>,
     travel: Travel,
     /// The root's horizontal place in the clip, with what the transition adds.
@@ -118,7 +120,16 @@ pub struct Animator<'a, 'm> {
 
 impl<'a, 'm> Animator<'a, 'm> {
     /// Starts a clip at frame 0, at the world's origin. A rig that has scalars alone is [`Error::NoSuchJoint`]: a [`Track`] plays it.
+    ///
+    /// The figure is carried by the rig's first joint with positions: its horizontal place and its turn about the vertical axis are the figure's.
+    /// [`Animator::carried_by`] takes another joint.
     pub fn new(clip: Clip<'a>, memory: Memory<'m>) -> Result<Self, Error> {
+        let carrier = root::first_with_positions(&clip.rig());
+        Self::carried_by(carrier, clip, memory)
+    }
+
+    /// [`Animator::new`] for a figure that is carried by the joint of an index, as where captures hang on a joint that stands still.
+    pub fn carried_by(carrier: usize, clip: Clip<'a>, memory: Memory<'m>) -> Result<Self, Error> {
         let Memory { states, values, offsets, pose, groups } = memory;
         let needed = clip.rig().channels();
         let check = |what, given| if given < needed { Err(Error::TooSmall { what, needed, given }) } else { Ok(()) };
@@ -126,7 +137,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         check("values of the pose", pose.len())?;
         let (offsets, pose) = (offsets.get_mut(..needed).unwrap_or_default(), pose.get_mut(..needed).unwrap_or_default());
         let used_groups = groups::set_up(&clip.rig(), clip.form_ref(), groups)?;
-        let root = Root::of(&clip.rig(), groups).ok_or(Error::NoSuchJoint)?;
+        let root = Root::of(&clip.rig(), groups, carrier).ok_or(Error::NoSuchJoint)?;
         let track = Track::new(clip, states, values)?;
         let mut animator = Animator {
             track,
@@ -136,6 +147,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             used_groups,
             left: 0,
             rest_ns: 0,
+            carrier,
             root,
             travel: Travel::NONE,
             place: [0; 2],
@@ -202,6 +214,13 @@ impl<'a, 'm> Animator<'a, 'm> {
         let placement = self.placement();
         self.motion = motion;
         self.settle(placement);
+    }
+
+    /// Begins at a frame, at the world's origin.
+    pub(crate) fn begin_at(&mut self, frame: u32) {
+        self.track.seek(frame);
+        self.compose();
+        self.settle(Placement::default());
     }
 
     /// Puts the figure to a place in the world.
@@ -562,7 +581,7 @@ impl<'a, 'm> Animator<'a, 'm> {
                 (own.d, own.v) = (here, next);
             }
         }
-        self.root = Root::of(&rig, self.groups.get(..used).unwrap_or_default()).ok_or(Error::NoSuchJoint)?;
+        self.root = Root::of(&rig, self.groups.get(..used).unwrap_or_default(), self.carrier).ok_or(Error::NoSuchJoint)?;
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ use crate::animator::{Animator, Memory};
 use crate::layer::{Ramp, Weight};
 use crate::machine::{LAYERS, LayerRow, Machine, Table, Updated, clip};
 use crate::mask::Mask;
-use crate::root::{Placement, Root};
+use crate::root::{self, Placement, Root};
 use crate::track::Track;
 use crate::{Error, machine::TableError};
 use fixed::types::I16F16;
@@ -55,11 +55,13 @@ pub struct Character<'a, 'm> {
 
 impl<'a, 'm> Character<'a, 'm> {
     /// Starts the state machine of a bank, whose bytes these are. States do not blend before [`Character::lend_second`], and a layer does not play
-    /// before [`Character::lend_layer`].
+    /// before [`Character::lend_layer`]. The figure is carried by the first joint with positions that moves in one of the states' clips.
     pub fn new(bytes: &'a [u8], memory: Memory<'m>) -> Result<Self, Error> {
         let bank = Bank::new_checked(bytes)?;
         let machine = Machine::new(Table::of_bank(bytes)?);
-        let animator = Animator::new(machine.first_clip(&bank)?, memory)?;
+        let carrier = carrier(&bank, machine.table(), memory.states, memory.values)?;
+        let mut animator = Animator::carried_by(carrier, machine.first_clip(&bank)?, memory)?;
+        machine.start(&mut animator);
         Ok(Character { bank, machine, animator, second: None, layers: Vec::new() })
     }
 
@@ -185,6 +187,15 @@ impl<'a> Layer<'a, '_> {
     }
 }
 
+/// The clips of all states.
+fn clips<'a>(bank: &Bank<'a>, table: &Table<'a>) -> impl Iterator<Item = Result<Clip<'a>, Error>> {
+    (0..table.states()).filter_map(|state| table.state(state as u8)).map(|state| clip(bank, state.clip))
+}
+
+fn carrier(bank: &Bank<'_>, table: &Table<'_>, states: &mut [ChannelState], values: &mut [i32]) -> Result<usize, Error> {
+    root::carrier(clips(bank, table), states, values)
+}
+
 /// Poses of a clip that [`visit_poses`] visits.
 const VISITS: u32 = 24;
 
@@ -199,9 +210,10 @@ pub fn visit_poses<'a>(
 ) -> Result<(), Error> {
     let bank = Bank::new_checked(bytes)?;
     let table = Table::of_bank(bytes)?;
-    for state in (0..table.states()).filter_map(|state| table.state(state as u8)) {
-        let clip = clip(&bank, state.clip)?;
-        let root = Root::of(&clip.rig(), &[]);
+    let carrier = carrier(&bank, &table, states, values)?;
+    for clip in clips(&bank, &table) {
+        let clip = clip?;
+        let root = Root::of(&clip.rig(), &[], carrier);
         let (needed, given) = (clip.rig().channels(), sampled.len());
         let sampled = sampled.get_mut(..needed).ok_or(Error::TooSmall { what: "values", needed, given })?;
         let frames = clip.frames();

@@ -10,6 +10,7 @@
 //! let mut machine = Machine::new(table);
 //! let mut memory = Workspace::<80, 100>::new();
 //! let mut animator = Animator::new(machine.first_clip(&bank)?, memory.lend())?;
+//! machine.start(&mut animator);
 //! let jump = table.input("jump");
 //! for _picture in 0..100 {
 //!     if let Some(jump) = jump {
@@ -501,6 +502,12 @@ pub struct Updated {
     pub lost: Option<EventsLost>,
 }
 
+/// The frame at which a state's clip begins: one that plays backwards and is no loop begins at its last frame instead of frame 0, where it would be
+/// over.
+fn begun(frame: u32, clip: &Clip<'_>, speed: I16F16) -> u32 {
+    if frame == 0 && speed < 0 && !clip.looped() { clip.frames().saturating_sub(1) } else { frame }
+}
+
 impl<'a> Machine<'a> {
     /// A machine in its first state.
     pub fn new(table: Table<'a>) -> Machine<'a> {
@@ -510,6 +517,16 @@ impl<'a> Machine<'a> {
             *parameter = initial;
         }
         Machine { table, parameters, fired: 0, seen: 0, held: 0, state: table.counted(5) as u8, blending: false }
+    }
+
+    /// Starts an animator of [`Machine::first_clip`] as the state says: at its speed, from the frame at which it begins. [`crate::Character`] does so.
+    pub fn start(&self, animator: &mut Animator<'_, '_>) {
+        let Some(row) = self.table.state(self.state) else { return };
+        animator.set_speed(row.speed);
+        let frame = begun(0, animator.track().clip(), row.speed);
+        if frame > 0 {
+            animator.begin_at(frame);
+        }
     }
 
     /// The clip of the state, for [`Animator::new`].
@@ -604,6 +621,7 @@ impl<'a> Machine<'a> {
                 sync::in_step(old, frame, part, &clip, 0).map_or(0, |(frame, _)| frame)
             }
         };
+        let frame = begun(frame, &clip, row.speed);
         animator.switch(clip, frame, row.speed, wanted.transition)?;
         (self.state, self.blending) = (wanted.to, false);
         Ok(Some(wanted.to))

@@ -3,9 +3,10 @@
 //! A place is a function of the clip's frame, of the number of laps and of where the clip was started, so that an increment is the
 //! difference of two places: sums over loops, reverse and seeks are exact by construction.
 
+use crate::Error;
 use crate::groups::Group;
 use crate::math;
-use pantin::{Angle, Clip, EulerOrder, JointRef, Kind, Matrix, Pose, Rig, Turn};
+use pantin::{Angle, ChannelState, Clip, EulerOrder, JointRef, Kind, Matrix, Player, Pose, Rig, Turn};
 
 /// Where a figure is in the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,7 +77,7 @@ impl Heading {
     }
 }
 
-/// The channels that place a figure: those of the first joint that has any.
+/// The channels that place a figure: those of its carrier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Root<'a> {
     joint: JointRef<'a>,
@@ -90,6 +91,46 @@ pub(crate) struct Root<'a> {
     pub(crate) turns: Group,
 }
 
+/// The carrier of a figure by its rig alone: the first joint that has positions.
+pub(crate) fn first_with_positions(rig: &Rig<'_>) -> usize {
+    rig.joints().position(|joint| has_positions(joint.kinds)).unwrap_or(0)
+}
+
+fn has_positions(mut kinds: pantin::Kinds<'_>) -> bool {
+    kinds.any(|kind| kind.is_position())
+}
+
+/// The carrier of a figure that plays several clips: the first joint with positions that moves in one of them. Captures often hang on a joint that
+/// stands still at the origin; where one above the carrier is turned, it stays the carrier. `states` and `values` are memory for each of the clips.
+pub(crate) fn carrier<'a>(
+    clips: impl Iterator<Item = Result<Clip<'a>, Error>>,
+    states: &mut [ChannelState],
+    values: &mut [i32],
+) -> Result<usize, Error> {
+    let (mut first, mut carrier, mut upright) = (0, usize::MAX, usize::MAX);
+    for clip in clips {
+        let clip = clip?;
+        let rig = clip.rig();
+        first = first_with_positions(&rig);
+        let player = Player::new(clip, states, values)?;
+        let moves = |from: usize, to: usize| player.states().iter().any(|state| (from..to).contains(&state.slot()));
+        for (index, joint) in rig.joints().enumerate().take(carrier) {
+            let from = usize::from(joint.first_channel);
+            let to = from + { joint.kinds }.count();
+            let channels = joint.kinds.zip(player.pose().values.get(from..to).unwrap_or_default());
+            let turned = channels.filter(|(kind, _)| !kind.is_position()).any(|(kind, value)| !kind.is_rotation() || *value != 0);
+            if has_positions(joint.kinds) && moves(from, to) {
+                carrier = index;
+                break;
+            }
+            if turned {
+                upright = upright.min(index);
+            }
+        }
+    }
+    Ok(if carrier == usize::MAX || upright < carrier { first } else { carrier })
+}
+
 /// The root at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RootSample {
@@ -98,9 +139,8 @@ pub(crate) struct RootSample {
 }
 
 impl<'a> Root<'a> {
-    /// The root of a rig; `None` for a rig without joints.
-    pub(crate) fn of(rig: &Rig<'a>, groups: &[Group]) -> Option<Root<'a>> {
-        let index = rig.joints().position(|joint| { joint.kinds }.any(|kind| kind.is_position())).unwrap_or(0);
+    /// The root of a rig, whose carrier is the joint of an index; `None` if there is no such joint.
+    pub(crate) fn of(rig: &Rig<'a>, groups: &[Group], index: usize) -> Option<Root<'a>> {
         let joint = rig.joint_ref(index)?;
         let channel = |axis: usize| {
             let wanted = |(kind, _): &(Kind, usize)| kind.is_position() && kind.axis() == Some(axis % 3);

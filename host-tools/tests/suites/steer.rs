@@ -163,3 +163,64 @@ fn the_command_writes_pictures_and_places() {
     let no_machine = pantin(&["steer", "-o"], &[&path("b.gif"), &motions().join("walk.ptn"), &path("s.txt")]);
     assert!(String::from_utf8_lossy(&no_machine.stderr).contains("no bank with a state machine"));
 }
+
+/// A character of a figure that hangs on a joint which stands still, as captures do: its hips go 1 cm a frame along z, and stand.
+fn captured(machine: &str) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let joints = "joint still offset 0 0 0 channels Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+                  joint hips parent still offset 0 0 0 channels Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
+                  joint foot parent hips offset 0 -90 0 channels Xrotation\nend parent foot offset 0 0 20\n";
+    let head = "keyframes 1\nfps 30\nframes 31\ncm-per-unit 1\n";
+    let walk = "keys linear hips.Yposition\n 0 90\n 30 90\nkeys linear hips.Zposition\n 0 0\n 30 30\nkeys linear foot.Xrotation\n 0 0\n 30 40\n";
+    let stand = "keys linear hips.Yposition\n 0 90\n 30 90\nkeys linear foot.Xrotation\n 0 0\n 30 20\n";
+    std::fs::write(path("walk.keys"), format!("{head}{joints}{walk}")).unwrap();
+    std::fs::write(path("stand.keys"), format!("{head}{joints}{stand}")).unwrap();
+    std::fs::write(path("m.toml"), machine).unwrap();
+    let [library, bank] = ["library.ptb", "m.ptb"].map(path);
+    let clips = [path("walk.keys"), path("stand.keys")];
+    let made = pantin(&["convert", "--same-form", "-o"], &[&library, &clips[0], &clips[1]]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let made = pantin(&["machine", "-o"], &[&bank, "--bank".as_ref(), &library, &path("m.toml")]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    std::fs::read(bank).unwrap()
+}
+
+/// Places along z, in cm, and frames of the clip, picture by picture at 30 a second.
+fn ways(bank: &[u8], session: &str) -> Vec<(f64, u32)> {
+    let replay = Replay::new(Session::new_checked(session, &Table::of_bank(bank).unwrap()).unwrap(), RATE);
+    let mut ways = vec![];
+    play(bank, replay, |character| {
+        let (pose, placement) = character.pose();
+        let unit = f64::from(pose.form.to_form().length_exponent()).exp2();
+        ways.push((placement.place[0] as f64 * unit, character.animator().track().frame()));
+        Ok(())
+    })
+    .unwrap();
+    ways
+}
+
+#[test]
+fn a_figure_below_a_joint_that_stands_still_travels() {
+    let bank = captured(
+        "start = \"stand\"\n[[state]]\nname = \"stand\"\ntransitions = [{ to = \"walk\", input = \"go\", kind = \"cut\" }]\n\
+         [[state]]\nname = \"walk\"\ntransitions = [{ to = \"stand\", end = true, kind = \"cut\" }]\n",
+    );
+    // It walks twice: 30 cm each.
+    let ways = ways(&bank, "0.5 press go\n2.5 press go\n5 end");
+    let (last, _) = ways[ways.len() - 1];
+    assert!((last - 60.0).abs() < 0.5, "{last}");
+    assert!(ways.windows(2).all(|pair| (-0.1..1.5).contains(&(pair[1].0 - pair[0].0))), "{ways:?}");
+}
+
+#[test]
+fn the_first_state_plays_at_its_speed() {
+    let machine = |speed: &str| format!("[[state]]\nname = \"walk\"\nspeed = {speed}\n[[any]]\nto = \"walk\"\ninput = \"go\"\n");
+    let at = |speed: &str| ways(&captured(&machine(speed)), "0.5 end")[15];
+    assert_eq!(at("0").1, 0);
+    assert_eq!(at("2").1, 30);
+    // Backwards, from its last frame on.
+    let (place, frame) = at("-1");
+    assert!((14..=15).contains(&frame), "{frame}");
+    assert!((place + 15.0).abs() < 0.5, "{place}");
+}
