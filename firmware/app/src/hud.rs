@@ -43,6 +43,7 @@ pub(crate) fn show<B: Board>(
 }
 
 /// Shows a line at the top and one at the bottom.
+#[inline(always)]
 pub(crate) fn lines<B: Board>(lines: [&str; 2], target: &mut Framebuffer<B::Layout>, board: &mut B) {
     if !board.overlay(lines) {
         draw(lines, target);
