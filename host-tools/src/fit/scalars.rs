@@ -3,6 +3,7 @@
 //! Faces are nearly the same on both sides: in recordings a quarter of what moves can follow.
 
 use super::search::{Effort, Fitted, Tube, search};
+use super::start_cost::step_of;
 use crate::encode::clip::Start;
 use crate::motion::Rig;
 use anyhow::{Result, anyhow};
@@ -21,6 +22,9 @@ const PRICE: f64 = 0.02;
 const STEPS: RangeInclusive<i32> = -3..=4;
 /// Second differences are at most this many times the source's greatest, so that a face does not jerk.
 const BEND: f64 = 1.45;
+/// How much wider the last search of a code is, and how much farther it lets hypotheses be behind the best: 1 % fewer bytes for a third more time.
+const WIDER: usize = 4;
+const WIDER_MARGIN: f64 = 2.0;
 /// Channels that one is tried to follow: those that leave most room.
 const LEADERS: usize = 4;
 /// What a channel at rest, and that one follows, cost, about.
@@ -67,7 +71,8 @@ pub fn fit(rig: &Rig, aims: &[Aim], effort: Effort) -> Result<Vec<Fitted>> {
             None => groups.push(Group { members: vec![scalar], tube: tube.clone(), code: code.clone() }),
         }
     }
-    for Group { members, code, .. } in groups {
+    let refined: Vec<_> = groups.par_iter().map(|group| coder.refined(&group.tube, &group.code)).collect();
+    for (Group { members, .. }, code) in groups.into_iter().zip(refined) {
         let leader = first + members[0];
         for &follower in &members[1..] {
             let start = Start::Follows { leader };
@@ -130,6 +135,14 @@ impl Coder {
             (0..*steps(tube).start()).rev().find_map(|step| search(&free, step, wide))
         };
         within(tube).or_else(|| within(&free)).or_else(finer)
+    }
+
+    /// Searches wider at the step that was found best. What others follow keeps moving.
+    fn refined(&self, tube: &Tube, code: &Fitted) -> Fitted {
+        let wide = Effort { beam: WIDER * self.effort.beam, margin: WIDER_MARGIN * self.effort.margin, ..self.effort };
+        let found = step_of(&code.start).and_then(|step| search(tube, step, wide));
+        let alike = |found: &Fitted| std::mem::discriminant(&found.start) == std::mem::discriminant(&code.start);
+        found.filter(|found| alike(found) && found.bits < code.bits).unwrap_or_else(|| code.clone())
     }
 
     /// The group that a channel joins if that takes fewer bits, with what they share. Leaders are among `near`.
