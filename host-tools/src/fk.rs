@@ -41,6 +41,18 @@ pub fn positions(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 3]> 
     world.into_iter().map(|(_, place)| place.map(|x| x * rig.cm_per_unit)).collect()
 }
 
+/// Rotations of all joints in their parents at `frame`, as quaternions w, x, y, z of length 1; End Sites turn nothing.
+pub fn rotations(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 4]> {
+    let mut next = 0;
+    let turn = |joint: &Joint| {
+        let channels = &values[next..next + joint.kinds.len()];
+        next += joint.kinds.len();
+        let [x, y, z, w] = quaternion(&local(joint, |channel| channels[channel][frame]).0);
+        [w, x, y, z]
+    };
+    rig.joints.iter().map(turn).collect()
+}
+
 /// Rotation and place of a joint in its parent; `value` gives its channels.
 pub(crate) fn local(joint: &Joint, value: impl Fn(usize) -> f64) -> (Matrix, [f64; 3]) {
     let mut offset = joint.offset;

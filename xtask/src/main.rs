@@ -21,7 +21,7 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 26] = [
+const LIST: [(&str, Place, &str); 27] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
@@ -56,6 +56,7 @@ const LIST: [(&str, Place, &str); 26] = [
     ("uf2", COMMANDS, "Makes a file to drag onto a board's drive"),
     ("vectors", COMMANDS, "Makes the golden vectors again"),
     ("web", COMMANDS, "Builds the web page with its player and our clips"),
+    ("wheels", COMMANDS, "Builds the Python package and the program pantin for Linux, Windows and macOS"),
 ];
 
 fn main() -> ExitCode {

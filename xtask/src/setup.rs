@@ -166,6 +166,7 @@ fn debian(name: &str) -> &str {
         "avr-gcc" => "gcc-avr avr-libc",
         "riscv64-unknown-elf-gcc" => "gcc-riscv64-unknown-elf picolibc-riscv64-unknown-elf",
         "xtensa-lx106-elf-gcc" => "gcc-xtensa-lx106",
+        "x86_64-w64-mingw32-gcc" => "gcc-mingw-w64-x86-64",
         // That of the Arm emulators is named as they are.
         other => other,
     }

@@ -3,6 +3,7 @@
 mod acclaim;
 pub mod amc;
 mod angles;
+pub mod arrays;
 mod asf;
 pub mod bvh;
 mod ends;

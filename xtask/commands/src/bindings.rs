@@ -1,9 +1,10 @@
-//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C, the Arduino library and the decoder in MicroPython (`bindings`), which need
-//! compilers for other targets.
+//! `cargo xtask bindings [--mutants N]`: tests of the decoder in C, the Arduino library, the decoder in MicroPython and the Python package
+//! (`bindings`), which need compilers for other targets.
 
 mod arduino;
 mod figure;
 mod micropython;
+mod python;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -193,6 +194,7 @@ impl Bindings {
         steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
         steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
         steps.run("MicroPython", || micropython::run(&folder));
+        steps.run("wheel of the Python package", || python::run(&folder));
         steps.steps.finish()
     }
 

@@ -17,6 +17,7 @@ mod strips;
 mod uf2;
 mod vectors;
 mod web;
+mod wheels;
 
 use std::process::ExitCode;
 
@@ -47,6 +48,7 @@ enum Command {
     Uf2(uf2::Uf2),
     Vectors(vectors::Vectors),
     Web(web::Web),
+    Wheels(wheels::Wheels),
 }
 
 fn main() -> ExitCode {
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
         Command::Web(web) => web.run(),
+        Command::Wheels(wheels) => wheels.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

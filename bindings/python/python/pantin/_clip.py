@@ -1,0 +1,150 @@
+"""Clips."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Dict, List, Optional, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _pantin
+from ._files import StrPath, named, write
+from ._motion import Joint, Motion
+
+Floats = npt.NDArray[np.float64]
+
+
+class Clip:
+    """A motion in a few bytes, played by the device's own decoder.
+
+    `rig` is the content of the rig's file for a clip that was made without one.
+    """
+
+    report: Dict[str, Any]
+    """What `pantin.convert` measured: `max_error_cm`, `worst_joint`, `bytes`, `warnings` and more. Empty for a clip that was opened."""
+
+    def __init__(self, data: bytes, rig: Optional[bytes] = None) -> None:
+        data = bytes(data)
+        self._bytes = data if rig is None else _pantin.with_rig(data, bytes(rig))
+        self._facts: Dict[str, Any] = json.loads(_pantin.facts(self._bytes))
+        self._joints = tuple(Joint(**{**joint, "offset": tuple(joint["offset"])}) for joint in self._facts["joints"])
+        self.report = {}
+
+    @classmethod
+    def open(cls, path: StrPath, rig: Optional[StrPath] = None) -> Clip:
+        """Opens a clip's file (.ptn); `rig` is the file of its rig, if that is apart."""
+        data = Path(path).read_bytes()
+        rig_data = None if rig is None else Path(rig).read_bytes()
+        with named(path):
+            return cls(data, rig_data)
+
+    def save(self, path: StrPath) -> None:
+        """Writes the clip's file, with its rig."""
+        write(path, self._bytes)
+
+    def to_bvh(self, path: StrPath) -> None:
+        """Writes the clip as BVH. Fails if the clip has scalars, quaternions or no joints, which BVH cannot hold."""
+        write(path, _pantin.bvh(self._bytes))
+
+    def __bytes__(self) -> bytes:
+        return self._bytes
+
+    def __len__(self) -> int:
+        return self.frames
+
+    def __repr__(self) -> str:
+        what = f"{len(self.joints)} joints, {len(self.scalar_names)} scalars"
+        return f"<pantin.Clip: {self.frames} frames at {self.rate:g} a second, {what}, {self.nbytes} bytes>"
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the clip with its rig."""
+        return len(self._bytes)
+
+    @property
+    def frames(self) -> int:
+        """Number of frames."""
+        return int(self._facts["frames"])
+
+    @property
+    def rate(self) -> float:
+        """Frames a second, to the seven digits that a frame time in nanoseconds has."""
+        return float(f"{1e9 / self.frame_time_ns:.7g}")
+
+    @property
+    def frame_time_ns(self) -> int:
+        """Time from one frame to the next in nanoseconds."""
+        return int(self._facts["frame_time_ns"])
+
+    @property
+    def looped(self) -> bool:
+        """Whether frame 0 follows the last frame."""
+        return bool(self._facts["looped"])
+
+    @property
+    def up(self) -> str:
+        """The direction of the world that is vertical: x, y, z, -x, -y or -z."""
+        return str(self._facts["up"])
+
+    @property
+    def joints(self) -> Tuple[Joint, ...]:
+        """The joints, parents before children, with offsets in cm; End Sites included."""
+        return self._joints
+
+    @property
+    def scalar_names(self) -> Tuple[str, ...]:
+        """Names of the channels that move no joint."""
+        return tuple(name for name, _ in self._facts["scalars"])
+
+    @property
+    def channel_names(self) -> Tuple[str, ...]:
+        """Names of all channels, in the order of `raw`."""
+        return tuple(self._facts["channels"])
+
+    @property
+    def events(self) -> List[Tuple[int, str]]:
+        """The markers: frame and name, in the order of frames."""
+        return [(frame, name) for frame, name in self._facts["events"]]
+
+    def rotations(self) -> Floats:
+        """Rotations of the joints in their parents, as quaternions w, x, y, z of length 1: (frames, joints, 4).
+
+        End Sites have the rotation 1, 0, 0, 0. From frame to frame, the sign is that of the nearer quaternion.
+        """
+        return self._floats(_pantin.rotations(self._bytes), len(self.joints), 4)
+
+    def positions(self) -> Floats:
+        """Positions of the joints in the world, in cm: (frames, joints, 3)."""
+        return self._floats(_pantin.positions(self._bytes), len(self.joints), 3)
+
+    def translations(self) -> Floats:
+        """Positions of the joints in their parents, in cm: (frames, joints, 3)."""
+        return self._floats(_pantin.places(self._bytes), len(self.joints), 3)
+
+    def scalars(self) -> Dict[str, Floats]:
+        """Values of the channels that move no joint, by name: (frames,) each, in the units of the motion."""
+        values = self._floats(_pantin.scalars(self._bytes), len(self.scalar_names))
+        return {name: values[:, index] for index, name in enumerate(self.scalar_names)}
+
+    def raw(self) -> npt.NDArray[np.int32]:
+        """The decoder's own integers: (frames, channels). They are equal, bit for bit, on every machine.
+
+        FORMAT.md has their units: turns of 2^-32 for angles, 2^-30 for components of quaternions.
+        """
+        values = np.frombuffer(_pantin.raw(self._bytes), np.int32)
+        return values.reshape(self.frames, len(self.channel_names))
+
+    def image(self, frame: int) -> npt.NDArray[np.bool_]:
+        """The figure at a frame as a display of 128x64 pixels shows it, drawn by the firmware's code: (64, 128), True where it is lit."""
+        return np.frombuffer(bytearray(_pantin.image(self._bytes, frame)), np.bool_).reshape(64, 128)
+
+    def motion(self) -> Motion:
+        """The clip as arrays, to be edited and converted again. A loop becomes a motion that is none."""
+        rotations, translations = self.rotations(), self.translations()
+        scales = dict(self._facts["scalars"])
+        return Motion(self.joints, rotations, translations, self.scalars(), scales, 1e9 / self.frame_time_ns, 1.0, self.up)
+
+    def _floats(self, data: bytearray, *shape: int) -> Floats:
+        return np.frombuffer(data, np.float64).reshape(self.frames, *shape)

@@ -1,0 +1,54 @@
+//! What a clip is: its rig, its time, its events.
+
+use crate::error::exception;
+use anyhow::{Error, Result, bail};
+use pantin::{Clip, OpenError};
+use pantin_tools::encode::rig;
+use pantin_tools::events;
+use pantin_tools::import::up;
+use pyo3::prelude::*;
+use serde_json::json;
+
+/// Opens the bytes of a clip's file.
+pub fn open(bytes: &[u8]) -> Result<Clip<'_>> {
+    Clip::new_checked(bytes).or_else(|error| match error {
+        OpenError::BadMagic if bytes.starts_with(&pantin::codec::layout::BANK_MAGIC) => {
+            bail!("a bank of several clips, which pantin.Bank opens")
+        }
+        OpenError::BadMagic => bail!("{error}; pantin.convert makes clips of motions"),
+        error => Err(error.into()),
+    })
+}
+
+/// The facts of a clip as JSON.
+#[pyfunction]
+pub fn facts(py: Python<'_>, clip: &[u8]) -> PyResult<String> {
+    text(clip).map_err(|error: Error| exception(py, &error, None))
+}
+
+fn text(bytes: &[u8]) -> Result<String> {
+    let clip = open(bytes)?;
+    let figure = rig::decode(&clip.rig());
+    let joint = |joint: &pantin_tools::motion::Joint| {
+        json!({
+            "name": joint.name,
+            "parent": joint.parent,
+            "offset": joint.offset.map(|x| x * figure.cm_per_unit),
+            "end_site": joint.end_site,
+            "helper": joint.helper,
+        })
+    };
+    let events: Vec<_> = events::of_clip(&clip).into_iter().map(|event| json!([event.frame, event.name])).collect();
+    let facts = json!({
+        "frames": clip.frames(),
+        "frame_time_ns": clip.frame_time_ns(),
+        "looped": clip.looped(),
+        "moving": clip.moving(),
+        "up": up::text(figure.up),
+        "joints": figure.joints.iter().map(joint).collect::<Vec<_>>(),
+        "scalars": figure.scalars.iter().map(|scalar| json!([scalar.name, scalar.full_scale])).collect::<Vec<_>>(),
+        "channels": (0..figure.channels()).map(|channel| figure.channel_name(channel)).collect::<Vec<_>>(),
+        "events": events,
+    });
+    Ok(facts.to_string())
+}

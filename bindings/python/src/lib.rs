@@ -1,0 +1,37 @@
+//! The native half of the Python package `pantin`: functions of bytes. `python/pantin` makes classes and arrays of them.
+//!
+//! Arrays go in and out as bytes in the machine's order, which numpy reads without a library of its own on this side.
+
+mod array;
+mod background;
+mod bank;
+mod convert;
+mod error;
+mod export;
+mod facts;
+mod given;
+mod image;
+mod poses;
+
+use pyo3::pymodule;
+
+/// The module `pantin._pantin`; its stubs are in `python/pantin/_pantin.pyi`.
+#[pymodule]
+mod _pantin {
+    #[pymodule_export]
+    use super::bank::{bank_clip, bank_names, pack, with_rig};
+    #[pymodule_export]
+    use super::convert::convert;
+    #[pymodule_export]
+    use super::error::PantinError;
+    #[pymodule_export]
+    use super::export::bvh;
+    #[pymodule_export]
+    use super::facts::facts;
+    #[pymodule_export]
+    use super::given::convert_arrays;
+    #[pymodule_export]
+    use super::image::image;
+    #[pymodule_export]
+    use super::poses::{places, positions, raw, rotations, scalars};
+}

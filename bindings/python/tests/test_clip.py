@@ -1,0 +1,116 @@
+"""Clips: every frame of the golden vectors, and arrays that agree with each other."""
+
+import binascii
+import json
+
+import numpy as np
+import pytest
+from kinematics import matrices, of_bvh, places
+
+import pantin
+
+
+def crcs(clip):
+    return [f"{binascii.crc_hqx(frame.astype('<i4').tobytes(), 0xFFFF):04x}" for frame in clip.raw()]
+
+
+def test_golden_vectors_are_equal_to_the_bit(vectors):
+    files = sorted(vectors.glob("*.ptn"))
+    assert len(files) > 20
+    for path in files:
+        record = json.loads(path.with_suffix(".json").read_text())
+        rig = path.with_suffix(".rig")
+        clip = pantin.Clip.open(path, rig if rig.exists() else None)
+        assert crcs(clip) == record["crcs"], path.name
+        for frame, pose in record["poses"].items():
+            assert clip.raw()[int(frame)].tolist() == pose, (path.name, frame)
+        facts = {
+            "frames": len(clip),
+            "frame_time_ns": clip.frame_time_ns,
+            "looped": clip.looped,
+            "joints": len(clip.joints),
+            "channels": len(clip.channel_names),
+        }
+        assert {key: record[key] for key in facts} == facts, path.name
+        names = record.get("event_names") or []
+        named = [(frame, names[n] if n < len(names) and names[n] else str(n)) for frame, n in record["events"]]
+        assert clip.events == [event for event in named if event[0] < len(clip)], path.name
+
+
+def test_golden_banks_are_equal_to_the_bit(vectors):
+    record = json.loads((vectors / "bank.json").read_text())
+    bank = pantin.Bank.open(vectors / "bank.ptb")
+    assert list(bank) == [clip[0] for clip in record["clips"]]
+    for name, _, frames, looped, expected in record["clips"]:
+        clip = bank[name]
+        assert (clip.frames, clip.looped, crcs(clip)) == (frames, looped, expected), name
+
+
+def test_arrays_have_the_shapes_that_their_docs_state(walk):
+    joints = len(walk.joints)
+    assert walk.frames == 160 and walk.rate == 120 and walk.looped and walk.up == "y"
+    assert walk.rotations().shape == (160, joints, 4)
+    assert walk.positions().shape == walk.translations().shape == (160, joints, 3)
+    assert walk.scalars() == {} and walk.raw().shape == (160, len(walk.channel_names))
+    assert np.allclose(np.linalg.norm(walk.rotations(), axis=2), 1)
+    positions = walk.positions()
+    assert positions.dtype == np.float64
+    positions += 1  # arrays can be written, and belong to nobody else
+    assert not np.allclose(walk.positions(), positions)
+
+
+def test_rotations_and_translations_give_the_positions(motions, vectors):
+    for path in [motions / "walk.ptn", motions / "greet.ptn", vectors / "quaternion.ptn", vectors / "exponential-map.ptn"]:
+        clip = pantin.Clip.open(path)
+        parents = [joint.parent for joint in clip.joints]
+        found = places(parents, matrices(clip.rotations()), clip.translations())
+        size = max(1, np.abs(found).max())
+        assert np.abs(found - clip.positions()).max() < 1e-9 * size, path.name
+
+
+def test_the_bvh_has_the_positions(walk, bvh):
+    names, positions = of_bvh(bvh)
+    order = [names.index(joint.name) for joint in walk.joints if not joint.end_site]
+    own = [index for index, joint in enumerate(walk.joints) if not joint.end_site]
+    unit = pantin.convert(bvh, max_error_cm=3, effort="fast").report["max_error_cm"]
+    assert unit <= 3
+    scale = np.ptp(walk.positions()[0]) / np.ptp(positions[0])
+    assert np.abs(positions[:, order] * scale - walk.positions()[:, own]).max() < 1e-5
+
+
+def test_scalars_are_by_name(motions):
+    clip = pantin.Clip.open(motions / "face/joy.ptn")
+    scalars = clip.scalars()
+    assert tuple(scalars) == clip.scalar_names and len(scalars) > 0
+    assert all(values.shape == (clip.frames,) and values.dtype == np.float64 for values in scalars.values())
+    assert max(np.ptp(values) for values in scalars.values()) > 0.1
+    with pytest.raises(pantin.PantinError, match="BVH cannot hold"):
+        clip.to_bvh("joy.bvh")
+
+
+def test_a_picture_is_that_of_the_display(walk):
+    image = walk.image(0)
+    assert image.shape == (64, 128) and image.dtype == np.bool_ and 100 < image.sum() < 2000
+    assert (image != walk.image(40)).any()
+    with pytest.raises(pantin.PantinError, match="frame 160"):
+        walk.image(160)
+
+
+def test_files_are_saved_whole(walk, tmp_path):
+    walk.save(tmp_path / "copy.ptn")
+    again = pantin.Clip.open(tmp_path / "copy.ptn")
+    assert bytes(again) == bytes(walk) and again.nbytes == (tmp_path / "copy.ptn").stat().st_size
+    assert [path.name for path in tmp_path.iterdir()] == ["copy.ptn"]
+
+
+def test_banks_are_packed_and_opened(motions, walk, tmp_path):
+    bank = pantin.Bank.pack({"walk": walk, "again": walk})
+    bank.save(tmp_path / "bank.ptb")
+    opened = pantin.Bank.open(tmp_path / "bank.ptb")
+    assert opened.names == ("walk", "again") and len(opened) == 2
+    assert (opened["again"].raw() == walk.raw()).all()
+    with pytest.raises(KeyError):
+        opened["run"]
+    run = pantin.Clip.open(motions / "face/joy.ptn")
+    with pytest.raises(pantin.PantinError, match="another rig"):
+        pantin.Bank.pack({"walk": walk, "joy": run})
