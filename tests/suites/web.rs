@@ -9,7 +9,7 @@ use std::time::Duration;
 use harness::display::{GREYS, Picture};
 use harness::web::browser::{Browser, skipped};
 use harness::web::{self, slow};
-use harness::{build, clips, paths, screen, setup, simulator};
+use harness::{build, clips, paths, screen, setup, simulator, steered};
 use pantin::Clip;
 use pantin_figure::rotation::Rotation;
 use pantin_tools::expand::expand;
@@ -107,6 +107,25 @@ fn the_canvas_shows_what_the_host_shows() {
     }
     assert!(count > 500);
     println!("{count} pictures are equal");
+}
+
+#[test]
+fn a_character_is_steered_as_on_the_host() {
+    if skipped("the page's character") {
+        return;
+    }
+    let session = std::fs::read_to_string(steered::script()).unwrap();
+    let seen = drive("character", json!({ "session": session }));
+    let expected = steered::pictures().unwrap();
+    let shown = seen["shown"].as_array().unwrap();
+    assert_eq!(shown.len(), 91);
+    for (number, (shown, expected)) in shown.iter().zip(expected.iter().step_by(10)).enumerate() {
+        if let Some(difference) = screen::difference(&picture(shown), expected) {
+            panic!("picture {}: {difference}", 10 * number);
+        }
+    }
+    let states: Vec<&str> = seen["states"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert_eq!(states[..4], ["idle", "start", "walk", "run"]);
 }
 
 #[test]

@@ -61,6 +61,62 @@ button("home", () => player.turn(-50 - player.orbit, 12 - player.tilt));
 $("speed").onchange = () => (player.speed = +$("speed").value);
 $("link").onchange = () => show(current);
 
+// ---- the character
+
+const character = $("character");
+const inputs = [...document.querySelectorAll("#inputs button")];
+
+function lit() {
+  for (const state of document.querySelectorAll("#graph [data-state]")) state.classList.toggle("lit", state.dataset.state === character.state);
+}
+
+// What a button holds it holds until it is pressed again.
+function hold(input, down) {
+  character.hold(input.dataset.hold, down);
+  input.setAttribute("aria-pressed", down);
+  const [go, fast] = inputs;
+  // To run is to walk fast.
+  if (input === fast && down && go.getAttribute("aria-pressed") === "false") hold(go, true);
+  if (input === go && !down && fast.getAttribute("aria-pressed") === "true") hold(fast, false);
+}
+
+for (const input of inputs) {
+  const { hold: held, fire } = input.dataset;
+  input.onclick = () => {
+    if (!character.inputs.length) return;
+    if (held) hold(input, input.getAttribute("aria-pressed") === "false");
+    // Each state knows one of them.
+    else fire.split(" ").forEach((name) => character.fire(name));
+  };
+}
+
+// Keys steer while the figure has the focus, so that they scroll the page elsewhere.
+function key(event) {
+  const input = inputs.find((input) => input.dataset.key === (event.key.length === 1 ? event.key.toLowerCase() : event.key));
+  if (!input || event.ctrlKey || event.metaKey || event.altKey || !character.inputs.length) return;
+  event.preventDefault();
+  event.stopPropagation();
+  if (input.dataset.hold) hold(input, event.type === "keydown");
+  else if (event.type === "keydown" && !event.repeat) input.click();
+}
+["keydown", "keyup"].forEach((type) => character.addEventListener(type, key, true));
+character.addEventListener("blur", () => inputs.filter((input) => input.dataset.hold && character.inputs.length).forEach((input) => hold(input, false)));
+character.addEventListener("state", lit);
+character.addEventListener("ready", () => {
+  $("character-size").textContent = `${character.states.length} states, ${character.clips.length} motions and the figure are ${bytes(character.total)}.`;
+  character.fire("wave");
+});
+
+async function graph() {
+  const response = await fetch("clips/character.svg");
+  if (!response.ok) return;
+  const { documentElement } = new DOMParser().parseFromString(await response.text(), "image/svg+xml");
+  ["width", "height"].forEach((name) => documentElement.removeAttribute(name));
+  $("graph").append(document.importNode(documentElement, true));
+  lit();
+}
+graph().catch(() => {});
+
 // ---- links
 
 // The most bytes of a clip that fits into a link.

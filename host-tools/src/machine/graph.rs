@@ -74,10 +74,13 @@ pub fn svg(source: &Source) -> String {
             _ if Some(number) == start => ("#c40", ""),
             _ => ("#345", ""),
         };
+        // A page lights the state that plays.
+        let state =
+            if number < source.states.len() { format!(r#" data-state="{}""#, escaped(&node.name)) } else { String::new() };
         let wider = if Some(number) == start { 3 } else { 1 };
         let _ = writeln!(
             out,
-            r##"<rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="9" fill="#f4f7fb" stroke="{stroke}" stroke-width="{wider}"{dash}/>"##,
+            r##"<rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="9" fill="#f4f7fb" stroke="{stroke}" stroke-width="{wider}"{dash}{state}/>"##,
             x - w,
             y - h,
             2.0 * w,

@@ -19,11 +19,12 @@ use pantin_tools::export;
 use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::fit;
 use pantin_tools::import::{self, Options};
+use pantin_tools::machine;
 use pantin_tools::serve::{Site, serve};
 use serde_json::json;
 
 use crate::build::{self, Build};
-use crate::{paths, setup};
+use crate::{paths, setup, steered};
 
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -34,11 +35,12 @@ const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold
 /// Largest error of scalars, as a fraction of their full scale: the host tool's default.
 const SCALAR_PART: f64 = 0.02;
 
-/// The modules' packages, the profiles that they are built in, and their names in the site.
-pub const MODULES: [(&str, &str, &str); 3] = [
-    ("pantin-web-player", "release", PLAYER[1]),
-    ("pantin-web-face", "release", FACE[0]),
-    ("pantin-web-converter", "converter", CONVERTER[1]),
+/// The modules' packages and features, the profiles that they are built in, and their names in the site.
+pub const MODULES: [(&str, &str, &str, &str); 4] = [
+    ("pantin-web-player", "", "release", PLAYER[1]),
+    ("pantin-web-player", "character", "release", CHARACTER[0]),
+    ("pantin-web-face", "", "release", FACE[0]),
+    ("pantin-web-converter", "", "converter", CONVERTER[1]),
 ];
 
 /// A file of the player, or of the converter, and its bytes.
@@ -53,6 +55,8 @@ pub struct Size {
 pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.wasm"];
+/// What it loads too for a bank with a state machine.
+pub const CHARACTER: [&str; 1] = ["pantin-character.wasm"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
 
@@ -61,8 +65,8 @@ pub fn build(out: &Path) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
-    for (package, profile, name) in MODULES {
-        write(&out.join(name), &module(package, profile)?)?;
+    for (package, features, profile, name) in MODULES {
+        write(&out.join(name), &module(package, features, profile)?)?;
     }
     let page = listed(&paths::root().join("web/page"))?;
     for entry in page.into_iter().chain([paths::root().join("web/packages/player").join(PLAYER[0])]) {
@@ -72,6 +76,7 @@ pub fn build(out: &Path) -> Result<()> {
         write(&out.join(name), &if scripted { tools::minified(script::shortened(&bytes)?)? } else { bytes })?;
     }
     clips(out)?;
+    character(out)?;
     tools::compress(out)
 }
 
@@ -97,8 +102,8 @@ pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
 }
 
 /// A package of the web workspace as a module.
-fn module(package: &str, profile: &str) -> Result<Vec<u8>> {
-    let arguments = ["--profile", profile, "--package", package, "--target", TARGET];
+fn module(package: &str, features: &str, profile: &str) -> Result<Vec<u8>> {
+    let arguments = ["--profile", profile, "--package", package, "--features", features, "--target", TARGET];
     let environment = (profile == "release").then(|| ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS".into(), SMALL.into()));
     let product = build::cargo(&Build {
         workspace: paths::root().join("web"),
@@ -138,6 +143,15 @@ fn clips(out: &Path) -> Result<()> {
     export::bvh::write(&walk, export::bvh::Columns::ThreeRotations, &mut bvh)?;
     write(&out.join("clips/walk.bvh"), &bvh)?;
     write(&out.join("clips.json"), json!(list).to_string().as_bytes())
+}
+
+/// Our character, with the picture of its state machine.
+fn character(out: &Path) -> Result<()> {
+    write(&out.join("clips/character.ptb"), &std::fs::read(steered::bank())?)?;
+    let path = paths::root().join("motions/character.toml");
+    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let source = machine::Source::parse(&machine::Text { name: "character.toml", text: &text })?;
+    write(&out.join("clips/character.svg"), machine::graph::svg(&source).as_bytes())
 }
 
 /// Several motions in turn, within [`MEDLEY_CM`].

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use xtask::npm;
 
-use super::{FACE, PLAYER, tools};
+use super::{CHARACTER, FACE, PLAYER, tools};
 use crate::{paths, setup};
 
 /// The packages, those that others need first.
@@ -37,7 +37,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
                 "decoder.min.js" => decoder(&source)?,
-                name if PLAYER.contains(&name) || FACE.contains(&name) => read(&site.join(name))?,
+                name if [&PLAYER[..], &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => read(&site.join(name))?,
                 name => read(&source.join(name))?,
             };
             super::write(&folder.join(name), &bytes)?;
@@ -75,7 +75,7 @@ pub fn check(packed: &[Packed], folder: &Path) -> Result<Value> {
     node(folder, "node_modules/vite/bin/vite.js", &["build".into(), "--logLevel".into(), "error".into()])?;
     let assets = std::fs::read_dir(folder.join("dist/assets")).context("Vite's assets")?;
     let names: Vec<String> = assets.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned())).collect();
-    for module in [PLAYER[1], FACE[0]] {
+    for module in [PLAYER[1], FACE[0], CHARACTER[0]] {
         let stem = module.trim_end_matches(".wasm");
         let is_there = names.iter().any(|name| name.starts_with(stem) && name.ends_with(".wasm"));
         ensure!(is_there, "Vite did not emit {module}: {names:?}");

@@ -43,6 +43,8 @@ export interface PantinPlayerEventMap extends HTMLElementEventMap {
   frame: CustomEvent<null>;
   ready: CustomEvent<null>;
   heard: CustomEvent<Heard>;
+  /** A character's new state, by its name. */
+  state: CustomEvent<string>;
 }
 
 /** The element <pantin-player>. */
@@ -76,6 +78,11 @@ export declare class PantinPlayer extends HTMLElement {
   readonly events: readonly Heard[];
   /** Names of a bank's clips. */
   readonly clips: readonly string[];
+  /** Names of a state machine's states and inputs, its parameters, and the state that plays; nothing without a state machine. */
+  readonly states: readonly string[];
+  readonly inputs: readonly string[];
+  readonly parameters: readonly { readonly name: string; readonly range: readonly [number, number]; readonly value: number }[];
+  readonly state: string | null;
   /**
    * Resolves when all of the clip has arrived. Rejects with what is wrong with it, or with an AbortError if it is given up for another one.
    * `clip` names one of a bank's clips.
@@ -83,6 +90,14 @@ export declare class PantinPlayer extends HTMLElement {
   load(what: Source, clip?: string | null): Promise<void>;
   play(): void;
   pause(): void;
+  /** Fires an input of the state machine once. */
+  fire(input: string): void;
+  /** Holds an input down, or lets it go. */
+  hold(input: string, down?: boolean): void;
+  /** Sets a parameter, within its range. */
+  set(parameter: string, value: number): void;
+  /** Lets a character's time pass, in seconds, as playing does. */
+  advance(seconds: number): void;
   /** Shows a frame exactly; one that has not arrived is shown once it has. */
   seek(frame: number): void;
   step(by: number): void;

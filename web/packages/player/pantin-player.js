@@ -5,7 +5,7 @@ const MOST = 64 << 20;
 const WORDS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars", "scalarsAt", "scalarsLength", "pose", "eventFrame", "eventId", "eventNameAt", "eventNameLength"];
 const none = () => Object.fromEntries(WORDS.map((word) => [word, 0]));
 // What a player without a clip knows.
-const empty = () => ({ received: 0, total: 0, trouble: "", events: [], clips: [], facts: none() });
+const empty = () => ({ received: 0, total: 0, trouble: "", events: [], clips: [], states: [], inputs: [], parameters: [], state: null, facts: none() });
 // Events of a clip that are heard, at most.
 const MOST_EVENTS = 4096;
 // Bytes of a stroke, and how many of them there is room for.
@@ -122,6 +122,8 @@ function bankOf(file) {
   while (at < file.length) sections[file[at++]] = take(number());
   const [rig, contents, clips] = [1, 2, 3].map((kind) => sections[kind]);
   if (!rig || !contents || !clips) throw new Error("the bank ends early");
+  // A fourth section is a state machine.
+  const machine = !!sections[4];
   const found = [];
   let next = 0;
   file = contents;
@@ -131,7 +133,7 @@ function bankOf(file) {
     const length = number();
     found.push({ name, file: clips.subarray(next, (next += length)) });
   }
-  return { rig, clips: found };
+  return { rig, clips: found, machine };
 }
 const isBank = (file) => file[0] === 0x50 && file[1] === 0x62;
 
@@ -166,6 +168,10 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   trouble = "";
   events = [];
   clips = [];
+  states = [];
+  inputs = [];
+  parameters = [];
+  state = null;
   facts = none();
 
   constructor() {
@@ -422,8 +428,11 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
             if (whole.reduce((sum, part) => sum + part.length, 0) > MOST) throw new Error(`a bank may have ${MOST} bytes here`);
             continue;
           }
-          value = this.#chosen(new Uint8Array(await new Blob(whole).arrayBuffer()), clip);
+          const file = new Uint8Array(await new Blob(whole).arrayBuffer());
           signal.throwIfAborted();
+          const bank = bankOf(file);
+          if (bank.machine && clip === null) return await this.#steer(file, bank, signal, eager);
+          value = this.#chosen(bank, clip);
           [done, whole] = [false, null];
         }
         if (done) break;
@@ -454,8 +463,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   // Puts a bank's rig into the module's memory, and returns the clip that was asked for, or the first, behind it.
-  #chosen(file, name) {
-    const { rig, clips } = bankOf(file);
+  #chosen({ rig, clips }, name) {
     this.clips = clips.map((clip) => clip.name);
     const clip = name === null ? clips[0] : clips.find((clip) => clip.name === name);
     const names = this.clips.join(", ");
@@ -468,12 +476,86 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     return both;
   }
 
+  // Plays the state machine of a bank: its module is loaded only then.
+  async #steer(file, { clips }, signal, eager) {
+    const wasm = await open(new URL("./pantin-character.wasm", import.meta.url));
+    signal.throwIfAborted();
+    this.#sit(wasm);
+    const { at } = this.#seat;
+    const place = this.#room(file.length);
+    bytes(wasm, place).set(file);
+    [this.received, this.total, this.clips] = [file.length, file.length, clips.map(({ name }) => name)];
+    this.#check(wasm.machine(at, place, file.length));
+    const names = (kind) => {
+      const found = [];
+      while (wasm.name(at, kind, found.length)) found.push(this.#name());
+      return found;
+    };
+    [this.states, this.inputs] = [names(0), names(1)];
+    this.parameters = names(2).map((name, index) => ({ name, range: [0, 1].map((which) => wasm.range(at, index, which)), value: wasm.range(at, index, 2) }));
+    this.#pass(0);
+    this.#aim();
+    if (eager) this.play();
+  }
+
+  // The name that the module's facts point to.
+  #name() {
+    const { eventNameAt, eventNameLength } = this.#known();
+    return new TextDecoder().decode(bytes(this.#seat.wasm, eventNameAt, eventNameLength));
+  }
+
+  // Lets the character's time pass, in microseconds.
+  #pass(time) {
+    const { wasm, at } = this.#seat;
+    const state = wasm.update(at, time);
+    const name = this.states[state & 255];
+    this.#shown();
+    for (let index = 0; wasm.passed(at, index); index += 1) {
+      const { eventFrame, eventId } = this.#known();
+      this.#dispatch("heard", { frame: eventFrame, id: eventId, name: this.#name() });
+    }
+    if (name === this.state) return;
+    this.state = name;
+    this.#dispatch("state", name);
+  }
+
+  #input(name, what) {
+    const index = this.inputs.indexOf(name);
+    if (index < 0) throw new RangeError(`the state machine has no input ${name}; it has ${this.inputs.join(", ") || "none"}`);
+    this.#seat.wasm.input(this.#seat.at, index, what);
+  }
+
+  // Lets a character's time pass, in seconds, as playing does.
+  advance(seconds) {
+    if (this.states.length) this.#pass(Math.round(seconds * 1e6));
+  }
+
+  // Fires an input of the state machine once.
+  fire(name) {
+    this.#input(name, 2);
+  }
+
+  // Holds an input down, or lets it go.
+  hold(name, down = true) {
+    this.#input(name, +!!down);
+  }
+
+  // Sets a parameter, within its range.
+  set(name, value) {
+    const index = this.parameters.findIndex((parameter) => parameter.name === name);
+    if (index < 0) throw new RangeError(`the state machine has no parameter ${name}`);
+    const parameter = this.parameters[index];
+    const [least, most] = parameter.range;
+    parameter.value = Math.max(least, Math.min(most, Math.round(value)));
+    this.#seat.wasm.set(this.#seat.at, index, parameter.value);
+  }
+
   // The clip's events, in the order of their frames.
   #events() {
     const [{ wasm, at }, events] = [this.#seat, []];
     while (events.length < MOST_EVENTS && wasm.event(at, events.length)) {
-      const { eventFrame, eventId, eventNameAt, eventNameLength } = this.#known();
-      events.push({ frame: eventFrame, id: eventId, name: new TextDecoder().decode(bytes(wasm, eventNameAt, eventNameLength)) });
+      const { eventFrame, eventId } = this.#known();
+      events.push({ frame: eventFrame, id: eventId, name: this.#name() });
     }
     return events;
   }
@@ -568,7 +650,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     if (!this.#paused) return;
     this.#paused = false;
     const last = this.playable - 1;
-    const ended = this.playable && this.playable === this.frames && !this.loop && this.frame === (this.#backwards ? 0 : last);
+    const ended = !this.states.length && this.playable && this.playable === this.frames && !this.loop && this.frame === (this.#backwards ? 0 : last);
     this.#at = ended ? (this.#backwards ? last : 0) : this.frame;
     this.#run();
     this.#tell();
@@ -608,10 +690,12 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
 
   #tick(now) {
     const { frames, playable, frameTime } = this.facts;
-    const passed = Math.max(0, now - this.#before) * 1e6 / (frameTime || 1e9);
+    const elapsed = Math.max(0, now - this.#before);
     this.#before = now;
+    // A character has no frames of its own.
+    if (this.states.length) return this.#pass(Math.round(Math.min(elapsed, 1000) * 1000 * this.#speed));
     if (!playable || this.#held || this.#wanted) return;
-    let at = this.#at + passed * this.#speed * (this.#backwards ? -1 : 1);
+    let at = this.#at + ((elapsed * 1e6) / (frameTime || 1e9)) * this.#speed * (this.#backwards ? -1 : 1);
     // Time waits for frames that have not come.
     if (playable < frames && at >= playable) at = playable - 0.001;
     let looped = false;

@@ -51,6 +51,13 @@ impl Actor {
             skeleton.set_up(&rig, Detail::Body, source.pose(), &mut room)?;
             self.body = true;
         }
+        #[cfg(feature = "character")]
+        if let Source::Character(character) = source {
+            let mut visited = Ok(());
+            self.renderer.look_at(canvas, view, |visit| visited = visited.and(character.visit(visit)));
+            self.place_at(character.pose(), character.stand());
+            return visited;
+        }
         self.renderer.look_at(canvas, view, |visit| sample(source, visit));
         self.place(source.go(now));
         Ok(())
@@ -61,6 +68,14 @@ impl Actor {
         if self.body {
             // It is of the source that the renderer was set up for.
             let _ = self.renderer.set_pose(pose);
+        }
+    }
+
+    /// Sets the pose of a figure that stands somewhere in the world.
+    #[cfg(feature = "character")]
+    pub fn place_at(&mut self, pose: Pose<'_>, stand: pantin_figure::Stand) {
+        if self.body {
+            let _ = self.renderer.set_pose_at(pose, stand);
         }
     }
 

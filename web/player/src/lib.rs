@@ -14,6 +14,7 @@
 //! picture()                  -> address of the strokes, which all players share
 //! grey(strokes)              -> address of the 128x64 display's pixels for them
 //! ```
+//! With the feature `character` it also plays state machines: `machine(slot, bank, bytes)`, then `update(slot, us)`, `input`, `set`, `name`, `passed`.
 //! `arrived`, `finish`, `poses` and `aim` return a [`Trouble`], 0 for none. [`Facts`] describes the clip and the frame.
 #![no_std]
 // The page calls these functions, and finds and writes memory by plain addresses.
@@ -26,6 +27,8 @@ mod grey;
 mod memory;
 mod picture;
 mod source;
+#[cfg(feature = "character")]
+mod steered;
 mod world;
 
 use facts::{Facts, Trouble};
@@ -108,6 +111,62 @@ extern "C" fn poses(
     // SAFETY: as in `arrived`.
     let file = unsafe { written(file, bytes) };
     with(slot, |world| code(world.poses(file, rig, frames, frame_time_ns, length_exponent as i8)))
+}
+
+/// Plays the state machine of a bank of `bytes` bytes instead of a clip.
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn machine(slot: *mut Slot, bank: *const u8, bytes: usize) -> u32 {
+    // SAFETY: as in `arrived`; a slot has one character, which is gone when the slot is started again.
+    let (bank, buffers) = unsafe { (written(bank, bytes), &mut (*slot).steered) };
+    with(slot, |world| code(world.machine(bank, buffers)))
+}
+
+/// Lets a character's time pass. Returns its state, and 256 more if it was entered now.
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn update(slot: *mut Slot, elapsed_us: u32) -> u32 {
+    with(slot, |world| world.update(elapsed_us))
+}
+
+/// Fires an input (2), holds it down (1) or lets it go (0).
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn input(slot: *mut Slot, index: u32, what: u32) {
+    with(slot, |world| {
+        world.steer(|character, _| match what {
+            2 => character.fire(index as u8),
+            what => character.hold(index as u8, what == 1),
+        });
+    });
+}
+
+/// Sets a parameter.
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn set(slot: *mut Slot, parameter: u32, value: i32) {
+    with(slot, |world| world.steer(|character, _| character.set(parameter as u8, value.clamp(-32768, 32767) as i16)));
+}
+
+/// Returns the least (0), the greatest (1) or the first (2) value of a parameter.
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn range(slot: *mut Slot, parameter: u32, which: usize) -> i32 {
+    with(slot, |world| world.steer(|character, _| character.range(parameter as u8, which)).into())
+}
+
+/// Returns 1 and puts the name into the facts, as that of an event, if there is a state (0), an input (1) or a parameter (2) of that number.
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn name(slot: *mut Slot, kind: u32, index: u32) -> u32 {
+    with(slot, |world| world.steer(|character, facts| character.name(kind, index as u8, facts)).into())
+}
+
+/// Returns 1 and puts it into the facts, if the last update passed an n-th event.
+#[cfg(feature = "character")]
+#[unsafe(no_mangle)]
+extern "C" fn passed(slot: *mut Slot, index: usize) -> u32 {
+    with(slot, |world| world.steer(|character, facts| character.passed(index, facts)).into())
 }
 
 /// Sets the camera up for a picture of `width` x `height` pixels (at most 2047; no width shows no bars), seen from `orbit` degrees around the figure and `tilt`

@@ -12,6 +12,8 @@ use pantin_web_module::Only;
 pub struct Slot {
     pub world: World,
     pub buffers: Buffers,
+    #[cfg(feature = "character")]
+    pub steered: crate::steered::Buffers,
 }
 
 /// What a clip is played with. It is made of integers: any bits are values.

@@ -47,6 +47,8 @@ pub enum Source {
     Nothing,
     Clip(Arriving),
     Table(Table),
+    #[cfg(feature = "character")]
+    Character(crate::steered::Steered),
 }
 
 impl Source {
@@ -55,6 +57,8 @@ impl Source {
             Source::Nothing => None,
             Source::Clip(clip) => Some(clip.clip().rig()),
             Source::Table(table) => Some(table.rig),
+            #[cfg(feature = "character")]
+            Source::Character(character) => Some(character.rig()),
         }
     }
 
@@ -64,6 +68,8 @@ impl Source {
             Source::Nothing => 0,
             Source::Clip(clip) => clip.playable,
             Source::Table(table) => table.frames,
+            #[cfg(feature = "character")]
+            Source::Character(_) => 1,
         }
     }
 
@@ -77,6 +83,8 @@ impl Source {
                 table.frame = frame;
                 table.pose()
             }
+            #[cfg(feature = "character")]
+            Source::Character(character) => character.pose(),
         }
     }
 
@@ -86,6 +94,8 @@ impl Source {
             Source::Nothing => Pose { values: &[], form: (&Form::NONE).into() },
             Source::Clip(clip) => clip.player().pose(),
             Source::Table(table) => table.pose(),
+            #[cfg(feature = "character")]
+            Source::Character(character) => character.pose(),
         }
     }
 
@@ -95,6 +105,8 @@ impl Source {
             Source::Nothing => 0,
             Source::Clip(clip) => clip.player().frame(),
             Source::Table(table) => table.frame,
+            #[cfg(feature = "character")]
+            Source::Character(_) => 0,
         }
     }
 
@@ -126,6 +138,8 @@ impl Source {
             Source::Table(table) => {
                 (facts.frames, facts.frame_time_ns) = (table.frames, table.frame_time_ns);
             }
+            #[cfg(feature = "character")]
+            Source::Character(character) => character.tell(facts),
         }
     }
 }

@@ -113,6 +113,32 @@ impl World {
         self.look()
     }
 
+    /// Plays the state machine of a bank instead of a clip.
+    #[cfg(feature = "character")]
+    pub fn machine(&mut self, bank: &'static [u8], buffers: &'static mut crate::steered::Buffers) -> Result<(), Trouble> {
+        self.finished = true;
+        self.source = Source::Character(crate::steered::Steered::new(bank, buffers)?);
+        self.look()
+    }
+
+    /// Acts on the character, if there is one.
+    #[cfg(feature = "character")]
+    pub fn steer<T: Default>(&mut self, act: impl FnOnce(&mut crate::steered::Steered, &mut Facts) -> T) -> T {
+        match &mut self.source {
+            Source::Character(character) => act(character, &mut self.facts),
+            _ => T::default(),
+        }
+    }
+
+    /// Lets the character's time pass.
+    #[cfg(feature = "character")]
+    pub fn update(&mut self, elapsed_us: u32) -> u32 {
+        let Source::Character(character) = &mut self.source else { return 0 };
+        let state = character.update(elapsed_us);
+        self.actor.place_at(character.pose(), character.stand());
+        state
+    }
+
     pub fn aim(&mut self, width: u16, height: u16, orbit: i16, tilt: i16, how: u32) -> Result<(), Trouble> {
         self.canvas = Canvas { width: width.min(2047), height: height.clamp(1, 2047) };
         let track = if how & 1 == 0 { Track::Follow } else { Track::Fixed };
@@ -134,6 +160,10 @@ impl World {
     }
 
     pub fn go(&mut self, frame: u32) {
+        #[cfg(feature = "character")]
+        if let Source::Character(_) = self.source {
+            return;
+        }
         let pose = self.source.go(frame);
         self.actor.place(pose);
     }
