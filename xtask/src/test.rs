@@ -130,7 +130,7 @@ fn firmware_lints(steps: &Steps, boards: &[Package], libraries: &[Package]) {
 /// One by one: together, the player's libraries would get the converter's standard library.
 fn web_lints(steps: &Steps, modules: &[Package]) {
     for Package { name, .. } in modules {
-        let lints = format!("clippy -p {name} --target {WEB_TARGET} -- -D warnings");
+        let lints = format!("clippy -p {name} --all-features --target {WEB_TARGET} -- -D warnings");
         steps.run(&format!("lints of {name}"), || captured(Workspace::Web, &lints));
     }
 }

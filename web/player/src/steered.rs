@@ -57,15 +57,15 @@ impl Steered {
     pub fn new(bank: &'static [u8], buffers: &'static mut Buffers) -> Result<Steered, Trouble> {
         let Buffers { states, values, offsets, pose, groups, second, layers, visited } = buffers;
         groups.fill(MaybeUninit::new(Group::NONE));
-        // SAFETY: all of them were written.
-        let groups = unsafe { groups.assume_init_mut() };
+        // SAFETY: all of them were written, and a wrapped value lies as its own.
+        let groups = unsafe { &mut *(&raw mut *groups).cast::<[Group; CHANNELS]>() };
         let mut character = Character::new(bank, Memory { states, values, offsets, pose, groups })?;
         character.lend_second(&mut second.states, &mut second.values)?;
         for Layer { track, sampled, words } in layers.iter_mut().take(character.table().layers()) {
             let Track { states, values } = track;
             character.lend_layer(LayerMemory { states, values, sampled, words })?;
         }
-        let first = Machine::new(Table::of_bank(bank).map_err(Error::from)?).first_clip(&pantin::Bank::new_checked(bank)?)?;
+        let first = Machine::new(Table::of_bank(bank)?).first_clip(&pantin::Bank::new_checked(bank)?)?;
         Ok(Steered { character, bank, visited, first })
     }
 
