@@ -22,7 +22,7 @@ pub struct Chip {
 }
 
 /// Addresses by the chips' data sheets.
-pub const CHIPS: [Chip; 4] = [
+pub const CHIPS: [Chip; 8] = [
     // 2 MB of flash are on the board; the six banks of RAM are one range.
     Chip { board: "pico", probe: Some("RP2040"), flash: &[0x1000_0000..0x1020_0000], ram: &[0x2000_0000..0x2004_2000] },
     Chip {
@@ -32,6 +32,22 @@ pub const CHIPS: [Chip; 4] = [
         ram: &[0x2000_0000..0x2002_0000],
     },
     Chip { board: "microbit-v2", probe: Some("nRF52833_xxAA"), flash: &[0..0x8_0000], ram: &[0x2000_0000..0x2002_0000] },
+    // 4 MB of flash are on the board.
+    Chip { board: "pico2", probe: Some("RP235x"), flash: &[0x1000_0000..0x1040_0000], ram: &[0x2000_0000..0x2008_2000] },
+    Chip {
+        board: "nucleo-f411re",
+        probe: Some("STM32F411RETx"),
+        flash: &[0x0800_0000..0x0808_0000],
+        ram: &[0x2000_0000..0x2002_0000],
+    },
+    Chip { board: "nrf52840-dk", probe: Some("nRF52840_xxAA"), flash: &[0..0x10_0000], ram: &[0x2000_0000..0x2004_0000] },
+    // As below; constants and code have the same addresses.
+    Chip {
+        board: "esp32-c6",
+        probe: None,
+        flash: &[0x4200_0000..0x4300_0000],
+        ram: &[0x4080_0000..0x4088_0000, 0x5000_0000..0x5000_4000],
+    },
     // The flash as the processor reads it, as constants and as code; the RAM as data, as code, and what keeps its bytes during deep sleep.
     Chip {
         board: "esp32-c3",

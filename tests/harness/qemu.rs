@@ -43,6 +43,9 @@ pub const MICROBIT: Machine = arm("microbit", "thumbv6m-none-eabi", display::PAG
 /// Cortex-M4F with 4 MiB of each.
 pub const MPS2_AN386: Machine = arm("mps2-an386", "thumbv7em-none-eabihf", display::GREYS);
 
+/// Cortex-M33 with 4 MiB of each.
+pub const MPS2_AN505: Machine = arm("mps2-an505", "thumbv8m.main-none-eabihf", display::GREYS);
+
 /// ARM925T, ARMv4T: Siemens SX1, a phone of 2003.
 pub const SX1: Machine = arm("sx1", "armv4t-none-eabi", display::LCD);
 

@@ -7,12 +7,16 @@ use anyhow::{Context, Result};
 use crate::sizes::{COLUMNS, Sizes};
 
 /// The documents that hold one, from the repository's root.
-pub const DOCUMENTS: [&str; 5] = [
+pub const DOCUMENTS: [&str; 9] = [
     "docs/BOARDS.md",
     "firmware/boards/blackpill/README.md",
     "firmware/boards/esp32c3/README.md",
     "firmware/boards/microbit-v2/README.md",
+    "firmware/boards/esp32c6/README.md",
+    "firmware/boards/nrf52840-dk/README.md",
+    "firmware/boards/nucleo-f411re/README.md",
     "firmware/boards/pico/README.md",
+    "firmware/boards/pico2/README.md",
 ];
 
 const START: &str = "<!-- sizes:";

@@ -25,6 +25,10 @@ pub struct Request {
     pub display: Option<u8>,
     /// Whether the crystal starts.
     pub crystal: bool,
+    /// The address of the serial port.
+    pub serial: u32,
+    /// Chip select, data/command and reset of a display over SPI.
+    pub spi_pins: [&'static str; 3],
     /// Letters before each picture but the first.
     pub keys: Vec<Vec<u8>>,
     /// Bytes of RAM.
@@ -92,10 +96,19 @@ pub struct Outcome {
 }
 
 impl Request {
-    /// A program with an SSD1306 of usual address, a crystal, and 64 KiB of RAM.
+    /// A program of the Black Pill with an SSD1306 of usual address, a crystal, and 64 KiB of RAM.
     pub fn new(image: &Path, keys: &[&[u8]]) -> Self {
         let keys = keys.iter().map(|letters| letters.to_vec()).collect();
-        Request { image: image.to_owned(), display: Some(0x3c), crystal: true, keys, ram: 64 << 10, out: PathBuf::new() }
+        Request {
+            image: image.to_owned(),
+            display: Some(0x3c),
+            crystal: true,
+            serial: 0x4001_1000,
+            spi_pins: ["A4", "B0", "B1"],
+            keys,
+            ram: 64 << 10,
+            out: PathBuf::new(),
+        }
     }
 
     /// Runs it.

@@ -1,4 +1,4 @@
-//! A linked image as a file that one drags onto the board's drive: UF2 (https://github.com/microsoft/uf2), for the RP2040.
+//! A linked image as a file that one drags onto the board's drive: UF2 (https://github.com/microsoft/uf2), for the RP2040 and the RP2350.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,13 @@ use pantin_tools::update::uf2::{self, PAGE};
 
 use crate::segments::{self, Segment};
 
-/// The family.
+/// The families; the second one is that of programs for the Arm cores.
 const RP2040: u32 = 0xe48b_ff56;
+const RP2350: u32 = 0xe48b_ff59;
+/// The words of the block that the RP2350's boot ROM looks for in the flash's first 4 KiB: its start, a program for the Arm cores, and its end
+/// (RP2350 data sheet, 5.9.5.1).
+const IMAGE_BLOCK: [u32; 5] = [0xffff_ded3, 0x1021_0142, 0x0000_01ff, 0, 0xab12_3579];
+const SEARCHED: u32 = 4096;
 /// The flash of the largest boards.
 const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
 /// What the chip's first stage loads and checks: a second stage, and its CRC.
@@ -20,6 +25,16 @@ pub fn of_elf(elf: &[u8]) -> Result<Vec<u8>> {
     let first = pages.get(&FLASH.start).context("the image has no second renderer of the boot at the start of the flash")?;
     ensure!(is_second_stage(first), "the image's second renderer of the boot has a wrong CRC: the chip would not start it");
     Ok(uf2::file(RP2040, &pages))
+}
+
+/// The same for the RP2350, which needs no second stage.
+pub fn of_rp2350_elf(elf: &[u8]) -> Result<Vec<u8>> {
+    let pages = pages(elf)?;
+    let first: Vec<u8> = pages.range(FLASH.start..FLASH.start + SEARCHED).flat_map(|(_, page)| page).copied().collect();
+    let block = IMAGE_BLOCK.map(u32::to_le_bytes);
+    let block = block.as_flattened();
+    ensure!(first.windows(block.len()).any(|bytes| bytes == block), "the flash's first 4 KiB do not say what the image is");
+    Ok(uf2::file(RP2350, &pages))
 }
 
 /// The same without a second stage: for an emulator, which needs none.
@@ -143,11 +158,21 @@ mod tests {
     }
 
     #[test]
+    fn an_image_of_the_rp2350_says_what_it_is() {
+        let block = IMAGE_BLOCK.map(u32::to_le_bytes);
+        let file = of_rp2350_elf(&elf(&[(FLASH.start + 0x110, block.as_flattened())])).unwrap();
+        assert_eq!(file[28..32], RP2350.to_le_bytes());
+        assert!(of_rp2350_elf(&elf(&[(FLASH.start + 0x1000, block.as_flattened())])).is_err());
+    }
+
+    #[test]
     fn what_would_not_start_or_not_stay_is_refused() {
         let mut boot = second_stage();
         let refused = |segments: &[(u32, &[u8])]| of_elf(&elf(segments)).unwrap_err().to_string();
         assert!(refused(&[(0x1000_0100, &[1])]).contains("no second renderer"));
         assert!(refused(&[(FLASH.start, &boot), (0x2000_0000, &[1])]).contains("0x20000000, 1 bytes"));
+        let refused_2350 = of_rp2350_elf(&elf(&[(FLASH.start, &boot)])).unwrap_err().to_string();
+        assert!(refused_2350.contains("do not say what the image is"));
         boot[100] ^= 1;
         assert!(refused(&[(FLASH.start, &boot)]).contains("wrong CRC"));
         assert!(of_elf(b"#!/bin/sh").is_err());

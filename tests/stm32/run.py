@@ -5,6 +5,8 @@
 #   image     the program, as an ELF file
 #   display   the I2C address of a display, or null for one over SPI
 #   crystal   whether the crystal starts
+#   serial    the address of the serial port, USART1 or USART2
+#   spi_pins  chip select, data/command and reset of a display over SPI, as "B0" for PB0
 #   keys      letters before each picture but the first, as arrays of bytes; the program plays in step
 #   out       a file for the bytes on the display's bus, in 16 bits each with the low byte first: a byte over SPI has bit 8 where the data pin is
 #             high; over I2C there are 0x200 and the address, bytes, 0x400 at a stop; 0xffff where a picture is complete
@@ -18,13 +20,14 @@ from unicorn import arm_const as arm
 FLASH, RAM = 0x08000000, 0x20000000
 RCC, PWR, ACR, IWDG = 0x40023800, 0x40007000, 0x40023C00, 0x40003000
 PORTS = {0x40020000: "A", 0x40020400: "B", 0x40020800: "C", 0x40020C00: "D", 0x40021000: "E", 0x40021C00: "H"}
-I2C1, SPI1, USART1 = 0x40005400, 0x40013000, 0x40011000
+I2C1, SPI1 = 0x40005400, 0x40013000
 IN_STEP, NEXT, SHOWN = 0x16, 0x0A, ord("F")
 HSI_HZ, HSE_HZ = 16_000_000, 25_000_000
 # Instructions at most.
 LIMIT = 3_000_000_000
 
 request = json.load(open(sys.argv[1]))
+SERIAL = request["serial"]
 
 
 class Machine:
@@ -83,9 +86,9 @@ class Machine:
         if at == SPI1 + 0xC:
             self.spi_unread = False
             return 0xFF
-        if at == USART1:
+        if at == SERIAL:
             return 0xC0 | (0x20 if self.received else 0)
-        if at == USART1 + 4:
+        if at == SERIAL + 4:
             return self.received.pop(0) if self.received else 0
         if at == IWDG + 0xC:
             return 0
@@ -128,16 +131,17 @@ class Machine:
                 self.stream.append(value & 0xFF)
         elif at == SPI1 + 0xC:
             self.spi_unread = True
-            if self.pin("A", 4) == 0:
-                self.stream.append((value & 0xFF) | self.pin("B", 0) << 8)
-            if self.pin("B", 1) == 0:
+            select, data, reset = map(self.pin, request["spi_pins"])
+            if select == 0:
+                self.stream.append((value & 0xFF) | data << 8)
+            if reset == 0:
                 self.faults.append("a byte is sent while the panel is being reset")
-        elif at == USART1 + 4:
+        elif at == SERIAL + 4:
             self.tell(value & 0xFF)
 
-    def pin(self, port, number):
-        base = next(address for address, name in PORTS.items() if name == port)
-        return self.registers.get(base + 0x14, 0) >> number & 1
+    def pin(self, name):
+        base = next(address for address, port in PORTS.items() if port == name[0])
+        return self.registers.get(base + 0x14, 0) >> int(name[1:]) & 1
 
     # A frame's number, in five bytes, ends a picture; letters and the wish for another one answer it.
     def tell(self, byte):
@@ -209,5 +213,5 @@ print(json.dumps({
     "done": machine.done, "pictures": machine.pictures, "faults": machine.faults, "switches": machine.switches, "pins": machine.pins(),
     "crystal_polls": machine.crystal_polls, "watchdog_before_crystal": machine.watchdog_before_crystal, "clocks": clocks,
     "spi": {"mode": control & 3 if control & 3 in (0, 3) else (control & 1) | control & 2, "hz": clocks["apb2"] / (2 << (control >> 3 & 7))},
-    "baud": clocks["apb2"] / max(machine.registers.get(USART1 + 8, 0), 1),
+    "baud": clocks["apb2" if SERIAL >> 16 & 1 else "apb1"] / max(machine.registers.get(SERIAL + 8, 0), 1),
 }))

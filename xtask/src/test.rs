@@ -1,4 +1,4 @@
-//! `cargo xtask test [--host-only | --bindings]`: every test, on the host and in QEMU; what CI runs.
+//! `cargo xtask test [--host-only | --bindings | --boards]`: every test, on the host and in QEMU; what CI runs.
 //!
 //! ```text
 //! $ cargo xtask test
@@ -25,13 +25,14 @@ use xtask::{paths, setup};
 
 use crate::publish;
 
-const USAGE: &str = "Usage: cargo xtask test [--host-only | --bindings]
+const USAGE: &str = "Usage: cargo xtask test [--host-only | --bindings | --boards]
 
 Runs every check and test: format, lints, host tests, firmware builds, tests in QEMU and Chromium
 
 Options:
   --host-only  Leaves out the tests that need QEMU or Chromium
-  --bindings   Runs the tests of the decoder in C instead: they need compilers for other targets";
+  --bindings   Runs the tests of the decoder in C instead: they need compilers for other targets
+  --boards     Checks the boards that a CI job of its own builds instead: lints, sizes, and the Cortex-M33 in QEMU";
 
 /// What the web page's modules are compiled for.
 const WEB_TARGET: &str = "wasm32-unknown-unknown";
@@ -42,6 +43,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
         [] => all(false),
         [only] if only == "--host-only" => all(true),
         [only] if only == "--bindings" => shown(Workspace::Host, "run --package xtask-commands -- bindings"),
+        [only] if only == "--boards" => boards_apart(),
         [help] if ["--help", "-h"].contains(&help.as_str()) => {
             println!("{USAGE}");
             Ok(())
@@ -53,6 +55,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
 fn all(host_only: bool) -> Result<()> {
     let (boards, libraries): (Vec<_>, Vec<_>) =
         packages::firmware()?.into_iter().partition(|package| !package.targets.is_empty());
+    let boards: Vec<_> = boards.into_iter().filter(|board| !board.apart).collect();
     let modules = packages::web()?;
     let steps = Steps::default();
     steps.run("tools", || tools(&boards, host_only));
@@ -74,7 +77,8 @@ fn all(host_only: bool) -> Result<()> {
         });
         let mut here = vec![];
         steps.run("build of the test programs", || {
-            let (there, rest) = test_programs::build()?.into_iter().partition(in_second_lane);
+            let programs = test_programs::build()?.into_iter().filter(|program| !is_for_boards(program));
+            let (there, rest) = programs.partition(in_second_lane);
             here = rest;
             built.send(there).context("the second lane is gone")
         });
@@ -92,6 +96,22 @@ fn all(host_only: bool) -> Result<()> {
         steps.run("public items against the last tag", || publish::semver(&[]));
     });
     steps.finish()
+}
+
+/// What `cargo xtask test` leaves out.
+fn boards_apart() -> Result<()> {
+    let boards: Vec<_> = packages::firmware()?.into_iter().filter(|board| board.apart).collect();
+    let steps = Steps::default();
+    steps.run("tools", || tools(&boards, false));
+    firmware_lints(&steps, &boards, &[]);
+    steps.run("tests in emulators", || shown(Workspace::Host, "test --package harness --test boards"));
+    steps.run("sizes", || shown(Workspace::Host, "run --package xtask-commands -- sizes --boards"));
+    steps.finish()
+}
+
+/// Whether a program tests the boards that are left to `--boards`.
+fn is_for_boards(program: &TestProgram) -> bool {
+    program.package == "harness" && program.name == "boards"
 }
 
 /// Whether a program builds firmware.

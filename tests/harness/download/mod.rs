@@ -41,6 +41,8 @@ pub const DISPLAYS: [Shown; 8] = [
 pub enum Format {
     /// A file to drag onto the drive of the RP2040.
     Uf2,
+    /// A file to drag onto the drive of the RP2350.
+    Uf2Rp2350,
     /// Intel HEX, to drag onto the drive of a debug chip.
     Hex,
     /// The flash's bytes from this address on.
@@ -55,7 +57,7 @@ impl Format {
     /// The file name's extension.
     pub const fn extension(self) -> &'static str {
         match self {
-            Format::Uf2 => "uf2",
+            Format::Uf2 | Format::Uf2Rp2350 => "uf2",
             Format::Hex => "hex",
             Format::Bin(_) => "bin",
             Format::Elf => "elf",
@@ -148,6 +150,7 @@ pub fn sums(files: &[File]) -> String {
 fn written(elf: &[u8], format: Format) -> Result<Vec<u8>> {
     match format {
         Format::Uf2 => uf2::of_elf(elf),
+        Format::Uf2Rp2350 => uf2::of_rp2350_elf(elf),
         Format::Hex => hex(elf),
         Format::Bin(start) => bin(elf, start),
         Format::Elf => Ok(elf.to_vec()),

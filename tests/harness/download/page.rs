@@ -12,7 +12,7 @@ pub fn page(files: &[File]) -> String {
          td.sum {{ font: 12px monospace; word-break: break-all }}\n</style>\n<h1>Pantin: images for boards</h1>\n\
          <p>Choose your board and display, connect the wires while the board has no power, and flash the file. Each image plays a walk, a run and \
          faces. Programs of the Pico, the Black Pill and the Game Boy Advance \
-         are tested in emulators, those of the micro:bit v2 and the ESP32-C3 in parts; <strong>none has run on a real board yet</strong>.</p>\n{boards}\
+         are tested in emulators, those of the micro:bit v2, the Pico 2, the Nucleo-F411RE, the ESP32-C3 and the ESP32-C6 in parts, and that of the nRF52840 DK is only built; <strong>none has run on a real board yet</strong>.</p>\n{boards}\
          <h2>If nothing shows</h2>\n<ol>\n<li>Measure 3.3 V at the display's VCC. A colour display needs 3.3 V at BL, too.</li>\n\
          <li>Swap the wires of the two-wire bus (SDA, SCL). The program looks for the display with each picture, so they can be changed while it \
          runs.</li>\n<li>An OLED that is shifted by two columns is an SH1106.</li>\n<li>A picture that is shifted, mirrored, or of exchanged colours \

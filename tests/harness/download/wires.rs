@@ -53,8 +53,9 @@ impl Board {
     /// How the board's crate names a pin.
     pub fn spelled(&self, pin: &str) -> String {
         match (self.package, pin) {
-            ("pico", _) => pin.replace("GP", "gpio"),
-            ("blackpill", _) => pin.replace("PA", "a.pa").replace("PB", "b.pb"),
+            ("pico" | "pico2", _) => pin.replace("GP", "gpio"),
+            ("blackpill" | "nucleo-f411re", _) => pin.replace("PA", "a.pa").replace("PB", "b.pb").replace("PC", "c.pc"),
+            ("nrf52840-dk", _) => pin.replace("P0.", "p0.p0_"),
             // Schematic of the micro:bit v2.
             ("microbit-v2", "P19") => "p0.p0_26".into(),
             ("microbit-v2", "P20") => "p1.p1_00".into(),
@@ -68,8 +69,46 @@ const SPI_PART: &str = "colour display (BL, the light, goes to 3.3 V; a module w
 const BUTTONS: &str = "buttons to GND (optional)";
 const SERIAL: &str = "serial adapter, 3.3 V, 115200 baud (optional)";
 
+/// The Pico 2 has the Pico's pins, and shares its module.
+const PICO_SOURCE: &str = "../pico/src/board.rs";
+const PICO_SUPPLY: [&str; 2] = ["3V3 (OUT)", "GND"];
+const PICO_I2C: Wiring = Wiring {
+    part: I2C_PART,
+    bus: Some(Bus::I2c),
+    wires: &[["SDA", "GP4"], ["SCL", "GP5"]],
+    source: [PICO_SOURCE, "let (sda, scl) = (pins.{}.reconfigure(), pins.{}.reconfigure());"],
+};
+const PICO_SPI: Wiring = Wiring {
+    part: SPI_PART,
+    bus: Some(Bus::Spi),
+    wires: &[["CS", "GP17"], ["SCL (SCK)", "GP18"], ["SDA (MOSI)", "GP19"], ["DC", "GP20"], ["RES", "GP21"]],
+    source: [PICO_SOURCE, "parts.SPI0, (pins.{}, pins.{}, pins.{}, pins.{}, pins.{}), &mut resets"],
+};
+const PICO_BUTTONS: Wiring = Wiring {
+    part: BUTTONS,
+    bus: None,
+    wires: &[["up", "GP10"], ["down", "GP11"], ["left", "GP12"], ["right", "GP13"], ["select", "GP14"]],
+    source: [
+        PICO_SOURCE,
+        "five_buttons([ pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
+         pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
+         pins.{}.into_pull_up_input().into_dyn_pin(), ])",
+    ],
+};
+const PICO_SERIAL: Wiring = Wiring {
+    part: SERIAL,
+    bus: None,
+    wires: &[["RX", "GP0"], ["TX", "GP1"]],
+    source: [PICO_SOURCE, "let (tx, rx) = (pins.{}.into_function(), pins.{}.into_function()"],
+};
+
+const ESP_I2C: [&str; 2] = ["src/chip.rs", "// SDA and SCL. ($parts.{}, $parts.{})"];
+const ESP_SERIAL: [&str; 2] = ["src/chip.rs", "// TX and RX. ($parts.{}, $parts.{})"];
+const ESP_BUTTONS: [&str; 2] =
+    ["src/chip.rs", "which is the board's own, BOOT. ($parts.{}, $parts.{}, $parts.{}, $parts.{}, $parts.{})"];
+
 /// The boards that one can buy, and the Game Boy Advance.
-pub const BOARDS: [Board; 5] = [
+pub const BOARDS: [Board; 9] = [
     Board {
         package: "pico",
         folder: "pico",
@@ -81,37 +120,12 @@ pub const BOARDS: [Board; 5] = [
         flashing: "Hold BOOTSEL while you plug the board in, and drag <code>FILE</code> onto the drive RPI-RP2. The board's USB port is then a serial \
                    port (<code>/dev/ttyACM0</code>, <code>COM3</code>): <code>cargo pantin update walk.ptn --to serial:/dev/ttyACM0</code> \
                    gives it another clip.",
-        supply: ["3V3 (OUT)", "GND"],
+        supply: PICO_SUPPLY,
         wirings: &[
-            Wiring {
-                part: I2C_PART,
-                bus: Some(Bus::I2c),
-                wires: &[["SDA", "GP4"], ["SCL", "GP5"]],
-                source: ["src/board.rs", "let (sda, scl) = (pins.{}.reconfigure(), pins.{}.reconfigure());"],
-            },
-            Wiring {
-                part: SPI_PART,
-                bus: Some(Bus::Spi),
-                wires: &[["CS", "GP17"], ["SCL (SCK)", "GP18"], ["SDA (MOSI)", "GP19"], ["DC", "GP20"], ["RES", "GP21"]],
-                source: ["src/board.rs", "parts.SPI0, (pins.{}, pins.{}, pins.{}, pins.{}, pins.{}), &mut resets"],
-            },
-            Wiring {
-                part: BUTTONS,
-                bus: None,
-                wires: &[["up", "GP10"], ["down", "GP11"], ["left", "GP12"], ["right", "GP13"], ["select", "GP14"]],
-                source: [
-                    "src/board.rs",
-                    "five_buttons([ pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
-                     pins.{}.into_pull_up_input().into_dyn_pin(), pins.{}.into_pull_up_input().into_dyn_pin(), \
-                     pins.{}.into_pull_up_input().into_dyn_pin(), ])",
-                ],
-            },
-            Wiring {
-                part: SERIAL,
-                bus: None,
-                wires: &[["RX", "GP0"], ["TX", "GP1"]],
-                source: ["src/board.rs", "let (tx, rx) = (pins.{}.into_function(), pins.{}.into_function()"],
-            },
+            PICO_I2C,
+            PICO_SPI,
+            PICO_BUTTONS,
+            PICO_SERIAL,
             Wiring {
                 part: "servos (images pantin-pico-servo; supplied with 5 V of their own, with a common GND)",
                 bus: None,
@@ -187,7 +201,10 @@ pub const BOARDS: [Board; 5] = [
             part: I2C_PART,
             bus: Some(Bus::I2c),
             wires: &[["SCL", "P19"], ["SDA", "P20"]],
-            source: ["src/board.rs", "oled(parts.TWIM0, {}.into_floating_input().degrade(), {}.into_floating_input().degrade())"],
+            source: [
+                "src/board.rs",
+                "oled::new(parts.TWIM0, {}.into_floating_input().degrade(), {}.into_floating_input().degrade())",
+            ],
         }],
     },
     Board {
@@ -202,12 +219,7 @@ pub const BOARDS: [Board; 5] = [
                    hold BOOT while you plug it in.",
         supply: ["3V3", "GND"],
         wirings: &[
-            Wiring {
-                part: I2C_PART,
-                bus: Some(Bus::I2c),
-                wires: &[["SDA", "GPIO5"], ["SCL", "GPIO6"]],
-                source: ["src/board.rs", "i2c.with_sda(parts.{}).with_scl(parts.{})"],
-            },
+            Wiring { part: I2C_PART, bus: Some(Bus::I2c), wires: &[["SDA", "GPIO5"], ["SCL", "GPIO6"]], source: ESP_I2C },
             Wiring {
                 part: BUTTONS,
                 bus: None,
@@ -218,18 +230,111 @@ pub const BOARDS: [Board; 5] = [
                     ["right", "GPIO4"],
                     ["select, on the board: BOOT", "GPIO9"],
                 ],
-                source: [
-                    "src/board.rs",
-                    "five_buttons([ Input::new(parts.{}, pull_up), Input::new(parts.{}, pull_up), Input::new(parts.{}, pull_up), \
-                     Input::new(parts.{}, pull_up), Input::new(parts.{}, pull_up), ])",
-                ],
+                source: ESP_BUTTONS,
+            },
+            Wiring { part: SERIAL, bus: None, wires: &[["RX", "GPIO21"], ["TX", "GPIO20"]], source: ESP_SERIAL },
+        ],
+    },
+    Board {
+        package: "pico2",
+        folder: "pico2",
+        title: "Raspberry Pi Pico 2",
+        target: "thumbv8m.main-none-eabihf",
+        format: Format::Uf2Rp2350,
+        features: "face,usb",
+        programs: &[],
+        flashing: "Hold BOOTSEL while you plug the board in, and drag <code>FILE</code> onto the drive RP2350. The board's USB port is then a serial \
+                   port (<code>/dev/ttyACM0</code>, <code>COM3</code>).",
+        supply: PICO_SUPPLY,
+        wirings: &[PICO_I2C, PICO_SPI, PICO_BUTTONS, PICO_SERIAL],
+    },
+    Board {
+        package: "nucleo-f411re",
+        folder: "nucleo-f411re",
+        title: "Nucleo-F411RE",
+        target: "thumbv7em-none-eabihf",
+        format: Format::Bin(0x0800_0000),
+        features: "face",
+        programs: &[],
+        flashing: "Plug it in, and drag <code>FILE</code> onto the drive NODE_F411RE. The serial port is the board's.",
+        supply: ["3V3", "GND"],
+        wirings: &[
+            Wiring {
+                part: I2C_PART,
+                bus: Some(Bus::I2c),
+                wires: &[["SCL", "PB8"], ["SDA", "PB9"]],
+                source: ["src/board.rs", "parts.I2C1.i2c(({}.internal_pull_up(true), {}.internal_pull_up(true))"],
             },
             Wiring {
-                part: SERIAL,
-                bus: None,
-                wires: &[["RX", "GPIO21"], ["TX", "GPIO20"]],
-                source: ["src/board.rs", "serial.with_tx(parts.{}).with_rx(parts.{})"],
+                part: SPI_PART,
+                bus: Some(Bus::Spi),
+                wires: &[["CS", "PB6"], ["SCL (SCK)", "PA5"], ["SDA (MOSI)", "PA7"], ["DC", "PC7"], ["RES", "PA9"]],
+                source: ["src/board.rs", "parts.SPI1, ({}, {}, {}, {}, {}), &mut clocks"],
             },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up", "PA10"],
+                    ["down", "PB5"],
+                    ["left", "PB10"],
+                    ["right", "PA8"],
+                    ["select, on the board: B1", "PC13"],
+                ],
+                source: [
+                    "src/board.rs",
+                    "five_buttons([ {}.into_pull_up_input().erase(), {}.into_pull_up_input().erase(), {}.into_pull_up_input().erase(), \
+                     {}.into_pull_up_input().erase(), {}.into_pull_up_input().erase(), ])",
+                ],
+            },
+        ],
+    },
+    Board {
+        package: "nrf52840-dk",
+        folder: "nrf52840-dk",
+        title: "nRF52840 DK",
+        target: "thumbv7em-none-eabihf",
+        format: Format::Hex,
+        features: "face,update",
+        programs: &[],
+        flashing: "Plug it in, and drag <code>FILE</code> onto the drive JLINK. Buttons and serial port are the board's.",
+        supply: ["VDD", "GND"],
+        wirings: &[Wiring {
+            part: I2C_PART,
+            bus: Some(Bus::I2c),
+            wires: &[["SCL", "P0.27"], ["SDA", "P0.26"]],
+            source: [
+                "src/board.rs",
+                "oled::new(parts.TWIM0, {}.into_floating_input().degrade(), {}.into_floating_input().degrade())",
+            ],
+        }],
+    },
+    Board {
+        package: "esp32-c6",
+        folder: "esp32c6",
+        title: "ESP32-C6",
+        target: "riscv32imac-unknown-none-elf",
+        format: Format::Elf,
+        features: "face",
+        programs: &[],
+        flashing: "<code>cargo install espflash --locked</code>, once; then <code>espflash flash --monitor FILE</code>. If the board is not found, \
+                   hold BOOT while you plug it in.",
+        supply: ["3V3", "GND"],
+        wirings: &[
+            Wiring { part: I2C_PART, bus: Some(Bus::I2c), wires: &[["SDA", "GPIO6"], ["SCL", "GPIO7"]], source: ESP_I2C },
+            Wiring {
+                part: BUTTONS,
+                bus: None,
+                wires: &[
+                    ["up", "GPIO0"],
+                    ["down", "GPIO1"],
+                    ["left", "GPIO2"],
+                    ["right", "GPIO3"],
+                    ["select, on the board: BOOT", "GPIO9"],
+                ],
+                source: ESP_BUTTONS,
+            },
+            Wiring { part: SERIAL, bus: None, wires: &[["RX", "GPIO16"], ["TX", "GPIO17"]], source: ESP_SERIAL },
         ],
     },
     Board {

@@ -73,6 +73,9 @@ fn made(image: &Image, clips: &[&Path]) -> Result<[String; 5]> {
     if image.package == "pico" {
         write(&format!("{}.uf2", image.name), &uf2::of_elf(&elf).with_context(|| image.name.clone())?)?;
     }
+    if image.package == "pico2" {
+        write(&format!("{}.uf2", image.name), &uf2::of_rp2350_elf(&elf).with_context(|| image.name.clone())?)?;
+    }
     let file = write(&format!("{}.elf", image.name), &elf)?;
     Ok([image.package.clone(), image.target.clone(), file, flash.to_string(), ram.to_string()])
 }
@@ -100,9 +103,11 @@ fn print(rows: &[[String; 5]]) {
 fn advice(board: &Package) -> String {
     let name = &board.name;
     let mut ways = vec![];
-    if name == "pico" {
+    if let Some(drive) =
+        [("pico", "RPI-RP2"), ("pico2", "RP2350")].iter().find(|(board, _)| board == name).map(|(_, drive)| drive)
+    {
         ways.push(format!(
-            "hold BOOTSEL while you plug it in, and drag target/firmware/{name}.uf2, or another, onto the drive RPI-RP2"
+            "hold BOOTSEL while you plug it in, and drag target/firmware/{name}.uf2, or another, onto the drive {drive}"
         ));
     }
     if name == "gba" {

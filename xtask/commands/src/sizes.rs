@@ -1,4 +1,4 @@
-//! `cargo xtask sizes [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps, which documents say too.
+//! `cargo xtask sizes [--boards] [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps, which documents say too.
 //!
 //! ```text
 //! $ cargo xtask sizes
@@ -7,6 +7,7 @@
 //! ...
 //! ```
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -17,6 +18,7 @@ use harness::{chip, paths, stack};
 use pantin_tools::output::write_whole;
 
 use crate::images;
+use xtask::packages::Package;
 use xtask::steps::say;
 
 /// Measures flash, RAM and stack of every board's images; fails if one grew by more than 2 % over tests/sizes.txt
@@ -29,6 +31,9 @@ pub struct Sizing {
     /// Writes tests/sizes.txt and the documents' tables; commit them with the change that made the images grow
     #[arg(long)]
     update: bool,
+    /// Measures the boards that `cargo xtask test --boards` checks instead
+    #[arg(long)]
+    boards: bool,
     /// Prints the calls that make each stack
     #[arg(long)]
     calls: bool,
@@ -37,10 +42,16 @@ pub struct Sizing {
 impl Sizing {
     /// Measures, and compares or writes.
     pub fn run(self) -> Result<()> {
-        let sizes = measured(self.calls)?;
+        let (these, others): (Vec<_>, Vec<_>) = images::boards(&[])?.into_iter().partition(|board| board.apart == self.boards);
+        let mut sizes = measured(&these, self.calls)?;
         say(&sizes.table());
+        // What the file says of the other boards stays.
+        let others: HashSet<String> = others.iter().flat_map(images::of).map(|image| image.name).collect();
+        let kept = kept()?;
+        let stay = kept.images.iter().filter(|(name, _)| others.contains(*name));
+        sizes.images.extend(stay.map(|(name, size)| (name.clone(), *size)));
         if !self.update {
-            return compare(&sizes);
+            return compare(&sizes, &kept);
         }
         write_whole(&file(), sizes.text().as_bytes())?;
         say("written to tests/sizes.txt");
@@ -56,11 +67,14 @@ fn file() -> PathBuf {
     paths::root().join("tests/sizes.txt")
 }
 
-fn compare(sizes: &Sizes) -> Result<()> {
-    let text = std::fs::read_to_string(file()).context("cannot read tests/sizes.txt (cargo xtask sizes --update writes it)")?;
-    let kept = Sizes::parse(&text).context("tests/sizes.txt")?;
-    let mut complaints = sizes.against(&kept);
-    complaints.extend(stale(&kept)?.into_iter().map(|(document, _)| format!("{document}: its table says otherwise")));
+fn kept() -> Result<Sizes> {
+    let text = std::fs::read_to_string(file()).context("cannot read tests/sizes.txt")?;
+    Sizes::parse(&text).context("tests/sizes.txt")
+}
+
+fn compare(sizes: &Sizes, kept: &Sizes) -> Result<()> {
+    let mut complaints = sizes.against(kept);
+    complaints.extend(stale(kept)?.into_iter().map(|(document, _)| format!("{document}: its table says otherwise")));
     if complaints.is_empty() {
         say(&format!("no number grew by more than {FREE} % over tests/sizes.txt"));
         return Ok(());
@@ -82,14 +96,14 @@ fn stale(sizes: &Sizes) -> Result<Vec<(&'static str, String)>> {
     Ok(stale)
 }
 
-/// Builds every image with its own clips.
-fn measured(calls: bool) -> Result<Sizes> {
+/// Builds every image of these boards with its own clips.
+fn measured(boards: &[Package], calls: bool) -> Result<Sizes> {
     for name in ["PANTIN_CLIP", "DEFMT_LOG"] {
         ensure!(std::env::var_os(name).is_none(), "{name} is set, which makes other images than the sizes are kept of: unset it");
     }
     let mut sizes = Sizes { compiler: compiler()?, ..Sizes::default() };
-    for board in images::boards(&[])? {
-        for image in images::of(&board) {
+    for board in boards {
+        for image in images::of(board) {
             let firmware = image.build(&[])?;
             let elf = std::fs::read(firmware.elf()).context("the image cannot be read")?;
             chip::check(&image.package, &elf)?;

@@ -7,12 +7,15 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use harness::build::Firmware;
 use harness::download::DISPLAYS;
 use harness::{clips, image, rp2040, uf2};
+
+/// The Rust target of the Pico 2.
+const PICO2_TARGET: &str = "thumbv8m.main-none-eabihf";
 
 /// Makes a file to drag onto a board's drive
 #[derive(Args)]
@@ -37,26 +40,33 @@ pub struct Uf2 {
 enum Board {
     /// Raspberry Pi Pico
     Pico,
+    /// Raspberry Pi Pico 2, which has no replaceable clips
+    #[value(name = "pico2")]
+    Pico2,
 }
 
 impl Uf2 {
     /// Builds the program and writes the file.
     pub fn run(self) -> Result<()> {
-        let Board::Pico = self.board;
         let clips: Vec<&Path> = self.clip.iter().map(PathBuf::as_path).collect();
         // Our own come with faces.
         let face = if clips.is_empty() { "face" } else { clips::feature(&clips)? };
         let display = DISPLAYS.iter().find(|display| display.name == self.display).map_or("", |display| display.feature);
+        let (board, target, drive) = match self.board {
+            Board::Pico => ("pico", rp2040::TARGET, "RPI-RP2"),
+            Board::Pico2 => ("pico2", PICO2_TARGET, "RP2350"),
+        };
+        ensure!(!self.update || board == "pico", "only the Pico has replaceable clips");
         let update = if self.update { "update" } else { "" };
-        let firmware = Firmware::released(&[face, display, update, "usb"].join(","), "pico", "pico", rp2040::TARGET, &clips)?;
+        let firmware = Firmware::released(&[face, display, update, "usb"].join(","), board, board, target, &clips)?;
         let elf = std::fs::read(firmware.elf()).context("the program cannot be read")?;
-        let file = uf2::of_elf(&elf)?;
-        let out = self.out.unwrap_or("pico.uf2".into());
+        let file = if board == "pico" { uf2::of_elf(&elf)? } else { uf2::of_rp2350_elf(&elf)? };
+        let out = self.out.unwrap_or(format!("{board}.uf2").into());
         let part = out.with_extension("part");
         let written = std::fs::write(&part, file).and_then(|()| std::fs::rename(&part, &out));
         written.with_context(|| format!("cannot write {}", out.display()))?;
         let flash = image::loaded(firmware.elf())?;
-        let advice = "Hold BOOTSEL while you plug the board in, and drag the file onto the drive RPI-RP2.";
+        let advice = format!("Hold BOOTSEL while you plug the board in, and drag the file onto the drive {drive}.");
         println!("{}: {flash} bytes of flash. {advice}", out.display());
         Ok(())
     }

@@ -8,11 +8,14 @@ use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
+#[cfg(feature = "spi")]
+use stm32f4xx_hal::gpio::{PA4, PA5, PA7, PB0, PB1};
+#[cfg(feature = "buffered")]
+use stm32f4xx_hal::interrupt;
 use stm32f4xx_hal::pac::{Peripherals, RCC};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc;
 use stm32f4xx_hal::serial::{Config, Serial};
-use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
 const CRYSTAL_HZ: u32 = 25_000_000;
 /// The processor's clock: the highest at which the voltage regulator may stay as it is after reset (RM0383, 5.4.1), and that of the STM32F401.
@@ -21,21 +24,28 @@ const _: () = assert!(CPU_HZ <= 84_000_000, "a higher clock needs PWR_CR.VOS, se
 /// How often the crystal is asked for: each time takes at least 5 clocks of 16 MHz.
 const CRYSTAL_POLLS: u32 = 300_000;
 const BAUD: u32 = 115_200;
-/// The watchdog resets the board when the program hangs for this time, or down to two thirds of it: its clock is inexact.
-#[cfg(not(feature = "update"))]
-const WATCHDOG_MS: u32 = 2000;
-/// It must be longer than the 4 s in which a sector is erased and the watchdog is not fed.
-#[cfg(feature = "update")]
-const WATCHDOG_MS: u32 = 7000;
+
+/// The serial port.
+#[cfg(feature = "buffered")]
+pub use stm32f4xx_hal::pac::USART1 as Port;
+#[cfg(feature = "buffered")]
+pub const PORT_INTERRUPT: stm32f4xx_hal::pac::Interrupt = stm32f4xx_hal::pac::Interrupt::USART1;
+/// The pins of a display over SPI: chip select, clock, data, data/command, reset.
+#[cfg(feature = "spi")]
+pub type SpiPins = (PA4, PA5, PA7, PB0, PB1);
+
+#[cfg(feature = "buffered")]
+#[interrupt]
+fn USART1() {
+    crate::uart_rx::receive();
+}
 
 /// Sets the board up.
 pub fn new(
     parts: Peripherals,
 ) -> impl Board<Layout = Picture, Rotation = Rotation, Capacity = Capacity> + PanicBoard<PanicPicture> {
     // First of all: it has its own clock.
-    let mut watchdog = IndependentWatchdog::new(parts.IWDG);
-    watchdog.stop_on_debug(&parts.DBGMCU, true);
-    watchdog.start(WATCHDOG_MS.millis());
+    let mut watchdog = crate::watchdog::start(parts.IWDG, &parts.DBGMCU);
     let source = if crystal_starts(&parts.RCC) { rcc::Config::hse(CRYSTAL_HZ.Hz()) } else { rcc::Config::hsi() };
     let mut clocks = parts.RCC.freeze(source.sysclk(CPU_HZ.Hz()));
     let (a, b) = (parts.GPIOA.split(&mut clocks), parts.GPIOB.split(&mut clocks));

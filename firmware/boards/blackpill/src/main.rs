@@ -9,6 +9,7 @@ mod panic;
 mod spi_display;
 #[cfg(feature = "buffered")]
 mod uart_rx;
+mod watchdog;
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 

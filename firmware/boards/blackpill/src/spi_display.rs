@@ -1,11 +1,11 @@
-//! A display over SPI: chip select on PA4, clock on PA5, data on PA7, data/command on PB0, reset on PB1.
+//! A display over SPI, on the pins that the board chooses.
 
-use crate::board::CPU_HZ;
+use crate::board::{CPU_HZ, SpiPins};
 use board_common::cortex_m::ClockDelay;
 use board_drivers::{ColorPanel, Display};
 use embedded_hal::spi::MODE_3;
 use embedded_hal_bus::spi::ExclusiveDevice;
-use stm32f4xx_hal::gpio::{PA4, PA5, PA7, PB0, PB1, Speed};
+use stm32f4xx_hal::gpio::Speed;
 use stm32f4xx_hal::pac::SPI1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
@@ -26,7 +26,7 @@ const SPI_HZ: u32 = CPU_HZ / if cfg!(feature = "fast") { 2 } else { 4 };
 /// Sets the display up on the pins for chip select, clock, data out, data/command and reset.
 pub fn new(
     spi: SPI1,
-    (select, clock, out, data, reset): (PA4, PA5, PA7, PB0, PB1),
+    (select, clock, out, data, reset): SpiPins,
     clocks: &mut Rcc,
 ) -> impl Display<Picture> + Display<PanicPicture> + use<> {
     // After reset, pins are at low speed, which is 4 MHz at 50 pF (STM32F411 data sheet, table 56), and the HAL leaves them there.

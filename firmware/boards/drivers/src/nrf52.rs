@@ -1,5 +1,5 @@
-//! The debug port of the nRF52833. Since build B it is closed after each reset unless the firmware opens it (nRF52833 Product Specification,
-//! 4.8.3). Then the next program can be flashed only after erasing the whole chip.
+//! The debug port of the nRF52833 and the nRF52840. Since build B of the first and build F of the second it is closed after each reset unless the firmware opens it (nRF52833 Product Specification,
+//! 4.8.3; nRF52840, 4.8.2). Then the next program can be flashed only after erasing the whole chip.
 
 /// Registers of 32 bits, at their addresses.
 pub trait Registers {
@@ -11,7 +11,6 @@ pub trait Registers {
 
 /// FICR.INFO.VARIANT: four letters, of which the second lowest byte is the build.
 const VARIANT: usize = 0x1000_0104;
-const FIRST_BUILD: u8 = b'B';
 /// UICR.APPROTECT, which the chip reads at a reset, and the value of its lowest byte after the chip was erased.
 const STORED: usize = 0x1000_1208;
 const ERASED: u32 = 0xff;
@@ -25,11 +24,11 @@ const CONFIG: usize = 0x4001_e504;
 const READ: u32 = 0;
 const WRITE: u32 = 1;
 
-/// Opens the debug port of a chip of build B or later, now and, once, in the configuration that the chip reads at the next reset. Older chips
+/// Opens the debug port of a chip of build `first` or later, now and, once, in the configuration that the chip reads at the next reset. Older chips
 /// have an open port.
-pub fn open_debug_port(chip: &mut impl Registers) {
+pub fn open_debug_port(chip: &mut impl Registers, first: u8) {
     let [_, build, ..] = chip.read(VARIANT).to_le_bytes();
-    if !(FIRST_BUILD..=b'Z').contains(&build) {
+    if !(first..=b'Z').contains(&build) {
         return;
     }
     // Only an erased byte: another value is somebody's choice.
@@ -94,7 +93,7 @@ mod tests {
             let mut chip = chip(variant, u32::MAX);
             for _ in 0..3 {
                 chip.open = false;
-                open_debug_port(&mut chip);
+                open_debug_port(&mut chip, b'B');
                 assert!(chip.open && !chip.writable);
                 assert_eq!((chip.stored, chip.stored_writes), (0xffff_ff5a, 1));
             }
@@ -105,11 +104,11 @@ mod tests {
     fn an_old_chip_and_a_closed_port_stay_as_they_are() {
         for variant in [b"AAA0", b"\xff\xff\xff\xff"] {
             let mut chip = chip(variant, u32::MAX);
-            open_debug_port(&mut chip);
+            open_debug_port(&mut chip, b'B');
             assert_eq!((chip.open, chip.stored), (false, u32::MAX));
         }
         let mut chip = chip(b"AAB0", 0xffff_ff00);
-        open_debug_port(&mut chip);
+        open_debug_port(&mut chip, b'B');
         assert_eq!((chip.stored, chip.stored_writes), (0xffff_ff00, 0));
     }
 }

@@ -32,14 +32,15 @@ fn on_wake() {
 pub fn new(
     parts: Peripherals,
 ) -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
+    let ((sda, scl), (tx, rx), (up, down, left, right, select)) = pins!(parts);
     let i2c = I2c::new(parts.I2C0, master::Config::default().with_frequency(Rate::from_khz(400)));
     let serial = Uart::new(parts.UART0, uart::Config::default().with_baudrate(BAUD));
     let (Ok(i2c), Ok(serial)) = (i2c, serial) else { unreachable!("bus and port support these rates") };
     let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-    let display = new(i2c.with_sda(parts.GPIO5).with_scl(parts.GPIO6));
+    let display = new(i2c.with_sda(sda).with_scl(scl));
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
-    let (mut rx, mut tx) = serial.with_tx(parts.GPIO21).with_rx(parts.GPIO20).split();
+    let (mut rx, mut tx) = serial.with_tx(tx).with_rx(rx).split();
     let send = move |mut bytes: &[u8]| {
         while !bytes.is_empty() {
             let sent = tx.write(bytes).unwrap_or(bytes.len());
@@ -52,13 +53,12 @@ pub fn new(
         rx.read_buffered(&mut byte).ok().filter(|read| *read > 0).map(|_| byte[0])
     };
     let pull_up = InputConfig::default().with_pull(Pull::Up);
-    // The last one is the board's own, BOOT.
     let buttons = five_buttons([
-        Input::new(parts.GPIO0, pull_up),
-        Input::new(parts.GPIO1, pull_up),
-        Input::new(parts.GPIO3, pull_up),
-        Input::new(parts.GPIO4, pull_up),
-        Input::new(parts.GPIO9, pull_up),
+        Input::new(up, pull_up),
+        Input::new(down, pull_up),
+        Input::new(left, pull_up),
+        Input::new(right, pull_up),
+        Input::new(select, pull_up),
     ]);
     let mut wake = PeriodicTimer::new(SystemTimer::new(parts.SYSTIMER).alarm0);
     wake.set_interrupt_handler(on_wake);

@@ -1,9 +1,10 @@
-//! Pantin on the ESP32-C3: plays the clips that it was built with.
+//! Pantin on the ESP32-C3 and the ESP32-C6: plays the clips that it was built with.
 #![no_std]
 #![no_main]
 
+include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/chip.rs"));
+
 mod board;
-mod flash;
 mod panic;
 #[cfg(feature = "buffered")]
 mod uart_rx;
@@ -28,5 +29,5 @@ esp_bootloader_esp_idf::esp_app_desc!(
 #[esp_hal::main]
 fn main() -> ! {
     let parts = esp_hal::init(esp_hal::Config::default().with_cpu_clock(CpuClock::max()));
-    board_common::run_forever::<flash::Flash, _>(CLIPS, board::new(parts))
+    board_common::run_forever::<Flash, _>(CLIPS, board::new(parts))
 }

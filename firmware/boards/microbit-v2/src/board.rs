@@ -1,12 +1,11 @@
 //! The board: its display, LEDs, serial line, buttons, timer and watchdog.
 
-use crate::{leds, serial, watchdog};
+use crate::{leds, oled, serial, watchdog};
 use board_common::{Capacity, SharedBoard, TickTimer, two_buttons};
 use board_drivers::led_matrix::reduce;
-use board_drivers::{Display, Mono128x64, Ssd1306};
-use nrf52833_hal::gpio::{Floating, Input, Level, Pin, p0, p1};
-use nrf52833_hal::pac::{Peripherals, TWIM0};
-use nrf52833_hal::twim::{Frequency, Pins, Twim};
+use board_drivers::{Display, Mono128x64};
+use nrf52833_hal::gpio::{Level, p0, p1};
+use nrf52833_hal::pac::Peripherals;
 use nrf52833_hal::{Clocks, Timer};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
@@ -19,7 +18,8 @@ const TIMER_HZ: u32 = 1_000_000;
 pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> {
     Clocks::new(parts.CLOCK).enable_ext_hfosc();
     let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));
-    let mut oled = oled(parts.TWIM0, p0.p0_26.into_floating_input().degrade(), p1.p1_00.into_floating_input().degrade());
+    // SCL on P19, SDA on P20 of the edge connector.
+    let mut oled = oled::new(parts.TWIM0, p0.p0_26.into_floating_input().degrade(), p1.p1_00.into_floating_input().degrade());
     let rows = [p0.p0_21.degrade(), p0.p0_22.degrade(), p0.p0_15.degrade(), p0.p0_24.degrade(), p0.p0_19.degrade()];
     let columns = [p0.p0_28.degrade(), p0.p0_11.degrade(), p0.p0_31.degrade(), p1.p1_05.degrade(), p0.p0_30.degrade()];
     leds::start(rows, columns, parts.TIMER1);
@@ -35,12 +35,4 @@ pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rot
     // The interrupt that lights the LEDs ends the sleep every millisecond.
     let tick_timer = TickTimer::<TIMER_HZ, _, _>::new(move || timer.read(), cortex_m::asm::wfi);
     SharedBoard::new(display, serial, buttons, tick_timer, watchdog::start(parts.WDT))
-}
-
-/// Sets up the SSD1306, or the SH1106, on the edge connector: SCL on P19, SDA on P20. These pins have pull-ups, which keep the bus idle without a display.
-pub fn oled(twim: TWIM0, scl: Pin<Input<Floating>>, sda: Pin<Input<Floating>>) -> impl Display<Mono128x64> {
-    // A panic may have interrupted a transfer.
-    twim.enable.reset();
-    let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-    new(Twim::new(twim, Pins { scl, sda }, Frequency::K400))
 }

@@ -20,6 +20,8 @@ impl Registers for Chip {
 }
 
 /// Opens the debug port, now and after the next reset.
-pub fn open() {
-    open_debug_port(&mut Chip);
+///
+/// `first_build` is the first of the chip's builds that need it.
+pub fn open(first_build: u8) {
+    open_debug_port(&mut Chip, first_build);
 }

@@ -2,10 +2,10 @@
 //! written (41 µs; nRF52833 Product Specification, 6.1.4).
 #![allow(unsafe_code)]
 
+use crate::nrf_hal::nvmc::Nvmc;
+use crate::nrf_hal::pac::{NVMC, Peripherals};
 use board_common::nor_flash::{NorFlash, NorFlashError, NorFlashErrorKind};
 use core::{ptr, slice};
-use nrf52833_hal::nvmc::Nvmc;
-use nrf52833_hal::pac::{NVMC, Peripherals};
 
 /// The flash.
 pub struct Flash;

@@ -1,11 +1,11 @@
 //! The serial line to the board's interface chip, which is a serial port over USB.
 
+use crate::nrf_hal::gpio::{Floating, Input, Output, Pin, PushPull};
+use crate::nrf_hal::pac::UARTE0;
+use crate::nrf_hal::uarte::{Baudrate, Parity, Pins, Uarte};
 use board_common::{FnSerial, SerialPort};
 use cortex_m::singleton;
 use embedded_hal_02::serial::{Read, Write};
-use nrf52833_hal::gpio::{Floating, Input, Output, Pin, PushPull};
-use nrf52833_hal::pac::UARTE0;
-use nrf52833_hal::uarte::{Baudrate, Parity, Pins, Uarte};
 
 /// Most bytes that are sent at once.
 const CHUNK: usize = 64;

@@ -1,12 +1,12 @@
 //! The serial line's receive interrupt: the port writes one byte at a time to memory.
 #![allow(unsafe_code)]
 
+use crate::nrf_hal::pac::{NVIC, UARTE0, interrupt};
+use crate::nrf_hal::uarte::UarteRx;
 use board_common::uart_rx;
 use core::cell::RefCell;
 use cortex_m::interrupt::Mutex;
 use embedded_hal_02::serial::Read;
-use nrf52833_hal::pac::{NVIC, UARTE0, interrupt};
-use nrf52833_hal::uarte::UarteRx;
 
 static PORT: Mutex<RefCell<Option<UarteRx<UARTE0>>>> = Mutex::new(RefCell::new(None));
 

@@ -1,9 +1,9 @@
 //! The watchdog.
 
-use nrf52833_hal::pac::WDT;
-use nrf52833_hal::wdt::count::One;
-use nrf52833_hal::wdt::handles::Hdl0;
-use nrf52833_hal::wdt::{Parts, Watchdog, WatchdogHandle};
+use crate::nrf_hal::pac::WDT;
+use crate::nrf_hal::wdt::count::One;
+use crate::nrf_hal::wdt::handles::Hdl0;
+use crate::nrf_hal::wdt::{Parts, Watchdog, WatchdogHandle};
 
 /// The frequency of the watchdog's clock.
 const CLOCK_HZ: u32 = 32_768;

@@ -1,6 +1,7 @@
 //! The board: its serial line, which carries pictures and commands, and its timer.
 
 use crate::registers::uart0;
+use crate::{BAUD_CLOCKS, CPU_HZ};
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, FnSerial, NoButtons, SharedBoard};
 use pantin_app::{Board, frame_stream};
@@ -10,11 +11,6 @@ use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::rotation::Rotation;
 #[cfg(feature = "micromath")]
 use pantin_figure::rotation_float::FloatRotation as Rotation;
-
-/// The core clock.
-const CPU_HZ: u32 = 25_000_000;
-/// Clocks in a bit at 115,200 baud.
-const BAUD_CLOCKS: u32 = 217;
 
 const TRANSMIT_FULL: u32 = 1 << 0;
 const RECEIVE_FULL: u32 = 1 << 1;

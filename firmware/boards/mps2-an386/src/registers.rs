@@ -1,4 +1,4 @@
-//! The registers that the program uses, at their addresses (Arm DAI 0386 and DDI 0479).
+//! The registers that the program uses, at their addresses (Arm DAI 0386 and 0505, DDI 0479).
 #![allow(unsafe_code)]
 
 use board_common::Register;
@@ -12,8 +12,9 @@ const fn at(address: usize) -> Register {
 /// Serial line 0 (CMSDK APB UART).
 pub mod uart0 {
     use super::{Register, at};
-    pub const DATA: Register = at(0x4000_4000);
-    pub const STATE: Register = at(0x4000_4004);
-    pub const CTRL: Register = at(0x4000_4008);
-    pub const BAUDDIV: Register = at(0x4000_4010);
+    use crate::UART0;
+    pub const DATA: Register = at(UART0);
+    pub const STATE: Register = at(UART0 + 4);
+    pub const CTRL: Register = at(UART0 + 8);
+    pub const BAUDDIV: Register = at(UART0 + 0x10);
 }

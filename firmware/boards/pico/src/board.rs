@@ -1,6 +1,11 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
 use crate::clocks::{self, CPU_HZ};
+use crate::rp_hal::fugit::{ExtU32, RateExtU32};
+use crate::rp_hal::gpio::{Pins, PullUp};
+use crate::rp_hal::pac::Peripherals;
+use crate::rp_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
+use crate::rp_hal::{Sio, Watchdog};
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
@@ -9,11 +14,6 @@ use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
-use rp2040_hal::fugit::{ExtU32, RateExtU32};
-use rp2040_hal::gpio::{Pins, PullUp};
-use rp2040_hal::pac::Peripherals;
-use rp2040_hal::uart::{DataBits, StopBits, UartConfig, UartPeripheral};
-use rp2040_hal::{Sio, Watchdog};
 
 const BAUD: u32 = 115_200;
 /// The watchdog resets the board when the program hangs for this time.
@@ -36,13 +36,13 @@ pub fn new(
     let serial = crate::uart_rx::listen(serial);
     let serial = NbSerial(serial);
     #[cfg(feature = "usb")]
-    let serial = crate::usb::start(serial, (parts.USBCTRL_REGS, parts.USBCTRL_DPRAM), usb_clock, &mut resets);
+    let serial = crate::usb::start(serial, usb_clock, &mut resets);
     #[cfg(not(feature = "usb"))]
     let _ = usb_clock;
     #[cfg(not(feature = "spi"))]
     let display = {
         let (sda, scl) = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
-        let bus = rp2040_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
+        let bus = crate::rp_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
         let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
         new(crate::i2c::Bus::new(bus))
     };

@@ -5,8 +5,8 @@
 //! waits forever.
 #![allow(unsafe_code)]
 
+use crate::rp_hal::pac::{I2C0, i2c0::RegisterBlock};
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
-use rp2040_hal::pac::{I2C0, i2c0::RegisterBlock};
 
 /// How often a register is read until the bus counts as stuck. A byte takes 2,800 clocks of the processor at 400 kHz; a read takes at least 5.
 const MAX_POLLS: u32 = 10_000;

@@ -14,3 +14,22 @@ mod spi_display;
 mod uart_rx;
 #[cfg(feature = "usb")]
 mod usb;
+
+use rp2040_hal as rp_hal;
+
+/// The clock of the processor and the peripherals.
+pub const CPU_HZ: u32 = 125_000_000;
+/// The PC's name for the board.
+#[cfg(feature = "usb")]
+const PRODUCT: &str = "Pantin on the Raspberry Pi Pico";
+
+/// Peripherals that have other names on the RP2350.
+#[cfg(feature = "usb")]
+mod chip {
+    pub use rp2040_hal::pac::{RESETS, TIMER, USBCTRL_DPRAM as USB_DPRAM, USBCTRL_REGS as USB};
+
+    /// Starts the counter of microseconds.
+    pub fn start_timer(resets: &mut RESETS) {
+        resets.reset().modify(|_, w| w.timer().clear_bit());
+    }
+}

@@ -1,10 +1,10 @@
 //! The panic handler: the display shows the panic for 10 s, then the watchdog resets the board.
 #![allow(unsafe_code)]
 
+use crate::rp_hal::pac::Peripherals;
 use crate::{board, clocks::CPU_HZ};
 use board_common::{cortex_m::ClockDelay, panic_screen};
 use core::panic::PanicInfo;
-use rp2040_hal::pac::Peripherals;
 
 #[panic_handler]
 #[allow(clippy::empty_loop)]

@@ -1,18 +1,18 @@
 //! A display over SPI: clock on GP18, data on GP19, chip select on GP17, data/command on GP20, reset on GP21.
 
 use crate::clocks::CPU_HZ;
+use crate::rp_hal::Spi;
+use crate::rp_hal::fugit::RateExtU32;
+use crate::rp_hal::gpio::bank0::{Gpio17, Gpio18, Gpio19, Gpio20, Gpio21};
+use crate::rp_hal::gpio::{FunctionNull, FunctionSpi, Pin, PullDown};
+use crate::rp_hal::pac::{RESETS, SPI0};
+use crate::rp_hal::spi::Enabled;
 use board_common::cortex_m::ClockDelay;
 use board_drivers::{ColorPanel, Display};
 use core::convert::Infallible;
 use embedded_hal::spi::{ErrorType, MODE_3, SpiBus};
 use embedded_hal_bus::spi::ExclusiveDevice;
 use embedded_hal_nb::spi::FullDuplex;
-use rp2040_hal::Spi;
-use rp2040_hal::fugit::RateExtU32;
-use rp2040_hal::gpio::bank0::{Gpio17, Gpio18, Gpio19, Gpio20, Gpio21};
-use rp2040_hal::gpio::{FunctionNull, FunctionSpi, Pin, PullDown};
-use rp2040_hal::pac::{RESETS, SPI0};
-use rp2040_hal::spi::Enabled;
 
 /// The module, as the features choose it.
 mod chosen {

@@ -1,10 +1,10 @@
 //! The serial line's receive interrupt.
 #![allow(unsafe_code)]
 
+use crate::rp_hal::pac::{Interrupt, UART0, interrupt};
+use crate::rp_hal::uart::{Enabled, UartPeripheral, ValidUartPinout};
 use board_common::uart_rx;
 use cortex_m::peripheral::NVIC;
-use rp2040_hal::pac::{Interrupt, UART0, interrupt};
-use rp2040_hal::uart::{Enabled, UartPeripheral, ValidUartPinout};
 
 /// Enables the interrupt.
 pub fn listen<P: ValidUartPinout<UART0>>(mut serial: UartPeripheral<Enabled, UART0, P>) -> UartPeripheral<Enabled, UART0, P> {

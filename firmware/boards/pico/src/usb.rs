@@ -2,15 +2,16 @@
 //! answer while a picture is drawn.
 #![allow(unsafe_code)]
 
+use crate::chip::{TIMER, USB, USB_DPRAM, start_timer};
+use crate::rp_hal::clocks::UsbClock;
+use crate::rp_hal::pac::{Interrupt, RESETS, interrupt};
+use crate::rp_hal::usb::UsbBus;
 use board_common::{SerialPort, uart_rx};
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicBool, Ordering};
 use cortex_m::peripheral::NVIC;
 use critical_section::Mutex;
 use heapless::Deque;
-use rp2040_hal::clocks::UsbClock;
-use rp2040_hal::pac::{Interrupt, RESETS, TIMER, USBCTRL_DPRAM, USBCTRL_REGS, interrupt};
-use rp2040_hal::usb::UsbBus;
 use usb_device::class_prelude::UsbBusAllocator;
 use usb_device::device::{StringDescriptors, UsbDevice, UsbDeviceBuilder, UsbDeviceState, UsbVidPid};
 use usbd_serial::USB_CLASS_CDC;
@@ -37,18 +38,15 @@ static LINE: Mutex<RefCell<Option<Line>>> = Mutex::new(RefCell::new(None));
 static IS_FULL: AtomicBool = AtomicBool::new(false);
 
 /// Starts the port beside another serial line. When a panic sets the board up a second time, the port goes on as it is.
-pub fn start<S: SerialPort>(
-    other: S,
-    (registers, memory): (USBCTRL_REGS, USBCTRL_DPRAM),
-    clock: UsbClock,
-    resets: &mut RESETS,
-) -> Both<S> {
+pub fn start<S: SerialPort>(other: S, clock: UsbClock, resets: &mut RESETS) -> Both<S> {
     let bus = cortex_m::singleton!(: Option<UsbBusAllocator<UsbBus>> = None);
     if let Some(bus) = bus {
-        resets.reset().modify(|_, w| w.timer().clear_bit());
+        start_timer(resets);
+        // Safety: the program takes them nowhere else, and this is done once.
+        let (registers, memory) = unsafe { (USB::steal(), USB_DPRAM::steal()) };
         let bus = &*bus.insert(UsbBusAllocator::new(UsbBus::new(registers, memory, clock, true, resets)));
         let port = usbd_serial::SerialPort::new(bus);
-        let strings = StringDescriptors::default().manufacturer("Pantin").product("Pantin on the Raspberry Pi Pico");
+        let strings = StringDescriptors::default().manufacturer("Pantin").product(crate::PRODUCT);
         // Control packets of 64 bytes: see the HAL's page on the enumeration by Windows.
         let builder = UsbDeviceBuilder::new(bus, IDENTITY).device_class(USB_CLASS_CDC);
         if let Ok(builder) = builder.strings(&[strings])

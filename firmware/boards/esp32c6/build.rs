@@ -1,0 +1,6 @@
+//! The chip's memory map, which comes with its own crate, and the clips.
+
+fn main() {
+    board_build::link(&["-Tlinkall.x"]);
+    board_build::clips();
+}

@@ -1,0 +1,2 @@
+//! Nothing: `Cargo.toml` says why.
+#![no_std]

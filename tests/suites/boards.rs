@@ -1,0 +1,97 @@
+//! What `cargo xtask test --boards` runs: the core of the Pico 2, a Cortex-M33, shows in QEMU what the host shows, and so does the Nucleo's image in
+//! Unicorn.
+
+use std::path::{Path, PathBuf};
+
+use harness::build::Firmware;
+use harness::display::{Depth, Display, Picture, Way};
+use harness::icount::FRAME_REGIONS;
+use harness::panel::{self, Colour, Mono, Panel, ST7789};
+use harness::qemu::MPS2_AN505;
+use harness::rp2040::{OLED, Spi};
+use harness::stm32::{Outcome, Pin, Request, TARGET};
+use harness::{equal, paths, screen, simulator};
+use pantin_figure::rotation::{Rotation, RotationBackend};
+use pantin_figure::rotation_float::FloatRotation;
+
+/// Pictures of our walk, our run, and a face with its body.
+const PICTURES: [(&str, usize); 3] = [("walk", 30), ("run", 26), ("greet", 20)];
+/// Letters that turn the view and change what is drawn.
+const LETTERS: [&[u8]; 12] = [b"v", b"w", b"sss", b"a", b"dd", b"f", b"i", b"l", b"g", b"r", b",", b"+"];
+
+fn plays_as_the_host_does<R: RotationBackend>(features: &str) {
+    let clips: Vec<PathBuf> = PICTURES.map(|(name, _)| paths::root().join("motions").join(name).with_extension("ptn")).into();
+    let machine = MPS2_AN505;
+    let files: Vec<&Path> = clips.iter().map(PathBuf::as_path).collect();
+    let firmware = Firmware::featuring(features, machine.name, machine.name, machine.target, &files).unwrap();
+    let through = |(_, pictures)| std::iter::repeat_n(&b""[..], pictures - 1).chain([&b"n"[..]]);
+    let keys: Vec<&[u8]> = PICTURES.into_iter().flat_map(through).chain(LETTERS).collect();
+    let expected = simulator::play::<R>(machine.display.unwrap(), &clips, &[], &keys).unwrap();
+    let means: Vec<f64> = equal::shows(machine, &firmware, &expected, &keys).iter().map(|kind| kind.mean()).collect();
+    println!("{features}: instructions per frame: {FRAME_REGIONS:?} {means:.0?}");
+}
+
+#[test]
+fn a_cortex_m33_plays_bodies_and_faces_as_the_host_does() {
+    plays_as_the_host_does::<Rotation>("face");
+}
+
+#[test]
+fn a_cortex_m33_plays_in_floating_point_as_the_host_does() {
+    plays_as_the_host_does::<FloatRotation>("face,micromath");
+}
+
+/// Letters before each of the Nucleo's pictures but the first.
+const KEYS: [&[u8]; 5] = [b"", b"", b"w", b"n", b""];
+
+fn nucleo(features: &str) -> Firmware {
+    Firmware::featuring(features, "nucleo-f411re", "nucleo-f411re", TARGET, &[]).unwrap()
+}
+
+fn request(image: &Firmware, display: Option<u8>) -> Request {
+    // USART2, and D10, D9 and D8; there is no crystal.
+    let (serial, spi_pins) = (0x4000_4400, ["B6", "C7", "A9"]);
+    Request { display, crystal: false, serial, spi_pins, ..Request::new(image.elf(), &KEYS) }
+}
+
+fn shows(outcome: &Outcome, panel: &mut impl Panel, display: Display, change: impl Fn(&Picture) -> Picture) {
+    assert!(outcome.done);
+    assert_eq!(outcome.faults, [""; 0]);
+    let clips = ["walk", "run"].map(|name| paths::root().join("motions").join(name).with_extension("ptn"));
+    let expected = simulator::play::<Rotation>(display, &clips, &[], &KEYS).unwrap();
+    let shown = panel::pictures(panel, &outcome.stream);
+    assert_eq!(shown.len(), expected.len());
+    for (shown, (number, expected)) in shown.iter().zip(&expected) {
+        assert_eq!(screen::difference(shown, &change(expected)).map(|difference| difference.to_string()), None, "{number}");
+    }
+    // RM0383, table 5 and 5.4.1: 84 MHz need 2 wait states and at least scale 2, which is the one after reset.
+    let last = outcome.switches.last().unwrap();
+    assert!(last.core == 84_000_000 && last.wait >= 2 && last.vos >= 2 && last.apb1 <= 50_000_000 && last.apb2 <= 100_000_000);
+    assert_eq!(outcome.crystal_polls, 0);
+    assert!((outcome.baud / 115_200.0 - 1.0).abs() < 0.01);
+    let pin = |mode, drain, speed, pull, function| Pin { mode, drain, speed, pull, function };
+    assert_eq!([outcome.pins["PA2"], outcome.pins["PA3"]], [pin(2, 0, 0, 0, 7), pin(2, 0, 0, 1, 7)]);
+    for button in ["PA10", "PB5", "PB10", "PA8", "PC13"] {
+        assert_eq!(outcome.pins[button], pin(0, 0, 0, 1, 0), "{button}");
+    }
+}
+
+#[test]
+fn the_nucleo_shows_on_the_ssd1306_what_the_host_shows() {
+    let outcome = request(&nucleo(""), Some(0x3c)).run().unwrap();
+    shows(&outcome, &mut Mono::ssd1306(0x3c), OLED, Picture::clone);
+    let bus = Pin { mode: 2, drain: 1, speed: 0, pull: 1, function: 4 };
+    assert_eq!([outcome.pins["PB8"], outcome.pins["PB9"]], [bus; 2]);
+}
+
+#[test]
+fn the_nucleo_shows_on_the_st7789_what_the_host_shows() {
+    let outcome = request(&nucleo("st7789"), None).run().unwrap();
+    let greys = Display { width: 240, height: 240, depth: Depth::Gray4, way: Way::Bus("spi") };
+    shows(&outcome, &mut Colour::new(ST7789), greys, |picture| picture.clone().in_colour());
+    assert_eq!(outcome.spi, Spi { mode: 3, hz: 21e6 });
+    let spi = Pin { mode: 2, drain: 0, speed: 3, pull: 0, function: 5 };
+    assert_eq!([outcome.pins["PA5"], outcome.pins["PA7"]], [spi; 2]);
+    let output = Pin { mode: 1, drain: 0, speed: 3, pull: 0, function: 0 };
+    assert_eq!([outcome.pins["PB6"], outcome.pins["PC7"]], [output; 2]);
+}
