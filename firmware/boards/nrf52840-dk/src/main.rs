@@ -4,13 +4,14 @@
 #![no_main]
 
 mod board;
+mod panic;
+
 #[path = "../../microbit-v2/src/debug_port.rs"]
 mod debug_port;
 #[path = "../../microbit-v2/src/flash.rs"]
 mod flash;
 #[path = "../../microbit-v2/src/oled.rs"]
 mod oled;
-mod panic;
 #[path = "../../microbit-v2/src/serial.rs"]
 mod serial;
 #[cfg(feature = "buffered")]
