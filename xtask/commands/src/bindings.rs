@@ -2,6 +2,7 @@
 //! (`bindings`), which need compilers for other targets.
 
 mod arduino;
+mod blender;
 mod figure;
 mod micropython;
 mod python;
@@ -128,6 +129,9 @@ pub struct Bindings {
     /// Selects which mutants are made
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// A Python that has Blender's module bpy, numpy and pytest, for the Blender add-on; may be given several times
+    #[arg(long, value_name = "PYTHON")]
+    bpy: Vec<String>,
     /// Runs only the steps whose name contains this text
     #[arg(long)]
     only: Option<String>,
@@ -195,6 +199,7 @@ impl Bindings {
         steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
         steps.run("MicroPython", || micropython::run(&folder));
         steps.run("wheel of the Python package", || python::run(&folder));
+        steps.run("Blender add-on", || blender::run(&folder, &self.bpy));
         steps.steps.finish()
     }
 

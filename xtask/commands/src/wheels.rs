@@ -3,6 +3,8 @@
 //! What links for other systems comes from packages: zig (`ziglang` on PyPI) for an old glibc and for macOS, and mingw for Windows. The tools are
 //! installed in an environment in `target/python`.
 
+pub mod addon;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -22,6 +24,9 @@ pub struct Wheels {
     /// Leaves the program out
     #[arg(long)]
     no_program: bool,
+    /// Packs the Blender add-on, with the wheels that were built
+    #[arg(long)]
+    blender: bool,
     /// Where the files go
     #[arg(short, long, default_value = "target/wheels")]
     output: PathBuf,
@@ -46,14 +51,16 @@ impl Wheels {
         let systems = if self.systems.is_empty() { System::value_variants() } else { &self.systems };
         let output = paths::root().join(&self.output);
         let tools = Tools::install()?;
+        let mut wheels = vec![];
         for system in systems {
             let wheel = tools.wheel(*system, &output)?;
             said(&wheel)?;
+            wheels.push(wheel);
             if !self.no_program {
                 said(&tools.program(*system, &output)?)?;
             }
         }
-        Ok(())
+        if self.blender { said(&addon::pack(&wheels, &output)?) } else { Ok(()) }
     }
 }
 

@@ -1,0 +1,151 @@
+"""What a user can do: export, preview, import."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pantin
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from .apply import apply
+from .capture import Refused, capture
+
+# The picture that the panel shows.
+IMAGE = "Pantin preview"
+# Pixels of the picture for each of the display's.
+MAGNIFIED = 4
+
+
+class Settings(bpy.types.PropertyGroup):
+    """How actions become clips, and what became of the last one."""
+
+    bound: bpy.props.FloatProperty(
+        name="Bound", description="Largest distance of any joint from where the action has it, in cm", default=0.5, min=0.001, soft_max=5
+    )
+    scalar_bound: bpy.props.FloatProperty(
+        name="Weights", description="Largest error of shape keys and properties, in percent of full scale", default=2, min=0.01, max=50
+    )
+    effort: bpy.props.EnumProperty(
+        name="Effort",
+        description="Speed against size",
+        items=[("fast", "Fast", ""), ("default", "Default", ""), ("best", "Best", "")],
+        default="default",
+    )
+    deforming_only: bpy.props.BoolProperty(name="Deforming Bones Only", description="Leave out bones that deform nothing", default=False)
+    result: bpy.props.StringProperty(options={"SKIP_SAVE"})
+
+
+def armature_of(context):
+    """The active armature, or that of the active mesh."""
+    active = context.object
+    if active is not None and active.type == "MESH":
+        active = active.find_armature()
+    if active is None or active.type != "ARMATURE":
+        raise Refused("no armature is active: select one with an action")
+    return active
+
+
+def convert(context):
+    """A clip of the active action."""
+    settings = context.scene.pantin
+    motion = capture(context, armature_of(context), settings.deforming_only)
+    manager = context.window_manager
+    manager.progress_begin(0, 1)
+    try:
+        options = {"max_scalar_error": settings.scalar_bound, "effort": settings.effort}
+        clip = pantin.convert(motion, settings.bound, progress=manager.progress_update, **options)
+    finally:
+        manager.progress_end()
+    report = clip.report
+    parts = [f"{clip.nbytes} bytes, {clip.frames} frames"]
+    if clip.joints:
+        parts.append(f"{report['max_error_cm']:.3f} cm off at most ({report['worst_joint']} at frame {report['worst_frame']})")
+    if clip.scalar_names:
+        parts.append(f"weights {report['max_scalar_error_percent']:.2f} % off at most")
+    settings.result = "; ".join(parts)
+    return clip
+
+
+def show(clip, frame):
+    """The picture of a frame as the display shows it."""
+    lit = np.flipud(clip.image(min(max(frame, 0), clip.frames - 1)))
+    lit = lit.repeat(MAGNIFIED, axis=0).repeat(MAGNIFIED, axis=1)
+    height, width = lit.shape
+    image = bpy.data.images.get(IMAGE) or bpy.data.images.new(IMAGE, width, height)
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = lit[..., None]
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    return image
+
+
+class Guarded:
+    """An operator whose refusals are reports, not tracebacks."""
+
+    def execute(self, context):
+        try:
+            message = self.run(context)
+        except (Refused, pantin.PantinError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, message)
+        return {"FINISHED"}
+
+
+class PANTIN_OT_export(Guarded, bpy.types.Operator, ExportHelper):
+    """Write the active action as a clip within the bound"""
+
+    bl_idname = "pantin.export"
+    bl_label = "Export Clip"
+    filename_ext = ".ptn"
+    filter_glob: bpy.props.StringProperty(default="*.ptn", options={"HIDDEN"})
+
+    def run(self, context):
+        convert(context).save(self.filepath)
+        return context.scene.pantin.result
+
+
+class PANTIN_OT_preview(Guarded, bpy.types.Operator):
+    """Show the current frame as a display of 128x64 pixels shows the clip"""
+
+    bl_idname = "pantin.preview"
+    bl_label = "Preview"
+
+    def run(self, context):
+        clip = convert(context)
+        action = armature_of(context).animation_data.action
+        first = int(action.frame_range[0]) if action else context.scene.frame_start
+        show(clip, context.scene.frame_current - first)
+        return context.scene.pantin.result
+
+
+class PANTIN_OT_import(Guarded, bpy.types.Operator, ImportHelper):
+    """Make a clip the action of the active armature, or of a new one"""
+
+    bl_idname = "pantin.import_clip"
+    bl_label = "Import Clip"
+    bl_options = {"REGISTER", "UNDO"}
+    filename_ext = ".ptn"
+    filter_glob: bpy.props.StringProperty(default="*.ptn", options={"HIDDEN"})
+    new_armature: bpy.props.BoolProperty(name="New Armature", description="Build an armature instead of using the active one")
+
+    def run(self, context):
+        clip = pantin.Clip.open(self.filepath)
+        active = context.object
+        armature = active if active is not None and active.type == "ARMATURE" and not self.new_armature else None
+        armature, left = apply(context, clip, Path(self.filepath).stem, armature)
+        without = f"; nothing is called {', '.join(left[:5])}" if left else ""
+        return f"{clip.frames} frames for `{armature.name}`{without}"
+
+
+def export_entry(menu, _context):
+    """The entry in File > Export."""
+    menu.layout.operator(PANTIN_OT_export.bl_idname, text="Pantin Clip (.ptn)")
+
+
+def import_entry(menu, _context):
+    """The entry in File > Import."""
+    menu.layout.operator(PANTIN_OT_import.bl_idname, text="Pantin Clip (.ptn)")
+
+
+CLASSES = (Settings, PANTIN_OT_export, PANTIN_OT_preview, PANTIN_OT_import)
