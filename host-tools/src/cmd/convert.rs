@@ -3,7 +3,7 @@
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::joint_error::{self, JointError};
-use super::{bank, batch, check_fit, convert_bank, default_output, same_form, up_axis};
+use super::{bank, batch, check_fit, convert_bank, convert_list, default_output, same_form, up_axis};
 use crate::channel_error;
 use crate::edit::cut::cut;
 use crate::edit::find_loop::{self, Cut};
@@ -60,11 +60,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
   pantin convert walk.bvh bow.bvh -o clips -j 2
   pantin convert captures -o clips --jobs 4 --max-error 0.5%
   pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips
-  pantin convert captures -o moves.ptb")]
+  pantin convert captures -o moves.ptb
+  pantin convert moves.list -o moves.ptb --same-form")]
 pub struct Arguments {
     /// The motion: .bvh, .amc (its .asf beside it), .glb or .gltf, .fbx, .wrl or .x3dv, key frames (.keys, see docs/KEYFRAMES.md), functions of time
     /// (.proc, see docs/PROCEDURAL.md), a face from Live Link Face (.csv) or in MPEG-4 parameters (.fap), or a table of channels
-    /// with a row of names (.csv, .tsv)
+    /// with a row of names (.csv, .tsv). For a bank also a list (.list): a motion a line, with its own --name, --animation and changes, as in
+    /// `walk.bvh --from 65 --to 129 --loop`
     pub(super) input: PathBuf,
     /// More motions, each of which gets a clip of its name in the folder --output, or beside it
     #[arg(value_name = "MOTION", conflicts_with = "list")]
@@ -117,7 +119,7 @@ pub struct Arguments {
     #[arg(long)]
     fps: Option<f64>,
     #[command(flatten)]
-    edits: Edits,
+    pub(super) edits: Edits,
     /// The .asf of an .amc, instead of the one found next to it
     #[arg(long)]
     pub(super) skeleton: Option<PathBuf>,
@@ -245,6 +247,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     if arguments.output.as_deref().is_some_and(bank::is_bank_name) {
         return convert_bank::run(arguments);
+    }
+    if convert_list::is_list(&arguments.input) {
+        bail!("{}: a list of motions becomes a bank: -o NAME.ptb (`pantin unpack` makes clips of it)", arguments.input.display());
     }
     if arguments.same_form {
         return same_form::run(arguments);

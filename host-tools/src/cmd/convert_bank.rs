@@ -3,6 +3,7 @@
 use super::bank::said;
 use super::batch;
 use super::convert::{Arguments, Made, Prepared, prepare_without_footsteps, say_of_each, shared_coding};
+use super::convert_list::{self, Line};
 use crate::budget;
 use crate::encode::bank::{self, Named};
 use crate::encode::same_rig::difference;
@@ -138,6 +139,22 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
             task
         });
         return Ok(tasks.collect());
+    }
+    if convert_list::is_list(input) {
+        ensure!(arguments.more.is_empty(), "{}: a list; convert a list in a command of its own", input.display());
+        ensure!(
+            !arguments.edits.any() && arguments.animation.is_none(),
+            "{}: the lines of a list say how each motion is cut and changed; leave those options out of the command",
+            input.display()
+        );
+        let of_line = |(place, line): (String, Line)| {
+            let name = line.name.map_or_else(|| super::bank::name_of(&line.motion), Ok).with_context(|| place.clone())?;
+            let label = format!("{place}: {}", line.motion.display());
+            let mut task = task(line.motion, name, label);
+            (task.arguments.edits, task.arguments.animation) = (line.edits, line.animation);
+            Ok(task)
+        };
+        return convert_list::read(input)?.into_iter().map(of_line).collect();
     }
     let (base, inputs) = if input.is_dir() {
         ensure!(arguments.more.is_empty(), "{}: a folder; convert a folder in a command of its own", input.display());

@@ -14,7 +14,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Changes of the motion. They apply in this order: --rate, --fps, --event, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop, --footsteps.
-#[derive(clap::Args, Clone, Debug)]
+#[derive(clap::Args, Clone, Debug, Default, PartialEq)]
 pub struct Edits {
     /// Keep only the joints and scalars whose names match, as in 'Left*,Spine?' (case-insensitive). A joint that is not kept is
     /// removed, or held as in the first frame if a kept joint depends on it
@@ -60,7 +60,7 @@ pub struct Edits {
 }
 
 /// An event marker as the user gives it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Marker {
     name: String,
     moment: Moment,
@@ -84,7 +84,7 @@ fn marker(text: &str) -> Result<Marker> {
 }
 
 /// A body that motions can be put on.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 enum Body {
     /// 15 joints: hips, chest, head, and upper arm, forearm, hand, thigh, shin, foot of both sides
     Display,
@@ -101,6 +101,11 @@ pub struct Edited {
 }
 
 impl Edits {
+    /// Whether there is any.
+    pub fn any(&self) -> bool {
+        *self != Edits::default()
+    }
+
     /// The frame from which the motion is kept.
     pub fn first_frame(&self, frame_time: f64) -> usize {
         self.from.map_or(0, |moment| moment.nearest(frame_time))

@@ -5,6 +5,7 @@ mod batch;
 mod channel_bound;
 pub mod convert;
 mod convert_bank;
+mod convert_list;
 mod edits;
 pub mod expand;
 pub mod face;

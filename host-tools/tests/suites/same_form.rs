@@ -138,3 +138,40 @@ fn captured_clips_of_one_actor_get_one_form() {
     assert!(alone[0].0 != alone[1].0 && alone[0].1 != alone[1].1, "{alone:?}");
     assert_eq!(together[0], together[1]);
 }
+
+#[test]
+fn a_list_gives_each_motion_a_cut_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir(path("captures")).unwrap();
+    let own = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions").join(name);
+    std::fs::copy(own("walk.keys"), path("captures/my walk.keys")).unwrap();
+    std::fs::copy(own("run.keys"), path("captures/run.keys")).unwrap();
+    let list = "# Two cuts of the walk, and the run.\n\"my walk.keys\" --name start --to 9\n\"my walk.keys\" --name end --from 0.5s\nrun.keys\n";
+    std::fs::write(path("captures/moves.list"), list).unwrap();
+    succeeds(&["captures/moves.list".into()], &["--same-form", "-o", "moves.ptb"], folder.path());
+    let bytes = std::fs::read(path("moves.ptb")).unwrap();
+    let bank = pantin::Bank::new_checked(&bytes).unwrap();
+    let clips: Vec<(String, u32, i8)> = bank
+        .entries()
+        .map(|entry| (entry.name().into(), bank.open(&entry).unwrap()))
+        .map(|(name, clip): (String, Clip)| (name, clip.frames(), clip.length_exponent()))
+        .collect();
+    assert_eq!(clips.iter().map(|(name, ..)| name.as_str()).collect::<Vec<_>>(), ["start", "end", "run"]);
+    assert_eq!(clips[0].1, 10);
+    assert!(clips.iter().all(|(.., exponent)| *exponent == clips[0].2), "{clips:?}");
+    let refused = |list: &str, options: &[&str]| {
+        std::fs::write(path("wrong.list"), list).unwrap();
+        refusal(&["wrong.list".into()], &[options, &["-o", "wrong.ptb"]].concat(), folder.path())
+    };
+    for (list, options, why) in [
+        ("captures/run.keys\ncaptures/run.keys --frm 3\n", &[][..], "wrong.list:2: unexpected argument '--frm'"),
+        ("captures/run.keys \"--name\n", &[], "wrong.list:1: a quotation mark"),
+        ("# nothing\n", &[], "names no motion"),
+        ("captures/none.keys\n", &[], "none.keys"),
+        ("captures/run.keys\n", &["--from", "3"], "leave those options out"),
+    ] {
+        let said = refused(list, options);
+        assert!(said.contains(why) && !path("wrong.ptb").exists(), "{list}: {said}");
+    }
+}
