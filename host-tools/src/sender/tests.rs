@@ -407,7 +407,7 @@ fn the_bytes_on_the_line_stay_the_same() {
         (sent.len(), pantin::codec::crc::of(&sent))
     };
     // A packet has the rig's id in it.
-    let expected = [(15342, 6192), (16377, 16046), (18138, 34767)];
+    let expected = [(15342, 6192), (16377, 16046), (18129, 24028)];
     assert_eq!([(CLIPS[0], false), (CLIPS[0], true), (CLIPS[4], false)].map(sent), expected);
 }
 
