@@ -1,14 +1,15 @@
 //! What `cargo xtask test --boards` runs: the core of the Pico 2, a Cortex-M33, shows in QEMU what the host shows, and so does the Nucleo's image in
-//! Unicorn.
+//! Unicorn; an image that `cargo xtask images` gives away has the same bytes each time.
 
 use std::path::{Path, PathBuf};
 
 use harness::build::Firmware;
 use harness::display::{Depth, Display, Picture, Way};
+use harness::download::{self, File};
 use harness::icount::FRAME_REGIONS;
 use harness::panel::{self, Colour, Mono, Panel, ST7789};
 use harness::qemu::MPS2_AN505;
-use harness::rp2040::{OLED, Spi};
+use harness::rp2040::{self, OLED, Spi};
 use harness::stm32::{Outcome, Pin, Request, TARGET};
 use harness::{equal, paths, screen, simulator};
 use pantin_figure::rotation::{Rotation, RotationBackend};
@@ -94,4 +95,33 @@ fn the_nucleo_shows_on_the_st7789_what_the_host_shows() {
     assert_eq!([outcome.pins["PA5"], outcome.pins["PA7"]], [spi; 2]);
     let output = Pin { mode: 1, drain: 0, speed: 3, pull: 0, function: 0 };
     assert_eq!([outcome.pins["PB6"], outcome.pins["PC7"]], [output; 2]);
+}
+
+#[test]
+fn an_image_has_the_same_bytes_each_time_and_none_of_this_machine() {
+    let images = download::BOARDS[0].images();
+    let file = images[0].build().unwrap();
+    // Another program of the same folder, after which the first is built again.
+    let other = images[2].build().unwrap();
+    let again = images[0].build().unwrap();
+    assert!(file.bytes == again.bytes, "two builds differ");
+    let home = std::env::var("HOME").unwrap_or("/nowhere".into());
+    for path in [paths::root().to_string_lossy().into_owned(), format!("{home}/.")] {
+        for File { name, bytes, .. } in [&file, &other] {
+            assert!(!bytes.windows(path.len()).any(|bytes| bytes == path.as_bytes()), "{name} contains {path}");
+        }
+    }
+    let page = download::page(std::slice::from_ref(&file));
+    assert!(page.contains("<td>GP4</td>") && page.contains(&file.sum()) && page.contains("BOOTSEL"));
+    assert_eq!(download::sums(std::slice::from_ref(&file)), format!("{}  pantin-pico-ssd1306.uf2\n", file.sum()));
+    says_why_it_panics_over_usb(&file.bytes);
+}
+
+fn says_why_it_panics_over_usb(image: &[u8]) {
+    let folder = tempfile::tempdir().unwrap();
+    let path: &Path = &folder.path().join("image.uf2");
+    std::fs::write(path, image).unwrap();
+    let outcome = rp2040::Request::new(path, OLED).pictures(usize::MAX).usb().seconds(0.2).harm("fault").run().unwrap();
+    let text = String::from_utf8_lossy(&outcome.usb).into_owned();
+    assert!(text.contains("processor fault: an invalid access, or a stack overflow"), "{text:?}");
 }

@@ -32,7 +32,7 @@ Runs every check and test: format, lints, host tests, firmware builds, tests in 
 Options:
   --host-only  Leaves out the tests that need QEMU or Chromium
   --bindings   Runs the tests of the decoder in C instead: they need compilers for other targets
-  --boards     Checks the boards that a CI job of its own builds instead: lints, sizes, and the Cortex-M33 in QEMU";
+  --boards     Checks what a CI job of its own does instead: further boards, images to give away, and the oldest Rust";
 
 /// What the web page's modules are compiled for.
 const WEB_TARGET: &str = "wasm32-unknown-unknown";
@@ -92,7 +92,6 @@ fn all(host_only: bool) -> Result<()> {
         steps.run("lints", || shown(Workspace::Host, "clippy --workspace --all-targets -- -D warnings"));
         steps.run("documentation", || publish::docs(&[]));
         steps.run("packages", || publish::package(&[]));
-        steps.run("oldest Rust", || publish::msrv(&[]));
         steps.run("public items against the last tag", || publish::semver(&[]));
     });
     steps.finish()
@@ -105,6 +104,7 @@ fn boards_apart() -> Result<()> {
     steps.run("tools", || tools(&boards, false));
     firmware_lints(&steps, &boards, &[]);
     steps.run("tests in emulators", || shown(Workspace::Host, "test --package harness --test boards"));
+    steps.run("oldest Rust", || publish::msrv(&[]));
     steps.run("sizes", || shown(Workspace::Host, "run --package xtask-commands -- sizes --boards"));
     steps.finish()
 }
