@@ -24,12 +24,20 @@ pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// A joint's rotations multiply in the order of its channels; position channels replace its offset, axis by axis.
 pub fn positions(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 3]> {
     let mut next = 0;
-    let mut world: Vec<(Matrix, [f64; 3])> = Vec::with_capacity(rig.joints.len());
-    for joint in &rig.joints {
+    let joints = rig.joints.iter().map(|joint| {
         let channels = &values[next..next + joint.kinds.len()];
         next += joint.kinds.len();
-        let (rotation, offset) = local(joint, |channel| channels[channel][frame]);
-        world.push(match joint.parent {
+        (joint.parent, local(joint, |channel| channels[channel][frame]))
+    });
+    worlds(joints).into_iter().map(|(_, place)| place.map(|x| x * rig.cm_per_unit)).collect()
+}
+
+/// Rotations and places in the world of joints, parents first, each with its parent's index and with its rotation and place in the parent.
+#[inline(always)]
+pub(crate) fn worlds(joints: impl ExactSizeIterator<Item = (Option<usize>, (Matrix, [f64; 3]))>) -> Vec<(Matrix, [f64; 3])> {
+    let mut world: Vec<(Matrix, [f64; 3])> = Vec::with_capacity(joints.len());
+    for (parent, (rotation, offset)) in joints {
+        world.push(match parent {
             None => (rotation, offset),
             Some(parent) => {
                 let (turned, place) = &world[parent];
@@ -38,7 +46,7 @@ pub fn positions(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 3]> 
             }
         });
     }
-    world.into_iter().map(|(_, place)| place.map(|x| x * rig.cm_per_unit)).collect()
+    world
 }
 
 /// Rotations of all joints in their parents at `frame`, as quaternions w, x, y, z of length 1; End Sites turn nothing.

@@ -187,6 +187,11 @@ impl<'a> Layer<'a, '_> {
     }
 }
 
+/// The clip that the state machine of a bank begins with; its rig is that of all clips.
+pub fn first_clip(bytes: &[u8]) -> Result<Clip<'_>, Error> {
+    Machine::new(Table::of_bank(bytes)?).first_clip(&Bank::new_checked(bytes)?)
+}
+
 /// The clips of all states.
 fn clips<'a>(bank: &Bank<'a>, table: &Table<'a>) -> impl Iterator<Item = Result<Clip<'a>, Error>> {
     (0..table.states()).filter_map(|state| table.state(state as u8)).map(|state| clip(bank, state.clip))

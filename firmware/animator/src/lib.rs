@@ -94,7 +94,7 @@ mod two_bone;
 mod vector;
 
 pub use animator::{Animator, Memory, RootMotion, Transition, Workspace};
-pub use character::{Character, LayerMemory, visit_poses};
+pub use character::{Character, LayerMemory, first_clip, visit_poses};
 pub use error::Error;
 pub use events::{EVENTS, EventQueue, EventsLost, Fired};
 pub use foot::FootLock;

@@ -58,9 +58,14 @@ impl Heading {
         if self.angle == Angle::ZERO {
             return [a.into(), b.into()];
         }
+        self.products([a, b]).map(|q30| (q30 + (1 << 29)) >> 30)
+    }
+
+    /// The rotated vector in Q30.
+    #[inline(always)]
+    fn products(&self, [a, b]: [i32; 2]) -> [i64; 2] {
         let times = |x: i32, y: i32| i64::from(x) * i64::from(y);
-        let narrow = |q30: i64| (q30 + (1 << 29)) >> 30;
-        [narrow(times(a, self.cos) - times(b, self.sin)), narrow(times(a, self.sin) + times(b, self.cos))]
+        [times(a, self.cos) - times(b, self.sin), times(a, self.sin) + times(b, self.cos)]
     }
 
     /// The same of a way below 2^61, beyond the range of a channel: in parts of 2^30, whose products are whole.
@@ -70,9 +75,7 @@ impl Heading {
         }
         let low = |x: i64| (x & ((1 << 30) - 1)) as i32;
         let high = |x: i64| (x >> 30) as i32;
-        let ([low_x, low_y], [a, b]) = (self.rotate([low(a), low(b)]), [high(a), high(b)]);
-        let times = |x: i32, y: i32| i64::from(x) * i64::from(y);
-        let (x, y) = (times(a, self.cos) - times(b, self.sin), times(a, self.sin) + times(b, self.cos));
+        let ([low_x, low_y], [x, y]) = (self.rotate([low(a), low(b)]), self.products([high(a), high(b)]));
         [low_x.wrapping_add(x), low_y.wrapping_add(y)]
     }
 }

@@ -3,9 +3,9 @@
 use crate::board::{Board, BoardRenderer, Exit};
 use crate::capacity::Renderer;
 use crate::hud;
-use pantin::{Bank, ChannelState, Clip, Player};
-use pantin_animator::machine::{Machine, Table};
-use pantin_animator::{Character, Error, LayerMemory, Workspace, visit_poses};
+use pantin::{ChannelState, Player};
+use pantin_animator::machine::Machine;
+use pantin_animator::{Character, Error, LayerMemory, Workspace, first_clip, visit_poses};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, DrawStyle, Stand, View};
 
@@ -119,9 +119,4 @@ fn aim<B: Board>(
         visited = visited.and(visit_poses(bytes, states, values, sampled, &mut |_, values| visit(values)));
     });
     visited
-}
-
-/// The clip that the state machine begins with.
-fn first_clip(bytes: &[u8]) -> Result<Clip<'_>, Error> {
-    Machine::new(Table::of_bank(bytes)?).first_clip(&Bank::new_checked(bytes)?)
 }

@@ -2,7 +2,7 @@
 
 use super::{Imported, angles, ends, helpers, scalars, unwrap_angles};
 use crate::budget;
-use crate::fk::{self, Matrix, apply, distance, from_quaternion, product};
+use crate::fk::{self, Matrix, distance, from_quaternion};
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar, Up};
 use anyhow::{Result, ensure};
 use pantin::codec::layout::{MAX_CHANNELS, MAX_FRAMES, MAX_JOINTS};
@@ -151,19 +151,11 @@ impl Arrays {
 
     /// Where the arrays put every joint at a frame, in their unit.
     fn worlds(&self, frame: usize) -> Vec<[f64; 3]> {
-        let mut worlds: Vec<(Matrix, [f64; 3])> = Vec::with_capacity(self.joints.len());
-        for (index, joint) in self.joints.iter().enumerate() {
-            let (turn, place) = (from_quaternion(self.rotations[frame * self.joints.len() + index]), self.place(index, frame));
-            worlds.push(match joint.parent {
-                None => (turn, place),
-                Some(parent) => {
-                    let (above, from) = &worlds[parent];
-                    let moved = apply(above, place);
-                    (product(above, &turn), std::array::from_fn(|axis| from[axis] + moved[axis]))
-                }
-            });
-        }
-        worlds.into_iter().map(|(_, place)| place).collect()
+        let joints = self.joints.iter().enumerate().map(|(index, joint)| {
+            let turn = from_quaternion(self.rotations[frame * self.joints.len() + index]);
+            (joint.parent, (turn, self.place(index, frame)))
+        });
+        fk::worlds(joints).into_iter().map(|(_, place)| place).collect()
     }
 
     /// The offset of a joint, and the position channels along the axes on which it moves.

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use pantin::{Bank, ChannelState, Clip, Matrix};
 use pantin_animator::machine::{LAYERS, Table, TableError};
 use pantin_animator::session::{Replay, Session};
-use pantin_animator::{Character, Error, Group, LayerMemory, Mask, Memory, Offset, Placement, visit_poses};
+use pantin_animator::{Character, Error, Group, LayerMemory, Mask, Memory, Offset, Placement, first_clip, visit_poses};
 use pantin_figure::{Canvas, Detail, FigureRenderer, JointInfo, RIG_JOINTS, Skeleton, Stand, Track, View};
 
 /// Room for a character of a bank.
@@ -162,12 +162,6 @@ impl Stage {
         let ([width, height], factor) = (self.size, self.factor as f32);
         Ok(smooth::draw(&Scene::of_placed(self.place(character)?, factor), width, height, palette))
     }
-}
-
-fn first_clip(bytes: &[u8]) -> Result<Clip<'_>> {
-    let bank = Bank::new_checked(bytes)?;
-    let entry = bank.entries().next().context("the bank has no clips")?;
-    Ok(bank.open(&entry)?)
 }
 
 /// Plays a session from its start, and passes the character at each picture to `show`.

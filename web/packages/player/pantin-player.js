@@ -650,7 +650,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     if (!this.#paused) return;
     this.#paused = false;
     const last = this.playable - 1;
-    const ended = !this.states.length && this.playable && this.playable === this.frames && !this.loop && this.frame === (this.#backwards ? 0 : last);
+    const ended = this.playable && this.playable === this.frames && !this.loop && this.frame === (this.#backwards ? 0 : last);
     this.#at = ended ? (this.#backwards ? last : 0) : this.frame;
     this.#run();
     this.#tell();

@@ -3,8 +3,8 @@
 use crate::facts::{Facts, Trouble};
 use core::mem::MaybeUninit;
 use pantin::{ChannelState, Clip, Pose, Rig};
-use pantin_animator::machine::{LAYERS, Machine, Table};
-use pantin_animator::{Character, Error, Group, LayerMemory, Memory, Offset, visit_poses};
+use pantin_animator::machine::LAYERS;
+use pantin_animator::{Character, Error, Group, LayerMemory, Memory, Offset, first_clip, visit_poses};
 use pantin_figure::Stand;
 
 /// Channels of the rig, at most.
@@ -65,8 +65,7 @@ impl Steered {
             let Track { states, values } = track;
             character.lend_layer(LayerMemory { states, values, sampled, words })?;
         }
-        let first = Machine::new(Table::of_bank(bank)?).first_clip(&pantin::Bank::new_checked(bank)?)?;
-        Ok(Steered { character, bank, visited, first })
+        Ok(Steered { character, bank, visited, first: first_clip(bank)? })
     }
 
     pub fn rig(&self) -> Rig<'static> {

@@ -7,9 +7,9 @@
 #[path = "../oled.rs"]
 mod oled;
 
-use pantin::{ChannelState, Clip, Player};
+use pantin::{ChannelState, Player};
 use pantin_animator::session::{Replay, Session};
-use pantin_animator::{Character, LayerMemory, Workspace, visit_poses};
+use pantin_animator::{Character, LayerMemory, Workspace, first_clip, visit_poses};
 use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::{Canvas, Detail, DrawStyle, FigureRenderer, JointInfo, Stand, View};
 use testsuite as _;
@@ -66,7 +66,7 @@ fn aim(
     values: &mut [i32],
     sampled: &mut [i32],
 ) -> Option<()> {
-    let first = first_clip()?;
+    let first = first_clip(BANK).ok()?;
     let player = Player::new(first, states, values).ok()?;
     renderer.skeleton_mut().set_up(&first.rig(), Detail::Body, player.pose(), &mut [JointInfo::default(); JOINTS]).ok()?;
     let mut visited = Some(());
@@ -74,10 +74,4 @@ fn aim(
         visited = visited.and(visit_poses(BANK, states, values, sampled, &mut |_, values| visit(values)).ok());
     });
     visited
-}
-
-fn first_clip() -> Option<Clip<'static>> {
-    let bank = pantin::Bank::new_checked(BANK).ok()?;
-    let entry = bank.entries().next()?;
-    bank.open(&entry).ok()
 }
