@@ -297,18 +297,19 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     cuts.iter_mut().for_each(|cut| (cut.from, cut.to) = (cut.from + first, cut.to + first));
     let seconds = |cut: &Cut| (cut.to - cut.from) as f64 * motion.frame_time;
     if output::is_json() {
-        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "joint": cut.joint, "seconds": seconds(cut)});
+        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "joint": cut.joint, "seconds": seconds(cut), "still": cut.still});
         output::report(json!({"loops": cuts.iter().map(object).collect::<Vec<_>>()}));
         return Ok(());
     }
     for cut in &cuts {
         let (frames, joint) = (cut.to - cut.from, output::clean(&cut.joint));
         outln!(
-            "--from {} --to {} --loop: {frames} frames, {:.2} s, seam {:.3} cm ({joint})",
+            "--from {} --to {} --loop: {frames} frames, {:.2} s, seam {:.3} cm ({joint}){}",
             cut.from,
             cut.to,
             seconds(cut),
-            cut.seam_cm
+            cut.seam_cm,
+            if cut.still { "; the figure stands" } else { "" }
         )?;
     }
     ensure!(!cuts.is_empty(), "{}: no stretch looks like a cycle", place());
@@ -619,6 +620,9 @@ impl Distance {
     }
 }
 
+/// What closing a loop may take of the bound.
+const CLOSING: f64 = 0.9;
+
 impl Bound {
     /// Closes a loop, and leaves of the bound what that did not take: in the end no joint is farther than all of it from the source.
     fn close(&mut self, motion: &Motion) -> Result<Closed> {
@@ -637,18 +641,19 @@ impl Bound {
                 let closed = loop_seam::close(motion, Most::Distance(*max_cm, *scalar_part))?;
                 // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
                 ensure!(
-                    closed.moved_cm < 0.9 * *max_cm,
-                    "--loop: closing the seam moves {} by {:.3} cm; the bound is {max_cm} cm",
+                    closed.moved_cm < CLOSING * *max_cm,
+                    "--loop: closing the seam moves {} by {:.3} cm, which leaves too little of the bound of {max_cm} cm; a bound above {:.3} cm will do",
                     closed.joint,
-                    closed.moved_cm
+                    closed.moved_cm,
+                    closed.moved_cm / CLOSING
                 );
                 *max_cm -= closed.moved_cm;
                 *scalar_part -= scalars(&closed.moved);
                 if let Some(mean_cm) = mean_cm {
                     let moved = compare(&cut(motion, None, Some(closed.motion.frames - 1))?, &closed.motion)?.mean_joint_cm;
                     ensure!(
-                        moved < 0.9 * *mean_cm,
-                        "--loop: closing the seam moves the joints by {moved:.4} cm in the mean; --mean-error is {mean_cm} cm"
+                        moved < CLOSING * *mean_cm,
+                        "--loop: closing the seam moves the joints by {moved:.4} cm in the mean, which leaves too little of --mean-error {mean_cm} cm"
                     );
                     *mean_cm -= moved;
                 }

@@ -20,6 +20,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 struct Task {
     name: String,
     label: String,
+    /// The line of the list that names it.
+    line: Option<String>,
     arguments: Arguments,
 }
 
@@ -34,7 +36,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let held = AtomicUsize::new(0);
     let prepare = |task: &Task| {
-        let prepared = prepare_without_footsteps(&task.arguments)?;
+        let prepared = prepare_without_footsteps(&task.arguments);
+        // The message names the motion.
+        let prepared = match &task.line {
+            Some(line) => prepared.with_context(|| line.clone())?,
+            None => prepared?,
+        };
         let values = prepared.motion.frames * (prepared.motion.rig.channels() + 1);
         budget::check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
         Ok(prepared)
@@ -125,7 +132,7 @@ pub fn of_one_rig(prepared: &[Prepared], labels: &[String], why: &str) -> Result
 fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
     let task = |input: PathBuf, name: String, label: String| {
         let arguments = arguments.for_file(input, arguments.output().to_path_buf());
-        Task { name, label, arguments }
+        Task { name, label, line: None, arguments }
     };
     let input = &arguments.input;
     if arguments.animation.as_deref() == Some("all") {
@@ -151,7 +158,7 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
             let name = line.name.map_or_else(|| super::bank::name_of(&line.motion), Ok).with_context(|| place.clone())?;
             let label = format!("{place}: {}", line.motion.display());
             let mut task = task(line.motion, name, label);
-            (task.arguments.edits, task.arguments.animation) = (line.edits, line.animation);
+            (task.arguments.edits, task.arguments.animation, task.line) = (line.edits, line.animation, Some(place));
             Ok(task)
         };
         return convert_list::read(input)?.into_iter().map(of_line).collect();

@@ -20,7 +20,8 @@ use std::path::{Path, PathBuf};
   pantin convert idle.bvh walk.bvh run.bvh jump.bvh --same-form --footsteps -o moves.ptb
   pantin machine character.toml -o character.ptb
   pantin machine character.toml --bank moves.ptb -o character.ptb --graph character.svg
-  pantin machine character.toml --graph character.svg      only checks and draws
+  pantin machine character.toml                            only checks
+  pantin machine character.toml --graph character.svg      checks and draws
 
 A small machine:
   bank = \"moves.ptb\"
@@ -35,8 +36,8 @@ A small machine:
 pub struct Arguments {
     /// The state machine: a .toml file
     input: PathBuf,
-    /// The bank to write, with the state machine in it: .ptb
-    #[arg(short, long, required_unless_present = "graph")]
+    /// The bank to write, with the state machine in it: .ptb. Without it the file is only checked
+    #[arg(short, long)]
     output: Option<PathBuf>,
     /// The bank with the clips, instead of the one that the file names
     #[arg(long)]
@@ -93,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let count = format!("{} states, {transitions} transitions, a table of {} bytes", source.states.len(), made.table.len());
     match &arguments.output {
         Some(output) => note!("{}: {count}; {} bytes with {} clips", output.display(), whole.len(), bank.len()),
-        None => note!("{place}: {count}"),
+        None => note!("{place}: {count}; checked, and no bank written (-o writes it)"),
     }
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! `--find-loop`: the stretches of a motion that make the best loops.
 //!
 //! A cut from one frame to another loops well if the poses of both are alike, and those of the frames after them. The way that the figure goes on the ground does not count: a loop keeps
-//! it. A stretch in which less happens than in the whole motion is no candidate: standing still is a perfect loop.
+//! it. A stretch in which less happens than in the whole motion is no cycle, since standing still is a perfect loop: of those the best one of a second or more is proposed
+//! apart, as one for standing.
 
 use super::loop_seam::places_root;
 use crate::fk::{all_positions, distance};
@@ -19,6 +20,8 @@ pub struct Cut {
     pub seam_cm: f64,
     /// The joint.
     pub joint: String,
+    /// Whether the figure moves little in it: a loop for standing, not a cycle.
+    pub still: bool,
 }
 
 /// Proposals that are returned at most.
@@ -27,10 +30,12 @@ const CUTS: usize = 3;
 const SHORTEST: f64 = 0.4;
 /// Part of the mean movement a frame below which a stretch is too still.
 const LIVELY: f64 = 0.6;
+/// Seconds: a shorter stretch is too short to stand in.
+const SHORTEST_STILL: f64 = 1.0;
 /// Poses that are compared with each other at most; of a longer motion, every few frames, and then the frames beside the best.
 const POSES: usize = 1200;
 
-/// The best cuts, the best first.
+/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere.
 pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
     ensure!(!motion.rig.joints.is_empty(), "--find-loop: the motion has no joints");
@@ -44,19 +49,27 @@ pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     }
     let still = LIVELY * moved[motion.frames - 1] / (motion.frames - 1) as f64;
     let lively = |from: usize, to: usize| moved[to] - moved[from] >= still * (to - from) as f64;
-    // Alike in the pose and in where it goes.
+    // Alike in the pose and in where it goes, or where it came from; of the whole motion only the pose is known.
     let cost = |from: usize, to: usize| {
-        let next = if to + 1 < motion.frames { apart(from + 1, to + 1).0 } else { apart(from.saturating_sub(1), to - 1).0 };
-        apart(from, to).0.max(next)
+        let beside = match (from.checked_sub(1), to + 1 < motion.frames) {
+            (_, true) => apart(from + 1, to + 1).0,
+            (Some(before), false) => apart(before, to - 1).0,
+            (None, false) => 0.0,
+        };
+        apart(from, to).0.max(beside)
     };
     let stride = motion.frames.div_ceil(POSES);
-    let mut found: Vec<(f64, usize, usize)> = Vec::new();
-    for from in (0..motion.frames).step_by(stride) {
-        // Of each begin the best end, so that the list stays short.
-        let ends = (from + shortest..motion.frames).step_by(stride).filter(|&to| lively(from, to));
-        found.extend(ends.map(|to| (cost(from, to), from, to)).min_by(|a, b| a.0.total_cmp(&b.0)));
-    }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Of each begin the best end, so that the list stays short.
+    let best = |shortest: usize, fits: &dyn Fn(usize, usize) -> bool| {
+        let of = |from: usize| {
+            let ends = (from + shortest..motion.frames).step_by(stride).filter(|&to| fits(from, to));
+            ends.map(|to| (cost(from, to), from, to)).min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let mut found: Vec<(f64, usize, usize)> = (0..motion.frames).step_by(stride).filter_map(of).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found
+    };
+    let found = best(shortest, &lively);
     let near = |a: usize, b: usize| a.abs_diff(b) < shortest / 2 + stride;
     let mut cuts: Vec<(usize, usize)> = Vec::new();
     for (_, from, to) in found {
@@ -72,10 +85,13 @@ pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
     });
     let cut = |(from, to): (usize, usize)| {
         let (seam_cm, joint) = apart(from, to);
-        Cut { from, to, seam_cm, joint: motion.rig.joint_name(joint) }
+        Cut { from, to, seam_cm, joint: motion.rig.joint_name(joint), still: !lively(from, to) }
     };
     let mut cuts: Vec<Cut> = refined.map(cut).collect();
     cuts.sort_by(|a, b| a.seam_cm.total_cmp(&b.seam_cm));
+    let shortest = ((SHORTEST_STILL / motion.frame_time).round() as usize).max(2);
+    let standing = |from: usize, to: usize| moved[to] - moved[from] < still / 2.0 * (to - from) as f64;
+    cuts.extend(best(shortest, &standing).first().map(|&(_, from, to)| cut((from, to))));
     Ok(cuts)
 }
 

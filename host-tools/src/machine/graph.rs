@@ -1,6 +1,6 @@
-//! A state machine as a picture: states on a circle, transitions as arrows with their causes, as SVG.
+//! A state machine as a picture: states on a circle, transitions as arrows with their causes, layers as lines below, as SVG.
 
-use super::source::{Cause, Source, State, Transition};
+use super::source::{Cause, Kind, Layer, Source, State, Transition};
 use crate::render::svg::escaped;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
@@ -45,7 +45,10 @@ pub fn svg(source: &Source) -> String {
         source.any.iter().for_each(|row| add(from, row.get_ref()));
     }
     let far = |axis: usize| nodes.iter().map(|node| node.at[axis].abs() + node.half[axis]).fold(0.0, f64::max) + MARGIN;
-    let (wide, high) = (far(0), far(1));
+    let layers: Vec<String> = source.layers.iter().map(|layer| layer_text(layer.get_ref())).collect();
+    let longest = layers.iter().map(|text| text.chars().count() as f64 * LETTER).fold(0.0, f64::max);
+    let (wide, high) = (far(0).max(longest / 2.0 + LINE), far(1));
+    let below = LINE * 1.5 * layers.len() as f64;
     let mut out = String::new();
     let _ = write!(
         out,
@@ -56,9 +59,9 @@ pub fn svg(source: &Source) -> String {
         -wide,
         -high,
         2.0 * wide,
-        2.0 * high,
+        2.0 * high + below,
         2.0 * wide,
-        2.0 * high,
+        2.0 * high + below,
         -wide,
         -high
     );
@@ -98,6 +101,10 @@ pub fn svg(source: &Source) -> String {
         }
     }
     out.push_str(&labels);
+    for (line, text) in layers.iter().enumerate() {
+        let y = high + LINE * 1.5 * line as f64;
+        let _ = writeln!(out, r##"<text x="0" y="{y:.1}" fill="#567">{}</text>"##, escaped(text));
+    }
     out.push_str("</svg>\n");
     out
 }
@@ -124,8 +131,23 @@ fn nodes(source: &Source) -> Vec<Node> {
     named.into_iter().enumerate().map(node).collect()
 }
 
-/// A cause in a few words.
+/// A layer in a line.
+fn layer_text(layer: &Layer) -> String {
+    let over = layer.states.as_ref().map_or("all states".into(), |states| states.join(", "));
+    format!("layer {}, by {}, over {over}", layer.clip, layer.input)
+}
+
+/// A cause in a few words, and how the poses change over, if not as usual.
 fn cause(row: &Transition) -> String {
+    let how = match row.kind {
+        Kind::Inertialized => "",
+        Kind::Cut => " (cut)",
+        Kind::Faded => " (faded)",
+    };
+    format!("{}{how}", why(row))
+}
+
+fn why(row: &Transition) -> String {
     match row.causes().first() {
         Some(Cause::End(_)) => "end".into(),
         Some(Cause::Input(name)) => (*name).into(),

@@ -93,6 +93,12 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         None => 0,
         Some(start) => maker.state(start.get_ref()).with_context(|| format!("{}: start", file.at(start.span())))?,
     };
+    // Before a transition asks for the clip that it leads to: the error belongs to the state that names it.
+    for state in &source.states {
+        maker
+            .clip_of(state)
+            .with_context(|| format!("{}: state {}", maker.place_of_clip(state, file), quoted(state.name.get_ref())))?;
+    }
     let any = maker.transitions(&source.any, source, file, None, &[])?;
     let mut rows = any.clone();
     let mut states = Vec::new();
@@ -101,6 +107,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         rows.extend(maker.transitions(&state.transitions, source, file, Some(state), &any)?);
         maker.check_end(state, source, file)?;
     }
+    maker.check_forms(source)?;
     ensure!(rows.len() <= MOST_TRANSITIONS, "{name}: {} transitions; at most {MOST_TRANSITIONS}", rows.len());
     ensure!(source.layers.len() <= LAYERS, "{name}: {} layers; at most {LAYERS}", source.layers.len());
     let mut layers = Vec::new();
@@ -108,7 +115,6 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         let row = maker.layer_row(layer.get_ref(), source);
         layers.push(row.with_context(|| format!("{}: layer", file.at(layer.span())))?);
     }
-    ensure!(maker.inputs.len() <= INPUTS, "{name}: {} inputs; at most {INPUTS}", maker.inputs.len());
     let mut out = vec![
         VERSION,
         states.len() as u8,
@@ -175,17 +181,23 @@ impl<'s, 'b> Maker<'s, 'b> {
 
     fn input(&mut self, name: &str) -> Result<u8> {
         check_name(name)?;
-        let found = self.inputs.iter().position(|other| other == name);
-        Ok(found.unwrap_or_else(|| {
-            self.inputs.push(name.into());
-            self.inputs.len() - 1
-        }) as u8)
+        if let Some(found) = self.inputs.iter().position(|other| other == name) {
+            return Ok(found as u8);
+        }
+        ensure!(self.inputs.len() < INPUTS, "the input {} is one more than the {INPUTS} that a machine may have", quoted(name));
+        self.inputs.push(name.into());
+        Ok((self.inputs.len() - 1) as u8)
     }
 
     /// The clip that a state plays: its index.
     fn clip_of(&self, state: &State) -> Result<u8> {
         let name = state.clip.as_ref().map_or(state.name.get_ref(), |clip| clip.get_ref());
         self.clips.find(name)
+    }
+
+    /// Where the file names a state's clip.
+    fn place_of_clip(&self, state: &State, file: &Text) -> String {
+        file.at(state.clip.as_ref().unwrap_or(&state.name).span())
     }
 
     /// The clip that a state plays, and its name.
@@ -195,8 +207,8 @@ impl<'s, 'b> Maker<'s, 'b> {
 
     fn state_row(&mut self, state: &'s State, first: usize, file: &Text) -> Result<[u8; 8]> {
         let name = quoted(state.name.get_ref());
-        let place = file.at(state.clip.as_ref().unwrap_or(&state.name).span());
-        let clip = self.clip_of(state).with_context(|| format!("{place}: state {name}"))?;
+        let place = self.place_of_clip(state, file);
+        let clip = self.clip_of(state)?;
         let (mut other, mut parameter) = (NONE, 0);
         if let Some(blend) = &state.blend {
             let place = file.at(blend.span());
@@ -312,7 +324,7 @@ impl<'s, 'b> Maker<'s, 'b> {
         let to = self.state(&row.to)?;
         let (cause, argument, threshold) = self.cause(row, source, from)?;
         let target = &source.states[usize::from(to)];
-        let clip = self.clips.all[usize::from(self.clip_of(target).with_context(|| format!("state {}", quoted(&row.to)))?)].1;
+        let clip = self.played(target)?.1;
         let (kind, frames) = match row.kind {
             Kind::Cut => {
                 ensure!(row.frames.is_none() && row.seconds.is_none(), "a cut has no length");
@@ -396,6 +408,24 @@ impl<'s, 'b> Maker<'s, 'b> {
             [] => bail!("no clip that plays there has an event {}; `pantin info CLIP` prints a clip's events", quoted(name)),
             _ => bail!("event {} has different ids in the clips; a transition of each state names it there", quoted(name)),
         }
+    }
+
+    /// Warns if the clips' forms differ: transitions between them take more instructions, and a picture is drawn of poses of one form.
+    fn check_forms(&mut self, source: &Source) -> Result<()> {
+        let Some(first) = source.states.first() else { return Ok(()) };
+        let (name, clip) = self.played(first)?;
+        for state in &source.states[1..] {
+            let (other, its) = self.played(state)?;
+            if clip.form().check(its.form_ref()).is_err() {
+                self.warnings.push(format!(
+                    "the clips {} and {} have different forms, which `pantin steer` and `play` do not draw together; `pantin convert --same-form` makes them equal",
+                    quoted(name),
+                    quoted(other)
+                ));
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Warns of a state at whose end the figure stands still.

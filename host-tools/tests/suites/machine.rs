@@ -242,6 +242,16 @@ fn too_many_of_anything_is_an_error_of_the_file() {
     assert_eq!(error(&states), "a.toml: 65 states; at most 64");
     let parameters: String = (0..9).map(|index| format!("[[parameter]]\nname = \"p{index}\"\nrange = [0, 1]\n")).collect();
     assert_eq!(error(&format!("[[state]]\nname = \"walk\"\n{parameters}")), "a.toml: 9 parameters; at most 8");
+    // More than a byte counts.
+    let inputs: String = (0..300).map(|index| format!("{{ to = \"walk\", input = \"i{index}\" }},")).collect();
+    let said = error(&format!("[[state]]\nname = \"walk\"\ntransitions = [{inputs}]\n"));
+    assert!(said.ends_with("the input `i32` is one more than the 32 that a machine may have"), "{said}");
+}
+
+#[test]
+fn a_clip_that_is_not_there_is_an_error_of_the_state_that_names_it() {
+    let text = "[[state]]\nname = \"walk\"\ntransitions = [{ to = \"back\", input = \"a\" }]\n[[state]]\nname = \"back\"\nclip = \"wlak\"\n";
+    assert_eq!(error(text), "a.toml:6: state `back`: the bank has no clip `wlak`; it has `walk`, `run`");
 }
 
 fn pantin(arguments: &[&std::ffi::OsStr]) -> Output {
@@ -265,6 +275,7 @@ fn our_character_goes_through_all_its_states() {
     let picture = std::fs::read_to_string(&graph).unwrap();
     let document = roxmltree::Document::parse(&picture).unwrap();
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
+    assert!(texts.contains(&"layer wave, by wave, over start, walk, run"), "{texts:?}");
     assert!(["idle", "get_up", "no dance", "trip"].iter().all(|text| texts.contains(text)), "{texts:?}");
     let bytes = std::fs::read(&bank).unwrap();
     let (bank, table) = (Bank::new_checked(&bytes).unwrap(), Table::of_bank(&bytes).unwrap());
@@ -344,13 +355,14 @@ fn the_command_refuses_what_it_cannot_do_and_writes_nothing() {
         (&["good.toml", "-o", "moves.ptb"], 1, "moves.ptb"),
         (&["good.toml", "-o", "a.bvh"], 1, "a.bvh"),
         (&["good.toml", "-o", "a.ptb", "--graph", "a.png"], 1, "the graph is written as .svg"),
-        (&["good.toml"], 2, "--output"),
     ] {
         let (got, said) = run(arguments);
         assert!(got == Some(code) && said.contains(part), "{arguments:?}: {said}");
         assert!(!folder.path().join("a.ptb").exists());
     }
     assert_eq!(std::fs::read(&bank).unwrap(), small_bank());
+    let (code, said) = run(&["good.toml"]);
+    assert!(code == Some(0) && said.contains("no bank written") && !folder.path().join("a.ptb").exists(), "{said}");
     assert_eq!(run(&["good.toml", "-o", "a.ptb"]).0, Some(0));
     assert!(good.exists() && Table::of_bank(&std::fs::read(folder.path().join("a.ptb")).unwrap()).is_ok());
     let _ = graph::svg(&Source::parse(&Text { name: "good.toml", text: SMALL }).unwrap());

@@ -103,6 +103,37 @@ fn the_best_loop_of_a_motion_is_found() {
 }
 
 #[test]
+fn a_motion_that_is_one_cycle_is_proposed_whole_and_standing_apart() {
+    let folder = super::outputs::Folder::new();
+    let figure = "joint hips offset 0 90 0 channels Xposition Zrotation\nend parent hips offset 0 60 0\n";
+    let put = |name: &str, frames: usize, turn: &dyn Fn(usize) -> f64| {
+        let rows: String = (0..frames).map(|frame| format!(" {frame} {} {}\n", 3 * frame, turn(frame))).collect();
+        folder.put(name, format!("keyframes 1\nfps 30\nframes {frames}\ncm-per-unit 1\n{figure}keys linear hips\n{rows}"));
+    };
+    let loops = |name: &str| {
+        let found: Value = serde_json::from_slice(&folder.done(&["convert", name, "--find-loop", "--json"]).stdout).unwrap();
+        found["loops"].as_array().unwrap().clone()
+    };
+    // Frame 24 is frame 0 again, and no frame follows it.
+    put("cycle.keys", 25, &|frame| 30.0 * (frame as f64 * 15.0).to_radians().cos());
+    let found = loops("cycle.keys");
+    assert_eq!((&found[0]["from"], &found[0]["to"]), (&0.into(), &24.into()), "{found:?}");
+    assert!(found.iter().all(|cut| cut["still"] == false), "{found:?}");
+    // Waves, between them two seconds of breath.
+    put("rest.keys", 160, &|frame| match frame {
+        50..110 => (frame as f64 * 9.0).to_radians().sin(),
+        _ => 40.0 * (frame as f64 * 18.0).to_radians().sin(),
+    });
+    let found = loops("rest.keys");
+    let still: Vec<&Value> = found.iter().filter(|cut| cut["still"] == true).collect();
+    let [still] = still[..] else { panic!("{found:?}") };
+    let (from, to) = (still["from"].as_u64().unwrap(), still["to"].as_u64().unwrap());
+    assert!(from >= 48 && to <= 111 && to - from >= 30, "{still}");
+    let said = String::from_utf8(folder.done(&["convert", "rest.keys", "--find-loop"]).stdout).unwrap();
+    assert!(said.lines().last().unwrap().ends_with("; the figure stands"), "{said}");
+}
+
+#[test]
 fn options_without_effect_are_named_or_refused() {
     let folder = super::outputs::Folder::new();
     folder.put("a.csv", "time,a,b\n0,0,1\n0.1,0.5,1\n0.2,1,1\n0.3,0.25,1\n");

@@ -168,7 +168,8 @@ fn a_list_gives_each_motion_a_cut_of_its_own() {
         ("captures/run.keys\ncaptures/run.keys --frm 3\n", &[][..], "wrong.list:2: unexpected argument '--frm'"),
         ("captures/run.keys \"--name\n", &[], "wrong.list:1: a quotation mark"),
         ("# nothing\n", &[], "names no motion"),
-        ("captures/none.keys\n", &[], "none.keys"),
+        ("captures/none.keys\n", &[], "wrong.list:1: captures/none.keys"),
+        ("captures/run.keys\n\ncaptures/run.keys --name b --from 9000\n", &[], "wrong.list:3: captures/run.keys"),
         ("captures/run.keys\n", &["--from", "3"], "leave those options out"),
     ] {
         let said = refused(list, options);
