@@ -149,6 +149,8 @@ fn everything_on_the_page_can_be_used() {
         drive("quiet", json!({}));
         drive("embed", json!({}));
         drive("crowd", json!({}));
+        drive("range", json!({ "events": paths::root().join("tests/vectors/event-names.ptn") }));
+        drive("saves", json!({}));
         let vector = |name: &str| paths::root().join("tests/vectors").join(name);
         drive("bank", json!({ "bank": vector("bank.ptb"), "events": vector("event-names.ptn") }));
     }

@@ -203,6 +203,121 @@ const cases = {
     assert.match(await page.locator("#facts").textContent(), /5; last: left_foot_down at frame 0/);
   },
 
+  // A range is played, looped and heard; the figure stands at a side of the picture.
+  async range(page) {
+    await page.locator("#files").setInputFiles(args.events);
+    await page.waitForFunction(() => player.events.length === 5 && player.playable === 40);
+    await page.evaluate(() => {
+      const at = (frame) => (frame * player.facts.frameTime) / 1e9;
+      Object.assign(window, { shown: [], heard: [], told: [] });
+      player.pause();
+      player.loop = false;
+      player.seek(0);
+      player.range(at(5), at(31));
+      player.addEventListener("frame", () => window.shown.push(player.frame));
+      player.addEventListener("heard", ({ detail }) => window.heard.push(detail.frame));
+      for (const name of ["ended", "loop"]) player.addEventListener(name, () => window.told.push(name));
+      Object.assign(player, { speed: 4, backwards: false });
+      player.play();
+    });
+    const seen = () => page.evaluate(() => ({ shown: window.shown.splice(0), heard: window.heard.splice(0), told: window.told.splice(0) }));
+    await page.waitForFunction(() => player.paused);
+    let { shown, heard, told } = await seen();
+    assert.deepEqual([shown[0], shown.at(-1), heard, told], [5, 30, [7, 7, 30], ["ended"]]);
+    // Backwards in a loop, from a frame outside.
+    await page.evaluate(() => (player.seek(35), Object.assign(player, { loop: true, backwards: true }), window.shown.splice(0), player.play()));
+    await page.waitForFunction(() => window.told.length > 1);
+    await page.evaluate(() => player.pause());
+    ({ shown, heard, told } = await seen());
+    assert.equal(shown[0], 30);
+    assert.ok(shown.every((frame) => frame >= 5 && frame < 31), `${shown}`);
+    assert.deepEqual([heard.slice(0, 6), told.slice(0, 2)], [[30, 7, 7, 30, 7, 7], ["loop", "loop"]]);
+    // Attributes are the same; a clip that is loaded shows the range's start; without it all is played.
+    await page.evaluate(async () => {
+      Object.assign(player, { autoplay: false, from: 0.5 });
+      await player.load("clips/walk.ptn");
+    });
+    assert.ok(Math.abs(await page.evaluate(() => player.currentTime) - 0.5) < 0.02);
+    assert.deepEqual(await page.evaluate(() => (player.range(), [player.from, player.to])), [0, Infinity]);
+    // How far the figure's middle is from the left, of the canvas's width; the ground goes from side to side.
+    for (const look of ["oled", "lines"]) {
+      const [left, center, right] = await page.evaluate((look) => ["left", "center", "right"].map((align) => {
+        Object.assign(player, { look, align });
+        const { width, height } = player.canvas;
+        const { data } = player.context.getImageData(0, 0, width, Math.floor(height / 2));
+        const columns = [];
+        // Bright ones: the ground is not.
+        for (let at = 0; at < data.length; at += 4) if (data[at + 3] > 200 && (look === "oled" ? data[at] > 100 : true)) columns.push(((at / 4) % width) / width);
+        return columns.sort((a, b) => a - b)[columns.length >> 1];
+      }), look);
+      assert.ok(left < 0.35 && Math.abs(center - 0.5) < 0.1 && right > 0.65, `${look}: ${[left, center, right]}`);
+    }
+    await page.evaluate(() => (player.align = "center"));
+  },
+
+  // Pictures, GIFs and videos show what the player shows; their script is loaded only for them.
+  async saves(page) {
+    assert.equal(await page.evaluate(() => performance.getEntriesByName(`${location.origin}/pantin-export.js`).length), 0);
+    const [width, height] = await page.evaluate(() => [player.canvas.width, player.canvas.height]);
+    const file = async (id) => {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.locator(id).click()]);
+      return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+    };
+    const picture = await file("#save-picture");
+    assert.equal(picture.name, "greet.png");
+    assert.deepEqual([picture.bytes.readUInt32BE(16), picture.bytes.readUInt32BE(20)], [width, height]);
+    await page.evaluate(() => player.range(0, 0.5));
+    const gif = await file("#save-gif");
+    assert.deepEqual([gif.name, gif.bytes.subarray(0, 6).toString(), gif.bytes.readUInt16LE(6)], ["greet.gif", "GIF89a", Math.min(480, width)]);
+    for (const look of ["lines", "oled"]) {
+      const differences = await page.evaluate(async (look) => {
+        player.look = look;
+        player.play();
+        const size = { width: 256 };
+        const blob = await player.record({ fps: 10, ...size });
+        if (player.paused) throw new Error("it does not go on");
+        player.pause();
+        const decoder = new ImageDecoder({ data: await blob.arrayBuffer(), type: "image/gif" });
+        await Promise.all([decoder.tracks.ready, decoder.completed]);
+        if (decoder.tracks.selectedTrack.frameCount !== 5) throw new Error(`${decoder.tracks.selectedTrack.frameCount} pictures`);
+        const pixels = (image, width, height) => {
+          const context = Object.assign(document.createElement("canvas"), { width, height }).getContext("2d");
+          context.drawImage(image, 0, 0);
+          return context.getImageData(0, 0, width, height).data;
+        };
+        const differences = [];
+        for (let frameIndex = 0; frameIndex < 5; frameIndex++) {
+          const { image } = await decoder.decode({ frameIndex });
+          if (image.duration !== 100000) throw new Error(`${image.duration} us`);
+          player.currentTime = frameIndex / 10;
+          const bitmap = await createImageBitmap(await player.picture(size));
+          const [shown, expected] = [image, bitmap].map((one) => pixels(one, bitmap.width, bitmap.height));
+          let [most, lit] = [0, 0];
+          for (let at = 0; at < shown.length; at++) {
+            most = Math.max(most, Math.abs(shown[at] - expected[at]));
+            lit += Math.abs(expected[at] - expected[at % 4]) > 30;
+          }
+          differences.push([most, lit]);
+        }
+        return differences;
+      }, look);
+      assert.ok(differences.every(([most, lit]) => most <= 24 && lit > 100), `${look}: ${differences.join("; ")}`);
+    }
+    const video = await page.evaluate(async () => {
+      player.look = "lines";
+      const parts = [];
+      const blob = await player.record({ type: "video/webm", progress: (part) => parts.push(part) });
+      const video = Object.assign(document.createElement("video"), { src: URL.createObjectURL(blob), muted: true });
+      await new Promise((done, failed) => Object.assign(video, { onloadeddata: done, onerror: () => failed(new Error("no video")) }));
+      const [type, ...failures] = [blob.type];
+      for (const options of [{ type: "video/none" }, { signal: AbortSignal.abort() }]) failures.push(await player.record(options).then(() => "", (error) => error.name));
+      return { width: video.videoWidth, parts: [parts.length, parts.at(-1)], type, failures };
+    });
+    assert.deepEqual(video, { width: Math.ceil(width / 2) * 2, parts: [15, 1], type: "video/webm", failures: ["TypeError", "AbortError"] });
+    // A character: its next seconds.
+    assert.ok(await page.evaluate(async () => (await character.record({ seconds: 0.4, width: 100 })).size) > 500);
+  },
+
   // Who wants less motion gets none before asking.
   async quiet(page, browser) {
     const still = await opened(browser, { reducedMotion: "reduce", colorScheme: "dark" });
@@ -335,11 +450,11 @@ const cases = {
       one.loop = true;
       one.speed = 1;
       one.play();
-      one.range.dispatchEvent(new PointerEvent("pointerdown"));
+      one.scrubber.dispatchEvent(new PointerEvent("pointerdown"));
       one.seek(9);
       await new Promise((go) => setTimeout(go, 150));
       same([one.frame, one.paused], [9, false]);
-      one.range.dispatchEvent(new PointerEvent("pointerup"));
+      one.scrubber.dispatchEvent(new PointerEvent("pointerup"));
       await until(() => one.frame > 9);
       document.body.replaceChildren();
     });

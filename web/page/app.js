@@ -153,6 +153,30 @@ $("share").onclick = async () => {
 };
 $("copy").onclick = () => copy($("copy"), $("embed").textContent);
 
+// ---- pictures of what plays
+
+const VIDEO = "video/webm";
+$("save-video").hidden = !globalThis.MediaRecorder?.isTypeSupported(VIDEO);
+
+async function saved(button, ending, make) {
+  const words = button.textContent;
+  button.disabled = true;
+  try {
+    const content = await make((part) => (button.textContent = `${Math.floor(100 * part)} %`));
+    const link = document.createElement("a");
+    save(link, `${current?.name.replace(/\.pt[nb]$/i, "") ?? "figure"}.${ending}`, content, content.type);
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    trouble("");
+  } catch (error) {
+    trouble(`Nothing was saved: ${error.message}.`);
+  }
+  [button.textContent, button.disabled] = [words, false];
+}
+$("save-picture").onclick = () => saved($("save-picture"), "png", () => player.picture());
+$("save-gif").onclick = () => saved($("save-gif"), "gif", (progress) => player.record({ progress }));
+$("save-video").onclick = () => saved($("save-video"), "webm", (progress) => player.record({ type: VIDEO, progress }));
+
 // ---- the gallery
 
 let current = null;

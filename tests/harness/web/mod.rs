@@ -53,6 +53,8 @@ pub struct Size {
 
 /// What a page that plays clips loads.
 pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
+/// What it loads too once a picture or a recording is saved.
+pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.wasm"];
 /// What it loads too for a bank with a state machine.
@@ -69,7 +71,8 @@ pub fn build(out: &Path) -> Result<()> {
         write(&out.join(name), &module(package, features, profile)?)?;
     }
     let page = listed(&paths::root().join("web/page"))?;
-    for entry in page.into_iter().chain([paths::root().join("web/packages/player").join(PLAYER[0])]) {
+    let player = [PLAYER[0], EXPORT[0]].map(|script| paths::root().join("web/packages/player").join(script));
+    for entry in page.into_iter().chain(player) {
         let name = entry.file_name().unwrap_or_default();
         let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
         let scripted = entry.extension().is_some_and(|extension| extension == "js");

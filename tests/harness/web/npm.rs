@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use xtask::npm;
 
-use super::{CHARACTER, FACE, PLAYER, tools};
+use super::{CHARACTER, EXPORT, FACE, PLAYER, tools};
 use crate::{paths, setup};
 
 /// The packages, those that others need first.
@@ -37,7 +37,9 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
                 "decoder.min.js" => decoder(&source)?,
-                name if [&PLAYER[..], &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => read(&site.join(name))?,
+                name if [&PLAYER[..], &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
+                    read(&site.join(name))?
+                }
                 name => read(&source.join(name))?,
             };
             super::write(&folder.join(name), &bytes)?;

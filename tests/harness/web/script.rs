@@ -23,7 +23,7 @@ pub fn shortened(script: &[u8]) -> Result<Vec<u8>> {
                 ensure!(!token.contains("this.#"), "a private name within a text: {token:.60}");
                 out += &style(token);
             }
-            '#' => out += &private(token, &mut names)?,
+            '#' => out += &private(token, &mut names),
             '}' if out.ends_with(';') => out.replace_range(out.len() - 1.., token),
             _ if !next.is_whitespace() => out += token,
             // What would become one word, or one operator, stays apart.
@@ -57,14 +57,17 @@ fn text(rest: &str, quote: char) -> Result<usize> {
     Ok(end.with_context(|| format!("a text that does not end: {rest:.60}"))? + 1)
 }
 
-/// A letter in place of a private name.
-fn private<'s>(name: &'s str, names: &mut Vec<&'s str>) -> Result<String> {
+/// A letter in place of a private name; after the last letter, one with a number.
+fn private<'s>(name: &'s str, names: &mut Vec<&'s str>) -> String {
     let index = names.iter().position(|known| *known == name).unwrap_or_else(|| {
         names.push(name);
         names.len() - 1
     });
-    let letter = ('a'..='z').chain('A'..='Z').nth(index).context("a class with more private names than letters")?;
-    Ok(format!("#{letter}"))
+    let letter = ('a'..='z').chain('A'..='Z').nth(index % 52).unwrap_or_default();
+    match index / 52 {
+        0 => format!("#{letter}"),
+        round => format!("#{letter}{round}"),
+    }
 }
 
 /// A text, and what style sheet begins it without the spaces that part nothing.

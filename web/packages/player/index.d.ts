@@ -47,6 +47,32 @@ export interface PantinPlayerEventMap extends HTMLElementEventMap {
   state: CustomEvent<string>;
 }
 
+/** How a picture is saved. */
+export interface PictureOptions {
+  /** Pixels; the canvas's width, or 512 of the display, by default. */
+  width?: number;
+  /** image/png by default; others that the browser writes, such as image/webp. */
+  type?: string;
+}
+
+/** How a motion is saved. */
+export interface RecordOptions {
+  /** image/gif by default, or a video type that the browser's MediaRecorder knows, such as video/webm. */
+  type?: string;
+  /** Pixels; by default the canvas's width, of a GIF at most 480, or 512 of the display. */
+  width?: number;
+  /** Pictures per second, at most 50; 25 of a GIF and 30 of a video by default. */
+  fps?: number;
+  /** Seconds; the element's range by default. */
+  from?: number;
+  to?: number;
+  /** How long a character is recorded; 3 by default. */
+  seconds?: number;
+  /** Is called after each picture with the part that is done, up to 1. */
+  progress?: (part: number) => void;
+  signal?: AbortSignal;
+}
+
 /** The element <pantin-player>. */
 export declare class PantinPlayer extends HTMLElement {
   src: string | null;
@@ -54,6 +80,11 @@ export declare class PantinPlayer extends HTMLElement {
   loop: boolean;
   look: "lines" | "oled";
   fit: "follow" | "whole";
+  /** Where the figure stands in the picture. */
+  align: "left" | "center" | "right";
+  /** Seconds between which it plays; 0 and Infinity for all of the clip. */
+  from: number;
+  to: number;
   /** x, y or z; empty for the clip's own. */
   up: string;
   /** A multiple of the clip's own speed. */
@@ -90,6 +121,12 @@ export declare class PantinPlayer extends HTMLElement {
   load(what: Source, clip?: string | null): Promise<void>;
   play(): void;
   pause(): void;
+  /** Plays what lies between two times in seconds; all of the clip without them. */
+  range(from?: number, to?: number): void;
+  /** What is shown, as a file. */
+  picture(options?: PictureOptions): Promise<Blob>;
+  /** The range as an animated GIF or a video. The element shows each picture, then its frame of before. A video takes as long as it lasts. */
+  record(options?: RecordOptions): Promise<Blob>;
   /** Fires an input of the state machine once. */
   fire(input: string): void;
   /** Holds an input down, or lets it go. */

@@ -19,8 +19,9 @@ const HOME = { orbit: -50, tilt: 12 };
 const PAPERS = [[250, 250, 247], [19, 22, 27]];
 // The axes that `up` names.
 const AXES = { x: 1, y: 2, z: 3 };
+const SIDES = { left: -1, right: 1 };
 // Properties that may be set before the element is defined.
-const SETTABLE = ["look", "loop", "autoplay", "fit", "up", "speed", "backwards", "orbit", "tilt", "src", "currentTime"];
+const SETTABLE = ["look", "loop", "autoplay", "fit", "align", "up", "from", "to", "speed", "backwards", "orbit", "tilt", "src", "currentTime"];
 
 const bytes = (wasm, place, length) => new Uint8Array(wasm.memory.buffer, place, length);
 
@@ -139,7 +140,7 @@ const isBank = (file) => file[0] === 0x50 && file[1] === 0x62;
 
 // Where there is no page, as in Node, the class can be imported but not used.
 export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
-  static observedAttributes = ["src", "look", "speed", "fit", "up", "bare"];
+  static observedAttributes = ["src", "look", "speed", "fit", "align", "up", "bare"];
   #seat = null;
   #abort = null;
   // Where the last clip that removal kept from loading is to be loaded from.
@@ -153,6 +154,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #wanted = null;
   #seen = false;
   #held = false;
+  // Sixteenths of a pixel by which strokes are moved to the right.
+  #aside = 0;
   #tones = [];
   #inks = {};
   #paused = true;
@@ -184,15 +187,15 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const bar = make(root, "div", { class: "bar", part: "bar" });
     this.button = make(bar, "button", { type: "button" });
     this.icon = make(make(this.button, "svg", { viewBox: "0 0 10 10", width: 14, height: 14, fill: "currentColor", "aria-hidden": true }, SVG), "path", {}, SVG);
-    this.range = make(bar, "input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Frame" });
+    this.scrubber = make(bar, "input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Frame" });
     this.output = make(bar, "output", {});
     this.status = make(root, "p", { role: "status" });
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });
     this.button.onclick = () => this.#toggle();
-    this.range.oninput = () => this.seek(+this.range.value);
+    this.scrubber.oninput = () => this.seek(+this.scrubber.value);
     // While the scrubber is held, the frame is held.
-    this.range.onpointerdown = () => (this.#held = true);
-    this.range.onpointerup = this.range.onpointercancel = () => (this.#held = false);
+    this.scrubber.onpointerdown = () => (this.#held = true);
+    this.scrubber.onpointerup = this.scrubber.onpointercancel = () => (this.#held = false);
     this.addEventListener("keydown", (event) => this.#key(event));
     // The page's text has another color.
     this.addEventListener("transitionend", ({ target }) => target === this && this.#aim());
@@ -268,6 +271,13 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   set fit(fit) { this.setAttribute("fit", fit); }
   get up() { return this.getAttribute("up") ?? ""; }
   set up(up) { this.setAttribute("up", up); }
+  get align() { return this.getAttribute("align") ?? "center"; }
+  set align(align) { this.setAttribute("align", align); }
+  // Seconds.
+  get from() { return +this.getAttribute("from") || 0; }
+  set from(from) { this.setAttribute("from", from); }
+  get to() { return +this.getAttribute("to") || Infinity; }
+  set to(to) { this.setAttribute("to", to); }
   get speed() { return this.#speed; }
   set speed(speed) { this.#speed = +speed || 1; }
   get backwards() { return this.#backwards; }
@@ -304,6 +314,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       signal.throwIfAborted();
       this.#sit(wasm);
       this.#aim();
+      if (this.from) this.#wanted ??= [this.from, true];
       await (what.poses ? this.#table(what, signal) : this.#receive(await coming, signal, clip));
       signal.throwIfAborted();
       this.#want(this.#wanted);
@@ -561,10 +572,10 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   // Reports the events from one frame on, which was shown, to another, which is.
-  #hear(from, to, backwards) {
-    const count = this.playable || 1;
+  #hear(from, to, backwards, [first, end] = [0, this.playable || 1]) {
+    const count = end - first;
     const way = (frame) => (((backwards ? from - frame : frame - from) + 2 * count - 1) % count) + 1;
-    const passed = this.events.filter(({ frame }) => way(frame) <= way(to));
+    const passed = this.events.filter(({ frame }) => frame >= first && frame < end && way(frame) <= way(to));
     (backwards ? passed.reverse() : passed).sort((a, b) => way(a.frame) - way(b.frame)).forEach((event) => this.#dispatch("heard", event));
   }
 
@@ -585,7 +596,12 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     // A face stands beside the body as the firmware divides its displays, or has all of the picture.
     const [face, wide] = [known?.drawn, 2 * width >= 3 * height];
     const side = !this.facts.joints ? width : wide ? height : Math.floor(width / 5) * 2;
-    wasm.aim(at, !face ? width : !this.facts.joints ? 0 : wide ? width - side : width, height, orbit, tilt, (this.fit === "whole") + 2 * (AXES[this.up] ?? 0));
+    // A figure at one side is the middle of a wider picture, of which the rest is not seen.
+    const small = Math.min(width, height);
+    const way = face || this.fit === "whole" ? 0 : (SIDES[this.align] ?? 0);
+    const broad = way ? Math.min(2047, 2 * width - small) : width;
+    this.#aside = way * 8 * (way < 0 ? broad - small : 2 * width - small - broad);
+    wasm.aim(at, !face ? broad : !this.facts.joints ? 0 : wide ? width - side : width, height, orbit, tilt, (this.fit === "whole") + 2 * (AXES[this.up] ?? 0));
     if (face) known.face.aim(known.at, side, this.facts.joints ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
     this.#shown();
   }
@@ -649,15 +665,30 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   play() {
     if (!this.#paused) return;
     this.#paused = false;
-    const last = this.playable - 1;
-    const ended = this.playable && this.playable === this.frames && !this.loop && this.frame === (this.#backwards ? 0 : last);
-    this.#at = ended ? (this.#backwards ? last : 0) : this.frame;
+    const [first, end] = this.#range();
+    const [start, last] = this.#backwards ? [end - 1, first] : [first, end - 1];
+    const ended = end <= this.playable && !this.loop && this.frame === last;
+    this.#at = ended ? start : this.frame;
+    if (this.frame < first || this.frame >= end) this.seek(start);
     this.#run();
     this.#tell();
     this.#dispatch("play");
     this.#dispatch("change");
     // What happens at the first frame happens when it begins.
-    if (this.frame === (this.#backwards ? last : 0)) this.events.filter(({ frame }) => frame === this.frame).forEach((event) => this.#dispatch("heard", event));
+    if (this.frame === start) this.events.filter(({ frame }) => frame === this.frame).forEach((event) => this.#dispatch("heard", event));
+  }
+
+  // Plays what lies between two times in seconds, or without them the whole clip.
+  range(from = 0, to = Infinity) {
+    Object.assign(this, { from, to });
+  }
+
+  // The frames that are played, of those that there will be: the first, and the one after the last.
+  #range() {
+    const { frames, frameTime } = this.facts;
+    const frame = (seconds) => Math.ceil((seconds * 1e9) / frameTime - 1e-6);
+    const first = Math.max(0, Math.min(frame(this.from), frames - 1)) || 0;
+    return [first, Math.max(first + 1, Math.min(frame(this.to), frames)) || 1];
   }
 
   pause() {
@@ -689,24 +720,26 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   #tick(now) {
-    const { frames, playable, frameTime } = this.facts;
+    const { playable, frameTime } = this.facts;
     const elapsed = Math.max(0, now - this.#before);
     this.#before = now;
     // A character has no frames of its own.
     if (this.states.length) return this.#pass(Math.round(Math.min(elapsed, 1000) * 1000 * this.#speed));
     if (!playable || this.#held || this.#wanted) return;
+    const range = this.#range();
+    const [first, end] = range;
     let at = this.#at + ((elapsed * 1e6) / (frameTime || 1e9)) * this.#speed * (this.#backwards ? -1 : 1);
     // Time waits for frames that have not come.
-    if (playable < frames && at >= playable) at = playable - 0.001;
+    if (playable < end && at >= playable) at = playable - 0.001;
     let looped = false;
-    if (at < 0 || at >= playable) {
+    if (this.#backwards ? at < first : at >= end) {
       if (this.loop) {
-        at = ((at % playable) + playable) % playable;
+        at = first + ((((at - first) % (end - first)) + end - first) % (end - first));
         looped = true;
       } else {
-        const end = at < 0 ? 0 : playable - 1;
+        const last = this.#backwards ? first : end - 1;
         const before = this.frame;
-        if (before !== end) this.#go(end), this.#hear(before, end, this.#backwards);
+        if (before !== last) this.#go(last), this.#hear(before, last, this.#backwards, range);
         this.pause();
         this.#dispatch("ended");
         return;
@@ -716,7 +749,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     if (frame !== this.frame) {
       const before = this.frame;
       this.#go(frame);
-      this.#hear(before, frame, this.#backwards);
+      this.#hear(before, frame, this.#backwards, range);
     }
     this.#at = at;
     if (looped) this.#dispatch("loop");
@@ -730,7 +763,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const [on] = event.composedPath();
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     // What the button and the scrubber do with their own keys they do themselves.
-    if ((on === this.button && event.key === " ") || (on === this.range && event.key.startsWith("Arrow"))) return;
+    if ((on === this.button && event.key === " ") || (on === this.scrubber && event.key.startsWith("Arrow"))) return;
     const [turn, step] = [event.shiftKey, event.shiftKey ? 15 : 1];
     const act = {
       " ": () => this.#toggle(),
@@ -763,6 +796,11 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #gather() {
     const { wasm, at, face: known } = this.#seat;
     const count = wasm.strokes(at);
+    if (this.#aside) {
+      const places = new Int16Array(wasm.memory.buffer, wasm.picture(), (STROKE / 2) * count);
+      // The second x of a head is its radius.
+      for (let at = 0; at < places.length; at += 6) (places[at] += this.#aside), places[at + 4] >> 8 !== 4 && (places[at + 2] += this.#aside);
+    }
     if (!known?.drawn || !this.playable) return count;
     const { channels, pose } = this.facts;
     const { face } = known;
@@ -770,6 +808,16 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const more = Math.min(face.place(known.at, known.pose, channels), STROKES - count);
     bytes(wasm, wasm.picture() + STROKE * count).set(bytes(face, face.picture(), STROKE * more));
     return count + more;
+  }
+
+  // What is shown, as a file. The script that writes it is loaded only now.
+  async picture(options) {
+    return (await import("./pantin-export.js")).picture(this, this.#tones[6], options);
+  }
+
+  // The range, or a character's next seconds, as a GIF or a video.
+  async record(options) {
+    return (await import("./pantin-export.js")).record(this, this.#tones[6], options);
   }
 
   #known() {
@@ -835,8 +883,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     }
     // Nobody sees the bar of a bare player, which may be one of many.
     if (this.hasAttribute("bare")) return;
-    this.range.max = Math.max(0, playable - 1);
-    this.range.value = frame;
+    this.scrubber.max = Math.max(0, playable - 1);
+    this.scrubber.value = frame;
     this.output.textContent = frames ? `${frame + 1} / ${frames}` : "";
     const loads = this.#abort && !this.#abort.done && this.received;
     const coming = !loads ? "" : !playable ? `${this.received} bytes; the first pose is still to come` : playable < frames ? `${this.received} bytes, ${playable} of ${frames} frames` : "";

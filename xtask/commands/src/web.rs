@@ -24,7 +24,7 @@ impl Web {
     /// Builds it and prints its sizes.
     pub fn run(self) -> Result<()> {
         web::build(&self.out)?;
-        for names in [&web::PLAYER[..], &web::FACE, &web::CHARACTER, &web::CONVERTER] {
+        for names in [&web::PLAYER[..], &web::EXPORT, &web::FACE, &web::CHARACTER, &web::CONVERTER] {
             let sizes = web::sizes(&self.out, names);
             sizes.iter().for_each(|Size { name, bytes }| say(&format!("{name:<24} {bytes:>9} bytes")));
         }
