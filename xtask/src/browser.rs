@@ -1,6 +1,6 @@
 //! Chromium, driven by `tests/web/drive.mjs`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
@@ -34,12 +34,16 @@ impl Browser {
         Ok(Browser { chromium, playwright: playwright()? })
     }
 
+    /// The variables that name Chromium and the folder of the packages that drive it to scripts in Node.
+    pub fn environment(&self) -> [(&'static str, &Path); 2] {
+        [("CHROMIUM", &self.chromium), ("PLAYWRIGHT", &self.playwright)]
+    }
+
     /// Runs a case of the driver; an error if anything that it asserts is not so.
     pub fn drive(&self, case: &str, arguments: &Value) -> Result<Value> {
         let driver = paths::root().join("tests/web/drive.mjs");
         let mut node = Command::new(setup::emulator("node")?);
-        node.arg(driver).arg(case).arg(arguments.to_string());
-        node.env("PLAYWRIGHT", &self.playwright).env("CHROMIUM", &self.chromium);
+        node.arg(driver).arg(case).arg(arguments.to_string()).envs(self.environment());
         let output = node.stdin(Stdio::null()).output().context("cannot start node")?;
         ensure!(output.status.success(), "{case}: {}", String::from_utf8_lossy(&output.stderr).trim());
         serde_json::from_slice(&output.stdout).with_context(|| format!("{case}: the driver said no JSON"))

@@ -5,6 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
+use xtask::browser::Browser;
 use xtask::npm;
 
 use super::{CHARACTER, EXPORT, FACE, PLAYER, tools};
@@ -12,7 +13,9 @@ use crate::{paths, setup};
 
 /// The packages, those that others need first.
 pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
-const CHECK: [&str; 5] = ["check.mjs", "check.ts", "index.html", "main.ts", "tsconfig.json"];
+const CHECK: [&str; 7] = ["bundles.mjs", "check.mjs", "check.ts", "firefox.mjs", "index.html", "main.ts", "tsconfig.json"];
+/// Programs that are Firefox.
+const FIREFOX: [&str; 2] = ["firefox-esr", "firefox"];
 
 /// A packed package.
 pub struct Packed {
@@ -61,8 +64,16 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
     Ok(packed)
 }
 
-/// Uses the packages in a project of their own: in Node, with strict types, and in a bundle of Vite's. Returns what was measured there.
-pub fn check(packed: &[Packed], folder: &Path) -> Result<Value> {
+/// What using the packages showed.
+pub struct Checked {
+    /// What was measured in Node.
+    pub measured: Value,
+    /// Where in browsers the element played.
+    pub places: Vec<String>,
+}
+
+/// Uses the packages in a project of their own: in Node, with strict types, and in browsers, in bundles of Vite's, webpack's and esbuild's and without one.
+pub fn check(packed: &[Packed], site: &Path, folder: &Path) -> Result<Checked> {
     let source = paths::root().join("web/packages/check");
     npm::install(&source, folder)?;
     for name in CHECK {
@@ -74,20 +85,20 @@ pub fn check(packed: &[Packed], folder: &Path) -> Result<Value> {
     npm::run(folder, &arguments)?;
     let measured = node(folder, "check.mjs", &[paths::root().join("motions/walk.ptn")])?;
     node(folder, "node_modules/typescript/bin/tsc", &["--project".into(), ".".into()])?;
-    node(folder, "node_modules/vite/bin/vite.js", &["build".into(), "--logLevel".into(), "error".into()])?;
-    let assets = std::fs::read_dir(folder.join("dist/assets")).context("Vite's assets")?;
-    let names: Vec<String> = assets.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned())).collect();
-    for module in [PLAYER[1], FACE[0], CHARACTER[0]] {
-        let stem = module.trim_end_matches(".wasm");
-        let is_there = names.iter().any(|name| name.starts_with(stem) && name.ends_with(".wasm"));
-        ensure!(is_there, "Vite did not emit {module}: {names:?}");
-    }
-    serde_json::from_str(&measured).context("check.mjs")
+    let places = node(folder, "bundles.mjs", &[paths::root().join(site).join("clips")])?;
+    Ok(Checked {
+        measured: serde_json::from_str(&measured).context("check.mjs")?,
+        places: serde_json::from_str(&places).context("bundles.mjs")?,
+    })
 }
 
 fn node(folder: &Path, program: &str, arguments: &[PathBuf]) -> Result<String> {
-    let output = Command::new(setup::emulator("node")?).arg(program).args(arguments).current_dir(folder).output();
-    let output = output.context("cannot start node")?;
+    let mut node = Command::new(setup::emulator("node")?);
+    node.arg(program).args(arguments).current_dir(folder).envs(Browser::ready()?.environment());
+    if let Some(firefox) = FIREFOX.into_iter().find_map(paths::program) {
+        node.env("FIREFOX", firefox);
+    }
+    let output = node.output().context("cannot start node")?;
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     ensure!(output.status.success(), "{program}: {out}{err}");
     Ok(out)

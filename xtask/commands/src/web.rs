@@ -41,10 +41,13 @@ fn packages(site: &Path) -> Result<()> {
     for npm::Packed { name, file, sizes: [packed, whole] } in &packed {
         say(&format!("{name:<24} {packed:>9} bytes packed, {whole} bytes in {}", file.display()));
     }
-    let measured = npm::check(&packed, &folder.join("check"))?;
+    let npm::Checked { measured, places } = npm::check(&packed, site, &folder.join("check"))?;
     let [characters, joints] = ["characters", "joints"].map(|field| measured[field].as_u64().unwrap_or_default());
     let ms = measured["ms"].as_f64().unwrap_or_default();
     say(&format!("{characters} characters of {joints} joints are decoded and posed in {ms:.2} ms a frame"));
-    say("the packages work in Node, with strict types, and in a bundle of Vite's");
+    say(&format!("the packages work in Node, with strict types, and in {}", places.join(", ")));
+    if !places.iter().any(|place| place.contains("Firefox")) {
+        say("not tried in Firefox, which is not installed");
+    }
     Ok(())
 }
