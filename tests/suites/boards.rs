@@ -1,5 +1,5 @@
 //! What `cargo xtask test --boards` runs: the core of the Pico 2, a Cortex-M33, shows in QEMU what the host shows, and so does the Nucleo's image in
-//! Unicorn; an image that `cargo xtask images` gives away has the same bytes each time.
+//! Unicorn; a face speaks a sentence on an OLED and on a round display; an image that `cargo xtask images` gives away has the same bytes each time.
 
 use std::path::{Path, PathBuf};
 
@@ -7,13 +7,14 @@ use harness::build::Firmware;
 use harness::display::{Depth, Display, Picture, Way};
 use harness::download::{self, File};
 use harness::icount::FRAME_REGIONS;
-use harness::panel::{self, Colour, Mono, Panel, ST7789};
+use harness::panel::{self, Colour, GC9A01, Mono, Panel, ST7789};
 use harness::qemu::MPS2_AN505;
 use harness::rp2040::{self, OLED, Spi};
 use harness::stm32::{Outcome, Pin, Request, TARGET};
-use harness::{equal, paths, screen, simulator};
+use harness::{clips, equal, paths, pictures, screen, simulator};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::rotation_float::FloatRotation;
+use pantin_tools::face::speak;
 
 /// Pictures of our walk, our run, and a face with its body.
 const PICTURES: [(&str, usize); 3] = [("walk", 30), ("run", 26), ("greet", 20)];
@@ -95,6 +96,43 @@ fn the_nucleo_shows_on_the_st7789_what_the_host_shows() {
     assert_eq!([outcome.pins["PA5"], outcome.pins["PA7"]], [spi; 2]);
     let output = Pin { mode: 1, drain: 0, speed: 3, pull: 0, function: 0 };
     assert_eq!([outcome.pins["PB6"], outcome.pins["PC7"]], [output; 2]);
+}
+
+/// The Black Pill, as its pictures are of the size that each display shows. The sheets are for who wants to look: target/talking.
+#[test]
+fn a_face_speaks_on_an_oled_and_on_a_round_display_as_on_the_host() {
+    let folder = tempfile::tempdir().unwrap();
+    let sentence = speak::keys(&speak::of_text("Hello, my name is Pantin.").unwrap(), "A sentence.");
+    let motion = folder.path().join("talking.keys");
+    std::fs::write(&motion, sentence).unwrap();
+    let clip = clips::convert(&motion, folder.path()).unwrap();
+    let keys = vec![&b""[..]; 40];
+    let sheets = paths::root().join("target/talking");
+    std::fs::create_dir_all(&sheets).unwrap();
+    let round = Display { width: 168, height: 168, depth: Depth::Gray4, way: Way::Bus("spi") };
+    let whole = Display { width: 240, height: 240, depth: Depth::Rgb565, ..round };
+    for (features, address, display) in [("face", Some(0x3c), OLED), ("face,gc9a01", None, round)] {
+        let image = Firmware::featuring(features, "blackpill", "blackpill", TARGET, &[&clip]).unwrap();
+        let outcome = Request { display: address, ram: 128 << 10, ..Request::new(image.elf(), &keys) }.run().unwrap();
+        assert!(outcome.done && outcome.faults.is_empty(), "{:?}", outcome.faults);
+        let expected = simulator::play::<Rotation>(display, std::slice::from_ref(&clip), &[], &keys).unwrap();
+        let expected = expected.into_iter().map(|(_, picture)| picture);
+        let (shown, expected): (Vec<Picture>, Vec<Picture>) = match address {
+            Some(address) => (panel::pictures(&mut Mono::ssd1306(address), &outcome.stream), expected.collect()),
+            None => {
+                let framed = expected.map(|picture| picture.in_colour().framed(whole));
+                (panel::pictures(&mut Colour::new(GC9A01), &outcome.stream), framed.collect())
+            }
+        };
+        assert_eq!(shown.len(), expected.len());
+        for (number, (shown, expected)) in shown.iter().zip(&expected).enumerate() {
+            assert_eq!(screen::difference(shown, expected).map(|difference| difference.to_string()), None, "picture {number}");
+        }
+        let labelled: Vec<(String, &Picture)> =
+            shown.iter().enumerate().step_by(4).map(|(number, picture)| (format!("picture {number}"), picture)).collect();
+        let name = if address.is_some() { "ssd1306.png" } else { "gc9a01.png" };
+        std::fs::write(sheets.join(name), pictures::sheet(&labelled, 5).unwrap()).unwrap();
+    }
 }
 
 #[test]

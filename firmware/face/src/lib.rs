@@ -89,7 +89,8 @@ pub static SMALL: &[u8] = include_bytes!("../small.model");
 /// Rows of the highest canvas on which [`SMALL`] looks like [`MODEL`]: the face has fewer than 96 pixels.
 pub const SMALL_HEIGHT: u16 = 102;
 
-/// A face of filled shapes in two tones for small displays, driven by the same names as [`MODEL`]. `pantin face model --cartoon` writes it.
+/// A face of filled shapes in two tones for small displays, driven by the same names as [`MODEL`] and by four of its own: `glasses`, `hearts`, `tears` and
+/// `sound`. `pantin face model --cartoon` writes it.
 pub static CARTOON: &[u8] = include_bytes!("../cartoon.model");
 
 /// The names that drive Pantin's own face, one per line: its units, sums of units such as `joy` and `viseme_aa`, the blend shapes of ARKit and
@@ -107,4 +108,4 @@ pub const VERTICES: usize = 240;
 pub const SMALL_VERTICES: usize = 195;
 
 /// Like [`VERTICES`], for [`CARTOON`].
-pub const CARTOON_VERTICES: usize = 77;
+pub const CARTOON_VERTICES: usize = 97;

@@ -1,10 +1,13 @@
-//! Faces of filled shapes from a small text: parts of Pantin's head, enlarged and moved, with the same units.
+//! Faces of filled shapes from a small text: parts of Pantin's head, enlarged and moved, with the same units, and props such as glasses, which have units of
+//! their own.
 
-use super::blueprint::{Blueprint, Curve, Opening, Shape};
+use super::blueprint::{Blueprint, Curve, Drive, Opening, Shape};
 use super::head::{Head, Vector, minus, plus};
+use super::paper::shape;
 use super::small;
 use super::subject::distance;
 use anyhow::{Context, Result, bail, ensure};
+use pantin_face::shape::Interpolation;
 
 /// Pantin's own cartoon face.
 pub const TABLE: &str = include_str!("cartoon.txt");
@@ -15,6 +18,25 @@ struct Zoom {
     factor: f64,
     to: [f64; 2],
 }
+
+/// A filled shape on both sides whose corners all lie in one place, so that it is nothing until a unit opens it.
+struct Hidden {
+    shade: u8,
+    place: [f64; 2],
+    corners: usize,
+}
+
+/// A unit that moves the corners of a hidden shape to places on the left. Several may open one shape.
+struct Prop {
+    name: String,
+    hidden: usize,
+    places: Vec<[f64; 2]>,
+}
+
+/// The model keeps 127ths of it: half a millimetre, so that places in whole ones are exact.
+const REACH: f64 = 63.5;
+/// How far before the head the points are that belong to no part of it.
+const FRONT: f64 = 70.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -49,6 +71,7 @@ pub fn build(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
 /// Builds a face with all that is in the eyes and the mouth, whether it is drawn or not. Otherwise like [`build`].
 pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     let (mut view, mut zooms, mut curves, mut jaw) = (None, Vec::new(), Vec::new(), 1.0);
+    let (mut hidden, mut props): (Vec<Hidden>, Vec<Prop>) = (Vec::new(), Vec::new());
     for (number, line) in table.lines().enumerate() {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
         let place = || format!("line {}", number + 1);
@@ -70,6 +93,26 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
                 ensure!((0.1..=10.0).contains(&factor), "{}: expected a factor from 0.1 to 10", place());
                 zooms.push(Zoom { part, factor, to: [aside, up] });
             }
+            ["hidden", shade, place_of, corners] => {
+                let (shade, corners) = (shade.parse().with_context(place)?, corners.parse().with_context(place)?);
+                ensure!((3..=32).contains(&corners), "{}: expected 3 to 32 corners", place());
+                hidden.push(Hidden { shade, place: pair(place_of).with_context(place)?, corners });
+            }
+            ["prop", name, number, ref places @ ..] => {
+                let number: usize = number.parse().with_context(place)?;
+                let shape = number.checked_sub(1).and_then(|index| hidden.get(index));
+                let shape = shape.with_context(|| format!("{}: no hidden shape {number} before it", place()))?;
+                ensure!(
+                    places.len() == shape.corners,
+                    "{}: hidden shape {number} has {} corners, not {}",
+                    place(),
+                    shape.corners,
+                    places.len()
+                );
+                ensure!(face.names.iter().all(|drive| drive.name != name), "{}: the face has a unit {name} already", place());
+                let places = places.iter().map(|word| pair(word)).collect::<Result<_>>().with_context(place)?;
+                props.push(Prop { name: name.into(), hidden: number - 1, places });
+            }
             [kind @ ("fill" | "line"), shade, options, ref points @ ..] => {
                 let points = points.iter().map(|name| head.find(name)).collect::<Result<Vec<_>>>().with_context(place)?;
                 ensure!(points.len() >= if kind == "fill" { 3 } else { 2 }, "{}: too few points", place());
@@ -78,7 +121,7 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
                 let paired = options == "paired";
                 curves.push(Curve { detail: 0, shade, paired, closed: filled, straight: false, small: false, filled, points });
             }
-            _ => bail!("{}: expected view, jaw, zoom, fill or line", place()),
+            _ => bail!("{}: expected view, jaw, zoom, fill, line, hidden or prop", place()),
         }
     }
     let [width, top, bottom] = view.context("no line `view`")?;
@@ -105,7 +148,8 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     let stored = head.middles + head.pairs;
     let kept: Vec<usize> = (0..stored).filter(|&index| used(index)).collect();
     let middles = kept.iter().filter(|&&index| index < head.middles).count() + 2;
-    let pairs = kept.len() + 2 - middles + 1;
+    let corners: usize = hidden.iter().map(|shape| shape.corners).sum();
+    let pairs = kept.len() + 2 - middles + 1 + corners;
     // Two points in the middle and one on the left set what the camera shows.
     let to_new = |index: usize| -> usize {
         let own = kept.iter().position(|&kept| kept == head.stored(index)).unwrap_or(0);
@@ -118,9 +162,18 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
         plus(place, moved, 1.0)
     };
     let mut points: Vec<Vector> = kept.iter().filter(|&&index| index < head.middles).map(|&index| place(index)).collect();
-    points.extend([[0.0, top, 70.0], [0.0, bottom, 70.0]]);
+    points.extend([[0.0, top, FRONT], [0.0, bottom, FRONT]]);
     points.extend(kept.iter().filter(|&&index| index >= head.middles).map(|&index| place(index)));
-    points.push([width, 0.0, 70.0]);
+    points.push([width, 0.0, FRONT]);
+    // The corners of each hidden shape follow.
+    let firsts: Vec<usize> = hidden
+        .iter()
+        .map(|shape| {
+            let first = points.len();
+            points.extend(std::iter::repeat_n([shape.place[0], shape.place[1], FRONT], shape.corners));
+            first
+        })
+        .collect();
     let shapes = face.shapes.iter().map(|shape| {
         let keep = |index: usize| kept.contains(&head.stored(index));
         let deltas = shape
@@ -156,16 +209,38 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     };
     let curves =
         curves.iter().map(|curve| Curve { points: curve.points.iter().map(|&index| to_new(index)).collect(), ..curve.clone() });
+    let opened = hidden.iter().zip(&firsts).map(|(shape, &first)| Curve {
+        detail: 0,
+        shade: shape.shade,
+        paired: true,
+        closed: true,
+        straight: true,
+        small: false,
+        filled: true,
+        points: (first..first + shape.corners).collect(),
+    });
+    let curves = curves.chain(opened).collect();
+    let (mut shapes, mut names): (Vec<Shape>, Vec<Drive>) = (shapes.collect(), face.names.clone());
+    for Prop { name, hidden: number, places } in &props {
+        let (from, first) = (hidden[*number].place, firsts[*number]);
+        let own = shapes.iter().position(|shape| shape.name == *name).unwrap_or_else(|| {
+            names.push(Drive { name: name.clone(), shape: shapes.len(), sides: [true; 2], gain: 1.0 });
+            shapes.push(Shape { reach: REACH, ..shape(name, Interpolation::Linear, false) });
+            shapes.len() - 1
+        });
+        let deltas = places.iter().enumerate().map(|(corner, to)| (first + corner, [to[0] - from[0], to[1] - from[1], 0.0]));
+        shapes[own].deltas.extend(deltas);
+    }
     Ok(Blueprint {
         middles,
         pairs,
         fraction_bits: face.fraction_bits,
         normals: vec![[0.0, 0.0, 1.0]; middles + pairs],
         points,
-        curves: curves.collect(),
+        curves,
         openings: face.openings.iter().map(opening).collect(),
-        shapes: shapes.collect(),
-        names: face.names.clone(),
+        shapes,
+        names,
         ..Blueprint::default()
     })
 }
@@ -177,6 +252,12 @@ fn zoomed_mouth(zooms: &[Zoom]) -> Vector {
         .iter()
         .find(|zoom| zoom.part == Part::Mouth)
         .map_or([0.0; 3], |zoom| minus([zoom.to[0], zoom.to[1], middle[2]], middle.map(|x| x * zoom.factor)))
+}
+
+/// A place in the picture: `aside,up`.
+fn pair(word: &str) -> Result<[f64; 2]> {
+    let (aside, up) = word.split_once(',').with_context(|| format!("{word}: expected aside,up"))?;
+    numbers([aside, up])
 }
 
 fn numbers<const N: usize>(words: [&str; N]) -> Result<[f64; N]> {

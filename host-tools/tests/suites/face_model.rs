@@ -54,7 +54,7 @@ fn the_committed_cartoon_is_what_its_table_makes() {
     assert!(pantin_face::CARTOON == bytes, "write it again by `pantin face model --cartoon -o firmware/face/cartoon.model`");
     let error = error::greatest(&cartoon, &bytes).unwrap();
     assert!(error.part < 0.002, "{error:?}");
-    assert_eq!(cartoon.name_list(), face.blueprint.name_list());
+    assert_eq!(cartoon.name_list(), face.blueprint.name_list() + "glasses\nhearts\ntears\nsound\n");
     for (table, wanted) in [
         ("view 90 60 -90", "nothing is drawn"),
         ("fill 255 - lip-corner lip-top lip-bottom", "view"),
@@ -62,6 +62,11 @@ fn the_committed_cartoon_is_what_its_table_makes() {
         ("view 90 60 -90\nzoom ear 2 0 0", "eye, brow or mouth"),
         ("view 90 60 -90\nzoom eye 200 0 0", "beyond"),
         ("smile", "line 1"),
+        ("hidden 0 1,2 2", "3 to 32 corners"),
+        ("hidden 0 1 4", "expected aside,up"),
+        ("prop hat 1 0,0", "no hidden shape 1 before it"),
+        ("hidden 0 1,2 3\nprop hat 1 0,0 1,1", "3 corners, not 2"),
+        ("hidden 0 1,2 3\nprop smile 1 0,0 1,1 2,2", "has a unit smile already"),
     ] {
         let refused = format!("{:#}", cartoon::build(&face.head, &face.blueprint, table).unwrap_err());
         assert!(refused.contains(wanted), "{table}: {refused}");
