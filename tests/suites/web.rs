@@ -133,7 +133,7 @@ fn the_modules_stand_whatever_bytes_they_get() {
     if skipped("the player's modules") {
         return;
     }
-    let modules = [web::PLAYER[1], web::FACE[0]].map(|name| paths::root().join("target/web").join(name));
+    let modules = [web::PLAYER[1], web::FACE[0], web::CHARACTER[0]].map(|name| paths::root().join("target/web").join(name));
     assert!(!STAGE.1.is_empty(), "they were built");
     let mut node = Command::new(setup::emulator("node").unwrap());
     node.arg(paths::root().join("tests/web/module.mjs")).args(modules).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));

@@ -314,6 +314,17 @@ const cases = {
       return { width: video.videoWidth, parts: [parts.length, parts.at(-1)], type, failures };
     });
     assert.deepEqual(video, { width: Math.ceil(width / 2) * 2, parts: [15, 1], type: "video/webm", failures: ["TypeError", "AbortError"] });
+    // A page in one file shows its clip without another request.
+    const alone = await page.context().newPage();
+    alone.on("pageerror", (error) => page.troubles.push(error.message));
+    await alone.addInitScript(HELPERS);
+    const requests = [];
+    alone.on("request", (request) => request.url().startsWith("http") && requests.push(new URL(request.url()).pathname));
+    await alone.goto(`${args.site}walk.html`);
+    await alone.waitForFunction(() => document.querySelector("pantin-player").playable === 160);
+    assert.equal(await alone.evaluate(() => window.seen(document.querySelector("pantin-player")).colours > 10), true);
+    assert.deepEqual(requests, ["/walk.html"]);
+    await alone.close();
     // A character: its next seconds.
     assert.ok(await page.evaluate(async () => (await character.record({ seconds: 0.4, width: 100 })).size) > 500);
   },
@@ -722,7 +733,7 @@ const cases = {
     }
     // The same over slow lines, of a page with preload links: from the request of the page to the first figure.
     const slow = {};
-    for (const [line, latency, kilobits] of args.lines) {
+    for (const [line, path, latency, kilobits] of args.lines) {
       const context = await browser.newContext();
       const one = await context.newPage();
       const session = await context.newCDPSession(one);
@@ -732,7 +743,7 @@ const cases = {
         const look = () => (document.querySelector("pantin-player")?.playable ? (window.first = performance.now()) : requestAnimationFrame(look));
         look();
       });
-      await one.goto(`${args.site}embed.html`, { waitUntil: "commit" });
+      await one.goto(`${args.site}${path}`, { waitUntil: "commit" });
       slow[line] = await one.waitForFunction(() => window.first, null, { timeout: 60000 }).then((time) => time.jsonValue());
       await context.close();
     }

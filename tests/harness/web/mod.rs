@@ -1,5 +1,6 @@
 //! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
 
+mod inline;
 pub mod npm;
 mod pack;
 mod script;
@@ -38,7 +39,7 @@ const SCALAR_PART: f64 = 0.02;
 /// The modules' packages and features, the profiles that they are built in, and their names in the site.
 pub const MODULES: [(&str, &str, &str, &str); 4] = [
     ("pantin-web-player", "", "release", PLAYER[1]),
-    ("pantin-web-player", "character", "release", CHARACTER[0]),
+    ("pantin-web-player", "character,poses", "release", CHARACTER[0]),
     ("pantin-web-face", "", "release", FACE[0]),
     ("pantin-web-converter", "", "converter", CONVERTER[1]),
 ];
@@ -57,13 +58,13 @@ pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.wasm"];
-/// What it loads too for a bank with a state machine.
+/// What it loads too for a bank with a state machine, or for a table of poses.
 pub const CHARACTER: [&str; 1] = ["pantin-character.wasm"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
 
-/// Builds the site into a folder, in place of what of it was there.
-pub fn build(out: &Path) -> Result<()> {
+/// Builds the site into a folder, in place of what of it was there, and a page in one file for each of the `inlined` clips.
+pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
     let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
     make(&out.join("clips"))?;
     setup::rust_target(TARGET)?;
@@ -80,14 +81,21 @@ pub fn build(out: &Path) -> Result<()> {
     }
     clips(out)?;
     character(out)?;
+    for clip in inlined {
+        let bytes = std::fs::read(clip).with_context(|| clip.display().to_string())?;
+        let name = clip.file_stem().unwrap_or_default();
+        ensure!(name != "index", "{}: its page would be in place of the site's", clip.display());
+        let page = inline::page(out, &bytes, &name.to_string_lossy()).with_context(|| clip.display().to_string())?;
+        write(&out.join(name).with_extension("html"), page.as_bytes())?;
+    }
     tools::compress(out)
 }
 
-/// Builds the site into `target/web` and serves it, with some more files by their paths, as long as this program runs; returns the page's
+/// Builds the site into `target/web`, with our walk as a page in one file, and serves it, with some more files by their paths, as long as this program runs; returns the page's
 /// address.
 pub fn served(extras: Vec<(String, Vec<u8>)>) -> Result<String> {
     let folder = paths::root().join("target/web");
-    build(&folder)?;
+    build(&folder, &[paths::root().join("motions/walk.ptn")])?;
     let mut site = Site::read(&folder)?;
     for (path, bytes) in extras {
         site.add(path, bytes)?;

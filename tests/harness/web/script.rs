@@ -70,9 +70,14 @@ fn private<'s>(name: &'s str, names: &mut Vec<&'s str>) -> String {
     }
 }
 
-/// A text, and what style sheet begins it without the spaces that part nothing.
+/// A text; a style sheet of an element's without the spaces that part nothing.
 fn style(text: &str) -> String {
-    let Some((sheet, rest)) = text.split_once("</style>") else { return text.to_owned() };
+    let Some(sheet) = text.strip_prefix('`').and_then(|sheet| sheet.trim_start().strip_suffix('`')) else {
+        return text.to_owned();
+    };
+    if !sheet.starts_with(":host") {
+        return text.to_owned();
+    }
     let (mut out, mut letters) = (String::new(), sheet.chars().peekable());
     while let Some(letter) = letters.next() {
         let parts = |other: Option<char>, marks: &str| other.is_some_and(|other| marks.contains(other));
@@ -81,7 +86,7 @@ fn style(text: &str) -> String {
             out.push(letter);
         }
     }
-    out.replace(";}", "}") + "</style>" + rest
+    format!("`{}`", out.replace(";}", "}"))
 }
 
 #[cfg(test)]
@@ -104,8 +109,8 @@ mod tests {
         );
         assert_eq!(short("f(`${a} ; b`, x in y ? /a b/ : 2)"), "f(`${a} ; b`,x in y?/a b/:2)");
         assert_eq!(
-            short("`<style>\n:host .a { color: red; }\n</style>\n<p> b ; c </p>`"),
-            "`<style>:host .a{color:red}</style>\n<p> b ; c </p>`"
+            short("f(`\n:host .a { color: red; }\n.b, .c { margin: 0 1px; }\n`, `p : b ; `)"),
+            "f(`:host .a{color:red}.b,.c{margin:0 1px}`,`p : b ; `)"
         );
     }
 

@@ -389,8 +389,16 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     return seat.file;
   }
 
+  // Moves to the module that plays more than clips: it is loaded only then.
+  async #change(signal) {
+    const wasm = await open(new URL("./pantin-character.wasm", import.meta.url));
+    signal.throwIfAborted();
+    this.#sit(wasm);
+    return this.#seat;
+  }
+
   async #table({ rig, poses, frames, frameTime, lengthExponent }, signal) {
-    const { wasm, at } = this.#seat;
+    const { wasm, at } = await this.#change(signal);
     const start = Math.ceil(rig.length / 4) * 4;
     const size = start + poses.byteLength;
     const place = this.#take(wasm, block(size));
@@ -398,6 +406,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     new Int32Array(wasm.memory.buffer, place + start).set(poses);
     this.#check(wasm.poses(at, place, size, rig.length, frames, frameTime, lengthExponent));
     await this.#meet(signal);
+    this.#aim();
     this.#shown();
   }
 
@@ -487,12 +496,9 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     return both;
   }
 
-  // Plays the state machine of a bank: its module is loaded only then.
+  // Plays the state machine of a bank.
   async #steer(file, { clips }, signal, eager) {
-    const wasm = await open(new URL("./pantin-character.wasm", import.meta.url));
-    signal.throwIfAborted();
-    this.#sit(wasm);
-    const { at } = this.#seat;
+    const { wasm, at } = await this.#change(signal);
     const place = this.#room(file.length);
     bytes(wasm, place).set(file);
     [this.received, this.total, this.clips] = [file.length, file.length, clips.map(({ name }) => name)];

@@ -15,6 +15,7 @@
 //! grey(strokes)              -> address of the 128x64 display's pixels for them
 //! ```
 //! With the feature `character` it also plays state machines: `machine(slot, bank, bytes)`, then `update(slot, us)`, `input`, `set`, `name`, `passed`.
+//! With the feature `poses` it also plays tables of raw values: `poses`.
 //! `arrived`, `finish`, `poses` and `aim` return a [`Trouble`], 0 for none. [`Facts`] describes the clip and the frame.
 #![no_std]
 // The page calls these functions, and finds and writes memory by plain addresses.
@@ -98,6 +99,7 @@ extern "C" fn finish(slot: *mut Slot) -> u32 {
 
 /// Plays a table instead of a clip: `bytes` bytes at `file`, which are a rig of `rig` bytes, then from the next multiple of 4 on `frames` poses of raw
 /// values.
+#[cfg(feature = "poses")]
 #[unsafe(no_mangle)]
 extern "C" fn poses(
     slot: *mut Slot,

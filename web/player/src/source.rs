@@ -1,10 +1,13 @@
 //! Sources of poses: a clip that is being received, or a table.
 
 use crate::arriving::Arriving;
-use crate::facts::{Facts, Trouble};
+use crate::facts::Facts;
+#[cfg(feature = "poses")]
+use crate::facts::Trouble;
 use pantin::{Form, Pose, Rig};
 
 /// A table of poses, one raw value per channel and frame.
+#[cfg(feature = "poses")]
 pub struct Table {
     pub rig: Rig<'static>,
     values: &'static [i32],
@@ -14,6 +17,7 @@ pub struct Table {
     form: Form,
 }
 
+#[cfg(feature = "poses")]
 impl Table {
     /// Opens a file that holds a rig and, from the next multiple of 4 on, the values.
     pub fn new(
@@ -46,6 +50,7 @@ impl Table {
 pub enum Source {
     Nothing,
     Clip(Arriving),
+    #[cfg(feature = "poses")]
     Table(Table),
     #[cfg(feature = "character")]
     Character(crate::steered::Steered),
@@ -56,6 +61,7 @@ impl Source {
         match self {
             Source::Nothing => None,
             Source::Clip(clip) => Some(clip.clip().rig()),
+            #[cfg(feature = "poses")]
             Source::Table(table) => Some(table.rig),
             #[cfg(feature = "character")]
             Source::Character(character) => Some(character.rig()),
@@ -67,6 +73,7 @@ impl Source {
         match self {
             Source::Nothing => 0,
             Source::Clip(clip) => clip.playable,
+            #[cfg(feature = "poses")]
             Source::Table(table) => table.frames,
             #[cfg(feature = "character")]
             Source::Character(_) => 1,
@@ -79,6 +86,7 @@ impl Source {
         match self {
             Source::Nothing => Pose { values: &[], form: (&Form::NONE).into() },
             Source::Clip(clip) => clip.go(frame),
+            #[cfg(feature = "poses")]
             Source::Table(table) => {
                 table.frame = frame;
                 table.pose()
@@ -93,6 +101,7 @@ impl Source {
         match self {
             Source::Nothing => Pose { values: &[], form: (&Form::NONE).into() },
             Source::Clip(clip) => clip.player().pose(),
+            #[cfg(feature = "poses")]
             Source::Table(table) => table.pose(),
             #[cfg(feature = "character")]
             Source::Character(character) => character.pose(),
@@ -104,6 +113,7 @@ impl Source {
         match self {
             Source::Nothing => 0,
             Source::Clip(clip) => clip.player().frame(),
+            #[cfg(feature = "poses")]
             Source::Table(table) => table.frame,
             #[cfg(feature = "character")]
             Source::Character(_) => 0,
@@ -135,6 +145,7 @@ impl Source {
                     facts.motion_bytes = clip.motion_len() as u32;
                 }
             }
+            #[cfg(feature = "poses")]
             Source::Table(table) => {
                 (facts.frames, facts.frame_time_ns) = (table.frames, table.frame_time_ns);
             }

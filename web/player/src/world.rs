@@ -6,7 +6,7 @@ use crate::facts::{Facts, Trouble};
 use crate::grey::DISPLAY;
 use crate::memory::Buffers;
 use crate::picture::Picture;
-use crate::source::{Source, Table};
+use crate::source::Source;
 use pantin::Up;
 use pantin_figure::camera::Track;
 use pantin_figure::{Canvas, View};
@@ -100,6 +100,7 @@ impl World {
     }
 
     /// Plays a table instead of a clip.
+    #[cfg(feature = "poses")]
     pub fn poses(
         &mut self,
         file: &'static [u8],
@@ -109,7 +110,7 @@ impl World {
         length_exponent: i8,
     ) -> Result<(), Trouble> {
         self.finished = true;
-        self.source = Source::Table(Table::new(file, rig, frames, frame_time_ns, length_exponent)?);
+        self.source = Source::Table(crate::source::Table::new(file, rig, frames, frame_time_ns, length_exponent)?);
         self.look()
     }
 

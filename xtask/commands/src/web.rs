@@ -1,4 +1,4 @@
-//! `cargo xtask web [-o target/web] [--npm]`: the static site, ready for any server, and for `pantin serve`; and the npm packages.
+//! `cargo xtask web [-o target/web] [--inline CLIP] [--npm]`: the static site, ready for any server, and for `pantin serve`; and the npm packages.
 
 use std::path::{Path, PathBuf};
 
@@ -15,6 +15,9 @@ pub struct Web {
     /// The output folder
     #[arg(short, long, default_value = "target/web")]
     out: PathBuf,
+    /// Also writes CLIP's page in one file, NAME.html, with the player, its modules and the clip in it
+    #[arg(long, value_name = "CLIP")]
+    inline: Vec<PathBuf>,
     /// Also packs the npm packages into target/npm, and uses them in a project of their own
     #[arg(long)]
     npm: bool,
@@ -23,7 +26,7 @@ pub struct Web {
 impl Web {
     /// Builds it and prints its sizes.
     pub fn run(self) -> Result<()> {
-        web::build(&self.out)?;
+        web::build(&self.out, &self.inline)?;
         for names in [&web::PLAYER[..], &web::EXPORT, &web::FACE, &web::CHARACTER, &web::CONVERTER] {
             let sizes = web::sizes(&self.out, names);
             sizes.iter().for_each(|Size { name, bytes }| say(&format!("{name:<24} {bytes:>9} bytes")));

@@ -1,0 +1,67 @@
+//! A page in one file, with the player, its modules and a clip in it: a browser that has the page shows the figure, without a further request.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+use pantin::Clip;
+
+use super::{FACE, PLAYER};
+
+/// Writes the page of a clip, from a site that was built. A clip with scalars gets the face's module, too. What is loaded later, such as the script that
+/// saves pictures, is looked for beside the page.
+pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
+    let opened = Clip::new_checked(clip).map_err(|error| anyhow::anyhow!("{error}"))?;
+    let has_scalars = opened.rig().channels() > opened.rig().joint_channels();
+    let read = |name: &str| std::fs::read(site.join(name)).with_context(|| name.to_owned());
+    let mut script = String::from_utf8(read(PLAYER[0])?).context("a script that is not UTF-8")?;
+    let mut modules = String::new();
+    for (number, name) in [PLAYER[1], FACE[0]].into_iter().take(1 + usize::from(has_scalars)).enumerate() {
+        let url = format!("new URL(\"./{name}\",import.meta.url)");
+        ensure!(script.contains(&url), "{}: no {url} in it", PLAYER[0]);
+        script = script.replace(&url, &format!("pantinModule{number}"));
+        modules += &format!("const pantinModule{number}=pantinUrl(`{}`);", text(&read(name)?));
+    }
+    ensure!(!script.contains("</"), "{}: a tag in the script ends it", PLAYER[0]);
+    let title: String = title.chars().filter(|letter| !"<>&".contains(*letter)).collect();
+    Ok(format!(
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
+         <link rel=\"icon\" href=\"data:,\">\n<pantin-player src=\"data:;base64,{}\" autoplay loop></pantin-player>\n\
+         <script type=\"module\">const pantinUrl=text=>URL.createObjectURL(new Blob([Uint8Array.from(text,letter=>letter.charCodeAt())]));\
+         {modules}{script}</script>\n</html>\n",
+        base64(clip)
+    ))
+}
+
+/// Bytes as the letters of a template literal in a page, each modulo 256: brotli makes hardly more of them than of the bytes, and a third more of base64.
+fn text(bytes: &[u8]) -> String {
+    let letter = |&byte: &u8| {
+        // Letters that a page or a literal takes for something else, or changes.
+        let high = if b"\0\r<\\`$".contains(&byte) { 0x100 } else { 0 };
+        char::from_u32(u32::from(byte) + high).unwrap_or_default()
+    };
+    bytes.iter().map(letter).collect()
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::new();
+    for group in bytes.chunks(3) {
+        let bits = group.iter().chain(&[0; 2]).take(3).fold(0, |bits, byte| bits << 8 | usize::from(*byte));
+        (0..4).for_each(|place| out.push(if place > group.len() { '=' } else { LETTERS[bits >> (18 - 6 * place) & 63].into() }));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{base64, text};
+
+    #[test]
+    fn bytes_come_back() {
+        assert_eq!(["", "f", "fo", "foo", "foob"].map(|text| base64(text.as_bytes())), ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]);
+        let bytes: Vec<u8> = (0..=255).collect();
+        let text = text(&bytes);
+        assert_eq!(text.chars().map(|letter| letter as u32 as u8).collect::<Vec<_>>(), bytes);
+        assert!(!text.contains(['\0', '\r', '<', '\\', '`', '$']));
+    }
+}
