@@ -118,6 +118,8 @@ pub struct Outcome {
     pub answers: Vec<Answered>,
     /// Sectors erased and pages written.
     pub changes: u64,
+    /// What the program said over the pins of the serial line before its first picture, or between packets.
+    pub spoken: Vec<u8>,
     /// The bytes that came over the USB port.
     pub usb: Vec<u8>,
     /// How often the USB port had to wait because the board's receive buffer was full.

@@ -76,6 +76,8 @@ pub struct Switch {
 pub struct Outcome {
     /// Whether all pictures were sent.
     pub done: bool,
+    /// What the program said over the serial line before the first picture.
+    pub text: String,
     /// What the data sheet forbids.
     pub faults: Vec<String>,
     /// Changes of the processor's clock.

@@ -79,10 +79,15 @@ const sayByLine = ([byte, ...rest]) => {
   alarm.schedule(BYTE);
 };
 
+// What the program says over the line before its first picture, or between packets.
+const spoken = [];
+
 // A packet ends with a zero, and begins with one.
 const answers = [];
 let packet = [];
 const hear = (byte) => {
+  // What the program says as text is no packet.
+  if (packet.length === 0 && byte !== 0) return spoken.push(byte);
   packet.push(byte);
   if (byte !== 0 || packet.length === 1) return;
   answers.push({ bytes: packet, frames: frames.length, nanos: machine.time });
@@ -96,7 +101,8 @@ const told = [];
 line.onByte = (byte) => {
   if (request.messages) return request.usb ? undefined : hear(byte);
   // At its own pace it sends the message of a panic, if anything.
-  if (!request.keys) return;
+  if (!request.keys) return spoken.push(byte);
+  if (frames.length === 0 && byte !== SHOWN) return spoken.push(byte);
   told.push(byte);
   if (told[0] !== SHOWN) throw new Error(`the firmware sent 0x${byte.toString(16)} in place of a frame's number`);
   if (told.length < 5) return;
@@ -152,4 +158,4 @@ const [bus] = chip.spi;
 const spi = { mode: (bus.control0 >> 6) & 3, hz: bus.clockFrequency };
 const pulledUp = chip.gpio.flatMap((pin, index) => (pin.pullupEnabled ? [index] : []));
 const slices = chip.pwm.channels.map(({ top, div }) => ({ top, div }));
-console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, usb, held: pc?.held ?? 0, printed: Buffer.from(machine.printed).toString() }));
+console.log(JSON.stringify({ ended, frames, pulses, slices, answers, changes, spi, pulledUp, spoken, usb, held: pc?.held ?? 0, printed: Buffer.from(machine.printed).toString() }));

@@ -38,6 +38,7 @@ class Machine:
         self.received = [IN_STEP]
         self.keys = list(request["keys"])
         self.told = []
+        self.text = bytearray()
         self.stream = []
         self.pictures = 0
         self.watchdog_ms = None
@@ -145,6 +146,9 @@ class Machine:
 
     # A frame's number, in five bytes, ends a picture; letters and the wish for another one answer it.
     def tell(self, byte):
+        if not self.pictures and not self.told and byte != SHOWN:
+            self.text.append(byte)
+            return
         self.told.append(byte)
         if self.told[0] != SHOWN:
             raise ValueError(f"the program sent {byte:#x} in place of a frame's number")
@@ -210,7 +214,7 @@ with open(request["out"], "wb") as out:
 control = machine.registers.get(SPI1, 0)
 clocks = machine.clocks()
 print(json.dumps({
-    "done": machine.done, "pictures": machine.pictures, "faults": machine.faults, "switches": machine.switches, "pins": machine.pins(),
+    "done": machine.done, "text": machine.text.decode("latin-1"), "pictures": machine.pictures, "faults": machine.faults, "switches": machine.switches, "pins": machine.pins(),
     "crystal_polls": machine.crystal_polls, "watchdog_before_crystal": machine.watchdog_before_crystal, "clocks": clocks,
     "spi": {"mode": control & 3 if control & 3 in (0, 3) else (control & 1) | control & 2, "hz": clocks["apb2"] / (2 << (control >> 3 & 7))},
     "baud": clocks["apb2" if SERIAL >> 16 & 1 else "apb1"] / max(machine.registers.get(SERIAL + 8, 0), 1),

@@ -143,7 +143,7 @@ fn a_display_that_does_not_answer_is_set_up_when_it_does() {
 }
 
 #[test]
-fn the_receive_pin_is_pulled_up() {
+fn the_receive_pin_is_pulled_up_and_the_bus_is_reported() {
     if setup::host_only("the Pico's pins") {
         return;
     }
@@ -151,6 +151,9 @@ fn the_receive_pin_is_pulled_up() {
     let outcome = Request::new(&image, OLED).pictures(2).run().unwrap();
     // Receive, I2C, buttons.
     assert_eq!(outcome.pulled_up, [1, 4, 5, 10, 11, 12, 13, 14]);
+    assert_eq!(String::from_utf8_lossy(&outcome.spoken), "I2C: 0x3c\r\n");
+    let nothing = Request::new(&image, OLED).plugs(&[(0.0, "out")]).pictures(2).run().unwrap();
+    assert_eq!(String::from_utf8_lossy(&nothing.spoken), "I2C: nothing answers\r\n");
 }
 
 #[test]

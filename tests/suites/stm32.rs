@@ -60,6 +60,9 @@ fn the_black_pill_shows_on_the_ssd1306_what_the_host_shows() {
     for address in [0x3c, 0x3d] {
         let outcome = Request { display: Some(address), ..Request::new(image.elf(), &KEYS) }.run().unwrap();
         is_right(&outcome);
+        assert_eq!(outcome.text, format!("I2C: {address:#04x}\r\n"));
+        let led = Pin { mode: 1, drain: 0, speed: 0, pull: 0, function: 0 };
+        assert_eq!(outcome.pins["PC13"], led);
         assert!(outcome.crystal_polls > 0 && outcome.watchdog_before_crystal);
         let bus = Pin { mode: 2, drain: 1, speed: 0, pull: 1, function: 4 };
         assert_eq!([outcome.pins["PB6"], outcome.pins["PB7"]], [bus; 2]);

@@ -2,8 +2,8 @@
 
 use crate::placeholder;
 use board_common::cortex_m::SysTick;
-use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
-use board_drivers::{Mono128x64, Ssd1306};
+use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons, report_bus};
+use board_drivers::{Heartbeat, Mono128x64, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 
@@ -14,14 +14,18 @@ pub const CPU_HZ: u32 = 16_000_000;
 // YOUR BOARD: give it the chip's peripherals, and replace each placeholder by a driver of the chip's own crate.
 pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
     // Any `embedded_hal::i2c::I2c` of at most 400 kHz. Enable the pull-ups of both pins.
-    let i2c = placeholder::Bus;
+    let mut i2c = placeholder::Bus;
     // 115,200 baud: any port of `embedded_hal_nb::serial` in `NbSerial`, or two functions in `FnSerial`.
-    let serial = NbSerial(placeholder::Port);
+    let mut serial = NbSerial(placeholder::Port);
+    // The addresses that answer, as a line over the serial port: for who wires a display and sees nothing.
+    report_bus(&mut serial, &mut i2c);
+    // An LED that blinks while pictures are sent, whether the display answers or not. A board without one passes the display itself.
+    let display = Heartbeat::new(Ssd1306::new(i2c), placeholder::Pin);
     // Any `embedded_hal::digital::InputPin` with a pull-up: up, down, left, right and select. A board without buttons has `NoButtons`.
     let buttons = five_buttons([placeholder::Pin; 5]);
     // On another processor than a Cortex-M: `TickTimer`, over a free-running counter.
     let timer = SysTick::<CPU_HZ>::new();
     // A watchdog that resets the board after 2 s.
     let feed_watchdog = || {};
-    SharedBoard::new(Ssd1306::new(i2c), serial, buttons, timer, feed_watchdog)
+    SharedBoard::new(display, serial, buttons, timer, feed_watchdog)
 }

@@ -1,7 +1,7 @@
 //! Drivers that do nothing, so that the template builds. Remove this file once nothing uses it.
 
 use core::convert::Infallible;
-use embedded_hal::digital::{self, InputPin};
+use embedded_hal::digital::{self, InputPin, OutputPin};
 use embedded_hal::i2c::{self, I2c, NoAcknowledgeSource, Operation};
 use embedded_hal_nb::nb::{self, Error::WouldBlock};
 use embedded_hal_nb::serial::{self, Read, Write};
@@ -42,7 +42,7 @@ impl Read for Port {
     }
 }
 
-/// The pin of a button that is never pressed.
+/// The pin of a button that is never pressed, and of an LED that never shines.
 #[derive(Clone, Copy)]
 pub struct Pin;
 
@@ -57,5 +57,15 @@ impl InputPin for Pin {
 
     fn is_low(&mut self) -> Result<bool, Infallible> {
         Ok(false)
+    }
+}
+
+impl OutputPin for Pin {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        Ok(())
     }
 }

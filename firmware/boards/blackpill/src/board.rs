@@ -3,7 +3,10 @@
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
+#[cfg(not(feature = "spi"))]
+use board_common::report_bus;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
+use board_drivers::Heartbeat;
 #[cfg(not(feature = "spi"))]
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
@@ -48,22 +51,28 @@ pub fn new(
     let mut watchdog = crate::watchdog::start(parts.IWDG, &parts.DBGMCU);
     let source = if crystal_starts(&parts.RCC) { rcc::Config::hse(CRYSTAL_HZ.Hz()) } else { rcc::Config::hsi() };
     let mut clocks = parts.RCC.freeze(source.sysclk(CPU_HZ.Hz()));
-    let (a, b) = (parts.GPIOA.split(&mut clocks), parts.GPIOB.split(&mut clocks));
+    let (a, b, c) = (parts.GPIOA.split(&mut clocks), parts.GPIOB.split(&mut clocks), parts.GPIOC.split(&mut clocks));
     // Without an adapter, the pull-up keeps the line idle.
     let serial =
         Serial::new(parts.USART1, (a.pa9, a.pa10.internal_pull_up(true)), Config::default().baudrate(BAUD.bps()), &mut clocks);
     let Ok(serial) = serial else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
+    #[cfg_attr(feature = "spi", allow(unused_mut))]
+    let mut serial = NbSerial(serial);
     #[cfg(not(feature = "spi"))]
     let display = {
         // Without a display, the pull-ups keep the bus idle.
         let pins = (b.pb6.internal_pull_up(true), b.pb7.internal_pull_up(true));
         let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-        new(parts.I2C1.i2c(pins, 400.kHz(), &mut clocks))
+        let mut bus = parts.I2C1.i2c(pins, 400.kHz(), &mut clocks);
+        report_bus(&mut serial, &mut bus);
+        new(bus)
     };
     #[cfg(feature = "spi")]
     let display = crate::spi_display::new(parts.SPI1, (a.pa4, a.pa5, a.pa7, b.pb0, b.pb1), &mut clocks);
+    // The board's own LED.
+    let display = Heartbeat::new(display, c.pc13.into_push_pull_output());
     // The last one is the board's own.
     let buttons = five_buttons([
         b.pb12.into_pull_up_input().erase(),
@@ -72,7 +81,7 @@ pub fn new(
         b.pb15.into_pull_up_input().erase(),
         a.pa0.into_pull_up_input().erase(),
     ]);
-    SharedBoard::new(display, NbSerial(serial), buttons, SysTick::<CPU_HZ>::new(), move || watchdog.feed())
+    SharedBoard::new(display, serial, buttons, SysTick::<CPU_HZ>::new(), move || watchdog.feed())
 }
 
 /// Starts the crystal, and returns whether it runs within about 0.1 s; usual ones take 2 ms. Without one the processor runs from its internal

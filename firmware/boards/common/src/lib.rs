@@ -2,6 +2,7 @@
 //! and `run_emulated` are the program. A board's own crate has its pins, clocks, memory map and interrupt handlers.
 #![no_std]
 
+mod bus_report;
 mod buttons;
 mod capacity;
 #[cfg(feature = "cortex-m")]
@@ -25,6 +26,7 @@ mod ticks;
 pub mod uart_rx;
 
 pub use board_drivers::Mono128x64;
+pub use bus_report::report_bus;
 pub use buttons::{ButtonSource, Buttons, NoButtons, five_buttons, two_buttons};
 pub use capacity::Capacity;
 pub use embedded_storage::nor_flash;

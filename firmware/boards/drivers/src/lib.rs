@@ -4,13 +4,16 @@
 
 pub mod color_panel;
 mod display;
+mod heartbeat;
 pub mod indexed;
 pub mod led_matrix;
 pub mod nrf52;
+pub mod scan;
 pub mod servo;
 pub mod ssd1306;
 
 pub use color_panel::ColorPanel;
 pub use display::Display;
+pub use heartbeat::Heartbeat;
 pub use servo::Servo;
 pub use ssd1306::{Mono128x64, Ssd1306};

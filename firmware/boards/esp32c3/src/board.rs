@@ -1,6 +1,6 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
-use board_common::{Capacity, FnSerial, PanicBoard, SharedBoard, TickTimer, five_buttons};
+use board_common::{Capacity, FnSerial, PanicBoard, SharedBoard, TickTimer, five_buttons, report_bus};
 use board_drivers::{Mono128x64, Ssd1306};
 use esp_hal::gpio::{Input, InputConfig, Pull};
 use esp_hal::i2c::master::{self, I2c};
@@ -36,8 +36,6 @@ pub fn new(
     let i2c = I2c::new(parts.I2C0, master::Config::default().with_frequency(Rate::from_khz(400)));
     let serial = Uart::new(parts.UART0, uart::Config::default().with_baudrate(BAUD));
     let (Ok(i2c), Ok(serial)) = (i2c, serial) else { unreachable!("bus and port support these rates") };
-    let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-    let display = new(i2c.with_sda(sda).with_scl(scl));
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
     let (mut rx, mut tx) = serial.with_tx(tx).with_rx(rx).split();
@@ -52,6 +50,10 @@ pub fn new(
         // A byte with an error is dropped.
         rx.read_buffered(&mut byte).ok().filter(|read| *read > 0).map(|_| byte[0])
     };
+    let mut serial = FnSerial { send, poll };
+    let mut bus = i2c.with_sda(sda).with_scl(scl);
+    report_bus(&mut serial, &mut bus);
+    let display = if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) };
     let pull_up = InputConfig::default().with_pull(Pull::Up);
     let buttons = five_buttons([
         Input::new(up, pull_up),
@@ -73,5 +75,5 @@ pub fn new(
     let mut watchdog = TimerGroup::new(parts.TIMG0).wdt;
     watchdog.set_timeout(MwdtStage::Stage0, WATCHDOG);
     watchdog.enable();
-    SharedBoard::new(display, FnSerial { send, poll }, buttons, timer, move || watchdog.feed())
+    SharedBoard::new(display, serial, buttons, timer, move || watchdog.feed())
 }

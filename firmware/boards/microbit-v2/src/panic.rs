@@ -26,7 +26,7 @@ fn set_up() -> impl PanicBoard<Mono128x64> {
     // Safety: the code that had the peripherals does not run any more.
     let parts = unsafe { Peripherals::steal() };
     let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));
-    let oled = oled::new(parts.TWIM0, p0.p0_26.into_floating_input().degrade(), p1.p1_00.into_floating_input().degrade());
+    let oled = oled::new(parts.TWIM0, p0.p0_26.into_floating_input().degrade(), p1.p1_00.into_floating_input().degrade(), |_| {});
     leds::set(&CROSS);
     // Without the serial line, which cannot be set up twice.
     (oled, watchdog::start(parts.WDT))

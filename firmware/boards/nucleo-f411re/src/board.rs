@@ -3,9 +3,11 @@
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
+#[cfg(not(feature = "spi"))]
+use board_common::report_bus;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
 #[cfg(not(feature = "spi"))]
-use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
+use board_drivers::{Heartbeat, Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 #[cfg(feature = "spi")]
@@ -48,11 +50,16 @@ pub fn new(
     };
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
+    #[cfg_attr(feature = "spi", allow(unused_mut))]
+    let mut serial = NbSerial(serial);
     #[cfg(not(feature = "spi"))]
     let display = {
         // Without a display, the pull-ups keep the bus idle. The pins are D15 and D14.
-        let bus = parts.I2C1.i2c((b.pb8.internal_pull_up(true), b.pb9.internal_pull_up(true)), 400.kHz(), &mut clocks);
-        if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) }
+        let mut bus = parts.I2C1.i2c((b.pb8.internal_pull_up(true), b.pb9.internal_pull_up(true)), 400.kHz(), &mut clocks);
+        report_bus(&mut serial, &mut bus);
+        let display = if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) };
+        // The board's own LED, whose pin is the clock of displays over SPI.
+        Heartbeat::new(display, a.pa5.into_push_pull_output())
     };
     #[cfg(feature = "spi")]
     let display = crate::spi_display::new(parts.SPI1, (b.pb6, a.pa5, a.pa7, c.pc7, a.pa9), &mut clocks);
@@ -64,5 +71,5 @@ pub fn new(
         a.pa8.into_pull_up_input().erase(),
         c.pc13.into_pull_up_input().erase(),
     ]);
-    SharedBoard::new(display, NbSerial(serial), buttons, SysTick::<CPU_HZ>::new(), move || watchdog.feed())
+    SharedBoard::new(display, serial, buttons, SysTick::<CPU_HZ>::new(), move || watchdog.feed())
 }

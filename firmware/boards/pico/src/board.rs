@@ -9,7 +9,10 @@ use crate::rp_hal::{Sio, Watchdog};
 #[cfg(feature = "spi")]
 use crate::spi_display::{PanicPicture, Picture};
 use board_common::cortex_m::SysTick;
+#[cfg(not(feature = "spi"))]
+use board_common::report_bus;
 use board_common::{Capacity, NbSerial, PanicBoard, SharedBoard, five_buttons};
+use board_drivers::Heartbeat;
 #[cfg(not(feature = "spi"))]
 use board_drivers::{Mono128x64 as Picture, Mono128x64 as PanicPicture, Ssd1306};
 use pantin_app::Board;
@@ -34,21 +37,26 @@ pub fn new(
     let Ok(serial) = serial.enable(config, CPU_HZ.Hz()) else { unreachable!("the port supports this baud rate") };
     #[cfg(feature = "buffered")]
     let serial = crate::uart_rx::listen(serial);
-    let serial = NbSerial(serial);
-    #[cfg(feature = "usb")]
-    let serial = crate::usb::start(serial, usb_clock, &mut resets);
-    #[cfg(not(feature = "usb"))]
-    let _ = usb_clock;
+    #[cfg_attr(feature = "spi", allow(unused_mut))]
+    let mut serial = NbSerial(serial);
     #[cfg(not(feature = "spi"))]
     let display = {
         let (sda, scl) = (pins.gpio4.reconfigure(), pins.gpio5.reconfigure());
         let bus = crate::rp_hal::I2C::i2c0(parts.I2C0, sda, scl, 400.kHz(), &mut resets, CPU_HZ.Hz());
+        let mut bus = crate::i2c::Bus::new(bus);
+        report_bus(&mut serial, &mut bus);
         let new = if cfg!(feature = "sh1106") { Ssd1306::sh1106 } else { Ssd1306::new };
-        new(crate::i2c::Bus::new(bus))
+        new(bus)
     };
     #[cfg(feature = "spi")]
     let display =
         crate::spi_display::new(parts.SPI0, (pins.gpio17, pins.gpio18, pins.gpio19, pins.gpio20, pins.gpio21), &mut resets);
+    #[cfg(feature = "usb")]
+    let serial = crate::usb::start(serial, usb_clock, &mut resets);
+    #[cfg(not(feature = "usb"))]
+    let _ = usb_clock;
+    // The board's own LED.
+    let display = Heartbeat::new(display, pins.gpio25.into_push_pull_output());
     let buttons = five_buttons([
         pins.gpio10.into_pull_up_input().into_dyn_pin(),
         pins.gpio11.into_pull_up_input().into_dyn_pin(),
