@@ -59,7 +59,7 @@ pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
 pub const FACE: [&str; 1] = ["pantin-face.wasm"];
 /// What it loads too for a bank with a state machine, or for a table of poses.
-pub const CHARACTER: [&str; 1] = ["pantin-character.wasm"];
+pub const CHARACTER: [&str; 2] = ["pantin-character.wasm", "pantin-character.js"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
 
@@ -72,7 +72,7 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         write(&out.join(name), &module(package, features, profile)?)?;
     }
     let page = listed(&paths::root().join("web/page"))?;
-    let player = [PLAYER[0], EXPORT[0]].map(|script| paths::root().join("web/packages/player").join(script));
+    let player = [PLAYER[0], EXPORT[0], CHARACTER[1]].map(|script| paths::root().join("web/packages/player").join(script));
     for entry in page.into_iter().chain(player) {
         let name = entry.file_name().unwrap_or_default();
         let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;

@@ -103,39 +103,6 @@ function make(parent, name, attributes, space = "http://www.w3.org/1999/xhtml") 
 
 const SVG = "http://www.w3.org/2000/svg";
 
-// The clips of a bank (decoder/FORMAT.md 16): its rig, and each clip's name and file.
-function bankOf(file) {
-  let at = 3;
-  const number = () => {
-    for (let value = 0, shift = 0; shift < 35; shift += 7) {
-      if (at >= file.length) break;
-      const byte = file[at++];
-      value += (byte & 127) * 2 ** shift;
-      if (byte < 128) return value;
-    }
-    throw new Error("the bank ends early");
-  };
-  const take = (length) => {
-    if (at + length > file.length) throw new Error("the bank ends early");
-    return file.subarray(at, (at += length));
-  };
-  const sections = {};
-  while (at < file.length) sections[file[at++]] = take(number());
-  const [rig, contents, clips] = [1, 2, 3].map((kind) => sections[kind]);
-  if (!rig || !contents || !clips) throw new Error("the bank ends early");
-  // A fourth section is a state machine.
-  const machine = !!sections[4];
-  const found = [];
-  let next = 0;
-  file = contents;
-  // The last two bytes are a checksum; each clip has its own.
-  for (at = 0; at < contents.length - 2; ) {
-    const name = new TextDecoder().decode(take(number()));
-    const length = number();
-    found.push({ name, file: clips.subarray(next, (next += length)) });
-  }
-  return { rig, clips: found, machine };
-}
 const isBank = (file) => file[0] === 0x50 && file[1] === 0x62;
 
 // Where there is no page, as in Node, the class can be imported but not used.
@@ -154,6 +121,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #wanted = null;
   #seen = false;
   #held = false;
+  // What steers a character.
+  #actor = null;
   // Sixteenths of a pixel by which strokes are moved to the right.
   #aside = 0;
   #tones = [];
@@ -450,9 +419,14 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
           }
           const file = new Uint8Array(await new Blob(whole).arrayBuffer());
           signal.throwIfAborted();
-          const bank = bankOf(file);
-          if (bank.machine && clip === null) return await this.#steer(file, bank, signal, eager);
-          value = this.#chosen(bank, clip);
+          const known = await import("./pantin-character.js");
+          signal.throwIfAborted();
+          const bank = known.bankOf(file);
+          if (bank.machine && clip === null) return await this.#steer(file, bank, known, signal, eager);
+          this.clips = bank.clips.map(({ name }) => name);
+          value = known.chosen(bank, clip);
+          this.total = value.length;
+          wasm.apart(at, bank.rig.length);
           [done, whole] = [false, null];
         }
         if (done) break;
@@ -482,98 +456,54 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     }
   }
 
-  // Puts a bank's rig into the module's memory, and returns the clip that was asked for, or the first, behind it.
-  #chosen({ rig, clips }, name) {
-    this.clips = clips.map((clip) => clip.name);
-    const clip = name === null ? clips[0] : clips.find((clip) => clip.name === name);
-    const names = this.clips.join(", ");
-    if (!clip) throw new Error(`the bank has no clip ${name}; it has ${names}`);
-    this.#seat.wasm.apart(this.#seat.at, rig.length);
-    const both = new Uint8Array(rig.length + clip.file.length);
-    both.set(rig);
-    both.set(clip.file, rig.length);
-    this.total = both.length;
-    return both;
-  }
-
   // Plays the state machine of a bank.
-  async #steer(file, { clips }, signal, eager) {
+  async #steer(file, { clips }, { steer }, signal, eager) {
     const { wasm, at } = await this.#change(signal);
     const place = this.#room(file.length);
     bytes(wasm, place).set(file);
     [this.received, this.total, this.clips] = [file.length, file.length, clips.map(({ name }) => name)];
     this.#check(wasm.machine(at, place, file.length));
-    const names = (kind) => {
-      const found = [];
-      while (wasm.name(at, kind, found.length)) found.push(this.#name());
-      return found;
-    };
-    [this.states, this.inputs] = [names(0), names(1)];
-    this.parameters = names(2).map((name, index) => ({ name, range: [0, 1].map((which) => wasm.range(at, index, which)), value: wasm.range(at, index, 2) }));
-    this.#pass(0);
+    this.#actor = steer(this, wasm, at, () => this.#event(), () => this.#shown(), (name, detail) => this.#dispatch(name, detail));
+    this.#actor.pass(0);
     this.#aim();
     if (eager) this.play();
   }
 
-  // The name that the module's facts point to.
-  #name() {
-    const { eventNameAt, eventNameLength } = this.#known();
-    return new TextDecoder().decode(bytes(this.#seat.wasm, eventNameAt, eventNameLength));
+  // The event that the module's facts have; or a name alone.
+  #event() {
+    const { eventFrame, eventId, eventNameAt, eventNameLength } = this.#known();
+    return { frame: eventFrame, id: eventId, name: new TextDecoder().decode(bytes(this.#seat.wasm, eventNameAt, eventNameLength)) };
   }
 
-  // Lets the character's time pass, in microseconds.
-  #pass(time) {
-    const { wasm, at } = this.#seat;
-    const state = wasm.update(at, time);
-    const name = this.states[state & 255];
-    this.#shown();
-    for (let index = 0; wasm.passed(at, index); index += 1) {
-      const { eventFrame, eventId } = this.#known();
-      this.#dispatch("heard", { frame: eventFrame, id: eventId, name: this.#name() });
-    }
-    if (name === this.state) return;
-    this.state = name;
-    this.#dispatch("state", name);
-  }
-
-  #input(name, what) {
-    const index = this.inputs.indexOf(name);
-    if (index < 0) throw new RangeError(`the state machine has no input ${name}; it has ${this.inputs.join(", ") || "none"}`);
-    this.#seat.wasm.input(this.#seat.at, index, what);
+  #steering() {
+    if (!this.#actor) throw new RangeError("there is no state machine");
+    return this.#actor;
   }
 
   // Lets a character's time pass, in seconds, as playing does.
   advance(seconds) {
-    if (this.states.length) this.#pass(Math.round(seconds * 1e6));
+    if (this.states.length) this.#actor.pass(Math.round(seconds * 1e6));
   }
 
   // Fires an input of the state machine once.
   fire(name) {
-    this.#input(name, 2);
+    this.#steering().input(name, 2);
   }
 
   // Holds an input down, or lets it go.
   hold(name, down = true) {
-    this.#input(name, +!!down);
+    this.#steering().input(name, +!!down);
   }
 
   // Sets a parameter, within its range.
   set(name, value) {
-    const index = this.parameters.findIndex((parameter) => parameter.name === name);
-    if (index < 0) throw new RangeError(`the state machine has no parameter ${name}`);
-    const parameter = this.parameters[index];
-    const [least, most] = parameter.range;
-    parameter.value = Math.max(least, Math.min(most, Math.round(value)));
-    this.#seat.wasm.set(this.#seat.at, index, parameter.value);
+    this.#steering().set(name, value);
   }
 
   // The clip's events, in the order of their frames.
   #events() {
     const [{ wasm, at }, events] = [this.#seat, []];
-    while (events.length < MOST_EVENTS && wasm.event(at, events.length)) {
-      const { eventFrame, eventId } = this.#known();
-      events.push({ frame: eventFrame, id: eventId, name: this.#name() });
-    }
+    while (events.length < MOST_EVENTS && wasm.event(at, events.length)) events.push(this.#event());
     return events;
   }
 
@@ -730,7 +660,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const elapsed = Math.max(0, now - this.#before);
     this.#before = now;
     // A character has no frames of its own.
-    if (this.states.length) return this.#pass(Math.round(Math.min(elapsed, 1000) * 1000 * this.#speed));
+    if (this.states.length) return this.advance((Math.min(elapsed, 1000) / 1000) * this.#speed);
     if (!playable || this.#held || this.#wanted) return;
     const range = this.#range();
     const [first, end] = range;
