@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let tasks = with_options_that_apply(arguments, tasks(arguments, &found.motions)?)?;
     let label = |task: &Arguments| task.input.strip_prefix(from).unwrap_or(&task.input).display().to_string();
     let labels: Vec<String> = tasks.iter().map(label).collect();
-    convert_all(arguments, &tasks, &labels, Some(found.others))
+    convert_all(arguments, tasks, labels, Some(found.others))
 }
 
 /// Converts several files, each to a clip of its name: in the folder `--output`, or beside it.
@@ -59,7 +59,7 @@ pub fn run_several(arguments: &Arguments) -> Result<()> {
     one_clip_each(&tasks, |task| task.input.display().to_string())?;
     let tasks = with_options_that_apply(arguments, tasks)?;
     let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
-    convert_all(arguments, &tasks, &labels, None)
+    convert_all(arguments, tasks, labels, None)
 }
 
 /// Converts every animation of a file, each to a clip of its name.
@@ -89,7 +89,7 @@ pub fn run_animations(arguments: &Arguments) -> Result<()> {
         tasks.push(task);
     }
     one_clip_each(&tasks, |task| format!("animation {}", task.animation.as_deref().unwrap_or_default()))?;
-    convert_all(arguments, &tasks, &names, None)
+    convert_all(arguments, tasks, names, None)
 }
 
 /// `PREFIX-NAME.ptn`, or `NAME.ptn` in a folder. What a file system or a shell would read as more than a letter becomes `_`; an
@@ -204,10 +204,16 @@ fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     Ok(())
 }
 
-/// Converts all `tasks`, and reports a line for each under its label. Fails if one did.
-fn convert_all(arguments: &Arguments, tasks: &[Arguments], labels: &[String], others: Option<usize>) -> Result<()> {
-    different_files(tasks)?;
-    sources_stay(tasks)?;
+/// Converts all `tasks`, or those of the shard that is asked for, and reports a line for each under its label. Fails if one did.
+fn convert_all(arguments: &Arguments, tasks: Vec<Arguments>, labels: Vec<String>, others: Option<usize>) -> Result<()> {
+    // Of all, for other shards write at the same time.
+    different_files(&tasks)?;
+    sources_stay(&tasks)?;
+    let (tasks, labels) = match arguments.shard {
+        Some(shard) => (shard.of(tasks), shard.of(labels)),
+        None => (tasks, labels),
+    };
+    let (tasks, labels) = (tasks.as_slice(), labels.as_slice());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let bar = output::Pieces::new(tasks.len(), "files")?;
     let convert = |task: &Arguments| {

@@ -3,6 +3,7 @@
 use super::channel_bound::{ChannelBound, above_zero};
 use super::edits::Edits;
 use super::joint_error::{self, JointError};
+use super::shard::{self, Shard};
 use super::{bank, batch, check_fit, convert_bank, convert_list, default_output, same_form, up_axis};
 use crate::channel_error;
 use crate::edit::cut::cut;
@@ -59,6 +60,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
   pantin convert fox.glb --animation all -o clips
   pantin convert walk.bvh bow.bvh -o clips -j 2
   pantin convert captures -o clips --jobs 4 --max-error 0.5%
+  pantin convert captures -o clips --shard 2/8        part 2 of 8, on one of 8 machines
   pantin convert walk.bvh bow.bvh kick.bvh --same-form -o clips
   pantin convert captures -o moves.ptb
   pantin convert moves.list -o moves.ptb --same-form")]
@@ -136,6 +138,9 @@ pub struct Arguments {
     /// Number of files or animations to convert at a time [default: the number of CPUs]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) jobs: Option<u16>,
+    /// Convert only the I-th of N parts of the files, I from 1, so that several machines share the work of one command
+    #[arg(long, value_name = "I/N", value_parser = shard::parse, conflicts_with_all = ["list", "find_loop", "same_form"])]
+    pub(super) shard: Option<Shard>,
     /// Whether this is one file of a folder, whose messages the folder's table replaces.
     #[arg(skip)]
     silent: bool,
@@ -233,7 +238,13 @@ impl Arguments {
 
     /// The same for one file of a folder, without messages.
     pub(super) fn for_file(&self, input: PathBuf, output: PathBuf) -> Arguments {
-        Arguments { silent: true, jobs: None, keeps_existing: self.output.is_none(), ..self.for_motion(input, output) }
+        Arguments {
+            silent: true,
+            jobs: None,
+            shard: None,
+            keeps_existing: self.output.is_none(),
+            ..self.for_motion(input, output)
+        }
     }
 }
 
@@ -246,6 +257,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return find_loop(arguments);
     }
     if arguments.output.as_deref().is_some_and(bank::is_bank_name) {
+        ensure!(arguments.shard.is_none(), "--shard makes a part of the clips, and a bank holds all of them");
         return convert_bank::run(arguments);
     }
     if convert_list::is_list(&arguments.input) {
@@ -266,6 +278,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if all {
         return batch::run_animations(arguments);
     }
+    ensure!(arguments.shard.is_none(), "--shard divides several files, and this is one");
     let arguments = &arguments.with_output()?;
     arguments.check_outputs(&[])?;
     // Drawn when the motion is read.

@@ -17,6 +17,7 @@ pub mod play;
 pub mod render;
 mod same_form;
 pub mod serve;
+mod shard;
 pub mod steer;
 pub mod stream;
 mod stream_live;

@@ -248,3 +248,52 @@ fn every_warning_and_under_quiet_every_failure_is_printed() {
     assert!(!quiet.status.success() && quiet.stdout.is_empty());
     assert!(text(&quiet.stderr).contains("bad.bvh: ") && !text(&quiet.stderr).contains("gap.csv"), "{}", text(&quiet.stderr));
 }
+
+#[test]
+fn shards_make_the_clips_of_one_run() {
+    let folder = Folder::new("shards");
+    let table = |last: usize| format!("time,a\n0,0\n0.1,1\n0.2,0.{last}\n");
+    for number in 1..=5 {
+        folder.put(&format!("light{number}.csv"), &table(number));
+    }
+    // Their clips keep their whole names, whichever shard makes them.
+    folder.put("light1.tsv", &table(7).replace(',', "\t"));
+    let mut converted = 0;
+    for part in ["1/2", "2/2"] {
+        let done = folder.convert(&["--shard", part, "--json"]);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+        converted += json["files"].as_array().unwrap().len();
+        assert_eq!(folder.clips().len(), converted);
+    }
+    let of_shards: Vec<Vec<u8>> = folder.clips().iter().map(|name| std::fs::read(folder.clip(name)).unwrap()).collect();
+    let whole = folder.convert(&[]);
+    assert!(text(&whole.stderr).contains("0 converted, 6 up to date"), "{}", text(&whole.stderr));
+    std::fs::remove_dir_all(folder.0.join("out")).unwrap();
+    assert!(folder.convert(&[]).status.success());
+    let of_one: Vec<Vec<u8>> = folder.clips().iter().map(|name| std::fs::read(folder.clip(name)).unwrap()).collect();
+    assert!(of_one == of_shards);
+    // More shards than files: the last have nothing to do.
+    let empty = folder.convert(&["--shard", "20/20"]);
+    assert!(
+        empty.status.success() && text(&empty.stderr).contains("0 converted, 0 up to date, 0 refused"),
+        "{}",
+        text(&empty.stderr)
+    );
+}
+
+#[test]
+fn what_cannot_be_divided_has_no_shards() {
+    let folder = Folder::new("no-shards");
+    folder.put("light.csv", "time,a\n0,0\n0.1,1\n0.2,0.5\n");
+    for (arguments, why) in [
+        (["in/light.csv", "-o", "light.ptn", "--shard", "1/2"], "--shard divides several files"),
+        (["in", "-o", "moves.ptb", "--shard", "1/2"], "a bank holds all of them"),
+        (["in", "-o", "out", "--shard", "3/2"], "I from 1 to N"),
+    ] {
+        let refused =
+            Command::new(env!("CARGO_BIN_EXE_pantin")).arg("convert").args(arguments).current_dir(&folder.0).output().unwrap();
+        assert!(!refused.status.success() && text(&refused.stderr).contains(why), "{}", text(&refused.stderr));
+    }
+    assert!(!folder.0.join("out").exists());
+}
