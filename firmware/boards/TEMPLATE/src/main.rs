@@ -7,6 +7,7 @@ mod panic;
 mod placeholder;
 
 use board_common::{NoFlash, run_forever};
+// YOUR BOARD: `use CRATE as _;` until `board.rs` uses the chip's crate, which brings the interrupt vectors.
 
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
