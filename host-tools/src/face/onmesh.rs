@@ -22,7 +22,7 @@ pub struct Built {
 }
 
 /// Lines that are drawn through feature points, those that the mesh has.
-const LINES: [&[&str]; 12] = [
+const LINES: [&[&str]; 14] = [
     &["8.3", "8.5", "8.10", "8.1", "8.9", "8.6", "8.4"],
     &["8.3", "8.7", "8.2", "8.8", "8.4"],
     &["2.4", "2.6", "2.2", "2.7", "2.5"],
@@ -35,6 +35,9 @@ const LINES: [&[&str]; 12] = [
     &["3.8", "3.4", "3.12"],
     &["9.1", "9.15", "9.2"],
     &["2.13", "2.11", "2.1", "2.12", "2.14"],
+    // The cheeks, which unit 5 puffs: seen from the front nothing else tells.
+    &["5.3", "5.1", "2.13"],
+    &["5.4", "5.2", "2.14"],
 ];
 
 /// Builds units 1 to 5 on a mesh. A unit whose points are missing is left out. Fails if none can be built, or if the points contradict each other.
