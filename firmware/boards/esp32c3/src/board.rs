@@ -1,6 +1,6 @@
 //! The board: its display, serial line, buttons, timer and watchdog.
 
-use board_common::{Capacity, FnSerial, PanicBoard, SharedBoard, TickTimer, five_buttons, report_bus};
+use board_common::{Capacity, PanicBoard, SharedBoard, TickTimer, five_buttons, report_bus};
 use board_drivers::{Mono128x64, Ssd1306};
 use esp_hal::gpio::{Input, InputConfig, Pull};
 use esp_hal::i2c::master::{self, I2c};
@@ -10,11 +10,9 @@ use esp_hal::time::{Duration, Instant, Rate};
 use esp_hal::timer::PeriodicTimer;
 use esp_hal::timer::systimer::SystemTimer;
 use esp_hal::timer::timg::{MwdtStage, TimerGroup};
-use esp_hal::uart::{self, Uart};
 use pantin_app::Board;
 use pantin_figure::rotation::Rotation;
 
-const BAUD: u32 = 115_200;
 /// The frequency of the clock that [`Instant`] counts.
 const CLOCK_HZ: u32 = 1_000_000;
 /// The watchdog resets the board when the program hangs for this time.
@@ -34,23 +32,15 @@ pub fn new(
 ) -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
     let ((sda, scl), (tx, rx), (up, down, left, right, select)) = pins!(parts);
     let i2c = I2c::new(parts.I2C0, master::Config::default().with_frequency(Rate::from_khz(400)));
-    let serial = Uart::new(parts.UART0, uart::Config::default().with_baudrate(BAUD));
-    let (Ok(i2c), Ok(serial)) = (i2c, serial) else { unreachable!("bus and port support these rates") };
-    #[cfg(feature = "buffered")]
-    let serial = crate::uart_rx::listen(serial);
-    let (mut rx, mut tx) = serial.with_tx(tx).with_rx(rx).split();
-    let send = move |mut bytes: &[u8]| {
-        while !bytes.is_empty() {
-            let sent = tx.write(bytes).unwrap_or(bytes.len());
-            bytes = bytes.get(sent..).unwrap_or_default();
-        }
+    let Ok(i2c) = i2c else { unreachable!("the bus supports this rate") };
+    #[cfg(not(feature = "usb"))]
+    let (mut serial, receive) = (crate::uart::new(parts.UART0, tx, rx), || {});
+    #[cfg(feature = "usb")]
+    let (mut serial, mut receive) = {
+        // The pins of the other port stay free.
+        let _ = (tx, rx);
+        crate::usb::new(parts.USB_DEVICE)
     };
-    let poll = move || {
-        let mut byte = [0];
-        // A byte with an error is dropped.
-        rx.read_buffered(&mut byte).ok().filter(|read| *read > 0).map(|_| byte[0])
-    };
-    let mut serial = FnSerial { send, poll };
     let mut bus = i2c.with_sda(sda).with_scl(scl);
     report_bus(&mut serial, &mut bus);
     let display = if cfg!(feature = "sh1106") { Ssd1306::sh1106(bus) } else { Ssd1306::new(bus) };
@@ -75,5 +65,9 @@ pub fn new(
     let mut watchdog = TimerGroup::new(parts.TIMG0).wdt;
     watchdog.set_timeout(MwdtStage::Stage0, WATCHDOG);
     watchdog.enable();
-    SharedBoard::new(display, serial, buttons, timer, move || watchdog.feed())
+    let feed = move || {
+        watchdog.feed();
+        receive();
+    };
+    SharedBoard::new(display, serial, buttons, timer, feed)
 }

@@ -6,8 +6,12 @@ include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/chip.rs"));
 
 mod board;
 mod panic;
-#[cfg(feature = "buffered")]
+#[cfg(not(feature = "usb"))]
+mod uart;
+#[cfg(all(feature = "buffered", not(feature = "usb")))]
 mod uart_rx;
+#[cfg(feature = "usb")]
+mod usb;
 
 use esp_hal::clock::CpuClock;
 
