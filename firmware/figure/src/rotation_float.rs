@@ -1,4 +1,4 @@
-//! Rotations in floating point: for cores with a floating-point unit.
+//! Rotations in floating point: for cores with a floating-point unit, and for comparison, as the integers take fewer instructions there too.
 //!
 //! Additions, multiplications and conversions alone, in the order in which they are written: a host computes the same bits. `micromath` has
 //! the estimate of an inverse root. Its sine is not used: it takes an angle in radians, and so spends most of its instructions on finding the
