@@ -1,6 +1,10 @@
 //! Describes how a clip codes each joint and what memory it takes to play and draw it: for `pantin info` and exported source text.
 
+use crate::encode::entropy::{Alphabet, Sink, cost};
+use crate::encode::segment::{Running, Segment};
 use anyhow::Result;
+use pantin::codec::layout::{START_MODE, segment_type};
+use pantin::codec::segment::{SLOPE, step};
 use pantin::{ChannelState, Clip, Kind, Player};
 use pantin_figure::{Canvas, FigureRenderer, JointInfo};
 
@@ -76,6 +80,62 @@ fn segments_within(clip: &Clip<'_>, most: u64) -> Result<Segments> {
         }
     }
     Ok(Segments { count, frames })
+}
+
+/// Adds up what symbols cost by their probabilities.
+#[derive(Default)]
+struct Bits(f64);
+
+impl Sink for Bits {
+    fn symbol(&mut self, alphabet: Alphabet, symbol: u32) {
+        self.0 += cost(alphabet.table(), symbol);
+    }
+
+    fn bits(&mut self, _: u32, count: u32) {
+        self.0 += f64::from(count);
+    }
+}
+
+/// Bits that the segments of each channel of the pose take in the clip's file, by the probabilities of their symbols; 0 for a channel that has none of its
+/// own. How channels begin is not in it, nor are the head and the CRCs.
+pub fn segment_bits(clip: &Clip<'_>) -> Result<Vec<f64>> {
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; clip.rig().channels()];
+    let mut player = Player::new(*clip, &mut states, &mut pose)?;
+    let begin = |state: &ChannelState| {
+        let [v, w, k] = state.rates();
+        (state.due(), Running { v, w, k, turn: 0, mode: START_MODE, step: state.step_index().unwrap_or(0) })
+    };
+    let mut running: Vec<(u8, Running)> = player.states().iter().map(begin).collect();
+    let mut bits = vec![0.0; clip.rig().channels()];
+    for _ in 1..clip.frames() {
+        player.step();
+        for (state, (due, before)) in player.states().iter().zip(&mut running) {
+            if *due == state.due() || state.follows().is_some() {
+                continue;
+            }
+            *due = state.due();
+            let mode = state.mode();
+            let (length, kind) = (mode & 15, mode >> 4);
+            let [_, w, k] = state.rates();
+            let steps = |value: i32, unit: u32| value / unit.max(1) as i32;
+            let has = |kinds: [u8; 2]| kinds.contains(&kind);
+            // The state is a frame past the segment's start: its acceleration has grown by the slope.
+            let segment = Segment {
+                mode,
+                w: if has([segment_type::W, segment_type::WK]) { steps(w.wrapping_sub(k), step(length, before.step)) } else { 0 },
+                k: if has([segment_type::K, segment_type::WK]) { steps(k, step(length | SLOPE, before.step)) } else { 0 },
+            };
+            let mut sum = Bits::default();
+            before.put_mode(mode, &mut sum);
+            before.start(segment, Some(&mut sum));
+            before.run(segment.length());
+            if let Some(bits) = bits.get_mut(state.slot()) {
+                *bits += sum.0;
+            }
+        }
+    }
+    Ok(bits)
 }
 
 /// Time of a seek for each segment that it passes, on a Cortex-M0 of 48 MHz at one instruction a cycle: 360 instructions (docs/BENCHMARKS.md).
@@ -156,6 +216,37 @@ fn axis(kind: Kind) -> Option<char> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::encode::{clip, rig};
+    use crate::expand;
+    use crate::fit::descent::Level;
+    use crate::fit::fit;
+
+    #[test]
+    fn bits_of_segments_are_those_that_the_encoder_wrote() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.ptn");
+        let bytes = std::fs::read(path).unwrap();
+        let motion = expand::expand(&Clip::new_checked(&bytes).unwrap()).unwrap();
+        let motion = crate::motion::Motion { looped: false, ..motion };
+        let coded = fit(&motion, Level::Fast.plan(0.5), 0.02, &mut |_| ()).unwrap();
+        let figure = rig::encode(&motion.rig).unwrap();
+        let file = clip::encode(&coded, &figure, false).unwrap();
+        let opened = Clip::new_checked(&file).unwrap();
+        let found = segment_bits(&opened).unwrap();
+
+        // Without segments, the symbols are those of the starts.
+        let parsed = pantin::Rig::new_checked(&figure).unwrap();
+        let (mut all, mut starts) = (Bits::default(), Bits::default());
+        clip::symbols(&coded, &parsed, &mut all);
+        clip::symbols(&clip::Coded { frames: 1, ..coded.clone() }, &parsed, &mut starts);
+        let sum: f64 = found.iter().sum();
+        assert!((sum - (all.0 - starts.0)).abs() < 1e-6 * all.0, "{sum}, not {}", all.0 - starts.0);
+        // rANS takes what the probabilities say, and its state's 4 bytes.
+        let motion_bytes = file.len() - opened.rig_len() - opened.head_len() - opened.crc_len();
+        assert!((all.0 / 8.0 - motion_bytes as f64).abs() < 16.0, "{} of {motion_bytes}", all.0 / 8.0);
+        for (bits, channel) in found.iter().zip(&coded.channels) {
+            assert_eq!(*bits > 0.0, !channel.segments.is_empty());
+        }
+    }
 
     #[test]
     fn clips_in_which_seeks_pass_many_segments_need_an_index() {

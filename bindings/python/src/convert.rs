@@ -70,6 +70,20 @@ pub fn code(imported: Imported, aim: Aim, read: u64, progress: &mut dyn FnMut(f6
     Ok((bytes, Value::from(fields).to_string()))
 }
 
+/// Fails if the options of a conversion are wrong.
+#[pyfunction]
+pub fn check_options(
+    py: Python<'_>,
+    max_error_cm: f64,
+    max_scalar_error: f64,
+    effort: &str,
+    fps: Option<f64>,
+    up: Option<&str>,
+) -> PyResult<()> {
+    let aim = Aim::new(max_error_cm, max_scalar_error, effort, fps);
+    aim.and_then(|_| up.map_or(Ok(()), |up| direction(up).map(drop))).map_err(|error| exception(py, &error, None))
+}
+
 /// Converts a motion file: the clip, and its report as JSON.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]

@@ -1,12 +1,15 @@
 //! What a clip is: its rig, its time, its events.
 
+use crate::array::floats;
 use crate::error::exception;
 use anyhow::{Error, Result, bail};
 use pantin::{Clip, OpenError};
 use pantin_tools::encode::rig;
-use pantin_tools::events;
+use pantin_tools::facts::segment_bits;
 use pantin_tools::import::up;
+use pantin_tools::{budget, events};
 use pyo3::prelude::*;
+use pyo3::types::PyByteArray;
 use serde_json::json;
 
 /// Opens the bytes of a clip's file.
@@ -24,6 +27,18 @@ pub fn open(bytes: &[u8]) -> Result<Clip<'_>> {
 #[pyfunction]
 pub fn facts(py: Python<'_>, clip: &[u8]) -> PyResult<String> {
     text(clip).map_err(|error: Error| exception(py, &error, None))
+}
+
+/// Bytes that the segments of each channel take.
+#[pyfunction]
+pub fn channel_bytes<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, PyByteArray>> {
+    let bits = py.detach(|| -> Result<Vec<f64>> {
+        let clip = open(clip)?;
+        budget::check(clip.frames() as usize, clip.rig().channels())?;
+        segment_bits(&clip)
+    });
+    let bits = bits.map_err(|error| exception(py, &error, None))?;
+    Ok(floats(py, bits.into_iter().map(|bits| bits / 8.0)))
 }
 
 fn text(bytes: &[u8]) -> Result<String> {

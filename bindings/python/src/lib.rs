@@ -12,6 +12,7 @@ mod facts;
 mod given;
 mod image;
 mod poses;
+mod sources;
 
 use pyo3::pymodule;
 
@@ -21,17 +22,19 @@ mod _pantin {
     #[pymodule_export]
     use super::bank::{bank_clip, bank_names, pack, with_rig};
     #[pymodule_export]
-    use super::convert::convert;
+    use super::convert::{check_options, convert};
     #[pymodule_export]
     use super::error::PantinError;
     #[pymodule_export]
     use super::export::bvh;
     #[pymodule_export]
-    use super::facts::facts;
+    use super::facts::{channel_bytes, facts};
     #[pymodule_export]
     use super::given::convert_arrays;
     #[pymodule_export]
     use super::image::image;
     #[pymodule_export]
     use super::poses::{places, positions, raw, rotations, scalars};
+    #[pymodule_export]
+    use super::sources::{companions, is_motion};
 }

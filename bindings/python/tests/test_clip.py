@@ -88,6 +88,16 @@ def test_scalars_are_by_name(motions):
         clip.to_bvh("joy.bvh")
 
 
+def test_bytes_of_channels_are_part_of_the_file(walk, vectors):
+    found = walk.channel_bytes()
+    assert found.shape == (len(walk.channel_names),) and found.min() >= 0
+    moving = np.ptp(walk.raw(), axis=0) > 0
+    assert (found[~moving] == 0).all() and found[moving].mean() > 3
+    for path in [path for path in sorted(vectors.glob("*.ptn")) if not path.with_suffix(".rig").exists()]:
+        clip = pantin.Clip.open(path)
+        assert 0 <= clip.channel_bytes().sum() < clip.nbytes, path.name
+
+
 def test_a_picture_is_that_of_the_display(walk):
     image = walk.image(0)
     assert image.shape == (64, 128) and image.dtype == np.bool_ and 100 < image.sum() < 2000

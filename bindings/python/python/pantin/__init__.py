@@ -10,8 +10,9 @@ Arrays are numpy's, of 64-bit floats, with frames first. Rotations are quaternio
 
 from ._bank import Bank
 from ._clip import Clip
+from ._cluster import ray_convert
 from ._convert import convert
 from ._motion import Joint, Motion
 from ._pantin import PantinError
 
-__all__ = ["Bank", "Clip", "Joint", "Motion", "PantinError", "convert"]
+__all__ = ["Bank", "Clip", "Joint", "Motion", "PantinError", "convert", "ray_convert"]

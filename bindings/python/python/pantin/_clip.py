@@ -136,6 +136,14 @@ class Clip:
         values = np.frombuffer(_pantin.raw(self._bytes), np.int32)
         return values.reshape(self.frames, len(self.channel_names))
 
+    def channel_bytes(self) -> Floats:
+        """Bytes that the motion of each channel takes in the file, in the order of `channel_names`: (channels,).
+
+        Fractions of bytes are by the probabilities of the symbols. The rest of the file is the rig, how channels begin, events and checksums; a channel
+        that follows another takes 0.
+        """
+        return np.frombuffer(_pantin.channel_bytes(self._bytes), np.float64)
+
     def image(self, frame: int) -> npt.NDArray[np.bool_]:
         """The figure at a frame as a display of 128x64 pixels shows it, drawn by the firmware's code: (64, 128), True where it is lit."""
         return np.frombuffer(bytearray(_pantin.image(self._bytes, frame)), np.bool_).reshape(64, 128)

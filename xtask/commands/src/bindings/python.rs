@@ -13,6 +13,9 @@ use crate::wheels::{self, System, Tools, home};
 /// Versions of Python in which the README's program runs too, if they are installed.
 const OTHERS: [&str; 5] = ["python3.9", "python3.10", "python3.12", "python3.13", "python3.14"];
 
+/// What the test of `pantin.ray_convert` needs beside `pantin[ray]`: an S3 server and its client.
+const CLUSTER: [&str; 5] = ["s3fs", "moto[s3]", "flask", "flask-cors", "psutil"];
+
 /// Builds the wheel for Linux, installs it in a clean environment, and there runs its tests and the README's program as written.
 pub fn run(folder: &TempDir) -> Result<()> {
     let place = folder.path().join("wheel");
@@ -29,18 +32,38 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let mut copy = Command::new("cp");
     copy.arg("-r").arg(home().join("tests")).arg(&tests);
     output(copy)?;
-    let mut pytest = Command::new(environment.join("bin/python"));
-    pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).current_dir(&tests);
-    pytest.env("PANTIN_ROOT", paths::root()).env("PANTIN_TOOL", build::host_tool()?);
-    let printed = output(pytest)?.stdout;
-    println!("   {}", String::from_utf8_lossy(&printed).trim_end().lines().last().unwrap_or_default());
+    pytest(&environment, &tests, &[])?;
     let mut mypy = Command::new(environment.join("bin/python"));
     mypy.args(["-m", "mypy", "--strict", "-p", "pantin"]).current_dir(folder.path());
     output(mypy).context("types")?;
+    cluster(&environment, &wheel, &tests)?;
     for python in OTHERS {
         other(python, &wheel, folder)?;
     }
     Ok(())
+}
+
+/// Runs tests in an environment, and prints how many passed.
+fn pytest(environment: &Path, tests: &Path, arguments: &[&str]) -> Result<()> {
+    let mut pytest = Command::new(environment.join("bin/python"));
+    pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).args(arguments).current_dir(tests);
+    pytest.env("PANTIN_ROOT", paths::root()).env("PANTIN_TOOL", build::host_tool()?);
+    let printed = output(pytest)?.stdout;
+    println!("   {}", String::from_utf8_lossy(&printed).trim_end().lines().last().unwrap_or_default());
+    Ok(())
+}
+
+/// Runs the tests of `pantin.ray_convert` on a cluster of two nodes, if Ray has a package for this Python.
+fn cluster(environment: &Path, wheel: &Path, tests: &Path) -> Result<()> {
+    let package = format!("{}[ray]", wheel.display());
+    let packages: Vec<&str> = std::iter::once(package.as_str()).chain(CLUSTER).collect();
+    match wheels::pip(environment, &packages) {
+        Ok(()) => pytest(environment, tests, &["test_cluster.py"]).context("a cluster"),
+        Err(error) => {
+            println!("   cluster skipped: Ray cannot be installed: {error}");
+            Ok(())
+        }
+    }
 }
 
 /// Runs the README's program.
