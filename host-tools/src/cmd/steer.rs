@@ -19,6 +19,9 @@ use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;
 
+/// Columns and rows of a picture, and pictures of a sheet, where nothing else is asked for.
+const SIZE: [usize; 2] = [128, 64];
+const SHEET: u32 = 24;
 /// Pictures in a row of a sheet.
 const COLUMNS: usize = 6;
 
@@ -52,21 +55,21 @@ pub struct Arguments {
     /// Pictures per second
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=120))]
     fps: u16,
-    /// Columns and rows of a picture
-    #[arg(long, value_name = "COLUMNSxROWS", default_value = "128x64")]
-    size: Size,
-    /// Colours: a name, or paper and ink, as for pantin render
-    #[arg(long, default_value = "grey")]
-    palette: Palette,
-    /// Side to see the figure from: front, side, left, right, back, quarter, or degrees
-    #[arg(long, value_name = "SIDE", default_value = "quarter", allow_hyphen_values = true)]
-    view: Side,
+    /// Columns and rows of a picture [default: 128x64]
+    #[arg(long, value_name = "COLUMNSxROWS")]
+    size: Option<Size>,
+    /// Colours: a name, or paper and ink, as for pantin render [default: grey]
+    #[arg(long)]
+    palette: Option<Palette>,
+    /// Side to see the figure from: front, side, left, right, back, quarter, or degrees [default: quarter]
+    #[arg(long, value_name = "SIDE", allow_hyphen_values = true)]
+    view: Option<Side>,
     /// Use a fixed camera that sees the whole session instead of following the figure
     #[arg(long)]
     fixed: bool,
-    /// Pictures of a contact sheet
-    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=600))]
-    sheet: u32,
+    /// Pictures of a contact sheet [default: 24]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=600))]
+    sheet: Option<u32>,
 }
 
 /// What the file is, by its extension.
@@ -82,6 +85,34 @@ enum Format {
     Csv,
 }
 
+impl Arguments {
+    fn size(&self) -> [usize; 2] {
+        self.size.map_or(SIZE, |size| size.0)
+    }
+
+    fn palette(&self) -> Palette {
+        self.palette.clone().unwrap_or_default()
+    }
+
+    fn orbit(&self) -> i16 {
+        self.view.as_ref().map_or(View::default().orbit, |view| view.orbit)
+    }
+
+    /// Refuses options that an output of this kind cannot use.
+    fn check(&self, format: Format) -> Result<()> {
+        let pictures = [
+            ("--size", self.size.is_some()),
+            ("--palette", self.palette.is_some()),
+            ("--view", self.view.is_some()),
+            ("--fixed", self.fixed),
+        ];
+        let drawn = pictures.iter().find(|(_, given)| *given && format == Format::Csv);
+        ensure!(drawn.is_none(), "{} is for pictures", drawn.map_or("", |(name, _)| name));
+        ensure!(self.sheet.is_none() || format == Format::Png, "--sheet is for contact sheets (.png)");
+        Ok(())
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let Arguments { bank: path, session: script, output, .. } = arguments;
@@ -89,6 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let format = format_of(output, arguments.format)?;
     let format = format
         .with_context(|| format!("{}: expected a name that ends in .gif, .apng, .png or .csv, or --format", output.display()))?;
+    arguments.check(format)?;
     refuse_foreign(output, if format == Format::Csv { Wanted::Motion } else { Wanted::Picture })?;
     let bytes = input::read(path)?;
     let place = || path.display().to_string();
@@ -126,14 +158,14 @@ impl<'a> Shown<'a> {
 
     fn stage(&self) -> Result<Stage> {
         let track = if self.arguments.fixed { Track::Fixed } else { Track::Follow };
-        let view = View { orbit: self.arguments.view.orbit, track, ..View::default() };
-        Stage::new(self.bytes, self.arguments.size.0, view, Some(&self.replay))
+        let view = View { orbit: self.arguments.orbit(), track, ..View::default() };
+        Stage::new(self.bytes, self.arguments.size(), view, Some(&self.replay))
     }
 
     /// Whether lines are smooth, and by what pixels are enlarged.
     fn look(&self, easy: usize) -> (bool, usize) {
-        let size = self.arguments.size.0;
-        let smooth = is_smooth(size, &self.arguments.palette);
+        let size = self.arguments.size();
+        let smooth = is_smooth(size, &self.arguments.palette());
         (smooth, if smooth { 1 } else { easy_scale(easy, size) })
     }
 
@@ -141,7 +173,7 @@ impl<'a> Shown<'a> {
         let rate = f64::from(self.arguments.fps);
         let most = if format == Format::Gif { gif::MOST_A_SECOND } else { apng::MOST_A_SECOND };
         ensure!(rate <= most, "--fps {rate}: viewers show at most {most} pictures a second of this format");
-        let (palette, pictures) = (self.arguments.palette.clone(), self.pictures);
+        let (palette, pictures) = (self.arguments.palette(), self.pictures);
         let (smooth, scale) = self.look(EASY_TO_SEE);
         let mut stage = self.stage()?;
         let mut animation: Box<dyn Animation + '_> = match (format, smooth) {
@@ -159,10 +191,10 @@ impl<'a> Shown<'a> {
     }
 
     fn sheet(&self, out: &mut impl Write) -> Result<()> {
-        let palette = self.arguments.palette.clone();
+        let palette = self.arguments.palette();
         let (smooth, scale) = self.look(EASY_TO_SEE_IN_A_SHEET);
         let mut stage = self.stage()?;
-        let count = self.arguments.sheet.min(self.pictures);
+        let count = self.arguments.sheet.unwrap_or(SHEET).min(self.pictures);
         // Each the middle of an equal part.
         let wanted: Vec<u32> = (0..u64::from(count))
             .map(|index| ((2 * index + 1) * u64::from(self.pictures) / (2 * u64::from(count))) as u32)
@@ -177,7 +209,7 @@ impl<'a> Shown<'a> {
             }
             Ok(())
         })?;
-        let picture = self.arguments.size.0.map(|side| side * scale);
+        let picture = self.arguments.size().map(|side| side * scale);
         let columns = COLUMNS.min(cells.len());
         let layout = Layout { picture, columns, rows: cells.len().div_ceil(columns), gap: 6 };
         if layout.size().iter().any(|&side| side > usize::from(u16::MAX)) {

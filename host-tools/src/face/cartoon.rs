@@ -114,6 +114,7 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
                 props.push(Prop { name: name.into(), hidden: number - 1, places });
             }
             [kind @ ("fill" | "line"), shade, options, ref points @ ..] => {
+                ensure!(["-", "paired"].contains(&options), "{}: expected paired or -, found {options}", place());
                 let points = points.iter().map(|name| head.find(name)).collect::<Result<Vec<_>>>().with_context(place)?;
                 ensure!(points.len() >= if kind == "fill" { 3 } else { 2 }, "{}: too few points", place());
                 let filled = kind == "fill";

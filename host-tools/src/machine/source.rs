@@ -1,7 +1,10 @@
 //! The text file of a state machine.
 
 use anyhow::{Result, anyhow};
-use serde::Deserialize;
+use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::path::PathBuf;
 use toml::Spanned;
@@ -35,7 +38,8 @@ pub struct Parameter {
     /// Its name.
     pub name: Spanned<String>,
     /// Its least and greatest value.
-    pub range: [i16; 2],
+    #[serde(deserialize_with = "pair")]
+    pub range: (i16, i16),
     /// Its value at the start: the least one without it.
     pub first: Option<i16>,
 }
@@ -98,8 +102,10 @@ pub struct Transition {
     /// Cause: the clip's event of this name is passed.
     pub event: Option<String>,
     /// Cause: a parameter is greater than a number.
+    #[serde(default, deserialize_with = "some_pair")]
     pub above: Option<(String, i16)>,
     /// Cause: a parameter is less than a number.
+    #[serde(default, deserialize_with = "some_pair")]
     pub below: Option<(String, i16)>,
     /// How the difference of the poses goes away.
     #[serde(default)]
@@ -203,4 +209,31 @@ impl Transition {
         ];
         causes.into_iter().flatten().collect()
     }
+}
+
+/// Two values and no more: what follows would be passed over.
+fn pair<'de, D: Deserializer<'de>, A: Deserialize<'de>, B: Deserialize<'de>>(from: D) -> Result<(A, B), D::Error> {
+    struct Two<A, B>(PhantomData<(A, B)>);
+    impl<'de, A: Deserialize<'de>, B: Deserialize<'de>> Visitor<'de> for Two<A, B> {
+        type Value = (A, B);
+
+        fn expecting(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+            out.write_str("two values")
+        }
+
+        fn visit_seq<S: SeqAccess<'de>>(self, mut values: S) -> Result<(A, B), S::Error> {
+            let missing = |count| Error::invalid_length(count, &"two values");
+            let one = values.next_element()?.ok_or_else(|| missing(0))?;
+            let other = values.next_element()?.ok_or_else(|| missing(1))?;
+            match values.next_element::<IgnoredAny>()? {
+                None => Ok((one, other)),
+                Some(_) => Err(missing(3)),
+            }
+        }
+    }
+    from.deserialize_seq(Two(PhantomData))
+}
+
+fn some_pair<'de, D: Deserializer<'de>, A: Deserialize<'de>, B: Deserialize<'de>>(from: D) -> Result<Option<(A, B)>, D::Error> {
+    pair(from).map(Some)
 }

@@ -78,7 +78,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         let (name, place) = (parameter.name.get_ref(), file.at(parameter.name.span()));
         check_name(name).with_context(|| place.clone())?;
         ensure!(!parameters.contains(&name.as_str()), "{place}: two parameters are called {}", quoted(name));
-        let [least, most] = parameter.range;
+        let (least, most) = parameter.range;
         ensure!(least < most, "{place}: parameter {}: the range {least} to {most} is empty", quoted(name));
         let first = parameter.first.unwrap_or(least);
         ensure!(
@@ -127,7 +127,7 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     ];
     states.iter().chain(&rows).for_each(|row| out.extend(row));
     for parameter in &source.parameters {
-        let [least, most] = parameter.range;
+        let (least, most) = parameter.range;
         [least, most, parameter.first.unwrap_or(least)].iter().for_each(|value| out.extend(value.to_le_bytes()));
     }
     layers.iter().for_each(|(row, _)| out.extend(row));
@@ -261,6 +261,7 @@ impl<'s, 'b> Maker<'s, 'b> {
         ensure!(joints.len() <= NAME_BYTES, "joints: {} bytes of patterns; at most {NAME_BYTES}", joints.len());
         let mut states = u64::MAX;
         if let Some(names) = &layer.states {
+            ensure!(!names.is_empty(), "states: it has none, so the layer would never play");
             states = 0;
             for name in names {
                 states |= 1 << self.state(name)?;
@@ -285,7 +286,7 @@ impl<'s, 'b> Maker<'s, 'b> {
     /// The index of a transition's parameter. Fails if the parameter's range never reaches the threshold.
     fn possible(&self, name: &str, source: &Source, threshold: i16, above: bool) -> Result<u8> {
         let index = self.parameter(name)?;
-        let [least, most] = source.parameters[usize::from(index)].range;
+        let (least, most) = source.parameters[usize::from(index)].range;
         let name = quoted(name);
         ensure!(!above || threshold < most, "parameter {name} is at most {most}, so it is never above {threshold}");
         ensure!(above || threshold > least, "parameter {name} is at least {least}, so it is never below {threshold}");

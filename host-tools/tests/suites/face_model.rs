@@ -60,6 +60,8 @@ fn the_committed_cartoon_is_what_its_table_makes() {
         ("fill 255 - lip-corner lip-top lip-bottom", "view"),
         ("view 90 60 -90\nfill 255 - lip-corner nowhere lip-top", "nowhere"),
         ("view 90 60 -90\nzoom ear 2 0 0", "eye, brow or mouth"),
+        ("view 90 60 -90\nfill 255 pared eye-inner eye-outer lid-upper", "expected paired or -, found pared"),
+        ("view 90 60 -90\nfill 255 eye-inner eye-outer lid-upper lid-lower", "expected paired or -, found eye-inner"),
         ("view 90 60 -90\nzoom eye 200 0 0", "beyond"),
         ("smile", "line 1"),
         ("hidden 0 1,2 2", "3 to 32 corners"),

@@ -46,6 +46,26 @@ fn a_leg_in_metres_and_z_up_is_turned_to_cm_and_y_up() {
     assert!(leg.warnings.iter().any(|warning| warning.contains("1 cameras")), "{:?}", leg.warnings);
 }
 
+/// 24 frames a second are not exact in binary: a frame's time may fall short of its key's.
+#[test]
+fn a_stepped_curve_has_each_keys_value_at_its_frame() {
+    let list = |value: &dyn Fn(i64) -> i64| (0..25).map(|frame| value(frame).to_string()).collect::<Vec<_>>().join(",");
+    let keys = "\t\tKeyTime: *2 {\n\t\t\ta: 0,46186158000\n\t\t}\n\t\tKeyValueFloat: *2 {\n\t\t\ta: 0,50\n\t\t}\n\t\tKeyAttrFlags: *1 {\n\t\t\ta: 4\n\t\t}";
+    assert_eq!(LEG.matches(keys).count(), 1);
+    let stepped = format!(
+        "\t\tKeyTime: *25 {{\n\t\t\ta: {}\n\t\t}}\n\t\tKeyValueFloat: *25 {{\n\t\t\ta: {}\n\t\t}}\n\t\tKeyAttrFlags: *1 {{\n\t\t\ta: 2\n\t\t}}",
+        list(&|frame| frame * 46_186_158_000 / 24),
+        list(&|frame| frame * 37 % 50)
+    );
+    let (before, after) = LEG.split_once(keys).unwrap();
+    let (attributes, rest) = after.split_once("KeyAttrRefCount: *1 {\n\t\t\ta: 2").unwrap();
+    let leg = load(&format!("{before}{stepped}{attributes}KeyAttrRefCount: *1 {{\n\t\t\ta: 25{rest}")).unwrap();
+    let smile = leg.motion.values.last().unwrap();
+    for (frame, value) in smile.iter().enumerate() {
+        assert!((value - (frame * 37 % 50) as f64 / 100.0).abs() < 1e-6, "frame {frame}: {value}");
+    }
+}
+
 #[test]
 fn a_unit_that_is_none_is_said() {
     for unit in ["0", "-1"] {

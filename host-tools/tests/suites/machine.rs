@@ -116,6 +116,9 @@ fn what_is_wrong_is_named_with_its_line() {
             "no clip that plays there has an event `clap`",
         ),
         (format!("{state}transitions = [{{ to = \"walk\", above = [\"v\", 1] }}]\n"), "no [[parameter]] `v`"),
+        (format!("{state}[[parameter]]\nname = \"v\"\nrange = [0, 9, 10]\n"), "two values"),
+        (format!("{state}[[parameter]]\nname = \"v\"\nrange = [0]\n"), "two values"),
+        (format!("{state}transitions = [{{ to = \"walk\", above = [\"v\", 1, 2] }}]\n"), "two values"),
         (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", frames = 0 }}]\n"), "a transition of 0 frames"),
         (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", frames = 256 }}]\n"), "a transition of 256 frames"),
         (format!("{state}transitions = [{{ to = \"walk\", input = \"a\", seconds = -1.0 }}]\n"), "expected a time above 0"),
@@ -375,6 +378,7 @@ fn a_layer_is_checked_as_a_state_is() {
     for (text, part) in [
         (layer(""), "missing field `joints`"),
         (layer("joints = []"), "layer: joints: it has none"),
+        (layer("joints = [\"*\"]\nstates = []"), "layer: states: it has none"),
         (layer("joints = [\"wing\"]"), "layer: joints: `wing`"),
         (layer("joints = [\"*\"]\nstates = [\"fly\"]"), "layer: no state `fly`; there are `walk`"),
         (layer("joints = [\"*\"]\nseconds = 4.5"), "seconds: expected 0 to 3.98"),

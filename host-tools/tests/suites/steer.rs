@@ -156,6 +156,16 @@ fn the_command_writes_pictures_and_places() {
     assert!(table.starts_with("seconds,state,clip_frame,heading_degrees,root_x,"));
     let fixed = pantin(&["steer", "--fixed", "-o"], &[&path("f.gif"), &path("c.ptb"), &path("s.txt")]);
     assert!(fixed.status.success(), "{}", String::from_utf8_lossy(&fixed.stderr));
+    for (name, options, why) in [
+        ("x.csv", &["--size", "10x10"][..], "--size is for pictures"),
+        ("x.csv", &["--palette", "dusk"], "--palette is for pictures"),
+        ("x.csv", &["--view", "side"], "--view is for pictures"),
+        ("x.csv", &["--fixed"], "--fixed is for pictures"),
+        ("x.gif", &["--sheet", "3"], "--sheet is for contact sheets"),
+    ] {
+        let refused = pantin(&[&["steer"], options, &["-o"]].concat(), &[&path(name), &path("c.ptb"), &path("s.txt")]);
+        assert!(String::from_utf8_lossy(&refused.stderr).contains(why) && !path(name).exists(), "{options:?}");
+    }
     std::fs::write(path("wrong.txt"), "0.1 hold go\n0.2 press fly\n1 end").unwrap();
     let wrong = pantin(&["steer", "-o"], &[&path("b.gif"), &path("c.ptb"), &path("wrong.txt")]);
     let error = String::from_utf8_lossy(&wrong.stderr).into_owned();

@@ -201,10 +201,7 @@ pub const BOARDS: [Board; 9] = [
             part: I2C_PART,
             bus: Some(Bus::I2c),
             wires: &[["SCL", "P19"], ["SDA", "P20"]],
-            source: [
-                "src/board.rs",
-                "oled::new(parts.TWIM0, {}.into_floating_input().degrade(), {}.into_floating_input().degrade())",
-            ],
+            source: ["src/board.rs", "let (scl, sda) = ({}.into_floating_input().degrade(), {}.into_floating_input().degrade())"],
         }],
     },
     Board {
@@ -303,10 +300,7 @@ pub const BOARDS: [Board; 9] = [
             part: I2C_PART,
             bus: Some(Bus::I2c),
             wires: &[["SCL", "P0.27"], ["SDA", "P0.26"]],
-            source: [
-                "src/board.rs",
-                "oled::new(parts.TWIM0, {}.into_floating_input().degrade(), {}.into_floating_input().degrade())",
-            ],
+            source: ["src/board.rs", "let (scl, sda) = ({}.into_floating_input().degrade(), {}.into_floating_input().degrade())"],
         }],
     },
     Board {

@@ -55,6 +55,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     Ok(Source { motion: figure.motion, unit_known: true, error: figure.error, warnings })
 }
 
+/// Half of the step in which the format counts time, in seconds. A frame's time may be a little before that of its key, where a stepped curve still has the value of
+/// the key before.
+const HALF_A_TICK: f64 = 0.5 / 46_186_158_000.0;
+
 /// All stacks of the FBX file `path`.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
     let scene = open(path, &Files::default())?;
@@ -136,7 +140,7 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(Figure, usiz
     }
     let mut scalars: Vec<Vec<f64>> = vec![Vec::with_capacity(grid.frames); weights.len()];
     for frame in 0..grid.frames {
-        let time = grid.first + frame as f64 * grid.frame_time;
+        let time = grid.first + frame as f64 * grid.frame_time + HALF_A_TICK;
         let now = ufbx::evaluate_scene(scene, &stack.anim, time, ufbx::EvaluateOpts::default())
             .map_err(|error| anyhow!("frame {frame}: {}", one_line(&error.description)))?;
         for (joint, &node) in joints.iter_mut().zip(&kept) {
