@@ -67,6 +67,17 @@ pub fn err(output: &Output) -> String {
 }
 
 #[test]
+fn what_a_faces_options_cannot_do_is_said() {
+    let folder = Folder::new();
+    folder.put("ball.points", "8.3 31\n");
+    let output = folder.run(&["face", "model", "--cartoon", "--points", "ball.points", "-o", "a.model"]);
+    assert!(output.status.code() == Some(2) && !folder.path("a.model").exists(), "{}", err(&output));
+    let said = |arguments: &[&str]| err(&folder.done(&[&["face", "model", "--small", "-o"], arguments].concat()));
+    assert!(said(&["b.model", "--cartoon"]).contains("--small has no effect"));
+    assert!(!said(&["c.model"]).contains("no effect"));
+}
+
+#[test]
 fn a_faces_names_are_an_output_like_any_other() {
     let folder = Folder::new();
     let motion = folder.get("run.keys");

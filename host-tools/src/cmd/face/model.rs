@@ -25,7 +25,7 @@ pub struct Arguments {
     /// A mesh instead of Pantin's face: .obj, .wfm, .glb or .gltf with --points; without it the first mesh with morph targets of a .glb or .gltf
     mesh: Option<PathBuf>,
     /// The mesh's feature points: lines of an MPEG-4 number and a vertex counted from 0, as in `8.3 31`, or an .fdp of xface
-    #[arg(long, value_name = "FILE", requires = "mesh")]
+    #[arg(long, value_name = "FILE", requires = "mesh", conflicts_with = "cartoon")]
     points: Option<PathBuf>,
     /// How a unit moves: linear, improved, eased, or spherical with an angle of 2 to 120 degrees; may be given several times
     #[arg(long, value_name = "UNIT=KIND[:DEGREES]")]
@@ -72,7 +72,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     blueprint.choose_all(&arguments.interpolation)?;
     if arguments.small {
-        blueprint = small::small(&blueprint);
+        let small = small::small(&blueprint);
+        if (small.vertices(), small.curves.len()) == (blueprint.vertices(), blueprint.curves.len()) {
+            note!("--small has no effect: small displays show all of this face");
+        }
+        blueprint = small;
     }
     check_read(&files, &outputs)?;
     let bytes = compact::encode(&blueprint)?;
