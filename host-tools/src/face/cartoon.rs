@@ -71,14 +71,20 @@ pub fn build(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
 /// Builds a face with all that is in the eyes and the mouth, whether it is drawn or not. Otherwise like [`build`].
 pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     let (mut view, mut zooms, mut curves, mut jaw) = (None, Vec::new(), Vec::new(), 1.0);
+    let mut has_jaw = false;
     let (mut hidden, mut props): (Vec<Hidden>, Vec<Prop>) = (Vec::new(), Vec::new());
     for (number, line) in table.lines().enumerate() {
         let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
         let place = || format!("line {}", number + 1);
         match words[..] {
             [] => {}
-            ["view", width, top, bottom] => view = Some(numbers([width, top, bottom]).with_context(place)?),
+            ["view", width, top, bottom] => {
+                ensure!(view.is_none(), "{}: a second view", place());
+                view = Some(numbers([width, top, bottom]).with_context(place)?);
+            }
             ["jaw", part] => {
+                ensure!(!has_jaw, "{}: a second jaw", place());
+                has_jaw = true;
                 [jaw] = numbers([part]).with_context(place)?;
                 ensure!((0.0..=1.0).contains(&jaw), "{}: expected a part from 0 to 1", place());
             }
@@ -89,6 +95,7 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
                     "mouth" => Part::Mouth,
                     _ => bail!("{}: expected eye, brow or mouth, not {name}", place()),
                 };
+                ensure!(zooms.iter().all(|zoom: &Zoom| zoom.part != part), "{}: a second zoom {name}", place());
                 let [factor, aside, up] = numbers([factor, aside, up]).with_context(place)?;
                 ensure!((0.1..=10.0).contains(&factor), "{}: expected a factor from 0.1 to 10", place());
                 zooms.push(Zoom { part, factor, to: [aside, up] });
@@ -128,6 +135,8 @@ pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
     let [width, top, bottom] = view.context("no line `view`")?;
     ensure!(width > 0.0 && top > bottom, "view: expected a width above 0, and a top above the bottom");
     ensure!(!curves.is_empty(), "nothing is drawn");
+    let unopened = (0..hidden.len()).find(|index| props.iter().all(|prop| prop.hidden != *index));
+    ensure!(unopened.is_none(), "no prop opens hidden shape {}", unopened.unwrap_or_default() + 1);
     let zoomed = |index: usize| -> (f64, Vector) {
         let zoom = part(head.label(index)).and_then(|part| zooms.iter().find(|zoom| zoom.part == part));
         let Some(zoom) = zoom else { return (1.0, [0.0; 3]) };
