@@ -84,11 +84,11 @@ def s3_server():
 @contextlib.contextmanager
 def two_nodes():
     """A Ray cluster of two nodes with one CPU each, to which this process is connected."""
-    os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
+    # Ray's workers have the niceness 15 otherwise: on a machine with other work, one process and a cluster could not be compared.
+    os.environ.update(RAY_USAGE_STATS_ENABLED="0", RAY_worker_niceness="0")
     import ray
     from ray.cluster_utils import Cluster
 
-    # The tasks of a cluster import what is in its nodes' environments: here the tests' own.
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
     try:
         cluster.add_node(num_cpus=1)

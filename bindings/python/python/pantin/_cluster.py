@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib
 import json
@@ -179,7 +180,7 @@ def _task(source: Tuple[Any, str], target: Tuple[Any, str], motion: str, clip: s
     with tempfile.TemporaryDirectory(prefix="pantin-") as folder:
         read = _fetch(source, Path(folder), motion, beside)
         row["source_bytes"] = sum(size for _, size, _ in read)
-        fingerprint = _digest(json.dumps([version("pantin"), options, [[name, digest] for name, _, digest in read]]).encode())
+        fingerprint = _digest(json.dumps([_version(), options, [[name, digest] for name, _, digest in read]]).encode())
         clip_path, record_path = _paths(target_root, clip)
         record = _record(target_fs, clip_path, record_path)
         if record.get("fingerprint") == fingerprint:
@@ -200,6 +201,11 @@ def _task(source: Tuple[Any, str], target: Tuple[Any, str], motion: str, clip: s
     # After the clip: a record without its clip would be believed.
     _write(target_fs, record_path, json.dumps({"fingerprint": fingerprint, "clip": _digest(data), **measured}).encode())
     return {**row, **measured}
+
+
+@functools.lru_cache(None)
+def _version() -> str:
+    return version("pantin")
 
 
 def _fetch(source: Tuple[Any, str], folder: Path, motion: str, beside: Tuple[str, ...]) -> List[Tuple[str, int, str]]:
