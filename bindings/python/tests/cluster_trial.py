@@ -91,8 +91,9 @@ def two_nodes():
 
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
     try:
-        cluster.add_node(num_cpus=1)
+        # Before the other node is there: a process whose own node dies ends with it.
         ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
+        cluster.add_node(num_cpus=1)
         cluster.wait_for_nodes()
         yield cluster
     finally:
@@ -168,8 +169,8 @@ def main():
     def say(what, **facts):
         print(json.dumps({"run": what, "load": round(os.getloadavg()[0], 1), **facts}), flush=True)
 
-    with tempfile.TemporaryDirectory() as folder, s3_server() as storage:
-        folder = Path(folder)
+    with tempfile.TemporaryDirectory() as place, s3_server() as storage:
+        folder = Path(place, "captures")
         motion = cut(sources, folder, arguments.clips)
         upload(folder, "s3://motions/captures", storage)
         begun = time.monotonic()
@@ -179,7 +180,7 @@ def main():
 
         with two_nodes() as cluster:
             for what, source, target in [
-                ("two nodes, folders", str(folder), f"{folder}-clips"),
+                ("two nodes, folders", str(folder), f"{place}/clips"),
                 ("two nodes, S3", "s3://motions/captures", "s3://motions/clips"),
                 ("two nodes, S3, again", "s3://motions/captures", "s3://motions/clips"),
             ]:
@@ -192,20 +193,25 @@ def main():
                     found = {path.relative_to(target).with_suffix("").as_posix(): path.read_bytes() for path in Path(target).rglob("*.ptn")}
                 summary(say, what, table, expected, found, wall, cpu)
 
-        with two_nodes() as cluster:
-            killed = []
+        kill(say, expected, storage)
 
-            def progress(part):
-                if part >= 0.2 and not killed:
-                    killed.append(f"worker {kill_worker(cluster)}")
-                if part >= 0.6 and len(killed) == 1:
-                    cluster.remove_node(cluster.list_all_nodes()[-1], allow_graceful=False)
-                    killed.append("node")
 
-            begun = time.monotonic()
-            table = pantin.ray_convert("s3://motions/captures", "s3://motions/killed", storage_options=storage, progress=progress, **OPTIONS)
-            found = clips_in("s3://motions/killed", storage)
-            summary(say, f"two nodes, S3, killed: {killed}", table, expected, found, time.monotonic() - begun, None)
+def kill(say, expected, storage):
+    """Kills a worker at a fifth of the motions, and at three fifths the node that this process is not connected to."""
+    killed = []
+    with two_nodes() as cluster:
+
+        def progress(part):
+            if part >= 0.2 and not killed:
+                killed.append(f"worker {kill_worker(cluster)}")
+            if part >= 0.6 and len(killed) == 1:
+                cluster.remove_node(cluster.list_all_nodes()[-1], allow_graceful=False)
+                killed.append("node")
+
+        begun = time.monotonic()
+        table = pantin.ray_convert("s3://motions/captures", "s3://motions/killed", storage_options=storage, progress=progress, **OPTIONS)
+        found = clips_in("s3://motions/killed", storage)
+        summary(say, f"two nodes, S3, killed: {killed}", table, expected, found, time.monotonic() - begun, None)
 
 
 def summary(say, what, table, expected, found, wall, cpu):
