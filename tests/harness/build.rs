@@ -96,6 +96,11 @@ impl Firmware {
         // Builds of one program with different clips share cargo's output: nobody may build between build and copy.
         static TURN: Mutex<()> = Mutex::new(());
         let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // Of another program that builds, too: builds with other features write the same file.
+        let folder = paths::firmware().join("target");
+        std::fs::create_dir_all(&folder)?;
+        let turn = std::fs::File::create(folder.join("turn.lock"))?;
+        turn.lock().context("cannot wait for other builds")?;
         setup::rust_target(target)?;
         let clips: Vec<PathBuf> = clips.iter().map(std::path::absolute).collect::<Result<_, _>>()?;
         let joined = std::env::join_paths(&clips).context("a clip's path holds what separates paths")?;

@@ -114,9 +114,9 @@ fn is_for_boards(program: &TestProgram) -> bool {
     program.package == "harness" && program.name == "boards"
 }
 
-/// Whether a program builds firmware.
+/// Whether a program takes about as long as all others together.
 fn in_second_lane(program: &TestProgram) -> bool {
-    [("harness", "suites"), ("xtask-commands", "sizes")].contains(&(program.package.as_str(), program.name.as_str()))
+    program.package == "harness" && program.name == "suites"
 }
 
 fn firmware_lints(steps: &Steps, boards: &[Package], libraries: &[Package]) {
