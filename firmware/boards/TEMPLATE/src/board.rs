@@ -10,13 +10,14 @@ use pantin_figure::rotation::Rotation;
 // YOUR BOARD: the processor's clock.
 pub const CPU_HZ: u32 = 16_000_000;
 
-/// Sets the board up. The panic handler calls it again.
+/// Sets the board up. The panic handler calls it again: `singleton!` then returns `None`, and the watchdog runs already.
 // YOUR BOARD: give it the chip's peripherals, and replace each placeholder by a driver of the chip's own crate. `Capacity` is for 64 KiB of
 // RAM or more; with less, `pantin_app::MaxClip<144, 96, 36>`.
 pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
     // Any `embedded_hal::i2c::I2c` of at most 400 kHz whose `transaction` is no `todo!()`. Enable the pull-ups of both pins, if there are any.
     let mut i2c = placeholder::Bus;
-    // 115,200 baud: any port of `embedded_hal_nb::serial` whose `write` returns `WouldBlock` in `NbSerial`, or two functions in `FnSerial`.
+    // 115,200 baud: any port of `embedded_hal_nb::serial` whose `write` returns `WouldBlock` in `NbSerial`, or two functions in `FnSerial`,
+    // as for a port with the traits of `embedded-io`.
     let mut serial = NbSerial(placeholder::Port);
     // The addresses that answer, as a line over the serial port: for who wires a display and sees nothing.
     report_bus(&mut serial, &mut i2c);
