@@ -304,6 +304,9 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
     edited.said.iter().for_each(|sentence| note!("{sentence}"));
     let motion = edited.motion;
+    if motion.looped {
+        note!("{}: a loop already: --from and --to would make another of it", place());
+    }
     let mut cuts = find_loop::find(&motion).with_context(place)?;
     // Frames count as those of --from and --to do: before the cut.
     let first = arguments.edits.first_frame(motion.frame_time);

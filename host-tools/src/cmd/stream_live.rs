@@ -25,6 +25,12 @@ struct Place {
     scale: f64,
 }
 
+/// The value of a channel, held within what the channel holds; and whether it was.
+fn held(value: f64, scale: f64) -> (i32, bool) {
+    let raw = (value * scale).round();
+    (raw as i32, raw != f64::from(raw as i32))
+}
+
 /// Runs the command.
 pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Result<()> {
     let [path] = &arguments.clips[..] else { anyhow::bail!("--live: expected one clip, of the face that the other end has") };
@@ -64,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
         "--max-scalar-error {}: expected more than 0 and less than 100 percent",
         arguments.max_scalar_error
     );
-    let raw = |place: &Place, value: f64| (value * place.scale).round() as i32;
+    let raw = |place: &Place, value: f64| held(value, place.scale).0;
     let making: Vec<LiveChannel> =
         places.iter().map(|place| LiveChannel { bound: raw(place, part).max(1), way: raw(place, 1.0).max(1) as u32 }).collect();
     let source = Source::live(form, clip.frame_time_ns(), &making);
@@ -89,15 +95,29 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let mut out = arguments.to.open()?;
     let (start, frame) = (Instant::now(), Duration::from_nanos(u64::from(clip.frame_time_ns())));
     let (mut values, mut left) = (vec![0.0; names.len()], Live::delay(&line));
-    let mut at = start;
+    let (mut at, mut cut) = (start, 0_u32);
     while !stop.load(Ordering::Relaxed) && left > 0 {
         match feed.next(at.saturating_duration_since(Instant::now()), &values, stop)? {
             Some(next) => values = next,
             // What has been made is still to be shown.
             None => left -= 1,
         }
-        let value = |place: &Place| place.value.and_then(|index| values.get(index)).map_or(0, |&value| raw(place, value));
-        let pose: Vec<i32> = places.iter().map(value).collect();
+        let mut pose = Vec::with_capacity(places.len());
+        for place in &places {
+            let (index, value) = place.value.and_then(|index| Some((index, *values.get(index)?))).unwrap_or_default();
+            let (raw, outside) = held(value, place.scale);
+            if outside {
+                if cut == 0 {
+                    let most = 31f64.exp2() / place.scale;
+                    note!(
+                        "warning: {}: {value} is outside what the clip's channel holds (-{most} to {most}), and is cut",
+                        one_line(&names[index])
+                    );
+                }
+                cut = cut.saturating_add(1);
+            }
+            pose.push(raw);
+        }
         pace::wait(at, stop);
         for timed in live.push(&pose) {
             out.send(&timed.bytes)?;
@@ -108,6 +128,12 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
         }
     }
     note!("{}", closing(live.bytes(), start.elapsed().as_secs_f64()));
+    if feed.left_out() > 0 {
+        note!("warning: {} datagrams held no face, or values that are no numbers, and were left out", feed.left_out());
+    }
+    if cut > 0 {
+        note!("warning: {cut} values were outside what the clip's channels hold, and were cut");
+    }
     if live.omitted_messages() > 0 {
         note!("{} segments found no room on the line: a faster one, or a larger --max-scalar-error", live.omitted_messages());
     }

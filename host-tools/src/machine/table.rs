@@ -7,6 +7,7 @@ use pantin::codec::crc;
 use pantin::{Bank, Clip};
 use pantin_animator::Mask;
 use pantin_animator::machine::{INPUTS, LAYERS, PARAMETERS, STATES, Table, VERSION};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use toml::Spanned;
 
@@ -88,7 +89,8 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
         );
         parameters.push(name);
     }
-    let mut maker = Maker { clips, names, parameters, inputs: Vec::new(), warnings: Vec::new() };
+    let used = vec![Cell::new(false); parameters.len()];
+    let mut maker = Maker { clips, names, parameters, used, inputs: Vec::new(), warnings: Vec::new() };
     let first = match &source.start {
         None => 0,
         Some(start) => maker.state(start.get_ref()).with_context(|| format!("{}: start", file.at(start.span())))?,
@@ -114,6 +116,14 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     for layer in &source.layers {
         let row = maker.layer_row(layer.get_ref(), source);
         layers.push(row.with_context(|| format!("{}: layer", file.at(layer.span())))?);
+    }
+    for (parameter, used) in source.parameters.iter().zip(&maker.used) {
+        if !used.get() {
+            let place = file.at(parameter.name.span());
+            maker
+                .warnings
+                .push(format!("{place}: parameter {}: no blend and no transition uses it", quoted(parameter.name.get_ref())));
+        }
     }
     let mut out = vec![
         VERSION,
@@ -163,6 +173,8 @@ struct Maker<'s, 'b> {
     /// States and their indices.
     names: BTreeMap<&'s str, u8>,
     parameters: Vec<&'s str>,
+    /// Whether a state or a transition names the parameter.
+    used: Vec<Cell<bool>>,
     /// In the order in which transitions name them.
     inputs: Vec<String>,
     warnings: Vec<String>,
@@ -176,7 +188,9 @@ impl<'s, 'b> Maker<'s, 'b> {
 
     fn parameter(&self, name: &str) -> Result<u8> {
         let found = self.parameters.iter().position(|other| *other == name);
-        found.map(|index| index as u8).with_context(|| format!("no [[parameter]] {}", quoted(name)))
+        let index = found.with_context(|| format!("no [[parameter]] {}", quoted(name)))?;
+        self.used[index].set(true);
+        Ok(index as u8)
     }
 
     fn input(&mut self, name: &str) -> Result<u8> {

@@ -29,7 +29,12 @@ pub enum Feed {
         names: Vec<String>,
     },
     /// Datagrams: the last one counts.
-    Datagrams(UdpSocket),
+    Datagrams {
+        /// Where they come.
+        socket: UdpSocket,
+        /// How many held no face, or a value that is no number, and were left out.
+        left_out: u32,
+    },
 }
 
 /// Blend shapes and angles of a datagram: as in the app's files, but for the jaw's and the mouth's left and right.
@@ -45,14 +50,14 @@ fn datagram_names() -> Vec<String> {
 }
 
 /// The values of a datagram: version, device (37 bytes), length and letters of the subject's name, frame (8), rate (8), how many, and as many floats,
-/// the most significant byte first. None for one without a face.
+/// the most significant byte first. None for one without a face, or with a value that is no number.
 fn parse_datagram(bytes: &[u8]) -> Option<Values> {
     let (name, rest) = bytes.get(41..)?.split_first_chunk::<4>().map(|(len, rest)| (u32::from_be_bytes(*len) as usize, rest))?;
     let (head, values) = rest.get(name..)?.split_first_chunk::<17>()?;
     let (values, _) = values.as_chunks::<4>();
     let count = usize::from(head[16]);
-    (count == 61 && values.len() >= count)
-        .then(|| values[..count].iter().map(|bytes| f64::from(f32::from_be_bytes(*bytes))).collect())
+    let values: Values = values.get(..count)?.iter().map(|bytes| f64::from(f32::from_be_bytes(*bytes))).collect();
+    (count == 61 && values.iter().all(|value| value.is_finite())).then_some(values)
 }
 
 impl Feed {
@@ -64,7 +69,7 @@ impl Feed {
         let port = from.strip_prefix("udp:").and_then(|port| port.parse::<u16>().ok());
         let port = port.with_context(|| format!("--live {from}: expected udp:PORT, or - for lines on stdin"))?;
         let socket = UdpSocket::bind(("0.0.0.0", port)).with_context(|| format!("--live {from}: the port cannot be had"))?;
-        Ok(Feed::Datagrams(socket))
+        Ok(Feed::Datagrams { socket, left_out: 0 })
     }
 
     fn lines(source: impl BufRead + Send + 'static, stop: &AtomicBool) -> Result<Feed> {
@@ -84,7 +89,15 @@ impl Feed {
     pub fn names(&self) -> Vec<String> {
         match self {
             Feed::Lines { names, .. } => names.clone(),
-            Feed::Datagrams(_) => datagram_names(),
+            Feed::Datagrams { .. } => datagram_names(),
+        }
+    }
+
+    /// Datagrams that were left out so far.
+    pub fn left_out(&self) -> u32 {
+        match self {
+            Feed::Lines { .. } => 0,
+            Feed::Datagrams { left_out, .. } => *left_out,
         }
     }
 
@@ -104,7 +117,7 @@ impl Feed {
                     None => bail!("--live -: expected a timecode, a count and {} numbers, found {}", names.len(), quoted(&line)),
                 }
             },
-            Feed::Datagrams(socket) => {
+            Feed::Datagrams { socket, left_out } => {
                 let mut latest = last.clone();
                 let until = std::time::Instant::now() + wait;
                 let mut room = [0; 2048];
@@ -115,8 +128,10 @@ impl Feed {
                     }
                     socket.set_read_timeout(Some(left))?;
                     match socket.recv(&mut room) {
-                        // What is no face is somebody else's.
-                        Ok(len) => latest = room.get(..len).and_then(parse_datagram).unwrap_or(latest),
+                        Ok(len) => match room.get(..len).and_then(parse_datagram) {
+                            Some(values) => latest = values,
+                            None => *left_out = left_out.saturating_add(1),
+                        },
                         Err(error)
                             if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
                         Err(error) => return Err(error).context("--live"),
@@ -174,8 +189,27 @@ mod tests {
         for len in 0..bytes.len() {
             assert_eq!(parse_datagram(&bytes[..len]), None, "{len}");
         }
+        let last = bytes.len() - 4;
+        for odd in [f32::NAN, f32::INFINITY] {
+            bytes[last..].copy_from_slice(&odd.to_be_bytes());
+            assert_eq!(parse_datagram(&bytes), None, "{odd}");
+        }
         bytes[41..45].fill(0xff);
         assert_eq!(parse_datagram(&bytes), None);
+    }
+
+    #[test]
+    fn datagrams_that_hold_no_face_are_counted() {
+        let mut feed = Feed::open("udp:0", &AtomicBool::new(false)).expect("a port");
+        let Feed::Datagrams { socket, .. } = &feed else { panic!("datagrams") };
+        let port = socket.local_addr().expect("its address").port();
+        let sender = UdpSocket::bind("127.0.0.1:0").expect("a port");
+        for _ in 0..3 {
+            sender.send_to(b"no face", ("127.0.0.1", port)).expect("sent");
+        }
+        let last = vec![0.5; 61];
+        let next = feed.next(Duration::from_millis(100), &last, &AtomicBool::new(false)).expect("a frame");
+        assert_eq!((next, feed.left_out()), (Some(last), 3));
     }
 
     #[test]

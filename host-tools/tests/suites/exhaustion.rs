@@ -176,7 +176,7 @@ fn a_device_without_end_is_refused() {
 /// Standard input of `stream --live -`: a line without an end, and none at all until the program is stopped.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_live_line_without_end_is_refused_and_a_silent_one_is_stopped() {
+fn a_live_line_without_end_is_refused_a_silent_one_is_stopped_and_what_is_cut_is_said() {
     use std::process::Stdio;
     let folder = Folder::new();
     folder.put("face.csv", "time,JawOpen\n0,0\n0.1,1\n0.2,0\n");
@@ -187,6 +187,14 @@ fn a_live_line_without_end_is_refused_and_a_silent_one_is_stopped() {
     let endless = std::fs::File::open("/dev/zero").unwrap();
     let output = folder.command(&arguments).stdin(endless).output().unwrap();
     assert!(output.status.code() == Some(1) && err(&output).contains("more than"), "{}", err(&output));
+    // Ninety-nine times what the channel holds is cut, and said.
+    let csv = format!("Timecode,BlendshapeCount,JawOpen\n{}", "0:0:0:1.0,1,99\n".repeat(3));
+    folder.put("live.csv", csv);
+    let lines = std::fs::File::open(folder.path("live.csv")).unwrap();
+    let output = folder.command(&arguments).stdin(lines).output().unwrap();
+    let said = err(&output);
+    assert!(output.status.success() && said.contains("JawOpen: 99 is outside what the clip's channel holds"), "{said}");
+    assert!(said.contains("values were outside"), "{said}");
     for begin in ["", "Timecode,BlendshapeCount,JawOpen\n"] {
         let mut child = folder.command(&arguments).stdin(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut stdin = child.stdin.take().unwrap();

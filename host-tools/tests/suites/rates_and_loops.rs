@@ -96,6 +96,10 @@ fn the_best_loop_of_a_motion_is_found() {
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     let (later, end) = (found["loops"][0]["from"].as_u64().unwrap(), found["loops"][0]["to"].as_u64().unwrap());
     assert!(later >= 20 && (end - later) % 25 == 0, "{found}");
+    let closed = folder.path().join("closed.keys");
+    std::fs::write(&closed, std::fs::read_to_string(&motion).unwrap().replace("frames 80\n", "frames 80\nloop\n")).unwrap();
+    let output = convert(&closed, &["--find-loop"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("a loop already"), "{output:?}");
     assert!(!convert(&motion, &["--find-loop", "-o", "a.ptn"]).status.success(), "an output that is not written is refused");
     let cut = ["--from", &from.to_string(), "--to", &to.to_string(), "--loop"].map(str::to_string);
     let bytes = clip(folder.path(), &motion, &cut.each_ref().map(String::as_str));
