@@ -22,7 +22,7 @@ pub struct Chip {
 }
 
 /// Addresses by the chips' data sheets.
-pub const CHIPS: [Chip; 8] = [
+pub const CHIPS: &[Chip] = &[
     // 2 MB of flash are on the board; the six banks of RAM are one range.
     Chip { board: "pico", probe: Some("RP2040"), flash: &[0x1000_0000..0x1020_0000], ram: &[0x2000_0000..0x2004_2000] },
     Chip {
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn each_boards_runner_names_its_chip() {
         let packages = packages::firmware().unwrap();
-        for chip in &CHIPS {
+        for chip in CHIPS {
             let board = packages.iter().find(|package| package.name == chip.board).unwrap();
             let runner = board.runner().unwrap();
             match chip.probe {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags, SymbolKind, elf};
 
 use crate::build::Firmware;
@@ -40,6 +40,17 @@ pub fn loaded(elf: &Path) -> Result<u64> {
     let bytes = std::fs::read(elf).with_context(|| elf.display().to_string())?;
     let file = object::File::parse(&*bytes).context("the image is no ELF file")?;
     Ok(file.segments().map(|segment| segment.file_range().1).sum())
+}
+
+/// The address of a function, by a part of its name as in Rust (`Flash>::start`).
+pub fn function(elf: &Path, name: &str) -> Result<u64> {
+    let bytes = std::fs::read(elf).with_context(|| elf.display().to_string())?;
+    let file = object::File::parse(&*bytes).context("the image is no ELF file")?;
+    let named = |symbol: &object::Symbol| symbol.name().is_ok_and(|own| rustc_demangle::demangle(own).to_string().contains(name));
+    let mut found = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text && named(symbol));
+    let address = found.next().with_context(|| format!("no function {name}"))?.address();
+    ensure!(found.next().is_none(), "more than one function {name}");
+    Ok(address)
 }
 
 /// Bytes of RAM that an image's statics take, and code that runs there; its stack comes beside them.

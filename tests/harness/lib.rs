@@ -52,6 +52,8 @@ pub mod sync;
 #[cfg(feature = "full")]
 pub mod uf2;
 #[cfg(feature = "full")]
+pub mod unicorn;
+#[cfg(feature = "full")]
 pub mod update;
 #[cfg(feature = "full")]
 pub mod vectors;

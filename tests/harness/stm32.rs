@@ -2,19 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::Mutex;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-use crate::paths;
+use crate::unicorn;
 
 /// The Rust target of its programs.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
-
-/// The Python package of the emulator, and its version.
-const PACKAGE: &str = "unicorn==2.1.4";
 
 /// What to run, as `run.py` says.
 #[derive(Clone, Debug, Serialize)]
@@ -119,36 +114,9 @@ impl Request {
         self.out = folder.path().join("stream");
         let request = folder.path().join("request.json");
         std::fs::write(&request, serde_json::to_vec(&self)?).context("cannot write the request")?;
-        let mut command = Command::new(python()?);
-        command.arg(paths::root().join("tests/stm32/run.py")).arg(&request).env("PYTHONPATH", emulator()?);
-        let output = command.stdin(Stdio::null()).output().context("cannot start Python")?;
-        let words = String::from_utf8_lossy(&output.stderr);
-        ensure!(output.status.success(), "run.py ended with {}: {}", output.status, words.trim());
-        let mut outcome: Outcome = serde_json::from_slice(&output.stdout).context("run.py printed no JSON")?;
+        let mut outcome: Outcome = unicorn::run("stm32/run.py", &[request.as_os_str()])?;
         let stream = std::fs::read(&self.out).context("there is no stream")?;
         outcome.stream = stream.chunks_exact(2).map(|word| u16::from_le_bytes([word[0], word[1]])).collect();
         Ok(outcome)
     }
-}
-
-fn python() -> Result<PathBuf> {
-    paths::program("python3").context("python3 is missing; install it with your system's package manager")
-}
-
-/// The emulator's folder, which pip fetches the first time.
-fn emulator() -> Result<PathBuf> {
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let folder = paths::root().join("target/unicorn").join(PACKAGE);
-    let fetched = folder.join("fetched");
-    if !fetched.exists() {
-        eprintln!("fetching Unicorn, the processor of the STM32's tests: pip install {PACKAGE}");
-        let mut command = Command::new(python()?);
-        command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--target"]);
-        let output = command.arg(&folder).arg(PACKAGE).stdin(Stdio::null()).output().context("cannot start Python")?;
-        let words = String::from_utf8_lossy(&output.stderr);
-        ensure!(output.status.success(), "`pip install {PACKAGE}` failed (is there a network?): {}", words.trim());
-        std::fs::write(&fetched, "").context("cannot note what was fetched")?;
-    }
-    Ok(folder)
 }

@@ -1,5 +1,6 @@
 //! What `cargo xtask test --boards` runs: the core of the Pico 2, a Cortex-M33, shows in QEMU what the host shows, and so does the Nucleo's image in
-//! Unicorn; a face speaks a sentence on an OLED and on a round display; an image that `cargo xtask images` gives away has the same bytes each time.
+//! Unicorn; the ESP32-C3 maps its flash as it must; a face speaks a sentence on an OLED and on a round display; an image that `cargo xtask images`
+//! gives away has the same bytes each time.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +12,7 @@ use harness::panel::{self, Colour, GC9A01, Mono, Panel, ST7789};
 use harness::qemu::MPS2_AN505;
 use harness::rp2040::{self, OLED, Spi};
 use harness::stm32::{Outcome, Pin, Request, TARGET};
-use harness::{clips, equal, paths, pictures, screen, simulator};
+use harness::{clips, equal, image, paths, pictures, screen, simulator, unicorn};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::rotation_float::FloatRotation;
 use pantin_tools::face::speak;
@@ -133,6 +134,22 @@ fn a_face_speaks_on_an_oled_and_on_a_round_display_as_on_the_host() {
         let name = if address.is_some() { "ssd1306.png" } else { "gc9a01.png" };
         std::fs::write(sheets.join(name), pictures::sheet(&labelled, 5).unwrap()).unwrap();
     }
+}
+
+/// The chip has no emulator that one can install: its processor runs the one function that must not err, with models of what it calls and writes.
+#[test]
+fn the_esp32_c3_maps_its_slots_with_the_cache_and_interrupts_off() {
+    #[derive(serde::Deserialize)]
+    struct Mapping {
+        steps: Vec<String>,
+        faults: Vec<String>,
+    }
+    let image = Firmware::featuring("update", "esp32-c3", "esp32-c3", "riscv32imc-unknown-none-elf", &[]).unwrap();
+    let start = image::function(image.elf(), "Flash>::start").unwrap().to_string();
+    let mapping: Mapping = unicorn::run("esp32/map.py", &[image.elf().as_os_str(), start.as_ref()]).unwrap();
+    assert_eq!(mapping.faults, [""; 0]);
+    // 128 KiB of the flash from 0x3e0000, which lie at 0x3c400000 for the processor: pages of 64 KiB.
+    assert_eq!(mapping.steps, ["suspend", "entry 64 0x3e", "entry 65 0x3f", "invalidate 0x3c400000 0x20000", "resume 0x5a"]);
 }
 
 #[test]
