@@ -68,12 +68,17 @@ struct Taken {
     stack: Option<Range<u64>>,
 }
 
+/// The chip of a board, if its addresses stand here.
+pub fn of(board: &str) -> Option<&'static Chip> {
+    CHIPS.iter().find(|chip| chip.board == board)
+}
+
 /// Checks that an image of a board lies in its chip's flash and RAM, with its stack. Boards of other chips are not checked.
 ///
 /// # Errors
 /// Something lies outside: `memory.x` is wrong.
 pub fn check(board: &str, elf: &[u8]) -> Result<()> {
-    let Some(chip) = CHIPS.iter().find(|chip| chip.board == board) else { return Ok(()) };
+    let Some(chip) = of(board) else { return Ok(()) };
     chip.holds(&taken(elf)?).with_context(|| format!("{board}: the memory map is not that of the chip"))
 }
 
@@ -130,7 +135,7 @@ mod tests {
         }
         // Whoever flashes with a probe has a chip here.
         for board in packages.iter().filter(|board| board.runner().is_some_and(|runner| runner.starts_with("probe-rs"))) {
-            assert!(board.name == "board-template" || CHIPS.iter().any(|chip| chip.board == board.name), "{}", board.name);
+            assert!(board.name == "board-template" || of(&board.name).is_some(), "{}", board.name);
         }
     }
 

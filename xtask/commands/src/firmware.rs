@@ -119,7 +119,13 @@ fn advice(board: &Package) -> String {
     } else if ways.is_empty() {
         ways.push(format!("see firmware/boards/{name}"));
     }
-    format!("{name}: {}", ways.join("\n   or: "))
+    let emulated = BOARDS.iter().any(|machine| machine.name == name) || name == "gba";
+    let checked = match chip::of(name) {
+        Some(_) => ": its images lie in the chip's flash and RAM, with the stack",
+        None if emulated => "",
+        None => ": NOT checked whether its images lie in the chip's flash and RAM: tests/harness/chip.rs does not know the chip",
+    };
+    format!("{name}{checked}\n       {}", ways.join("\n   or: "))
 }
 
 /// Says which programs that put images on these boards are not there: nothing here needs them.
