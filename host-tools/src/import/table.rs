@@ -20,6 +20,8 @@ const USUAL: [f64; 16] = [23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60
 
 /// A usual rate is an assumption where it is farther from the measured one, as a part of it.
 const ASSUMED: f64 = 5e-3;
+/// Rounding of even times changed their rate by less than this part of it.
+const HARDLY: f64 = 0.02;
 /// No usual rate is farther from the measured one than this part of it: two whole seconds are one frame a second.
 const FARTHEST: f64 = 0.5;
 /// Rows at a higher rate are refused: that is a unit of time other than seconds.
@@ -197,16 +199,21 @@ impl Rows {
         (1..self.times.len()).find(|&row| off(row).abs() > JITTER || grid.frames[row] == grid.frames[row - 1])
     }
 
-    /// The times of the rows: of even ones that were rounded, those before rounding, at `fps` or a part of it if that explains them.
+    /// The times of the rows: of even ones that were rounded, those before rounding, at `fps`, a part of it, or a usual rate if that explains them.
     fn exact_times(&self, fps: f64) -> Vec<f64> {
-        match Grid::of(&self.times).filter(|grid| self.first_uneven(grid).is_none()) {
+        let Some(grid) = Grid::of(&self.times).filter(|grid| self.first_uneven(grid).is_none()) else {
+            return self.times.clone();
+        };
+        let off = |rate: &f64| (rate * grid.period - 1.0).abs();
+        let place = |(time, &frame): (&f64, &usize)| time - self.times[0] - frame as f64 * grid.period;
+        // Rounding makes times uneven, but for a few rows: those it hardly moved.
+        let even = self.times.iter().zip(&grid.frames).all(|row| place(row).abs() < 1e-6 * grid.period);
+        let likely = |rate: &f64| explains(*rate, &grid, &self.times) && (!even || off(rate) < HARDLY);
+        let parts = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0].map(|part| [fps / part, fps * part]);
+        let given = parts.into_iter().flatten().filter(likely).min_by(|a, b| off(a).total_cmp(&off(b)));
+        match given.or_else(|| Some(usual_rate(&grid, &self.times).0).filter(likely)) {
+            Some(rate) => grid.frames.iter().map(|&frame| frame as f64 / rate).collect(),
             None => self.times.clone(),
-            Some(grid) => {
-                let parts = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0].map(|part| [fps / part, fps * part]);
-                let given = parts.into_iter().flatten().find(|&rate| explains(rate, &grid, &self.times));
-                let rate = given.unwrap_or_else(|| usual_rate(&grid, &self.times).0);
-                grid.frames.iter().map(|&frame| frame as f64 / rate).collect()
-            }
         }
     }
 

@@ -56,6 +56,27 @@ fn a_given_rate_takes_rounded_times_for_even_ones() {
 }
 
 #[test]
+fn even_times_are_what_they_say_whatever_rate_is_asked_for() {
+    for (step, rows, fps) in [
+        (1.0, 6, 10.0),
+        (1.0, 4, 8.0),
+        (1.0, 4, 5.0),
+        (0.1, 6, 24.0),
+        (0.1, 6, 25.0),
+        (0.1, 6, 50.0),
+        (0.1, 4, 30.0),
+        (0.2, 5, 60.0),
+    ] {
+        let text: String = (0..rows).map(|row| format!("{:.1},{row}\n", f64::from(row) * step)).collect();
+        let (motion, _) = read_with("even", format!("time,a\n{text}"), Some(fps)).unwrap();
+        assert_eq!(motion.frames, (f64::from(rows - 1) * step * fps + 1e-6) as usize + 1, "{step} {fps}");
+        for (frame, value) in motion.values[0].iter().enumerate() {
+            assert!((value - frame as f64 / fps / step).abs() < 1e-9, "{step} {fps} {frame}: {value}");
+        }
+    }
+}
+
+#[test]
 fn two_whole_seconds_are_one_frame_a_second() {
     for times in ["0,0\n1,1\n", "5.000,0\n6.000,1\n"] {
         let (motion, warnings) = read_with("second", format!("time,lamp\n{times}"), None).unwrap();
