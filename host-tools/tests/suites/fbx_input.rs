@@ -122,6 +122,34 @@ fn a_scale_that_changes_moves_the_joints_below_and_becomes_scalars() {
     assert!(imported.warnings.iter().any(|warning| warning.contains("the scale of `hip` changes")), "{:?}", imported.warnings);
 }
 
+/// A second layer scales the hip; ufbx evaluates it whatever its properties say.
+#[test]
+fn muted_layers_and_those_beside_a_solo_one_are_left_out() {
+    let layer = |property: &str| {
+        format!(
+            "AnimationLayer: 70, \"AnimLayer::grow\", \"\" {{\n\t\tProperties70:  {{\n{property}\t\t}}\n\t}}\n\tAnimationLayer: 21,"
+        )
+    };
+    let with = |property: &str, base: &str| {
+        let file =
+            with_curve(LEG, 60, 1, "Lcl Scaling", "Z", "1,3").replace("C: \"OO\",60,21", "C: \"OO\",60,70\n\tC: \"OO\",70,20");
+        let file = file.replace("AnimationLayer: 21,", &layer(property));
+        load(&file.replace("\"AnimLayer::base\", \"\" {\n", &format!("\"AnimLayer::base\", \"\" {{\n{base}")))
+    };
+    let base = "\t\tProperties70:  {\n\t\t\tP: \"Solo\", \"bool\", \"\", \"\",1\n\t\t}\n";
+    let muted = "\t\t\tP: \"Mute\", \"bool\", \"\", \"\",1\n";
+    let plain = load(LEG).unwrap().motion;
+    for imported in [with(muted, "").unwrap(), with("", base).unwrap()] {
+        assert_eq!(imported.motion.values, plain.values);
+        assert!(imported.warnings.iter().any(|warning| warning.ends_with("are left out: `grow`")), "{:?}", imported.warnings);
+    }
+    let both = with("", "").unwrap();
+    assert!(both.motion.values.len() > plain.values.len() && !both.warnings.iter().any(|warning| warning.contains("layers")));
+    let grow = with("\t\t\tP: \"Solo\", \"bool\", \"\", \"\",1\n", "").unwrap();
+    let smile = grow.motion.rig.scalars.iter().any(|scalar| scalar.name == "smile");
+    assert!(!smile && grow.warnings.iter().any(|warning| warning.ends_with("are left out: `base`")), "{:?}", grow.warnings);
+}
+
 #[test]
 fn a_bound_is_kept_against_the_file() {
     // The hip turns by as little, and the knee moves by as little, as would pass for rounding in a large figure, in units of 1 cm to 1 km.

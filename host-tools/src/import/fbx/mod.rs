@@ -3,6 +3,7 @@
 //! The `ufbx` crate evaluates layers, pivots, pre- and post-rotations and inherited scales, and turns axes and units to y up and cm; its
 //! world transforms are sampled on the frames.
 
+mod layers;
 mod nodes;
 
 use super::from_transforms::{self, Affine, Figure, Node};
@@ -47,6 +48,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         let name = one_line(&stack.element.name);
         warnings.push(format!("stack `{name}` of {stacks}; --animation takes another, --list shows all"));
     }
+    warnings.extend(layers::left_out(stack));
     warnings.extend(figure.warnings);
     if moves.none() {
         warnings.push(format!("stack `{}` moves nothing: a pose", one_line(&stack.element.name)));
@@ -138,10 +140,12 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(Figure, usiz
         let parent = scene.nodes[node].parent.as_ref().and_then(|parent| joint_of[parent.element.typed_id as usize]);
         joints.push(Node { name: nodes::name(scene, node), parent, worlds: Vec::with_capacity(grid.frames), scales: Vec::new() });
     }
+    let some_layers = layers::animation(scene, stack)?;
+    let anim = some_layers.as_deref().unwrap_or(&stack.anim);
     let mut scalars: Vec<Vec<f64>> = vec![Vec::with_capacity(grid.frames); weights.len()];
     for frame in 0..grid.frames {
         let time = grid.first + frame as f64 * grid.frame_time + HALF_A_TICK;
-        let now = ufbx::evaluate_scene(scene, &stack.anim, time, ufbx::EvaluateOpts::default())
+        let now = ufbx::evaluate_scene(scene, anim, time, ufbx::EvaluateOpts::default())
             .map_err(|error| anyhow!("frame {frame}: {}", one_line(&error.description)))?;
         for (joint, &node) in joints.iter_mut().zip(&kept) {
             joint.worlds.push(affine(&now.nodes[node].node_to_world));

@@ -3,6 +3,7 @@
 //! Joints are the skeleton's bones and the nodes that a curve of any stack moves. Meshes that nothing moves are no part of the figure unless
 //! they carry a joint; cameras, lights and handles are part of it only where there is no body. This is the same for every stack of a file.
 
+use super::layers;
 use crate::import::from_transforms::Role;
 use crate::import::one_line;
 use ufbx::{AnimCurve, AnimProp, AnimStack, ElementType, Scene};
@@ -63,7 +64,7 @@ impl Moves {
 }
 
 fn properties(stack: &AnimStack) -> impl Iterator<Item = &AnimProp> {
-    stack.layers.iter().flat_map(|layer| layer.anim_props.iter())
+    layers::played(stack).into_iter().flat_map(|layer| layer.anim_props.iter())
 }
 
 fn curves(property: &AnimProp) -> impl Iterator<Item = &AnimCurve> {
