@@ -1,6 +1,6 @@
 //! Tables of any channels: a row of names, then a row of values a frame, between commas, tabs or semicolons.
 //!
-//! The first two columns may be a time in seconds (`time`, `t`, `seconds`, `timestamp`), in milliseconds (`time_ms`, `ms`) or a frame's number (`frame`, or no
+//! The first two columns may be a time in seconds (`time`, `t`, `seconds`, `timestamp`, `Time (s)`), in milliseconds (`time_ms`, `ms`) or a frame's number (`frame`, or no
 //! name at all). Without a time, `--fps` is needed; with a time, `--fps` takes the values on straight lines at that rate, and without it the rows must
 //! be even but for missing ones. Full scale is a channel's own greatest value, whatever its sign.
 
@@ -57,6 +57,12 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         }
         (None, None) => return Err(sheet.error(1, "no column of times (`time`, in seconds); --fps gives the frames a second")),
     };
+    if clock.time.is_none()
+        && let Some(name) = names.iter().find(|name| unit_of_time(name).is_some())
+    {
+        let name = quoted(name);
+        warnings.push(format!("column {name} becomes a channel: times are read from the first two columns"));
+    }
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     for (name, largest) in names.iter().zip(&values).map(|(name, values)| (name, largest(values))) {
         if largest > 0.0 && largest < LEAST_SCALE {
@@ -91,18 +97,27 @@ impl Clock {
         let mut clock = Clock { time: None, frame: None, columns: 0 };
         for (column, name) in header.iter().enumerate().take(2) {
             match name.to_ascii_lowercase().as_str() {
-                "time" | "t" | "sec" | "seconds" | "timestamp" | "time_s" | "time (s)" | "time [s]" if clock.time.is_none() => {
-                    clock.time = Some((column, 1.0));
-                }
-                "time_ms" | "ms" | "milliseconds" | "time (ms)" | "time [ms]" if clock.time.is_none() => {
-                    clock.time = Some((column, 1e-3))
-                }
                 "" | "frame" | "frames" | "frame_number" | "#" if clock.frame.is_none() => clock.frame = Some(column),
-                _ => break,
+                name => match unit_of_time(name).filter(|_| clock.time.is_none()) {
+                    Some(unit) => clock.time = Some((column, unit)),
+                    None => break,
+                },
             }
             clock.columns = column + 1;
         }
         clock
+    }
+}
+
+/// The length in seconds of the unit of a column with times, by its name.
+fn unit_of_time(name: &str) -> Option<f64> {
+    let plain: String = name.to_ascii_lowercase().chars().filter(|letter| !" _()[]".contains(*letter)).collect();
+    match plain.as_str() {
+        "time" | "t" | "s" | "sec" | "secs" | "second" | "seconds" | "timestamp" | "times" | "timesec" | "timeseconds" => {
+            Some(1.0)
+        }
+        "ms" | "msec" | "millisecond" | "milliseconds" | "timems" | "timemsec" | "timemilliseconds" | "timestampms" => Some(1e-3),
+        _ => None,
     }
 }
 

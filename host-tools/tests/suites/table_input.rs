@@ -77,6 +77,16 @@ fn even_times_are_what_they_say_whatever_rate_is_asked_for() {
 }
 
 #[test]
+fn times_are_known_by_their_names_and_one_in_a_later_column_is_said() {
+    for name in ["Time(s)", "time [sec]", "TIME", "Seconds", "Time (s)"] {
+        let (motion, warnings) = read_with("names", format!("{name},a\n0,1\n0.1,2\n0.2,3\n"), None).unwrap();
+        assert_eq!((motion.frames, motion.rig.scalars.len(), warnings.len()), (3, 1, 0), "{name}");
+    }
+    let (_, warnings) = read_with("later", "a,b,time\n0,1,0\n0.1,2,.1\n0.2,3,.2\n", Some(30.0)).unwrap();
+    assert!(warnings.iter().any(|warning| warning.starts_with("column `time` becomes a channel")), "{warnings:?}");
+}
+
+#[test]
 fn two_whole_seconds_are_one_frame_a_second() {
     for times in ["0,0\n1,1\n", "5.000,0\n6.000,1\n"] {
         let (motion, warnings) = read_with("second", format!("time,lamp\n{times}"), None).unwrap();
