@@ -58,12 +58,13 @@ pub fn sample(keys: &[(usize, f64)], interpolation: Interpolation, frames: usize
     (0..frames).map(value).collect()
 }
 
-fn cubics(keys: &[(usize, f64)], interpolation: Interpolation, cycle: bool) -> Vec<Piece> {
+/// The cubics of that curve, one between two keys.
+pub fn cubics(keys: &[(usize, f64)], interpolation: Interpolation, cycle: bool) -> Vec<Piece> {
     let spans: Vec<Span> = keys.windows(2).map(|pair| Span::new(pair[0], pair[1])).collect();
     if spans.is_empty() {
         return Vec::new();
     }
-    match interpolation {
+    let mut cubics: Vec<Piece> = match interpolation {
         Interpolation::Linear => spans.iter().map(|span| Piece { p: span.p, c: span.slope, ..Piece::default() }).collect(),
         Interpolation::CatmullRom => {
             let tangents = tangents(&spans, cycle);
@@ -71,7 +72,9 @@ fn cubics(keys: &[(usize, f64)], interpolation: Interpolation, cycle: bool) -> V
         }
         Interpolation::Natural => splines(&spans, cycle, 0.0),
         Interpolation::Discrete => splines(&spans, cycle, 1.0),
-    }
+    };
+    cubics.iter_mut().zip(keys).for_each(|(cubic, key)| cubic.start = key.0 as f64);
+    cubics
 }
 
 /// Between two keys: the first one's value, the length in frames, and the slope of the chord.

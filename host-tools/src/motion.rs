@@ -162,6 +162,9 @@ pub enum Keys {
         interpolation: Interpolation,
         /// Frame and value.
         keys: Vec<(usize, f64)>,
+        /// The same curve as cubics in time, one a key but for the last: keys that are closer than four frames do not tell it, nor what comes after
+        /// the last frame of a loop.
+        pieces: Vec<Piece>,
     },
     /// Cubics in time, each from its start to the next one's, which may lie between frames.
     Pieces(Vec<Piece>),

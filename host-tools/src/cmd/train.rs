@@ -108,7 +108,8 @@ fn keyed(motion: &Motion, span: usize) -> Motion {
         let at: Vec<usize> = (0..frames - 1).step_by(span).chain([frames - 1]).collect();
         let on: Vec<(usize, f64)> = at.into_iter().map(|frame| (frame, values[frame])).collect();
         *values = crate::keys::sample(&on, Interpolation::Discrete, frames, false);
-        *keys = Some(Keys::OnFrames { interpolation: Interpolation::Discrete, keys: on });
+        let pieces = crate::keys::cubics(&on, Interpolation::Discrete, false);
+        *keys = Some(Keys::OnFrames { interpolation: Interpolation::Discrete, keys: on, pieces });
     }
     Motion { frames, ..out }
 }

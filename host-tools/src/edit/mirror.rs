@@ -4,7 +4,7 @@
 //! pose in world space whatever the rest pose is, and gives a symmetric figure its own rig again.
 
 use super::sides::{Part, counterparts, parts};
-use crate::motion::{Joint, Keys, Kind, Motion, Rig, Scalar};
+use crate::motion::{Joint, Keys, Kind, Motion, Piece, Rig, Scalar};
 use anyhow::{Context, Result, ensure};
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 
@@ -51,17 +51,18 @@ fn take(motion: &Motion, out: &mut Motion, channel: usize, negated: bool) {
 }
 
 fn signed(keys: Keys, sign: f64) -> Keys {
+    let turned = |mut pieces: Vec<Piece>| {
+        for piece in &mut pieces {
+            [piece.p, piece.c, piece.w, piece.k] = [piece.p, piece.c, piece.w, piece.k].map(|x| x * sign);
+        }
+        pieces
+    };
     match keys {
-        Keys::OnFrames { interpolation, mut keys } => {
+        Keys::OnFrames { interpolation, mut keys, pieces } => {
             keys.iter_mut().for_each(|(_, value)| *value *= sign);
-            Keys::OnFrames { interpolation, keys }
+            Keys::OnFrames { interpolation, keys, pieces: turned(pieces) }
         }
-        Keys::Pieces(mut pieces) => {
-            for piece in &mut pieces {
-                [piece.p, piece.c, piece.w, piece.k] = [piece.p, piece.c, piece.w, piece.k].map(|x| x * sign);
-            }
-            Keys::Pieces(pieces)
-        }
+        Keys::Pieces(pieces) => Keys::Pieces(turned(pieces)),
     }
 }
 

@@ -127,6 +127,10 @@ fn turn_over_jumps(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
         if (1 << a0 | 1 << a1 | 1 << a2) != 7 {
             continue;
         }
+        // A known curve is one of angles: its joint's others belong to these angles, and not to another triple for the same pose.
+        if [s0, s1, s2].iter().any(|&slot| motion.keys[slot].is_some()) {
+            continue;
+        }
         let turned = |frame: usize| local(joint, |slot| motion.values[first + slot][frame]).0;
         let angles = |frame: usize| [s0, s1, s2].map(|slot| motion.values[slot][frame]);
         for (index, &t) in times.iter().enumerate() {

@@ -205,7 +205,9 @@ fn positions(tube: &Tube, step: u8, beam: usize) -> Option<Fitted> {
 /// The frames of a channel's keys, if its second difference is linear between them.
 fn linear_between(motion: &Motion, channel: usize) -> Option<Vec<usize>> {
     match motion.keys[channel].as_ref()? {
-        Keys::OnFrames { interpolation: Interpolation::Discrete, keys } => Some(keys.iter().map(|&(frame, _)| frame).collect()),
+        Keys::OnFrames { interpolation: Interpolation::Discrete, keys, .. } => {
+            Some(keys.iter().map(|&(frame, _)| frame).collect())
+        }
         _ => None,
     }
 }

@@ -2,8 +2,8 @@
 
 use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, number, rig, wrong};
 use super::{Options, Source};
-use crate::keys::sample;
-use crate::motion::{Interpolation, Keys, Motion, Rig};
+use crate::keys::{cubics, sample};
+use crate::motion::{Interpolation, Keys, Motion, Piece, Rig};
 use anyhow::Result;
 use std::path::Path;
 
@@ -60,7 +60,8 @@ impl written::Reader for Reader {
             for (place, &channel) in block.channels.iter().enumerate() {
                 let curve = block.curve(place, frames, looped);
                 values[channel] = sample(&curve, block.interpolation, frames, looped);
-                keys[channel] = Some(within(curve, block.interpolation, &values[channel]));
+                let pieces = cubics(&curve, block.interpolation, looped);
+                keys[channel] = Some(within(curve, block.interpolation, pieces, &values[channel]));
             }
         }
         let events = self.header.events();
@@ -154,11 +155,11 @@ impl Block {
 }
 
 /// Keys up to the last frame that is there, with one on it.
-fn within(mut keys: Vec<(usize, f64)>, interpolation: Interpolation, values: &[f64]) -> Keys {
+fn within(mut keys: Vec<(usize, f64)>, interpolation: Interpolation, pieces: Vec<Piece>, values: &[f64]) -> Keys {
     let last = values.len() - 1;
     keys.retain(|&(frame, _)| frame < last);
     keys.push((last, values[last]));
-    Keys::OnFrames { interpolation, keys }
+    Keys::OnFrames { interpolation, keys, pieces }
 }
 
 fn interpolation(word: &str) -> Read<Interpolation> {

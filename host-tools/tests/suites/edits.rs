@@ -4,8 +4,8 @@ use pantin_tools::edit::loop_seam::{Most, close};
 use pantin_tools::edit::{cut::cut, mirror::mirror, pick::pick, resample::resample, retarget};
 use pantin_tools::fk::positions;
 use pantin_tools::import::{Options, load};
-use pantin_tools::keys::sample_pieces;
-use pantin_tools::motion::{Joint, Keys, Kind, Motion, Rig, Scalar};
+use pantin_tools::keys::{sample, sample_pieces};
+use pantin_tools::motion::{Interpolation, Joint, Keys, Kind, Motion, Rig, Scalar};
 use std::path::{Path, PathBuf};
 
 fn own(name: &str) -> Motion {
@@ -188,6 +188,34 @@ fn curves_are_the_same_at_another_rate_and_loops_stay_loops() {
     }
     // 160 frames at 120 are 13.33 at 10.
     assert_eq!(resample(&motion, 10.0).unwrap().frames, 13);
+}
+
+/// Keys closer than the frames that would tell their cubic, in the last span of a loop too; beside them, in the same joint, angles that jump.
+#[test]
+fn curves_of_close_keys_are_the_same_at_another_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("close.keys");
+    for (looped, last) in [("", 10), ("loop\n", 12)] {
+        for (word, interpolation) in
+            [("natural", Interpolation::Natural), ("catmull-rom", Interpolation::CatmullRom), ("linear", Interpolation::Linear)]
+        {
+            let text = format!(
+                "keyframes 1\nfps 10\nframes 11\n{looped}cm-per-unit 1\njoint hip offset 0 90 0 channels Yrotation Xrotation Zrotation\n\
+                 end parent hip offset 0 -45 0\nkeys linear hip.Yrotation\n 0 0\n 5 850\n 10 0\n\
+                 keys {word} hip.Xrotation\n 0 -1\n 2 60\n 3 -51\n 10 7\nkeys {word} hip.Zrotation\n 0 5\n 10 -20\n"
+            );
+            std::fs::write(&path, text).unwrap();
+            let fine = resample(&load(&path, &Options::default()).unwrap().motion, 60.0).unwrap();
+            let mut keys = vec![(0, -1.0), (12, 60.0), (18, -51.0), (60, 7.0)];
+            if last == 12 {
+                keys.push((66, -1.0));
+            }
+            let expected = sample(&keys, interpolation, fine.frames, last == 12);
+            let values = &fine.values[channel(&fine, "hip.Xrotation")];
+            let off = values.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9, "{word} {looped}: {off}");
+        }
+    }
 }
 
 #[test]
