@@ -41,7 +41,8 @@ pub fn is_list(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("list"))
 }
 
-/// The lines of a list, each with its place for messages. Motions lie in the list's folder, or where their paths lead from there.
+/// The lines of a list, each with its place for messages. Motions, and files that options name, lie in the list's folder, or where their paths lead
+/// from there.
 pub fn read(path: &Path) -> Result<Vec<(String, Line)>> {
     let text = input::read_short_text(path, MOST_BYTES).with_context(|| path.display().to_string())?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -59,6 +60,7 @@ pub fn read(path: &Path) -> Result<Vec<(String, Line)>> {
         })?;
         ensure!(!line.bounds.is_given(), "{place}: bounds are for all motions: they belong to the command, not to a line");
         line.motion = folder.join(&line.motion);
+        line.edits.read_from(folder);
         lines.push((place, line));
     }
     ensure!(!lines.is_empty(), "{}: the list names no motion", path.display());

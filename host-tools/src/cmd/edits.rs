@@ -123,6 +123,11 @@ impl Edits {
         Ok(Some(sentence))
     }
 
+    /// Takes the paths of files that the edits read as ones from `folder`.
+    pub fn read_from(&mut self, folder: &Path) {
+        self.map.iter_mut().chain(&mut self.with).for_each(|path| *path = folder.join(&path));
+    }
+
     /// The files that the edits read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.map.iter().chain(&self.with).map(PathBuf::as_path)

@@ -150,6 +150,33 @@ fn muted_layers_and_those_beside_a_solo_one_are_left_out() {
     assert!(!smile && grow.warnings.iter().any(|warning| warning.ends_with("are left out: `base`")), "{:?}", grow.warnings);
 }
 
+/// A second layer holds the knee elsewhere; its weight goes from 0 to 100.
+#[test]
+fn what_only_the_weight_of_a_layer_moves_moves() {
+    let layer = "AnimationLayer: 70, \"AnimLayer::lift\", \"\" {\n\t\tProperties70:  {\n\t\t\tP: \"Weight\", \"Number\", \"\", \"A\",0\n\t\t\tP: \"BlendMode\", \"enum\", \"\", \"\",0\n\t\t}\n\t}\n";
+    let file = with_curve(LEG, 60, 2, "Lcl Rotation", "X", "60,60")
+        .replace("C: \"OO\",60,21", "C: \"OO\",60,70")
+        .replace("C: \"OO\",21,20", "C: \"OO\",21,20\n\tC: \"OO\",70,20");
+    let file = with_curve(&file, 80, 70, "Weight", "Weight", "0,100").replace("C: \"OO\",80,21", "C: \"OO\",80,70");
+    let (before, weight) = file.split_at(file.find("AnimationCurveNode: 80").unwrap());
+    let file = format!("{before}{}", weight.replacen("d|X", "d|Weight", 1));
+    let motion = load(&file.replace("\tAnimationLayer: 21,", &format!("\t{layer}\tAnimationLayer: 21,"))).unwrap().motion;
+    let knee = motion.rig.joints.iter().position(|joint| joint.name == "knee").unwrap();
+    let first = motion.rig.first_channels()[knee];
+    let turned = |frame: usize| {
+        motion.values[first..first + motion.rig.joints[knee].kinds.len()]
+            .iter()
+            .map(|values| values[frame].abs())
+            .fold(0.0, f64::max)
+    };
+    assert!(
+        turned(0) < 1e-6 && (turned(24) - 60.0).abs() < 1e-6 && (turned(12) - 30.0).abs() < 1.0,
+        "{} {}",
+        turned(12),
+        turned(24)
+    );
+}
+
 #[test]
 fn a_bound_is_kept_against_the_file() {
     // The hip turns by as little, and the knee moves by as little, as would pass for rounding in a large figure, in units of 1 cm to 1 km.

@@ -147,7 +147,9 @@ fn a_list_gives_each_motion_a_cut_of_its_own() {
     let own = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions").join(name);
     std::fs::copy(own("walk.keys"), path("captures/my walk.keys")).unwrap();
     std::fs::copy(own("run.keys"), path("captures/run.keys")).unwrap();
-    let list = "# Two cuts of the walk, and the run.\n\"my walk.keys\" --name start --to 9\n\"my walk.keys\" --name end --from 0.5s\nrun.keys\n";
+    let list = "# Two cuts of the walk, and the run.\n\"my walk.keys\" --name start --to 9 --with face.csv\n\"my walk.keys\" --name end --from 0.5s --with face.csv\nrun.keys --with face.csv\n";
+    std::fs::write(path("captures/face.csv"), "time,smile\n0,0\n1,1\n").unwrap();
+    std::fs::write(path("face.csv"), "time,frown\n0,0\n1,1\n").unwrap();
     std::fs::write(path("captures/moves.list"), list).unwrap();
     succeeds(&["captures/moves.list".into()], &["--same-form", "-o", "moves.ptb"], folder.path());
     let bytes = std::fs::read(path("moves.ptb")).unwrap();
@@ -159,6 +161,8 @@ fn a_list_gives_each_motion_a_cut_of_its_own() {
         .collect();
     assert_eq!(clips.iter().map(|(name, ..)| name.as_str()).collect::<Vec<_>>(), ["start", "end", "run"]);
     assert_eq!(clips[0].1, 10);
+    let first = bank.open(&bank.entries().next().unwrap()).unwrap();
+    assert_eq!(first.rig().scalars().map(|scalar| scalar.name().to_owned()).collect::<Vec<_>>(), ["smile"]);
     assert!(clips.iter().all(|(.., exponent)| *exponent == clips[0].2), "{clips:?}");
     let refused = |list: &str, options: &[&str]| {
         std::fs::write(path("wrong.list"), list).unwrap();

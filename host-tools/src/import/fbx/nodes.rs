@@ -6,7 +6,7 @@
 use super::layers;
 use crate::import::from_transforms::Role;
 use crate::import::one_line;
-use ufbx::{AnimCurve, AnimProp, AnimStack, ElementType, Scene};
+use ufbx::{AnimCurve, AnimLayer, AnimProp, AnimStack, ElementType, Scene};
 
 /// What a stack moves.
 #[derive(Debug, Default)]
@@ -25,7 +25,7 @@ pub struct Moves {
 
 impl Moves {
     /// Of one stack.
-    pub fn of(scene: &Scene, stack: &AnimStack) -> Moves {
+    pub fn of<'s>(scene: &Scene, stack: &'s AnimStack) -> Moves {
         let mut moves = Moves {
             nodes: vec![false; scene.nodes.len()],
             shifted: vec![false; scene.nodes.len()],
@@ -33,8 +33,10 @@ impl Moves {
             weights: vec![false; scene.blend_channels.len()],
             curves: 0,
         };
-        for property in properties(stack) {
-            let count = curves(property).filter(|curve| varies(curve)).count();
+        let of_layer = |layer: &'s AnimLayer| layer.anim_props.iter().map(|property| (layer.weight_is_animated, property));
+        for (weighed, property) in layers::played(stack).into_iter().flat_map(of_layer) {
+            // In a layer that comes and goes, a constant moves something too.
+            let count = curves(property).filter(|curve| varies(curve) || (weighed && !curve.keyframes.is_empty())).count();
             if count == 0 {
                 continue;
             }
