@@ -12,8 +12,10 @@ use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 
 /// Part of the leg's length by which a planted point is above its lowest place at most.
 const LOW: f64 = 0.07;
-/// Part of the foot's highest speeds below which it stands.
+/// Part of the foot's highest speeds, of which a tenth are higher, below which it stands.
 const SLOW: f64 = 0.25;
+/// Leg's lengths a second: feet that step are faster. Where a foot hardly leaves the ground in a clip, its highest speeds are those of standing.
+const STEPPING: f64 = 1.0;
 /// Seconds: a shorter time in the air is none, nor is a shorter one on the ground.
 const SHORTEST: f64 = 0.07;
 /// Seconds over which a velocity is measured, half before and half after the frame.
@@ -58,6 +60,8 @@ struct Track {
     velocity: Vec<[f64; 3]>,
     /// Height below which it can be planted.
     low: f64,
+    /// The least speed of a step.
+    stepping: f64,
 }
 
 /// The foot's joint and all that hangs on it.
@@ -85,6 +89,7 @@ fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<Track> {
             height: heights.iter().map(|height| height - lowest).collect(),
             velocity: (0..poses.len()).map(velocity).collect(),
             low: LOW * leg,
+            stepping: STEPPING * leg,
         }
     };
     (0..joints.len()).filter(|&point| of_foot[point]).map(track).collect()
@@ -107,9 +112,10 @@ fn ground(feet: &[Vec<Track>]) -> [f64; 3] {
 fn down(motion: &Motion, points: &[Track], ground: [f64; 3]) -> Vec<bool> {
     let planted = |track: &Track| -> Vec<bool> {
         let speeds: Vec<f64> = track.velocity.iter().map(|&velocity| distance(velocity, ground)).collect();
-        let mut sorted = speeds.clone();
-        sorted.sort_by(f64::total_cmp);
-        let fast = sorted[(sorted.len() - 1) * 95 / 100];
+        // Of the moving frames alone: how long a foot stands before and after says nothing about its steps.
+        let mut moving: Vec<f64> = speeds.iter().copied().filter(|&speed| speed > SLOW * track.stepping).collect();
+        moving.sort_by(f64::total_cmp);
+        let fast = moving.get(moving.len() * 9 / 10).map_or(track.stepping, |&fast| fast.max(track.stepping));
         let planted = track.height.iter().zip(&speeds);
         planted.map(|(&height, &speed)| height < track.low && speed < SLOW * fast).collect()
     };

@@ -176,6 +176,25 @@ fn steps_of_our_walk_and_run_alternate_and_are_where_the_foot_lands() {
     assert_eq!(steps(&mirror(&run).unwrap()), other);
 }
 
+/// Twenty seconds of standing, with a tremor of a millimetre, before the walk.
+#[test]
+fn a_foot_that_stands_takes_no_steps_however_long_it_does() {
+    let walk = Motion { looped: false, ..load(&own("walk")) };
+    let still = (20.0 / walk.frame_time) as usize;
+    let mut motion = walk.clone();
+    for (channel, values) in motion.values.iter_mut().enumerate() {
+        let first = values[0];
+        let position = walk.rig.channel_kinds()[channel].1.is_position();
+        let tremor = |frame: usize| if position { 0.1 * ((frame * (channel + 1)) as f64 * 2.39).sin() } else { 0.0 };
+        values.splice(0..0, (0..still).map(|frame| first + tremor(frame)));
+    }
+    motion.keys.fill(None);
+    motion.frames += still;
+    let later: Vec<_> = steps(&walk).into_iter().map(|(frame, left)| (frame + still, left)).collect();
+    assert!(!later.is_empty());
+    assert_eq!(steps(&motion), later);
+}
+
 #[test]
 fn steps_of_captured_walks_alternate() {
     let data = std::env::var_os("PANTIN_DATA").map_or_else(|| PathBuf::from("../../shared/data"), PathBuf::from);
