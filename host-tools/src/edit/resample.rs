@@ -12,8 +12,7 @@ use pantin::codec::layout::MAX_FRAMES;
 
 /// Rates closer than this, as a part, are the same.
 const SAME_RATE: f64 = 1e-4;
-/// From one frame to the next, angles that jump farther than this may have changed to another triple for the same pose: the joint's
-/// turn itself runs between them, in degrees.
+/// From one frame to the next, angles that jump farther than this, in degrees, may have changed to the other triple for the same pose.
 const JUMP: f64 = 20.0;
 
 /// Takes `motion` at `fps` frames a second from its first frame on.
@@ -44,7 +43,7 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
         times.iter().map(|&t| between(values, t, round)).collect()
     };
     let mut values: Vec<Vec<f64>> = motion.values.iter().enumerate().map(sampled).collect();
-    turn_over_jumps(motion, &times, &mut values);
+    between_triples(motion, &times, &mut values);
     let mut keys = vec![None; values.len()];
     for (channel, known) in motion.keys.iter().enumerate() {
         if let Some(pieces) = known.as_ref().and_then(|keys| curve::pieces(keys, &motion.values[channel])) {
@@ -84,20 +83,28 @@ fn place(t: f64) -> (usize, f64) {
     (frame as usize, (t - frame).max(0.0))
 }
 
-/// The Catmull-Rom cubic through the frames at `t`; `round` is what a loop adds each time round, and nothing where there is no loop.
-fn between(values: &[f64], t: f64, round: Option<f64>) -> f64 {
-    let (frame, s) = place(t);
+/// The value at a frame, which may be outside of the motion; `round` is what a loop adds each time round, and nothing where there is no loop.
+fn value_at(values: &[f64], frame: isize, round: Option<f64>) -> f64 {
     let frames = values.len() as isize;
-    let at = |frame: isize| match round {
+    match round {
         Some(round) => values[frame.rem_euclid(frames) as usize] + round * frame.div_euclid(frames) as f64,
         None => values[frame.clamp(0, frames - 1) as usize],
-    };
+    }
+}
+
+/// The Catmull-Rom cubic through four frames, `s` after the second.
+fn cubic([a, b, c, d]: [f64; 4], s: f64) -> f64 {
+    b + s / 2.0 * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
+}
+
+/// The cubic through the frames at `t`.
+fn between(values: &[f64], t: f64, round: Option<f64>) -> f64 {
+    let (frame, s) = place(t);
     let frame = frame as isize;
     if s < 1e-9 {
-        return at(frame);
+        return value_at(values, frame, round);
     }
-    let [a, b, c, d] = [-1, 0, 1, 2].map(|step| at(frame + step));
-    b + s / 2.0 * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)))
+    cubic([-1, 0, 1, 2].map(|step| value_at(values, frame + step, round)), s)
 }
 
 /// By how much a channel of a loop advances in each cycle: positions by the distance travelled, angles by whole turns.
@@ -115,9 +122,20 @@ fn round(motion: &Motion, channel: usize, kind: Kind) -> Option<f64> {
     })
 }
 
-/// Puts a joint's own turn, by the shorter way, between frames of which the angles jump.
-fn turn_over_jumps(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
+/// The triple of angles about three different axes that turns as `angles` do and is nearest to `near`: they themselves, or the other one for the
+/// same pose, each but for whole turns.
+fn aligned(angles: [f64; 3], near: [f64; 3]) -> [f64; 3] {
+    let [a, b, c] = angles;
+    let both = [angles, [a + 180.0, 180.0 - b, c + 180.0]].map(|triple| std::array::from_fn(|n| nearest(triple[n], near[n])));
+    let far = |triple: &[f64; 3]| (0..3).map(|n| (triple[n] - near[n]).abs()).fold(0.0, f64::max);
+    if far(&both[1]) < far(&both[0]) { both[1] } else { both[0] }
+}
+
+/// Frames whose angles jump may have changed to the other triple for the same pose: cubics go through the triples that belong together, and where
+/// these jump too, the joint's own turn runs by the shorter way.
+fn between_triples(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
     let firsts = motion.rig.first_channels();
+    let kinds = motion.rig.channel_kinds();
     for (joint, first) in motion.rig.joints.iter().zip(firsts) {
         let slots: Vec<(usize, usize)> = (0..joint.kinds.len())
             .filter(|&slot| joint.kinds[slot].is_rotation())
@@ -132,19 +150,38 @@ fn turn_over_jumps(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
             continue;
         }
         let turned = |frame: usize| local(joint, |slot| motion.values[first + slot][frame]).0;
-        let angles = |frame: usize| [s0, s1, s2].map(|slot| motion.values[slot][frame]);
+        let rounds = [s0, s1, s2].map(|slot| round(motion, slot, kinds[slot].1));
+        let angles =
+            |frame: isize| -> [f64; 3] { std::array::from_fn(|n| value_at(&motion.values[[s0, s1, s2][n]], frame, rounds[n])) };
+        let jumps = |from: &[f64; 3], to: &[f64; 3], most: f64| (0..3).any(|n| (to[n] - from[n]).abs() > most);
         for (index, &t) in times.iter().enumerate() {
             let (frame, s) = place(t);
-            if s < 1e-9 || frame + 1 >= motion.frames {
+            if s < 1e-9 {
                 continue;
             }
-            let (from, to) = (angles(frame), angles(frame + 1));
-            if (0..3).all(|n| (to[n] - from[n]).abs() <= JUMP) {
+            let [a, b, c, d] = [-1, 0, 1, 2].map(|step| angles(frame as isize + step));
+            if !jumps(&a, &b, JUMP) && !jumps(&b, &c, JUMP) && !jumps(&c, &d, JUMP) {
                 continue;
             }
-            let found = euler::near(&part_way(&turned(frame), &turned(frame + 1), s), [a0, a1, a2], from);
-            for (slot, (angle, before)) in [s0, s1, s2].into_iter().zip(found.into_iter().zip(from)) {
-                values[slot][index] = nearest(angle, before);
+            let (mut before, to) = (aligned(a, b), aligned(c, b));
+            let mut after = aligned(d, to);
+            let found = if jumps(&b, &to, JUMP) {
+                let next = if frame + 1 < motion.frames { frame + 1 } else { 0 };
+                let way = part_way(&turned(frame), &turned(next), s);
+                let found = euler::near(&way, [a0, a1, a2], b);
+                std::array::from_fn(|n| nearest(found[n], b[n]))
+            } else {
+                // Beside a jump that is none of triples, a slope over it says nothing.
+                if jumps(&before, &b, 2.0 * JUMP) {
+                    before = std::array::from_fn(|n| 2.0 * b[n] - to[n]);
+                }
+                if jumps(&to, &after, 2.0 * JUMP) {
+                    after = std::array::from_fn(|n| 2.0 * to[n] - b[n]);
+                }
+                std::array::from_fn(|n| cubic([before[n], b[n], to[n], after[n]], s))
+            };
+            for (slot, angle) in [s0, s1, s2].into_iter().zip::<[f64; 3]>(found) {
+                values[slot][index] = angle;
             }
         }
     }

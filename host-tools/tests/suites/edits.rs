@@ -218,6 +218,33 @@ fn curves_of_close_keys_are_the_same_at_another_rate() {
     }
 }
 
+/// One motion, written with a change to the other triple of the same poses between two frames, and without; of a loop over its seam, too.
+#[test]
+fn another_triple_for_the_same_poses_is_the_same_motion_at_another_rate() {
+    for looped in [false, true] {
+        let mut motion = Motion { looped, ..arms(24) };
+        let first = channel(&motion, "root.Zrotation");
+        for frame in 0..24 {
+            let angle = frame as f64 / 24.0 * std::f64::consts::TAU;
+            let triple = [60.0 + 8.0 * angle.sin(), 20.0 * angle.cos(), -40.0 + 30.0 * angle.sin()];
+            (0..3).for_each(|slot| motion.values[first + slot][frame] = triple[slot]);
+        }
+        let mut flipped = motion.clone();
+        for frame in 11..24 {
+            let [a, b, c] = [0, 1, 2].map(|slot| motion.values[first + slot][frame]);
+            [a - 180.0, 180.0 - b, c + 180.0]
+                .into_iter()
+                .enumerate()
+                .for_each(|(slot, x)| flipped.values[first + slot][frame] = x);
+        }
+        let [plain, other] = [&motion, &flipped].map(|motion| resample(motion, 120.0).unwrap());
+        for frame in 0..plain.frames {
+            let [a, b] = [&plain, &other].map(|motion| positions(&motion.rig, &motion.values, frame)[1]);
+            assert!(far(a, b) < 1e-6, "looped {looped}: {a:?} is not {b:?} at {frame}");
+        }
+    }
+}
+
 #[test]
 fn angles_that_jump_to_another_triple_turn_by_the_shorter_way() {
     let mut motion = arms(2);
