@@ -153,7 +153,8 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
         ensure!(format.takes_skeleton(), "{}: --skeleton {skeleton}: only an .amc takes one, and this is {name}", place());
     }
     let source = (format.read)(path, options)?;
-    let Source { mut motion, unit_known, error, warnings } = source;
+    let Source { mut motion, unit_known, error, mut warnings } = source;
+    warnings.extend(replaced(&motion));
     ensure!(
         motion.rig.channels() <= MAX_CHANNELS,
         "{}: {} channels; a rig holds at most {MAX_CHANNELS}",
@@ -175,6 +176,18 @@ pub fn load(path: &Path, options: &Options) -> Result<Imported> {
     }
     unwrap_angles(&mut motion);
     Ok(Imported { error_cm: error * motion.rig.cm_per_unit, motion, units: unit.sentence, warnings })
+}
+
+/// A sentence about names with letters that the file has not as UTF-8 text.
+fn replaced(motion: &Motion) -> Option<String> {
+    let joints = motion.rig.joints.iter().map(|joint| &joint.name);
+    let names =
+        joints.chain(motion.rig.scalars.iter().map(|scalar| &scalar.name)).chain(motion.events.iter().map(|event| &event.name));
+    let odd: Vec<String> =
+        names.filter(|name| name.contains(char::REPLACEMENT_CHARACTER)).map(|name| text::quoted(name)).collect();
+    let first = odd.first()?;
+    let many = if odd.len() > 1 { format!("{} names, as {first}, have", odd.len()) } else { format!("the name {first} has") };
+    Some(format!("{many} letters that are not UTF-8, in place of which there is {}", char::REPLACEMENT_CHARACTER))
 }
 
 /// Whether `bytes`, the content of `path`, are of a format that [`load`] knows, by their name or by how they begin.

@@ -184,6 +184,7 @@ fn names_that_are_not_utf8_or_not_unique_are_kept() {
     bytes[16] = 0xe9;
     let read = load_bytes("latin1", &bytes, &Options::default()).unwrap();
     assert_eq!(read.motion.rig.joints[0].name, "h\u{fffd}p");
+    assert!(read.warnings[0].starts_with("the name `h\u{fffd}p` has letters that are not UTF-8"), "{:?}", read.warnings);
     let read = load("repeated", &good_but("left knee", "hip")).unwrap();
     assert!(read.warnings[0].contains("`hip`"), "{:?}", read.warnings);
 }
