@@ -122,6 +122,20 @@ fn a_scale_that_changes_moves_the_joints_below_and_becomes_scalars() {
     assert!(imported.warnings.iter().any(|warning| warning.contains("the scale of `hip` changes")), "{:?}", imported.warnings);
 }
 
+/// Two hours of a scene with many elements, each of which would be looked at on each frame.
+#[test]
+fn more_work_than_a_minute_takes_is_refused_at_once() {
+    let materials: String = (5000..9000).map(|id| format!("\tMaterial: {id}, \"Material::m\", \"\" {{\n\t}}\n")).collect();
+    let file = LEG.replace("\tAnimationLayer: 21,", &format!("{materials}\tAnimationLayer: 21,")).replace(
+        "\"LocalStop\", \"KTime\", \"Time\", \"\",46186158000",
+        "\"LocalStart\", \"KTime\", \"Time\", \"\",0\n\t\t\tP: \"LocalStop\", \"KTime\", \"Time\", \"\",307907000000000",
+    );
+    let begun = std::time::Instant::now();
+    let error = load(&file).unwrap_err();
+    assert!(error.contains("frames are too many for a scene of 4") && error.contains("--fps takes fewer"), "{error}");
+    assert!(begun.elapsed().as_secs() < 10);
+}
+
 /// A second layer scales the hip; ufbx evaluates it whatever its properties say.
 #[test]
 fn muted_layers_and_those_beside_a_solo_one_are_left_out() {

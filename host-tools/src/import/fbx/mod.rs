@@ -18,8 +18,8 @@ use ufbx::{AnimStack, Scene, SceneRoot};
 
 /// Bytes that a scene may take: the largest real one of motion alone takes a tenth.
 const MOST_BYTES: usize = 1 << 31;
-/// Elements of the scene times frames: the evaluation looks at all of them on each.
-const MOST_WORK: usize = 1 << 30;
+/// Elements of the scene times frames: the evaluation looks at all of them on each. So many take about a minute.
+const MOST_WORK: usize = 1 << 27;
 /// Nodes in nodes: the deepest skeletons have about 60.
 const DEEPEST: u32 = 1000;
 /// Frames a second where the file does not say.
@@ -130,8 +130,9 @@ fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(Figure, usiz
     from_transforms::check_size(kept.len(), weights.len() + 3 * scaled.iter().filter(|scaled| **scaled).count(), grid)?;
     ensure!(
         scene.elements.len().saturating_mul(grid.frames) <= MOST_WORK,
-        "{} frames are too many for this scene; --fps takes fewer",
-        grid.frames
+        "{} frames are too many for a scene of {} elements; --fps takes fewer",
+        grid.frames,
+        scene.elements.len()
     );
     let mut joint_of = vec![None; scene.nodes.len()];
     let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
