@@ -149,7 +149,14 @@ impl Edits {
         if let Some(fps) = fps {
             let before = (motion.frames, 1.0 / motion.frame_time);
             let events = distinct(&motion);
+            // What will be closed to a loop is one from the start: frames at another rate run on from its last frame to its first.
+            let cycle = self.close_loop && !motion.looped && self.from.is_none() && self.to.is_none();
+            if cycle {
+                motion.looped = true;
+                motion.keys.fill(None);
+            }
             motion = resample(&motion, fps)?;
+            motion.looped &= !cycle;
             let merged = events - distinct(&motion);
             if merged > 0 {
                 said.push(format!(
@@ -199,7 +206,13 @@ impl Edits {
             motion = done.motion;
         }
         if let Some(path) = &self.with {
-            let imported = import::load(path, &import::Options { files: files.clone(), ..Default::default() })?;
+            let mut options = import::Options { files: files.clone(), ..Default::default() };
+            let mut imported = import::load(path, &options)?;
+            if (imported.motion.frame_time / motion.frame_time - 1.0).abs() > 1e-9 {
+                // A file that is read at the rate is nearer to what it says than its frames at another are.
+                options.fps = Some(1.0 / motion.frame_time);
+                imported.motion = import::load(path, &options)?.motion;
+            }
             said.extend(imported.warnings.iter().map(|warning| format!("with: warning: {warning}")));
             let other = imported.motion;
             let before = motion;

@@ -27,7 +27,7 @@ pub struct Arguments {
     /// The address to listen on
     #[arg(long, default_value = "127.0.0.1")]
     bind: IpAddr,
-    /// The folder of the page
+    /// The folder of the page; by default the page inside the program, if it was built with one, otherwise what `cargo xtask web` built
     #[arg(long)]
     site: Option<PathBuf>,
     /// Let pages of other sites load the player and the clips
@@ -37,7 +37,10 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let mut site = Site::read(&Site::find(arguments.site.as_deref())?)?;
+    let mut site = match (&arguments.site, Site::built_in()) {
+        (None, Some(site)) => site?,
+        (folder, _) => Site::read(&Site::find(folder.as_deref())?)?,
+    };
     if !arguments.files.is_empty() {
         site.show(&arguments.files)?;
     }

@@ -33,7 +33,7 @@ const FUNCTIONS: [(&str, Function); 17] = [
     ("exp", Function::One(f64::exp)),
     ("ln", Function::One(f64::ln)),
     ("abs", Function::One(f64::abs)),
-    ("sign", Function::One(f64::signum)),
+    ("sign", Function::One(|x| if x == 0.0 { 0.0 } else { x.signum() })),
     ("floor", Function::One(f64::floor)),
     ("fract", Function::One(|x| x - x.floor())),
     ("round", Function::One(f64::round)),
@@ -267,6 +267,7 @@ mod tests {
             ("atan2(0, -1) - PI", 0.0),
             ("1e1 - .5 + 2.5E-1", 9.75),
             ("sin(PI/2) + sqrt(4) + sign(-2)", 2.0),
+            ("sign(0) + 2 * sign(-0) + 4 * sign(0.1)", 4.0),
         ] {
             assert!((value(text) - expected).abs() < 1e-12, "{text} is {}", value(text));
         }

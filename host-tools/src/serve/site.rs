@@ -62,6 +62,42 @@ impl Site {
         Ok(site)
     }
 
+    /// The site that the program has inside, if it was built with `PANTIN_SITE`.
+    pub fn built_in() -> Option<Result<Site>> {
+        #[cfg(site)]
+        return Some(Site::unpack(include_bytes!(env!("PANTIN_SITE"))).context("the site that the program has inside"));
+        #[cfg(not(site))]
+        None
+    }
+
+    /// All files in one, for [`Site::unpack`]: of each the lengths of its path and its content in four bytes each, least significant first, then both.
+    /// Those in gzip are left out, because a browser that takes gzip takes the file itself or brotli.
+    pub fn pack(&self) -> Result<Vec<u8>> {
+        let mut packed = vec![];
+        for (path, File { bytes, .. }) in self.files.iter().filter(|(path, _)| !path.ends_with(".gz")) {
+            for len in [path.len(), bytes.len()] {
+                packed.extend(u32::try_from(len).with_context(|| path.clone())?.to_le_bytes());
+            }
+            packed.extend([path.as_bytes(), bytes].concat());
+        }
+        Ok(packed)
+    }
+
+    /// The site of [`Site::pack`].
+    pub fn unpack(mut packed: &[u8]) -> Result<Site> {
+        let mut site = Site::default();
+        while !packed.is_empty() {
+            let (lens, rest) = packed.split_first_chunk::<8>().context("a packed site ends early")?;
+            let [path, bytes] =
+                [0, 4].map(|at| u32::from_le_bytes([lens[at], lens[at + 1], lens[at + 2], lens[at + 3]]) as usize);
+            let (path, rest) = rest.split_at_checked(path).context("a packed site ends early")?;
+            let (bytes, rest) = rest.split_at_checked(bytes).context("a packed site ends early")?;
+            site.add(String::from_utf8(path.to_vec()).context("a path that is not UTF-8")?, bytes.to_vec())?;
+            packed = rest;
+        }
+        Ok(site)
+    }
+
     /// Where the site is: as given, or beside the program, or where `cargo xtask web` puts it.
     pub fn find(given: Option<&Path>) -> Result<PathBuf> {
         if let Some(folder) = given {

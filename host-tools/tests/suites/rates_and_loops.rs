@@ -170,3 +170,66 @@ fn options_without_effect_are_named_or_refused() {
         assert!(!output.status.success() && said.len() < 300 && said.contains("--rate"), "{said}");
     }
 }
+
+/// One cycle of a steady spin, closed at higher rates: it lasts as long as at its own.
+#[test]
+fn a_closed_cycle_keeps_its_length_at_another_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    let (motion, clip) = (folder.path().join("spin.bvh"), folder.path().join("spin.ptn"));
+    let rows: String = (0..24).map(|frame| format!("0 90 0 {}\n", 15 * frame)).collect();
+    let text = format!(
+        "HIERARCHY\nROOT hip\n{{\nOFFSET 0 90 0\nCHANNELS 4 Xposition Yposition Zposition Yrotation\nEnd Site\n{{\nOFFSET 40 0 0\n}}\n}}\nMOTION\nFrames: 24\nFrame Time: 0.0333333\n{rows}"
+    );
+    std::fs::write(&motion, text).unwrap();
+    for (fps, frames) in [("60", 48), ("120", 96), ("20", 16), ("30", 24)] {
+        let output = convert(&motion, &["--close-loop", "--fps", fps, "--cm-per-unit", "1", "-o", clip.to_str().unwrap()]);
+        assert!(output.status.success(), "{output:?}");
+        let bytes = std::fs::read(&clip).unwrap();
+        assert_eq!(Clip::new_checked(&bytes).unwrap().frames(), frames, "{fps}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let steps: Vec<f64> = said
+            .lines()
+            .find(|line| line.contains("joints go up to"))
+            .unwrap()
+            .split(' ')
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        assert!((steps[0] / steps[1] - 1.0).abs() < 0.05, "{fps}: {said}");
+    }
+}
+
+/// Between the rows of a table there are straight lines, whether it is converted itself or goes with a body of another rate.
+#[test]
+fn a_table_that_goes_with_a_body_has_straight_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let body: String = (0..25).map(|frame| format!(" {frame} {frame}\n")).collect();
+    std::fs::write(path("body.keys"), format!("keyframes 1\nfps 30\nframes 25\ncm-per-unit 1\njoint hip offset 0 90 0 channels Yrotation\nend parent hip offset 9 0 0\nkeys linear hip\n{body}")).unwrap();
+    std::fs::write(path("face.csv"), "time,smile\n0,0\n0.1,0\n0.2,0\n0.3,1\n0.4,1\n0.5,1\n0.6,0\n0.7,0\n0.8,0\n").unwrap();
+    let output = convert(
+        &path("body.keys"),
+        &["--with", path("face.csv").to_str().unwrap(), "--max-scalar-error", "0.05", "-o", path("a.ptn").to_str().unwrap()],
+    );
+    assert!(output.status.success(), "{output:?}");
+    let output = Command::new(env!("CARGO_BIN_EXE_pantin"))
+        .arg("expand")
+        .arg(path("a.ptn"))
+        .arg("-o")
+        .arg(path("a.csv"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let table = std::fs::read_to_string(path("a.csv")).unwrap();
+    let smile = table.lines().next().unwrap().split(',').position(|name| name == "smile").unwrap();
+    for (frame, row) in table.lines().skip(1).enumerate() {
+        let value: f64 = row.split(',').nth(smile).unwrap().parse().unwrap();
+        let expected = match frame {
+            0..=6 => 0.0,
+            7..=9 => (frame as f64 - 6.0) / 3.0,
+            10..=15 => 1.0,
+            16..=18 => 1.0 - (frame as f64 - 15.0) / 3.0,
+            _ => 0.0,
+        };
+        assert!((value - expected).abs() < 6e-4, "{frame}: {value} is not {expected}");
+    }
+}

@@ -56,6 +56,26 @@ fn serves(place: SocketAddr) {
 }
 
 #[test]
+fn a_packed_site_is_the_site_without_gzip() {
+    let mut site = Site::default();
+    let files = [
+        ("/app.js", &b"script"[..]),
+        ("/app.js.br", b"brotli"),
+        ("/app.js.gz", b"gzip"),
+        ("/clips/a.ptn", b""),
+        ("/index.html", PAGE),
+    ];
+    files.iter().for_each(|(path, bytes)| site.add((*path).into(), bytes.to_vec()).unwrap());
+    let packed = site.pack().unwrap();
+    let unpacked = Site::unpack(&packed).unwrap();
+    for (path, bytes) in files {
+        let found = unpacked.file(path).map(|file| &file.bytes[..]);
+        assert_eq!(found, (!path.ends_with(".gz")).then_some(bytes), "{path}");
+    }
+    assert!(Site::unpack(&packed[..packed.len() - 1]).is_err() && Site::unpack(&packed[..5]).is_err());
+}
+
+#[test]
 fn pages_are_served_and_heads_without_bodies() {
     let place = server();
     serves(place);

@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
+use harness::build::{self, Build};
 use harness::paths;
 use harness::web::{self, Size, npm};
 
+use pantin_tools::output::write_whole;
+use pantin_tools::serve::Site;
 use xtask::steps::say;
 
 /// Builds the web page with its player and our clips, as static files for any web server or `pantin serve`.
@@ -18,6 +21,9 @@ pub struct Web {
     /// Also writes CLIP's page in one file, NAME.html, with the player, its modules and the clip in it
     #[arg(long, value_name = "CLIP")]
     inline: Vec<PathBuf>,
+    /// Also packs the site into target/site.pack, and builds target/site/release/pantin with it inside: `pantin serve` then needs no folder
+    #[arg(long)]
+    program: bool,
     /// Also packs the npm packages into target/npm, and uses them in a project of their own
     #[arg(long)]
     npm: bool,
@@ -33,8 +39,28 @@ impl Web {
         }
         let out = self.out.display();
         say(&format!("wrote {out}; `cargo pantin serve --site {out}` shows it"));
+        if self.program {
+            program(&self.out)?;
+        }
         if self.npm { packages(&self.out) } else { Ok(()) }
     }
+}
+
+/// Builds the host tool with the site inside.
+fn program(site: &Path) -> Result<()> {
+    let packed = Site::read(site)?.pack()?;
+    let file = paths::root().join("target/site.pack");
+    write_whole(&file, &packed)?;
+    let program = build::cargo(&Build {
+        workspace: paths::root(),
+        arguments: ["--release", "--package", "pantin-tools", "--bin", "pantin", "--target-dir", "target/site"]
+            .map(Into::into)
+            .into(),
+        environment: vec![("PANTIN_SITE".into(), file.into())],
+        product: "pantin".into(),
+    })?;
+    say(&format!("{} has the site inside, {} bytes", program.display(), packed.len()));
+    Ok(())
 }
 
 /// Packs the packages and uses them.
