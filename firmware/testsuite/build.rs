@@ -7,10 +7,8 @@ fn main() {
     fs::copy("memory.x", out.join("memory.x")).expect("OUT_DIR is writable");
     println!("cargo:rerun-if-changed=memory.x");
     println!("cargo:rustc-link-search={}", out.display());
-    // Runs on machines with 64 K alone: its stack, which holds all that it lends, ends there.
-    for program in ["back", "steer"] {
-        println!("cargo:rustc-link-arg-bin={program}=--defsym=_stack_start=0x20010000");
-    }
+    // It runs on machines with 64 K alone: its stack, which holds all that it lends, ends there.
+    println!("cargo:rustc-link-arg-bin=back=--defsym=_stack_start=0x20010000");
     for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo:rustc-link-arg-bins={argument}");
     }

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use board_drivers::indexed::{Indexed, IndexedRows};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
-use pantin_app::{Board, Entry, Exit, Options, SteerKey};
+use pantin_app::{Board, CHARACTER_KEYS, Entry, Exit, Mode, Options, SteerKey};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
@@ -94,7 +94,27 @@ pub fn steer(bank: &[u8], keys: &[SteerKey], readings: &[Reading]) -> Result<Vec
         |framebuffer: &mut Framebuffer<IndexedRows<240, 160, 19200>>| pictures.push(picture(crate::gba::LCD, framebuffer));
     let readings = readings.iter().copied().chain([Reading { ticks: 1, held: LEAVE }]).collect();
     let mut simulator = Simulator::<Rotation, _, _> { readings, ..Simulator::new(present) };
-    let exit = pantin_app::steer::<_, 64>(bank, keys, LEAVE, &mut Framebuffer::new(), &mut simulator);
+    let exit = pantin_app::steer::<_, 64>(bank, keys, LEAVE, Mode::Play, &mut Framebuffer::new(), &mut simulator);
+    ensure!(exit == Exit::Done, "the character cannot be played");
+    Ok(pictures)
+}
+
+/// The pictures of a display while letters steer our character in step: the first, then one after each of `letters`.
+pub fn steer_in_step(display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
+    match display.depth {
+        Depth::Gray4 => steered::<Gray4Rows<128, 64, 1024>>(display, letters),
+        _ => steered::<Rgb565Rows<176, 220, 19360>>(display, letters),
+    }
+}
+
+fn steered<L: Layout<Ink: Value>>(display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
+    let bank = std::fs::read(crate::steered::bank())?;
+    let mut pictures = vec![];
+    let present = |framebuffer: &mut Framebuffer<L>| pictures.push(picture(display, framebuffer));
+    let wishes = letters.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
+    let mut simulator = Simulator::<Rotation, L, _> { wishes, ..Simulator::new(present) };
+    let mut frame = Box::new(Framebuffer::<L>::new());
+    let exit = pantin_app::steer::<_, 64>(&bank, &CHARACTER_KEYS, 0, Mode::Sync, &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "the character cannot be played");
     Ok(pictures)
 }

@@ -2,18 +2,22 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use conformance::RATE;
 use pantin_animator::Character;
 use pantin_animator::machine::Table;
-use pantin_animator::session::Replay;
+use pantin_animator::session::{Input, Replay};
+use pantin_app::CHARACTER_KEYS;
 use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::{DrawStyle, View};
 use pantin_tools::machine::playback::{Stage, play, session};
 
+use crate::build::Firmware;
 use crate::display::{OLED, Picture};
-use crate::paths;
+use crate::qemu::{Launch, Machine};
+use crate::sync::Session;
 use crate::vectors::record::Crcs;
+use crate::{paths, screen, simulator};
 
 /// The bank with its state machine.
 pub fn bank() -> PathBuf {
@@ -44,6 +48,24 @@ fn played(bytes: &[u8], show: impl FnMut(&mut Character<'_, '_>) -> Result<()>) 
     play(bytes, Replay::new(session(&text, "steer.txt", &Table::of_bank(bytes)?)?, RATE), show)
 }
 
+/// The letters of [`pantin_app::CHARACTER_KEYS`] that make the session's inputs, before each picture but the first.
+pub fn letters() -> Result<Vec<Vec<u8>>> {
+    let bytes = std::fs::read(bank())?;
+    let table = Table::of_bank(&bytes)?;
+    let text = std::fs::read_to_string(script())?;
+    let session = session(&text, "steer.txt", &table)?;
+    let pictures = u64::from(session.end_us()) * u64::from(RATE) / 1_000_000;
+    let mut letters = vec![vec![]; pictures as usize];
+    for timed in session.inputs() {
+        let (Input::Press(input) | Input::Hold(input) | Input::Release(input)) = timed.input else { continue };
+        let key = CHARACTER_KEYS.iter().find(|key| table.input(key.input) == Some(input)).context("an input without a letter")?;
+        // The first picture at or after its time.
+        let picture = (u64::from(timed.time_us) * u64::from(RATE)).div_ceil(1_000_000);
+        letters[picture as usize - 1].push(key.letter);
+    }
+    Ok(letters)
+}
+
 /// The same, played here.
 pub fn crcs() -> Result<Crcs> {
     let mut stepped = vec![];
@@ -54,7 +76,7 @@ pub fn crcs() -> Result<Crcs> {
     Ok(Crcs { stepped, sought: vec![] })
 }
 
-/// What the reference board's display shows of it, picture by picture, drawn here.
+/// What the page's player shows of it, at the size of the reference board's display, drawn here.
 pub fn pictures() -> Result<Vec<Picture>> {
     let bytes = std::fs::read(bank())?;
     let mut stage = Stage::new(&bytes, [OLED.width, OLED.height], View::default(), None)?;
@@ -71,4 +93,22 @@ pub fn pictures() -> Result<Vec<Picture>> {
         Ok(())
     })?;
     Ok(shown)
+}
+
+/// Plays the session on a machine, in step with the host, and compares each picture with what the same program shows here; their number.
+pub fn on_board(machine: Machine) -> Result<usize> {
+    let letters = letters()?;
+    let expected = simulator::steer_in_step(machine.display.context("a machine without a display")?, &letters)?;
+    let program = Firmware::featuring("steer", machine.name, machine.name, machine.target, &[])?;
+    let mut session = Session::start(Launch::new(machine, program.elf()))?;
+    let nothing: Vec<u8> = vec![];
+    for (number, (letters, expected)) in std::iter::once(&nothing).chain(&letters).zip(&expected).enumerate() {
+        let (told, picture) = session.next(letters)?;
+        ensure!(told as usize == number, "picture {number} is called {told}");
+        ensure!(!expected.is_dark(), "picture {number} is dark");
+        if let Some(difference) = screen::difference(&picture, expected) {
+            anyhow::bail!("picture {number}: {difference}");
+        }
+    }
+    Ok(expected.len())
 }

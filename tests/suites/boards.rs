@@ -9,10 +9,10 @@ use harness::display::{Depth, Display, Picture, Way};
 use harness::download::{self, File};
 use harness::icount::FRAME_REGIONS;
 use harness::panel::{self, Colour, GC9A01, Mono, Panel, ST7789};
-use harness::qemu::MPS2_AN505;
+use harness::qemu::{MPS2_AN505, SX1};
 use harness::rp2040::{self, OLED, Spi};
 use harness::stm32::{Outcome, Pin, Request, TARGET};
-use harness::{clips, equal, image, paths, pictures, screen, simulator, unicorn};
+use harness::{clips, equal, image, paths, pictures, screen, simulator, steered, unicorn};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::rotation_float::FloatRotation;
 use pantin_tools::face::speak;
@@ -42,6 +42,13 @@ fn a_cortex_m33_plays_bodies_and_faces_as_the_host_does() {
 #[test]
 fn a_cortex_m33_plays_in_floating_point_as_the_host_does() {
     plays_as_the_host_does::<FloatRotation>("face,micromath");
+}
+
+#[test]
+fn the_phone_is_steered_as_on_the_host() {
+    let shown = steered::on_board(SX1).unwrap();
+    assert_eq!(shown, 901);
+    println!("{shown} pictures are equal");
 }
 
 /// Letters before each of the Nucleo's pictures but the first.

@@ -133,7 +133,7 @@ fn a_face_plays_for_a_minute_and_no_frame_is_dropped() {
 /// What the buttons do to the character: as in `firmware/boards/gba/src/keys.rs`.
 const STEER: [SteerKey<'static>; 5] = {
     const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
-        SteerKey { button, input, holds }
+        SteerKey { button, letter: 0, input, holds }
     }
     [key(UP, "go", true), key(B, "fast", true), key(A, "jump", false), key(LEFT, "left", false), key(R, "wave", false)]
 };

@@ -108,7 +108,7 @@ pub use options::{Mode, Options};
 pub use run::{NEXT, QUIT, SHOWN, run};
 pub use session::Entry;
 #[cfg(feature = "steer")]
-pub use steer::{SteerKey, steer};
+pub use steer::{CHARACTER_KEYS, SteerKey, steer};
 #[cfg(feature = "update")]
 pub use stored::run_stored;
 pub use text_screen::TextScreen;

@@ -19,6 +19,8 @@ mod register;
 #[cfg(feature = "emulated")]
 mod run_emulated;
 mod run_forever;
+#[cfg(all(feature = "emulated", feature = "steer"))]
+mod run_steered;
 mod serial;
 mod shared_board;
 mod ticks;
@@ -39,6 +41,8 @@ pub use register::Register;
 #[cfg(feature = "emulated")]
 pub use run_emulated::run_emulated;
 pub use run_forever::{IN_STEP, run_forever};
+#[cfg(all(feature = "emulated", feature = "steer"))]
+pub use run_steered::run_steered;
 pub use serial::{FnSerial, NbSerial, SerialPort};
 pub use shared_board::SharedBoard;
 pub use ticks::{TickSource, TickTimer};

@@ -48,7 +48,7 @@ fn several<B: Board, const FIGURES: usize>(
 
 // Not inlined: the buffer leaves the stack.
 #[inline(never)]
-fn options() -> Options {
+pub(crate) fn options() -> Options {
     let mut buffer = [0; COMMAND_LINE_BYTES];
     let mut line = CommandLine { ptr: buffer.as_mut_ptr(), size: COMMAND_LINE_BYTES };
     // Safety: the buffer is as large as it says and lives until the line has been read.

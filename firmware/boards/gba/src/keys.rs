@@ -48,7 +48,7 @@ const WITH_SELECT: [(u16, Command); 9] = [
 #[cfg(feature = "steer")]
 pub const STEER: [SteerKey<'static>; 11] = {
     const fn key(button: u16, input: &str, holds: bool) -> SteerKey<'_> {
-        SteerKey { button, input, holds }
+        SteerKey { button, letter: 0, input, holds }
     }
     [
         key(UP, "go", true),

@@ -8,13 +8,19 @@ mod log;
 mod registers;
 mod start;
 
+#[cfg(not(feature = "steer"))]
 use board_common::{NoFlash, run_emulated};
 
+#[cfg(not(feature = "steer"))]
 include!(concat!(env!("OUT_DIR"), "/clips.rs"));
 
 /// Most figures side by side.
+#[cfg(not(feature = "steer"))]
 const FIGURES: usize = 8;
 
 fn main() -> ! {
+    #[cfg(feature = "steer")]
+    board_common::run_steered(board::new());
+    #[cfg(not(feature = "steer"))]
     run_emulated::<NoFlash, _, FIGURES>(CLIPS, board::new())
 }

@@ -1,0 +1,17 @@
+//! Our character in an emulator: buttons, or letters over the serial line, steer it.
+
+use crate::exit::exit;
+use crate::run_emulated::options;
+use pantin_app::{Board, CHARACTER_KEYS, steer};
+use pantin_figure::surface::Framebuffer;
+
+/// The character: a bank with a state machine.
+static CHARACTER: &[u8] = include_bytes!("../../../../motions/character.ptb");
+/// Channels of its rig, at most.
+const CHANNELS: usize = 64;
+
+/// Plays the character as the command line says, and ends the emulator.
+pub fn run_steered<B: Board>(mut board: B) -> ! {
+    let mut framebuffer = Framebuffer::new();
+    exit(steer::<B, CHANNELS>(CHARACTER, &CHARACTER_KEYS, 0, options().mode, &mut framebuffer, &mut board).into())
+}
