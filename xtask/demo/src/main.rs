@@ -36,7 +36,8 @@ Options:
       --max-scalar-error <PERCENT>    Largest error of channels that move no joint, such as a face's, in percent of full scale
       --cm-per-unit <CM_PER_UNIT>     Length of the file's unit in cm, if the guess is wrong
       --frames <FRAMES>               Frames to show (default: 600)
-      --steer                         Play a recorded session of our character's state machine instead, on this machine
+      --steer                         Play a recorded session of our character's state machine instead, on this machine;
+                                      with --board (lm3s6965evb or sx1), steer it yourself in the emulator's window
   -h, --help                          Print help";
 
 /// Pictures on the contact sheet.
@@ -68,6 +69,8 @@ struct Demo {
     bounds: Bounds,
     frames: usize,
     steer: bool,
+    /// Whether `board` was given.
+    on_board: bool,
 }
 
 impl Demo {
@@ -80,11 +83,12 @@ impl Demo {
             bounds: Bounds::default(),
             frames: 600,
             steer: false,
+            on_board: false,
         };
         let mut parser = lexopt::Parser::from_args(arguments);
         while let Some(argument) = parser.next()? {
             match argument {
-                Arg::Long("board") => demo.board = parser.value()?.string()?,
+                Arg::Long("board") => (demo.board, demo.on_board) = (parser.value()?.string()?, true),
                 Arg::Long("out") => demo.out = parser.value()?.into(),
                 Arg::Long("max-error") => demo.bounds.error = Some(parser.value()?.string()?),
                 Arg::Long("max-scalar-error") => demo.bounds.scalar_percent = Some(parser.value()?.parse()?),
@@ -107,6 +111,9 @@ impl Demo {
     /// Converts, plays, writes the pictures, prints the table.
     #[cfg_attr(feature = "simulator", expect(unused_variables))]
     fn run(self, arguments: &[OsString]) -> Result<()> {
+        if self.steer && self.on_board {
+            return steer::live(&self.board);
+        }
         if self.steer {
             return steer::run(&self.out);
         }

@@ -1,10 +1,11 @@
-//! `cargo xtask demo --steer`: our character's state machine, steered by a recorded session.
+//! `cargo xtask demo --steer`: our character's state machine, steered by a recorded session, or on an emulated board by the user.
 
 use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use harness::{build, paths};
+use harness::{build, paths, qemu};
+use xtask::setup;
 use xtask::steps::say;
 
 /// Columns and rows of a picture.
@@ -12,6 +13,27 @@ const SIZE: &str = "240x240";
 /// Pictures a second of the animation, and pictures on the sheet.
 const RATE: &str = "25";
 const SHEET: &str = "36";
+
+/// Machines whose program can be steered.
+const BOARDS: [&str; 2] = ["lm3s6965evb", "sx1"];
+
+/// Runs the character on an emulated board in a window of its own, until `q` is typed. Letters in the terminal steer it.
+pub fn live(board: &str) -> Result<()> {
+    ensure!(BOARDS.contains(&board), "--steer --board {board}: expected {}", BOARDS.join(" or "));
+    let machine = qemu::board(board)?;
+    let emulator = setup::install_emulator(machine.emulator)?;
+    say(&format!("building the firmware of {board}"));
+    let firmware = build::Firmware::featuring("steer", machine.name, machine.name, machine.target, &[])?;
+    say(
+        "type w to walk and again to stop, f to run, space to jump, a and d to turn, s to sit down and stand up,\nh to wave, b to bow, n to dance; q ends",
+    );
+    let mut command = Command::new(&emulator);
+    command.args(["-M", machine.model, "-serial", "stdio", "-monitor", "none", "-semihosting-config", "enable=on,target=native"]);
+    let status = command.arg("-kernel").arg(firmware.elf()).status();
+    let status = status.with_context(|| format!("cannot start {}", emulator.display()))?;
+    ensure!(status.success(), "{} ended with {status}", machine.emulator);
+    Ok(())
+}
 
 /// Makes the bank and its machine, and leaves `steer.gif`, `steer-sheet.png` and the bank in `out`.
 pub fn run(out: &Path) -> Result<()> {
