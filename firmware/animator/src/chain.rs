@@ -3,11 +3,11 @@
 use crate::Error;
 use crate::groups::{Group, Shape};
 use crate::math;
-use crate::vector::{Vector, add, transposed};
+use crate::vector::{Vector, add, direction, transposed};
 use heapless::Vec;
 use pantin::{Angle, Clip, Component, Kinds};
 use pantin_figure::rotation::Rotation;
-use pantin_figure::trig::{FRACTION_BITS, sin_cos};
+use pantin_figure::trig::{FRACTION_BITS, angle_of_unit, sin_cos};
 
 /// A joint of a chain.
 #[derive(Clone, Copy, Debug)]
@@ -184,12 +184,13 @@ fn euler(Rotation(columns): &Rotation, [i, j, k]: [usize; 3]) -> [i32; 3] {
     let at = |row: usize, column: usize| columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0);
     let sign = if (i + 1) % 3 == j { 1 } else { -1 };
     let narrow = |q30: i32| q30 >> FRACTION_BITS;
-    let c = Angle::atan2_coarse(-sign * at(i, j), at(i, i)).to_bits();
+    // Its length is the second angle's cosine; the others are unit vectors.
+    let c = direction([at(i, i), -sign * at(i, j), 0]).map_or(0, |([x, y, _], _)| angle_of_unit(y, x));
     let (sin, cos) = sin_cos(c);
     let cos_b = narrow(at(i, i) * cos - sign * at(i, j) * sin);
-    let b = Angle::atan2_coarse(sign * at(i, k), cos_b).to_bits();
+    let b = angle_of_unit(sign * at(i, k), cos_b);
     let image = |row: usize| narrow(sign * at(row, i) * sin + at(row, j) * cos);
-    let a = Angle::atan2_coarse(sign * image(k), image(j)).to_bits();
+    let a = angle_of_unit(sign * image(k), image(j));
     [a, b, c]
 }
 

@@ -1,7 +1,7 @@
 //! Vectors and rotations in Q15: what inverse kinematics computes with, in products of 32 bits.
 
-use pantin_figure::rotation::Rotation;
 pub(crate) use pantin_figure::rotation::Vector;
+use pantin_figure::rotation::{Rotation, inverse_length};
 use pantin_figure::trig::ONE;
 
 pub(crate) fn sub([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
@@ -30,21 +30,30 @@ pub(crate) fn times(v: Vector, by: i32) -> Vector {
 }
 
 /// The length of a vector, and its direction in Q15; none for a vector of no length. A length past 2^30 is cut off.
-pub(crate) fn direction(v: Vector) -> Option<(Vector, i32)> {
-    let v = v.map(|x| x.clamp(-(1 << 29), 1 << 29));
-    let largest = v.iter().fold(0, |largest, x| largest | x.unsigned_abs());
+#[inline(never)]
+pub(crate) fn direction([x, y, z]: Vector) -> Option<(Vector, i32)> {
+    let largest = x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs();
     if largest == 0 {
         return None;
     }
-    // The largest component goes to 2^14 .. 2^15; the squares sum to less than 3 * 2^30.
-    let shift = 17 - largest.leading_zeros() as i32;
-    let v = v.map(|x| if shift >= 0 { x >> shift } else { x << -shift });
-    let length = v.iter().fold(0u32, |sum, x| sum.wrapping_add(x.unsigned_abs().wrapping_mul(x.unsigned_abs()))).isqrt();
-    let inverse = (1u32 << 30).checked_div(length).unwrap_or(0) as i32;
-    // Below 2^15 times 2^16.
-    let unit = v.map(|x| (x * (inverse >> 1) + (1 << 13)) >> 14);
-    let length = length as i32;
-    Some((unit, if shift >= 0 { length << shift } else { length >> -shift }))
+    // The largest component below 2^31, and at least 2^30 if it is not the one number that is 2^31.
+    let up = largest.leading_zeros().max(1) - 1;
+    let (x, y, z) = (x << up, y << up, z << up);
+    // It goes to 2^14 .. 2^15, the squares sum to 2^28 .. 3 * 2^30; short of 2^30 there is room for a bit more.
+    let mut down = 16;
+    let (mut a, mut b, mut c) = (x >> 16, y >> 16, z >> 16);
+    let mut sum = (a * a) as u32 + (b * b) as u32 + (c * c) as u32;
+    if sum < 1 << 30 {
+        down = 15;
+        (a, b, c) = (x >> 15, y >> 15, z >> 15);
+        sum = (a.wrapping_mul(a) as u32).saturating_add(b.wrapping_mul(b) as u32).saturating_add(c.wrapping_mul(c) as u32);
+    }
+    // Q15. No product passes 2^31: no component is longer than the vector.
+    let inverse = inverse_length(sum)? >> 7;
+    let unit = |x: i32| (x * inverse + (1 << 14)) >> 15;
+    let length = (((sum >> 16) + (sum >> 15 & 1)) as i32 * inverse) >> 14;
+    let shift = down - up as i32;
+    Some(([unit(a), unit(b), unit(c)], if shift < 0 { length >> -shift } else { length.min(1 << 30 >> shift) << shift }))
 }
 
 /// The rotation from one frame of three unit vectors to another: each frame is a vector, one at a right angle to it, and their product.

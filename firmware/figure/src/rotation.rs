@@ -228,15 +228,21 @@ fn unit(q: [i32; 4]) -> Option<[i32; 4]> {
         shift -= 1;
         square = square_of(q.map(|x| shift_right(x, shift)));
     }
-    let above = square.saturating_sub(1 << 30);
-    let index = (above >> 23) as usize;
-    let place = ((above >> 8) & 0x7fff) as i32;
-    let (from, to) = two(&INVERSE_ROOT, inverse_root, index)?;
-    let inverse = from + (((to - from) * place) >> FRACTION_BITS);
+    let inverse = inverse_length(square)?;
     Some(q.map(|x| {
         let x = shift_right(x, shift);
         (x * (inverse >> 7) + ((x * (inverse & 0x7f)) >> 7) + HALF) >> FRACTION_BITS
     }))
+}
+
+/// The inverse of a length in Q22 by its square, 2^30 (a length of 1) to 2^32: within 6e-6. None for greater ones than the table has, which do not occur.
+#[inline]
+pub fn inverse_length(square: u32) -> Option<i32> {
+    let above = square.saturating_sub(1 << 30);
+    let index = (above >> 23) as usize;
+    let place = ((above >> 8) & 0x7fff) as i32;
+    let (from, to) = two(&INVERSE_ROOT, inverse_root, index)?;
+    Some(from + (((to - from) * place) >> FRACTION_BITS))
 }
 
 fn square_of(q: [i32; 4]) -> u32 {

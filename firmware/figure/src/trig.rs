@@ -94,6 +94,45 @@ pub fn sin_cos(angle: i32) -> (i32, i32) {
     ((sin + ROUND) >> (TABLE_BITS - FRACTION_BITS), (cos + ROUND) >> (TABLE_BITS - FRACTION_BITS))
 }
 
+/// Angles of the table in an eighth of a turn, by the smaller component of a unit vector in 1/128: the nearest one.
+static NEAREST: [u8; 93] = {
+    let mut nearest = [0; 93];
+    let (mut index, mut angle) = (0, 0);
+    while index < 93 {
+        let sine = (2 * index + 1) as f64 / 256.0;
+        // Half of a step on lies the border to the next angle.
+        while angle < ANGLES / 8 {
+            let border = (angle as f64 + 0.5) * core::f64::consts::TAU / ANGLES as f64;
+            if border * series(border * border, 1.0) > sine {
+                break;
+            }
+            angle += 1;
+        }
+        nearest[index] = angle as u8;
+        index += 1;
+    }
+    nearest
+};
+
+/// The angle of a unit vector in Q15 from the x axis, in 2^-32 turns: within 2^-16 turns, as far as the vector's length is 1 to within 2^-14.
+#[inline(never)]
+pub fn angle_of_unit(y: i32, x: i32) -> i32 {
+    let (across, along) = (y.unsigned_abs() as i32, x.unsigned_abs() as i32);
+    let (small, large) = if across <= along { (across, along) } else { (along, across) };
+    let index = NEAREST.get((small >> 8) as usize).copied().unwrap_or((ANGLES / 8) as u8);
+    let [sin, cos] = nearest_angle(index.into());
+    // What is left is small: its sine is itself. Below 2^11, times 2^32 / (2 pi 2^15).
+    let rest = (small * (cos >> 7) - large * (sin >> 7) + HALF) >> FRACTION_BITS;
+    let mut angle = (i32::from(index) << 25) + rest * 20_861;
+    if across > along {
+        angle = (1 << 30) - angle;
+    }
+    if x < 0 {
+        angle = i32::MIN.wrapping_sub(angle);
+    }
+    if y < 0 { angle.wrapping_neg() } else { angle }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,6 +147,23 @@ mod tests {
             worst = worst.max((f64::from(sin) / 32768.0 - angle.sin()).abs()).max((f64::from(cos) / 32768.0 - angle.cos()).abs());
         }
         assert!(worst < 2.1e-5, "{worst}");
+    }
+
+    #[test]
+    fn angles_of_unit_vectors_keep_the_stated_error() {
+        let mut worst = 0;
+        for step in 0..2_000_000u32 {
+            let raw = step.wrapping_mul(4_294_967) as i32;
+            let angle = f64::from(raw) / 4294967296.0 * std::f64::consts::TAU;
+            for length in [32766.0, 32768.0, 32770.0] {
+                let [x, y] = [angle.cos(), angle.sin()].map(|part| (part * length).round() as i32);
+                worst = worst.max(angle_of_unit(y, x).wrapping_sub(raw).unsigned_abs());
+            }
+        }
+        assert!(worst < 1 << 16, "{worst}");
+        for (y, x, angle) in [(0, ONE, 0), (ONE, 0, 1 << 30), (0, -ONE, i32::MIN), (-ONE, 0, -(1 << 30)), (0, 0, 0)] {
+            assert_eq!(angle_of_unit(y, x), angle, "{y} {x}");
+        }
     }
 
     #[test]
