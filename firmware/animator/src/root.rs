@@ -73,6 +73,10 @@ impl Heading {
         if self.angle == Angle::ZERO {
             return [a, b];
         }
+        // As far as most go, one part is all.
+        if let (Ok(a), Ok(b)) = (i32::try_from(a), i32::try_from(b)) {
+            return self.rotate([a, b]);
+        }
         let low = |x: i64| (x & ((1 << 30) - 1)) as i32;
         let high = |x: i64| (x >> 30) as i32;
         let ([low_x, low_y], [x, y]) = (self.rotate([low(a), low(b)]), self.products([high(a), high(b)]));
