@@ -150,7 +150,8 @@ impl Edits {
             let before = (motion.frames, 1.0 / motion.frame_time);
             let events = distinct(&motion);
             // What will be closed to a loop is one from the start: frames at another rate run on from its last frame to its first.
-            let cycle = self.close_loop && !motion.looped && self.from.is_none() && self.to.is_none();
+            let whole = self.to.is_none() && self.first_frame(motion.frame_time) == 0;
+            let cycle = self.close_loop && !motion.looped && whole;
             if cycle {
                 motion.looped = true;
                 motion.keys.fill(None);

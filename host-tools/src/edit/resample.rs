@@ -12,6 +12,10 @@ use pantin::codec::layout::MAX_FRAMES;
 
 /// Rates closer than this, as a part, are the same.
 const SAME_RATE: f64 = 1e-4;
+/// A file's rate may be rounded by this part of it.
+const ROUNDED: f64 = 1e-5;
+/// A joint whose angles move farther than this many times its own turn is near where its angles are not told apart.
+const STRAY: f64 = 1.5;
 /// From one frame to the next, angles that jump farther than this, in degrees, may have changed to the other triple for the same pose.
 const JUMP: f64 = 20.0;
 
@@ -30,7 +34,9 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
     } else {
         let whole = (1.0 / ratio).round();
         let factor = if whole >= 1.0 && (ratio * whole - 1.0).abs() < SAME_RATE { 1.0 / whole } else { snapped(ratio) };
-        (((motion.frames - 1) as f64 * factor + 1e-9).floor(), factor)
+        // The last frame of a file that says `0.0333333` stays the last one.
+        let steps = (motion.frames - 1) as f64 * factor;
+        ((steps + (ROUNDED * steps).clamp(1e-9, 0.01)).floor(), factor)
     };
     ensure!(steps < f64::from(MAX_FRAMES), "--fps {fps} gives more than {MAX_FRAMES} frames, too many for a clip");
     if steps as usize >= motion.frames {
@@ -153,29 +159,41 @@ fn between_triples(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
         let rounds = [s0, s1, s2].map(|slot| round(motion, slot, kinds[slot].1));
         let angles =
             |frame: isize| -> [f64; 3] { std::array::from_fn(|n| value_at(&motion.values[[s0, s1, s2][n]], frame, rounds[n])) };
-        let jumps = |from: &[f64; 3], to: &[f64; 3], most: f64| (0..3).any(|n| (to[n] - from[n]).abs() > most);
+        let farthest = |from: &[f64; 3], to: &[f64; 3]| (0..3).map(|n| (to[n] - from[n]).abs()).fold(0.0, f64::max);
+        // Whether angles that belong together jump though the joint turns by far less.
+        let strays = |from: isize, [before, after]: [&[f64; 3]; 2]| {
+            let far = farthest(before, after);
+            far > JUMP && {
+                let within = |frame: isize| match motion.looped {
+                    true => frame.rem_euclid(motion.frames as isize) as usize,
+                    false => frame.clamp(0, motion.frames as isize - 1) as usize,
+                };
+                far > STRAY * angle_between(&turned(within(from)), &turned(within(from + 1)))
+            }
+        };
         for (index, &t) in times.iter().enumerate() {
             let (frame, s) = place(t);
             if s < 1e-9 {
                 continue;
             }
             let [a, b, c, d] = [-1, 0, 1, 2].map(|step| angles(frame as isize + step));
-            if !jumps(&a, &b, JUMP) && !jumps(&b, &c, JUMP) && !jumps(&c, &d, JUMP) {
+            if [(&a, &b), (&b, &c), (&c, &d)].iter().all(|(from, to)| farthest(from, to) <= JUMP) {
                 continue;
             }
             let (mut before, to) = (aligned(a, b), aligned(c, b));
             let mut after = aligned(d, to);
-            let found = if jumps(&b, &to, JUMP) {
+            let at = frame as isize;
+            let found = if strays(at, [&b, &to]) {
                 let next = if frame + 1 < motion.frames { frame + 1 } else { 0 };
                 let way = part_way(&turned(frame), &turned(next), s);
                 let found = euler::near(&way, [a0, a1, a2], b);
                 std::array::from_fn(|n| nearest(found[n], b[n]))
             } else {
                 // Beside a jump that is none of triples, a slope over it says nothing.
-                if jumps(&before, &b, 2.0 * JUMP) {
+                if strays(at - 1, [&before, &b]) {
                     before = std::array::from_fn(|n| 2.0 * b[n] - to[n]);
                 }
-                if jumps(&to, &after, 2.0 * JUMP) {
+                if strays(at + 1, [&to, &after]) {
                     after = std::array::from_fn(|n| 2.0 * to[n] - b[n]);
                 }
                 std::array::from_fn(|n| cubic([before[n], b[n], to[n], after[n]], s))
@@ -185,6 +203,12 @@ fn between_triples(motion: &Motion, times: &[f64], values: &mut [Vec<f64>]) {
             }
         }
     }
+}
+
+/// The angle of the turn from one rotation to another, in degrees.
+fn angle_between(from: &Matrix, to: &Matrix) -> f64 {
+    let trace: f64 = (0..3).map(|row| (0..3).map(|column| from[row][column] * to[row][column]).sum::<f64>()).sum();
+    ((trace - 1.0) / 2.0).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 /// The turn that is the part `s` of the shortest way from `from` to `to`.

@@ -20,7 +20,7 @@ const USUAL: [f64; 16] = [23.976, 24.0, 25.0, 29.97, 30.0, 48.0, 50.0, 59.94, 60
 
 /// A usual rate is an assumption where it is farther from the measured one, as a part of it.
 const ASSUMED: f64 = 5e-3;
-/// Rounding of even times changed their rate by less than this part of it.
+/// Rounding of times changes the rate that they give by less than this part of it, but for a few rows, whose times are taken as they stand.
 const HARDLY: f64 = 0.02;
 /// No usual rate is farther from the measured one than this part of it: two whole seconds are one frame a second.
 const FARTHEST: f64 = 0.5;
@@ -220,10 +220,7 @@ impl Rows {
             return self.times.clone();
         };
         let off = |rate: &f64| (rate * grid.period - 1.0).abs();
-        let place = |(time, &frame): (&f64, &usize)| time - self.times[0] - frame as f64 * grid.period;
-        // Rounding makes times uneven, but for a few rows: those it hardly moved.
-        let even = self.times.iter().zip(&grid.frames).all(|row| place(row).abs() < 1e-6 * grid.period);
-        let likely = |rate: &f64| explains(*rate, &grid, &self.times) && (!even || off(rate) < HARDLY);
+        let likely = |rate: &f64| explains(*rate, &grid, &self.times) && off(rate) < HARDLY;
         let parts = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0].map(|part| [fps / part, fps * part]);
         let given = parts.into_iter().flatten().filter(likely).min_by(|a, b| off(a).total_cmp(&off(b)));
         match given.or_else(|| Some(usual_rate(&grid, &self.times).0).filter(likely)) {

@@ -259,6 +259,32 @@ fn angles_that_jump_to_another_triple_turn_by_the_shorter_way() {
     assert!(far(places[0], places[1]) < 5.0 && far(places[1], places[2]) < 5.0, "{places:?}");
 }
 
+/// 45 degrees a frame are a fast turn, and no other triple: cubics go through the angles.
+#[test]
+fn a_fast_turn_is_a_cubic() {
+    let mut motion = arms(24);
+    let first = channel(&motion, "root.Zrotation");
+    let angle = |frame: usize| 90.0 * (frame as f64 * std::f64::consts::TAU / 12.0).sin();
+    motion.values[first] = (0..24).map(angle).collect();
+    for slot in 1..3 {
+        motion.values[first + slot].fill(0.0);
+    }
+    let fine = resample(&motion, 60.0).unwrap();
+    for frame in 1..22 {
+        let [a, b, c, d] = [frame - 1, frame, frame + 1, frame + 2].map(angle);
+        let expected = (9.0 * (b + c) - a - d) / 16.0;
+        assert!((fine.values[first][2 * frame + 1] - expected).abs() < 1e-9, "{frame}");
+    }
+}
+
+#[test]
+fn the_last_frame_stays_where_the_file_rounds_its_rate() {
+    let motion = Motion { frame_time: 0.0333333, ..arms(31) };
+    for (fps, frames) in [(25.0, 26), (40.0, 41), (60.0, 61), (15.0, 16)] {
+        assert_eq!(resample(&motion, fps).unwrap().frames, frames, "{fps}");
+    }
+}
+
 #[test]
 fn a_seam_is_closed_within_its_bound_or_refused() {
     let mut motion = arms(25);

@@ -76,6 +76,14 @@ fn even_times_are_what_they_say_whatever_rate_is_asked_for() {
     }
 }
 
+/// A few rows with few digits may be even times that were rounded, at any of several rates: they stand where they say.
+#[test]
+fn a_few_uneven_rows_stand_where_they_say() {
+    let (motion, _) = read_with("few", "time,a\n0,0\n0.02,2\n0.04,4\n0.07,7\n", Some(100.0)).unwrap();
+    assert_eq!(motion.frames, 8);
+    assert!(motion.values[0].iter().enumerate().all(|(frame, value)| (value - frame as f64).abs() < 1e-9), "{:?}", motion.values);
+}
+
 #[test]
 fn times_are_known_by_their_names_and_one_in_a_later_column_is_said() {
     for name in ["Time(s)", "time [sec]", "TIME", "Seconds", "Time (s)"] {
