@@ -145,9 +145,10 @@ fn muted_layers_and_those_beside_a_solo_one_are_left_out() {
         )
     };
     let with = |property: &str, base: &str| {
-        let file =
-            with_curve(LEG, 60, 1, "Lcl Scaling", "Z", "1,3").replace("C: \"OO\",60,21", "C: \"OO\",60,70\n\tC: \"OO\",70,20");
-        let file = file.replace("AnimationLayer: 21,", &layer(property));
+        let file = with_curve(LEG, 60, 1, "Lcl Scaling", "Z", "1,3").replace("C: \"OO\",60,21", "C: \"OO\",60,70");
+        let file = file
+            .replace("C: \"OO\",21,20", "C: \"OO\",21,20\n\tC: \"OO\",70,20")
+            .replace("AnimationLayer: 21,", &layer(property));
         load(&file.replace("\"AnimLayer::base\", \"\" {\n", &format!("\"AnimLayer::base\", \"\" {{\n{base}")))
     };
     let base = "\t\tProperties70:  {\n\t\t\tP: \"Solo\", \"bool\", \"\", \"\",1\n\t\t}\n";
@@ -159,9 +160,31 @@ fn muted_layers_and_those_beside_a_solo_one_are_left_out() {
     }
     let both = with("", "").unwrap();
     assert!(both.motion.values.len() > plain.values.len() && !both.warnings.iter().any(|warning| warning.contains("layers")));
-    let grow = with("\t\t\tP: \"Solo\", \"bool\", \"\", \"\",1\n", "").unwrap();
-    let smile = grow.motion.rig.scalars.iter().any(|scalar| scalar.name == "smile");
-    assert!(!smile && grow.warnings.iter().any(|warning| warning.ends_with("are left out: `base`")), "{:?}", grow.warnings);
+    let error = with("\t\t\tP: \"Solo\", \"bool\", \"\", \"\",1\n", "").unwrap_err();
+    assert!(error.contains("layer `grow` adds to a layer below it that does not play"), "{error}");
+    // BlendMode 1 overrides.
+    let over = "\t\t\tP: \"Solo\", \"bool\", \"\", \"\",1\n\t\t\tP: \"BlendMode\", \"enum\", \"\", \"\",1\n";
+    let grow = with(over, "").unwrap();
+    assert!(!grow.motion.rig.scalars.iter().any(|scalar| scalar.name == "smile"));
+    assert!(grow.warnings.iter().any(|warning| warning.ends_with("are left out: `base`")), "{:?}", grow.warnings);
+}
+
+/// The kick turns the hip and moves the knee; the rest moves the hip, which therefore has a moved place too. ufbx gave it the knee's.
+#[test]
+fn a_place_that_another_stack_moves_is_its_own() {
+    let other = "AnimationLayer: 41, \"AnimLayer::base2\", \"\" {\n\t}\n";
+    let file = with_curve(LEG, 60, 2, "Lcl Translation", "X", "0,0.3");
+    let file = with_curve(&file, 80, 1, "Lcl Translation", "X", "0,0.7")
+        .replace("C: \"OO\",80,21", "C: \"OO\",80,41\n\tC: \"OO\",41,40");
+    let file = file.replace("\tAnimationLayer: 21,", &format!("\t{other}\tAnimationLayer: 21,"));
+    let stack =
+        |name: &str| load_as(file.as_bytes(), &Options { animation: Some(name.into()), ..Options::default() }).unwrap().motion;
+    let kick = stack("kick");
+    for frame in 0..25 {
+        near(fk::positions(&kick.rig, &kick.values, frame)[0], [0.0, 100.0, 0.0]);
+    }
+    let rest = stack("rest");
+    near(fk::positions(&rest.rig, &rest.values, 24)[0], [70.0, 0.0, 0.0]);
 }
 
 /// A second layer holds the knee elsewhere; its weight goes from 0 to 100.
