@@ -494,6 +494,9 @@ pub(super) fn prepare_without_footsteps(arguments: &Arguments) -> Result<Prepare
     }
     notes.say(imported.units);
     let place = || arguments.input.display().to_string();
+    if let Some(sentence) = arguments.edits.on_sampled(&arguments.input, &options)? {
+        notes.say(sentence);
+    }
     let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
     let read = options.files.read_so_far();
     read.iter().for_each(|path| detail!("read {}", path.display()));

@@ -101,6 +101,18 @@ pub struct Edited {
 }
 
 impl Edits {
+    /// A sentence for a cycle of a file that is read at the times of `fps`.
+    pub fn on_sampled(&self, path: &Path, options: &import::Options) -> Result<Option<String>> {
+        let Some(fps) = options.fps.filter(|_| self.close_loop) else { return Ok(None) };
+        let sentence = || {
+            format!(
+                "loop: the file was read at {} frames a second up to its last time, which one such frame parts from its first; at its own rate, it is one of its own frames",
+                Number(fps)
+            )
+        };
+        Ok(import::is_sampled(path, options)?.then(sentence))
+    }
+
     /// Whether there is any.
     pub fn any(&self) -> bool {
         *self != Edits::default()
@@ -219,6 +231,12 @@ impl Edits {
             let before = motion;
             motion = join(&before, &other).with_context(|| format!("--with {}", path.display()))?;
             said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));
+            if self.close_loop && motion.frames < before.frames {
+                let (left, whole) = (motion.frames, before.frames);
+                said.push(format!(
+                    "with: warning: the other file ends before the cycle does: {left} of {whole} frames become the loop"
+                ));
+            }
             if before.looped && !motion.looped {
                 said.push(
                     "with: the clip is no loop any more, as the two are not loops of one length; --close-loop makes one".into(),

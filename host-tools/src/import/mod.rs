@@ -121,6 +121,13 @@ pub fn takes(path: &Path) -> Result<[bool; 2]> {
     Ok([format.takes_animation(), format.takes_skeleton()])
 }
 
+/// Whether the motion file `path` is read at the times of `--fps`, from its first to its last, instead of frame by frame.
+pub fn is_sampled(path: &Path, options: &Options) -> Result<bool> {
+    let format = format_of(path, &options.files)?;
+    let by_its_times = || (format.read)(path, &Options { fps: None, ..options.clone() }).is_ok();
+    Ok(options.fps.is_some() && (format.takes_animation() || (format.name == "table" && by_its_times())))
+}
+
 /// One line a format. Of several with one extension, those that a file's begin tells stand before the one that takes all others.
 const FORMATS: &[Format] = &[
     Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },

@@ -198,6 +198,26 @@ fn a_closed_cycle_keeps_its_length_at_another_rate() {
     }
 }
 
+/// A table is read at the times of --fps: what that means for a cycle is said, and what a shorter face does to it.
+#[test]
+fn what_a_cycle_of_a_sampled_file_ends_with_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let rows: String =
+        (0..24).map(|frame| format!("{:.4},{:.4}\n", f64::from(frame) / 30.0, (f64::from(frame) * 0.2618).sin())).collect();
+    std::fs::write(path("cycle.csv"), format!("time,a\n{rows}")).unwrap();
+    let said = |input: &str, options: &[&str]| {
+        let output = convert(&path(input), &[&["--close-loop", "-o", path("a.ptn").to_str().unwrap()], options].concat());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(said("cycle.csv", &["--fps", "60"]).contains("which one such frame parts from its first"));
+    assert!(!said("cycle.csv", &[]).contains("which one such frame"));
+    std::fs::write(path("body.keys"), "keyframes 1\nfps 30\nframes 30\ncm-per-unit 1\njoint hip offset 0 90 0 channels Yrotation\nend parent hip offset 9 0 0\nkeys linear hip\n 0 0\n 29 29\n").unwrap();
+    let with = path("cycle.csv");
+    assert!(said("body.keys", &["--with", with.to_str().unwrap()]).contains("24 of 30 frames become the loop"));
+}
+
 /// Between the rows of a table there are straight lines, whether it is converted itself or goes with a body of another rate.
 #[test]
 fn a_table_that_goes_with_a_body_has_straight_lines() {

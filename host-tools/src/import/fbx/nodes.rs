@@ -25,14 +25,30 @@ pub struct Moves {
 
 impl Moves {
     /// Of one stack.
-    pub fn of<'s>(scene: &Scene, stack: &'s AnimStack) -> Moves {
-        let mut moves = Moves {
+    pub fn of(scene: &Scene, stack: &AnimStack) -> Moves {
+        let mut moves = Moves::nothing(scene);
+        moves.add(stack);
+        moves
+    }
+
+    /// Of all stacks together.
+    pub fn of_any(scene: &Scene) -> Moves {
+        let mut moves = Moves::nothing(scene);
+        scene.anim_stacks.iter().for_each(|stack| moves.add(stack));
+        moves
+    }
+
+    fn nothing(scene: &Scene) -> Moves {
+        Moves {
             nodes: vec![false; scene.nodes.len()],
             shifted: vec![false; scene.nodes.len()],
             scaled: vec![false; scene.nodes.len()],
             weights: vec![false; scene.blend_channels.len()],
             curves: 0,
-        };
+        }
+    }
+
+    fn add<'s>(&mut self, stack: &'s AnimStack) {
         let of_layer = |layer: &'s AnimLayer| layer.anim_props.iter().map(|property| (layer.weight_is_animated, property));
         for (weighed, property) in layers::played(stack).into_iter().flat_map(of_layer) {
             // In a layer that comes and goes, a constant moves something too.
@@ -42,21 +58,20 @@ impl Moves {
             }
             let index = property.element.typed_id as usize;
             let slot = match (property.element.type_, &*property.prop_name) {
-                (ElementType::Node, "Lcl Translation" | "Lcl Rotation" | "Lcl Scaling") => moves.nodes.get_mut(index),
-                (ElementType::BlendChannel, "DeformPercent") => moves.weights.get_mut(index),
+                (ElementType::Node, "Lcl Translation" | "Lcl Rotation" | "Lcl Scaling") => self.nodes.get_mut(index),
+                (ElementType::BlendChannel, "DeformPercent") => self.weights.get_mut(index),
                 _ => None,
             };
             if let Some(slot) = slot {
                 *slot = true;
-                moves.curves += count;
+                self.curves += count;
                 match &*property.prop_name {
-                    "Lcl Translation" => moves.shifted[index] = true,
-                    "Lcl Scaling" => moves.scaled[index] = true,
+                    "Lcl Translation" => self.shifted[index] = true,
+                    "Lcl Scaling" => self.scaled[index] = true,
                     _ => {}
                 }
             }
         }
-        moves
     }
 
     /// Whether that is nothing.
@@ -102,11 +117,7 @@ pub fn depth_first(scene: &Scene) -> Vec<usize> {
 
 /// The part in the figure of each node of `order`.
 pub fn roles(scene: &Scene, order: &[usize]) -> Vec<Role> {
-    let stacks: Vec<Moves> = scene.anim_stacks.iter().map(|stack| Moves::of(scene, stack)).collect();
-    let any = |of: fn(&Moves) -> &[bool]| {
-        (0..scene.nodes.len()).map(|node| stacks.iter().any(|moves| of(moves)[node])).collect::<Vec<bool>>()
-    };
-    let (moved, shifted) = (any(|moves| &moves.nodes), any(|moves| &moves.shifted));
+    let Moves { nodes: moved, shifted, .. } = Moves::of_any(scene);
     let bones = bones(scene);
     let aside = aside(scene, order, &bones, &moved, &shifted);
     let mut role_of = vec![None; scene.nodes.len()];
@@ -147,8 +158,8 @@ fn aside(scene: &Scene, order: &[usize], bones: &[bool], moved: &[bool], shifted
 
 /// The blend channels that a curve of any stack changes.
 pub fn weights(scene: &Scene) -> Vec<usize> {
-    let stacks: Vec<Moves> = scene.anim_stacks.iter().map(|stack| Moves::of(scene, stack)).collect();
-    (0..scene.blend_channels.len()).filter(|&channel| stacks.iter().any(|moves| moves.weights[channel])).collect()
+    let moved = Moves::of_any(scene).weights;
+    (0..moved.len()).filter(|&channel| moved[channel]).collect()
 }
 
 /// What a person would call a node.
