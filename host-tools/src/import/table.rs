@@ -1,6 +1,6 @@
 //! Tables of any channels: a row of names, then a row of values a frame, between commas, tabs or semicolons.
 //!
-//! The first two columns may be a time in seconds (`time`, `t`, `seconds`, `timestamp`, `Time (s)`), in milliseconds (`time_ms`, `ms`) or a frame's number (`frame`, or no
+//! The first two columns may be a time in seconds (`time`, `t`, `seconds`, `timestamp`, `Time (s)`), in another unit (`time_ms`, `us`) or a frame's number (`frame`, or no
 //! name at all). Without a time, `--fps` is needed; with a time, `--fps` takes the values on straight lines at that rate, and without it the rows must
 //! be even but for missing ones. Full scale is a channel's own greatest value, whatever its sign.
 
@@ -58,10 +58,11 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         (None, None) => return Err(sheet.error(1, "no column of times (`time`, in seconds); --fps gives the frames a second")),
     };
     if clock.time.is_none()
-        && let Some(name) = names.iter().find(|name| unit_of_time(name).is_some())
+        && let Some(name) =
+            names.iter().find(|name| unit_of_time(name).is_some() || name.to_ascii_lowercase().starts_with("time"))
     {
         let name = quoted(name);
-        warnings.push(format!("column {name} becomes a channel: times are read from the first two columns"));
+        warnings.push(format!("column {name} becomes a channel: times stand in the first column or behind frame numbers, and are called `time`, `Time (ms)` or the like"));
     }
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     for (name, largest) in names.iter().zip(&values).map(|(name, values)| (name, largest(values))) {
@@ -109,14 +110,16 @@ impl Clock {
     }
 }
 
-/// The length in seconds of the unit of a column with times, by its name.
+/// The length in seconds of the unit of a column with times, by its name: `time`, `timestamp` or `t`, a unit, or both, as in `Time (ms)`.
 fn unit_of_time(name: &str) -> Option<f64> {
-    let plain: String = name.to_ascii_lowercase().chars().filter(|letter| !" _()[]".contains(*letter)).collect();
-    match plain.as_str() {
-        "time" | "t" | "s" | "sec" | "secs" | "second" | "seconds" | "timestamp" | "times" | "timesec" | "timeseconds" => {
-            Some(1.0)
-        }
-        "ms" | "msec" | "millisecond" | "milliseconds" | "timems" | "timemsec" | "timemilliseconds" | "timestampms" => Some(1e-3),
+    let plain: String = name.to_ascii_lowercase().chars().filter(|letter| !" _()[].-/".contains(*letter)).collect();
+    let unit = ["timestamp", "time", ""].into_iter().find_map(|begin| plain.strip_prefix(begin)).unwrap_or_default();
+    match unit.strip_prefix("in").unwrap_or(unit) {
+        "" | "t" => (!plain.is_empty()).then_some(1.0),
+        "s" | "ts" | "sec" | "secs" | "second" | "seconds" => Some(1.0),
+        "ms" | "tms" | "msec" | "msecs" | "millis" | "millisecond" | "milliseconds" => Some(1e-3),
+        "us" | "tus" | "usec" | "micros" | "microsecond" | "microseconds" => Some(1e-6),
+        "ns" | "tns" | "nsec" | "nanos" | "nanosecond" | "nanoseconds" => Some(1e-9),
         _ => None,
     }
 }

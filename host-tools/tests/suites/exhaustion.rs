@@ -210,6 +210,23 @@ fn a_live_line_without_end_is_refused_a_silent_one_is_stopped_and_what_is_cut_is
     }
 }
 
+/// Four thousand animations that share one track of 30,000 keys, which a list would read four thousand times.
+#[test]
+fn a_list_of_animations_that_share_many_keys_is_refused_at_once() {
+    use super::gltf_input::Builder;
+    let folder = Folder::new();
+    let mut builder = Builder::new(serde_json::json!([{"name": "a"}]));
+    let times: Vec<f32> = (0..30_000).map(|key| key as f32 / 30.0).collect();
+    builder.animate(0, "translation", "LINEAR", &times, &vec![0.5; 90_000]);
+    let animation = builder.root["animations"][0].clone();
+    builder.root["animations"] = std::iter::repeat_n(animation, 4000).collect::<Vec<_>>().into();
+    folder.put("shared.gltf", builder.text());
+    let begun = std::time::Instant::now();
+    let output = folder.command(&["convert", "--list", "shared.gltf"]).output().unwrap();
+    assert!(output.status.code() == Some(1) && err(&output).contains("too many to list"), "{}", err(&output));
+    assert!(begun.elapsed().as_secs() < 10);
+}
+
 /// What another file names is read if it is a regular file: nobody writes to the pipe.
 #[cfg(unix)]
 #[test]

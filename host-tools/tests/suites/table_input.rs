@@ -86,9 +86,31 @@ fn a_few_uneven_rows_stand_where_they_say() {
 
 #[test]
 fn times_are_known_by_their_names_and_one_in_a_later_column_is_said() {
-    for name in ["Time(s)", "time [sec]", "TIME", "Seconds", "Time (s)"] {
+    for name in [
+        "Time(s)",
+        "time [sec]",
+        "TIME",
+        "Seconds",
+        "Time (s)",
+        "Timestamp (s)",
+        "t(s)",
+        "Time (sec.)",
+        "time in seconds",
+        "t",
+        "timestamp",
+    ] {
         let (motion, warnings) = read_with("names", format!("{name},a\n0,1\n0.1,2\n0.2,3\n"), None).unwrap();
         assert_eq!((motion.frames, motion.rig.scalars.len(), warnings.len()), (3, 1, 0), "{name}");
+    }
+    for (name, unit) in [("t_ms", 1e-3), ("Timestamp [ms]", 1e-3), ("time_us", 1e-6), ("timestamp_ns", 1e-9)] {
+        let rows: String = (0..3).map(|row| format!("{},{row}\n", (f64::from(row) * 0.1 / unit).round())).collect();
+        let (motion, warnings) = read_with("units", format!("{name},a\n{rows}"), None).unwrap();
+        assert_eq!((motion.frames, motion.rig.scalars.len(), warnings.len()), (3, 1, 0), "{name}");
+        assert!((motion.frame_time - 0.1).abs() < 1e-9, "{name}: {}", motion.frame_time);
+    }
+    for name in ["time of day", "Time (fortnights)"] {
+        let (_, warnings) = read_with("other", format!("{name},a\n0,1\n1,2\n"), Some(30.0)).unwrap();
+        assert!(warnings.iter().any(|warning| warning.contains("becomes a channel")), "{name}: {warnings:?}");
     }
     let (_, warnings) = read_with("later", "a,b,time\n0,1,0\n0.1,2,.1\n0.2,3,.2\n", Some(30.0)).unwrap();
     assert!(warnings.iter().any(|warning| warning.starts_with("column `time` becomes a channel")), "{warnings:?}");

@@ -1,16 +1,26 @@
 //! The animations of a file.
 
 use super::file::File;
-use super::tracks;
+use super::{key_numbers, tracks};
 use crate::import::grid;
 use crate::import::list::Entry;
 use crate::import::{Files, read_bytes};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use std::path::Path;
+
+/// Numbers of the keys of all animations: so many take about ten seconds.
+const MOST_NUMBERS: usize = 1 << 29;
 
 /// All animations of the glTF file `path`, those included that nothing can be read from: they have no frames.
 pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
     let file = File::open(path, &read_bytes(path)?, &Files::default())?;
+    // Animations may share keys, which are read again for each.
+    let numbers = file.root.animations.iter().map(|animation| key_numbers(&file, animation)).fold(0, usize::saturating_add);
+    let place = path.display();
+    ensure!(
+        numbers <= MOST_NUMBERS,
+        "{place}: the keys of all animations are {numbers} numbers, too many to list; --animation takes one"
+    );
     let entry = |number: usize| {
         let name = file.root.animations[number].name.as_deref().map(super::one_line);
         let tracks = tracks(&file, number, &mut Vec::new())?;

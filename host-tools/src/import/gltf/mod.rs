@@ -170,6 +170,11 @@ fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Trac
 
 /// Refuses keys that would fill the memory: any number of tracks may share one accessor.
 fn check_keys(file: &File, animation: &gltf::json::Animation) -> Result<()> {
+    budget::check_numbers(key_numbers(file, animation), "the keys of all tracks")
+}
+
+/// Numbers of the keys of an animation, at most.
+fn key_numbers(file: &File, animation: &gltf::json::Animation) -> usize {
     // No accessor has more elements than its view has bytes: one that claims more is refused when it is read.
     let count = |index: usize| {
         let Some(accessor) = file.root.accessors.get(index) else { return 0 };
@@ -181,7 +186,7 @@ fn check_keys(file: &File, animation: &gltf::json::Animation) -> Result<()> {
     // Of a key's time and the numbers of its value, of which rotations have most.
     let numbers =
         samplers.map(|sampler| count(sampler.input.value()).saturating_add(count(sampler.output.value()).saturating_mul(4)));
-    budget::check_numbers(numbers.fold(0, usize::saturating_add), "the keys of all tracks")
+    numbers.fold(0, usize::saturating_add)
 }
 
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
