@@ -10,10 +10,13 @@ use pantin_figure::rotation::Rotation;
 // YOUR BOARD: the processor's clock.
 pub const CPU_HZ: u32 = 16_000_000;
 
-/// Sets the board up. The panic handler calls it again: `singleton!` then returns `None`, and the watchdog runs already.
+/// Sets the board up. The panic handler calls it again: `singleton!` then returns `None`, the watchdog runs already, and clocks that may be
+/// set only once, as by `embassy_stm32::init`, are set in `main.rs` instead.
 // YOUR BOARD: give it the chip's peripherals, and replace each placeholder by a driver of the chip's own crate. `Capacity` is for 64 KiB of
 // RAM or more; with less, `pantin_app::MaxClip<144, 96, 36>`.
 pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
+    // First of all, a watchdog that resets the board after 2 s: without it, `report_bus` would wait for ever for a bus that is held low.
+    let feed_watchdog = || {};
     // Any `embedded_hal::i2c::I2c` of at most 400 kHz whose `transaction` is no `todo!()`. Enable the pull-ups of both pins, if there are any.
     let mut i2c = placeholder::Bus;
     // 115,200 baud: any port of `embedded_hal_nb::serial` whose `write` returns `WouldBlock` in `NbSerial`, or two functions in `FnSerial`,
@@ -27,7 +30,5 @@ pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = 
     let buttons = five_buttons([placeholder::Pin; 5]);
     // On another processor than a Cortex-M: `TickTimer`, over a free-running counter.
     let timer = SysTick::<CPU_HZ>::new();
-    // A watchdog that resets the board after 2 s.
-    let feed_watchdog = || {};
     SharedBoard::new(display, serial, buttons, timer, feed_watchdog)
 }
