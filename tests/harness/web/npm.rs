@@ -1,5 +1,6 @@
 //! The npm packages: built from the site's files, packed, and used by a clean project.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -9,11 +10,29 @@ use xtask::browser::Browser;
 use xtask::npm;
 
 use super::{CHARACTER, EXPORT, FACE, PLAYER, tools};
-use crate::{paths, setup};
+use crate::{build, paths, setup};
 
 /// The packages, those that others need first.
 pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
-const CHECK: [&str; 7] = ["bundles.mjs", "check.mjs", "check.ts", "firefox.mjs", "index.html", "main.ts", "tsconfig.json"];
+const CHECK: [&str; 10] = [
+    "bundles.mjs",
+    "check.mjs",
+    "check.ts",
+    "firefox.mjs",
+    "index.html",
+    "main.ts",
+    "pixels.html",
+    "pixels.js",
+    "pixels.mjs",
+    "tsconfig.json",
+];
+/// Files that three.js draws as their own animation moves them and as a clip of it does: a fox, a man with a texture of stripes, a captured body. Each
+/// with the error bound of the clip, and the part of the figure's pixels that may have no like one within a pixel in the other picture.
+const DRAWN: [(&str, &str, f64); 3] = [
+    ("gltf_khronos_fox.glb", "0.05cm", 0.005),
+    ("gltf_khronos_cesium-man.glb", "0.005cm", 0.02),
+    ("bvh_bandai1_dance.bvh", "0.05cm", 0.005),
+];
 /// Programs that are Firefox.
 const FIREFOX: [&str; 2] = ["firefox-esr", "firefox"];
 
@@ -90,6 +109,40 @@ pub fn check(packed: &[Packed], site: &Path, folder: &Path) -> Result<Checked> {
         measured: serde_json::from_str(&measured).context("check.mjs")?,
         places: serde_json::from_str(&places).context("bundles.mjs")?,
     })
+}
+
+/// What three.js shows: a line for each of the captured files, or none where these are not at hand.
+pub fn pixels(folder: &Path) -> Result<Vec<String>> {
+    let Some(data) = paths::data() else { return Ok(vec![]) };
+    let pairs = tempfile::Builder::new().prefix("pantin-pixels-").tempdir().context("cannot make a temporary folder")?;
+    let tool = build::host_tool()?;
+    let pantin = |arguments: &[&OsStr]| -> Result<()> {
+        let output = Command::new(&tool).args(arguments).output().context("cannot start the host tool")?;
+        ensure!(output.status.success(), "pantin: {}", String::from_utf8_lossy(&output.stderr));
+        Ok(())
+    };
+    for (name, bound, _) in DRAWN {
+        let (source, stem) = (data.join(name), name.split('.').next().unwrap_or(name));
+        let [file, clip] = ["glb", "ptn"].map(|extension| pairs.path().join(stem).with_extension(extension));
+        if name.ends_with(".glb") {
+            std::fs::copy(&source, &file).with_context(|| source.display().to_string())?;
+        } else {
+            let body = pairs.path().join("body");
+            pantin(&["convert".as_ref(), source.as_ref(), "--to".as_ref(), "300".as_ref(), "-o".as_ref(), body.as_ref()])?;
+            pantin(&["expand".as_ref(), body.as_ref(), "-o".as_ref(), file.as_ref()])?;
+        }
+        pantin(&["convert".as_ref(), file.as_ref(), "--max-error".as_ref(), bound.as_ref(), "-o".as_ref(), clip.as_ref()])?;
+    }
+    let told: Value = serde_json::from_str(&node(folder, "pixels.mjs", &[pairs.path().into()])?).context("pixels.mjs")?;
+    let line = |(name, bound, most): (&str, &str, f64)| {
+        let stem = name.split('.').next().unwrap_or(name);
+        let part = told[stem]["most"].as_f64().with_context(|| format!("{stem} was not drawn"))?;
+        ensure!(told[stem]["shown"].as_u64() > Some(200), "{stem}: the pictures show nothing");
+        let line = format!("{stem} at {bound}: at most {:.2} % of its pixels have no like within a pixel", 100.0 * part);
+        ensure!(part <= most, "{line}; expected {} %", 100.0 * most);
+        Ok(line)
+    };
+    DRAWN.into_iter().map(line).collect()
 }
 
 fn node(folder: &Path, program: &str, arguments: &[PathBuf]) -> Result<String> {

@@ -75,6 +75,11 @@ fn packages(site: &Path) -> Result<()> {
     let ms = measured["ms"].as_f64().unwrap_or_default();
     say(&format!("{characters} characters of {joints} joints are decoded and posed in {ms:.2} ms a frame"));
     say(&format!("the packages work in Node, with strict types, and in {}", places.join(", ")));
+    let drawn = npm::pixels(&folder.join("check"))?;
+    drawn.iter().for_each(|line| say(&format!("drawn by three.js as their own animation and as a clip: {line}")));
+    if drawn.is_empty() {
+        say("not compared with glTF's own animations: PANTIN_DATA names no captured clips");
+    }
     if !places.iter().any(|place| place.contains("Firefox")) {
         say("not tried in Firefox, which is not installed");
     }
