@@ -26,7 +26,8 @@ pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = 
     report_bus(&mut serial, &mut i2c);
     // An LED that blinks while pictures are sent, whether the display answers or not. A board without one passes the display itself.
     let display = Heartbeat::new(Ssd1306::new(i2c), placeholder::Pin);
-    // Any `embedded_hal::digital::InputPin` with a pull-up: up, down, left, right and select. A board without buttons has `NoButtons`.
+    // Any `embedded_hal::digital::InputPin` with a pull-up: up, down, left, right and select, all of one type. A board without buttons has
+    // `NoButtons`.
     let buttons = five_buttons([placeholder::Pin; 5]);
     // On another processor than a Cortex-M: `TickTimer`, over a free-running counter.
     let timer = SysTick::<CPU_HZ>::new();
