@@ -50,7 +50,7 @@ fn compare(printed: &str, clip: &Path, joint: &str) {
     let clip = Clip::new_checked(&bytes).unwrap();
     let index = clip.find(joint).unwrap().index();
     assert!(clip.is_exponential(index), "{joint} is not coded as an exponential map");
-    let truth = pantin_tools::expand::expand(&clip).unwrap();
+    let truth = pantin_convert::expand::expand(&clip).unwrap();
     let first = truth.rig.first_channels()[index];
     let channels: Vec<usize> = (0..3)
         .map(|n| truth.rig.joints[index].kinds.iter().enumerate().filter(|(_, kind)| kind.is_rotation()).nth(n).unwrap().0)

@@ -7,10 +7,10 @@ use harness::vectors::{self, Vector};
 use hostile::noise::Noise;
 use pantin::codec::layout::HAS_SECTIONS;
 use pantin::{ChannelState, Clip, OpenError, PartialClip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
-use pantin_tools::encode::clip::{self, Channel, Coded, Start};
-use pantin_tools::encode::rig;
-use pantin_tools::encode::segment::Segment;
-use pantin_tools::motion;
+use pantin_convert::encode::clip::{self, Channel, Coded, Start};
+use pantin_convert::encode::rig;
+use pantin_convert::encode::segment::Segment;
+use pantin_convert::motion;
 
 /// Every pose of the clip, by steps.
 fn poses(clip: Clip<'_>) -> Vec<Vec<i32>> {

@@ -11,10 +11,10 @@ use harness::web::browser::{Browser, skipped};
 use harness::web::{self, slow};
 use harness::{build, clips, paths, screen, setup, simulator, steered};
 use pantin::Clip;
+use pantin_convert::expand::expand;
+use pantin_convert::import::{self, Options};
+use pantin_convert::verify;
 use pantin_figure::rotation::Rotation;
-use pantin_tools::expand::expand;
-use pantin_tools::import::{self, Options};
-use pantin_tools::verify;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

@@ -3,8 +3,8 @@
 use crate::error::exception;
 use crate::facts::open;
 use anyhow::Result;
-use pantin_tools::expand::Expanded;
-use pantin_tools::export::bvh::{Columns, write};
+use pantin_convert::expand::Expanded;
+use pantin_convert::export::bvh::{Columns, write};
 use pyo3::prelude::*;
 
 /// The clip as a BVH file, with three rotations a joint, as most readers demand.

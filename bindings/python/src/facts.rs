@@ -4,10 +4,10 @@ use crate::array::floats;
 use crate::error::exception;
 use anyhow::{Error, Result, bail};
 use pantin::{Clip, OpenError};
-use pantin_tools::encode::rig;
-use pantin_tools::facts::segment_bits;
-use pantin_tools::import::up;
-use pantin_tools::{budget, events};
+use pantin_convert::encode::rig;
+use pantin_convert::facts::segment_bits;
+use pantin_convert::import::up;
+use pantin_convert::{budget, events};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 use serde_json::json;
@@ -44,7 +44,7 @@ pub fn channel_bytes<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, P
 fn text(bytes: &[u8]) -> Result<String> {
     let clip = open(bytes)?;
     let figure = rig::decode(&clip.rig());
-    let joint = |joint: &pantin_tools::motion::Joint| {
+    let joint = |joint: &pantin_convert::motion::Joint| {
         json!({
             "name": joint.name,
             "parent": joint.parent,

@@ -5,8 +5,8 @@ use crate::background;
 use crate::convert::{Aim, code, direction};
 use crate::error::exception;
 use anyhow::Result;
-use pantin_tools::import::arrays::{Arrays, Entry};
-use pantin_tools::motion::Scalar;
+use pantin_convert::import::arrays::{Arrays, Entry};
+use pantin_convert::motion::Scalar;
 use pyo3::prelude::*;
 
 /// A joint: name, parent, offset, whether it is an End Site.

@@ -5,8 +5,8 @@ use crate::error::exception;
 use crate::facts::open;
 use anyhow::{Error, Result};
 use pantin::{ChannelState, Player};
-use pantin_tools::motion::Motion;
-use pantin_tools::{budget, expand, fk};
+use pantin_convert::motion::Motion;
+use pantin_convert::{budget, expand, fk};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 
@@ -59,7 +59,7 @@ pub fn places<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, PyByteAr
     let motion = expanded(py, clip)?;
     let (first, unit) = (motion.rig.first_channels(), motion.rig.cm_per_unit);
     Ok(frames(py, &motion, |frame| {
-        let place = |(joint, &first): (&pantin_tools::motion::Joint, &usize)| {
+        let place = |(joint, &first): (&pantin_convert::motion::Joint, &usize)| {
             let mut place = joint.offset;
             for (channel, kind) in (first..).zip(&joint.kinds).filter(|(_, kind)| kind.is_position()) {
                 if let (Some(axis), Some(values)) = (kind.axis(), motion.values.get(channel)) {

@@ -1,6 +1,6 @@
 //! Which files are motions, and which other files they are read with.
 
-use pantin_tools::import;
+use pantin_convert::import;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use pantin::Bank;
 use pantin::codec::layout::section;
-use pantin_tools::encode::bank::{self, Named};
+use pantin_convert::encode::bank::{self, Named};
 use serde_json::{Value, json};
 
 use super::{json, record, synthetic};
@@ -19,7 +19,7 @@ pub fn bytes() -> Result<Vec<u8>> {
     let clips: Vec<Named> = synthetic::in_bank()
         .into_iter()
         .map(|made| {
-            let (name, rig) = (made.name.to_string(), pantin_tools::encode::rig::encode(&made.rig)?);
+            let (name, rig) = (made.name.to_string(), pantin_convert::encode::rig::encode(&made.rig)?);
             Ok(Named { place: name.clone(), name, clip: made.vector()?.clip, rig: rig.into() })
         })
         .collect::<Result<_>>()?;

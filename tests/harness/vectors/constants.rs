@@ -5,7 +5,7 @@
 use pantin::Kind;
 use pantin::codec::segment::{CONTEXTS, DIRECT_MODES, MODE_CONTEXTS};
 use pantin::codec::{entropy, layout};
-use pantin_tools::encode::entropy::{Alphabet, sizes};
+use pantin_convert::encode::entropy::{Alphabet, sizes};
 use serde_json::json;
 
 use super::json;

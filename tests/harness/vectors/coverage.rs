@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use anyhow::Result;
 use pantin::codec::layout::{FAR_NUMBER, FOLLOW_BITS, LENGTHS, START_MODE, STATUS_CONTEXTS, STATUSES, STEP_CHANGES, status};
 use pantin::codec::segment::{DIRECT_MODES, SECOND};
-use pantin_tools::encode::clip::symbols;
-use pantin_tools::encode::entropy::{Alphabet, Sink};
-use pantin_tools::encode::rig;
-use pantin_tools::encode::segment::mode_symbol;
+use pantin_convert::encode::clip::symbols;
+use pantin_convert::encode::entropy::{Alphabet, Sink};
+use pantin_convert::encode::rig;
+use pantin_convert::encode::segment::mode_symbol;
 
 use super::synthetic::Made;
 

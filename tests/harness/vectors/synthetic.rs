@@ -3,10 +3,10 @@
 use anyhow::Result;
 use pantin::codec::layout::{FIRST_STEP, GROUPS, HAS_SECTIONS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
 use pantin::{Event, Kind, Up};
-use pantin_tools::encode::clip::{self, Channel, Coded, Start};
-use pantin_tools::encode::rig;
-use pantin_tools::encode::segment::Segment;
-use pantin_tools::motion::{Joint, Rig, Scalar};
+use pantin_convert::encode::clip::{self, Channel, Coded, Start};
+use pantin_convert::encode::rig;
+use pantin_convert::encode::segment::Segment;
+use pantin_convert::motion::{Joint, Rig, Scalar};
 
 use super::Vector;
 use hostile::noise::Noise;

@@ -15,11 +15,11 @@ use std::thread;
 pub use xtask::browser;
 
 use anyhow::{Context, Result, ensure};
-use pantin_tools::encode::{clip, rig};
-use pantin_tools::export;
-use pantin_tools::fit::descent::Level;
-use pantin_tools::fit::fit;
-use pantin_tools::import::{self, Options};
+use pantin_convert::encode::{clip, rig};
+use pantin_convert::export;
+use pantin_convert::fit::descent::Level;
+use pantin_convert::fit::fit;
+use pantin_convert::import::{self, Options};
 use pantin_tools::machine;
 use pantin_tools::serve::{Site, serve};
 use serde_json::json;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pantin_tools::import::{self, Options};
+use pantin_convert::import::{self, Options};
 
 /// Stands between the ASF and the AMC of one input.
 const BETWEEN: &[u8] = b"\n%%\n";

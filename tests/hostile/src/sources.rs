@@ -1,7 +1,7 @@
 //! Source text that is made of clips: whatever their names are, it is what a compiler reads as comments, names and literals.
 
 use pantin::Clip;
-use pantin_tools::export::source::{c_header, rust_module};
+use pantin_convert::export::source::{c_header, rust_module};
 
 use crate::clips::RIG;
 use crate::fix;

@@ -2,15 +2,15 @@
 
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
-use pantin_tools::edit::join::join;
-use pantin_tools::edit::resample::resample;
-use pantin_tools::encode::{clip, rig};
-use pantin_tools::export::source::c_header;
-use pantin_tools::fit::descent::Level;
-use pantin_tools::fit::{fit, raw};
-use pantin_tools::import::{self, Files, Options};
-use pantin_tools::motion::Motion;
-use pantin_tools::{errors, verify};
+use pantin_convert::edit::join::join;
+use pantin_convert::edit::resample::resample;
+use pantin_convert::encode::{clip, rig};
+use pantin_convert::export::source::c_header;
+use pantin_convert::fit::descent::Level;
+use pantin_convert::fit::{fit, raw};
+use pantin_convert::import::{self, Files, Options};
+use pantin_convert::motion::Motion;
+use pantin_convert::{errors, verify};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

@@ -9,11 +9,11 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use harness::{build, paths};
-use pantin_tools::expand::expand;
-use pantin_tools::import::{self, units};
+use pantin_convert::expand::expand;
+use pantin_convert::import::{self, units};
+use pantin_convert::verify::compare;
 use pantin_tools::output::write_whole;
 use pantin_tools::render::gallery::{self, Cell};
-use pantin_tools::verify::compare;
 
 use xtask::steps::say;
 

@@ -5,10 +5,10 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
 use harness::build;
-use pantin_tools::fit::descent::Level;
-use pantin_tools::fit::fit;
-use pantin_tools::verify::verify;
-use pantin_tools::{encode, errors, import};
+use pantin_convert::fit::descent::Level;
+use pantin_convert::fit::fit;
+use pantin_convert::verify::verify;
+use pantin_convert::{encode, errors, import};
 use serde_json::Value;
 
 use crate::report::Clip;

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use pantin_tools::export::bvh;
-use pantin_tools::import::{self, Options};
-use pantin_tools::motion::Motion;
+use pantin_convert::import::{self, Options};
+use pantin_convert::motion::Motion;
 
 use super::reference::{self, Reference};
 use super::table::geometric_mean;
@@ -71,6 +70,6 @@ fn decimated(setting: &Setting, clip: &Reference, motion: &Motion, stride: usize
         ..motion.clone()
     };
     let path = setting.out.join(format!("{}-every{stride}.bvh", clip.name));
-    bvh::save(&thin, &path)?;
+    pantin_tools::output::save_bvh(&thin, &path)?;
     Ok(path)
 }

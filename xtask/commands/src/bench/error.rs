@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use anyhow::{Result, ensure};
-use pantin_tools::fk;
-use pantin_tools::import::{self, Options};
-use pantin_tools::motion::{Joint, Motion, Rig};
+use pantin_convert::fk;
+use pantin_convert::import::{self, Options};
+use pantin_convert::motion::{Joint, Motion, Rig};
 
 /// Distances in cm over all frames.
 #[derive(Clone, Copy, Debug, Default)]
@@ -73,7 +73,7 @@ fn with_shell(rig: &Rig) -> Rig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pantin_tools::motion::Kind;
+    use pantin_convert::motion::Kind;
 
     #[test]
     fn the_last_joints_turn_is_in_the_shell_alone() {

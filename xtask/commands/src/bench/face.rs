@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use harness::paths;
 use harness::qemu::{LM3S6965EVB, MICROBIT, Machine};
+use pantin_convert::expand::expand;
+use pantin_convert::import::{self, Options};
+use pantin_convert::motion::Motion;
 use pantin_face::{Binding, FaceRenderer, Morph, VERTICES, Weights};
-use pantin_tools::expand::expand;
-use pantin_tools::import::{self, Options};
-use pantin_tools::motion::Motion;
 
 use super::board::{self, played};
 use super::{Goal, Setting, table};

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use harness::paths;
-use pantin_tools::export::bvh;
-use pantin_tools::fit::bounds::EXACT_DEGREES;
-use pantin_tools::import::{self, Options};
-use pantin_tools::motion::{Kind, Motion};
+use pantin_convert::fit::bounds::EXACT_DEGREES;
+use pantin_convert::import::{self, Options};
+use pantin_convert::motion::{Kind, Motion};
 
 use super::tool::{self, Converted};
 use super::{Goal, Setting, plot, table};
@@ -148,7 +147,7 @@ fn cut(setting: &Setting, walk: &Motion, frames: usize) -> Result<PathBuf> {
     let path: &Path = &setting.out.join(format!("walk-{frames}.bvh"));
     let keys = vec![None; values.len()];
     let motion = Motion { frames, values, keys, looped: false, ..walk.clone() };
-    bvh::save(&motion, path).with_context(|| path.display().to_string())?;
+    pantin_tools::output::save_bvh(&motion, path).with_context(|| path.display().to_string())?;
     Ok(path.to_owned())
 }
 

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use harness::paths;
-use pantin_tools::export::source::c_header;
+use pantin_convert::export::source::c_header;
 use serde_json::Value;
 use tempfile::TempDir;
 

@@ -1,0 +1,479 @@
+//! Closed-loop descent (METHOD 5): each channel is coded again inside the tube that the true error of everything below it
+//! still leaves, pass after pass, while the price of an error falls.
+
+use super::figure::{Figure, Places, Poses, lever};
+use super::parametrize::Rotations;
+use super::refusal::refusal;
+use super::search::{Effort, Fitted, Tube, search};
+use super::start_cost::{StartCosts, step_of};
+use crate::encode::clip::Start;
+use crate::motion::Kind;
+use anyhow::{Result, bail};
+use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
+
+/// The bound, and the encoder's effort.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Greatest distance of any joint or End Site from where it should be, in cm.
+    pub bound_cm: f64,
+    /// The mean distance of all joints, End Sites left out, to aim at within the bound, in cm. Without it the bound is filled.
+    pub mean_cm: Option<f64>,
+    /// Passes over all channels.
+    pub passes: usize,
+    /// The price of an error, relative to a bit, in the first and the last pass.
+    pub prices: (f64, f64),
+    /// Whether two steps are tried at a time, or one.
+    pub both_steps: bool,
+    /// The search for one channel.
+    pub effort: Effort,
+    /// How joints' rotations are coded.
+    pub rotations: Rotations,
+}
+
+impl Plan {
+    /// The same with more passes for a short clip, which takes little time: `values` is the number of its channels times that of its frames.
+    pub fn with_time_for(self, values: usize) -> Plan {
+        let more = (VALUES_OF_A_PLAN / values.max(1) as f64).sqrt().clamp(1.0, MOST_PASSES);
+        let passes = if self.both_steps { (self.passes as f64 * more) as usize } else { self.passes };
+        Plan { passes, ..self }
+    }
+
+    /// The bound that a code with this plan's errors would fill.
+    pub fn filled_cm(&self) -> f64 {
+        self.mean_cm.map_or(self.bound_cm, |mean| MEAN_OF_FILLED * mean)
+    }
+}
+
+/// Searches of fewer frames take less time than another thread takes to begin.
+const SHORT: usize = 16;
+/// Clips of fewer values have more passes, up to this many times more: a clip of 25 frames becomes 4 % smaller by four times as many.
+const VALUES_OF_A_PLAN: f64 = 40_000.0;
+const MOST_PASSES: f64 = 4.0;
+
+/// Codes that fill a bound have a mean this many times smaller.
+pub const MEAN_OF_FILLED: f64 = 2.2;
+
+/// Encoder effort: speed against size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// For previews: many times faster than real time
+    Fast,
+    /// About real time
+    Default,
+    /// A few percent smaller than default, several times slower
+    Best,
+}
+
+impl Level {
+    /// The plan of this level for a bound.
+    pub fn plan(self, bound_cm: f64) -> Plan {
+        let plan = |passes, beam, margin, thorough| Plan {
+            bound_cm,
+            mean_cm: None,
+            passes,
+            prices: (FIRST_PRICE_AT_1_CM * bound_cm.powf(FIRST_PRICE_FALLS).clamp(0.5, 4.0), 0.2),
+            both_steps: thorough,
+            effort: Effort { beam, margin, slopes: thorough, all_alike: false },
+            rotations: Rotations::ByCost,
+        };
+
+        match self {
+            Level::Fast => plan(2, 3, 3.0, false),
+            Level::Default => plan(12, 14, 9.0, true),
+            Level::Best => plan(30, 30, 14.0, true),
+        }
+    }
+}
+
+/// The price of the first pass. A tight bound takes many bits a frame, and an error must cost as much: measured on ten clips at 0.1 to 3 cm.
+const FIRST_PRICE_AT_1_CM: f64 = 11.0;
+const FIRST_PRICE_FALLS: f64 = -0.45;
+/// Part of the bound that the fit uses: the rest covers rounding in files.
+const USED: f64 = 0.9995;
+/// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
+const ATTEMPTS: usize = 4;
+const FIRST_ATTEMPTS: usize = 16;
+const SHRINK: f64 = 0.6;
+/// The price grows by this much where an error comes near the bound, so that others keep room.
+const CROWDING: f64 = 4.0;
+/// Levers are taken as constant while a channel moves by this much at most: degrees.
+const TRUST_DEGREES: f64 = 25.0;
+/// Bits by which a new code must be better.
+const GAIN: f64 = 0.01;
+
+/// Passes to a mean, in those to a bound.
+const MEAN_PASSES: usize = 3;
+/// The price of the first pass to a mean, in bits for each mean distance and second.
+const FIRST_PRICE: f64 = 144.0;
+/// The price falls by this factor from pass to pass, or by less once it fell too far; by hardly any, it is as low as it can be.
+const FALL: f64 = 0.8;
+const FALL_LEAST: f64 = 0.995;
+/// A mean this near below the one that was asked for is as good.
+const NEAR_MEAN: f64 = 0.99;
+/// End Sites are not part of the mean, but are seen: they have this part of a joint's price.
+const END_SITE_PART: f64 = 0.1;
+
+/// A channel's code, and what the search had found it to cost.
+type Code = Fitted;
+
+/// Bits that a step away from the best one costs, times the square of the distance, about: so much up to this many bits, then in proportion.
+const STEP_LOSS: f64 = 0.3;
+const BITS_OF_STEP_LOSS: f64 = 256.0;
+
+/// The state of a descent.
+pub struct Descent<'m> {
+    figure: &'m Figure,
+    plan: Plan,
+    /// Part of the bound that a channel's first code may fill.
+    first_part: f64,
+    /// Targets, raw and unwrapped.
+    targets: &'m [Vec<f64>],
+    /// Units of the motion for a raw unit.
+    scales: &'m [f64],
+    /// Where the rig has each channel at rest, raw.
+    rests: &'m [i32],
+    /// Kinds as the file has them.
+    kinds: &'m [Kind],
+    original: &'m Places,
+    poses: Poses,
+    codes: Vec<Option<Code>>,
+    /// The last pass that found each channel a better code.
+    improved: Vec<usize>,
+    seconds_a_frame: f64,
+}
+
+/// The codes of a pass whose mean is small enough.
+struct Kept {
+    price: f64,
+    bits: f64,
+    codes: Vec<Option<Code>>,
+}
+
+impl<'m> Descent<'m> {
+    /// Starts from the original: nothing is coded yet, nothing is off but by the rig's own rounding.
+    #[allow(clippy::too_many_arguments)]
+    pub fn new(
+        figure: &'m Figure,
+        plan: Plan,
+        first_part: f64,
+        targets: &'m [Vec<f64>],
+        scales: &'m [f64],
+        rests: &'m [i32],
+        kinds: &'m [Kind],
+        original: &'m Places,
+        seconds_a_frame: f64,
+    ) -> Self {
+        let poses = figure.poses(|channel, frame| targets[channel][frame] * scales[channel]);
+        let codes = vec![None; targets.len()];
+        let improved = vec![0; targets.len()];
+        Descent { figure, plan, first_part, targets, scales, rests, kinds, original, poses, codes, improved, seconds_a_frame }
+    }
+
+    /// All passes. `progress` receives the fraction that is done, 0 to 1.
+    pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
+        if let Some(mean_cm) = self.plan.mean_cm {
+            return self.run_to_mean(mean_cm, progress);
+        }
+        let passes = self.plan.passes;
+        for pass in 0..passes {
+            let (first, last) = self.plan.prices;
+            let part = pass as f64 / (passes.max(2) - 1) as f64;
+            let price = self.seconds_a_frame * 30.0 * first * (last / first).powf(part);
+            self.pass(pass, price, pass + 1 == passes, &mut |done| progress((pass as f64 + done) / passes as f64))?;
+        }
+        Ok(self.codes.into_iter().flatten().collect())
+    }
+
+    /// One pass. A channel that nothing helped lately is tried in every third pass only, unless `every` channel is.
+    fn pass(&mut self, pass: usize, price: f64, every: bool, progress: &mut dyn FnMut(f64)) -> Result<()> {
+        let channels = self.targets.len();
+        for i in 0..channels {
+            let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
+            if every || pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) {
+                self.improve(channel, price, pass)?;
+            }
+            progress((i + 1) as f64 / channels as f64);
+        }
+        Ok(())
+    }
+
+    /// Passes whose price for a centimetre falls until the mean is reached. A higher price would not undo what a lower one did, so a
+    /// pass that goes too far is taken back and the price falls less from there.
+    fn run_to_mean(mut self, mean_cm: f64, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
+        let (passes, mut fall) = (MEAN_PASSES * self.plan.passes, FALL);
+        let mut price = FIRST_PRICE * self.seconds_a_frame / mean_cm;
+        let mut kept: Option<Kept> = None;
+        for pass in 0..passes {
+            self.pass(pass, price, false, &mut |done| progress((pass as f64 + done) / passes as f64))?;
+            let part = self.mean() / mean_cm;
+            if part <= 1.0 {
+                let bits = self.codes.iter().flatten().map(|code| code.bits).sum();
+                let saved = kept.as_ref().is_none_or(|kept| bits < 0.999 * kept.bits);
+                kept = Some(Kept { price, bits, codes: self.codes.clone() });
+                if part > NEAR_MEAN && !saved {
+                    break;
+                }
+                // Far from the mean, one pass at a price is enough.
+                if part < 0.6 || !pass.is_multiple_of(2) {
+                    price *= fall;
+                }
+            } else if let Some(kept) = &kept {
+                self.codes.clone_from(&kept.codes);
+                self.poses = self.figure.poses(|channel, frame| self.value(channel, frame));
+                fall = fall.sqrt();
+                price = kept.price * fall;
+                if fall > FALL_LEAST {
+                    break;
+                }
+            } else {
+                price /= fall * fall;
+            }
+        }
+        let Some(kept) = kept else {
+            bail!("no code with a mean error of {mean_cm} cm was found within {} cm at every joint", self.plan.bound_cm);
+        };
+        Ok(kept.codes.into_iter().flatten().collect())
+    }
+
+    /// The mean distance of the joints from where they should be, in cm.
+    fn mean(&self) -> f64 {
+        let counted: Vec<usize> = (0..self.figure.rig.joints.len()).filter(|&joint| self.counts(joint)).collect();
+        let frames = |joint: usize| (0..self.figure.frames).map(move |frame| (joint, frame));
+        let distances =
+            counted.iter().flat_map(|&joint| frames(joint)).map(|(joint, frame)| square(&self.error(joint, frame)).sqrt());
+        distances.sum::<f64>() / (counted.len() * self.figure.frames).max(1) as f64
+    }
+
+    /// Whether a joint is part of the mean.
+    fn counts(&self, joint: usize) -> bool {
+        !self.figure.rig.joints[joint].end_site
+    }
+
+    /// The price, in bits, of a joint's squared distance in cm, where it is off by `error` now: the distance itself has the price.
+    fn price_to_mean(&self, joint: usize, error: &[f64; 3], price: f64, mean_cm: f64) -> f64 {
+        let part = if self.counts(joint) { 1.0 } else { END_SITE_PART };
+        // In proportion to the square below the mean: otherwise what is exact by chance would stay so at any price.
+        part * price / (2.0 * square(error).sqrt().max(mean_cm))
+    }
+
+    /// Codes one channel again if that is better.
+    fn improve(&mut self, channel: usize, price: f64, pass: usize) -> Result<()> {
+        let moved = self.figure.moved(channel);
+        let bound = self.plan.bound_cm * USED;
+        let coded = self.codes[channel].is_some();
+        let mut bounds = vec![if coded { bound } else { bound * self.first_part }; self.figure.frames];
+        let axes = self.figure.axes(channel, |channel, frame| self.value(channel, frame), &self.poses);
+        let worst_now = self.worst(&moved);
+        let attempts = if coded { ATTEMPTS } else { FIRST_ATTEMPTS };
+        for attempt in 0..attempts {
+            let shrink = SHRINK.powi((attempt as i32 - 1).max(0));
+            let tube = self.tube(channel, price, &moved, &axes, &bounds, shrink);
+            let Some(best) = self.best(channel, &tube, pass + attempt) else {
+                if coded || bounds[0] >= bound {
+                    break;
+                }
+                bounds.iter_mut().for_each(|limit| *limit = bound);
+                continue;
+            };
+            if let Some(now) = &self.codes[channel]
+                && objective(&best, &tube) >= objective(now, &tube) - GAIN
+            {
+                return Ok(());
+            }
+            let before = self.codes[channel].replace(best);
+            self.refresh(channel);
+            let worst = self.worst(&moved);
+            if worst.iter().all(|&distance| distance <= bound) {
+                self.improved[channel] = pass;
+                return Ok(());
+            }
+            // Levers change along the way: leave less room where they misled, but never less than there is.
+            for ((limit, distance), now) in bounds.iter_mut().zip(worst).zip(&worst_now) {
+                if distance > bound {
+                    *limit = (*limit * (bound / distance).powi(2) * 0.98).max(0.5 * (now + bound));
+                }
+            }
+            self.codes[channel] = before;
+            self.refresh(channel);
+        }
+        if self.codes[channel].is_none() {
+            bail!(refusal(self.figure, &self.poses.places, self.original, channel, &moved, self.plan.bound_cm));
+        }
+        Ok(())
+    }
+
+    fn path(&self, channel: usize) -> &[f64] {
+        path(&self.codes, self.targets, channel)
+    }
+
+    /// A channel's value at a frame, in the motion's units.
+    fn value(&self, channel: usize, frame: usize) -> f64 {
+        self.path(channel)[frame] * self.scales[channel]
+    }
+
+    fn refresh(&mut self, channel: usize) {
+        if let (Some(joint), ..) = self.figure.channels[channel] {
+            let Descent { figure, targets, scales, codes, poses, .. } = self;
+            let first = figure.first[joint];
+            let paths: Vec<&[f64]> =
+                (first..first + figure.rig.joints[joint].kinds.len()).map(|channel| path(codes, targets, channel)).collect();
+            figure.update(joint, |channel, frame| paths[channel - first][frame] * scales[channel], poses);
+        }
+    }
+
+    /// The greatest error of these joints at each frame, in cm.
+    fn worst(&self, joints: &[usize]) -> Vec<f64> {
+        let mut worst = vec![0f64; self.figure.frames];
+        for &joint in joints {
+            for (frame, worst) in worst.iter_mut().enumerate() {
+                *worst = worst.max(square(&self.error(joint, frame)));
+            }
+        }
+        worst.iter().map(|square| square.sqrt()).collect()
+    }
+
+    fn error(&self, joint: usize, frame: usize) -> [f64; 3] {
+        let (p, q) = (&self.poses.places[joint][frame], &self.original[joint][frame]);
+        [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+    }
+
+    /// The tube that the other channels' codes leave to this one.
+    fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64], shrink: f64) -> Tube {
+        let frames = self.figure.frames;
+        let target = &self.targets[channel];
+        let path = self.path(channel);
+        let scale = self.scales[channel];
+        let translates = self.figure.translates(channel);
+        let trust = if translates { f64::MAX } else { TRUST_DEGREES / scale.abs() };
+        // Many joints below share one error: their sum counts as the root of their number.
+        let share = price / (self.plan.bound_cm.powi(2) * (moved.len().max(1) as f64).sqrt());
+        let zeros = || vec![0.0; frames];
+        let mut tube = Tube {
+            x: target.clone(),
+            lo: zeros(),
+            hi: zeros(),
+            a: zeros(),
+            b: zeros(),
+            bend: f64::INFINITY,
+            start: self.start_costs(channel),
+        };
+        let center = self.figure.channels[channel].0.map(|joint| &self.poses.places[joint]);
+        let Some(center) = center else { return tube };
+        for frame in 0..frames {
+            let now = path[frame] - target[frame];
+            let (mut lo, mut hi) = (now - trust, now + trust);
+            let (mut a, mut b) = (0.0, 0.0);
+            let axis = axes[frame].map(|x| x * scale);
+            let limit = bounds[frame] * bounds[frame];
+            for &joint in moved {
+                let error = self.error(joint, frame);
+                let lever = lever(&axis, translates, &center[frame], &self.poses.places[joint][frame]);
+                // With this channel off by e, the joint is off by `rest + lever e`.
+                let rest: [f64; 3] = std::array::from_fn(|i| error[i] - lever[i] * now);
+                let (jj, jr) = (dot(&lever, &lever), dot(&lever, &rest));
+                let used = square(&error) / (self.plan.bound_cm * self.plan.bound_cm);
+                let weight = match self.plan.mean_cm {
+                    Some(mean_cm) => self.price_to_mean(joint, &error, price, mean_cm),
+                    None => share * (1.0 + CROWDING * used * used * used),
+                };
+                a += weight * jj;
+                b += weight * jr;
+                if jj > 0.0 {
+                    let root = jr * jr - jj * (square(&rest) - limit);
+                    if root <= 0.0 {
+                        (lo, hi) = (lo.max(now), hi.min(now));
+                    } else {
+                        let root = root.sqrt();
+                        lo = lo.max(((-jr - root) / jj).min(now));
+                        hi = hi.min(((-jr + root) / jj).max(now));
+                    }
+                }
+            }
+            tube.lo[frame] = target[frame] + now + shrink * (lo - now);
+            tube.hi[frame] = target[frame] + now + shrink * (hi - now);
+            tube.a[frame] = a;
+            tube.b[frame] = b;
+        }
+        tube
+    }
+
+    /// What the channel's start costs beside those of the others.
+    fn start_costs(&self, channel: usize) -> StartCosts {
+        StartCosts::of(channel, self.kinds, |other| self.codes[other].as_ref().map(|code| &code.start))
+    }
+
+    /// The best of what the search finds at a few steps.
+    fn best(&self, channel: usize, tube: &Tube, pass: usize) -> Option<Fitted> {
+        if let Some(rest) = self.at_rest(channel, tube) {
+            return Some(rest);
+        }
+        let (guess, other) = match &self.codes[channel] {
+            Some(code) => {
+                let rms = (code.path.iter().zip(&tube.x).map(|(p, x)| (p - x).powi(2)).sum::<f64>() / tube.x.len() as f64).sqrt();
+                let step = step_of(&code.start).unwrap_or(FIRST_STEP);
+                let near = step_index(1.6 * rms).clamp(step.saturating_sub(1), step + 1);
+                let other = if pass.is_multiple_of(2) { near + 1 } else { near.saturating_sub(1) };
+                // One that the others predict, as long as it is hardly worse.
+                let loss = STEP_LOSS * ((code.bits - code.start_bits) / BITS_OF_STEP_LOSS).max(1.0);
+                let bits = |step: u8| tube.start.step(step) + loss * f64::from(step.abs_diff(near)).powi(2);
+                let cheap = (near.saturating_sub(3)..=(near + 3).min(MAX_STEP)).min_by(|&a, &b| bits(a).total_cmp(&bits(b)));
+                let cheap = cheap.filter(|&cheap| cheap != near && pass % 3 != 2);
+                (near, cheap.unwrap_or(other))
+            }
+            None => {
+                // The tube of a channel that is exact so far is as wide as the bound.
+                let width = (0..tube.x.len()).map(|f| tube.hi[f] - tube.lo[f]).fold(f64::MAX, f64::min);
+                let near = step_index(0.15 * width);
+                (near, near.saturating_sub(2))
+            }
+        };
+        let mut effort = self.plan.effort;
+        if pass < self.plan.passes / 2 {
+            // What early passes find is soon replaced.
+            effort = Effort { beam: effort.beam.div_ceil(2), margin: 0.7 * effort.margin, ..effort };
+        }
+        let one = || search(tube, guess.min(MAX_STEP), effort);
+        let two = || if self.plan.both_steps { search(tube, other.min(MAX_STEP), effort) } else { None };
+        let (one, two) = if tube.x.len() < SHORT { (one(), two()) } else { rayon::join(one, two) };
+        let best = [one, two].into_iter().flatten().min_by(|a, b| objective(a, tube).total_cmp(&objective(b, tube)));
+        if best.is_some() || self.codes[channel].is_some() {
+            return best;
+        }
+        // A first code must be found, whatever it costs.
+        (0..guess.min(other)).rev().find_map(|step| search(tube, step, Effort { beam: 4 * effort.beam, ..effort }))
+    }
+
+    /// No code at all, if the rig has the channel within its tube.
+    fn at_rest(&self, channel: usize, tube: &Tube) -> Option<Fitted> {
+        let rest = f64::from(self.rests[channel]);
+        let inside = (0..tube.x.len()).all(|f| (tube.lo[f]..=tube.hi[f]).contains(&rest));
+        let flat = tube.a.iter().all(|&a| a == 0.0);
+        let path = vec![rest; tube.x.len()];
+        let cheap = flat || tube.price(&path) < 8.0;
+        let bits = tube.start.bits(&Start::Rest);
+        (inside && cheap).then_some(Fitted { start: Start::Rest, segments: Vec::new(), path, bits, start_bits: bits })
+    }
+}
+
+/// A channel that is not coded yet is where it should be.
+fn path<'c>(codes: &'c [Option<Code>], targets: &'c [Vec<f64>], channel: usize) -> &'c [f64] {
+    codes[channel].as_ref().map_or(&targets[channel], |code| &code.path)
+}
+
+/// The price of a code's errors, and its bits beside the other channels' codes of now.
+fn objective(code: &Fitted, tube: &Tube) -> f64 {
+    code.bits - code.start_bits + tube.start.bits(&code.start) + tube.price(&code.path)
+}
+
+/// Index of the channel step nearest to `size` raw units.
+fn step_index(size: f64) -> u8 {
+    (2.0 * size.max(1.0).log2()).round().clamp(0.0, f64::from(MAX_STEP)) as u8
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn square(a: &[f64; 3]) -> f64 {
+    dot(a, a)
+}

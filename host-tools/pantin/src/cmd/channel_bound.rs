@@ -1,0 +1,56 @@
+//! The flags of `pantin convert` that bound channels instead of joints.
+
+use anyhow::Result;
+use pantin_convert::fit::bounds::Bounds;
+use pantin_convert::fit::chain::Constraint;
+use pantin_convert::motion::Motion;
+
+/// Bounds for each channel, in place of --max-error.
+#[derive(clap::Args, Clone, Debug)]
+pub struct ChannelBound {
+    /// Instead of --max-error: largest error of each channel at every frame, in degrees for rotations and in percent for all others (of a
+    /// position's range, of a scalar's full scale, of 2 for a quaternion's components)
+    #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
+    max_channel_error: Option<f64>,
+    /// Instead of --max-error: largest error of each channel's acceleration (second difference) at every frame, in degrees per frame^2 for
+    /// rotations and in percent per frame^2 for all others. Positions and rotations drift; the command prints by how much
+    #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
+    max_accel_error: Option<f64>,
+    /// Instead of --max-error: code channels with keys (.keys; glTF's translations and weights, and its CUBICSPLINE rotations as quaternions) exactly except for
+    /// rounding: at most 0.006 degrees, or 2^-16 of the range that --max-channel-error refers to
+    #[arg(long, group = "bound")]
+    exact: bool,
+}
+
+/// A finite number above 0.
+pub fn above_zero(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
+        _ => Err("expected a number above 0".into()),
+    }
+}
+
+impl ChannelBound {
+    /// The options' names for clap.
+    pub const OPTIONS: [&str; 3] = ["max_channel_error", "max_accel_error", "exact"];
+
+    /// Whether any of them is given.
+    pub fn is_given(&self) -> bool {
+        self.exact || self.max_channel_error.is_some() || self.max_accel_error.is_some()
+    }
+
+    /// Whether curves are coded as they are.
+    pub fn is_exact(&self) -> bool {
+        self.exact
+    }
+
+    /// The bounds that the flags ask for, if any.
+    pub fn bounds(&self, motion: &Motion) -> Result<Option<Bounds>> {
+        Ok(match (self.max_channel_error, self.max_accel_error) {
+            (Some(delta), _) => Some(Bounds::of(motion, Constraint::Positions, delta)),
+            (_, Some(epsilon)) => Some(Bounds::of(motion, Constraint::Accelerations, epsilon)),
+            _ if self.exact => Some(Bounds::exact(motion)?),
+            _ => None,
+        })
+    }
+}

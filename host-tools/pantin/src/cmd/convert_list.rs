@@ -1,0 +1,100 @@
+//! A list of motions, each with a cut of its own: `pantin convert moves.list -o moves.ptb`.
+//!
+//! ```text
+//! # motion, and what is to be done with it
+//! walk.bvh  --from 65 --to 129 --loop
+//! bow.bvh
+//! "my kick.bvh"  --name kick --from 1.0s --to 4.3s
+//! ```
+
+use super::channel_bound::ChannelBound;
+use super::edits::Edits;
+use anyhow::{Context, Result, anyhow, ensure};
+use clap::Parser;
+use pantin_convert::input;
+use std::path::{Path, PathBuf};
+
+/// Most bytes of a list.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// A line of a list.
+#[derive(Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+pub struct Line {
+    /// The motion.
+    pub motion: PathBuf,
+    /// The clip's name in the bank.
+    #[arg(long)]
+    pub name: Option<String>,
+    /// Which animation of a file that holds several.
+    #[arg(long)]
+    pub animation: Option<String>,
+    /// What is done with it.
+    #[command(flatten)]
+    pub edits: Edits,
+    #[command(flatten)]
+    bounds: ChannelBound,
+}
+
+/// Whether an input is a list, by its name.
+pub fn is_list(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("list"))
+}
+
+/// The lines of a list, each with its place for messages. Motions, and files that options name, lie in the list's folder, or where their paths lead
+/// from there.
+pub fn read(path: &Path) -> Result<Vec<(String, Line)>> {
+    let text = input::read_short_text(path, MOST_BYTES).with_context(|| path.display().to_string())?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut lines = Vec::new();
+    for (number, text) in (1..).zip(text.lines()) {
+        let place = format!("{}:{number}", path.display());
+        let words = words(text).with_context(|| place.clone())?;
+        if words.is_empty() {
+            continue;
+        }
+        let mut line = Line::try_parse_from(words).map_err(|error| {
+            let said = error.to_string();
+            let first = said.lines().next().unwrap_or_default();
+            anyhow!("{place}: {}", first.trim_start_matches("error: "))
+        })?;
+        ensure!(!line.bounds.is_given(), "{place}: bounds are for all motions: they belong to the command, not to a line");
+        line.motion = folder.join(&line.motion);
+        line.edits.read_from(folder);
+        lines.push((place, line));
+    }
+    ensure!(!lines.is_empty(), "{}: the list names no motion", path.display());
+    Ok(lines)
+}
+
+/// The words of a line: between spaces, or within double quotes; a # begins a comment.
+fn words(line: &str) -> Result<Vec<String>> {
+    let (mut words, mut word, mut quoted) = (Vec::new(), None::<String>, false);
+    for letter in line.chars() {
+        match letter {
+            '"' => {
+                quoted = !quoted;
+                word.get_or_insert_default();
+            }
+            '#' if !quoted && word.is_none() => break,
+            _ if letter.is_whitespace() && !quoted => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(letter),
+        }
+    }
+    ensure!(!quoted, "a quotation mark without its end");
+    words.extend(word);
+    Ok(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stand_between_spaces_or_in_quotes() {
+        assert_eq!(words(r#"  a.bvh --name "my walk" # and more"#).unwrap(), ["a.bvh", "--name", "my walk"]);
+        assert_eq!(words("# nothing").unwrap(), Vec::<String>::new());
+        assert_eq!(words(r#"a#b "" c"#).unwrap(), ["a#b", "", "c"]);
+        assert!(words(r#"a "b"#).is_err());
+    }
+}

@@ -1,0 +1,48 @@
+//! Options of the encoder as words of the command line.
+
+use pantin_convert::fit::{descent::Level, parametrize};
+
+/// Encoder effort: speed against size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Effort {
+    /// For previews: many times faster than real time
+    Fast,
+    /// About real time
+    Default,
+    /// A few percent smaller than default, several times slower
+    Best,
+}
+
+impl From<Effort> for Level {
+    fn from(effort: Effort) -> Level {
+        match effort {
+            Effort::Fast => Level::Fast,
+            Effort::Default => Level::Default,
+            Effort::Best => Level::Best,
+        }
+    }
+}
+
+/// How joints with three Euler angles about three axes are coded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Rotations {
+    /// Choose for each joint what seems smaller
+    ByCost,
+    /// Use the file's Euler angles
+    Euler,
+    /// Use exponential maps where they stay within half a turn
+    Exponential,
+    /// Use quaternions, four channels a joint; the rig has them instead of the angles
+    Quaternion,
+}
+
+impl From<Rotations> for parametrize::Rotations {
+    fn from(rotations: Rotations) -> parametrize::Rotations {
+        match rotations {
+            Rotations::ByCost => parametrize::Rotations::ByCost,
+            Rotations::Euler => parametrize::Rotations::Euler,
+            Rotations::Exponential => parametrize::Rotations::Exponential,
+            Rotations::Quaternion => parametrize::Rotations::Quaternion,
+        }
+    }
+}

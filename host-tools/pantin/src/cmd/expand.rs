@@ -1,0 +1,195 @@
+//! `pantin expand`.
+
+use super::{Files, default_output, format_of};
+use crate::output::{self, Staged, Wanted, note, refuse_foreign};
+use anyhow::{Context, Result, bail};
+use indicatif::ProgressBar;
+use pantin::Clip;
+use pantin_convert::budget;
+use pantin_convert::expand::{Expanded, gather};
+use pantin_convert::export::{self, bvh::Columns};
+use pantin_convert::motion::{Event, Frames, Motion, Rig};
+use serde_json::json;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Turn a clip back into per-frame motion, or into source text for firmware.
+///
+/// The output's extension selects the format: .bvh has the same joints and frames, and three rotations a joint; .glb is a
+/// tree of nodes, with scalars as morph weights; .csv has one row per frame with the time in seconds and
+/// all channels' values; .h and .rs hold the clip's bytes, their length, the frame rate and the channels' names.
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  pantin expand walk.ptn -o walk.bvh
+  pantin expand walk.ptn --format csv -o - | head -1
+  pantin expand walk.ptn --rig figure.rig -o walk.bvh
+  pantin expand walk.ptn -o walk.glb
+  pantin expand face.ptn -o face.csv
+  pantin expand walk.ptn -o walk.h
+  pantin expand walk.ptn -o src/walk.rs")]
+pub struct Arguments {
+    /// The clip
+    input: PathBuf,
+    /// The file to write: .bvh, .glb (glTF), .csv, .h or .rs [default: the clip's name, ending in .bvh, or in .csv without joints;
+    /// a file that is there already is kept]
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// The format, where the output's name does not say it, as in `-o -`
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// The rig of a clip that was made with --rig-out
+    #[arg(long)]
+    rig: Option<PathBuf>,
+}
+
+/// What the file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// Biovision hierarchy
+    Bvh,
+    /// Binary glTF
+    Glb,
+    /// A table
+    Csv,
+    /// A C header
+    H,
+    /// A Rust module
+    Rs,
+}
+
+impl Arguments {
+    /// Checks the output before any work.
+    fn check(&self, output: &Path) -> Result<()> {
+        let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(self.rig.as_deref()).collect();
+        output::check(&inputs, &[output])?;
+        refuse_foreign(output, Wanted::Motion)
+    }
+
+    /// The name of an output that the user does not name.
+    fn default_output(&self, clip: &Clip) -> Result<PathBuf> {
+        let format = match self.format {
+            Some(Format::Bvh) => "bvh",
+            Some(Format::Glb) => "glb",
+            Some(Format::Csv) => "csv",
+            Some(Format::H) => "h",
+            Some(Format::Rs) => "rs",
+            None if clip.rig().joint_count() == 0 => "csv",
+            None => "bvh",
+        };
+        let output = default_output(&self.input, format)?;
+        self.check(&output)?;
+        Ok(output)
+    }
+}
+
+impl Format {
+    /// How often the clip is played to write it; source text holds its bytes.
+    fn plays(self) -> u64 {
+        match self {
+            Format::Csv => 2,
+            Format::Bvh | Format::Glb | Format::H | Format::Rs => 1,
+        }
+    }
+}
+
+/// A clip that moves a bar as it is played.
+struct Watched<'w, 'c> {
+    of: &'w Expanded<'c>,
+    bar: &'w ProgressBar,
+}
+
+impl Frames for Watched<'_, '_> {
+    fn rig(&self) -> &Rig {
+        self.of.rig()
+    }
+
+    fn frame_time(&self) -> f64 {
+        self.of.frame_time()
+    }
+
+    fn frames(&self) -> usize {
+        self.of.frames()
+    }
+
+    fn events(&self) -> Vec<Event> {
+        self.of.events()
+    }
+
+    fn each(&self, each: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+        self.of.each(&mut |pose| {
+            self.bar.inc(1);
+            each(pose)
+        })
+    }
+}
+
+fn glb(clip: &Clip, frames: &impl Frames, out: &mut impl Write) -> Result<()> {
+    budget::check(frames.frames(), frames.rig().channels())?;
+    let motion = Motion { looped: clip.looped(), ..gather(frames)? };
+    Ok(out.write_all(&export::gltf::write(&motion)?)?)
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    if let Some(output) = &arguments.output {
+        arguments.check(output)?;
+        format_of(output, arguments.format)?;
+    }
+    let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
+    let place = || arguments.input.display().to_string();
+    let clip = files.open_alone().with_context(place)?;
+    let output = &match &arguments.output {
+        Some(output) => output.clone(),
+        None => arguments.default_output(&clip)?,
+    };
+    let Some(format) = format_of(output, arguments.format)? else {
+        bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs, or --format", output.display());
+    };
+    // Standard output has no name.
+    let named = if output.as_os_str() == "-" { &arguments.input } else { output };
+    let stem = named.file_stem().unwrap_or_default().to_string_lossy();
+    let expanded = Expanded::new(&clip);
+    let rig = expanded.rig();
+    // A digit and a comma or a space a value; four bytes a number in glTF; as text, a digit and a comma a byte.
+    let values = expanded.frames() as u64 * (rig.channels() as u64 + 1);
+    let least = match format {
+        Format::Glb => 4 * values,
+        Format::H | Format::Rs => 3 * files.clip_len() as u64,
+        Format::Bvh | Format::Csv => 2 * values,
+    };
+    output::check_size(output, least)?;
+    if clip.event_count() > 0 && matches!(format, Format::Bvh) {
+        note!("{}: {} events are left out: this kind of file holds none here", output.display(), clip.event_count());
+    }
+    if matches!(format, Format::Bvh) {
+        let names = export::bvh::names(rig);
+        let changed = rig.joints.iter().zip(&names).filter(|(joint, name)| !joint.end_site && joint.name != **name);
+        for (joint, name) in changed {
+            note!(
+                "{}: the joint `{}` is called `{name}`: BVH takes no braces, control characters or empty names",
+                output.display(),
+                joint.name
+            );
+        }
+    }
+    let mut out = Staged::create(output)?;
+    let bar = output::progress(format.plays() * expanded.frames() as u64, "writing {wide_bar} {percent} % {eta} left")?;
+    let watched = Watched { of: &expanded, bar: &bar };
+    let written = match format {
+        Format::Bvh => export::bvh::write(&watched, Columns::ThreeRotations, &mut out),
+        Format::Csv => export::table::write(&watched, &mut out),
+        Format::Glb => glb(&clip, &watched, &mut out),
+        Format::H => export::source::c_header(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?)),
+        Format::Rs => {
+            export::source::rust_module(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?))
+        }
+    };
+    bar.finish_and_clear();
+    out.explain(written, place)?;
+    output::commit(vec![out])?;
+    output::report(json!({"frames": clip.frames(), "channels": rig.channels()}));
+    if arguments.output.is_none() {
+        note!("{}: written", output.display());
+    }
+    Ok(())
+}

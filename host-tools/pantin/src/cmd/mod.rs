@@ -1,0 +1,173 @@
+//! One file a command; its arguments' doc comment is the manual.
+
+pub mod bank;
+mod batch;
+mod channel_bound;
+pub mod convert;
+mod convert_bank;
+mod convert_list;
+mod edits;
+mod encoder;
+pub mod expand;
+pub mod face;
+pub mod flash_image;
+pub mod info;
+mod joint_error;
+pub mod machine;
+pub mod play;
+pub mod render;
+mod same_form;
+pub mod serve;
+mod shard;
+pub mod steer;
+pub mod stream;
+mod stream_live;
+pub mod train;
+pub mod update;
+
+use crate::open::no_clip;
+use crate::output::{self, detail};
+use anyhow::{Context, Result, anyhow, ensure};
+use pantin::OpenError;
+use pantin_convert::budget;
+use pantin_convert::encode;
+use pantin_convert::fit::{descent::Level, fit};
+use pantin_convert::import;
+use pantin_convert::motion::Motion;
+use pantin_convert::verify::verify;
+use std::path::{Path, PathBuf};
+
+/// A direction of the world.
+fn up_axis(text: &str) -> Result<pantin::Up> {
+    import::up::parse(text).context("expected x, y, z, -x, -y or -z")
+}
+
+/// A clip and, if it was made without one, its rig.
+pub struct Files {
+    path: PathBuf,
+    clip: Vec<u8>,
+    rig: Vec<u8>,
+    /// Where both were read from, and what belongs to a motion.
+    from: import::Files,
+}
+
+/// Refuses outputs that are one of the files which were read from `files`. Some are known only then: a glTF names its buffers itself.
+fn check_read(files: &import::Files, outputs: &[&Path]) -> Result<()> {
+    let read = files.read_so_far();
+    output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), outputs)
+}
+
+/// Refuses a motion whose fit takes more memory than the limit; `files` are what it was read from.
+fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()> {
+    let read = files.read_so_far().iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
+    let size = [motion.rig.joints.len(), motion.rig.channels()];
+    budget::check_fit(motion.frames, size, level.plan(SHOWN_CM).effort.beam, read)
+}
+
+/// Refuses a rig for clips that all have their own.
+fn rig_is_needed(rig: Option<&Path>, clips: &[pantin::Clip]) -> Result<()> {
+    let needed = rig.is_none() || clips.iter().any(|clip| clip.rig_len() == 0);
+    ensure!(needed, "--rig has no effect: every clip has its own");
+    Ok(())
+}
+
+/// The name of an output that the user does not name: the input's, with another extension. Fails if there is a file of that name.
+fn default_output(input: &Path, extension: &str) -> Result<PathBuf> {
+    ensure!(input.as_os_str() != "-", "standard input has no name for the output: --output gives one");
+    let output = input.with_extension(extension);
+    ensure!(is_free(&output), "{}: exists; --output {0} replaces it, another name keeps it", output.display());
+    Ok(output)
+}
+
+/// Whether nothing has the name of an output that the user does not name: a file there may be a capture, or a clip of another motion.
+fn is_free(output: &Path) -> bool {
+    output.symlink_metadata().is_err()
+}
+
+/// The format of an output, by the option --format or by the extension of its name.
+/// `None` if neither says it.
+fn format_of<T: clap::ValueEnum>(output: &Path, option: Option<T>) -> Result<Option<T>> {
+    let extension = output.extension().and_then(|extension| extension.to_str());
+    let by_name = extension.and_then(|extension| T::from_str(extension, true).ok());
+    let name = |format: &T| format.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default();
+    if let (Some(by_name), Some(option)) = (&by_name, &option) {
+        let (by_name, option) = (name(by_name), name(option));
+        ensure!(by_name == option, "{}: its name ends in .{by_name}, and --format is {option}", output.display());
+    }
+    Ok(option.or(by_name))
+}
+
+/// Bounds of a motion that is converted only to be shown: in cm, and as a part of a scalar's full scale.
+const SHOWN_CM: f64 = 0.5;
+const SHOWN_PART: f64 = 0.02;
+
+impl Files {
+    /// Reads both; `-` is standard input.
+    pub fn read(clip: &Path, rig: Option<&Path>) -> Result<Files> {
+        Files::read_from(&import::Files::default(), clip, rig)
+    }
+
+    fn read_from(files: &import::Files, clip: &Path, rig: Option<&Path>) -> Result<Files> {
+        let read = |path: &Path| {
+            let bytes = files.read(path)?;
+            detail!("read {}: {} bytes", path.display(), bytes.len());
+            anyhow::Ok(bytes)
+        };
+        let (bytes, rig) = (read(clip)?, rig.map(read).transpose()?.unwrap_or_default());
+        Ok(Files { path: clip.into(), clip: bytes, rig, from: files.clone() })
+    }
+
+    /// The same for a command that shows clips: a motion file is converted first, quickly and in memory.
+    pub fn read_to_show(clip: &Path, rig: Option<&Path>) -> Result<Files> {
+        let from = import::Files::default();
+        let mut files = Files::read_from(&from, clip, rig)?;
+        if files.is_motion() {
+            let motion = import::load(clip, &import::Options { files: from.clone(), ..Default::default() })?.motion;
+            let place = || clip.display().to_string();
+            check_fit(&motion, Level::Fast, &from).with_context(place)?;
+            let rig = encode::rig::encode(&motion.rig).with_context(place)?;
+            let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;
+            let moved = &mut |part: f64| bar.set_position((part * 1000.0) as u64);
+            let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, moved).with_context(place)?;
+            bar.finish_and_clear();
+            files.clip = encode::clip::encode(&coded, &rig, false).with_context(place)?;
+            verify(&files.clip, &rig, &motion, SHOWN_CM, SHOWN_PART).with_context(place)?;
+        }
+        Ok(files)
+    }
+
+    /// Whether the file is no clip, but a motion that can be made one.
+    fn is_motion(&self) -> bool {
+        let opened = pantin::Clip::new_checked(&self.clip);
+        matches!(opened, Err(OpenError::BadMagic)) && import::looks_like_motion(&self.path, &self.clip)
+    }
+
+    /// Opens the clip. The error says which command or option helps.
+    pub fn open(&self) -> Result<pantin::Clip<'_>> {
+        let opened = match self.rig.is_empty() {
+            true => pantin::Clip::new_checked(&self.clip),
+            false => pantin::Clip::with_rig(&self.clip, &self.rig),
+        };
+        opened.map_err(|error| match error {
+            OpenError::WrongRig if self.rig.is_empty() => anyhow!("{error}; --rig FILE names the one that --rig-out wrote"),
+            error => no_clip(&self.path, &self.clip, error),
+        })
+    }
+
+    /// The same for a command that takes one clip: a rig that the clip does not need is a mistake.
+    pub fn open_alone(&self) -> Result<pantin::Clip<'_>> {
+        let clip = self.open()?;
+        ensure!(self.rig.is_empty() || clip.rig_len() == 0, "--rig: the clip has its own rig in it");
+        Ok(clip)
+    }
+
+    /// The clip's bytes.
+    pub fn clip(&self) -> &[u8] {
+        &self.clip
+    }
+
+    /// Length of the clip's file.
+    pub fn clip_len(&self) -> usize {
+        self.clip.len()
+    }
+}
