@@ -1,11 +1,11 @@
 //! A clip as per-frame motion again, by the device's own decoder.
 
-use crate::budget;
 use crate::encode::rig;
 use crate::euler;
 use crate::events;
 use crate::fit::raw;
 use crate::fk::from_exponential;
+use crate::memory::Memory;
 use crate::motion::{Event, Frames, Joint, Motion, Rig};
 use anyhow::Result;
 use pantin::{ChannelState, Clip, Player};
@@ -82,9 +82,14 @@ impl Frames for Expanded<'_> {
     }
 }
 
-/// Plays `clip` from its first to its last frame into memory. Fails for a clip that takes more than the limit.
+/// Plays `clip` from its first to its last frame into memory. Fails for a clip that takes more than the default limit.
 pub fn expand(clip: &Clip<'_>) -> Result<Motion> {
-    budget::check(clip.frames() as usize, clip.rig().channels())?;
+    expand_within(clip, Memory::default())
+}
+
+/// The same within another limit.
+pub fn expand_within(clip: &Clip<'_>, memory: Memory) -> Result<Motion> {
+    memory.check(clip.frames() as usize, clip.rig().channels())?;
     expand_made(clip)
 }
 
@@ -102,7 +107,16 @@ pub fn gather(frames: &impl Frames) -> Result<Motion> {
         Ok(())
     })?;
     let (frame_time, keys) = (frames.frame_time(), vec![None; rig.channels()]);
-    Ok(Motion { rig, frame_time, frames: count, values, keys, looped: false, events: frames.events() })
+    Ok(Motion {
+        rig,
+        frame_time,
+        frames: count,
+        values,
+        keys,
+        looped: false,
+        events: frames.events(),
+        origin: Default::default(),
+    })
 }
 
 /// The rotation channels of a joint that has three of them, its first channel being `first`.

@@ -1,6 +1,6 @@
 //! Forward kinematics in floating point: where a motion puts every joint.
 
-use crate::budget;
+use crate::memory::Memory;
 use crate::motion::{Joint, Kind, Rig};
 use anyhow::Result;
 
@@ -9,8 +9,8 @@ pub(crate) type Matrix = [[f64; 3]; 3];
 pub(crate) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// World positions of all joints at every frame; refused where they take more memory than the limit.
-pub fn all_positions(rig: &Rig, values: &[Vec<f64>], frames: usize) -> Result<Vec<Vec<[f64; 3]>>> {
-    budget::check_numbers(3 * frames * rig.joints.len(), "the places of all joints")?;
+pub fn all_positions(rig: &Rig, values: &[Vec<f64>], frames: usize, memory: Memory) -> Result<Vec<Vec<[f64; 3]>>> {
+    memory.check_numbers(3 * frames * rig.joints.len(), "the places of all joints")?;
     Ok((0..frames).map(|frame| positions(rig, values, frame)).collect())
 }
 

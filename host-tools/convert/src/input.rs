@@ -1,6 +1,7 @@
 //! Bounded reads: a pipe or a device may never end, so nothing is read without a limit.
 
-use crate::budget;
+use crate::error::Error;
+use crate::memory::{Memory, size};
 use anyhow::{Result, anyhow, ensure};
 use std::fs::{self, File};
 use std::io::{self, BufRead, Read};
@@ -11,35 +12,31 @@ const STDIN: &str = "-";
 /// Most bytes of a line that is read while its writer still writes.
 const MOST_LINE_BYTES: u64 = 1 << 16;
 
-/// Returns the whole content of `path`; `-` is standard input. Fails for a file that has more bytes than `--max-memory`, and for a pipe
-/// or a device that gives more than a quarter of it: its length is unknown beforehand, so its bytes are copied as they grow.
-pub fn read(path: &Path) -> Result<Vec<u8>> {
-    content(path).map_err(|error| anyhow!("{}: cannot be read: {error:#}", path.display()))
-}
-
 /// Returns the content of a file that has at most `most` bytes, as text. Errors do not name the path, which may be a secret.
 pub fn read_short_text(path: &Path, most: u64) -> Result<String> {
     let bytes = up_to(File::open(path)?, most)?;
     Ok(String::from_utf8(bytes.ok_or_else(|| anyhow!("more than {most} bytes"))?)?)
 }
 
-/// The same as [`read`]; errors do not name the path.
-pub(crate) fn content(path: &Path) -> Result<Vec<u8>> {
+/// The whole content of `path`; `-` is standard input. Fails for a file that has more bytes than the limit, and for a pipe
+/// or a device that gives more than a quarter of it: its length is unknown beforehand, so its bytes are copied as they grow.
+/// Errors do not name the path.
+pub(crate) fn content(path: &Path, limit: Memory) -> io::Result<Vec<u8>> {
     if is_stdin(path) {
-        return stream(io::stdin().lock());
+        return stream(io::stdin().lock(), limit);
     }
     let found = fs::metadata(path)?;
     let file = File::open(path)?;
     if !found.is_file() {
-        return stream(file);
+        return stream(file, limit);
     }
-    let most = budget::most_bytes();
-    let refusal = |bytes| {
-        anyhow!("it has {} or more; the limit is {}, and --max-memory raises it", budget::size(bytes), budget::size(most))
-    };
-    ensure!(found.len() <= most, refusal(found.len()));
+    let most = limit.bytes();
+    let refusal = |bytes| Error::memory(format!("it has {} or more; the limit is {}", size(bytes), size(most)));
+    if found.len() > most {
+        return Err(io::Error::other(refusal(found.len())));
+    }
     // It may grow meanwhile.
-    up_to(file, most)?.ok_or_else(|| refusal(most))
+    up_to(file, most)?.ok_or_else(|| io::Error::other(refusal(most)))
 }
 
 /// Whether `path` names standard input.
@@ -47,16 +44,16 @@ pub fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == STDIN
 }
 
-fn stream(source: impl Read) -> Result<Vec<u8>> {
-    let most = budget::most_bytes() / 4;
+fn stream(source: impl Read, limit: Memory) -> io::Result<Vec<u8>> {
+    let most = limit.bytes() / 4;
     let refusal = || {
-        anyhow!("more than {} come from this pipe or device, a quarter of the limit; --max-memory raises it", budget::size(most))
+        io::Error::other(Error::memory(format!("more than {} come from this pipe or device, a quarter of the limit", size(most))))
     };
     up_to(source, most)?.ok_or_else(refusal)
 }
 
 /// All bytes of `source`; `None` if they are more than `most`.
-fn up_to(source: impl Read, most: u64) -> Result<Option<Vec<u8>>> {
+fn up_to(source: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     source.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     Ok((bytes.len() as u64 <= most).then_some(bytes))

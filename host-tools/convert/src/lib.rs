@@ -2,10 +2,11 @@
 
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
-pub mod budget;
 pub mod channel_error;
+mod conversion;
 pub mod edit;
 pub mod encode;
+mod error;
 pub mod errors;
 mod euler;
 pub mod events;
@@ -17,6 +18,21 @@ pub mod fk;
 pub mod import;
 pub mod input;
 pub mod keys;
+mod length;
+mod memory;
+mod moment;
 pub mod motion;
+mod note;
 pub mod number;
+mod options;
 pub mod verify;
+
+pub use conversion::{
+    Converted, Errors, Made, Prepared, Progress, Recipe, Report, agree_on_up, convert, of_one_rig, prepare, shared_coding,
+};
+pub use error::{Error, Problem, Setting};
+pub use length::Length;
+pub use memory::{Memory, parse as parse_size, size as size_text};
+pub use moment::Moment;
+pub use note::{Note, NoteKind, Place, Remedy, Severity};
+pub use options::{ChannelBound, Options};

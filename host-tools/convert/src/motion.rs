@@ -202,6 +202,22 @@ pub struct Motion {
     pub looped: bool,
     /// Markers, in the order of their frames.
     pub events: Vec<Event>,
+    /// What is known of the file that it was read from.
+    pub origin: Origin,
+}
+
+/// What a motion keeps of the file that it was read from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// The greatest distance in cm of a joint of the motion from where the file has it, over all frames: a bound against the file is a bound against
+    /// the motion less this.
+    pub error_cm: f64,
+    /// Frames a second at which the file was read by its times, from the first to the last, instead of frame by frame.
+    pub sampled_fps: Option<f64>,
+    /// Bytes of all files that were read for it.
+    pub bytes: u64,
+    /// The greatest distance in cm of a joint from the source's joint that it stands for, in a motion that was put on another body.
+    pub retarget_max_cm: Option<f64>,
 }
 
 impl Motion {

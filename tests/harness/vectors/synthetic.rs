@@ -33,7 +33,7 @@ impl Made {
         let rig = rig::encode(&self.rig)?;
         let mut clip = match self.index {
             0 => clip::encode(&self.coded, &rig, self.apart)?,
-            spacing => clip::encode_with_index(&self.coded, &rig, self.apart, spacing)?,
+            spacing => clip::encode_with_index(&self.coded, &rig, self.apart, spacing, Memory::default())?,
         };
         if !self.sections.is_empty() {
             clip[3] |= HAS_SECTIONS;

@@ -1,9 +1,10 @@
-//! `--from` and `--to`: a stretch of frames.
+//! A stretch of frames.
 
 use super::curve;
+use crate::error::{Error, Setting, require};
 use crate::events;
 use crate::motion::{Keys, Motion, Piece};
-use anyhow::{Result, ensure};
+use anyhow::Result;
 
 /// Frames `from` to `to`, both included; without them from the first and to the last.
 ///
@@ -11,8 +12,8 @@ use anyhow::{Result, ensure};
 pub fn cut(motion: &Motion, from: Option<usize>, to: Option<usize>) -> Result<Motion> {
     let last = motion.frames - 1;
     let (from, to) = (from.unwrap_or(0), to.unwrap_or(last));
-    ensure!(to <= last, "--to {to}: the last frame is {last}");
-    ensure!(from <= to, "--from {from} is after frame {to}, the last one kept");
+    require!(to <= last, Error::setting(Setting::To, format!("{to}: the last frame is {last}")));
+    require!(from <= to, Error::setting(Setting::From, format!("{from} is after frame {to}, the last one kept")));
     if (from, to) == (0, last) {
         return Ok(motion.clone());
     }

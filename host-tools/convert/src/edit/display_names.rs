@@ -1,8 +1,10 @@
 //! Which joints of a figure the display's joints stand for: by the usual names, or by a map file.
 
 use super::sides::{Part, Side, parts};
+use crate::error::{Error, Setting};
 use crate::motion::Rig;
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use crate::note::Remedy;
+use anyhow::{Context, Result, anyhow, ensure};
 
 /// The display's joints with their parents and the names, without their side, of what they stand for in the usual rigs, the best first:
 /// CMU's BVH and ASF, Bandai Namco, Mixamo, Xia, Poser, H-Anim, 3ds Max. The chest is found by what hangs on it.
@@ -48,12 +50,13 @@ pub fn sources(rig: &Rig, map: &str) -> Result<[usize; 15]> {
     let missing: Vec<&str> = (0..15).filter(|&index| found[index].is_none()).map(|index| DISPLAY[index].0).collect();
     if !missing.is_empty() {
         let names: Vec<&str> = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str()).collect();
-        bail!(
-            "--retarget display: not found in the figure: {}. Name them in a file for --map, a line each like\n  {} JOINT\nwhere JOINT is one of {}",
+        let text = format!(
+            "not found in the figure: {}. Name them in a map, a line each like\n  {} JOINT\nwhere JOINT is one of {}",
             missing.join(", "),
             missing[0],
             names.join(", ")
         );
+        return Err(Error::setting(Setting::Retarget, text).remedy(Remedy::MapJoints).into());
     }
     Ok(std::array::from_fn(|index| found[index].unwrap_or_default()))
 }

@@ -1,13 +1,15 @@
-//! `--find-loop`: the stretches of a motion that make the best loops.
+//! The stretches of a motion that make the best loops.
 //!
 //! A cut from one frame to another loops well if the poses of both are alike, and those of the frames after them. The way that the figure goes on the ground does not count: a loop keeps
 //! it. A stretch in which less happens than in the whole motion is no cycle, since standing still is a perfect loop: of those the best one of a second or more is proposed
 //! apart, as one for standing.
 
 use super::loop_seam::places_root;
+use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, distance};
+use crate::memory::Memory;
 use crate::motion::Motion;
-use anyhow::{Result, ensure};
+use anyhow::Result;
 
 /// A proposal.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,11 +38,13 @@ const SHORTEST_STILL: f64 = 1.0;
 const POSES: usize = 1200;
 
 /// The best cuts, the best first, and after them one for standing, if the figure stands anywhere.
-pub fn find(motion: &Motion) -> Result<Vec<Cut>> {
+pub fn find(motion: &Motion, memory: Memory) -> Result<Vec<Cut>> {
     let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
-    ensure!(!motion.rig.joints.is_empty(), "--find-loop: the motion has no joints");
-    ensure!(motion.frames > shortest + 1, "--find-loop: {} frames; expected more than {}", motion.frames, shortest + 1);
-    let poses = all_positions(&motion.rig, &on_the_spot(motion), motion.frames)?;
+    let wrong = |text: String| Error::setting(Setting::FindLoop, text);
+    require!(!motion.rig.joints.is_empty(), wrong("the motion has no joints".into()));
+    let frames = motion.frames;
+    require!(frames > shortest + 1, wrong(format!("{frames} frames; expected more than {}", shortest + 1)));
+    let poses = all_positions(&motion.rig, &on_the_spot(motion), motion.frames, memory)?;
     let apart = |a: usize, b: usize| greatest(&poses[a], &poses[b]);
     // The movement up to each frame.
     let mut moved = vec![0.0; motion.frames];

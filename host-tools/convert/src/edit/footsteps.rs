@@ -1,13 +1,15 @@
-//! `--footsteps`: finds the frames at which a foot begins to bear weight.
+//! Finds the frames at which a foot begins to bear weight.
 //!
 //! A point of a foot (the joint itself, and what hangs on it) is planted while it is near the lowest place that it has in the clip and stands still against the
 //! ground. The ground's own velocity is the median of what is near it: of a walk in place the ground moves backwards. A foot is down while one of
 //! its points is planted, but for moments shorter than a person can step.
 
 use super::sides::{Side, parts};
+use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, distance};
+use crate::memory::Memory;
 use crate::motion::{Event, Motion};
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 
 /// Part of the leg's length by which a planted point is above its lowest place at most.
@@ -24,18 +26,21 @@ const SPAN: f64 = 0.05;
 const FEET: [&str; 3] = ["foot", "ankle", "toe"];
 
 /// The events of `motion`, in the order of their frames.
-pub fn footsteps(motion: &Motion) -> Result<Vec<Event>> {
+pub fn footsteps(motion: &Motion, memory: Memory) -> Result<Vec<Event>> {
     let names: Vec<String> = motion.rig.joints.iter().map(|joint| joint.name.clone()).collect();
     let parts = parts(&names);
     let foot = |side: Side| {
         FEET.iter().find_map(|word| parts.iter().position(|part| part.side == Some(side) && part.rest.contains(word)))
     };
     let (left, right) = (foot(Side::Left), foot(Side::Right));
-    ensure!(
+    require!(
         left.is_some() || right.is_some(),
-        "--footsteps: no joint is named as a left or a right foot, ankle or toe, as in LeftFoot, Foot_L or lfoot"
+        Error::setting(
+            Setting::Footsteps,
+            "no joint is named as a left or a right foot, ankle or toe, as in LeftFoot, Foot_L or lfoot"
+        )
     );
-    let poses = all_positions(&motion.rig, &motion.values, motion.frames)?;
+    let poses = all_positions(&motion.rig, &motion.values, motion.frames, memory)?;
     let mut events = Vec::new();
     let feet: Vec<(usize, &str)> = left
         .into_iter()

@@ -1,14 +1,16 @@
-//! `--loop`: a motion whose last frame is nearly its first becomes one that comes round.
+//! A motion whose last frame is nearly its first becomes one that comes round.
 //!
 //! The last frame is to be the first one again: half of their difference is added towards the end and half taken away towards
 //! the begin, on a straight line over the clip, and the last frame, now equal to the first, left out. So no joint moves by much more
 //! than half of the seam.
 
+use crate::error::{Error, Setting, require};
 use crate::euler;
 use crate::fit::bounds::Bounds;
 use crate::fk::{distance, local, positions};
 use crate::motion::{Kind, Motion};
-use anyhow::{Result, bail, ensure};
+use crate::note::Remedy;
+use anyhow::Result;
 
 /// A loop, and what closing it took.
 #[derive(Clone, Debug)]
@@ -39,6 +41,10 @@ pub enum Most<'a> {
     Channels(&'a Bounds),
 }
 
+fn open(text: String) -> Error {
+    Error::setting(Setting::Loop, text)
+}
+
 /// Joints that the closed seam leaves farther than this from each other, in cm, are not closed.
 const CLOSED_CM: f64 = 1e-6;
 
@@ -55,7 +61,8 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
             travel: Vec::new(),
         });
     }
-    ensure!(motion.frames > 2, "--loop: {} frames are no loop; expected 3 or more", motion.frames);
+    let short = || open(format!("{} frames are no loop; expected 3 or more", motion.frames));
+    require!(motion.frames > 2, short());
     let mut steps = differences(motion);
     let travel = travel(motion, &mut steps, most);
     check(motion, &steps, &travel, most)?;
@@ -68,10 +75,8 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
         values.iter_mut().enumerate().for_each(|(frame, value)| *value += step * part(frame));
     }
     let gap = seam(&out, &travel).0;
-    ensure!(
-        gap < CLOSED_CM,
-        "--loop: the seam's angles are too different to be closed (the pose would still jump by {gap:.3} cm)"
-    );
+    let jump = || open(format!("the seam's angles are too different to be closed (the pose would still jump by {gap:.3} cm)"));
+    require!(gap < CLOSED_CM, jump());
     for (keys, step) in out.keys.iter_mut().zip(&steps) {
         *keys = keys.take().filter(|_| *step == 0.0);
     }
@@ -103,7 +108,8 @@ pub struct Joined {
 
 /// Makes a loop of a motion that is one cycle without its first frame again at the end: frame 0 follows the last frame.
 pub fn join_ends(motion: &Motion) -> Result<Joined> {
-    ensure!(motion.frames > 2, "--close-loop: {} frames are no loop; expected 3 or more", motion.frames);
+    let short = || Error::setting(Setting::CloseLoop, format!("{} frames are no loop; expected 3 or more", motion.frames));
+    require!(motion.frames > 2, short());
     let mut out = motion.clone();
     out.looped = true;
     out.keys.iter_mut().for_each(|keys| *keys = None);
@@ -208,16 +214,15 @@ fn greatest(distances: impl Iterator<Item = f64>) -> (f64, usize) {
 
 fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) -> Result<()> {
     let rig = &motion.rig;
-    let hint = "--from and --to choose frames that are alike";
     let limits: Vec<(usize, f64)> = match most {
         Most::Channels(bounds) => bounds.greatest.iter().copied().enumerate().collect(),
         Most::Distance(cm, part) => {
             let (gap, joint) = seam(motion, travel);
             if gap > cm {
                 let name = rig.joint_name(joint);
-                bail!(
-                    "--loop: {name} is {gap:.3} cm off in the last frame from where it is in the first; the bound is {cm} cm; {hint}"
-                );
+                let text =
+                    format!("{name} is {gap:.3} cm off in the last frame from where it is in the first; the bound is {cm} cm");
+                return Err(open(text).remedy(Remedy::ChooseFrames).into());
             }
             rig.scalars
                 .iter()
@@ -228,10 +233,8 @@ fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) ->
     };
     for (channel, limit) in limits {
         let (name, gap) = (rig.channel_name(channel), steps[channel].abs());
-        ensure!(
-            gap <= limit,
-            "--loop: {name} differs by {gap:.4} in the last frame from the first; the bound is {limit:.4}; {hint}"
-        );
+        let text = || format!("{name} differs by {gap:.4} in the last frame from the first; the bound is {limit:.4}");
+        require!(gap <= limit, open(text()).remedy(Remedy::ChooseFrames));
     }
     Ok(())
 }

@@ -1,11 +1,12 @@
-//! `--mirror`: the motion as a mirror at x = 0 shows it, left and right exchanged.
+//! The motion as a mirror at x = 0 shows it, left and right exchanged.
 //!
 //! Each joint takes what its counterpart does: x of its places, and y and z of its turns, change their sign. That mirrors every
 //! pose in world space whatever the rest pose is, and gives a symmetric figure its own rig again.
 
 use super::sides::{Part, counterparts, parts};
+use crate::error::{Error, Setting, require};
 use crate::motion::{Joint, Keys, Kind, Motion, Piece, Rig, Scalar};
-use anyhow::{Context, Result, ensure};
+use anyhow::Result;
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 
 /// Mirrors `motion`. Refuses a figure whose names have no sides, or whose sides are not built alike.
@@ -17,7 +18,7 @@ pub fn mirror(motion: &Motion) -> Result<Motion> {
     let scalar_pairs = counterparts(&scalar_parts);
     let sided =
         pairs.iter().enumerate().any(|(index, &pair)| index != pair) || scalar_parts.iter().any(|part| part.side.is_some());
-    ensure!(sided, "--mirror: no names tell left from right, as LeftArm and RightArm, Arm_L and Arm_R or larm and rarm do");
+    require!(sided, unsided("no names tell left from right, as LeftArm and RightArm, Arm_L and Arm_R or larm and rarm do"));
     let firsts = rig.first_channels();
     let mut out = motion.without_figure();
     for (joint, &pair) in rig.joints.iter().zip(&pairs) {
@@ -30,7 +31,7 @@ pub fn mirror(motion: &Motion) -> Result<Motion> {
         }
     }
     for (index, scalar) in rig.scalars.iter().enumerate() {
-        let pair = scalar_pairs[index].with_context(|| format!("--mirror: the scalar {} has no counterpart", scalar.name))?;
+        let pair = scalar_pairs[index].ok_or_else(|| unsided(format!("the scalar {} has no counterpart", scalar.name)))?;
         out.rig.scalars.push(Scalar { full_scale: rig.scalars[pair].full_scale, name: scalar.name.clone() });
         take(motion, &mut out, rig.joint_channels() + pair, turns_sideways(&scalar_parts[pair]));
     }
@@ -77,28 +78,34 @@ fn turns_sideways(part: &Part) -> bool {
     has("yaw") || has("shift") || (has("roll") && !has("tongue"))
 }
 
+fn unsided(text: impl Into<String>) -> Error {
+    Error::setting(Setting::Mirror, text)
+}
+
 /// Each joint's counterpart: the parents of two are two as well, and so are their ends.
 fn joint_pairs(rig: &Rig) -> Result<Vec<usize>> {
     let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
     let named = counterparts(&parts(&names));
     let mut pairs = Vec::with_capacity(named.len());
     for (index, joint) in rig.joints.iter().enumerate() {
-        let lonely = || format!("--mirror: {} has no counterpart on the other side of the figure", rig.joint_name(index));
+        let lonely = || unsided(format!("{} has no counterpart on the other side of the figure", rig.joint_name(index)));
         let pair = match joint.parent {
             Some(parent) if joint.end_site => {
                 ends(rig, pairs[parent]).nth(ends(rig, parent).position(|end| end == index).unwrap_or(0))
             }
             _ => named[index],
         };
-        let pair = pair.with_context(lonely)?;
+        let pair = pair.ok_or_else(lonely)?;
         let alike = joint.parent.map(|parent| pairs[parent]) == rig.joints[pair].parent;
         let (own, other) = (rig.joint_name(index), rig.joint_name(pair));
-        ensure!(alike, "--mirror: {own} and {other} are counterparts by their names, but not the joints that they hang on");
+        let apart = || format!("{own} and {other} are counterparts by their names, but not the joints that they hang on");
+        require!(alike, unsided(apart()));
         pairs.push(pair);
     }
     let back = |&(index, &pair): &(usize, &usize)| pairs[pair] != index;
     if let Some((index, _)) = pairs.iter().enumerate().find(back) {
-        anyhow::bail!("--mirror: several joints are counterparts of {} by their names", rig.joint_name(pairs[index]));
+        let name = rig.joint_name(pairs[index]);
+        return Err(unsided(format!("several joints are counterparts of {name} by their names")).into());
     }
     Ok(pairs)
 }

@@ -4,6 +4,7 @@ pub mod curve;
 pub mod cut;
 pub mod display;
 mod display_names;
+mod edits;
 pub mod find_loop;
 pub mod footsteps;
 pub mod join;
@@ -13,3 +14,5 @@ pub mod pick;
 pub mod resample;
 pub mod retarget;
 pub mod sides;
+
+pub use edits::{Body, Edited, Edits};

@@ -1,7 +1,8 @@
-//! `--joints` and `--drop`: some of a motion's joints and scalars.
+//! Some of a motion's joints and scalars.
 
+use crate::error::{Error, Setting, require};
 use crate::motion::{Joint, Motion, Rig};
-use anyhow::{Result, bail, ensure};
+use anyhow::Result;
 use glob::{MatchOptions, Pattern};
 
 /// The joints and scalars whose names one of the globs `keep` matches (all, if there is none), but for those that one of `drop` does.
@@ -25,7 +26,8 @@ pub fn pick(motion: &Motion, keep: &[String], drop: &[String]) -> Result<Motion>
         out.rig.scalars.push(scalar.clone());
         take(motion, &mut out, rig.joint_channels() + index, true);
     }
-    ensure!(out.rig.channels() > 0, "--joints and --drop leave no channel");
+    let setting = if keep.is_empty() { Setting::Drop } else { Setting::Joints };
+    require!(out.rig.channels() > 0, Error::setting(setting, "no channel is left"));
     Ok(out)
 }
 
@@ -43,8 +45,8 @@ struct Choice {
 
 impl Choice {
     fn new(rig: &Rig, keep: &[String], drop: &[String]) -> Result<Choice> {
-        let keep = globs(rig, "--joints", keep)?;
-        let drop = globs(rig, "--drop", drop)?;
+        let keep = globs(rig, Setting::Joints, keep)?;
+        let drop = globs(rig, Setting::Drop, drop)?;
         let chosen = |name: &str| (keep.is_empty() || any(&keep, name)) && !any(&drop, name);
         // An End Site goes with the joint that it ends.
         let joints = rig.joints.iter().map(|joint| match joint.parent {
@@ -73,14 +75,14 @@ fn any(globs: &[Pattern], name: &str) -> bool {
     globs.iter().any(|glob| glob.matches_with(name, IN_ANY_CASE))
 }
 
-fn globs(rig: &Rig, flag: &str, texts: &[String]) -> Result<Vec<Pattern>> {
+fn globs(rig: &Rig, setting: Setting, texts: &[String]) -> Result<Vec<Pattern>> {
     let joints = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str());
     let names: Vec<&str> = joints.chain(rig.scalars.iter().map(|scalar| scalar.name.as_str())).collect();
     let glob = |text: &String| {
-        let glob = Pattern::new(text).map_err(|error| anyhow::anyhow!("{flag} {text}: {error}"))?;
-        if !names.iter().any(|name| any(std::slice::from_ref(&glob), name)) {
-            bail!("{flag} {text}: no joint or scalar is called so; there are {}", names.join(", "));
-        }
+        let glob = Pattern::new(text).map_err(|error| Error::setting(setting, format!("{text}: {error}")))?;
+        let unknown =
+            || Error::setting(setting, format!("{text}: no joint or scalar is called so; there are {}", names.join(", ")));
+        require!(names.iter().any(|name| any(std::slice::from_ref(&glob), name)), unknown());
         Ok(glob)
     };
     texts.iter().map(glob).collect()

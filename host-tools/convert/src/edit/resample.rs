@@ -1,13 +1,14 @@
-//! `--fps`: the same motion at another rate.
+//! The same motion at another rate.
 
 use super::curve;
-use crate::budget;
+use crate::error::{Error, Setting, require};
 use crate::euler::{self, nearest};
 use crate::events;
 use crate::fk::{Matrix, local, product};
 use crate::keys::sample_pieces;
+use crate::memory::Memory;
 use crate::motion::{Keys, Kind, Motion};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use pantin::codec::layout::MAX_FRAMES;
 
 /// Rates closer than this, as a part, are the same.
@@ -23,7 +24,7 @@ const JUMP: f64 = 20.0;
 ///
 /// Known curves stay what they are in time; frames have Catmull-Rom cubics through them, which meet every source frame. A loop keeps whole
 /// frames: it lasts up to half of a frame longer or shorter.
-pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
+pub fn resample(motion: &Motion, fps: f64, memory: Memory) -> Result<Motion> {
     let ratio = fps * motion.frame_time;
     if (ratio - 1.0).abs() < SAME_RATE {
         return Ok(motion.clone());
@@ -38,9 +39,11 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
         let steps = (motion.frames - 1) as f64 * factor;
         ((steps + (ROUNDED * steps).clamp(1e-9, 0.01)).floor(), factor)
     };
-    ensure!(steps < f64::from(MAX_FRAMES), "--fps {fps} gives more than {MAX_FRAMES} frames, too many for a clip");
+    let too_many =
+        || Error::setting(Setting::FrameRate, format!("{fps} gives more than {MAX_FRAMES} frames, too many for a clip"));
+    require!(steps < f64::from(MAX_FRAMES), too_many());
     if steps as usize >= motion.frames {
-        budget::check(steps as usize + 1, motion.values.len()).with_context(|| format!("--fps {fps}"))?;
+        memory.check(steps as usize + 1, motion.values.len()).with_context(|| format!("at {fps} frames a second"))?;
     }
     let times: Vec<f64> = (0..=steps as usize).map(|frame| frame as f64 / factor).collect();
     let kinds = motion.rig.channel_kinds();
@@ -75,6 +78,7 @@ pub fn resample(motion: &Motion, fps: f64) -> Result<Motion> {
         keys,
         looped: motion.looped,
         events,
+        origin: motion.origin,
     })
 }
 

@@ -3,6 +3,7 @@
 use super::clip::assembled;
 use super::{index, same_rig, varint};
 use crate::encode::rig;
+use crate::memory::Memory;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::codec::crc;
 use pantin::codec::layout::*;
@@ -209,7 +210,7 @@ fn converted(file: &[u8], rig: &CheckedRig, whole: bool) -> Result<Vec<u8>> {
                 frames / u64::from(spacing.max(1)) <= parts.index.len() as u64 && frames * channels <= MOST_REPLAYED,
                 "the clip has {frames} frames and an index that is not of them, or takes too long to make again"
             );
-            let bytes = file(flags | HAS_INDEX, Some(&index::payload(clip, spacing)?));
+            let bytes = file(flags | HAS_INDEX, Some(&index::payload(clip, spacing, Memory::default())?));
             index::check(&bytes, rig.bytes, spacing)?;
             Ok(bytes)
         }

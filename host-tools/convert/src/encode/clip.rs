@@ -3,6 +3,7 @@
 use super::entropy::{Alphabet, Sink, Symbols};
 use super::segment::{Running, Segment};
 use super::{index, varint};
+use crate::memory::Memory;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::Event;
 use pantin::codec::layout::*;
@@ -93,10 +94,10 @@ pub fn encode(coded: &Coded, rig: &[u8], apart: bool) -> Result<Vec<u8>> {
 }
 
 /// The file with a snapshot each `spacing` frames, for players that seek much.
-pub fn encode_with_index(coded: &Coded, rig: &[u8], apart: bool, spacing: u32) -> Result<Vec<u8>> {
+pub fn encode_with_index(coded: &Coded, rig: &[u8], apart: bool, spacing: u32, memory: Memory) -> Result<Vec<u8>> {
     let plain = encode(coded, rig, apart)?;
     let clip = pantin::Clip::with_rig(&plain, rig).context("the clip that was just made does not open")?;
-    let bytes = file(coded, rig, apart, Some(&index::payload(clip, spacing)?))?;
+    let bytes = file(coded, rig, apart, Some(&index::payload(clip, spacing, memory)?))?;
     index::check(&bytes, rig, spacing)?;
     Ok(bytes)
 }

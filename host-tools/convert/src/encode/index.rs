@@ -2,12 +2,12 @@
 
 use super::clip::blocks_len;
 use super::varint;
-use crate::budget;
+use crate::memory::Memory;
 use anyhow::{Context, Result, ensure};
 use pantin::{ChannelState, Clip, Player};
 
 /// The payload of an index with a snapshot each `spacing` frames of the clip, which has none yet.
-pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
+pub fn payload(clip: Clip<'_>, spacing: u32, memory: Memory) -> Result<Vec<u8>> {
     ensure!(spacing > 0, "an index of a snapshot each 0 frames: expected 1 or more");
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
@@ -20,7 +20,7 @@ pub fn payload(clip: Clip<'_>, spacing: u32) -> Result<Vec<u8>> {
             let mut snapshot = Vec::new();
             pantin::codec::write_snapshot(&player, &mut |byte| snapshot.push(byte));
             held += snapshot.len() as u64;
-            budget::check_bytes_held(held).context("the snapshots")?;
+            memory.check_bytes_held(held).context("the snapshots")?;
             snapshots.push(snapshot);
         }
     }

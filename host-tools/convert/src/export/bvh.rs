@@ -185,7 +185,16 @@ mod tests {
         let rig = Rig { joints, scalars: Vec::new(), cm_per_unit: 1.0, ..Rig::default() };
         let keys = vec![None; values.len()];
         let values = values.iter().map(|&value| vec![value]).collect();
-        Motion { rig, frame_time: 1.0 / 120.0, frames: 1, values, keys, looped: false, events: Vec::new() }
+        Motion {
+            rig,
+            frame_time: 1.0 / 120.0,
+            frames: 1,
+            values,
+            keys,
+            looped: false,
+            events: Vec::new(),
+            origin: Default::default(),
+        }
     }
 
     #[test]

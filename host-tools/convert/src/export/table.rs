@@ -91,8 +91,16 @@ mod tests {
         let scalars = ["jaw, open", "still"].map(|name| Scalar { name: name.into(), full_scale: 1.0 });
         let rig = Rig { joints: vec![joint], scalars: scalars.to_vec(), cm_per_unit: 1.0, ..Rig::default() };
         let values = vec![vec![-370.125, 12.0], vec![1.0 / 3.0, -1e-12], vec![0.0; 2]];
-        let motion =
-            Motion { rig, frame_time: 1.0 / 30.0, frames: 2, keys: vec![None; 3], values, looped: false, events: Vec::new() };
+        let motion = Motion {
+            rig,
+            frame_time: 1.0 / 30.0,
+            frames: 2,
+            keys: vec![None; 3],
+            values,
+            looped: false,
+            events: Vec::new(),
+            origin: Default::default(),
+        };
         let mut out = Vec::new();
         write(&motion, &mut out).unwrap();
         let expected = "time,hip.Xrotation,\"jaw, open\",still\n0,-370.125,0.3333333,0\n0.033333333,12,0,0\n";
@@ -119,7 +127,16 @@ mod tests {
         let rig = Rig { scalars: vec![Scalar { name: "a".into(), full_scale: 1.0 }], cm_per_unit: 1.0, ..Rig::default() };
         let events = (0..frames).map(|frame| Event { frame, name: "step".into() }).collect();
         let values = vec![vec![0.0; frames]];
-        let motion = Motion { rig, frame_time: 0.001, frames, keys: vec![None], values, looped: false, events };
+        let motion = Motion {
+            rig,
+            frame_time: 0.001,
+            frames,
+            keys: vec![None],
+            values,
+            looped: false,
+            events,
+            origin: Default::default(),
+        };
         let (mut out, begun) = (Vec::new(), std::time::Instant::now());
         write(&motion, &mut out).unwrap();
         assert!(begun.elapsed().as_secs_f64() < 3.0, "{:?}", begun.elapsed());

@@ -17,10 +17,12 @@ pub mod start_cost;
 
 use crate::encode::clip::{Channel, Coded};
 use crate::encode::rig as rig_bytes;
+use crate::error::{Error, require};
 use crate::events;
 use crate::motion::Motion;
+use crate::note::Remedy;
 use crate::number::Number;
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Result, anyhow};
 use descent::{Descent, Plan};
 use figure::Figure;
 use pantin::codec::layout::MAX_FRAMES;
@@ -112,20 +114,14 @@ const SAME_RATE: f64 = 1e-4;
 
 /// The frame time in ns of a motion whose length in frames and in time a clip can hold.
 fn time(motion: &Motion) -> Result<u32> {
-    ensure!(
-        (1..=MAX_FRAMES as usize).contains(&motion.frames),
-        "{} frames; a clip holds 1 to {MAX_FRAMES}: take fewer by --fps",
-        motion.frames
-    );
+    let too_many = || Error::source(format!("{} frames; a clip holds 1 to {MAX_FRAMES}", motion.frames));
+    require!((1..=MAX_FRAMES as usize).contains(&motion.frames), too_many().remedy(Remedy::LowerFrameRate));
     let seconds = motion.frame_time;
     let usual = pantin::codec::layout::FRAME_RATES.iter().skip(1).map(|&rate| 1.0 / f64::from(rate));
     let exact = usual.into_iter().find(|usual| (usual / seconds - 1.0).abs() < SAME_RATE).unwrap_or(seconds);
     let ns = (exact * 1e9).round();
-    ensure!(
-        (1.0..=f64::from(u32::MAX)).contains(&ns),
-        "a frame time of {} s; a clip holds 1 ns to {} s: state the rate by --fps",
-        Number(seconds),
-        f64::from(u32::MAX) * 1e-9
-    );
+    let most = f64::from(u32::MAX) * 1e-9;
+    let wrong = || Error::source(format!("a frame time of {} s; a clip holds 1 ns to {most} s", Number(seconds)));
+    require!((1.0..=f64::from(u32::MAX)).contains(&ns), wrong().remedy(Remedy::ChangeFrameRate));
     Ok(ns as u32)
 }

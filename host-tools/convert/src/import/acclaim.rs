@@ -13,6 +13,7 @@
 use crate::euler;
 use crate::fk::{IDENTITY, Matrix, about, apply, product};
 use crate::motion::{Joint, Kind, Motion, Rig};
+use crate::note::{Note, NoteKind};
 
 /// A value that a motion gives a bone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +52,7 @@ pub struct Skeleton {
     /// Whether angles are in radians.
     pub radians: bool,
     /// What could not be used, a sentence each.
-    pub warnings: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 const POSITIONS: [Kind; 3] = [Kind::Xposition, Kind::Yposition, Kind::Zposition];
@@ -61,7 +62,7 @@ const ROTATIONS: [Kind; 3] = [Kind::Xrotation, Kind::Yrotation, Kind::Zrotation]
 const PARALLEL: f64 = 1e-9;
 
 /// The motion of `skeleton` by `values[value][frame]`, bone by bone, rotations in degrees.
-pub fn motion(skeleton: &Skeleton, values: &[Vec<f64>], frames: usize, frame_time: f64, warnings: &mut Vec<String>) -> Motion {
+pub fn motion(skeleton: &Skeleton, values: &[Vec<f64>], frames: usize, frame_time: f64, notes: &mut Vec<Note>) -> Motion {
     let bones = &skeleton.bones;
     let mut rig = Rig { cm_per_unit: skeleton.cm_per_unit.unwrap_or(1.0), ..Rig::default() };
     let mut channels = Vec::new();
@@ -92,11 +93,12 @@ pub fn motion(skeleton: &Skeleton, values: &[Vec<f64>], frames: usize, frame_tim
             });
         }
         if bone.dofs.contains(&Dof::Length) {
-            warnings.push(format!("the bone `{}` changes its length, which is left out", bone.name));
+            let text = format!("the bone `{}` changes its length, which is left out", bone.name);
+            notes.push(Note::warning(NoteKind::Joints, text).of_joint(&bone.name));
         }
     }
     let keys = vec![None; channels.len()];
-    Motion { rig, frame_time, frames, values: channels, keys, looped: false, events: Vec::new() }
+    Motion { rig, frame_time, frames, values: channels, keys, looped: false, events: Vec::new(), origin: Default::default() }
 }
 
 /// The position channels of a bone that has translations: all three, as they replace its `offset`.

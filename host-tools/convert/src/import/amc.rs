@@ -6,8 +6,10 @@
 
 use super::acclaim::{self, Dof, Skeleton};
 use super::text::{Words, shown};
-use super::{Files, Options, Source, asf};
-use anyhow::{Result, anyhow};
+use super::{Request, Source, asf};
+use crate::error::Error;
+use crate::note::{Note, NoteKind, Remedy};
+use anyhow::Result;
 use std::path::{Path, PathBuf};
 
 /// CMU's rate, which its files do not state.
@@ -19,20 +21,21 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the AMC file `path` and its ASF file, which states the unit of length.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = options.files.read(path)?;
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
+    let bytes = options.read(path)?;
     let (skeleton_path, content) = match &options.skeleton {
-        Some(given) => (given.clone(), options.files.read(given)?),
+        Some(given) => (given.clone(), options.read(given)?),
         None => {
-            let found = find_skeleton(path, &bytes, &options.files)?;
-            let content = options.files.read_named(&found)?;
+            let found = find_skeleton(path, &bytes, options)?;
+            let content = options.read_named(&found)?;
             (found, content)
         }
     };
     let skeleton = asf::read(&skeleton_path, &content)?;
-    let mut warnings = skeleton.warnings.clone();
+    let mut notes = skeleton.notes.clone();
     if skeleton_path.file_stem() != path.file_stem() {
-        warnings.push(format!("the skeleton is {}; --skeleton overrides", skeleton_path.display()));
+        let note = Note::warning(NoteKind::Skeleton, format!("the skeleton is {}", skeleton_path.display()));
+        notes.push(note.in_file(&skeleton_path).remedy(Remedy::ChooseSkeleton));
     }
     let mut words = Words::new(path, &bytes);
     let mut reader = Reader::new(&skeleton);
@@ -44,26 +47,27 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         return Err(words.error("no frames; expected a line with the number 1"));
     }
     let fps = reader.fps.or(options.fps).unwrap_or_else(|| {
-        warnings.push(format!("the format states no frame rate, so {USUAL_FPS} a second; --fps overrides"));
+        let note = Note::warning(NoteKind::FrameRate, format!("the format states no frame rate, so {USUAL_FPS} a second"));
+        notes.push(note.remedy(Remedy::ChangeFrameRate));
         USUAL_FPS
     });
-    let motion = acclaim::motion(&skeleton, &reader.values, reader.frames, 1.0 / fps, &mut warnings);
-    Ok(Source { motion, unit_known: skeleton.cm_per_unit.is_some(), error: 0.0, warnings })
+    let motion = acclaim::motion(&skeleton, &reader.values, reader.frames, 1.0 / fps, &mut notes);
+    Ok(Source { unit_known: skeleton.cm_per_unit.is_some(), ..Source::plain(motion, notes) })
 }
 
 /// The skeletons in the folder of the motion `path`.
-pub(super) fn skeletons(path: &Path, files: &Files) -> Result<Vec<PathBuf>> {
+pub(super) fn skeletons(path: &Path, options: &Request) -> Result<Vec<PathBuf>> {
     let is_asf = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("asf"));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut beside = files.beside(folder)?;
+    let mut beside = options.beside(folder)?;
     beside.retain(|path| is_asf(path));
     beside.sort();
     Ok(beside)
 }
 
-fn find_skeleton(path: &Path, bytes: &[u8], files: &Files) -> Result<PathBuf> {
+fn find_skeleton(path: &Path, bytes: &[u8], options: &Request) -> Result<PathBuf> {
     let lower = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-    let beside = skeletons(path, files)?;
+    let beside = skeletons(path, options)?;
     let stem = lower(path);
     // The same name is the longest that the motion's begins with.
     let by_name = beside.iter().filter(|skeleton| stem.starts_with(&lower(skeleton)));
@@ -77,7 +81,8 @@ fn find_skeleton(path: &Path, bytes: &[u8], files: &Files) -> Result<PathBuf> {
             || format!("no {stem}.asf"),
             |named| format!("neither {stem}.asf nor the `{named}` that the file names"),
         );
-        anyhow!("{}:1: no skeleton beside it: {looked}; --skeleton FILE gives one", path.display())
+        let text = format!("{}:1: no skeleton beside it: {looked}", path.display());
+        Error::source(text).remedy(Remedy::GiveSkeleton).into()
     })
 }
 

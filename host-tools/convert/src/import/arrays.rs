@@ -1,9 +1,10 @@
 //! A motion that a program holds as arrays: a rotation and a place of every joint at every frame, and scalars.
 
 use super::{Imported, angles, ends, helpers, scalars, unwrap_angles};
-use crate::budget;
 use crate::fk::{self, Matrix, distance, from_quaternion};
+use crate::memory::Memory;
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar, Up};
+use crate::note::{Note, NoteKind};
 use anyhow::{Result, ensure};
 use pantin::codec::layout::{MAX_CHANNELS, MAX_FRAMES, MAX_JOINTS};
 
@@ -46,6 +47,8 @@ pub struct Arrays {
     pub cm_per_unit: f64,
     /// The direction of the world that is vertical.
     pub up: Up,
+    /// The memory that the motion may take.
+    pub memory: Memory,
 }
 
 impl Arrays {
@@ -69,7 +72,7 @@ impl Arrays {
             values.extend(channels);
             joints.push(Joint { name: name.clone(), parent: *parent, offset, kinds, end_site: *end_site, helper: false });
         }
-        let warnings = ends::complete(&mut joints).into_iter().collect();
+        let mut notes: Vec<Note> = ends::complete(&mut joints).into_iter().collect();
         let (mut scalars, of_scalars): (Vec<Scalar>, Vec<Vec<f64>>) = std::mem::take(&mut self.scalars).into_iter().unzip();
         scalars
             .iter_mut()
@@ -80,8 +83,16 @@ impl Arrays {
         helpers::mark(&mut rig);
         ensure!(rig.channels() <= MAX_CHANNELS, "{} channels; a rig holds at most {MAX_CHANNELS}", rig.channels());
         let keys = vec![None; values.len()];
-        let mut motion =
-            Motion { rig, frame_time: 1.0 / self.rate, frames: self.frames, values, keys, looped: false, events: Vec::new() };
+        let mut motion = Motion {
+            rig,
+            frame_time: 1.0 / self.rate,
+            frames: self.frames,
+            values,
+            keys,
+            looped: false,
+            events: Vec::new(),
+            origin: Default::default(),
+        };
         unwrap_angles(&mut motion);
         let far = |(frame, worlds): (usize, &Vec<[f64; 3]>)| {
             let found = fk::positions(&motion.rig, &motion.values, frame);
@@ -89,8 +100,9 @@ impl Arrays {
             pairs.map(|(world, found)| distance(world.map(|x| x * self.cm_per_unit), found)).fold(0.0, f64::max)
         };
         let error_cm = worlds.iter().enumerate().map(far).fold(0.0, f64::max);
-        let units = format!("the unit is {} cm, as given", self.cm_per_unit);
-        Ok(Imported { motion, error_cm, units, warnings })
+        motion.origin.error_cm = error_cm;
+        notes.push(Note::info(NoteKind::Unit, format!("the unit is {} cm, as given", self.cm_per_unit)));
+        Ok(Imported { motion, notes })
     }
 
     fn check(&self) -> Result<()> {
@@ -100,7 +112,7 @@ impl Arrays {
         ensure!(joints.len() < MAX_JOINTS, "{} joints; a rig holds fewer than {MAX_JOINTS}", joints.len());
         ensure!(self.rate.is_finite() && self.rate > 0.0, "a rate of {}: expected frames a second, above 0", self.rate);
         ensure!(self.cm_per_unit > 0.0 && self.cm_per_unit < LARGEST, "a unit of {} cm", self.cm_per_unit);
-        budget::check(*frames, 6 * joints.len() + self.scalars.len())?;
+        self.memory.check(*frames, 6 * joints.len() + self.scalars.len())?;
         let count = frames * joints.len();
         ensure!(rotations.len() == count, "{} rotations for {frames} frames of {} joints", rotations.len(), joints.len());
         ensure!(
@@ -202,15 +214,16 @@ mod tests {
             rate: 25.0,
             cm_per_unit: 2.0,
             up: Up::Y,
+            memory: Memory::default(),
         }
     }
 
     #[test]
     fn arrays_become_channels_of_what_moves() {
-        let Imported { motion, error_cm, .. } = arm().motion().unwrap();
+        let Imported { motion, .. } = arm().motion().unwrap();
         let kinds: Vec<Vec<Kind>> = motion.rig.joints.iter().map(|joint| joint.kinds.clone()).collect();
         assert_eq!(kinds, [vec![Kind::Xposition], vec![Kind::Xrotation], vec![]]);
-        assert!(error_cm < 1e-12, "{error_cm}");
+        assert!(motion.origin.error_cm < 1e-12, "{}", motion.origin.error_cm);
         assert!((motion.values[1][19] - (3.8f64).to_degrees()).abs() < 1e-9);
         let [w, x, ..] = fk::rotations(&motion.rig, &motion.values, 5)[1];
         assert!((w / x - (0.5f64).cos() / (0.5f64).sin()).abs() < 1e-12);
@@ -224,8 +237,8 @@ mod tests {
     fn several_roots_hang_from_one_joint() {
         let mut arrays = arm();
         arrays.joints[1].parent = None;
-        let Imported { motion, error_cm, .. } = arrays.motion().unwrap();
-        assert!(error_cm < 1e-12, "{error_cm}");
+        let Imported { motion, .. } = arrays.motion().unwrap();
+        assert!(motion.origin.error_cm < 1e-12, "{}", motion.origin.error_cm);
         let names: Vec<&str> = motion.rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         assert_eq!(names, ["root", "body", "arm", ""]);
         assert_eq!(motion.rig.joints[3].parent, Some(2));

@@ -7,6 +7,7 @@
 use super::acclaim::{Bone, Dof, Skeleton};
 use super::text::{Words, shown};
 use crate::fk::{IDENTITY, about, product};
+use crate::note::{Note, NoteKind};
 use anyhow::Result;
 use pantin::codec::layout::MAX_JOINTS;
 use std::path::Path;
@@ -207,12 +208,13 @@ impl File {
             let Entry { name, line, .. } = &self.entries[lost];
             return Err(words.error_at(*line, format!("`:hierarchy` does not join the bone `{name}` to the root")));
         }
-        let mut warnings = Vec::new();
+        let mut notes = Vec::new();
         if !self.unread.is_empty() {
-            warnings.push(format!("the skeleton's bones say `{}`, which is not read", self.unread.join("`, `")));
+            let text = format!("the skeleton's bones say `{}`, which is not read", self.unread.join("`, `"));
+            notes.push(Note::warning(NoteKind::Unread, text));
         }
         let cm_per_unit = self.length.filter(|&length| length != 1.0).map(|length| INCH_CM / length);
-        Ok(Skeleton { bones, position: self.position, cm_per_unit, radians: self.radians, warnings })
+        Ok(Skeleton { bones, position: self.position, cm_per_unit, radians: self.radians, notes })
     }
 }
 

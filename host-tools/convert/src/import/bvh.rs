@@ -3,8 +3,10 @@
 //! White space is free, as other readers have it: a row may span lines and a line may hold rows.
 
 use super::text::{Words, shown};
-use super::{Options, Source, ends};
+use super::{Request, Source, ends};
+use crate::error::with_remedy;
 use crate::motion::{Joint, Kind, Motion, Rig};
+use crate::note::{Note, NoteKind, Remedy};
 use anyhow::Result;
 use pantin::codec::layout::MAX_JOINTS;
 use std::collections::HashSet;
@@ -17,21 +19,29 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the BVH file `path`. The format states no unit of length.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = options.files.read(path)?;
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
+    let bytes = options.read(path)?;
     let mut words = Words::new(path, &bytes);
-    let mut warnings = Vec::new();
+    let mut notes = Vec::new();
     words.expect("HIERARCHY", "at the start of a BVH file")?;
     let mut rig = hierarchy(&mut words)?;
-    warnings.extend(repeated_names(&rig));
-    warnings.extend(repeated_channels(&rig));
-    warnings.extend(ends::complete(&mut rig.joints));
+    notes.extend(repeated_names(&rig));
+    notes.extend(repeated_channels(&rig));
+    notes.extend(ends::complete(&mut rig.joints));
     let header = header(&mut words, options)?;
-    let values = rows(&mut words, &header, rig.channels(), &mut warnings)?;
+    let values = rows(&mut words, &header, rig.channels(), &mut notes)?;
     let keys = vec![None; values.len()];
-    let motion =
-        Motion { rig, frame_time: header.frame_time, frames: header.frames, values, keys, looped: false, events: Vec::new() };
-    Ok(Source { motion, unit_known: false, error: 0.0, warnings })
+    let motion = Motion {
+        rig,
+        frame_time: header.frame_time,
+        frames: header.frames,
+        values,
+        keys,
+        looped: false,
+        events: Vec::new(),
+        origin: Default::default(),
+    };
+    Ok(Source::plain(motion, notes))
 }
 
 /// A joint whose closing brace is still to come.
@@ -143,26 +153,29 @@ fn kind(word: &[u8]) -> Option<Kind> {
     all.iter().find(|(name, _)| word.eq_ignore_ascii_case(name.as_bytes())).map(|&(_, kind)| kind)
 }
 
-fn repeated_names(rig: &Rig) -> Option<String> {
+fn repeated_names(rig: &Rig) -> Option<Note> {
     let mut seen = HashSet::new();
     let names = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str());
     let repeated: Vec<&str> = names.filter(|&name| !seen.insert(name)).collect();
     let first = repeated.first()?;
-    Some(format!("{} joint names stand more than once (`{first}` is one); joints are told apart by their place", repeated.len()))
+    let text =
+        format!("{} joint names stand more than once (`{first}` is one); joints are told apart by their place", repeated.len());
+    Some(Note::warning(NoteKind::Names, text).of_joint(*first))
 }
 
 /// Rotations about one axis before and after one about another are a way to turn a joint; other programs may take only the last.
-fn repeated_channels(rig: &Rig) -> Option<String> {
+fn repeated_channels(rig: &Rig) -> Option<Note> {
     let of_joint = |joint: &Joint| {
         let at = (1..joint.kinds.len()).find(|&at| joint.kinds[..at].contains(&joint.kinds[at]))?;
         Some((joint.name.clone(), joint.kinds[at]))
     };
     let repeated: Vec<(String, Kind)> = rig.joints.iter().filter_map(of_joint).collect();
     let (name, kind) = repeated.first()?;
-    Some(format!(
+    let text = format!(
         "{} joints have a rotation twice (`{name}` has {kind:?}); all of a joint's rotations apply, in their order",
         repeated.len()
-    ))
+    );
+    Some(Note::warning(NoteKind::Joints, text).of_joint(name))
 }
 
 /// What stands between MOTION and the rows.
@@ -173,7 +186,7 @@ struct Header {
     frame_time: f64,
 }
 
-fn header(words: &mut Words, options: &Options) -> Result<Header> {
+fn header(words: &mut Words, options: &Request) -> Result<Header> {
     words.expect("MOTION", "after the hierarchy")?;
     words.expect("Frames", "after MOTION")?;
     words.accept(":");
@@ -189,7 +202,10 @@ fn header(words: &mut Words, options: &Options) -> Result<Header> {
     let frame_time = match options.fps {
         _ if stated > 0.0 => stated,
         Some(fps) => 1.0 / fps,
-        None => return Err(words.error(format!("expected a frame time above 0, found {stated}; --fps gives one"))),
+        None => {
+            let error = words.error(format!("expected a frame time above 0, found {stated}"));
+            return Err(with_remedy(&error, Remedy::StateFrameRate));
+        }
     };
     Ok(Header { frames, line, frame_time })
 }
@@ -231,7 +247,7 @@ impl Layout {
     }
 }
 
-fn rows(words: &mut Words, header: &Header, channels: usize, warnings: &mut Vec<String>) -> Result<Vec<Vec<f64>>> {
+fn rows(words: &mut Words, header: &Header, channels: usize, notes: &mut Vec<Note>) -> Result<Vec<Vec<f64>>> {
     let frames = header.frames;
     if channels == 0 {
         return Err(words.error_at(header.line, "no joint has CHANNELS, so nothing can move"));
@@ -264,7 +280,8 @@ fn rows(words: &mut Words, header: &Header, channels: usize, warnings: &mut Vec<
             return Err(words.error_at(line, format!("expected {channels} numbers, one a channel, found {numbers}")));
         }
         let more = extra as f64 / channels as f64;
-        warnings.push(format!("`Frames: {frames}`, but the data hold {} frames; the rest is left out", frames as f64 + more));
+        let text = format!("`Frames: {frames}`, but the data hold {} frames; the rest is left out", frames as f64 + more);
+        notes.push(Note::warning(NoteKind::Frames, text).at_line(header.line));
     }
     Ok(values)
 }

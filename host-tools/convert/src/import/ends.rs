@@ -1,12 +1,13 @@
 //! End Sites for leaves that have none: without one, a bound on places does not see how the leaf turns.
 
 use crate::motion::Joint;
+use crate::note::{Note, NoteKind};
 
 /// Gives every joint that turns and carries nothing an End Site as far away as the mean bone is long: in the direction of its own bone,
 /// or upwards where it has none. Returns a warning that names one of them.
 ///
 /// A joint with an End Site of length 0 keeps it: there the author says that turning does not count.
-pub fn complete(joints: &mut Vec<Joint>) -> Option<String> {
+pub fn complete(joints: &mut Vec<Joint>) -> Option<Note> {
     let mut carries = vec![false; joints.len()];
     joints.iter().filter_map(|joint| joint.parent).for_each(|parent| carries[parent] = true);
     let turns = |joint: &Joint| joint.kinds.iter().any(|kind| !kind.is_position());
@@ -21,10 +22,11 @@ pub fn complete(joints: &mut Vec<Joint>) -> Option<String> {
         };
         joints.push(Joint { name: String::new(), parent: Some(leaf), offset, kinds: Vec::new(), end_site: true, helper: false });
     }
-    Some(format!(
+    let text = format!(
         "{} joints end without an End Site (`{first}` is one): each gets one {length:.4} units away, so that its rotation counts",
         leaves.len()
-    ))
+    );
+    Some(Note::warning(NoteKind::Joints, text).of_joint(first))
 }
 
 /// The mean length of the bones that have one; 1 where none has.

@@ -6,8 +6,10 @@
 use super::fap_names::{EXPRESSION, PARAMETERS, SHORT, Unit, VISEME, values};
 use super::scalars::{self, peak};
 use super::text::{number_in, shown};
-use super::{Options, Source};
-use anyhow::{Error, Result, anyhow};
+use super::{Request, Source};
+use crate::memory::Memory;
+use crate::note::{Note, NoteKind};
+use anyhow::{Context, Error, Result, anyhow};
 use std::path::Path;
 
 /// Whether `head` begins such a file.
@@ -17,8 +19,8 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = options.files.read(path)?;
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
+    let bytes = options.read(path)?;
     let mut reader = Reader {
         file: path.display().to_string(),
         lines: lines(&bytes).peekable(),
@@ -33,12 +35,12 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         Header::read(first).map_err(|wrong| reader.error(format!("expected `2.1 NAME FRAMES-A-SECOND FRAMES`; {wrong}")))?;
     reader.columns = vec![Vec::new(); values().count()];
     reader.given = vec![false; values().count()];
-    scalars::check_size(1, header.frames).map_err(|error| reader.error(error))?;
-    let warnings = reader.rows(header.frames)?;
+    scalars::check_size(1, header.frames, options.memory).with_context(|| reader.place())?;
+    let notes = reader.rows(header.frames)?;
     if !reader.given.contains(&true) {
         return Err(reader.error("no mask sets a parameter, so nothing can move"));
     }
-    Ok(Source { motion: reader.motion(header.fps)?, unit_known: false, error: 0.0, warnings })
+    Ok(Source::plain(reader.motion(header.fps, options.memory)?, notes))
 }
 
 struct Header {
@@ -90,17 +92,22 @@ struct Reader<'a, L: Iterator<Item = (usize, &'a [u8])>> {
 
 impl<'a, L: Iterator<Item = (usize, &'a [u8])>> Reader<'a, L> {
     fn error(&self, message: impl std::fmt::Display) -> Error {
-        anyhow!("{}:{}: {message}", self.file, self.line)
+        anyhow!("{}: {message}", self.place())
+    }
+
+    fn place(&self) -> String {
+        format!("{}:{}", self.file, self.line)
     }
 
     /// Reads rows up to `frames`, and what is odd about them.
-    fn rows(&mut self, frames: usize) -> Result<Vec<String>> {
-        let mut warnings = Vec::new();
+    fn rows(&mut self, frames: usize) -> Result<Vec<Note>> {
+        let mut notes = Vec::new();
         let (mut first, mut skipped) = (None, 0);
         while let Some((line, mask)) = self.lines.next() {
             self.line = line;
             if self.frames == frames {
-                warnings.push(format!("the header says {frames} frames; what follows from line {line} is left out"));
+                let text = format!("the header says {frames} frames; what follows from line {line} is left out");
+                notes.push(Note::warning(NoteKind::Frames, text).at_line(line));
                 break;
             }
             let mask = self.mask(mask)?;
@@ -119,14 +126,16 @@ impl<'a, L: Iterator<Item = (usize, &'a [u8])>> Reader<'a, L> {
             self.row(&mask, &row)?;
         }
         if skipped > 0 {
-            warnings.push(format!("{skipped} frames are not given: they keep the values of the frame before"));
+            let text = format!("{skipped} frames are not given: they keep the values of the frame before");
+            notes.push(Note::warning(NoteKind::Frames, text));
         }
         if self.frames < frames && self.frames > 0 {
-            warnings
-                .push(format!("the header says {frames} frames, but {} are given: the rest keeps the last values", self.frames));
+            let given = self.frames;
+            let text = format!("the header says {frames} frames, but {given} are given: the rest keeps the last values");
+            notes.push(Note::warning(NoteKind::Frames, text));
             self.hold(frames);
         }
-        Ok(warnings)
+        Ok(notes)
     }
 
     fn mask(&self, line: &[u8]) -> Result<Vec<bool>> {
@@ -188,7 +197,7 @@ impl<'a, L: Iterator<Item = (usize, &'a [u8])>> Reader<'a, L> {
         Ok(())
     }
 
-    fn motion(self, fps: f64) -> Result<crate::motion::Motion> {
+    fn motion(self, fps: f64, memory: Memory) -> Result<crate::motion::Motion> {
         let unit_peak = |unit: Unit| {
             let same = values().zip(&self.columns).filter(|((_, other), _)| *other == unit);
             same.fold(0f64, |greatest, (_, column)| greatest.max(peak(column)))
@@ -200,7 +209,8 @@ impl<'a, L: Iterator<Item = (usize, &'a [u8])>> Reader<'a, L> {
         };
         let names: Vec<String> = given().map(|(name, _)| name.to_string()).collect();
         let scales: Vec<f64> = given().map(scale).collect();
-        scalars::check_size(names.len(), self.frames).map_err(|error| self.error(error))?;
+        let place = self.place();
+        scalars::check_size(names.len(), self.frames, memory).context(place)?;
         let columns = self.columns.into_iter().zip(&self.given).filter(|(_, given)| **given).map(|(column, _)| column).collect();
         Ok(scalars::motion(names, &scales, columns, 1.0 / fps))
     }

@@ -1,7 +1,7 @@
 //! What stands for the FBX importer where it is not built in.
 
 use super::list::Entry;
-use super::{Options, Source};
+use super::{Request, Source};
 use anyhow::{Result, bail};
 use std::path::Path;
 
@@ -11,11 +11,11 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Says how to build with FBX.
-pub fn read(path: &Path, _: &Options) -> Result<Source> {
+pub fn read(path: &Path, _: &Request) -> Result<Source> {
     bail!("{}: this pantin is built without FBX; build it with `--features fbx`, which needs a C compiler", path.display())
 }
 
 /// Says how to build with FBX.
-pub fn list(path: &Path, _: Option<f64>) -> Result<Vec<Entry>> {
-    read(path, &Options::default()).map(|_| Vec::new())
+pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
+    read(path, options).map(|_| Vec::new())
 }

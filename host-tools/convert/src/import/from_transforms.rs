@@ -5,10 +5,12 @@
 
 use super::grid::Grid;
 use super::{angles, ends, scales};
-use crate::budget;
+use crate::error::with_remedy;
 use crate::fk::{IDENTITY, Matrix, apply, distance, positions, product};
+use crate::memory::Memory;
 use crate::motion::{Joint, Kind, Motion, Rig, Scalar};
-use anyhow::{Result, anyhow, ensure};
+use crate::note::{Note, Remedy};
+use anyhow::{Context, Result, ensure};
 use pantin::codec::layout::MAX_JOINTS;
 
 /// Part of the figure's extent by which a place may waver and still be constant: places are written in f32, whose steps are up to 1.2e-7 of them.
@@ -89,16 +91,18 @@ pub struct Figure {
     pub motion: Motion,
     /// The greatest distance of a joint from where its node's world transform has it, in the source's unit.
     pub error: f64,
-    /// What was odd, a sentence each.
-    pub warnings: Vec<String>,
+    /// What was odd.
+    pub notes: Vec<Note>,
 }
 
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
-pub fn check_size(joints: usize, scalars: usize, grid: &Grid) -> Result<()> {
+pub fn check_size(joints: usize, scalars: usize, grid: &Grid, memory: Memory) -> Result<()> {
     let numbers = (24 * joints + scalars + 1).saturating_mul(grid.frames);
-    budget::check_numbers(numbers, "the joints' places")
-        .and_then(|()| budget::check(grid.frames, 3 * joints + scalars))
-        .map_err(|error| anyhow!("{} frames are too many for this figure: {error}; --fps takes fewer", grid.frames))
+    memory
+        .check_numbers(numbers, "the joints' places")
+        .and_then(|()| memory.check(grid.frames, 3 * joints + scalars))
+        .with_context(|| format!("{} frames are too many for this figure", grid.frames))
+        .map_err(|error| with_remedy(&error, Remedy::LowerFrameRate))
 }
 
 /// The motion of `nodes` (parents before children) and `scalars`.
@@ -111,7 +115,7 @@ pub fn motion(nodes: Vec<Node>, mut scalars: Vec<(Scalar, Vec<f64>)>, grid: &Gri
     let scaled: Vec<&Node> = nodes.iter().filter(|node| !scales::changing(&node.scales).is_empty()).collect();
     scalars.extend(scaled.iter().flat_map(|node| scales::scalars(&node.name, &node.scales)));
     let scaled: Vec<&str> = scaled.into_iter().map(|node| node.name.as_str()).collect();
-    let mut warnings: Vec<String> = scales::warning(&scaled).into_iter().collect();
+    let mut notes: Vec<Note> = scales::warning(&scaled).into_iter().collect();
     let wavers = STANDS * extent(&nodes);
     let turns: Vec<Vec<Matrix>> = nodes.iter().map(|node| rotations(&node.worlds)).collect();
     let mut joints = Vec::new();
@@ -132,15 +136,23 @@ pub fn motion(nodes: Vec<Node>, mut scalars: Vec<(Scalar, Vec<f64>)>, grid: &Gri
         joints.push(Joint { name: node.name.clone(), parent: node.parent, offset, kinds, end_site: false, helper: false });
     }
     joints.extend(sites);
-    warnings.extend(ends::complete(&mut joints));
+    notes.extend(ends::complete(&mut joints));
     let (scalars, of_scalars): (Vec<_>, Vec<_>) = scalars.into_iter().unzip();
     values.extend(of_scalars);
     let keys = vec![None; values.len()];
     let rig = Rig { joints, scalars, cm_per_unit: 1.0, ..Rig::default() };
-    let motion =
-        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false, events: Vec::new() };
+    let motion = Motion {
+        rig,
+        frame_time: grid.frame_time,
+        frames: grid.frames,
+        values,
+        keys,
+        looped: false,
+        events: Vec::new(),
+        origin: Default::default(),
+    };
     let error = error(&motion, &nodes.iter().map(|node| node.worlds.as_slice()).collect::<Vec<_>>());
-    Ok(Figure { motion, error, warnings })
+    Ok(Figure { motion, error, notes })
 }
 
 /// The greatest distance of the first joints of `motion` from the places of `worlds`, in the motion's unit.

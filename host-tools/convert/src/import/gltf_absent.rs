@@ -1,7 +1,7 @@
 //! Stands in for the glTF importer where it is not built in.
 
 use super::list::Entry;
-use super::{Options, Source};
+use super::{Request, Source};
 use anyhow::{Result, bail};
 use std::path::{Path, PathBuf};
 
@@ -11,16 +11,16 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Returns an error that says how to build with glTF.
-pub fn read(path: &Path, _: &Options) -> Result<Source> {
+pub fn read(path: &Path, _: &Request) -> Result<Source> {
     bail!("{}: this pantin is built without glTF; build it with `--features gltf`", path.display())
 }
 
 /// Returns an error that says how to build with glTF.
-pub fn list(path: &Path, _: Option<f64>) -> Result<Vec<Entry>> {
-    read(path, &Options::default()).map(|_| Vec::new())
+pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
+    read(path, options).map(|_| Vec::new())
 }
 
 /// None.
-pub(super) fn buffers(_path: &Path) -> Result<Vec<PathBuf>> {
+pub(super) fn buffers(_: &Path, _: &Request) -> Result<Vec<PathBuf>> {
     Ok(Vec::new())
 }

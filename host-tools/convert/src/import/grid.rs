@@ -5,7 +5,9 @@
 //! [`LONGEST`] are poses, not frames: then there are [`PLAIN_FPS`]. The last frame is the first one at or after the last key, or the end
 //! of the cycle.
 
-use anyhow::{Result, ensure};
+use crate::error::{Error, require};
+use crate::note::{Note, NoteKind, Remedy};
+use anyhow::Result;
 use pantin::codec::layout::MAX_FRAMES;
 
 /// Seconds above which the distance of keys says nothing about frames.
@@ -30,8 +32,8 @@ pub struct Grid {
     pub frame_time: f64,
     /// Number of frames.
     pub frames: usize,
-    /// For the user: the rate, and where it comes from.
-    pub sentence: String,
+    /// The rate, and where it comes from.
+    pub note: Note,
 }
 
 /// The frames for tracks with keys at these `times`, of which there is at least one.
@@ -41,7 +43,7 @@ pub fn grid(tracks: &[&[f64]], fps: Option<f64>) -> Result<Grid> {
     let (first, last) = times().fold((f64::MAX, f64::MIN), |(first, last), &time| (first.min(time), last.max(time)));
     let mut grid = between(first, last, fps, common(tracks))?;
     if first > 0.5 * grid.frame_time {
-        grid.sentence = format!("{}; the clip begins with the first key, at {first:.3} s", grid.sentence);
+        grid.note.text = format!("{}; the clip begins with the first key, at {first:.3} s", grid.note.text);
     }
     Ok(grid)
 }
@@ -52,25 +54,24 @@ pub fn between(first: f64, last: f64, fps: Option<f64>, distance: Option<f64>) -
         (Some(fps), _) => (fps, "as given"),
         (None, Some(seconds)) if seconds <= LONGEST => {
             let meant = USUAL.into_iter().find(|usual| (usual * seconds - 1.0).abs() < MEANT);
-            (meant.unwrap_or(1.0 / seconds), "the commonest distance of keys; --fps overrides")
+            (meant.unwrap_or(1.0 / seconds), "the commonest distance of keys")
         }
-        _ => (PLAIN_FPS, "as the keys are far apart; --fps overrides"),
+        _ => (PLAIN_FPS, "as the keys are far apart"),
     };
     over(first, last, fps, why)
 }
 
 /// Frames from `first` to `last` seconds; `why` tells where the rate comes from.
 pub fn over(first: f64, last: f64, fps: f64, why: &str) -> Result<Grid> {
-    ensure!(fps <= MOST_FPS, "keys ask for {fps:.0} frames a second; --fps gives a rate of at most {MOST_FPS}");
+    let too_fast = || Error::source(format!("keys ask for {fps:.0} frames a second, more than {MOST_FPS}"));
+    require!(fps <= MOST_FPS, too_fast().remedy(Remedy::LowerFrameRate));
     let steps = ((last - first) * fps - 1e-3).ceil().max(0.0);
-    ensure!(
-        steps < f64::from(MAX_FRAMES),
-        "{:.0} s at {fps} frames a second are too long for a clip; --fps takes fewer frames",
-        last - first
-    );
+    let too_long = || Error::source(format!("{:.0} s at {fps} frames a second are too long for a clip", last - first));
+    require!(steps < f64::from(MAX_FRAMES), too_long().remedy(Remedy::LowerFrameRate));
     let sentence = format!("{fps:.6}");
     let shown = sentence.trim_end_matches('0').trim_end_matches('.');
-    Ok(Grid { first, frame_time: 1.0 / fps, frames: steps as usize + 1, sentence: format!("{shown} frames a second, {why}") })
+    let note = Note::info(NoteKind::FrameRate, format!("{shown} frames a second, {why}")).remedy(Remedy::ChangeFrameRate);
+    Ok(Grid { first, frame_time: 1.0 / fps, frames: steps as usize + 1, note })
 }
 
 /// The commonest distance of keys, the mean of those that are alike; of equally common ones, the shortest.

@@ -1,10 +1,10 @@
 //! Our own key-frame text, written by hand: docs/KEYFRAMES.md describes it.
 
 use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, number, rig, wrong};
-use super::{Options, Source};
+use super::{Request, Source};
 use crate::keys::{cubics, sample};
-use crate::motion::{Interpolation, Keys, Motion, Piece, Rig};
-use anyhow::Result;
+use crate::motion::{Interpolation, Keys, Motion, Origin, Piece, Rig};
+use anyhow::{Error, Result};
 use std::path::Path;
 
 /// Whether `head` begins such a file.
@@ -13,7 +13,7 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the key-frame file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
     Reader::default().read(path, options)
 }
 
@@ -50,9 +50,9 @@ impl written::Reader for Reader {
         }
     }
 
-    fn finish(mut self, options: &Options) -> Read<Source> {
+    fn finish(mut self, options: &Request) -> Read<Source> {
         let Header { cm_per_unit, looped, .. } = self.header;
-        let (frames, fps) = self.header.timing(options)?;
+        let (frames, fps) = self.header.timing(options.fps, options.memory)?;
         let mut values = self.header.at_rest(frames);
         let mut keys = vec![None; values.len()];
         for block in &self.blocks {
@@ -66,8 +66,8 @@ impl written::Reader for Reader {
         }
         let events = self.header.events();
         let rig = Rig { cm_per_unit: cm_per_unit.unwrap_or(1.0), ..self.header.rig };
-        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events };
-        Ok(Source { motion, unit_known: cm_per_unit.is_some(), error: 0.0, warnings: Vec::new() })
+        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events, origin: Origin::default() };
+        Ok(Source { unit_known: cm_per_unit.is_some(), ..Source::plain(motion, Vec::new()) })
     }
 }
 
@@ -141,7 +141,7 @@ impl Block {
             }
             _ => return Ok(()),
         };
-        Err(Wrong { line: Some(self.line), message })
+        Err(Wrong { line: Some(self.line), error: Error::msg(message) })
     }
 
     /// Keys of the channel at `place`; those of a loop close it.

@@ -1,6 +1,6 @@
 //! The animations of files that may hold several.
 
-use super::{Files, Options, fbx, gltf, vrml};
+use super::{FORMATS, Request};
 use anyhow::Result;
 use std::path::Path;
 
@@ -40,23 +40,14 @@ pub(super) fn choose<'n>(wanted: &str, names: impl Iterator<Item = Option<&'n st
     }
 }
 
-/// Whether files of this extension hold animations to choose from.
-pub fn chooses(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-    matches!(extension.as_deref(), Some("glb" | "gltf" | "fbx" | "wrl" | "vrml" | "x3dv"))
+/// The one motion of a file of a format that holds no more.
+pub(super) fn only_one(path: &Path, request: &Request) -> Result<Vec<Entry>> {
+    let motion = super::imported(path, request)?.motion;
+    let tracks = motion.rig.channels();
+    Ok(vec![Entry { name: None, frames: motion.frames, fps: 1.0 / motion.frame_time, tracks }])
 }
 
-/// All animations of the file `path`: of a glTF or FBX file, or the time sensors of a VRML world.
-pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    match super::format_of(path, &Files::default())?.name {
-        "FBX" => fbx::list(path, fps),
-        "VRML" => vrml::list(path, fps),
-        "glTF" => gltf::list(path, fps),
-        // All others hold one motion without a name.
-        _ => {
-            let motion = super::load(path, &Options { fps, ..Options::default() })?.motion;
-            let tracks = motion.rig.channels();
-            Ok(vec![Entry { name: None, frames: motion.frames, fps: 1.0 / motion.frame_time, tracks }])
-        }
-    }
+/// Whether a file's extension is one of a format that holds several animations.
+pub fn chooses(path: &Path) -> bool {
+    FORMATS.iter().any(|format| format.has_animations && format.names(path))
 }

@@ -7,7 +7,8 @@ use super::scalars::{self, Grid};
 use super::sheet::{Sheet, delimiter};
 use super::text::{quoted, shown};
 use super::timecode::{Clock, NTSC, Timecode};
-use super::{Options, Source};
+use super::{Request, Source};
+use crate::note::{Note, NoteKind};
 use anyhow::{Context, Result};
 use std::collections::HashMap;
 use std::path::Path;
@@ -27,15 +28,15 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = options.files.read(path)?;
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
+    let bytes = options.read(path)?;
     let mut sheet = Sheet::open(path, &bytes)?;
     let named = |column: usize, name: &str| sheet.header.get(column).is_some_and(|header| header.eq_ignore_ascii_case(name));
     if !named(0, "Timecode") || !named(1, "BlendshapeCount") {
         return Err(sheet.error(1, "expected `Timecode,BlendshapeCount,` and names of blend shapes"));
     }
     let names: Vec<String> = sheet.header[FIRST..].iter().map(|name| live_link_name(name)).collect();
-    scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
+    scalars::check_size(names.len(), 1, options.memory).with_context(|| sheet.place(1))?;
     let mut columns = HashMap::new();
     for (column, name) in names.iter().enumerate() {
         if let Some(other) = columns.insert(name, column) {
@@ -44,13 +45,14 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         }
     }
     let rows = Rows::read(&mut sheet, names.len())?;
-    let (grid, fps, mut warnings) = rows.grid(&sheet, names.len())?;
+    let (grid, fps, mut notes) = rows.grid(&sheet, names.len(), options)?;
     if rows.untracked > 0 {
-        warnings.push(format!("{} rows hold no values, the face being lost: left out", rows.untracked));
+        let text = format!("{} rows hold no values, the face being lost: left out", rows.untracked);
+        notes.push(Note::warning(NoteKind::Frames, text));
     }
     let values: Vec<Vec<f64>> = rows.values.iter().map(|values| grid.fill(values)).collect();
     let motion = scalars::motion(names, &vec![FULL_SCALE; values.len()], values, 1.0 / fps);
-    Ok(Source { motion, unit_known: false, error: 0.0, warnings })
+    Ok(Source::plain(motion, notes))
 }
 
 /// `eyeBlinkLeft` and `eyeBlink_L` as `EyeBlinkLeft`.
@@ -104,36 +106,40 @@ impl Rows {
     }
 
     /// The frames of the rows, frames a second, and what is odd about them.
-    fn grid(&self, sheet: &Sheet, channels: usize) -> Result<(Grid, f64, Vec<String>)> {
+    fn grid(&self, sheet: &Sheet, channels: usize, options: &Request) -> Result<(Grid, f64, Vec<Note>)> {
         let clock = Clock::of(&self.codes);
-        let mut warnings = Vec::new();
+        let mut notes = Vec::new();
         if clock.guessed {
-            warnings.push(format!("too short to tell what its timecode counts to: taken as {} frames a second", clock.rate));
+            let text = format!("too short to tell what its timecode counts to: taken as {} frames a second", clock.rate);
+            notes.push(Note::warning(NoteKind::FrameRate, text));
         }
         let counts = self.counts(sheet, &clock)?;
         let Some(grid) = Grid::of(&counts) else {
             if let Some(line) = self.lines.get(1) {
                 return Err(sheet.error_in(*line, 0, "the timecode stands still"));
             }
-            return Ok((Grid { frames: vec![0], period: 1.0 }, clock.real_rate(), warnings));
+            return Ok((Grid { frames: vec![0], period: 1.0 }, clock.real_rate(), notes));
         };
-        scalars::check_size(channels, grid.len()).map_err(|error| sheet.error(1, error))?;
+        scalars::check_size(channels, grid.len(), options.memory).with_context(|| sheet.place(1))?;
         let fps = rate(&grid, &clock);
         let (missing, shared) = grid.gaps();
         if let (1.., Some(row)) = (missing, grid.first_gap()) {
             let line = self.lines[row];
-            warnings.push(format!(
+            let text = format!(
                 "{missing} of {} frames were dropped by the recording (first before line {line}): filled by straight lines",
                 grid.len()
-            ));
+            );
+            notes.push(Note::warning(NoteKind::Frames, text).at_line(line as usize));
         }
         if shared > 0 {
-            warnings.push(format!("{shared} rows have the time of the row above: left out"));
+            let text = format!("{shared} rows have the time of the row above: left out");
+            notes.push(Note::warning(NoteKind::Frames, text));
         }
         if (fps * clock.real_rate().recip() * grid.period.round().max(1.0) - 1.0).abs() > 1e-4 {
-            warnings.push(format!("rows come {fps:.3} times a second by a timecode of {}", clock.rate));
+            let text = format!("rows come {fps:.3} times a second by a timecode of {}", clock.rate);
+            notes.push(Note::warning(NoteKind::FrameRate, text));
         }
-        Ok((grid, fps, warnings))
+        Ok((grid, fps, notes))
     }
 
     /// Timecodes in frames, which run on over midnight.

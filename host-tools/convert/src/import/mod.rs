@@ -1,4 +1,4 @@
-//! Motion files in: one file a format. [`load`] finds the format and settles the units.
+//! Motion files in: one file a format, one entry in [`FORMATS`]. [`import`] finds the format and settles the units.
 
 mod acclaim;
 pub mod amc;
@@ -16,6 +16,7 @@ pub mod fbx;
 #[path = "fbx_absent.rs"]
 pub mod fbx;
 mod files;
+mod format;
 mod from_transforms;
 #[cfg(feature = "gltf")]
 pub mod gltf;
@@ -27,7 +28,9 @@ mod helpers;
 pub mod keyframes;
 pub mod list;
 pub mod livelink;
+mod options;
 pub mod procedural;
+mod request;
 mod scalars;
 mod scales;
 mod sheet;
@@ -39,32 +42,16 @@ pub mod up;
 pub mod vrml;
 mod written;
 
-use crate::budget;
-use crate::motion::{Motion, Up};
-use anyhow::{Context, Result, bail, ensure};
-pub use files::Files;
+use crate::error::{Error, Setting, require};
+use crate::motion::{Motion, Origin, Up};
+use crate::note::{Note, NoteKind};
+use anyhow::{Context, Result};
+pub use files::{Disk, Files, InMemory, read as read_file, read_from};
+pub use format::{FORMATS, Format};
+pub use options::ImportOptions;
 use pantin::codec::layout::MAX_CHANNELS;
+pub(crate) use request::Request;
 use std::path::{Path, PathBuf};
-
-/// What the user says about a source.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// Length of the source's unit in cm, instead of a guess.
-    pub cm_per_unit: Option<f64>,
-    /// The direction that is vertical, instead of what the source says or of a guess.
-    pub up: Option<Up>,
-    /// Frames a second, for a source that does not say or says nonsense, and at which one with keys or times is sampled. A source of frames
-    /// that states its rate keeps it: [`crate::edit::resample`] changes that.
-    pub fps: Option<f64>,
-    /// The skeleton of a motion that has its own in another file (AMC), instead of one found beside it.
-    pub skeleton: Option<PathBuf>,
-    /// Whether rotations on a glTF's CUBICSPLINE keys become the four curves of a quaternion, which convert without a fit, instead of Euler angles.
-    pub quaternions: bool,
-    /// Which animation of a file that holds several: its name, or its number from 0, instead of the first.
-    pub animation: Option<String>,
-    /// Where the source and what belongs to it is read from.
-    pub files: Files,
-}
 
 /// What an importer read.
 #[derive(Clone, Debug)]
@@ -76,117 +63,99 @@ pub struct Source {
     /// The greatest distance, in the source's unit, of a joint of the motion from where the file has it: places that waver by less than numbers are
     /// rounded to count as constant.
     pub error: f64,
-    /// What was odd or could not be used, a sentence each.
-    pub warnings: Vec<String>,
+    /// Whether the file was read at the times of [`ImportOptions::fps`], from its first to its last, instead of frame by frame.
+    pub sampled: bool,
+    /// What was odd or could not be used.
+    pub notes: Vec<Note>,
 }
 
-/// A motion ready for the other stages.
+impl Source {
+    /// A source of frames that is read as it is, and states no unit of length.
+    fn plain(motion: Motion, notes: Vec<Note>) -> Source {
+        Source { motion, unit_known: false, error: 0.0, sampled: false, notes }
+    }
+}
+
+/// A motion ready for edits and conversion.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Imported {
     /// The motion; angles run on past half a turn instead of jumping.
     pub motion: Motion,
-    /// The greatest distance in cm of a joint of the motion from where the file has it, over all frames: a bound against the file is a bound against
-    /// the motion less this.
-    pub error_cm: f64,
-    /// Where its unit of length comes from, as a sentence for the user.
-    pub units: String,
-    /// What was odd or could not be used, a sentence each.
-    pub warnings: Vec<String>,
+    /// What was odd, what could not be used, and where the unit of length comes from.
+    pub notes: Vec<Note>,
 }
-
-/// A format that [`load`] knows.
-struct Format {
-    name: &'static str,
-    extensions: &'static [&'static str],
-    /// Whether a file that begins so is of this format, for files whose extension says nothing.
-    begins: fn(&[u8]) -> bool,
-    read: fn(&Path, &Options) -> Result<Source>,
-}
-
-impl Format {
-    /// Whether its files may hold several motions.
-    fn takes_animation(&self) -> bool {
-        matches!(self.name, "glTF" | "FBX" | "VRML")
-    }
-
-    /// Whether its files take their skeleton from another one.
-    fn takes_skeleton(&self) -> bool {
-        self.name == "AMC"
-    }
-}
-
-/// Whether `--animation` and `--skeleton` apply to the motion file `path`.
-pub fn takes(path: &Path) -> Result<[bool; 2]> {
-    let format = format_of(path, &Files::default())?;
-    Ok([format.takes_animation(), format.takes_skeleton()])
-}
-
-/// Whether the motion file `path` is read at the times of `--fps`, from its first to its last, instead of frame by frame.
-pub fn is_sampled(path: &Path, options: &Options) -> Result<bool> {
-    let format = format_of(path, &options.files)?;
-    let by_its_times = || (format.read)(path, &Options { fps: None, ..options.clone() }).is_ok();
-    Ok(options.fps.is_some() && (format.takes_animation() || (format.name == "table" && by_its_times())))
-}
-
-/// One line a format. Of several with one extension, those that a file's begin tells stand before the one that takes all others.
-const FORMATS: &[Format] = &[
-    Format { name: "BVH", extensions: &["bvh"], begins: bvh::begins, read: bvh::read },
-    Format { name: "AMC", extensions: &["amc"], begins: amc::begins, read: amc::read },
-    Format { name: "glTF", extensions: &["glb", "gltf"], begins: gltf::begins, read: gltf::read },
-    Format { name: "FBX", extensions: &["fbx"], begins: fbx::begins, read: fbx::read },
-    Format { name: "VRML", extensions: &["wrl", "vrml", "x3dv"], begins: vrml::begins, read: vrml::read },
-    Format { name: "key frames", extensions: &["keys"], begins: keyframes::begins, read: keyframes::read },
-    Format { name: "procedural motion", extensions: &["proc"], begins: procedural::begins, read: procedural::read },
-    Format { name: "FAP", extensions: &["fap"], begins: fap::begins, read: fap::read },
-    Format { name: "Live Link Face", extensions: &["csv"], begins: livelink::begins, read: livelink::read },
-    Format { name: "table", extensions: &["csv", "tsv"], begins: table::begins, read: table::read },
-];
 
 /// Bytes at the front of a file from which its format can be told.
 const HEAD: u64 = 1024;
 
-/// Reads the motion file `path`. Errors name the file and, where the format has them, the line.
-pub fn load(path: &Path, options: &Options) -> Result<Imported> {
-    if let Some(fps) = options.fps {
-        ensure!(fps.is_finite() && fps > 0.0, "--fps {fps}: expected a number above 0");
+/// Reads the motion `name` among `files`. Errors name the file and, where the format has them, the line.
+pub fn import(files: &dyn Files, name: &Path, options: &ImportOptions) -> Result<Imported, Error> {
+    imported(name, &Request::new(files, options)).map_err(|error| Error::of(&error, Error::source))
+}
+
+/// Reads the motion file `path` of this machine.
+pub fn load(path: &Path, options: &ImportOptions) -> Result<Imported, Error> {
+    import(&Disk::new(options.memory), path, options)
+}
+
+/// The animations of the file `name`: of a glTF or FBX file, or the time sensors of a VRML world. Other formats hold one motion without a name.
+pub fn list(files: &dyn Files, name: &Path, options: &ImportOptions) -> Result<Vec<list::Entry>, Error> {
+    let request = Request::new(files, options);
+    format_of(name, &request).and_then(|format| (format.list)(name, &request)).map_err(|error| Error::of(&error, Error::source))
+}
+
+fn imported(path: &Path, request: &Request) -> Result<Imported> {
+    if let Some(fps) = request.fps {
+        require!(fps.is_finite() && fps > 0.0, Error::setting(Setting::FrameRate, format!("{fps}: expected a number above 0")));
     }
-    let format = format_of(path, &options.files)?;
+    let format = format_of(path, request)?;
     let place = || path.display().to_string();
-    if let Some(animation) = &options.animation {
-        ensure!(format.takes_animation(), "{}: --animation {animation}: a file of {} holds one motion", place(), format.name);
-    }
-    if let Some(skeleton) = &options.skeleton {
-        let (skeleton, name) = (skeleton.display(), format.name);
-        ensure!(format.takes_skeleton(), "{}: --skeleton {skeleton}: only an .amc takes one, and this is {name}", place());
-    }
-    let source = (format.read)(path, options)?;
-    let Source { mut motion, unit_known, error, mut warnings } = source;
-    warnings.extend(replaced(&motion));
-    ensure!(
-        motion.rig.channels() <= MAX_CHANNELS,
-        "{}: {} channels; a rig holds at most {MAX_CHANNELS}",
-        place(),
-        motion.rig.channels()
+    check_settings(format, request).with_context(place)?;
+    let Source { mut motion, unit_known, error, sampled, mut notes } = (format.read)(path, request)?;
+    notes.extend(replaced(&motion));
+    let channels = motion.rig.channels();
+    require!(
+        channels <= MAX_CHANNELS,
+        Error::source(format!("{}: {channels} channels; a rig holds at most {MAX_CHANNELS}", place()))
     );
-    // Formats of rows hold as many bytes as they take; all others can ask for any number of frames.
-    if !matches!(format.name, "BVH" | "AMC") {
-        budget::check(motion.frames, motion.rig.channels()).with_context(place)?;
+    if !format.has_rows {
+        request.memory.check(motion.frames, channels).with_context(place)?;
     }
     let known = unit_known.then_some(motion.rig.cm_per_unit);
-    let unit = units::settle(&motion, options.cm_per_unit, known).with_context(|| path.display().to_string())?;
-    motion.rig.cm_per_unit = unit.cm_per_unit;
-    // These formats state that y is up, or are turned so that it is; they come from programs whose rigs have joints to steer by.
-    let stated = matches!(format.name, "glTF" | "FBX" | "VRML");
-    motion.rig.up = options.up.unwrap_or_else(|| if stated { Up::Y } else { up::guess(&motion) });
-    if stated {
+    let (unit, note) = units::settle(&motion, request.cm_per_unit, known).with_context(place)?;
+    motion.rig.cm_per_unit = unit;
+    notes.push(note);
+    motion.rig.up = request.up.unwrap_or_else(|| if format.states_up { Up::Y } else { up::guess(&motion) });
+    if format.states_up {
         helpers::mark(&mut motion.rig);
     }
     unwrap_angles(&mut motion);
-    Ok(Imported { error_cm: error * motion.rig.cm_per_unit, motion, units: unit.sentence, warnings })
+    motion.origin = Origin {
+        error_cm: error * unit,
+        sampled_fps: request.fps.filter(|_| sampled),
+        bytes: request.bytes_read(),
+        retarget_max_cm: None,
+    };
+    Ok(Imported { motion, notes })
 }
 
-/// A sentence about names with letters that the file has not as UTF-8 text.
-fn replaced(motion: &Motion) -> Option<String> {
+/// Refuses settings that do not apply to files of a format.
+fn check_settings(format: &Format, request: &Request) -> Result<()> {
+    let name = format.name;
+    if let Some(animation) = &request.animation {
+        let reason = || format!("{animation}: a file of {name} holds one motion");
+        require!(format.has_animations, Error::setting(Setting::Animation, reason()));
+    }
+    if let Some(skeleton) = &request.skeleton {
+        let reason = || format!("{}: only an .amc takes one, and this is {name}", skeleton.display());
+        require!(format.has_skeleton, Error::setting(Setting::Skeleton, reason()));
+    }
+    Ok(())
+}
+
+/// A warning about names with letters that the file has not as UTF-8 text.
+fn replaced(motion: &Motion) -> Option<Note> {
     let joints = motion.rig.joints.iter().map(|joint| &joint.name);
     let names =
         joints.chain(motion.rig.scalars.iter().map(|scalar| &scalar.name)).chain(motion.events.iter().map(|event| &event.name));
@@ -194,37 +163,40 @@ fn replaced(motion: &Motion) -> Option<String> {
         names.filter(|name| name.contains(char::REPLACEMENT_CHARACTER)).map(|name| text::quoted(name)).collect();
     let first = odd.first()?;
     let many = if odd.len() > 1 { format!("{} names, as {first}, have", odd.len()) } else { format!("the name {first} has") };
-    Some(format!("{many} letters that are not UTF-8, in place of which there is {}", char::REPLACEMENT_CHARACTER))
+    let text = format!("{many} letters that are not UTF-8, in place of which there is {}", char::REPLACEMENT_CHARACTER);
+    Some(Note::warning(NoteKind::Names, text))
 }
 
-/// Whether `bytes`, the content of `path`, are of a format that [`load`] knows, by their name or by how they begin.
+/// Whether `bytes`, the content of `path`, are of a format that [`import`] knows, by their name or by how they begin.
 pub fn looks_like_motion(path: &Path, bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(HEAD as usize)];
     is_motion(path) || FORMATS.iter().any(|format| (format.begins)(head))
 }
 
-/// Whether a file's name says that it is of a format that [`load`] knows.
+/// Whether a file's name says that it is of a format that [`import`] knows.
 pub fn is_motion(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    FORMATS.iter().any(|format| format.extensions.contains(&extension.as_str()))
+    FORMATS.iter().any(|format| format.names(path))
 }
 
-fn format_of(path: &Path, files: &Files) -> Result<&'static Format> {
-    let place = || path.display().to_string();
-    ensure!(!path.is_dir(), "{}: a directory; expected a motion file", place());
-    let head = files.head(path, HEAD)?;
-    ensure!(!head.is_empty(), "{}: the file is empty; expected a motion file", place());
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let of_extension = || FORMATS.iter().filter(|format| format.extensions.contains(&extension.as_str()));
+/// The format of the file `path`, by its name and first bytes.
+pub fn format(files: &dyn Files, path: &Path) -> Result<&'static Format, Error> {
+    format_of(path, &Request::new(files, &ImportOptions::new())).map_err(|error| Error::of(&error, Error::source))
+}
+
+fn format_of(path: &Path, request: &Request) -> Result<&'static Format> {
+    let refuse = |text: &str| Error::source(format!("{}: {text}", path.display()));
+    require!(!path.is_dir(), refuse("a directory; expected a motion file"));
+    let head = request.head(path, HEAD)?;
+    require!(!head.is_empty(), refuse("the file is empty; expected a motion file"));
     let clip = head.starts_with(&pantin::codec::layout::MAGIC) || head.starts_with(&pantin::codec::layout::BANK_MAGIC);
-    ensure!(!clip, "{}: a clip or a bank, not a motion; `pantin expand` turns a clip back into one", place());
+    require!(!clip, refuse("a clip or a bank, not a motion; expand a clip to turn it back into one"));
+    let of_extension = || FORMATS.iter().filter(|format| format.names(path));
     let by_extension = of_extension().find(|format| (format.begins)(&head)).or_else(|| of_extension().next_back());
-    let Some(format) = by_extension.or_else(|| FORMATS.iter().find(|format| (format.begins)(&head))) else {
-        let known: Vec<String> =
-            FORMATS.iter().map(|format| format!("{} (.{})", format.name, format.extensions.join(", ."))).collect();
-        bail!("{}: unknown kind of file; expected {}", place(), known.join(" or "));
-    };
-    Ok(format)
+    let found = by_extension.or_else(|| FORMATS.iter().find(|format| (format.begins)(&head)));
+    found.ok_or_else(|| {
+        let known: Vec<String> = FORMATS.iter().map(Format::sentence).collect();
+        refuse(&format!("unknown kind of file; expected {}", known.join(" or "))).into()
+    })
 }
 
 /// Messages that quote a file stay short and on their line.
@@ -233,18 +205,11 @@ pub fn one_line(text: &str) -> String {
 }
 
 /// The files that `path` is read with, as far as can be told without importing it: skeletons that lie beside an .amc, and a glTF's buffers.
-pub fn companions(path: &Path) -> Vec<PathBuf> {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    match extension.as_str() {
-        "amc" => amc::skeletons(path, &Files::default()).unwrap_or_default(),
-        "glb" | "gltf" => gltf::buffers(path).unwrap_or_default(),
-        _ => Vec::new(),
-    }
-}
-
-/// The whole content of the machine's file `path`.
-fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    Files::default().read(path)
+pub fn companions(files: &dyn Files, path: &Path) -> Vec<PathBuf> {
+    let options = ImportOptions::new();
+    let request = Request::new(files, &options);
+    let found = FORMATS.iter().filter(|format| format.names(path)).map(|format| (format.companions)(path, &request));
+    found.flat_map(Result::unwrap_or_default).collect()
 }
 
 /// Adds whole turns so that no Euler angle moves by more than half a turn from one frame to the next (docs/METHOD.md 5).

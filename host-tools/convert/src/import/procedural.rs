@@ -4,9 +4,9 @@
 use super::expression::{Expression, is_free};
 use super::text::quoted;
 use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, rig, wrong};
-use super::{Options, Source};
-use crate::budget;
-use crate::motion::{Motion, Rig};
+use super::{Request, Source};
+use crate::memory::Memory;
+use crate::motion::{Motion, Origin, Rig};
 use anyhow::Result;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,9 +22,10 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let mut reader = Reader::default();
     reader.header.fps = options.fps;
+    reader.memory = options.memory;
     reader.read(path, options)
 }
 
@@ -34,6 +35,7 @@ struct Reader {
     /// What expressions may name, at every frame.
     names: BTreeMap<String, Vec<f64>>,
     channels: BTreeMap<usize, Vec<f64>>,
+    memory: Memory,
 }
 
 impl written::Reader for Reader {
@@ -58,9 +60,9 @@ impl written::Reader for Reader {
         }
     }
 
-    fn finish(mut self, options: &Options) -> Read<Source> {
+    fn finish(mut self, options: &Request) -> Read<Source> {
         let Header { cm_per_unit, looped, .. } = self.header;
-        let (frames, fps) = self.header.timing(options)?;
+        let (frames, fps) = self.header.timing(options.fps, options.memory)?;
         let mut values = self.header.at_rest(frames);
         while let Some((channel, curve)) = self.channels.pop_first() {
             values[channel] = curve;
@@ -68,8 +70,8 @@ impl written::Reader for Reader {
         let keys = vec![None; values.len()];
         let events = self.header.events();
         let rig = Rig { cm_per_unit: cm_per_unit.unwrap_or(1.0), ..self.header.rig };
-        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events };
-        Ok(Source { motion, unit_known: cm_per_unit.is_some(), error: 0.0, warnings: Vec::new() })
+        let motion = Motion { rig, frame_time: 1.0 / fps, frames, values, keys, looped, events, origin: Origin::default() };
+        Ok(Source { unit_known: cm_per_unit.is_some(), ..Source::plain(motion, Vec::new()) })
     }
 }
 
@@ -82,7 +84,7 @@ impl Reader {
         let (Some(frames), Some(fps)) = (self.header.frames, self.header.fps) else {
             return wrong("expected `fps NUMBER` and `frames NUMBER` before the first expression");
         };
-        self.header.timing(&Options::default())?;
+        self.header.timing(None, self.memory)?;
         for (name, scale) in [("f", 1.0), ("t", fps.recip()), ("u", (frames as f64).recip())] {
             self.names.insert(name.into(), (0..frames).map(|frame| frame as f64 * scale).collect());
         }
@@ -98,7 +100,7 @@ impl Reader {
             return wrong(format!("more than {MOST_NAMES} names"));
         }
         let (frames, values) = (self.header.frames.unwrap_or(0), self.names.len() + self.header.rig.channels());
-        budget::check(frames, values).map_err(|error| Wrong::from(error.to_string()))?;
+        self.memory.check(frames, values)?;
         let values = self.sample(expression)?;
         self.names.insert(name.into(), values);
         Ok(())

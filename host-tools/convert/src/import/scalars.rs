@@ -1,6 +1,6 @@
 //! Motions of scalars alone: a rig without joints, and rows put on an even grid of frames.
 
-use crate::budget;
+use crate::memory::Memory;
 use crate::motion::{Motion, Rig, Scalar};
 use anyhow::{Result, ensure};
 use pantin::codec::layout::MAX_CHANNELS;
@@ -17,7 +17,16 @@ pub fn motion(names: Vec<String>, scales: &[f64], values: Vec<Vec<f64>>, frame_t
     let scalars = names.into_iter().zip(scales).zip(&values).map(scalar).collect();
     let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
     let frames = values.first().map_or(0, Vec::len);
-    Motion { rig, frame_time, frames, keys: vec![None; values.len()], values, looped: false, events: Vec::new() }
+    Motion {
+        rig,
+        frame_time,
+        frames,
+        keys: vec![None; values.len()],
+        values,
+        looped: false,
+        events: Vec::new(),
+        origin: Default::default(),
+    }
 }
 
 /// The greatest value, whatever its sign, but no less than any full scale may be.
@@ -26,10 +35,10 @@ pub fn peak(values: &[f64]) -> f64 {
 }
 
 /// Refuses what neither a rig nor the memory holds.
-pub fn check_size(channels: usize, frames: usize) -> Result<()> {
+pub fn check_size(channels: usize, frames: usize, memory: Memory) -> Result<()> {
     ensure!(channels > 0, "no channels; expected at least one column of values");
     ensure!(channels <= MAX_CHANNELS, "{channels} channels; a clip holds at most {MAX_CHANNELS}");
-    budget::check(frames, channels)
+    memory.check(frames, channels)
 }
 
 /// Where rows at nearly even times, some of them missing, stand on a grid of frames.
@@ -108,7 +117,7 @@ mod tests {
         assert_eq!((grid.len(), grid.gaps(), grid.first_gap()), (7, (2, 1), Some(3)));
         assert_eq!(grid.fill(&[1.0, 2.0, 3.0, 6.0, 99.0, 7.0]), [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         let far = Grid::of(&[0.0, 1e-300, 2e-300, 1e9]).unwrap();
-        assert!(check_size(1, far.len()).is_err());
+        assert!(check_size(1, far.len(), Memory::default()).is_err());
         assert!(Grid::of(&[3.0, 3.0]).is_none() && Grid::of(&[3.0]).is_none());
     }
 
@@ -126,6 +135,13 @@ mod tests {
             motion(vec!["a".into(), "b".into(), "c".into()], &[1.0, 1.0, 0.0], vec![vec![-1.5], vec![0.5], vec![0.0]], 0.1);
         let scales: Vec<f64> = motion.rig.scalars.iter().map(|scalar| scalar.full_scale).collect();
         assert_eq!(scales, [1.5, 1.0, LEAST_SCALE]);
-        assert!(check_size(0, 1).is_err() && check_size(2000, 1).is_err() && check_size(61, usize::MAX).is_err());
+        assert!(
+            [(0, 1), (2000, 1), (61, usize::MAX)].iter().all(|&(channels, frames)| check_size(
+                channels,
+                frames,
+                Memory::default()
+            )
+            .is_err())
+        );
     }
 }

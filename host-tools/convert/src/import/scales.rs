@@ -1,6 +1,7 @@
 //! Scales that change. A rig has none, so every joint below gets position channels that put it where the source has it, and the scale itself becomes scalars.
 
 use crate::motion::Scalar;
+use crate::note::{Note, NoteKind, Remedy};
 
 /// Part of a scale by which it may waver and still be constant. The joints below follow smaller changes, too.
 const CONSTANT: f64 = 1e-5;
@@ -28,17 +29,18 @@ pub fn scalars(joint: &str, scales: &[[f64; 3]]) -> Vec<(Scalar, Vec<f64>)> {
 }
 
 /// What the user should know about the joints whose scales change.
-pub fn warning(joints: &[&str]) -> Option<String> {
+pub fn warning(joints: &[&str]) -> Option<Note> {
     let first = joints.first()?;
     let others = match joints.len() - 1 {
         0 => String::new(),
         1 => " (and of 1 other joint)".into(),
         count => format!(" (and of {count} other joints)"),
     };
-    Some(format!(
+    let text = format!(
         "the scale of `{first}`{others} changes: the joints below keep their exact places, in position channels; the scale itself becomes \
-         scalars such as `{first}.scale.y`, which --drop '*.scale.*' leaves out"
-    ))
+         scalars such as `{first}.scale.y`"
+    );
+    Some(Note::warning(NoteKind::Scale, text).of_joint(*first).remedy(Remedy::DropScales))
 }
 
 #[cfg(test)]
@@ -51,6 +53,6 @@ mod tests {
         let found = scalars("a", &scales);
         assert_eq!(found.iter().map(|(scalar, _)| scalar.name.as_str()).collect::<Vec<_>>(), ["a.scale.y", "a.scale.z"]);
         assert_eq!((found[1].0.full_scale, found[1].1.as_slice()), (6.0, &[-3.0, -3.0, -6.0][..]));
-        assert!(warning(&[]).is_none() && warning(&["a", "b", "c"]).unwrap().contains("`a` (and of 2 other joints)"));
+        assert!(warning(&[]).is_none() && warning(&["a", "b", "c"]).unwrap().text.contains("`a` (and of 2 other joints)"));
     }
 }

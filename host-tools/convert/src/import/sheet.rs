@@ -101,7 +101,12 @@ impl<'a> Sheet<'a> {
 
     /// `file:line: message`.
     pub fn error(&self, line: u64, message: impl std::fmt::Display) -> Error {
-        anyhow!("{}:{line}: {message}", self.file)
+        anyhow!("{}: {message}", self.place(line))
+    }
+
+    /// `file:line`.
+    pub fn place(&self, line: u64) -> String {
+        format!("{}:{line}", self.file)
     }
 
     /// `file:line: column 3 (EyeBlinkLeft): message`; columns count from 0 here and from 1 in the message.

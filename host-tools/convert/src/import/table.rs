@@ -7,10 +7,13 @@
 use super::scalars::{self, Grid, LEAST_SCALE};
 use super::sheet::{Row, Sheet, delimiter};
 use super::text::quoted;
-use super::{Options, Source};
+use super::{Request, Source};
+use crate::error::with_remedy;
 use crate::events;
+use crate::memory::Memory;
 use crate::motion::Event;
-use anyhow::Result;
+use crate::note::{Note, NoteKind, Remedy};
+use anyhow::{Context, Result};
 use std::path::Path;
 
 /// A row may be this far from its place, as a part of a frame: times are written with few digits.
@@ -37,8 +40,8 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads the file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let bytes = options.files.read(path)?;
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
+    let bytes = options.read(path)?;
     let mut sheet = Sheet::open(path, &bytes)?;
     let clock = Clock::of(&sheet.header);
     if let Some(column) = (clock.columns..sheet.header.len()).find(|&column| sheet.header[column].is_empty()) {
@@ -46,29 +49,39 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     }
     let channels: Vec<usize> = (clock.columns..sheet.header.len()).filter(|&column| !is_events(&sheet.header[column])).collect();
     let names: Vec<String> = channels.iter().map(|&column| sheet.header[column].clone()).collect();
-    scalars::check_size(names.len(), 1).map_err(|error| sheet.error(1, error))?;
+    scalars::check_size(names.len(), 1, options.memory).with_context(|| sheet.place(1))?;
     let rows = Rows::read(&mut sheet, &clock, &channels)?;
-    let (values, fps, mut warnings) = match (clock.time, options.fps) {
-        (Some(_), Some(fps)) => (rows.at_rate(&sheet, fps)?, fps, Vec::new()),
-        (Some(_), None) => rows.timed(&sheet)?,
+    let memory = options.memory;
+    let (values, fps, mut notes) = match (clock.time, options.fps) {
+        (Some(_), Some(fps)) => (rows.at_rate(&sheet, fps, memory)?, fps, Vec::new()),
+        (Some(_), None) => rows.timed(&sheet, memory)?,
         (None, Some(fps)) => {
-            let (values, warnings) = rows.numbered(&sheet)?;
-            (values, fps, warnings)
+            let (values, notes) = rows.numbered(&sheet, memory)?;
+            (values, fps, notes)
         }
-        (None, None) => return Err(sheet.error(1, "no column of times (`time`, in seconds); --fps gives the frames a second")),
+        (None, None) => {
+            let error = sheet.error(1, "no column of times (`time`, in seconds)");
+            return Err(with_remedy(&error, Remedy::StateFrameRate));
+        }
     };
     if clock.time.is_none()
         && let Some(name) =
             names.iter().find(|name| unit_of_time(name).is_some() || name.to_ascii_lowercase().starts_with("time"))
     {
         let name = quoted(name);
-        warnings.push(format!("column {name} becomes a channel: times stand in the first column or behind frame numbers, and are called `time`, `Time (ms)` or the like"));
+        let text = format!(
+            "column {name} becomes a channel: times stand in the first column or behind frame numbers, and are called `time`, `Time (ms)` or the like"
+        );
+        notes.push(Note::warning(NoteKind::Unread, text));
     }
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     for (name, largest) in names.iter().zip(&values).map(|(name, values)| (name, largest(values))) {
         if largest > 0.0 && largest < LEAST_SCALE {
             let name = quoted(name);
-            warnings.push(format!("column {name} stays within {largest:e}; the least full scale is {LEAST_SCALE:e}, and errors are parts of it: another unit keeps it"));
+            let text = format!(
+                "column {name} stays within {largest:e}; the least full scale is {LEAST_SCALE:e}, and errors are parts of it: another unit keeps it"
+            );
+            notes.push(Note::warning(NoteKind::Scale, text));
         }
     }
     let scales = vec![0.0; values.len()];
@@ -76,7 +89,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
     let per_second = if clock.time.is_some() { fps } else { 1.0 };
     let frame = |time: f64| (((time - rows.times[0]) * per_second).round() as usize).min(motion.frames - 1);
     motion.events = rows.events.iter().map(|(time, name)| Event { frame: frame(*time), name: name.clone() }).collect();
-    Ok(Source { motion, unit_known: false, error: 0.0, warnings })
+    let sampled = clock.time.is_some() && options.fps.is_some();
+    Ok(Source { sampled, ..Source::plain(motion, notes) })
 }
 
 /// Whether a column of this name holds names of events.
@@ -176,37 +190,35 @@ impl Rows {
     }
 
     /// Rows by their frames' numbers.
-    fn numbered(&self, sheet: &Sheet) -> Result<(Vec<Vec<f64>>, Vec<String>)> {
+    fn numbered(&self, sheet: &Sheet, memory: Memory) -> Result<(Vec<Vec<f64>>, Vec<Note>)> {
         let frames: Vec<usize> = self.times.iter().map(|time| (time - self.times[0]) as usize).collect();
         let grid = Grid { frames, period: 1.0 };
-        scalars::check_size(self.values.len(), grid.len()).map_err(|error| sheet.error(1, error))?;
+        scalars::check_size(self.values.len(), grid.len(), memory).with_context(|| sheet.place(1))?;
         Ok((self.filled(&grid), self.gaps(&grid)))
     }
 
     /// Rows by their times, which must be even; frames a second; and what is odd.
-    fn timed(&self, sheet: &Sheet) -> Result<(Vec<Vec<f64>>, f64, Vec<String>)> {
+    fn timed(&self, sheet: &Sheet, memory: Memory) -> Result<(Vec<Vec<f64>>, f64, Vec<Note>)> {
         let Some(grid) = Grid::of(&self.times) else {
-            return Err(sheet.error(self.lines[0], "one row tells no frame rate; --fps gives the frames a second"));
+            let error = sheet.error(self.lines[0], "one row tells no frame rate");
+            return Err(with_remedy(&error, Remedy::StateFrameRate));
         };
-        scalars::check_size(self.values.len(), grid.len()).map_err(|error| sheet.error(1, error))?;
+        scalars::check_size(self.values.len(), grid.len(), memory).with_context(|| sheet.place(1))?;
         if let Some(row) = self.first_uneven(&grid) {
-            let message = format!(
-                "this time is between the frames of rows {:.6} s apart; --fps takes the values at an even rate",
-                grid.period
-            );
-            return Err(sheet.error_in(self.lines[row], self.column, message));
+            let message = format!("this time is between the frames of rows {:.6} s apart", grid.period);
+            let error = sheet.error_in(self.lines[row], self.column, message);
+            return Err(with_remedy(&error, Remedy::StateFrameRate));
         }
         let (rate, assumed) = usual_rate(&grid, &self.times);
         if rate > MOST_FPS {
-            let message =
-                format!("rows {:.3e} s apart are {rate:.0} frames a second; --fps takes the values at a lower rate", grid.period);
-            return Err(sheet.error_in(self.lines[0], self.column, message));
+            let message = format!("rows {:.3e} s apart are {rate:.0} frames a second", grid.period);
+            let error = sheet.error_in(self.lines[0], self.column, message);
+            return Err(with_remedy(&error, Remedy::LowerFrameRate));
         }
         let warning = assumed.then(|| {
             let measured = grid.period.recip();
-            format!(
-                "{rate} frames a second are assumed, as times have few digits (they give {measured:.3}); --fps gives another rate"
-            )
+            let text = format!("{rate} frames a second are assumed, as times have few digits (they give {measured:.3})");
+            Note::warning(NoteKind::FrameRate, text).remedy(Remedy::ChangeFrameRate)
         });
         Ok((self.filled(&grid), rate, self.gaps(&grid).into_iter().chain(warning).collect()))
     }
@@ -233,12 +245,12 @@ impl Rows {
     }
 
     /// The values on straight lines between the rows, `fps` times a second.
-    fn at_rate(&self, sheet: &Sheet, fps: f64) -> Result<Vec<Vec<f64>>> {
+    fn at_rate(&self, sheet: &Sheet, fps: f64, memory: Memory) -> Result<Vec<Vec<f64>>> {
         let times = self.exact_times(fps);
         let (first, last) = (times[0], times[times.len() - 1]);
         // A last row that rounding puts just before a frame is that frame.
         let frames = ((last - first) * fps + 1e-6) as usize + 1;
-        scalars::check_size(self.values.len(), frames).map_err(|error| sheet.error(1, error))?;
+        scalars::check_size(self.values.len(), frames, memory).with_context(|| sheet.place(1))?;
         let sampled = |values: &Vec<f64>| {
             let mut row = 0;
             let mut at = |frame: usize| {
@@ -260,10 +272,11 @@ impl Rows {
         self.values.iter().map(|values| grid.fill(values)).collect()
     }
 
-    fn gaps(&self, grid: &Grid) -> Vec<String> {
+    fn gaps(&self, grid: &Grid) -> Vec<Note> {
         let Some(row) = grid.first_gap() else { return Vec::new() };
         let (missing, line) = (grid.gaps().0, self.lines[row]);
-        vec![format!("{missing} of {} frames have no row (first before line {line}): filled by straight lines", grid.len())]
+        let text = format!("{missing} of {} frames have no row (first before line {line}): filled by straight lines", grid.len());
+        vec![Note::warning(NoteKind::Frames, text).at_line(line as usize)]
     }
 }
 

@@ -2,9 +2,11 @@
 //!
 //! Rule: of the usual units, the one that makes the figure's rest height come nearest, as a ratio, to `ADULT_CM`.
 
+use crate::error::{Error, Setting, require};
 use crate::motion::{Joint, Motion};
+use crate::note::{Note, NoteKind, Remedy};
 use crate::number::Number;
-use anyhow::{Result, ensure};
+use anyhow::Result;
 
 /// Height that the guess aims at. Bones end below the crown, and above the sole: figures of adults measure 130 to 180 cm.
 const ADULT_CM: f64 = 155.0;
@@ -15,40 +17,32 @@ const USUAL: [(&str, f64); 5] = [("cm", 1.0), ("m", 100.0), ("inches (2.54 cm)",
 /// A figure outside of these heights is not taken for a person in any of the usual units.
 const PLAUSIBLE_CM: std::ops::Range<f64> = 60.0..400.0;
 
-/// A unit of length, and why.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unit {
-    /// Its length in cm.
-    pub cm_per_unit: f64,
-    /// For the user.
-    pub sentence: String,
-}
-
-/// The unit of `motion`: as the user says, else as the source says, else as guessed.
-pub fn settle(motion: &Motion, user: Option<f64>, source: Option<f64>) -> Result<Unit> {
+/// The unit of `motion` in cm, and where it comes from: as the user says, else as the source says, else as guessed.
+pub fn settle(motion: &Motion, user: Option<f64>, source: Option<f64>) -> Result<(f64, Note)> {
+    let info = |text: String| Note::info(NoteKind::Unit, text);
     if let Some(cm) = user {
-        ensure!(cm.is_finite() && cm > 0.0, "--cm-per-unit {}: expected a number above 0", Number(cm));
-        return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {} cm, as given", Number(cm)) });
+        let wrong = || Error::setting(Setting::Unit, format!("{}: expected a number above 0", Number(cm)));
+        require!(cm.is_finite() && cm > 0.0, wrong());
+        return Ok((cm, info(format!("units: {} cm, as given", Number(cm)))));
     }
     if motion.rig.joints.is_empty() {
-        return Ok(Unit { cm_per_unit: 1.0, sentence: "units: no joints, so none of length".into() });
+        return Ok((1.0, info("units: no joints, so none of length".into())));
     }
     if let Some(cm) = source {
-        return Ok(Unit { cm_per_unit: cm, sentence: format!("units: {} cm, as the file says", Number(cm)) });
+        return Ok((cm, info(format!("units: {} cm, as the file says", Number(cm)))));
     }
     Ok(guess(rest_height(motion)))
 }
 
 /// The guess for a figure `height` units high.
-fn guess(height: f64) -> Unit {
+fn guess(height: f64) -> (f64, Note) {
     let far = |cm: f64| (height * cm / ADULT_CM).ln().abs();
     let (name, cm) = USUAL.into_iter().min_by(|a, b| far(a.1).total_cmp(&far(b.1))).unwrap_or(USUAL[0]);
-    if PLAUSIBLE_CM.contains(&(height * cm)) {
-        let sentence = format!("units: {height:.4} high at rest, so {name}; --cm-per-unit overrides");
-        return Unit { cm_per_unit: cm, sentence };
-    }
-    let sentence = format!("units: {height:.4} high at rest fits no usual unit, so taken as cm; --cm-per-unit overrides");
-    Unit { cm_per_unit: 1.0, sentence }
+    let (cm, text) = match PLAUSIBLE_CM.contains(&(height * cm)) {
+        true => (cm, format!("units: {height:.4} high at rest, so {name}")),
+        false => (1.0, format!("units: {height:.4} high at rest fits no usual unit, so taken as cm")),
+    };
+    (cm, Note::info(NoteKind::Unit, text).remedy(Remedy::StateUnit))
 }
 
 /// Height of the figure at rest in cm, by the rig's own unit. For a figure of which no two joints are apart, 0.
@@ -154,15 +148,15 @@ mod tests {
     fn people_of_all_heights_get_their_unit() {
         for height_cm in [130.0, 150.0, 185.0] {
             for (_, cm) in USUAL {
-                assert_eq!(guess(height_cm / cm).cm_per_unit, cm, "{height_cm} cm in units of {cm} cm");
+                assert_eq!(guess(height_cm / cm).0, cm, "{height_cm} cm in units of {cm} cm");
             }
         }
     }
 
     #[test]
     fn the_guess_is_said() {
-        let said = "units: 24.6000 high at rest, so CMU's 5.6444 cm; --cm-per-unit overrides";
-        assert_eq!(guess(24.6).sentence, said);
-        assert!(guess(0.0).sentence.contains("no usual unit"));
+        let note = guess(24.6).1;
+        assert_eq!((&*note.text, note.remedy), ("units: 24.6000 high at rest, so CMU's 5.6444 cm", Some(Remedy::StateUnit)));
+        assert!(guess(0.0).1.text.contains("no usual unit"));
     }
 }

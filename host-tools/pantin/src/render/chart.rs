@@ -165,7 +165,16 @@ mod tests {
         let scalars = (0..3).map(|index| Scalar { name: format!("c{index}"), full_scale: 1.0 }).collect();
         let values = vec![vec![0.0, 1.0], vec![0.5, 0.5], vec![-1.0, 0.0]];
         let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
-        let motion = Motion { rig, frame_time: 0.5, frames: 2, keys: vec![None; 3], values, looped: false, events: Vec::new() };
+        let motion = Motion {
+            rig,
+            frame_time: 0.5,
+            frames: 2,
+            keys: vec![None; 3],
+            values,
+            looped: false,
+            events: Vec::new(),
+            origin: Default::default(),
+        };
         assert_eq!(title(&motion, 2), "2 of 3 channels move (1 do not and are left out); 2 frames, 1.00 s at 2.00 a second");
         let mut out = Vec::new();
         write(&mut out, &motion).unwrap();

@@ -66,7 +66,16 @@ fn arms(frames: usize) -> Motion {
         (0..frames).map(value).collect()
     };
     let values: Vec<Vec<f64>> = (0..rig.channels()).map(curve).collect();
-    Motion { keys: vec![None; values.len()], rig, frame_time: 1.0 / 30.0, frames, values, looped: false, events: Vec::new() }
+    Motion {
+        keys: vec![None; values.len()],
+        rig,
+        frame_time: 1.0 / 30.0,
+        frames,
+        values,
+        looped: false,
+        events: Vec::new(),
+        origin: Default::default(),
+    }
 }
 
 fn far(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -126,8 +126,16 @@ fn hostile_clip() -> Vec<u8> {
     let channels = rig.channels();
     let values = vec![vec![0.0, 0.5]; channels];
     let keys = vec![None; channels];
-    let motion =
-        pantin_convert::motion::Motion { rig, frame_time: 0.1, frames: 2, keys, values, looped: false, events: Vec::new() };
+    let motion = pantin_convert::motion::Motion {
+        rig,
+        frame_time: 0.1,
+        frames: 2,
+        keys,
+        values,
+        looped: false,
+        events: Vec::new(),
+        origin: Default::default(),
+    };
     let coded = fit(&motion, Level::Fast.plan(1.0), 0.02, &mut |_| ()).unwrap();
     clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
 }

@@ -158,7 +158,16 @@ fn joint(name: &str, parent: Option<usize>, offset: [f64; 3], kinds: &[Kind]) ->
 
 fn motion(rig: Rig, values: Vec<Vec<f64>>) -> Motion {
     let keys = vec![None; values.len()];
-    Motion { rig, frame_time: 0.04, frames: values[0].len(), values, keys, looped: false, events: Vec::new() }
+    Motion {
+        rig,
+        frame_time: 0.04,
+        frames: values[0].len(),
+        values,
+        keys,
+        looped: false,
+        events: Vec::new(),
+        origin: Default::default(),
+    }
 }
 
 /// Numbers in -1 .. 1 from a fixed sequence.

@@ -4,6 +4,7 @@
 //! first curve of the layer's next element, if that is of the same name: it must be told the property's own value.
 
 use crate::import::one_line;
+use crate::note::{Note, NoteKind};
 use anyhow::{Result, anyhow, ensure};
 use std::collections::{HashMap, HashSet};
 use ufbx::{AnimLayer, AnimOpts, AnimRoot, AnimStack, ListOpt, PropOverrideDesc, Scene, StringOpt};
@@ -93,11 +94,11 @@ pub fn animation<'s>(scene: &'s Scene, stack: &'s AnimStack) -> Result<Option<An
     ufbx::create_anim(scene, options).map(Some).map_err(|error| anyhow!("layers: {}", one_line(&error.description)))
 }
 
-/// A sentence that names the layers which do not play.
-pub fn left_out(stack: &AnimStack) -> Option<String> {
+/// A warning that names the layers which do not play.
+pub fn left_out(stack: &AnimStack) -> Option<Note> {
     let played: Vec<u32> = played(stack).iter().map(|layer| layer.element.typed_id).collect();
     let left_out = stack.layers.iter().filter(|layer| !played.contains(&layer.element.typed_id));
     let names: Vec<String> = left_out.map(|layer| format!("`{}`", one_line(&layer.element.name))).collect();
-    (!names.is_empty())
-        .then(|| format!("layers that are muted, or not among those that play alone, are left out: {}", names.join(", ")))
+    let text = || format!("layers that are muted, or not among those that play alone, are left out: {}", names.join(", "));
+    (!names.is_empty()).then(|| Note::warning(NoteKind::Unread, text()))
 }

@@ -9,9 +9,12 @@ mod nodes;
 use super::from_transforms::{self, Affine, Figure, Node};
 use super::grid::{self, Grid};
 use super::list::{self, Entry};
-use super::{Files, Options, Source, one_line};
+use super::{Request, Source, one_line};
+use crate::error::{Error, require};
+use crate::memory::Memory;
 use crate::motion::Scalar;
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use crate::note::{Note, NoteKind, Remedy};
+use anyhow::{Context, Result, anyhow, bail};
 use nodes::Moves;
 use std::path::Path;
 use ufbx::{AnimStack, Scene, SceneRoot};
@@ -31,30 +34,33 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads an animation stack of the FBX file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let place = || path.display().to_string();
-    let scene = open(path, &options.files)?;
+    let scene = open(path, options)?;
     let stack = chosen(&scene, options.animation.as_deref()).with_context(place)?;
     let moves = Moves::of(&scene, stack);
     let grid = grid(&scene, stack, options.fps).with_context(place)?;
-    let (figure, left_out) = motion(&scene, stack, &grid).with_context(place)?;
-    let mut warnings = vec![grid.sentence];
+    let (figure, left_out) = motion(&scene, stack, &grid, options.memory).with_context(place)?;
+    let mut notes = vec![grid.note];
     let unit = ufbx::find_prop(&scene.settings.props, "UnitScaleFactor").map_or(1.0, |unit| unit.value_vec4.x);
     if !(unit.is_finite() && unit > 0.0) {
-        warnings.push(format!("UnitScaleFactor is {unit}, which is no unit: taken as cm"));
+        notes.push(Note::warning(NoteKind::Unit, format!("UnitScaleFactor is {unit}, which is no unit: taken as cm")));
     }
     let stacks = scene.anim_stacks.len();
     if options.animation.is_none() && stacks > 1 {
         let name = one_line(&stack.element.name);
-        warnings.push(format!("stack `{name}` of {stacks}; --animation takes another, --list shows all"));
+        let note = Note::warning(NoteKind::Animation, format!("stack `{name}` of {stacks}"));
+        notes.push(note.remedy(Remedy::ChooseAnimation));
     }
-    warnings.extend(layers::left_out(stack));
-    warnings.extend(figure.warnings);
+    notes.extend(layers::left_out(stack));
+    notes.extend(figure.notes);
     if moves.none() {
-        warnings.push(format!("stack `{}` moves nothing: a pose", one_line(&stack.element.name)));
+        let text = format!("stack `{}` moves nothing: a pose", one_line(&stack.element.name));
+        notes.push(Note::warning(NoteKind::Still, text));
     }
-    warnings.extend(nodes::unused(&scene, left_out));
-    Ok(Source { motion: figure.motion, unit_known: true, error: figure.error, warnings })
+    notes.extend(nodes::unused(&scene, left_out));
+    let (error, sampled) = (figure.error, options.fps.is_some());
+    Ok(Source { motion: figure.motion, unit_known: true, error, sampled, notes })
 }
 
 /// Half of the step in which the format counts time, in seconds. A frame's time may be a little before that of its key, where a stepped curve still has the value of
@@ -62,18 +68,18 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
 const HALF_A_TICK: f64 = 0.5 / 46_186_158_000.0;
 
 /// All stacks of the FBX file `path`.
-pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    let scene = open(path, &Files::default())?;
+pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
+    let scene = open(path, options)?;
     let entry = |stack: &AnimStack| {
-        let grid = grid(&scene, stack, fps).with_context(|| path.display().to_string())?;
+        let grid = grid(&scene, stack, options.fps).with_context(|| path.display().to_string())?;
         let name = Some(one_line(&stack.element.name)).filter(|name| !name.is_empty());
         Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: Moves::of(&scene, stack).curves })
     };
     scene.anim_stacks.iter().map(|stack| entry(stack)).collect()
 }
 
-fn open(path: &Path, files: &Files) -> Result<SceneRoot> {
-    let bytes = files.read(path)?;
+fn open(path: &Path, options: &Request) -> Result<SceneRoot> {
+    let bytes = options.read(path)?;
     let limit = || ufbx::AllocatorOpts { memory_limit: MOST_BYTES, ..Default::default() };
     let options = ufbx::LoadOpts {
         temp_allocator: limit(),
@@ -122,18 +128,16 @@ fn grid(scene: &Scene, stack: &AnimStack, fps: Option<f64>) -> Result<Grid> {
 }
 
 /// The motion, and how many nodes are no part of it.
-fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid) -> Result<(Figure, usize)> {
+fn motion(scene: &Scene, stack: &AnimStack, grid: &Grid, memory: Memory) -> Result<(Figure, usize)> {
     let order = nodes::depth_first(scene);
     let kept: Vec<usize> = from_transforms::figure(&nodes::roles(scene, &order))?.into_iter().map(|index| order[index]).collect();
     let weights = nodes::weights(scene);
     let scaled = Moves::of(scene, stack).scaled;
-    from_transforms::check_size(kept.len(), weights.len() + 3 * scaled.iter().filter(|scaled| **scaled).count(), grid)?;
-    ensure!(
-        scene.elements.len().saturating_mul(grid.frames) <= MOST_WORK,
-        "{} frames are too many for a scene of {} elements; --fps takes fewer",
-        grid.frames,
-        scene.elements.len()
-    );
+    let scales = 3 * scaled.iter().filter(|scaled| **scaled).count();
+    from_transforms::check_size(kept.len(), weights.len() + scales, grid, memory)?;
+    let elements = scene.elements.len();
+    let refusal = || Error::source(format!("{} frames are too many for a scene of {elements} elements", grid.frames));
+    require!(elements.saturating_mul(grid.frames) <= MOST_WORK, refusal().remedy(Remedy::LowerFrameRate));
     let mut joint_of = vec![None; scene.nodes.len()];
     let mut joints: Vec<Node> = Vec::with_capacity(kept.len());
     for (joint, &node) in kept.iter().enumerate() {

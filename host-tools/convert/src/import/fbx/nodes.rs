@@ -6,6 +6,7 @@
 use super::layers;
 use crate::import::from_transforms::Role;
 use crate::import::one_line;
+use crate::note::{Note, NoteKind};
 use ufbx::{AnimCurve, AnimLayer, AnimProp, AnimStack, ElementType, Scene};
 
 /// What a stack moves.
@@ -169,7 +170,7 @@ pub fn name(scene: &Scene, node: usize) -> String {
 }
 
 /// One sentence about what motion does not need.
-pub fn unused(scene: &Scene, left_out: usize) -> Option<String> {
+pub fn unused(scene: &Scene, left_out: usize) -> Option<Note> {
     let counts = [
         (left_out, "nodes that carry no joint"),
         (scene.meshes.len(), "meshes"),
@@ -182,5 +183,5 @@ pub fn unused(scene: &Scene, left_out: usize) -> Option<String> {
     ];
     let present = counts.iter().filter(|(count, _)| *count > 0);
     let words: Vec<String> = present.map(|(count, what)| format!("{count} {what}")).collect();
-    (!words.is_empty()).then(|| format!("not used: {}", words.join(", ")))
+    (!words.is_empty()).then(|| Note::info(NoteKind::Unread, format!("not used: {}", words.join(", "))))
 }

@@ -1,9 +1,10 @@
 //! The container: JSON, and the buffers it names, from a .glb, from data URIs, or from files beside it.
 
-use crate::budget;
-use crate::import::Files;
+use crate::import::Request;
 pub(crate) use crate::import::one_line;
-use anyhow::{Result, anyhow, bail};
+use crate::memory::Memory;
+use crate::note::{Note, NoteKind};
+use anyhow::{Context, Result, anyhow, bail};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use gltf::json::accessor::Accessor;
@@ -43,24 +44,24 @@ const HARMLESS: [&str; 14] = [
 pub const COMPRESSED_TRIANGLES: &str = "KHR_draco_mesh_compression";
 
 /// A glTF file; buffers are read when they are first asked for.
-pub struct File {
+pub struct File<'a> {
     /// The JSON, its indices checked.
     pub root: Root,
     /// What is odd about the container.
-    pub warnings: Vec<String>,
+    pub notes: Vec<Note>,
     path: PathBuf,
-    files: Files,
+    request: &'a Request<'a>,
     bin: Option<Vec<u8>>,
     buffers: Vec<OnceCell<Vec<u8>>>,
     /// Bytes of all buffers that were read.
     held: Cell<u64>,
 }
 
-impl File {
+impl<'a> File<'a> {
     /// Opens `bytes`, the content of `path` among `files`.
-    pub fn open(path: &Path, bytes: &[u8], files: &Files) -> Result<File> {
+    pub fn open(path: &Path, bytes: &[u8], request: &'a Request<'a>) -> Result<File<'a>> {
         let place = |message: String| anyhow!("{}: {}", path.display(), one_line(&message));
-        let mut warnings = Vec::new();
+        let mut notes = Vec::new();
         let (json, bin) = if bytes.starts_with(b"glTF") {
             let length =
                 bytes.get(8..GLB_HEAD).map(|field| u32::from_le_bytes([field[0], field[1], field[2], field[3]]) as usize);
@@ -69,7 +70,8 @@ impl File {
             };
             if bytes.len() > whole.len() {
                 let (behind, length) = (bytes.len() - whole.len(), whole.len());
-                warnings.push(format!("{behind} bytes stand after the {length} that the head of the .glb states; left out"));
+                let text = format!("{behind} bytes stand after the {length} that the head of the .glb states; left out");
+                notes.push(Note::warning(NoteKind::Unread, text));
             }
             let glb = gltf::Glb::from_slice(whole).map_err(|error| place(format!("not a .glb of version 2: {error}")))?;
             (glb.json.into_owned(), glb.bin.map(|bin| bin.into_owned()))
@@ -95,9 +97,9 @@ impl File {
             None => Ok(File {
                 buffers: vec![OnceCell::new(); root.buffers.len()],
                 root,
-                warnings,
+                notes,
                 path: path.into(),
-                files: files.clone(),
+                request,
                 bin,
                 held: Cell::new(0),
             }),
@@ -106,7 +108,17 @@ impl File {
 
     /// `path: where: message`; `at` is a JSON path.
     pub fn error(&self, at: &str, message: impl std::fmt::Display) -> anyhow::Error {
-        anyhow!("{}: {at}: {message}", self.path.display())
+        anyhow!("{}: {message}", self.place(at))
+    }
+
+    /// `path: where`; `at` is a JSON path.
+    pub fn place(&self, at: &str) -> String {
+        format!("{}: {at}", self.path.display())
+    }
+
+    /// The memory that the motion may take.
+    pub fn memory(&self) -> Memory {
+        self.request.memory
     }
 
     /// Bytes of a buffer.
@@ -116,14 +128,14 @@ impl File {
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }
-        let bytes = self.read_buffer(index).map_err(|error| self.error(&at, error))?;
+        let bytes = self.read_buffer(index).with_context(|| self.place(&at))?;
         let expected = self.root.buffers[index].byte_length.0;
         if (bytes.len() as u64) < expected {
             bail!(self.error(&at, format!("{} bytes; expected byteLength, {expected}", bytes.len())));
         }
         // Any number of buffers may name one file.
         self.held.set(self.held.get() + bytes.len() as u64);
-        budget::check_bytes_held(self.held.get()).map_err(|error| self.error(&at, error))?;
+        self.memory().check_bytes_held(self.held.get()).with_context(|| self.place(&at))?;
         Ok(cell.get_or_init(|| bytes))
     }
 
@@ -139,7 +151,7 @@ impl File {
         let Some(beside) = self.beside(uri) else {
             bail!("uri `{}`: expected a data URI or the name of a file beside this one", one_line(uri));
         };
-        self.files.read_named(&beside)
+        self.request.read_named(&beside)
     }
 
     /// The file that a URI names, if it lies beside this one.

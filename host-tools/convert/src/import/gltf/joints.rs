@@ -81,8 +81,8 @@ pub fn joints(file: &File, tree: &Tree, tracks: &Tracks, grid: &Grid, quaternion
         helper: false,
     };
     channels.joints.extend(sites.into_iter().map(site));
-    channels.warnings.extend(ends::complete(&mut channels.joints));
-    channels.warnings.extend(scales::warning(&scaled.iter().map(String::as_str).collect::<Vec<_>>()));
+    channels.notes.extend(ends::complete(&mut channels.joints));
+    channels.notes.extend(scales::warning(&scaled.iter().map(String::as_str).collect::<Vec<_>>()));
     Ok(channels)
 }
 

@@ -3,7 +3,7 @@
 use super::accessor::{indices, numbers};
 use super::file::{COMPRESSED_TRIANGLES, File, has_compressed_triangles};
 use super::scalars::target_names;
-use crate::import::Files;
+use crate::import::{Files, ImportOptions, Request};
 use anyhow::{Context, Result, ensure};
 use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
@@ -23,8 +23,10 @@ pub struct Mesh {
 }
 
 /// Reads it from `files`. Parts of the mesh follow each other.
-pub fn read(path: &Path, files: &Files) -> Result<Mesh> {
-    let file = File::open(path, &files.read(path)?, files)?;
+pub fn read(path: &Path, files: &dyn Files) -> Result<Mesh> {
+    let options = ImportOptions::new();
+    let request = Request::new(files, &options);
+    let file = File::open(path, &request.read(path)?, &request)?;
     let with_targets = |mesh: &&gltf::json::Mesh| {
         mesh.primitives.iter().any(|part| part.targets.as_ref().is_some_and(|targets| !targets.is_empty()))
     };

@@ -16,10 +16,12 @@ mod tree;
 
 use super::from_transforms::{self, Affine};
 use super::grid::{self, Grid};
-use super::{Files, Options, Source, units};
-use crate::budget;
+use super::{Request, Source, units};
+use crate::error::with_remedy;
 use crate::events;
+use crate::memory::Memory;
 use crate::motion::{Event, Keys, Kind, Motion, Rig};
+use crate::note::{Note, NoteKind, Remedy};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use file::{File, one_line};
 use gltf::json::Root;
@@ -43,51 +45,48 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// The files beside the glTF file `path` that hold its buffers.
-pub(super) fn buffers(path: &Path) -> Result<Vec<PathBuf>> {
-    let files = Files::default();
-    Ok(File::open(path, &files.read(path)?, &files)?.external_buffers())
+pub(super) fn buffers(path: &Path, options: &Request) -> Result<Vec<PathBuf>> {
+    Ok(File::open(path, &options.read(path)?, options)?.external_buffers())
 }
 
 /// Reads an animation of the glTF file `path`.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
-    let file = File::open(path, &options.files.read(path)?, &options.files)?;
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
+    let file = File::open(path, &options.read(path)?, options)?;
     let number = chosen(&file, path, options)?;
-    let mut warnings = file.warnings.clone();
+    let mut notes = file.notes.clone();
     let animations = &file.root.animations;
     if options.animation.is_none() && animations.len() > 1 {
         let first = named(number, &animations[number].name);
-        warnings.push(format!(
-            "animation {} of {}; --animation takes another, --list shows all",
-            one_line(&first),
-            animations.len()
-        ));
+        let text = format!("animation {} of {}", one_line(&first), animations.len());
+        notes.push(Note::warning(NoteKind::Animation, text).remedy(Remedy::ChooseAnimation));
     }
-    let tracks = tracks(&file, number, &mut warnings)?;
+    let tracks = tracks(&file, number, &mut notes)?;
     if tracks.is_empty() {
         bail!(file.error(&format!("animations[{number}]"), "no channel moves a node or a weight"));
     }
-    let grid = grid::grid(&tracks.values().map(|track| track.times.as_slice()).collect::<Vec<_>>(), options.fps)
-        .map_err(|error| file.error(&format!("animations[{number}]"), error))?;
-    warnings.push(grid.sentence.clone());
+    let place = || file.place(&format!("animations[{number}]"));
+    let grid =
+        grid::grid(&tracks.values().map(|track| track.times.as_slice()).collect::<Vec<_>>(), options.fps).with_context(place)?;
+    notes.push(grid.note.clone());
     let tree = tree::tree(&file)?;
-    check_size(&tracks, &tree, &grid).map_err(|error| file.error(&format!("animations[{number}]"), error))?;
+    check_size(&tracks, &tree, &grid, options.memory).with_context(place)?;
     let mut channels = joints::joints(&file, &tree, &tracks, &grid, options.quaternions)?;
     channels.scalars.extend(scalars::weights(&file, &tracks, &grid)?);
     scalars::tell_apart(&mut channels.scalars);
-    warnings.append(&mut channels.warnings);
+    notes.append(&mut channels.notes);
     let worlds = std::mem::take(&mut channels.worlds);
     let mut motion = channels.motion(&grid);
     if motion.rig.channels() == 0 && motion.frames > 1 {
         bail!(file.error(&format!("animations[{number}]"), "no channel moves a node of the scene, so nothing moves"));
     }
-    motion.add_events(events(&file.root.animations[number], &grid, motion.frames, &mut warnings));
+    motion.add_events(events(&file.root.animations[number], &grid, motion.frames, &mut notes));
     let error = from_transforms::error(&motion, &worlds.iter().map(Vec::as_slice).collect::<Vec<_>>());
-    warnings.extend(doubts(&file, &tree, &motion, options));
-    Ok(Source { motion, unit_known: true, error, warnings })
+    notes.extend(doubts(&file, &tree, &motion, options));
+    Ok(Source { motion, unit_known: true, error, sampled: options.fps.is_some(), notes })
 }
 
 /// The animation that the user names, by name or by number from 0, or the first.
-fn chosen(file: &File, path: &Path, options: &Options) -> Result<usize> {
+fn chosen(file: &File, path: &Path, options: &Request) -> Result<usize> {
     let animations = &file.root.animations;
     if animations.is_empty() {
         bail!("{}: no animation, so nothing moves", path.display());
@@ -107,7 +106,7 @@ fn named(number: usize, name: &Option<String>) -> String {
 
 /// Events in an animation's `extras`: `events` or `markers`, a list of objects with `time` in seconds and `name`. Other objects are left out: what an
 /// exporter keeps there is its own.
-fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize, warnings: &mut Vec<String>) -> Vec<Event> {
+fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize, notes: &mut Vec<Note>) -> Vec<Event> {
     let extras = animation.extras.as_ref().and_then(|extras| serde_json::from_str::<serde_json::Value>(extras.get()).ok());
     let Some(extras) = extras else { return Vec::new() };
     let lists = ["events", "markers"].into_iter().filter_map(|key| extras[key].as_array());
@@ -129,7 +128,8 @@ fn events(animation: &gltf::json::Animation, grid: &Grid, frames: usize, warning
     }
     if let Some(first) = errors.first() {
         let (count, first) = (errors.len(), one_line(&first.to_string()));
-        warnings.push(format!("{count} of the animation's events are left out; of the first: {first}"));
+        let text = format!("{count} of the animation's events are left out; of the first: {first}");
+        notes.push(Note::warning(NoteKind::Events, text));
     }
     found
 }
@@ -146,9 +146,9 @@ enum Target {
 /// Tracks of an animation by node and property.
 type Tracks = BTreeMap<Target, Track>;
 
-fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Tracks> {
+fn tracks(file: &File, number: usize, notes: &mut Vec<Note>) -> Result<Tracks> {
     let animation = &file.root.animations[number];
-    check_keys(file, animation).map_err(|error| file.error(&format!("animations[{number}]"), error))?;
+    check_keys(file, animation).with_context(|| file.place(&format!("animations[{number}]")))?;
     let mut tracks = Tracks::new();
     for (index, channel) in animation.channels.iter().enumerate() {
         let node = channel.target.node.value();
@@ -161,8 +161,8 @@ fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Trac
         };
         let track = Track::read(file, number, animation, channel.sampler.value(), components)?;
         if tracks.insert(target, track).is_some() {
-            warnings
-                .push(format!("animations[{number}].channels[{index}]: {target:?} has a channel already; the last one counts"));
+            let text = format!("animations[{number}].channels[{index}]: {target:?} has a channel already; the last one counts");
+            notes.push(Note::warning(NoteKind::Joints, text));
         }
     }
     Ok(tracks)
@@ -170,7 +170,7 @@ fn tracks(file: &File, number: usize, warnings: &mut Vec<String>) -> Result<Trac
 
 /// Refuses keys that would fill the memory: any number of tracks may share one accessor.
 fn check_keys(file: &File, animation: &gltf::json::Animation) -> Result<()> {
-    budget::check_numbers(key_numbers(file, animation), "the keys of all tracks")
+    file.memory().check_numbers(key_numbers(file, animation), "the keys of all tracks")
 }
 
 /// Numbers of the keys of an animation, at most.
@@ -190,14 +190,16 @@ fn key_numbers(file: &File, animation: &gltf::json::Animation) -> usize {
 }
 
 /// Refuses a motion that would fill the memory: two keys a year apart are a small file.
-fn check_size(tracks: &Tracks, tree: &tree::Tree, grid: &Grid) -> Result<()> {
+fn check_size(tracks: &Tracks, tree: &tree::Tree, grid: &Grid, memory: Memory) -> Result<()> {
     let stretches = tracks.keys().any(|target| matches!(target, Target::Scale(_)));
     let of_joint = if stretches { 27 } else { 18 };
     let of_tracks: usize = tracks.values().map(|track| 3 * track.components).sum();
     let numbers = (of_tracks + of_joint * tree.nodes.len()).saturating_mul(grid.frames);
     let frames = grid.frames;
-    budget::check_numbers(numbers, "the tracks")
-        .map_err(|error| anyhow!("{frames} frames are too many for this figure: {error}; --fps takes fewer"))
+    memory
+        .check_numbers(numbers, "the tracks")
+        .with_context(|| format!("{frames} frames are too many for this figure"))
+        .map_err(|error| with_remedy(&error, Remedy::LowerFrameRate))
 }
 
 /// A channel of the motion: its values, and its curve where that is known.
@@ -214,7 +216,7 @@ struct Channels {
     scalars: Vec<scalars::Weight>,
     /// World transforms of the first joints on the frames, as the file has them.
     worlds: Vec<Vec<Affine>>,
-    warnings: Vec<String>,
+    notes: Vec<Note>,
 }
 
 impl Channels {
@@ -222,28 +224,40 @@ impl Channels {
         let (scalars, of_scalars): (Vec<_>, Vec<_>) = self.scalars.into_iter().map(scalars::Weight::split).unzip();
         let rig = Rig { joints: self.joints, scalars, cm_per_unit: CM_PER_UNIT, ..Rig::default() };
         let (values, keys) = self.of_joints.into_iter().chain(of_scalars).map(|entry| (entry.values, entry.keys)).unzip();
-        Motion { rig, frame_time: grid.frame_time, frames: grid.frames, values, keys, looped: false, events: Vec::new() }
+        Motion {
+            rig,
+            frame_time: grid.frame_time,
+            frames: grid.frames,
+            values,
+            keys,
+            looped: false,
+            events: Vec::new(),
+            origin: Default::default(),
+        }
     }
 }
 
 /// What is odd, and what is not used.
-fn doubts(file: &File, tree: &tree::Tree, motion: &Motion, options: &Options) -> Vec<String> {
+fn doubts(file: &File, tree: &tree::Tree, motion: &Motion, options: &Request) -> Vec<Note> {
     let mut doubts = Vec::new();
     if let Some(node) = tree.outside.first() {
-        doubts.push(format!("{} moving nodes (nodes[{node}] is one) are outside of the scene and left out", tree.outside.len()));
+        let count = tree.outside.len();
+        let text = format!("{count} moving nodes (nodes[{node}] is one) are outside of the scene and left out");
+        doubts.push(Note::warning(NoteKind::Joints, text));
     }
     let height = units::posed_height_cm(motion);
     if options.cm_per_unit.is_none() && height > 0.0 && !PLAUSIBLE_CM.contains(&height) {
         let metres = height / 100.0;
-        doubts.push(format!("the figure is {metres:.4} m high in glTF's metres; --cm-per-unit 1 if the unit is the cm"));
+        let note = Note::warning(NoteKind::Unit, format!("the figure is {metres:.4} m high in glTF's metres"));
+        doubts.push(note.remedy(Remedy::StateCentimetre));
     }
     let left_out = file.root.nodes.len() - tree.nodes.iter().flatten().count() - tree.under.len();
     doubts.extend(unused(&file.root, left_out));
     doubts
 }
 
-/// One sentence about what motion does not need.
-fn unused(root: &Root, left_out: usize) -> Option<String> {
+/// A note about what motion does not need.
+fn unused(root: &Root, left_out: usize) -> Option<Note> {
     let counts = [
         (left_out, "nodes that nothing moves"),
         (root.meshes.len(), "meshes"),
@@ -254,7 +268,7 @@ fn unused(root: &Root, left_out: usize) -> Option<String> {
     ];
     let present = counts.iter().filter(|(count, _)| *count > 0);
     let words: Vec<String> = present.map(|(count, what)| format!("{count} {what}")).collect();
-    (!words.is_empty()).then(|| format!("not used: {}", words.join(", ")))
+    (!words.is_empty()).then(|| Note::info(NoteKind::Unread, format!("not used: {}", words.join(", "))))
 }
 
 /// The kinds of positions.

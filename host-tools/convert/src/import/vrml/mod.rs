@@ -12,8 +12,10 @@ mod world;
 use super::from_transforms::{self, Figure, Node};
 use super::grid::{self, Grid};
 use super::list::{self, Entry};
-use super::{Options, Source, one_line, read_bytes};
+use super::{Request, Source, one_line};
+use crate::memory::Memory;
 use crate::motion::Scalar;
+use crate::note::{Note, NoteKind, Remedy};
 use anyhow::{Context, Result, anyhow, bail};
 use clock::{Clock, Tracks};
 use lexer::Words;
@@ -28,9 +30,9 @@ pub fn begins(head: &[u8]) -> bool {
 }
 
 /// Reads what the longest time sensors of the world `path` move, or the one that is asked for.
-pub fn read(path: &Path, options: &Options) -> Result<Source> {
+pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let place = || path.display().to_string();
-    let bytes = options.files.read(path)?;
+    let bytes = options.read(path)?;
     let (words, world) = open(path, &bytes)?;
     let clocks = clock::clocks(&world).with_context(place)?;
     let chosen = chosen(&world, &clocks, options.animation.as_deref()).with_context(place)?;
@@ -39,21 +41,23 @@ pub fn read(path: &Path, options: &Options) -> Result<Source> {
         bail!("{}: the interpolators have no keys, so nothing moves", place());
     }
     let grid = frames(&tracks, chosen[0], options.fps).with_context(place)?;
-    let figure = motion(&world, &clocks, &tracks, &grid, &words).with_context(place)?;
-    let mut warnings = vec![grid.sentence.clone()];
-    warnings.extend(figure.warnings);
-    warnings.extend(doubts(&world, &clocks, &chosen));
+    let figure = motion(&world, &clocks, &tracks, &grid, &words, options.memory).with_context(place)?;
+    let mut notes = vec![grid.note.clone()];
+    notes.extend(figure.notes);
+    notes.extend(doubts(&world, &clocks, &chosen));
     let outside = |time: &&f64| !(0.0..=chosen[0].seconds * (1.0 + 1e-6)).contains(*time);
     if let Some(time) = tracks.times().into_iter().flatten().find(outside) {
         let part = time / chosen[0].seconds;
-        warnings.push(format!("keys outside the cycle are never reached, as one at {part:.3}; a cycle goes from 0 to 1"));
+        let text = format!("keys outside the cycle are never reached, as one at {part:.3}; a cycle goes from 0 to 1");
+        notes.push(Note::warning(NoteKind::Unread, text));
     }
-    Ok(Source { motion: figure.motion, unit_known: false, error: figure.error, warnings })
+    let sampled = options.fps.is_some();
+    Ok(Source { error: figure.error, sampled, ..Source::plain(figure.motion, notes) })
 }
 
 /// The time sensors of the world `path` that move anything.
-pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
-    let bytes = read_bytes(path)?;
+pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
+    let bytes = options.read(path)?;
     let (words, world) = open(path, &bytes)?;
     let entry = |clock: &Clock| {
         let tracks = clock::tracks(&world, &[clock], &words)?;
@@ -61,7 +65,7 @@ pub fn list(path: &Path, fps: Option<f64>) -> Result<Vec<Entry>> {
         if tracks.times().is_empty() {
             return Ok(Entry { name, frames: 0, fps: 0.0, tracks: 0 });
         }
-        let grid = frames(&tracks, clock, fps).with_context(|| path.display().to_string())?;
+        let grid = frames(&tracks, clock, options.fps).with_context(|| path.display().to_string())?;
         Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: tracks.times().len() })
     };
     clock::clocks(&world).with_context(|| path.display().to_string())?.iter().map(entry).collect()
@@ -98,14 +102,14 @@ fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Resul
     })
 }
 
-fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words) -> Result<Figure> {
+fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words, memory: Memory) -> Result<Figure> {
     let stands = figure::stands(world, words)?;
     // The figure is the same for every clock.
     let drives = clocks.iter().flat_map(|clock| &clock.drives);
     let moved: HashSet<usize> = drives.filter(|drive| drive.place(world).is_some()).map(|drive| drive.target).collect();
     let kept = from_transforms::figure(&figure::roles(world, &stands, |node| moved.contains(&node)))?;
     let scales = tracks.moves.keys().filter(|(_, field)| *field == figure::SCALE).count();
-    from_transforms::check_size(kept.len(), tracks.scalars.len() + 3 * scales, grid)?;
+    from_transforms::check_size(kept.len(), tracks.scalars.len() + 3 * scales, grid, memory)?;
     let seconds = |frame: usize| grid.first + frame as f64 * grid.frame_time;
     let vector = |value: &[f64]| std::array::from_fn(|axis| value.get(axis).copied().unwrap_or(0.0));
     let mut joint_of = vec![None; stands.len()];
@@ -133,17 +137,19 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
 }
 
 /// Which clock runs, and what is not used.
-fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<String> {
+fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<Note> {
     let mut doubts = Vec::new();
     if clocks.len() > chosen.len() {
         let (count, first) = (clocks.len(), chosen[0]);
         let name = world.name(first.node);
-        doubts.push(format!("{count} time sensors; `{name}` with {} s is read; --animation chooses another", first.seconds));
+        let text = format!("{count} time sensors; `{name}` with {} s is read", first.seconds);
+        doubts.push(Note::warning(NoteKind::Animation, text).remedy(Remedy::ChooseAnimation));
     }
     for clock in chosen {
         if let Some(wrong) = &clock.wrong {
             let (name, line) = (world.name(clock.node), world.nodes[clock.node].line);
-            doubts.push(format!("`{name}` (line {line}) has the cycleInterval {wrong}; expected more than 0, and 1 s is taken"));
+            let text = format!("`{name}` (line {line}) has the cycleInterval {wrong}; expected more than 0, and 1 s is taken");
+            doubts.push(Note::warning(NoteKind::FrameRate, text).at_line(line));
         }
     }
     let wrong = |index: usize| {
@@ -157,26 +163,27 @@ fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<String> {
         (0..world.nodes.len()).filter(|&node| is_transform(world.kind(node))).filter_map(wrong).collect();
     if let Some((node, name, width)) = wrong.first() {
         let (count, line) = (wrong.len(), world.nodes[*node].line);
-        doubts.push(format!(
+        let text = format!(
             "{count} nodes (one in line {line}) have a {name} or the like without its {width} numbers; it counts as not given"
-        ));
+        );
+        doubts.push(Note::warning(NoteKind::Unread, text).at_line(line));
     }
     let mut driven = HashSet::new();
     let drives = chosen.iter().flat_map(|clock| &clock.drives);
     let twice = drives.filter_map(|drive| Some((drive.target, drive.place(world)?))).find(|&place| !driven.insert(place));
     if let Some((target, place)) = twice {
         let (name, line) = (world.name(target), world.nodes[target].line);
-        doubts.push(format!(
-            "two interpolators move the {} of `{name}` (line {line}); the last one counts",
-            figure::FIELDS[place].0
-        ));
+        let field = figure::FIELDS[place].0;
+        let text = format!("two interpolators move the {field} of `{name}` (line {line}); the last one counts");
+        doubts.push(Note::warning(NoteKind::Joints, text).at_line(line).of_joint(name));
     }
     let used: HashSet<usize> = clocks.iter().flat_map(|clock| &clock.drives).map(|drive| drive.interpolator).collect();
     let interpolators = (0..world.nodes.len()).filter(|&node| world.kind(node).ends_with("Interpolator"));
     let unused: Vec<usize> = interpolators.filter(|node| !used.contains(node)).collect();
     if let Some(&first) = unused.first() {
         let line = world.nodes[first].line;
-        doubts.push(format!("{} interpolators (one in line {line}) move no joint and no number; left out", unused.len()));
+        let text = format!("{} interpolators (one in line {line}) move no joint and no number; left out", unused.len());
+        doubts.push(Note::warning(NoteKind::Unread, text).at_line(line));
     }
     doubts
 }

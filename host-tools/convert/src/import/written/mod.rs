@@ -2,12 +2,12 @@
 
 pub mod rig;
 
-use super::Options;
+use super::Request;
 use super::text::{number_in, quoted};
-use crate::budget;
 use crate::events;
+use crate::memory::Memory;
 use crate::motion::{Event, Rig};
-use anyhow::{Result, anyhow};
+use anyhow::{Error, Result};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -19,12 +19,18 @@ pub struct Wrong {
     /// Another line than the one at hand, from 1.
     pub line: Option<usize>,
     /// What was expected and what stands there.
-    pub message: String,
+    pub error: Error,
+}
+
+impl From<Error> for Wrong {
+    fn from(error: Error) -> Wrong {
+        Wrong { line: None, error }
+    }
 }
 
 impl From<String> for Wrong {
     fn from(message: String) -> Wrong {
-        Wrong { line: None, message }
+        Wrong { line: None, error: Error::msg(message) }
     }
 }
 
@@ -55,11 +61,11 @@ pub trait Reader: Sized {
     fn line(&mut self, line: usize, first: &str, rest: &[&str]) -> Read<()>;
 
     /// The motion, once all lines were read.
-    fn finish(self, options: &Options) -> Read<super::Source>;
+    fn finish(self, options: &Request) -> Read<super::Source>;
 
     /// Reads `path`. Errors name the file and the line.
-    fn read(mut self, path: &Path, options: &Options) -> Result<super::Source> {
-        let bytes = options.files.read(path)?;
+    fn read(mut self, path: &Path, options: &Request) -> Result<super::Source> {
+        let bytes = options.read(path)?;
         let text = String::from_utf8_lossy(&bytes);
         let mut begun = false;
         let mut line = 0;
@@ -74,7 +80,7 @@ pub trait Reader: Sized {
             if words == Self::FIRST { Ok(()) } else { wrong(format!("expected `{}` as the first line", Self::FIRST.join(" "))) }
         });
         let source = result.and_then(|()| self.finish(options));
-        source.map_err(|Wrong { line: own, message }| anyhow!("{}:{}: {message}", path.display(), own.unwrap_or(line.max(1))))
+        source.map_err(|Wrong { line: own, error }| error.context(format!("{}:{}", path.display(), own.unwrap_or(line.max(1)))))
     }
 }
 
@@ -137,7 +143,7 @@ impl Header {
         if frames.is_empty() {
             return wrong("expected frames after the event's name");
         }
-        events::check_name(name).map_err(|error| Wrong::from(error.to_string()))?;
+        events::check_name(name)?;
         let Some(count) = self.frames else { return wrong("expected `frames NUMBER` before the first `event`") };
         for word in frames {
             match word.parse::<usize>() {
@@ -156,15 +162,15 @@ impl Header {
     }
 
     /// Frames and frames a second, if the figure has what can move and samples fit the memory.
-    pub fn timing(&self, options: &Options) -> Read<(usize, f64)> {
+    pub fn timing(&self, fps: Option<f64>, memory: Memory) -> Read<(usize, f64)> {
         let missing = |what: &str| Wrong::from(format!("expected `{what} NUMBER`, found the end of the file"));
         let frames = self.frames.ok_or_else(|| missing("frames"))?;
-        let fps = self.fps.or(options.fps).ok_or_else(|| missing("fps"))?;
+        let fps = self.fps.or(fps).ok_or_else(|| missing("fps"))?;
         let channels = self.rig.channels();
         if channels == 0 {
             return wrong("no joint has channels and there is no scalar, so nothing can move");
         }
-        budget::check(frames, channels).map_err(|error| Wrong::from(error.to_string()))?;
+        memory.check(frames, channels)?;
         Ok((frames, fps))
     }
 

@@ -1,0 +1,303 @@
+//! A motion after all edits, with what its clip must keep, and its way to a verified clip.
+
+use super::Progress;
+use super::bound::{Bound, closed_notes};
+use super::distance::Distance;
+use super::report::{Errors, Report};
+use crate::channel_error;
+use crate::edit::footsteps::footsteps;
+use crate::encode::clip::{self, Coded};
+use crate::encode::rig;
+use crate::encode::same_rig::difference;
+use crate::error::{Error, Setting, require};
+use crate::fit::bounds::Bounds;
+use crate::fit::descent::Level;
+use crate::fit::parametrize::{Coding, Rotations, has_choice, quaternions};
+use crate::fit::{channelwise, fit_coding};
+use crate::import::up;
+use crate::motion::{Motion, Up};
+use crate::note::{Note, NoteKind, Remedy};
+use crate::number::Number;
+use crate::options::{ChannelBound, Options};
+use crate::verify::{unseen, verify};
+use anyhow::{Context, Result};
+use pantin::codec::layout::MAX_FRAMES;
+use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Smaller errors of rotations that move nothing are not mentioned, in degrees.
+const TOLD_DEGREES: f64 = 0.01;
+
+/// A motion after all edits, and what its clip must keep.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Prepared {
+    /// The motion, its seam closed if that was asked for.
+    pub motion: Motion,
+    /// The bytes of the motion's rig.
+    pub rig: Vec<u8>,
+    /// What was found so far.
+    pub notes: Vec<Note>,
+    options: Options,
+    bound: Bound,
+}
+
+/// A verified clip of a prepared motion.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Made {
+    /// The bytes of the clip.
+    pub clip: Vec<u8>,
+    /// How far it is from the source.
+    pub report: Report,
+    /// What was done and what is odd, that of the prepared motion included.
+    pub notes: Vec<Note>,
+}
+
+/// Checks the options against `motion`, and closes its seam if that is asked for. Footsteps are found by [`Prepared::find_footsteps`].
+pub fn prepare(motion: Motion, options: &Options) -> Result<Prepared, Error> {
+    prepared(motion, options).map_err(|error| Error::of(&error, Error::source))
+}
+
+fn prepared(mut motion: Motion, options: &Options) -> Result<Prepared> {
+    check_settings(options)?;
+    let mut notes = without_effect(options, &motion);
+    if options.rotations == Rotations::Quaternion {
+        motion = quaternions(&motion);
+    }
+    let size = [motion.rig.joints.len(), motion.rig.channels()];
+    let beam = options.effort.plan(1.0).effort.beam;
+    options.memory.check_fit(motion.frames, size, beam, motion.origin.bytes)?;
+    let mut bound = Bound::of(options, &motion)?;
+    if options.looped {
+        let closed = bound.close(&motion)?;
+        notes.extend(closed_notes(&closed, &motion));
+        motion = closed.motion;
+    }
+    let rig = rig::encode(&motion.rig)?;
+    Ok(Prepared { motion, rig, notes, options: options.clone(), bound })
+}
+
+/// Refuses numbers that no setting takes.
+fn check_settings(options: &Options) -> Result<()> {
+    let length = |length: Option<crate::length::Length>| length.is_none_or(crate::length::Length::is_valid);
+    let number = |number: Option<f64>| number.is_none_or(|number| number.is_finite() && number > 0.0);
+    let channels = match options.channels {
+        Some(ChannelBound::Error(bound)) => (Setting::MaxChannelError, number(Some(bound))),
+        Some(ChannelBound::Acceleration(bound)) => (Setting::MaxAccelError, number(Some(bound))),
+        _ => (Setting::Exact, true),
+    };
+    let settings = [
+        (Setting::MaxError, length(options.max_error)),
+        (Setting::MeanError, length(options.mean_error)),
+        (Setting::MaxScalarError, number(options.max_scalar_error)),
+        (Setting::MaxRotationError, number(options.max_rotation_error)),
+        channels,
+    ];
+    for (setting, valid) in settings {
+        require!(valid, Error::setting(setting, "expected a number above 0"));
+    }
+    let exact = options.channels.is_some() && options.channels != Some(ChannelBound::Error(0.0));
+    let loops = matches!(options.channels, Some(ChannelBound::Exact | ChannelBound::Acceleration(_)));
+    require!(!(exact && loops && options.looped), Error::setting(Setting::Loop, "closing a seam needs a bound of positions"));
+    Ok(())
+}
+
+/// Settings that bound nothing in this motion.
+fn without_effect(options: &Options, motion: &Motion) -> Vec<Note> {
+    let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
+    let nothing_unseen = || unseen(&motion.rig).is_empty();
+    // Settings, whether they are given for nothing, and what is missing.
+    let given = [
+        (Setting::MaxError, options.max_error.is_some() && no_joints, "joints"),
+        (Setting::MeanError, options.mean_error.is_some() && no_joints, "joints"),
+        (Setting::MaxRotationError, options.max_rotation_error.is_some() && no_joints, "joints"),
+        (Setting::MaxScalarError, options.max_scalar_error.is_some() && no_scalars, "scalars"),
+        (
+            Setting::MaxRotationError,
+            options.max_rotation_error.is_some() && !no_joints && nothing_unseen(),
+            "joint that turns and carries nothing away from it",
+        ),
+        (Setting::Rotations, options.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
+    ];
+    let given = given.into_iter().filter(|(_, for_nothing, _)| *for_nothing);
+    let mut notes: Vec<Note> =
+        given.map(|(setting, _, what)| Note::no_effect(setting, format!("the motion has no {what}"))).collect();
+    if options.channels.is_some() {
+        let given = [
+            (Setting::Effort, options.effort != Level::Default),
+            (Setting::Rotations, options.rotations == Rotations::Exponential),
+        ];
+        let given = given.into_iter().filter(|(_, given)| *given);
+        notes.extend(
+            given.map(|(setting, _)| Note::no_effect(setting, "channels with bounds of their own are coded as they are")),
+        );
+    }
+    notes
+}
+
+impl Prepared {
+    /// States another direction as vertical.
+    pub fn set_up(&mut self, up: Up) -> Result<(), Error> {
+        self.motion.rig.up = up;
+        self.rig = rig::encode(&self.motion.rig).map_err(|error| Error::of(&error, Error::source))?;
+        Ok(())
+    }
+
+    /// Adds the events of footsteps, if they are asked for.
+    pub fn find_footsteps(&mut self) -> Result<(), Error> {
+        if !self.options.footsteps {
+            return Ok(());
+        }
+        let steps = footsteps(&self.motion, self.options.memory).map_err(|error| Error::of(&error, Error::source))?;
+        let count = |name: &str| steps.iter().filter(|step| step.name == name).count();
+        let text = format!("footsteps: {} left, {} right", count(LEFT_FOOT_DOWN), count(RIGHT_FOOT_DOWN));
+        self.notes.push(Note::info(NoteKind::Footsteps, text));
+        self.motion.add_events(steps);
+        Ok(())
+    }
+
+    /// The clip in a coding, verified by the device's own decoder.
+    pub fn code(&self, coding: &Coding, progress: Progress<'_>) -> Result<Made, Error> {
+        progress(0.0);
+        let mut notes = self.notes.clone();
+        let made = match &self.bound {
+            Bound::Channels(bounds) => self.by_channel(bounds, coding, &mut notes, progress),
+            Bound::Distance(distance) => self.by_distance(distance, coding, &mut notes, progress),
+        };
+        let (clip, coded, errors) = made.map_err(|error| Error::of(&error, Error::bound))?;
+        progress(1.0);
+        let Motion { frames, ref rig, .. } = self.motion;
+        let (frame_time_ns, length_exponent) = (coded.frame_time_ns, coded.length_exponent);
+        let report = Report { errors, frames, channels: rig.channels(), frame_time_ns, length_exponent };
+        Ok(Made { clip, report, notes })
+    }
+
+    fn by_distance(
+        &self,
+        distance: &Distance,
+        coding: &Coding,
+        notes: &mut Vec<Note>,
+        progress: Progress<'_>,
+    ) -> Result<(Vec<u8>, Coded, Errors)> {
+        let Prepared { motion, rig, options, .. } = self;
+        let (plan, part) = (distance.plan(options.effort), distance.scalar_part);
+        let coded = fit_coding(motion, coding, plan, part, progress)?;
+        let bytes = self.file(&coded, notes)?;
+        let report = verify(&bytes, rig, motion, distance.max_cm, part)?;
+        if let Some(mean_cm) = distance.mean_cm {
+            let mean = report.mean_joint_cm;
+            let refusal =
+                || Error::bound(format!("joints are {mean:.5} cm off in the mean; the bound of the mean is {mean_cm} cm"));
+            require!(mean <= mean_cm, refusal());
+        }
+        let (degrees, joint, frame) = (report.max_unseen_degrees, &report.unseen_joint, report.unseen_frame);
+        if let Some(most) = options.max_rotation_error {
+            let text = || format!("joint {joint} at frame {frame} is turned by {degrees:.2} degrees; the bound is {most}");
+            require!(degrees <= most, Error::setting(Setting::MaxRotationError, text()));
+        }
+        if degrees > TOLD_DEGREES {
+            let text = format!("rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame})");
+            let note = Note::info(NoteKind::Unbounded, text).of_joint(joint).at_frame(frame);
+            notes.push(note.remedy(Remedy::BoundRotations));
+        }
+        Ok((bytes, coded, Errors::Joints(report)))
+    }
+
+    fn by_channel(
+        &self,
+        bounds: &Bounds,
+        coding: &Coding,
+        notes: &mut Vec<Note>,
+        progress: Progress<'_>,
+    ) -> Result<(Vec<u8>, Coded, Errors)> {
+        let Prepared { motion, rig, .. } = self;
+        let mut bounds = bounds.clone();
+        bounds.at_least_steps(motion, coding.length_exponent);
+        let (channels, done, progress) = (motion.rig.channels() as f64, AtomicUsize::new(0), Mutex::new(progress));
+        let step = || {
+            let part = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / channels;
+            // A poisoned lock means that another thread's report failed, which will end the conversion.
+            if let Ok(mut progress) = progress.lock() {
+                progress(part);
+            }
+        };
+        let coded = channelwise::fit_exponent(motion, &bounds, coding.length_exponent, &step)?;
+        if let Some((channel, asked)) = bounds.raised(motion) {
+            let (name, bound) = (motion.rig.channel_name(channel), bounds.greatest[channel]);
+            let text = format!(
+                "the figure is so far from its origin that positions have steps of {bound:.3e}: {name} and channels like it keep this bound, not the \
+                 {asked:.3e} that was asked for"
+            );
+            notes.push(Note::warning(NoteKind::BoundRaised, text).of_joint(name));
+        }
+        let bytes = self.file(&coded, notes)?;
+        let report = channel_error::verify(&bytes, rig, motion, &bounds)?;
+        Ok((bytes, coded, Errors::Channels(report, bounds.constraint)))
+    }
+
+    /// The clip's bytes, with the index that was asked for; a note says what it costs.
+    fn file(&self, coded: &Coded, notes: &mut Vec<Note>) -> Result<Vec<u8>> {
+        let Options { rig_apart, index, memory, .. } = self.options;
+        let plain = clip::encode(coded, &self.rig, rig_apart)?;
+        let Some(seconds) = index else { return Ok(plain) };
+        let spacing = (seconds * 1e9 / f64::from(coded.frame_time_ns)).round();
+        let frame = f64::from(coded.frame_time_ns) * 1e-9;
+        let refusal = || {
+            let (given, most) = (Number(seconds), frame * f64::from(MAX_FRAMES));
+            let text = format!("{given}: expected seconds, from {frame} (a frame) to {most} ({MAX_FRAMES} frames)");
+            Error::setting(Setting::Index, text)
+        };
+        require!((1.0..=f64::from(MAX_FRAMES)).contains(&spacing), refusal());
+        let bytes = clip::encode_with_index(coded, &self.rig, rig_apart, spacing as u32, memory)?;
+        let cost = bytes.len() - plain.len();
+        let part = 100.0 * cost as f64 / plain.len() as f64;
+        let text = format!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)");
+        notes.push(Note::info(NoteKind::Index, text));
+        Ok(bytes)
+    }
+}
+
+/// The cheapest coding for motions of one rig together, by the options of the first.
+pub fn shared_coding(prepared: &[Prepared]) -> Coding {
+    let of = |prepared: &Prepared| match &prepared.bound {
+        Bound::Distance(distance) => (distance.plan(prepared.options.effort).filled_cm(), prepared.options.rotations),
+        // Bounds of channels are bounds of the file's own angles.
+        Bound::Channels(_) => (f64::INFINITY, Rotations::Euler),
+    };
+    let rotations = prepared.first().map_or(Rotations::Euler, |first| of(first).1);
+    let motions: Vec<_> = prepared.iter().map(|prepared| (&prepared.motion, of(prepared).0)).collect();
+    Coding::of(&motions, rotations)
+}
+
+/// Lets motions of one figure share the direction that is vertical in most of them: a guess may fail for a motion on the floor.
+/// `given` says that the user stated it, so that nothing is changed.
+pub fn agree_on_up(prepared: &mut [Prepared], given: bool) -> Result<Option<Note>, Error> {
+    let count = |up| prepared.iter().filter(|prepared| prepared.motion.rig.up == up).count();
+    let most = prepared.iter().map(|prepared| prepared.motion.rig.up).max_by_key(|&up| (count(up), std::cmp::Reverse(up.byte())));
+    let Some(most) = most.filter(|&up| !given && count(up) < prepared.len()) else { return Ok(None) };
+    let (others, all) = (prepared.len() - count(most), prepared.len());
+    for prepared in prepared {
+        prepared.set_up(most)?;
+    }
+    let text = format!("up: {others} of {all} motions look as if another axis were up; all take {}", up::text(most));
+    Ok(Some(Note::info(NoteKind::Up, text)))
+}
+
+/// Refuses motions of different rigs. `labels` name the motions, and `why` says what needs one rig.
+pub fn of_one_rig(prepared: &[Prepared], labels: &[String], why: &str) -> Result<(), Error> {
+    let compare = |first: &Prepared, label: &String, other: &Prepared| -> Result<()> {
+        let found = difference(&first.motion.rig, &other.motion.rig).with_context(|| label.clone())?;
+        match found {
+            Some(found) => Err(Error::source(format!("{label}: another rig than {}: {found}; {why}", labels[0])).into()),
+            None => Ok(()),
+        }
+    };
+    let Some(first) = prepared.first() else { return Ok(()) };
+    let others = labels.iter().zip(prepared).skip(1);
+    others
+        .map(|(label, other)| compare(first, label, other))
+        .collect::<Result<()>>()
+        .map_err(|error| Error::of(&error, Error::source))
+}

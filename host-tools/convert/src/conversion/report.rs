@@ -1,0 +1,80 @@
+//! How far a clip is from its source: numbers for programs, and the same in words and as JSON.
+
+use crate::errors;
+use crate::fit::chain::Constraint;
+use crate::motion::Motion;
+use crate::{channel_error, verify};
+use serde_json::{Map, Value, json};
+
+/// The errors of a clip, against what bounds them.
+#[derive(Clone, Debug)]
+pub enum Errors {
+    /// Distances of joints and errors of scalars.
+    Joints(verify::Report),
+    /// Errors of channels.
+    Channels(channel_error::Report, Constraint),
+}
+
+/// What a conversion gave.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Report {
+    /// The errors.
+    pub errors: Errors,
+    /// Number of frames.
+    pub frames: usize,
+    /// Number of channels.
+    pub channels: usize,
+    /// Nanoseconds a frame.
+    pub frame_time_ns: u32,
+    /// Positions of the clip are multiples of 2^length_exponent units.
+    pub length_exponent: i8,
+}
+
+impl Report {
+    /// The fields of a report, for a clip of `motion`.
+    pub fn to_json(&self, motion: &Motion) -> Map<String, Value> {
+        let mut fields = match &self.errors {
+            Errors::Joints(report) => errors::to_json(report, motion),
+            Errors::Channels(report, _) => channels_to_json(report, motion),
+        };
+        if let Some(cm) = motion.origin.retarget_max_cm {
+            fields.insert("retarget_max_cm".into(), json!(cm));
+        }
+        fields.insert("frames".into(), json!(self.frames));
+        fields
+    }
+
+    /// The errors as a clause for a person.
+    pub fn to_text(&self, motion: &Motion) -> String {
+        match &self.errors {
+            Errors::Joints(report) => errors::to_text(report, motion),
+            Errors::Channels(report, Constraint::Positions) => format!("error max {}", report.worst.sentence(motion)),
+            Errors::Channels(report, Constraint::Accelerations) => {
+                let (worst, drift) = (report.worst.sentence(motion), report.drift.sentence(motion));
+                format!("error max {worst}, a frame^2; drift max {drift}")
+            }
+        }
+    }
+
+    /// The same for a table's column.
+    pub fn to_cell(&self, motion: &Motion) -> String {
+        match &self.errors {
+            Errors::Joints(report) => errors::to_cell(report, motion),
+            Errors::Channels(report, _) => report.worst.sentence(motion),
+        }
+    }
+}
+
+fn channels_to_json(report: &channel_error::Report, motion: &Motion) -> Map<String, Value> {
+    let worst = &report.worst;
+    let fields = json!({
+        "max_error": worst.error,
+        "part_of_bound": worst.part,
+        "worst_channel": motion.rig.channel_name(worst.channel),
+        "worst_frame": worst.frame,
+        "max_drift": report.drift.error,
+        "drifting_channel": motion.rig.channel_name(report.drift.channel),
+    });
+    fields.as_object().cloned().unwrap_or_default()
+}

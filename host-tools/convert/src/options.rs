@@ -1,0 +1,147 @@
+//! What a user asks of a clip.
+
+use crate::fit::descent::Level;
+use crate::fit::parametrize::Rotations;
+use crate::length::Length;
+use crate::memory::Memory;
+
+/// Bounds of each channel, in place of the joints' bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ChannelBound {
+    /// The greatest error of each channel at every frame: degrees for rotations; for all others percent (of a position's range, of a scalar's
+    /// full scale, of 2 for a quaternion's components). Above 0.
+    Error(f64),
+    /// The greatest error of each channel's acceleration, its second difference: degrees per frame^2 for rotations, and percent per frame^2 for all
+    /// others. Above 0. Positions and rotations drift.
+    Acceleration(f64),
+    /// Known curves are coded as they are, but for rounding: at most 0.006 degrees, or 2^-16 of what percentages refer to.
+    Exact,
+}
+
+/// What a user asks of a clip. The defaults suit a figure of human size on a small display.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// The greatest distance of any joint or End Site from where the source has it; 0.5 cm by default, or 6 times `mean_error`.
+    pub max_error: Option<Length>,
+    /// The mean distance of all joints, End Sites left out: the clip is as small as this mean allows. `max_error` still holds.
+    pub mean_error: Option<Length>,
+    /// The greatest error of scalars, in percent of their full scale; 2 by default. Above 0.
+    pub max_scalar_error: Option<f64>,
+    /// The greatest rotation error of joints that carry nothing away from them, in degrees. Above 0.
+    pub max_rotation_error: Option<f64>,
+    /// Bounds of each channel, in place of all bounds above.
+    pub channels: Option<ChannelBound>,
+    /// The encoder's effort: speed against size.
+    pub effort: Level,
+    /// How joints with three Euler angles are coded; by cost as the default.
+    pub rotations: Rotations,
+    /// Seconds between snapshots for seeking; none by default.
+    pub index: Option<f64>,
+    /// Whether the rig stays out of the clip, to be shared by several; `false` by default.
+    pub rig_apart: bool,
+    /// Whether the seam between the last frame and the first is closed, which makes the clip a loop. What that moves is part of the bound.
+    pub looped: bool,
+    /// Whether the frames at which feet touch down become events.
+    pub footsteps: bool,
+    /// The memory that the conversion may take; 1 GiB by default.
+    pub memory: Memory,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            max_error: None,
+            mean_error: None,
+            max_scalar_error: None,
+            max_rotation_error: None,
+            channels: None,
+            effort: Level::Default,
+            rotations: Rotations::ByCost,
+            index: None,
+            rig_apart: false,
+            looped: false,
+            footsteps: false,
+            memory: Memory::default(),
+        }
+    }
+}
+
+impl Options {
+    /// The bound of joints without a setting.
+    pub const MAX_ERROR: Length = Length::Cm(0.5);
+    /// The bound of scalars without a setting, in percent of full scale.
+    pub const MAX_SCALAR_PERCENT: f64 = 2.0;
+    /// The bound of joints relative to the mean error, where only the mean is set.
+    pub const MAX_OF_MEAN: f64 = 6.0;
+
+    /// The defaults.
+    pub fn new() -> Options {
+        Options::default()
+    }
+
+    /// Bounds the distance of joints.
+    pub fn max_error(self, error: Length) -> Options {
+        Options { max_error: Some(error), ..self }
+    }
+
+    /// Aims at a mean distance of joints.
+    pub fn mean_error(self, error: Length) -> Options {
+        Options { mean_error: Some(error), ..self }
+    }
+
+    /// Bounds scalars, in percent of full scale.
+    pub fn max_scalar_error(self, percent: f64) -> Options {
+        Options { max_scalar_error: Some(percent), ..self }
+    }
+
+    /// Bounds rotations, in degrees.
+    pub fn max_rotation_error(self, degrees: f64) -> Options {
+        Options { max_rotation_error: Some(degrees), ..self }
+    }
+
+    /// Bounds channels instead of joints.
+    pub fn channels(self, bound: ChannelBound) -> Options {
+        Options { channels: Some(bound), ..self }
+    }
+
+    /// Sets the encoder's effort.
+    pub fn effort(self, effort: Level) -> Options {
+        Options { effort, ..self }
+    }
+
+    /// Sets how rotations are coded.
+    pub fn rotations(self, rotations: Rotations) -> Options {
+        Options { rotations, ..self }
+    }
+
+    /// Stores a snapshot every `seconds`.
+    pub fn index(self, seconds: f64) -> Options {
+        Options { index: Some(seconds), ..self }
+    }
+
+    /// Keeps the rig out of the clip.
+    pub fn rig_apart(self, rig_apart: bool) -> Options {
+        Options { rig_apart, ..self }
+    }
+
+    /// Closes the seam of a loop.
+    pub fn looped(self, looped: bool) -> Options {
+        Options { looped, ..self }
+    }
+
+    /// Finds footsteps.
+    pub fn footsteps(self, footsteps: bool) -> Options {
+        Options { footsteps, ..self }
+    }
+
+    /// Limits the memory.
+    pub fn memory(self, memory: Memory) -> Options {
+        Options { memory, ..self }
+    }
+
+    /// Whether known curves are coded as they are, for which rotations stay quaternions where the source has them so.
+    pub fn keeps_quaternions(&self) -> bool {
+        self.channels == Some(ChannelBound::Exact) || self.rotations == Rotations::Quaternion
+    }
+}
