@@ -12,7 +12,7 @@ use harness::web::{self, slow};
 use harness::{build, clips, paths, screen, setup, simulator, steered};
 use pantin::Clip;
 use pantin_convert::expand::expand;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::verify;
 use pantin_figure::rotation::Rotation;
 use serde_json::{Value, json};
@@ -224,7 +224,7 @@ impl Dropped {
     fn is_good(&self, motion: &Path, fps: Option<f64>) {
         let stem = motion.file_stem().unwrap().to_str().unwrap();
         let bytes = self.file(&format!("{stem}.ptn"));
-        let motion = import::load(motion, &Options { fps, ..Options::default() }).unwrap().motion;
+        let motion = import::load(motion, &ImportOptions::new().fps(fps)).unwrap().motion;
         let clip = Clip::new_checked(&bytes).unwrap();
         let report = verify::compare(&motion, &expand(&clip).unwrap()).unwrap();
         assert!(report.max_cm <= 0.5 && report.max_scalar <= 0.02, "{report:?}");

@@ -81,28 +81,28 @@ impl Options {
     }
 
     /// Bounds the distance of joints.
-    pub fn max_error(self, error: Length) -> Options {
-        Options { max_error: Some(error), ..self }
+    pub fn max_error(self, error: impl Into<Option<Length>>) -> Options {
+        Options { max_error: error.into(), ..self }
     }
 
     /// Aims at a mean distance of joints.
-    pub fn mean_error(self, error: Length) -> Options {
-        Options { mean_error: Some(error), ..self }
+    pub fn mean_error(self, error: impl Into<Option<Length>>) -> Options {
+        Options { mean_error: error.into(), ..self }
     }
 
     /// Bounds scalars, in percent of full scale.
-    pub fn max_scalar_error(self, percent: f64) -> Options {
-        Options { max_scalar_error: Some(percent), ..self }
+    pub fn max_scalar_error(self, percent: impl Into<Option<f64>>) -> Options {
+        Options { max_scalar_error: percent.into(), ..self }
     }
 
     /// Bounds rotations, in degrees.
-    pub fn max_rotation_error(self, degrees: f64) -> Options {
-        Options { max_rotation_error: Some(degrees), ..self }
+    pub fn max_rotation_error(self, degrees: impl Into<Option<f64>>) -> Options {
+        Options { max_rotation_error: degrees.into(), ..self }
     }
 
     /// Bounds channels instead of joints.
-    pub fn channels(self, bound: ChannelBound) -> Options {
-        Options { channels: Some(bound), ..self }
+    pub fn channels(self, bound: impl Into<Option<ChannelBound>>) -> Options {
+        Options { channels: bound.into(), ..self }
     }
 
     /// Sets the encoder's effort.
@@ -116,8 +116,8 @@ impl Options {
     }
 
     /// Stores a snapshot every `seconds`.
-    pub fn index(self, seconds: f64) -> Options {
-        Options { index: Some(seconds), ..self }
+    pub fn index(self, seconds: impl Into<Option<f64>>) -> Options {
+        Options { index: seconds.into(), ..self }
     }
 
     /// Keeps the rig out of the clip.

@@ -101,7 +101,7 @@ fn name(path: &Path) -> String {
 
 /// Converts by the program, expands by the library, and compares with what the importer reads.
 fn one(tool: &Path, path: &Path, out: &Path) -> Result<Row> {
-    let motion = import::load(path, &import::Options::default())?.motion;
+    let motion = import::load(path, &import::ImportOptions::new())?.motion;
     let height = units::figure_height_cm(&motion);
     let (bound, text) = match height {
         Some(height) if !PERSONS_CM.contains(&height) => (0.005 * height, "0.5%"),

@@ -64,6 +64,16 @@ pub struct Coding {
 }
 
 impl Coding {
+    /// Positions are multiples of 2 to this power of the motion's units.
+    pub fn length_exponent(&self) -> i8 {
+        self.length_exponent
+    }
+
+    /// How many joints are coded as exponential maps.
+    pub fn exponential_joints(&self) -> usize {
+        self.exponentials.iter().filter(|exponential| **exponential).count()
+    }
+
     /// The coding that the clips of `motions` share: motions of one rig, each with its bound in cm. A joint is coded as an
     /// exponential map if all motions together cost less that way and each of them allows it.
     pub fn of(motions: &[(&Motion, f64)], rotations: Rotations) -> Coding {

@@ -122,6 +122,11 @@ fn imported(path: &Path, request: &Request) -> Result<Imported> {
     if !format.has_rows {
         request.memory.check(motion.frames, channels).with_context(place)?;
     }
+    if motion.rig.joints.is_empty() {
+        let given = [(Setting::Unit, request.cm_per_unit.is_some()), (Setting::Up, request.up.is_some())];
+        let given = given.into_iter().filter(|(_, given)| *given);
+        notes.extend(given.map(|(setting, _)| Note::no_effect(setting, "the motion has no joints")));
+    }
     let known = unit_known.then_some(motion.rig.cm_per_unit);
     let (unit, note) = units::settle(&motion, request.cm_per_unit, known).with_context(place)?;
     motion.rig.cm_per_unit = unit;

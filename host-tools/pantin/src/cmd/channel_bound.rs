@@ -1,10 +1,6 @@
 //! The flags of `pantin convert` that bound channels instead of joints.
 
 use anyhow::Result;
-use pantin_convert::fit::bounds::Bounds;
-use pantin_convert::fit::chain::Constraint;
-use pantin_convert::motion::Motion;
-
 /// Bounds for each channel, in place of --max-error.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChannelBound {
@@ -39,18 +35,12 @@ impl ChannelBound {
         self.exact || self.max_channel_error.is_some() || self.max_accel_error.is_some()
     }
 
-    /// Whether curves are coded as they are.
-    pub fn is_exact(&self) -> bool {
-        self.exact
-    }
-
-    /// The bounds that the flags ask for, if any.
-    pub fn bounds(&self, motion: &Motion) -> Result<Option<Bounds>> {
-        Ok(match (self.max_channel_error, self.max_accel_error) {
-            (Some(delta), _) => Some(Bounds::of(motion, Constraint::Positions, delta)),
-            (_, Some(epsilon)) => Some(Bounds::of(motion, Constraint::Accelerations, epsilon)),
-            _ if self.exact => Some(Bounds::exact(motion)?),
-            _ => None,
-        })
+    /// The bound that the flags ask for, if any.
+    pub fn bound(&self) -> Option<pantin_convert::ChannelBound> {
+        match (self.max_channel_error, self.max_accel_error) {
+            (Some(delta), _) => Some(pantin_convert::ChannelBound::Error(delta)),
+            (_, Some(epsilon)) => Some(pantin_convert::ChannelBound::Acceleration(epsilon)),
+            _ => self.exact.then_some(pantin_convert::ChannelBound::Exact),
+        }
     }
 }

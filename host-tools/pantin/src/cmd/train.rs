@@ -1,6 +1,7 @@
 //! `pantin train`.
 
 use super::channel_bound::above_zero;
+use crate::memory;
 use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
 use crate::train::Counts;
 use anyhow::{Context, Result};
@@ -145,6 +146,12 @@ impl Sample {
     }
 }
 
+/// Refuses a motion whose fit takes more memory than the limit.
+fn check_fit(motion: &Motion) -> Result<()> {
+    let size = [motion.rig.joints.len(), motion.rig.channels()];
+    memory::limit().check_fit(motion.frames, size, TRAINING.plan(1.0).effort.beam, motion.origin.bytes)
+}
+
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     refuse_foreign(&arguments.output, Wanted::Source)?;
@@ -152,11 +159,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     check(&inputs, &[&arguments.output])?;
     let mut counts = Counts::default();
     for path in &arguments.inputs {
-        let files = import::Files::default();
-        let motion =
-            import::load(path, &import::Options { fps: arguments.fps, files: files.clone(), ..Default::default() })?.motion;
+        let files = memory::disk();
+        let mut options = import::ImportOptions::new().memory(memory::limit());
+        options.fps = arguments.fps;
+        let motion = import::import(&files, path, &options)?.motion;
         super::check_read(&files, &[&arguments.output])?;
-        super::check_fit(&motion, TRAINING, &files).with_context(|| path.display().to_string())?;
+        check_fit(&motion).with_context(|| path.display().to_string())?;
         let mut samples = Vec::new();
         if motion.frames > KEY_SPANS[5] {
             for (&span, &bound) in KEY_SPANS.iter().flat_map(|span| KEYED_BOUNDS.iter().map(move |bound| (span, bound))) {

@@ -2,7 +2,7 @@
 
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::fit::{descent::Level, fit};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Kind, Motion};
 use pantin_convert::verify::verify;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn repository() -> PathBuf {
 }
 
 fn load(path: &Path) -> Motion {
-    import::load(path, &Options::default()).unwrap_or_else(|error| panic!("{error:#}")).motion
+    crate::told::load(path, &ImportOptions::new()).unwrap_or_else(|error| panic!("{error:#}")).motion
 }
 
 fn own(name: &str) -> Motion {

@@ -1,15 +1,21 @@
 //! Changes of a motion before the fit: what they keep, and what they refuse.
 
+use crate::told::load;
+use pantin_convert::Memory;
 use pantin_convert::edit::loop_seam::{Most, close};
-use pantin_convert::edit::{cut::cut, mirror::mirror, pick::pick, resample::resample, retarget};
+use pantin_convert::edit::{cut::cut, mirror::mirror, pick::pick, resample, retarget};
 use pantin_convert::fk::positions;
-use pantin_convert::import::{Options, load};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::keys::{sample, sample_pieces};
 use pantin_convert::motion::{Interpolation, Joint, Keys, Kind, Motion, Rig, Scalar};
 use std::path::{Path, PathBuf};
 
+fn resample(motion: &Motion, fps: f64) -> anyhow::Result<Motion> {
+    resample::resample(motion, fps, Memory::default())
+}
+
 fn own(name: &str) -> Motion {
-    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions").join(name), &Options::default()).unwrap().motion
+    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions").join(name), &ImportOptions::new()).unwrap().motion
 }
 
 /// The captured clips whose names begin and end so, or none where they are not at hand.
@@ -103,7 +109,7 @@ fn a_mirror_in_a_mirror_shows_the_motion_itself() {
     let walk = own("walk.keys");
     assert_eq!(mirror(&mirror(&walk).unwrap()).unwrap(), walk);
     for path in captured("bvh_", ".bvh") {
-        let motion = load(&path, &Options::default()).unwrap().motion;
+        let motion = load(&path, &ImportOptions::new()).unwrap().motion;
         let other = mirror(&motion).unwrap_or_else(|error| panic!("{}: {error:#}", path.display()));
         assert_ne!(other.values, motion.values);
         assert_eq!(mirror(&other).unwrap(), motion, "{}", path.display());
@@ -214,7 +220,7 @@ fn curves_of_close_keys_are_the_same_at_another_rate() {
                  keys {word} hip.Xrotation\n 0 -1\n 2 60\n 3 -51\n 10 7\nkeys {word} hip.Zrotation\n 0 5\n 10 -20\n"
             );
             std::fs::write(&path, text).unwrap();
-            let fine = resample(&load(&path, &Options::default()).unwrap().motion, 60.0).unwrap();
+            let fine = resample(&load(&path, &ImportOptions::new()).unwrap().motion, 60.0).unwrap();
             let mut keys = vec![(0, -1.0), (12, 60.0), (18, -51.0), (60, 7.0)];
             if last == 12 {
                 keys.push((66, -1.0));
@@ -328,7 +334,7 @@ fn a_seam_is_closed_within_its_bound_or_refused() {
 #[test]
 fn every_captured_body_goes_on_the_display() {
     for path in captured("bvh_", ".bvh").into_iter().chain(captured("amc_", ".amc")) {
-        let motion = load(&path, &Options::default()).unwrap().motion;
+        let motion = load(&path, &ImportOptions::new()).unwrap().motion;
         let done = retarget::display(&motion, "").unwrap_or_else(|error| panic!("{}: {error:#}", path.display()));
         assert_eq!(done.motion.rig.joints.iter().filter(|joint| !joint.end_site).count(), 15);
         println!("{}: {:.2} cm ({} at frame {})", path.display(), done.max_cm, done.joint, done.frame);

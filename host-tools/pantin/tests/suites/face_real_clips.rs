@@ -5,7 +5,7 @@ use pantin_convert::encode::{clip, rig};
 use pantin_convert::expand::expand;
 use pantin_convert::export;
 use pantin_convert::fit::{descent::Level, fit};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::verify::verify;
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ fn faces_come_back_within_the_bound() {
     let table = std::env::temp_dir().join(format!("pantin-face-real-clips-{}.csv", std::process::id()));
     for path in faces() {
         let name = path.display();
-        let motion = import::load(&path, &Options::default()).unwrap().motion;
+        let motion = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
         assert!(motion.rig.joints.is_empty() && motion.frames > 100, "{name}");
         let bytes = rig::encode(&motion.rig).unwrap();
         // A second or two are enough here: the rest of a recording is like its beginning.
@@ -54,7 +54,7 @@ fn faces_come_back_within_the_bound() {
         let mut written = Vec::new();
         export::table::write(&played, &mut written).unwrap();
         std::fs::write(&table, written).unwrap();
-        let back = import::load(&table, &Options::default()).unwrap().motion;
+        let back = crate::told::load(&table, &ImportOptions::new()).unwrap().motion;
         assert_eq!(back.frames, short.frames, "{name}");
         assert!((back.frame_time / short.frame_time - 1.0).abs() < 1e-6, "{name}");
         for (channel, scalar) in short.rig.scalars.iter().enumerate() {

@@ -4,7 +4,7 @@ use crate::real::files;
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::fit::descent::{Level, Plan};
 use pantin_convert::fit::fit;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 use pantin_convert::verify::{Report, verify};
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ fn coded(motion: &Motion, plan: Plan) -> (usize, Report) {
 ///
 /// The mean is at least `least` of what was asked for.
 fn saved(path: &Path, mean_cm: f64, least: f64) -> f64 {
-    let motion = import::load(path, &Options::default()).unwrap().motion;
+    let motion = crate::told::load(path, &ImportOptions::new()).unwrap().motion;
     let plan = Plan { mean_cm: Some(mean_cm), ..Level::Default.plan(GUARD * mean_cm) };
     let (bytes, report) = coded(&motion, plan);
     let (mean, max) = (report.mean_joint_cm, report.max_cm);
