@@ -33,6 +33,7 @@ pub mod open;
 pub mod output;
 #[cfg(feature = "cli")]
 pub mod play;
+pub mod pose_bound;
 #[cfg(feature = "pictures")]
 pub mod render;
 #[cfg(feature = "sender")]

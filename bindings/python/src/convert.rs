@@ -7,6 +7,7 @@ use pantin_tools::edit::resample::resample;
 use pantin_tools::encode::{clip, rig};
 use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::fit;
+use pantin_tools::pose_bound::PoseBound;
 use pantin_tools::import::{self, Imported, Options, up};
 use pantin_tools::motion::Up;
 use pantin_tools::{budget, errors, verify};
@@ -55,12 +56,13 @@ pub fn code(imported: Imported, aim: Aim, read: u64, progress: &mut dyn FnMut(f6
     if let Some(fps) = aim.fps {
         motion = resample(&motion, fps)?;
     }
-    let plan = aim.level.plan(max_cm);
+    let bound = PoseBound::shell(max_cm, verify::shell_radius_cm(&motion));
+    let plan = aim.level.plan(bound);
     budget::check_fit(motion.frames, [motion.rig.joints.len(), motion.rig.channels()], plan.effort.beam, read)?;
     let figure = rig::encode(&motion.rig)?;
     let coded = fit(&motion, plan, aim.scalar_part, progress)?;
     let bytes = clip::encode(&coded, &figure, false)?;
-    let report = verify::verify(&bytes, &figure, &motion, max_cm, aim.scalar_part)?;
+    let report = verify::verify(&bytes, &figure, &motion, &bound, aim.scalar_part)?;
     let mut fields = errors::to_json(&report, &motion);
     for (name, value) in [("frames", json!(motion.frames)), ("bytes", json!(bytes.len())), ("units", json!(units))] {
         fields.insert(name.into(), value);

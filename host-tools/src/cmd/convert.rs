@@ -9,6 +9,7 @@ use crate::channel_error;
 use crate::edit::cut::cut;
 use crate::edit::find_loop::{self, Cut};
 use crate::edit::loop_seam::{self, Closed, Most};
+use crate::encode::clip::Start;
 use crate::encode::{clip, rig};
 use crate::errors;
 use crate::fit::bounds::Bounds;
@@ -20,7 +21,8 @@ use crate::import;
 use crate::motion::Motion;
 use crate::number::Number;
 use crate::output::{self, Wanted, detail, note, outln, refuse_foreign};
-use crate::verify::{compare, unseen, verify};
+use crate::pose_bound::{self, PoseBound, Shell};
+use crate::verify::{self, compare};
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
 use pantin::Up;
@@ -84,17 +86,26 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
     /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
-    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
+    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "max_joint_error", "shell", "places_only", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
     find_loop: bool,
-    /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
-    /// with % of the figure's height
+    /// Largest distance of any bounded point from its original position: of each joint, of the three points of its shell (see --shell)
+    /// and of each End Site. A number with cm, mm, m or in (default unit cm), or with % of the figure's height
     /// [default: 0.5cm, or 6 times --mean-error]
     #[arg(long, group = "bound", value_parser = joint_error::parse)]
     max_error: Option<JointError>,
-    /// Mean distance of the joints, End Sites left out, from their original positions, in the same units: the clip is as small as its
-    /// mean allows, instead of filling --max-error, which still holds for every joint
+    /// Mean error of the joints, End Sites left out, in the same units: the clip is as small as its mean allows, instead of filling
+    /// --max-error, which still holds for every joint. A joint's error is the largest distance of its shell's points
     #[arg(long, conflicts_with_all = ChannelBound::OPTIONS, value_parser = joint_error::parse)]
     mean_error: Option<JointError>,
+    /// Distance of the shell's points from their joint, in the units of --max-error. The points lie along the joint's own axes, so that
+    /// --max-error bounds how each joint is turned, too
+    /// [default: 3cm, or 3% for a figure below 1 m]
+    #[arg(long, value_name = "LENGTH|PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = joint_error::parse)]
+    shell: Option<JointError>,
+    /// Bound the places of joints and End Sites alone, without their shells. For figures that are drawn as lines between joints: a head's
+    /// yaw or a forearm's twist may be lost
+    #[arg(long, conflicts_with = "shell", conflicts_with_all = ChannelBound::OPTIONS)]
+    places_only: bool,
     /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
     effort: Level,
@@ -105,9 +116,12 @@ pub struct Arguments {
     /// [default: 2]
     #[arg(long, value_name = "PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
     max_scalar_error: Option<f64>,
-    /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
-    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
+    /// Largest angle between the original and the decoded rotation of any joint in the world, in degrees, at most 180
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = joint_error::degrees)]
     max_rotation_error: Option<f64>,
+    /// The same against the joint's parent: what a servo or a skinned mesh shows
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = joint_error::degrees)]
+    max_joint_error: Option<f64>,
     #[command(flatten)]
     channels: ChannelBound,
     /// Length of the source's unit in cm, instead of a guess
@@ -202,20 +216,17 @@ impl Arguments {
     /// Bounds that were given and bound nothing in this motion, a sentence each.
     fn without_effect(&self, motion: &Motion) -> Vec<String> {
         let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
-        let nothing_unseen = || unseen(&motion.rig).is_empty();
         // Options, whether they are given for nothing, and what is missing.
         let given = [
             ("--max-error", self.max_error.is_some() && no_joints, "joints"),
             ("--mean-error", self.mean_error.is_some() && no_joints, "joints"),
             ("--max-rotation-error", self.max_rotation_error.is_some() && no_joints, "joints"),
+            ("--max-joint-error", self.max_joint_error.is_some() && no_joints, "joints"),
+            ("--shell", self.shell.is_some() && no_joints, "joints"),
+            ("--places-only", self.places_only && no_joints, "joints"),
             ("--cm-per-unit", self.cm_per_unit.is_some() && no_joints, "joints"),
             ("--up", self.up.is_some() && no_joints, "joints"),
             ("--max-scalar-error", self.max_scalar_error.is_some() && no_scalars, "scalars"),
-            (
-                "--max-rotation-error",
-                self.max_rotation_error.is_some() && !no_joints && nothing_unseen(),
-                "joint that turns and carries nothing away from it",
-            ),
             ("--rotations", self.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
         ];
         let given = given.into_iter().filter(|(_, for_nothing, _)| *for_nothing);
@@ -287,7 +298,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let made = convert(arguments, &|part| bar.get_or_init(begin).set_position((part * 1000.0) as u64))?;
     bar.get_or_init(begin).finish_and_clear();
     output::report(made.fields().into());
-    note!("{}", made.sentence(arguments.output()));
+    made.sentence(arguments.output()).lines().for_each(|line| note!("{line}"));
     Ok(())
 }
 
@@ -332,8 +343,10 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// Smaller errors of rotations that move nothing are not mentioned.
-const TOLD_DEGREES: f64 = 0.01;
+/// Motions that a clip without a bound on rotations leaves out are mentioned from this many degrees on.
+const TOLD_DEGREES: f64 = 1.0;
+/// So many of them are named.
+const NAMED_CHANNELS: usize = 3;
 
 /// A clip that keeps its bound.
 pub(super) struct Made {
@@ -474,7 +487,18 @@ pub(super) struct Prepared {
     warnings: Vec<String>,
     notes: Vec<String>,
     bound: Bound,
+    /// What closing a loop moved.
+    seam: Option<Seam>,
     retarget_max_cm: Option<f64>,
+}
+
+/// A loop's source, and what closing its seam took of the bound.
+struct Seam {
+    /// The motion before its seam was closed, without the last frame.
+    source: Motion,
+    /// The bound against it.
+    bound: Bound,
+    closed: Map<String, Value>,
 }
 
 /// Imports one file and applies the edits.
@@ -523,14 +547,20 @@ pub(super) fn prepare_without_footsteps(arguments: &Arguments) -> Result<Prepare
             Bound::Distance(Distance::of(arguments, &motion).and_then(|bound| bound.less(imported.error_cm)).with_context(place)?)
         }
     };
+    let mut seam = None;
     if arguments.edits.looped {
+        let whole = bound.clone();
         let closed = bound.close(&motion).with_context(place)?;
         closed_sentences(&closed, &motion).into_iter().for_each(|sentence| notes.say(sentence));
+        if !motion.looped {
+            let source = cut(&motion, None, Some(closed.motion.frames - 1))?;
+            seam = Some(Seam { source, bound: whole, closed: closed_json(&closed) });
+        }
         motion = closed.motion;
     }
     let rig = rig::encode(&motion.rig)?;
     let (warnings, notes) = (imported.warnings, notes.said);
-    Ok(Prepared { motion, rig, read, warnings, notes, bound, retarget_max_cm: edited.retarget_max_cm })
+    Ok(Prepared { motion, rig, read, warnings, notes, bound, seam, retarget_max_cm: edited.retarget_max_cm })
 }
 
 impl Prepared {
@@ -576,9 +606,9 @@ impl Prepared {
 /// The cheapest coding for motions of one rig together.
 pub(super) fn shared_coding(prepared: &[Prepared], arguments: &Arguments) -> Coding {
     let motion = |prepared: &Prepared| match &prepared.bound {
-        Bound::Distance(distance) => (distance.plan(arguments.effort).filled_cm(), arguments.rotations),
+        Bound::Distance(distance) => (distance.plan(arguments.effort).bound, arguments.rotations),
         // Bounds of channels are bounds of the file's own angles.
-        Bound::Channels(_) => (f64::INFINITY, Rotations::Euler),
+        Bound::Channels(_) => (PoseBound::places(f64::INFINITY), Rotations::Euler),
     };
     let rotations = prepared.first().map_or(Rotations::Euler, |first| motion(first).1);
     let motions: Vec<_> = prepared.iter().map(|prepared| (&prepared.motion, motion(prepared).0)).collect();
@@ -586,17 +616,17 @@ pub(super) fn shared_coding(prepared: &[Prepared], arguments: &Arguments) -> Cod
 }
 
 /// What a conversion keeps to.
+#[derive(Clone)]
 enum Bound {
     Distance(Distance),
     Channels(Bounds),
 }
 
 /// The errors of joints and scalars that a conversion keeps to.
+#[derive(Clone, Copy)]
 struct Distance {
-    /// Of every joint.
-    max_cm: f64,
-    /// Of all joints in the mean, End Sites left out.
-    mean_cm: Option<f64>,
+    /// Of joints.
+    pose: PoseBound,
     /// Of scalars, as a part of full scale.
     scalar_part: f64,
 }
@@ -619,23 +649,32 @@ impl Distance {
             "--mean-error {} cm is more than --max-error, {max_cm} cm",
             mean_cm.unwrap_or_default()
         );
-        Ok(Distance { max_cm, mean_cm, scalar_part: arguments.max_scalar_error.unwrap_or(MAX_SCALAR_PERCENT) / 100.0 })
+        let shell = match arguments.shell {
+            _ if arguments.places_only => Shell::Places,
+            Some(shell) => Shell::Cm(shell.cm(motion)?),
+            None => Shell::Cm(verify::shell_radius_cm(motion)),
+        };
+        let (max_rotation_deg, max_joint_deg) = (arguments.max_rotation_error, arguments.max_joint_error);
+        let pose = PoseBound { max_cm, shell, max_rotation_deg, max_joint_deg, mean_cm };
+        Ok(Distance { pose, scalar_part: arguments.max_scalar_error.unwrap_or(MAX_SCALAR_PERCENT) / 100.0 })
     }
 
     /// What is left of the bound for a motion whose joints are `error_cm` from where the file has them: no joint is farther than all of it from the
     /// file.
     fn less(self, error_cm: f64) -> Result<Distance> {
+        let PoseBound { max_cm, mean_cm, .. } = self.pose;
         ensure!(
-            error_cm == 0.0 || error_cm < 0.5 * self.mean_cm.unwrap_or(self.max_cm),
+            error_cm == 0.0 || error_cm < 0.5 * mean_cm.unwrap_or(max_cm),
             "the file is only known within {error_cm:e} cm, which is too much of the bound"
         );
-        Ok(Distance { max_cm: self.max_cm - error_cm, mean_cm: self.mean_cm.map(|mean| mean - error_cm), ..self })
+        let pose = PoseBound { max_cm: max_cm - error_cm, mean_cm: mean_cm.map(|mean| mean - error_cm), ..self.pose };
+        Ok(Distance { pose, ..self })
     }
 
     fn plan(&self, effort: Level) -> Plan {
         // A looser bound than by default saves nothing, and leaves first codes too much room.
-        let max_cm = self.mean_cm.map_or(self.max_cm, |mean| self.max_cm.min(MAX_OF_MEAN * mean));
-        Plan { mean_cm: self.mean_cm, ..effort.plan(max_cm) }
+        let max_cm = self.pose.mean_cm.map_or(self.pose.max_cm, |mean| self.pose.max_cm.min(MAX_OF_MEAN * mean));
+        effort.plan(PoseBound { max_cm, ..self.pose })
     }
 }
 
@@ -656,25 +695,38 @@ impl Bound {
         };
         match self {
             Bound::Distance(distance) => {
-                let Distance { max_cm, mean_cm, scalar_part } = distance;
-                let closed = loop_seam::close(motion, Most::Distance(*max_cm, *scalar_part))?;
+                let Distance { pose, scalar_part } = distance;
+                let closed = loop_seam::close(motion, Most::Distance(pose, *scalar_part))?;
                 // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
+                let max_cm = pose.max_cm;
                 ensure!(
-                    closed.moved_cm < CLOSING * *max_cm,
+                    closed.moved_cm < CLOSING * max_cm,
                     "--loop: closing the seam moves {} by {:.3} cm, which leaves too little of the bound of {max_cm} cm; a bound above {:.3} cm will do",
                     closed.joint,
                     closed.moved_cm,
                     closed.moved_cm / CLOSING
                 );
-                *max_cm -= closed.moved_cm;
+                pose.max_cm -= closed.moved_cm;
                 *scalar_part -= scalars(&closed.moved);
-                if let Some(mean_cm) = mean_cm {
-                    let moved = compare(&cut(motion, None, Some(closed.motion.frames - 1))?, &closed.motion)?.mean_joint_cm;
+                for (most, turned, option) in [
+                    (&mut pose.max_rotation_deg, closed.turned_deg, "--max-rotation-error"),
+                    (&mut pose.max_joint_deg, closed.turned_joint_deg, "--max-joint-error"),
+                ] {
+                    let Some(most) = most else { continue };
                     ensure!(
-                        moved < CLOSING * *mean_cm,
+                        turned < CLOSING * *most,
+                        "--loop: closing the seam turns a joint by {turned:.3} degrees, which leaves too little of {option} {most}"
+                    );
+                    *most -= turned;
+                }
+                if let Some(mean_cm) = pose.mean_cm {
+                    let source = cut(motion, None, Some(closed.motion.frames - 1))?;
+                    let moved = compare(&source, &closed.motion, pose.shell_cm().unwrap_or(0.0))?.bounded_mean_cm(pose);
+                    ensure!(
+                        moved < CLOSING * mean_cm,
                         "--loop: closing the seam moves the joints by {moved:.4} cm in the mean, which leaves too little of --mean-error {mean_cm} cm"
                     );
-                    *mean_cm -= moved;
+                    pose.mean_cm = Some(mean_cm - moved);
                 }
                 Ok(closed)
             }
@@ -685,6 +737,18 @@ impl Bound {
             }
         }
     }
+}
+
+/// What closing a seam moved, for a report.
+fn closed_json(closed: &Closed) -> Map<String, Value> {
+    let fields = [
+        ("seam_cm", json!(closed.seam_cm)),
+        ("seam_joint", json!(closed.seam_joint)),
+        ("seam_moved_cm", json!(closed.moved_cm)),
+        ("seam_moved_joint", json!(closed.joint)),
+        ("seam_turned_deg", json!(closed.turned_deg)),
+    ];
+    fields.into_iter().map(|(name, value)| (name.into(), value)).collect()
 }
 
 fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
@@ -733,25 +797,51 @@ fn by_distance(
     let mut notes = Notes::of(arguments);
     let bytes = file(arguments, &coded, rig, &mut notes)?;
     let not_written = || format!("{}: not written", arguments.output().display());
-    let report = verify(&bytes, rig, motion, distance.max_cm, part).with_context(not_written)?;
-    if let Some(mean_cm) = distance.mean_cm {
-        let mean = report.mean_joint_cm;
+    // Errors are those against the source, whatever closing a loop moved.
+    let (source, whole) = match &prepared.seam {
+        Some(Seam { source, bound: Bound::Distance(whole), .. }) => (source, whole),
+        _ => (motion, distance),
+    };
+    let report = verify::verify(&bytes, rig, source, &whole.pose, whole.scalar_part).with_context(not_written)?;
+    if let Some(mean_cm) = whole.pose.mean_cm {
+        let mean = report.bounded_mean_cm(&whole.pose);
         ensure!(mean <= mean_cm, "{}: joints are {mean:.5} cm off in the mean; --mean-error is {mean_cm} cm", not_written());
     }
-    let (degrees, joint, frame) = (report.max_unseen_degrees, &report.unseen_joint, report.unseen_frame);
-    if let Some(most) = arguments.max_rotation_error.filter(|most| degrees > *most) {
-        bail!(
-            "{}: joint {joint} at frame {frame} is turned by {degrees:.2} degrees; --max-rotation-error is {most}",
-            not_written()
-        );
-    }
-    if degrees > TOLD_DEGREES {
-        notes.say(format!(
-            "rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame}); --max-rotation-error bounds it"
-        ));
-    }
+    left_out(motion, &coded, &whole.pose).into_iter().for_each(|sentence| notes.say(sentence));
     let (errors, cell) = (errors::to_text(&report, motion), errors::to_cell(&report, motion));
-    Ok(Made::new(motion, bytes, errors::to_json(&report, motion).into(), errors, cell, notes))
+    let mut json = errors::to_json(&report, motion);
+    json.extend(prepared.seam.iter().flat_map(|seam| seam.closed.clone()));
+    Ok(Made::new(motion, bytes, json.into(), errors, cell, notes))
+}
+
+/// Names motions that the clip leaves out: of joints that are not bounded, and rotations that places do not show.
+fn left_out(motion: &Motion, coded: &clip::Coded, pose: &PoseBound) -> Vec<String> {
+    let bounded = pose_bound::bounded(&motion.rig);
+    let range = |channel: usize| {
+        let values = motion.values[channel].iter();
+        values.clone().copied().fold(f64::MIN, f64::max) - values.copied().fold(f64::MAX, f64::min)
+    };
+    let still = |channel: &usize| matches!(coded.channels[*channel].start, Start::Rest | Start::Constant { .. });
+    let kinds = motion.rig.channel_kinds();
+    let helper = |joint: Option<usize>| joint.is_some_and(|joint| !bounded[joint]);
+    let turns = |channel: usize| kinds[channel].1.is_rotation() || kinds[channel].1.is_exponential();
+    let channels = |of: &dyn Fn(usize) -> bool| -> Vec<String> {
+        let found = (0..motion.rig.joint_channels()).filter(still).filter(|&channel| of(channel));
+        found.map(|channel| motion.rig.channel_name(channel)).collect()
+    };
+    let helpers = channels(&|channel| helper(kinds[channel].0) && range(channel) > 0.0);
+    let rotations = channels(&|channel| {
+        !pose.sees_rotations() && !helper(kinds[channel].0) && turns(channel) && range(channel) > TOLD_DEGREES
+    });
+    let sentence = |names: Vec<String>, what: &str| {
+        let more = names.len().saturating_sub(NAMED_CHANNELS);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let shown = names.iter().take(NAMED_CHANNELS).cloned().collect::<Vec<_>>().join(", ");
+        (!names.is_empty()).then(|| format!("{what}: {shown}{more}"))
+    };
+    let helpers = sentence(helpers, "helper bones are not bounded, and stay at rest in the clip");
+    let rotations = sentence(rotations, "--places-only: rotations that hardly move a joint are constant in the clip");
+    helpers.into_iter().chain(rotations).collect()
 }
 
 fn by_channel(

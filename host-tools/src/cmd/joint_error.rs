@@ -1,4 +1,4 @@
-//! `--max-error` and `--mean-error`: a length, or a part of the figure's height.
+//! The values of `--max-error`, `--mean-error` and `--shell` (a length, or a part of the figure's height) and of bounds on rotations.
 
 use crate::import::units::figure_height_cm;
 use crate::motion::Motion;
@@ -23,8 +23,7 @@ impl JointError {
             JointError::Cm(cm) => Ok(cm),
             JointError::Percent(_) if motion.rig.joints.is_empty() => Ok(1.0),
             JointError::Percent(percent) => {
-                let height =
-                    figure_height_cm(motion).context("the figure has no height to take a part of: give the error as a length")?;
+                let height = figure_height_cm(motion).context("the figure has no height to take a part of: give a length")?;
                 Ok(percent / 100.0 * height)
             }
         }
@@ -43,6 +42,20 @@ pub fn parse(text: &str) -> Result<JointError, String> {
     }
 }
 
+/// The least bound on a rotation in degrees: rounding three angles to steps of 360 / 2^32 degrees turns a joint by nearly as much.
+const LEAST_DEGREES: f64 = 2e-7;
+
+/// The greatest angle between two rotations, in degrees: above 0, not above 180.
+pub fn degrees(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if (LEAST_DEGREES..=180.0).contains(&number) => Ok(number),
+        Ok(number) if number > 0.0 && number < LEAST_DEGREES => {
+            Err(format!("a clip's angles have steps of 8.4e-8 degrees: the least bound is {LEAST_DEGREES:e} degrees"))
+        }
+        _ => Err("expected degrees, above 0 and at most 180".into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,5 +66,12 @@ mod tests {
         use JointError::*;
         assert_eq!(read, [Cm(2.0), Cm(2.0), Cm(0.2), Cm(5.08), Cm(200.0), Percent(2.0), Percent(0.5)]);
         assert!(["", "0", "-1cm", "nan%", "2 miles"].iter().all(|text| parse(text).is_err()));
+    }
+
+    #[test]
+    fn degrees_are_above_what_an_angle_can_hold_and_up_to_half_a_turn() {
+        assert_eq!(["2", "180", "1e-6"].map(|text| degrees(text).unwrap()), [2.0, 180.0, 1e-6]);
+        assert!(["0", "-1", "nan", "inf", "180.1", "two"].iter().all(|text| degrees(text).unwrap_err().contains("at most 180")));
+        assert!(degrees("1e-9").unwrap_err().contains("steps"));
     }
 }

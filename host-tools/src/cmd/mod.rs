@@ -31,6 +31,7 @@ use crate::import;
 use crate::motion::Motion;
 use crate::open::no_clip;
 use crate::output::{self, detail};
+use crate::pose_bound::PoseBound;
 use crate::verify::verify;
 use anyhow::{Context, Result, anyhow, ensure};
 use pantin::OpenError;
@@ -60,7 +61,7 @@ fn check_read(files: &import::Files, outputs: &[&Path]) -> Result<()> {
 fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()> {
     let read = files.read_so_far().iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
     let size = [motion.rig.joints.len(), motion.rig.channels()];
-    budget::check_fit(motion.frames, size, level.plan(SHOWN_CM).effort.beam, read)
+    budget::check_fit(motion.frames, size, level.plan(SHOWN).effort.beam, read)
 }
 
 /// Refuses a rig for clips that all have their own.
@@ -96,8 +97,9 @@ fn format_of<T: clap::ValueEnum>(output: &Path, option: Option<T>) -> Result<Opt
     Ok(option.or(by_name))
 }
 
-/// Bounds of a motion that is converted only to be shown: in cm, and as a part of a scalar's full scale.
-const SHOWN_CM: f64 = 0.5;
+/// The bound of a motion that is converted only to be shown: as lines between joints, so that places are enough.
+const SHOWN: PoseBound = PoseBound::places(0.5);
+/// The same of scalars, as a part of full scale.
 const SHOWN_PART: f64 = 0.02;
 
 impl Files {
@@ -127,10 +129,10 @@ impl Files {
             let rig = encode::rig::encode(&motion.rig).with_context(place)?;
             let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;
             let moved = &mut |part: f64| bar.set_position((part * 1000.0) as u64);
-            let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, moved).with_context(place)?;
+            let coded = fit(&motion, Level::Fast.plan(SHOWN), SHOWN_PART, moved).with_context(place)?;
             bar.finish_and_clear();
             files.clip = encode::clip::encode(&coded, &rig, false).with_context(place)?;
-            verify(&files.clip, &rig, &motion, SHOWN_CM, SHOWN_PART).with_context(place)?;
+            verify(&files.clip, &rig, &motion, &SHOWN, SHOWN_PART).with_context(place)?;
         }
         Ok(files)
     }

@@ -7,6 +7,7 @@ use crate::fit::{bounds::Bounds, chain::Constraint, channelwise, descent::Level,
 use crate::import;
 use crate::motion::{Interpolation, Keys, Kind, Motion};
 use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
+use crate::pose_bound::PoseBound;
 use crate::train::Counts;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -139,7 +140,7 @@ impl Sample {
             let bounds = Bounds { constraint: Constraint::Positions, exact: true, asked: greatest.clone(), greatest };
             channelwise::fit(&self.motion, &bounds, &|| ())?
         } else {
-            fit(&self.motion, TRAINING.plan(self.bound), 0.02, &mut |_| ())?
+            fit(&self.motion, TRAINING.plan(PoseBound::places(self.bound)), 0.02, &mut |_| ())?
         };
         Ok((coded, bytes))
     }

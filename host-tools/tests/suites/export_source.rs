@@ -4,13 +4,14 @@ use pantin_tools::encode::{clip, rig};
 use pantin_tools::export::source::{c_header, rust_module};
 use pantin_tools::fit::{descent::Level, fit};
 use pantin_tools::import::{self, Options};
+use pantin_tools::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn walk() -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motions/walk.keys");
     let motion = import::load(&path, &Options::default()).unwrap().motion;
-    let coded = fit(&motion, Level::Fast.plan(1.0), 0.02, &mut |_| ()).unwrap();
+    let coded = fit(&motion, Level::Fast.plan(PoseBound::places(1.0)), 0.02, &mut |_| ()).unwrap();
     clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
 }
 
@@ -128,7 +129,7 @@ fn hostile_clip() -> Vec<u8> {
     let keys = vec![None; channels];
     let motion =
         pantin_tools::motion::Motion { rig, frame_time: 0.1, frames: 2, keys, values, looped: false, events: Vec::new() };
-    let coded = fit(&motion, Level::Fast.plan(1.0), 0.02, &mut |_| ()).unwrap();
+    let coded = fit(&motion, Level::Fast.plan(PoseBound::places(1.0)), 0.02, &mut |_| ()).unwrap();
     clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
 }
 

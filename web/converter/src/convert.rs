@@ -10,6 +10,7 @@ use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::{fit, raw};
 use pantin_tools::import::{self, Files, Options};
 use pantin_tools::motion::Motion;
+use pantin_tools::pose_bound::PoseBound;
 use pantin_tools::{errors, verify};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -85,10 +86,11 @@ pub fn convert(files: Vec<(PathBuf, Vec<u8>)>, options: &[u8], progress: &mut dy
     if let Some(fps) = fps {
         motion = resample(&motion, fps)?;
     }
+    let bound = PoseBound::shell(cm, verify::shell_radius_cm(&motion));
     let rig = rig::encode(&motion.rig)?;
-    let coded = fit(&motion, level.plan(cm), SCALAR_PART, progress)?;
+    let coded = fit(&motion, level.plan(bound), SCALAR_PART, progress)?;
     let bytes = clip::encode(&coded, &rig, false)?;
-    let report = verify::verify(&bytes, &rig, &motion, cm, SCALAR_PART)?;
+    let report = verify::verify(&bytes, &rig, &motion, &bound, SCALAR_PART)?;
     let mut fields = errors::to_json(&report, &motion);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let facts = json!({

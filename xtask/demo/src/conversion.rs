@@ -7,14 +7,15 @@ use anyhow::{Context, Result, ensure};
 use harness::build;
 use pantin_tools::fit::descent::Level;
 use pantin_tools::fit::fit;
+use pantin_tools::pose_bound::PoseBound;
 use pantin_tools::verify::verify;
 use pantin_tools::{encode, errors, import};
 use serde_json::Value;
 
 use crate::report::Clip;
 
-/// The host tool's own bounds.
-const ERROR_CM: f64 = 0.5;
+/// The host tool's own bounds, but for the shell: the figure is drawn as lines between joints, so that their places are enough.
+const BOUND: PoseBound = PoseBound::places(0.5);
 const SCALAR_PART: f64 = 0.02;
 
 /// Formats that this program reads itself.
@@ -51,9 +52,9 @@ fn by_library(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
     let part = bounds.scalar_percent.map_or(SCALAR_PART, |percent| percent / 100.0);
     ensure!(part > 0.0, "--max-scalar-error: expected a number above 0");
     let rig = encode::rig::encode(&motion.rig)?;
-    let coded = fit(&motion, Level::Default.plan(ERROR_CM), part, &mut |_| ())?;
+    let coded = fit(&motion, Level::Default.plan(BOUND), part, &mut |_| ())?;
     let bytes = encode::clip::encode(&coded, &rig, false)?;
-    let report = verify(&bytes, &rig, &motion, ERROR_CM, part)?;
+    let report = verify(&bytes, &rig, &motion, &BOUND, part)?;
     std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
     Ok(errors::to_json(&report, &motion).into())
 }
@@ -61,7 +62,7 @@ fn by_library(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
 fn by_program(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
     let tool: PathBuf = build::host_tool()?;
     let mut convert = Command::new(tool);
-    convert.arg("convert").arg(motion).arg("-o").arg(path).arg("--json");
+    convert.args(["convert", "--places-only"]).arg(motion).arg("-o").arg(path).arg("--json");
     convert.args(bounds.error.iter().flat_map(|error| ["--max-error", error]));
     convert.args(bounds.scalar_percent.iter().flat_map(|error| ["--max-scalar-error".to_owned(), error.to_string()]));
     convert.args(bounds.cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]));
