@@ -226,8 +226,8 @@ impl Dropped {
         let bytes = self.file(&format!("{stem}.ptn"));
         let motion = import::load(motion, &ImportOptions::new().fps(fps)).unwrap().motion;
         let clip = Clip::new_checked(&bytes).unwrap();
-        let report = verify::compare(&motion, &expand(&clip).unwrap()).unwrap();
-        assert!(report.max_cm <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
+        let report = verify::compare(&motion, &expand(&clip).unwrap(), verify::shell_radius_cm(&motion)).unwrap();
+        assert!(report.shell_cm.error <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
         let header = String::from_utf8(self.file(&format!("{stem}.h"))).unwrap();
         assert!(header.contains(&format!("_LEN {}\n", bytes.len())), "{header:.300}");
         let sides = self.outcome["sides"].as_array().unwrap();

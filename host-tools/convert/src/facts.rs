@@ -220,6 +220,7 @@ mod tests {
     use crate::expand;
     use crate::fit::descent::Level;
     use crate::fit::fit;
+    use crate::pose_bound::PoseBound;
 
     #[test]
     fn bits_of_segments_are_those_that_the_encoder_wrote() {
@@ -227,7 +228,7 @@ mod tests {
         let bytes = std::fs::read(path).unwrap();
         let motion = expand::expand(&Clip::new_checked(&bytes).unwrap()).unwrap();
         let motion = crate::motion::Motion { looped: false, ..motion };
-        let coded = fit(&motion, Level::Fast.plan(0.5), 0.02, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Level::Fast.plan(PoseBound::places(0.5)), 0.02, &mut |_| ()).unwrap();
         let figure = rig::encode(&motion.rig).unwrap();
         let file = clip::encode(&coded, &figure, false).unwrap();
         let opened = Clip::new_checked(&file).unwrap();

@@ -140,8 +140,8 @@ pub enum Remedy {
     RaiseMemory,
     /// Ask for a looser bound.
     LoosenBound,
-    /// Bound rotations too.
-    BoundRotations,
+    /// Bound the shells of joints, not their places alone.
+    BoundShell,
     /// Choose other first and last frames.
     ChooseFrames,
     /// Close the seam to a loop, or take the motion as one cycle.
@@ -168,7 +168,7 @@ impl Remedy {
             Remedy::ChooseSkeleton => "choose another skeleton",
             Remedy::RaiseMemory => "raise the limit of memory",
             Remedy::LoosenBound => "allow a larger error",
-            Remedy::BoundRotations => "bound the rotations",
+            Remedy::BoundShell => "bound the shells of joints",
             Remedy::ChooseFrames => "choose a first and a last frame that are alike",
             Remedy::CloseLoop => "take the motion as one cycle",
             Remedy::MakeLoop => "close the ends to a loop",

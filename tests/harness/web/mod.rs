@@ -20,6 +20,7 @@ use pantin_convert::export;
 use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::fit;
 use pantin_convert::import::{self, ImportOptions};
+use pantin_convert::pose_bound::PoseBound;
 use pantin_tools::machine;
 use pantin_tools::serve::{Site, serve};
 use serde_json::json;
@@ -182,7 +183,7 @@ fn medley() -> Result<Vec<u8>> {
     (whole.looped, whole.events) = (false, vec![]);
     whole.keys.fill(None);
     let rig = rig::encode(&whole.rig)?;
-    let coded = fit(&whole, Level::Fast.plan(MEDLEY_CM), SCALAR_PART, &mut |_| {})?;
+    let coded = fit(&whole, Level::Fast.plan(PoseBound::places(MEDLEY_CM)), SCALAR_PART, &mut |_| {})?;
     clip::encode(&coded, &rig, false)
 }
 

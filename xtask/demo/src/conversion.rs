@@ -38,7 +38,8 @@ pub fn convert(motion: &Path, out: &Path, bounds: &Bounds) -> Result<Clip> {
 
 fn by_library(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
     let import = ImportOptions::new().cm_per_unit(bounds.cm_per_unit);
-    let options = Options::new().max_scalar_error(bounds.scalar_percent);
+    // The figure is drawn as lines between joints, so that their places are enough.
+    let options = Options::new().places_only(true).max_scalar_error(bounds.scalar_percent);
     let recipe = Recipe::new().import(import).options(options);
     let converted = recipe.convert(&Disk::default(), motion, &mut |_| ())?;
     for note in &converted.notes {

@@ -1,6 +1,6 @@
 //! `pantin convert`.
 
-use super::channel_bound::{ChannelBound, above_zero};
+use super::channel_bound::{ChannelBound, above_zero, degrees};
 use super::edits::Edits;
 use super::encoder::{Effort, Rotations};
 use super::shard::{self, Shard};
@@ -73,17 +73,26 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
     /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
-    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
+    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "max_joint_error", "shell", "places_only", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
     find_loop: bool,
-    /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
-    /// with % of the figure's height
+    /// Largest distance of any bounded point from its original position: of each joint, of the three points of its shell (see --shell)
+    /// and of each End Site. A number with cm, mm, m or in (default unit cm), or with % of the figure's height
     /// [default: 0.5cm, or 6 times --mean-error]
     #[arg(long, group = "bound", value_parser = str::parse::<Length>)]
     max_error: Option<Length>,
-    /// Mean distance of the joints, End Sites left out, from their original positions, in the same units: the clip is as small as its
-    /// mean allows, instead of filling --max-error, which still holds for every joint
+    /// Mean error of the joints, End Sites left out, in the same units: the clip is as small as its mean allows, instead of filling
+    /// --max-error, which still holds for every joint. A joint's error is the largest distance of its shell's points
     #[arg(long, conflicts_with_all = ChannelBound::OPTIONS, value_parser = str::parse::<Length>)]
     mean_error: Option<Length>,
+    /// Distance of the shell's points from their joint, in the units of --max-error. The points lie along the joint's own axes, so that
+    /// --max-error bounds how each joint is turned, too
+    /// [default: 3cm, or 3% for a figure below 1 m]
+    #[arg(long, value_name = "LENGTH|PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = str::parse::<Length>)]
+    shell: Option<Length>,
+    /// Bound the places of joints and End Sites alone, without their shells. For figures that are drawn as lines between joints: a head's
+    /// yaw or a forearm's twist may be lost
+    #[arg(long, conflicts_with = "shell", conflicts_with_all = ChannelBound::OPTIONS)]
+    places_only: bool,
     /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
     effort: Effort,
@@ -94,9 +103,12 @@ pub struct Arguments {
     /// [default: 2]
     #[arg(long, value_name = "PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
     max_scalar_error: Option<f64>,
-    /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
-    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
+    /// Largest angle between the original and the decoded rotation of any joint in the world, in degrees, at most 180
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = degrees)]
     max_rotation_error: Option<f64>,
+    /// The same against the joint's parent: what a servo or a skinned mesh shows
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = degrees)]
+    max_joint_error: Option<f64>,
     #[command(flatten)]
     channels: ChannelBound,
     /// Length of the source's unit in cm, instead of a guess
@@ -153,6 +165,8 @@ impl Arguments {
         let mut options = Options::new().effort(self.effort.into()).rotations(self.rotations.into()).memory(limit());
         (options.max_error, options.mean_error) = (self.max_error, self.mean_error);
         (options.max_scalar_error, options.max_rotation_error) = (self.max_scalar_error, self.max_rotation_error);
+        (options.shell, options.places_only) = (self.shell, self.places_only);
+        options.max_joint_error = self.max_joint_error;
         (options.channels, options.index) = (self.channels.bound(), self.index);
         (options.looped, options.footsteps) = (self.edits.looped, self.edits.footsteps);
         options.rig_apart = self.rig_out.is_some();
@@ -248,7 +262,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let made = convert(arguments, &|part| bar.get_or_init(begin).set_position((part * 1000.0) as u64))?;
     bar.get_or_init(begin).finish_and_clear();
     output::report(made.fields().into());
-    note!("{}", made.sentence(arguments.output()));
+    made.sentence(arguments.output()).lines().for_each(|line| note!("{line}"));
     Ok(())
 }
 

@@ -109,7 +109,8 @@ impl Files {
         let mut files = Files::read_from(&from, clip, rig)?;
         if files.is_motion() {
             let import = ImportOptions::new().memory(memory::limit());
-            let options = Options::new().effort(Level::Fast).memory(memory::limit());
+            // Only to be shown: as lines between joints, so that places are enough.
+            let options = Options::new().effort(Level::Fast).places_only(true).memory(memory::limit());
             let prepared = Recipe::new().import(import).options(options).prepare(&from, clip)?;
             prepared.notes.iter().for_each(|note| note!("{}", words::line(note)));
             let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;

@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
     }
     for (task, made) in tasks.iter().zip(&made) {
-        note!("{}", made.sentence(task.output()));
+        made.sentence(task.output()).lines().for_each(|line| note!("{line}"));
     }
     let count = coding.exponential_joints();
     note!("{} clips of one form: length exponent {}, {count} joints as exponential maps", made.len(), coding.length_exponent());

@@ -10,6 +10,7 @@ use pantin_convert::encode::{clip::Coded, rig};
 use pantin_convert::fit::{bounds::Bounds, chain::Constraint, channelwise, descent::Level, fit};
 use pantin_convert::import;
 use pantin_convert::motion::{Interpolation, Keys, Kind, Motion};
+use pantin_convert::pose_bound::PoseBound;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -140,7 +141,7 @@ impl Sample {
             let bounds = Bounds { constraint: Constraint::Positions, exact: true, asked: greatest.clone(), greatest };
             channelwise::fit(&self.motion, &bounds, &|| ())?
         } else {
-            fit(&self.motion, TRAINING.plan(self.bound), 0.02, &mut |_| ())?
+            fit(&self.motion, TRAINING.plan(PoseBound::places(self.bound)), 0.02, &mut |_| ())?
         };
         Ok((coded, bytes))
     }
@@ -149,7 +150,7 @@ impl Sample {
 /// Refuses a motion whose fit takes more memory than the limit.
 fn check_fit(motion: &Motion) -> Result<()> {
     let size = [motion.rig.joints.len(), motion.rig.channels()];
-    memory::limit().check_fit(motion.frames, size, TRAINING.plan(1.0).effort.beam, motion.origin.bytes)
+    memory::limit().check_fit(motion.frames, size, TRAINING.plan(PoseBound::places(1.0)).effort.beam, motion.origin.bytes)
 }
 
 /// Runs the command.

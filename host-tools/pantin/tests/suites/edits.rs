@@ -8,6 +8,7 @@ use pantin_convert::fk::positions;
 use pantin_convert::import::ImportOptions;
 use pantin_convert::keys::{sample, sample_pieces};
 use pantin_convert::motion::{Interpolation, Joint, Keys, Kind, Motion, Rig, Scalar};
+use pantin_convert::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
 
 fn resample(motion: &Motion, fps: f64) -> anyhow::Result<Motion> {
@@ -305,7 +306,7 @@ fn a_seam_is_closed_within_its_bound_or_refused() {
     let mut motion = arms(25);
     let arm = channel(&motion, "larm.Zrotation");
     motion.values[arm][24] += 0.5;
-    let closed = close(&motion, Most::Distance(1.0, 0.02)).unwrap();
+    let closed = close(&motion, Most::Distance(&PoseBound::places(1.0), 0.02)).unwrap();
     // Half a degree of 60 cm is 0.52 cm, half of which each end moves.
     assert!((closed.moved_cm - 0.262).abs() < 0.01, "{}", closed.moved_cm);
     assert_eq!(closed.joint, "larm/end");
@@ -322,13 +323,13 @@ fn a_seam_is_closed_within_its_bound_or_refused() {
     let over = values[0] - values[23];
     let before = values[23] - values[22];
     assert!((over - before).abs() < 2.0, "{before} and then {over}");
-    let refused = close(&motion, Most::Distance(0.5, 0.02)).unwrap_err().to_string();
+    let refused = close(&motion, Most::Distance(&PoseBound::places(0.5), 0.02)).unwrap_err().to_string();
     assert!(refused.contains("larm/end is 0.52") && refused.contains("the bound is 0.5 cm"), "{refused}");
     let mut motion = arms(25);
     motion.values[10][24] += 0.1;
-    let refused = close(&motion, Most::Distance(0.5, 0.02)).unwrap_err().to_string();
+    let refused = close(&motion, Most::Distance(&PoseBound::places(0.5), 0.02)).unwrap_err().to_string();
     assert!(refused.contains("smileRight differs by 0.1000"), "{refused}");
-    assert!(close(&arms(2), Most::Distance(0.5, 0.02)).is_err());
+    assert!(close(&arms(2), Most::Distance(&PoseBound::places(0.5), 0.02)).is_err());
 }
 
 #[test]

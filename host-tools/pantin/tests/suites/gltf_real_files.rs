@@ -8,6 +8,7 @@ use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::fit;
 use pantin_convert::import::{self, Disk, ImportOptions, units};
 use pantin_convert::motion::Motion;
+use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::{encode, export, fk, verify};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -198,10 +199,10 @@ fn files_convert_expand_and_export_within_the_bound() {
         let height = units::posed_height_cm(&motion).max(motion.rig.cm_per_unit);
         let bound = BOUND * height;
         let rig = encode::rig::encode(&motion.rig).unwrap();
-        let coded = fit(&motion, Level::Fast.plan(bound), SCALAR_BOUND, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Level::Fast.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
         let bytes = encode::clip::encode(&coded, &rig, false).unwrap();
-        let report = verify::verify(&bytes, &[], &motion, bound, SCALAR_BOUND).unwrap();
-        println!("{} {animation}: {} bytes, {:.4} cm of {bound:.4}", path.display(), bytes.len(), report.max_cm);
+        let report = verify::verify(&bytes, &[], &motion, &PoseBound::places(bound), SCALAR_BOUND).unwrap();
+        println!("{} {animation}: {} bytes, {:.4} cm of {bound:.4}", path.display(), bytes.len(), report.place_cm.error);
 
         let expanded = pantin_convert::expand::expand(&pantin::Clip::new_checked(&bytes).unwrap()).unwrap();
         std::fs::write(&written, export::gltf::write(&expanded).unwrap()).unwrap();

@@ -48,7 +48,11 @@ fn library() -> (Vec<u8>, BTreeMap<String, Motion>) {
     let folder = tempfile::tempdir().unwrap();
     let bank = folder.path().join("moves.ptb");
     let mut command = Command::new(env!("CARGO_BIN_EXE_pantin"));
-    command.arg("convert").arg(motions().join("library")).args(["--same-form", "--max-error", "0.5cm", "-o"]).arg(&bank);
+    command
+        .arg("convert")
+        .arg(motions().join("library"))
+        .args(["--places-only", "--same-form", "--max-error", "0.5cm", "-o"])
+        .arg(&bank);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let bytes = std::fs::read(bank).unwrap();

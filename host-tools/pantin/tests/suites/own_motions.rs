@@ -5,6 +5,7 @@ use pantin_convert::fit::{descent::Level, fit};
 use pantin_convert::fk;
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Keys, Motion};
+use pantin_convert::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
 
 /// The way forward.
@@ -176,7 +177,7 @@ fn elbow(clip: &Clip, side: &str) -> Vec<f64> {
 /// At 0.5 cm it takes no more than `most` bytes, and `least` channels at least are coded as moving.
 fn costs(clip: &Clip, most: usize, least: usize) {
     let rig = rig::encode(&clip.motion.rig).unwrap();
-    let coded = fit(&clip.motion, Level::Default.plan(0.5), 0.0, &mut |_| ()).unwrap();
+    let coded = fit(&clip.motion, Level::Default.plan(PoseBound::places(0.5)), 0.0, &mut |_| ()).unwrap();
     let bytes = clip::encode(&coded, &rig, false).unwrap();
     let opened = pantin::Clip::new_checked(&bytes).unwrap();
     let (size, moving) = (opened.motion_len(), opened.moving());
