@@ -1,7 +1,7 @@
 //! Runs long work on threads of its own, without the interpreter's lock. Meanwhile the calling thread reports progress and handles signals, so that
 //! Ctrl-C and an exception of the callback stop the work.
 
-use anyhow::Result;
+use pantin_convert::Progress;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
@@ -19,12 +19,12 @@ struct Stopped;
 
 /// Runs `work` on `jobs` threads (0: one for each CPU), which gets a function that takes the part that is done, from 0 to 1. The pool of threads ends with
 /// it, so that a process may fork afterwards.
-pub fn run<T: Send>(
+pub fn run<T: Send, E: Send>(
     py: Python<'_>,
     jobs: usize,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&mut dyn FnMut(f64)) -> Result<T> + Send,
-) -> PyResult<Result<T>> {
+    work: impl FnOnce(Progress<'_>) -> Result<T, E> + Send,
+) -> PyResult<Result<T, E>> {
     let pool = ThreadPoolBuilder::new().num_threads(jobs).build();
     let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     let stop = &AtomicBool::new(false);

@@ -1,115 +1,42 @@
-//! From a motion to a clip whose bound the device's own decoder has verified.
+//! From a motion file to a clip, by the library's one conversion.
 
 use crate::background;
-use crate::error::exception;
-use anyhow::{Context, Result, bail, ensure};
-use pantin_convert::edit::resample::resample;
-use pantin_convert::encode::{clip, rig};
-use pantin_convert::fit::descent::Level;
-use pantin_convert::fit::fit;
-use pantin_convert::import::{self, Imported, Options, up};
-use pantin_convert::motion::Up;
-use pantin_convert::{budget, errors, verify};
+use crate::error::refused;
+use crate::settings::Settings;
+use crate::words;
+use pantin_convert::import::Disk;
+use pantin_convert::{Converted, Note, NoteKind};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::PathBuf;
 
-/// The bounds of a clip, and how hard the encoder looks.
-#[derive(Clone, Copy)]
-pub struct Aim {
-    max_cm: f64,
-    scalar_part: f64,
-    level: Level,
-    /// Frames a second of the clip.
-    fps: Option<f64>,
+/// The clip, its rig, and the report as JSON.
+pub type Made = (Vec<u8>, Vec<u8>, String);
+
+/// What Python gets of a conversion.
+pub fn made(converted: Converted, settings: &Settings) -> Made {
+    let Converted { clip, rig, motion, report, notes, .. } = converted;
+    let mut fields = report.to_json(&motion);
+    let unit = notes.iter().find(|note| note.kind == NoteKind::Unit && !note.is_warning()).map(|note| &note.text);
+    let warnings: Vec<&String> = notes.iter().filter(|note| note.is_warning()).map(|note| &note.text).collect();
+    let all: Vec<_> = notes.iter().map(|note: &Note| words::fields(note, settings)).collect();
+    let more = [("bytes", json!(clip.len())), ("units", json!(unit)), ("warnings", json!(warnings)), ("notes", json!(all))];
+    fields.extend(more.map(|(name, value)| (name.to_owned(), value)));
+    (clip, rig, Value::from(fields).to_string())
 }
 
-impl Aim {
-    /// Checks what the user asks for.
-    pub fn new(max_error_cm: f64, max_scalar_error: f64, effort: &str, fps: Option<f64>) -> Result<Aim> {
-        let sound = |bound: f64| bound.is_finite() && bound > 0.0;
-        ensure!(sound(max_error_cm), "max_error_cm={max_error_cm}: expected a number above 0");
-        ensure!(sound(max_scalar_error), "max_scalar_error={max_scalar_error}: expected percent above 0");
-        ensure!(fps.is_none_or(sound), "fps={}: expected a number above 0", fps.unwrap_or_default());
-        let level = match effort {
-            "fast" => Level::Fast,
-            "default" => Level::Default,
-            "best" => Level::Best,
-            other => bail!("effort={other:?}: expected 'fast', 'default' or 'best'"),
-        };
-        Ok(Aim { max_cm: max_error_cm, scalar_part: max_scalar_error / 100.0, level, fps })
-    }
-}
-
-/// The direction that is vertical, as text.
-pub fn direction(text: &str) -> Result<Up> {
-    up::parse(text).with_context(|| format!("up={text:?}: expected x, y, z, -x, -y or -z"))
-}
-
-/// A clip of `imported`, and its report as JSON. `read` is the number of bytes that the motion was read from.
-pub fn code(imported: Imported, aim: Aim, read: u64, progress: &mut dyn FnMut(f64)) -> Result<(Vec<u8>, String)> {
-    let Imported { mut motion, error_cm, units, warnings } = imported;
-    ensure!(error_cm < 0.5 * aim.max_cm, "the motion is only known within {error_cm:e} cm, which is too much of the bound");
-    // The bound is one against the file.
-    let max_cm = aim.max_cm - error_cm;
-    if let Some(fps) = aim.fps {
-        motion = resample(&motion, fps)?;
-    }
-    let plan = aim.level.plan(max_cm);
-    budget::check_fit(motion.frames, [motion.rig.joints.len(), motion.rig.channels()], plan.effort.beam, read)?;
-    let figure = rig::encode(&motion.rig)?;
-    let coded = fit(&motion, plan, aim.scalar_part, progress)?;
-    let bytes = clip::encode(&coded, &figure, false)?;
-    let report = verify::verify(&bytes, &figure, &motion, max_cm, aim.scalar_part)?;
-    let mut fields = errors::to_json(&report, &motion);
-    for (name, value) in [("frames", json!(motion.frames)), ("bytes", json!(bytes.len())), ("units", json!(units))] {
-        fields.insert(name.into(), value);
-    }
-    fields.insert("warnings".into(), json!(warnings));
-    progress(1.0);
-    Ok((bytes, Value::from(fields).to_string()))
-}
-
-/// Fails if the options of a conversion are wrong.
+/// Fails if the options of a conversion are wrong, whatever the motion.
 #[pyfunction]
-pub fn check_options(
-    py: Python<'_>,
-    max_error_cm: f64,
-    max_scalar_error: f64,
-    effort: &str,
-    fps: Option<f64>,
-    up: Option<&str>,
-) -> PyResult<()> {
-    let aim = Aim::new(max_error_cm, max_scalar_error, effort, fps);
-    aim.and_then(|_| up.map_or(Ok(()), |up| direction(up).map(drop))).map_err(|error| exception(py, &error, None))
+pub fn check_options(py: Python<'_>, settings: Settings) -> PyResult<()> {
+    settings.recipe().map(drop).map_err(|error| refused(py, &error, None, &settings))
 }
 
-/// Converts a motion file: the clip, and its report as JSON.
+/// Converts a motion file.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)]
-pub fn convert(
-    py: Python<'_>,
-    path: &str,
-    max_error_cm: f64,
-    max_scalar_error: f64,
-    effort: &str,
-    fps: Option<f64>,
-    cm_per_unit: Option<f64>,
-    up: Option<&str>,
-    animation: Option<String>,
-    skeleton: Option<&str>,
-    jobs: usize,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<(Vec<u8>, String)> {
-    let fail = |error: anyhow::Error| exception(py, &error, Some(path));
-    let aim = Aim::new(max_error_cm, max_scalar_error, effort, fps).map_err(fail)?;
-    let up = up.map(direction).transpose().map_err(fail)?;
-    let options = Options { cm_per_unit, up, fps, skeleton: skeleton.map(Into::into), animation, ..Options::default() };
-    let made = background::run(py, jobs, progress.as_ref(), |progress| {
-        let imported = import::load(Path::new(path), &options)?;
-        let read = options.files.read_so_far();
-        let read = read.iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
-        code(imported, aim, read, progress).with_context(|| path.to_owned())
-    })?;
-    made.map_err(fail)
+pub fn convert(py: Python<'_>, path: PathBuf, settings: Settings, jobs: usize, progress: Option<Py<PyAny>>) -> PyResult<Made> {
+    let fail = |error| refused(py, &error, Some(&path), &settings);
+    let recipe = settings.recipe().map_err(fail)?;
+    let files = Disk::new(recipe.options.memory);
+    let done = background::run(py, jobs, progress.as_ref(), |progress| recipe.convert(&files, &path, progress))?;
+    Ok(made(done.map_err(fail)?, &settings))
 }

@@ -7,7 +7,7 @@ use pantin::{Clip, OpenError};
 use pantin_convert::encode::rig;
 use pantin_convert::facts::segment_bits;
 use pantin_convert::import::up;
-use pantin_convert::{budget, events};
+use pantin_convert::{Memory, events};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 use serde_json::json;
@@ -34,7 +34,7 @@ pub fn facts(py: Python<'_>, clip: &[u8]) -> PyResult<String> {
 pub fn channel_bytes<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, PyByteArray>> {
     let bits = py.detach(|| -> Result<Vec<f64>> {
         let clip = open(clip)?;
-        budget::check(clip.frames() as usize, clip.rig().channels())?;
+        Memory::default().check(clip.frames() as usize, clip.rig().channels())?;
         segment_bits(&clip)
     });
     let bits = bits.map_err(|error| exception(py, &error, None))?;

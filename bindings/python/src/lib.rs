@@ -12,7 +12,9 @@ mod facts;
 mod given;
 mod image;
 mod poses;
+mod settings;
 mod sources;
+mod words;
 
 use pyo3::pymodule;
 
@@ -24,7 +26,7 @@ mod _pantin {
     #[pymodule_export]
     use super::convert::{check_options, convert};
     #[pymodule_export]
-    use super::error::PantinError;
+    use super::error::{BoundError, MemoryLimitError, PantinError, ReadError, SettingError, SourceError};
     #[pymodule_export]
     use super::export::bvh;
     #[pymodule_export]

@@ -6,7 +6,7 @@ use crate::facts::open;
 use anyhow::{Error, Result};
 use pantin::{ChannelState, Player};
 use pantin_convert::motion::Motion;
-use pantin_convert::{budget, expand, fk};
+use pantin_convert::{Memory, expand, fk};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 
@@ -89,7 +89,7 @@ pub fn raw<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, PyByteArray
 
 fn raw_values(bytes: &[u8]) -> Result<Vec<u8>> {
     let clip = open(bytes)?;
-    budget::check(clip.frames() as usize, clip.rig().channels())?;
+    Memory::default().check(clip.frames() as usize, clip.rig().channels())?;
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(clip, &mut states, &mut pose)?;

@@ -1,6 +1,6 @@
 //! Which files are motions, and which other files they are read with.
 
-use pantin_convert::import;
+use pantin_convert::import::{self, Disk};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -13,5 +13,5 @@ pub fn is_motion(path: PathBuf) -> bool {
 /// The files that a motion is read with: the skeletons beside an .amc, the buffers of a glTF file.
 #[pyfunction]
 pub fn companions(py: Python<'_>, path: PathBuf) -> Vec<PathBuf> {
-    py.detach(|| import::companions(&path))
+    py.detach(|| import::companions(&Disk::default(), &path))
 }

@@ -13,6 +13,7 @@ pub mod events;
 pub mod expand;
 pub mod export;
 pub mod facts;
+mod fields;
 pub mod fit;
 pub mod fk;
 pub mod import;

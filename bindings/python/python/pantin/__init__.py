@@ -13,6 +13,22 @@ from ._clip import Clip
 from ._cluster import ray_convert
 from ._convert import convert
 from ._motion import Joint, Motion
-from ._pantin import PantinError
+from ._notes import ConversionWarning, Note
+from ._pantin import BoundError, MemoryLimitError, PantinError, ReadError, SettingError, SourceError
 
-__all__ = ["Bank", "Clip", "Joint", "Motion", "PantinError", "convert", "ray_convert"]
+__all__ = [
+    "Bank",
+    "BoundError",
+    "Clip",
+    "ConversionWarning",
+    "Joint",
+    "MemoryLimitError",
+    "Motion",
+    "Note",
+    "PantinError",
+    "ReadError",
+    "SettingError",
+    "SourceError",
+    "convert",
+    "ray_convert",
+]

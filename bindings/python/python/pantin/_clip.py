@@ -23,11 +23,14 @@ class Clip:
     """
 
     report: Dict[str, Any]
-    """What `pantin.convert` measured: `max_error_cm`, `worst_joint`, `bytes`, `warnings` and more. Empty for a clip that was opened."""
+    """What `pantin.convert` measured: `max_error_cm`, `worst_joint`, `bytes`, `notes` (a list of `pantin.Note`) and more. Empty for a clip that was
+    opened."""
 
     def __init__(self, data: bytes, rig: Optional[bytes] = None) -> None:
         data = bytes(data)
         self._bytes = data if rig is None else _pantin.with_rig(data, bytes(rig))
+        # The clip's own file and its rig's, if they are apart.
+        self._apart = None if rig is None else (data, bytes(rig))
         self._facts: Dict[str, Any] = json.loads(_pantin.facts(self._bytes))
         self._joints = tuple(Joint(**{**joint, "offset": tuple(joint["offset"])}) for joint in self._facts["joints"])
         self.report = {}
@@ -40,9 +43,19 @@ class Clip:
         with named(path):
             return cls(data, rig_data)
 
-    def save(self, path: StrPath) -> None:
-        """Writes the clip's file, with its rig."""
-        write(path, self._bytes)
+    def save(self, path: StrPath, rig: Optional[StrPath] = None) -> None:
+        """Writes the clip's file, with its rig.
+
+        With `rig`, the clip's file has no rig, and the rig is written to the file `rig`. Needs a clip that was converted with `rig_apart`, or opened with
+        its rig.
+        """
+        if rig is None:
+            write(path, self._bytes)
+        elif self._apart is None:
+            raise ValueError("the clip has its rig inside: convert it with rig_apart=True")
+        else:
+            write(path, self._apart[0])
+            write(rig, self._apart[1])
 
     def to_bvh(self, path: StrPath) -> None:
         """Writes the clip as BVH. Fails if the clip has scalars, quaternions or no joints, which BVH cannot hold."""

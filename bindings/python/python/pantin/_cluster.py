@@ -11,6 +11,7 @@ import posixpath
 import tempfile
 import time
 import uuid
+import warnings
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
@@ -18,12 +19,17 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple
 from . import _pantin
 from ._convert import convert
 from ._files import StrPath
+from ._notes import ConversionWarning
+from ._settings import FILES, refuse, settings
 
 RECORDS = ".pantin"
 """The folder of the records in the target: what each clip was made of."""
 
-MEASURED = ("frames", "bytes", "max_error_cm", "max_scalar_error_percent", "seconds")
+MEASURED = ("frames", "bytes", "max_error_cm", "max_scalar_error_percent", "seconds", "warnings")
 """Columns of the report that a record keeps."""
+
+NOT_HERE = (*FILES, "animation", "rig_apart")
+"""Options of `pantin.convert` that name a file or a part of one."""
 
 Row = Dict[str, Any]
 
@@ -31,17 +37,13 @@ Row = Dict[str, Any]
 def ray_convert(
     source: StrPath,
     target: StrPath,
-    max_error_cm: float = 0.5,
+    max_error_cm: Optional[float] = None,
     *,
-    max_scalar_error: float = 2.0,
-    effort: str = "default",
-    fps: Optional[float] = None,
-    cm_per_unit: Optional[float] = None,
-    up: Optional[str] = None,
     report: Optional[StrPath] = None,
     storage_options: Optional[Mapping[str, Any]] = None,
     max_retries: int = 3,
     progress: Optional[Callable[[float], object]] = None,
+    **options: Any,
 ) -> Any:
     """Converts all motions in and below the folder `source` to clips in the folder `target`, on a Ray cluster. Needs `pip install 'pantin[ray]'`.
 
@@ -50,11 +52,11 @@ def ray_convert(
     package; records of that are in the folder `.pantin` of `target`. So a run that was interrupted goes on where it was.
 
     Returns the report as a `pyarrow.Table` with a row for each motion, in the order of names: `source` and `target` (paths below the folders),
-    `source_bytes`, `frames`, `bytes`, `max_error_cm`, `max_scalar_error_percent`, `seconds` (of the conversion), `up_to_date`, `node` (Ray's id
-    of the node) and `refused` (why there is no clip, or null).
+    `source_bytes`, `frames`, `bytes`, `max_error_cm`, `max_scalar_error_percent`, `seconds` (of the conversion), `warnings` (texts), `up_to_date`,
+    `node` (Ray's id of the node) and `refused` (why there is no clip, or null).
 
     source, target: folders or URLs that fsspec opens, such as s3://bucket/captures. Every node of the cluster must reach them.
-    max_error_cm, max_scalar_error, effort, fps, cm_per_unit, up: as in `pantin.convert`.
+    max_error_cm, options: as in `pantin.convert`, but those that name a file or a part of one: animation, skeleton, joint_map, with_file, rig_apart.
     report: the Parquet file of the report; default: report.parquet in `target`.
     storage_options: what fsspec needs to open both folders, such as the key, the secret and the endpoint_url of an object store.
     max_retries: how often Ray repeats a task whose worker died, or whose storage failed.
@@ -65,15 +67,12 @@ def ray_convert(
     ray, pyarrow, parquet = _needed("ray"), _needed("pyarrow"), _needed("pyarrow.parquet")
     url_to_fs = _needed("fsspec").core.url_to_fs
     storage = dict(storage_options or {})
-    options: Dict[str, Any] = {
-        "max_error_cm": float(max_error_cm),
-        "max_scalar_error": float(max_scalar_error),
-        "effort": effort,
-        "fps": None if fps is None else float(fps),
-        "cm_per_unit": None if cm_per_unit is None else float(cm_per_unit),
-        "up": up,
-    }
-    _pantin.check_options(options["max_error_cm"], options["max_scalar_error"], effort, options["fps"], up)
+    refuse(options, NOT_HERE, "is no option for many motions")
+    options["max_error_cm"] = max_error_cm
+    given = settings(**options)
+    _pantin.check_options(given)
+    # Those of `convert` as they were read: an iterable may be read once. What is not set is left out, and so in the records.
+    options = {name: value for name, value in given.items() if name not in NOT_HERE and value is not None}
     source_fs, source_root = url_to_fs(os.fspath(source), **storage)
     target_fs, target_root = url_to_fs(os.fspath(target), **storage)
     motions, skeletons = _motions(source_fs, source_root)
@@ -136,6 +135,7 @@ def _columns(pyarrow: Any) -> Dict[str, Any]:
         "max_error_cm": pyarrow.float64(),
         "max_scalar_error_percent": pyarrow.float64(),
         "seconds": pyarrow.float64(),
+        "warnings": pyarrow.list_(pyarrow.string()),
         "up_to_date": pyarrow.bool_(),
         "node": pyarrow.string(),
         "refused": pyarrow.string(),
@@ -186,7 +186,10 @@ def _task(source: Tuple[Any, str], target: Tuple[Any, str], motion: str, clip: s
         if record.get("fingerprint") == fingerprint:
             return {**row, **{name: record.get(name) for name in MEASURED}, "up_to_date": True}
         try:
-            made = convert(Path(folder, motion), jobs=1, **options)
+            with warnings.catch_warnings():
+                # They are in the report.
+                warnings.simplefilter("ignore", ConversionWarning)
+                made = convert(Path(folder, motion), jobs=1, **options)
         except Exception as error:
             # The file's own name, not that of the copy.
             return {**row, "seconds": time.perf_counter() - begun, "refused": _sentence(error).replace(folder + os.sep, "")}
@@ -196,7 +199,7 @@ def _task(source: Tuple[Any, str], target: Tuple[Any, str], motion: str, clip: s
             return {**row, "refused": f"{motion}: a fault of pantin stopped the conversion; please report it: {_sentence(error)}"}
     data = bytes(made)
     measured: Row = {"frames": made.frames, "bytes": len(data), "seconds": time.perf_counter() - begun}
-    measured.update({name: made.report.get(name) for name in ("max_error_cm", "max_scalar_error_percent")})
+    measured.update({name: made.report.get(name) for name in ("max_error_cm", "max_scalar_error_percent", "warnings")})
     _write(target_fs, clip_path, data)
     # After the clip: a record without its clip would be believed.
     _write(target_fs, record_path, json.dumps({"fingerprint": fingerprint, "clip": _digest(data), **measured}).encode())

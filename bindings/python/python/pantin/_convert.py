@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Callable, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -13,72 +13,137 @@ from . import _pantin
 from ._clip import Clip
 from ._files import StrPath
 from ._motion import Motion
+from ._notes import notes_of, warn
+from ._settings import FILES, ONLY_FILES, Moment, refuse, settings
 
 Progress = Callable[[float], object]
 
 
 def convert(
     motion: Union[StrPath, Motion],
-    max_error_cm: float = 0.5,
+    max_error_cm: Optional[float] = None,
     *,
-    max_scalar_error: float = 2.0,
+    max_error_percent: Optional[float] = None,
+    mean_error_cm: Optional[float] = None,
+    mean_error_percent: Optional[float] = None,
+    max_scalar_error: Optional[float] = None,
+    max_rotation_error: Optional[float] = None,
+    max_channel_error: Optional[float] = None,
+    max_accel_error: Optional[float] = None,
+    exact: bool = False,
     effort: str = "default",
+    rotations: str = "by-cost",
+    index: Optional[float] = None,
+    rig_apart: bool = False,
+    loop: bool = False,
+    footsteps: bool = False,
+    source_rate: Optional[float] = None,
     fps: Optional[float] = None,
+    events: Iterable[Tuple[Moment, str]] = (),
+    first: Optional[Moment] = None,
+    last: Optional[Moment] = None,
+    joints: Union[str, Iterable[str]] = (),
+    drop: Union[str, Iterable[str]] = (),
+    mirror: bool = False,
+    retarget: Optional[str] = None,
+    joint_map: Optional[StrPath] = None,
+    with_file: Optional[StrPath] = None,
+    close_loop: bool = False,
     cm_per_unit: Optional[float] = None,
     up: Optional[str] = None,
-    animation: Optional[str] = None,
+    animation: Union[str, int, None] = None,
     skeleton: Optional[StrPath] = None,
+    memory: Union[int, str, None] = None,
     jobs: Optional[int] = None,
     progress: Optional[Progress] = None,
 ) -> Clip:
     """Converts a motion file (BVH, AMC, glTF, FBX, VRML, CSV and more) or a `Motion` of arrays to a clip.
 
     The bound is verified: the device's own decoder plays the clip, and every joint is compared with the motion at every frame.
-    What was measured is in the clip's `report`.
+    What was measured is in the clip's `report`, with `notes` about what was done and what is odd. Notes that are warnings are raised as
+    `pantin.ConversionWarning`, too.
 
-    max_error_cm: largest distance of any joint or End Site from its position, in cm.
-    max_scalar_error: largest error of channels that move no joint, in percent of their full scale.
+    What the clip must keep:
+
+    max_error_cm, max_error_percent: largest distance of any joint or End Site from its position, in cm or in percent of the figure's height;
+        above 0. Default: 0.5 cm, or 6 times the mean error if that is set.
+    mean_error_cm, mean_error_percent: mean distance of all joints, End Sites left out. The clip is as small as this mean allows.
+    max_scalar_error: largest error of channels that move no joint, in percent of their full scale, above 0. Default: 2.
+    max_rotation_error: largest rotation error of leaf joints whose End Site has zero length, in degrees, above 0. Default: no bound.
+    max_channel_error: largest error of each channel, in place of all bounds above: degrees for rotations, percent of the range for others.
+    max_accel_error: largest error of each channel's second difference, in place of all bounds above: degrees or percent per frame squared.
+    exact: code known curves as they are, in place of all bounds above.
     effort: 'fast', 'default' or 'best': speed against size.
+    rotations: how joints with three Euler angles are coded: 'by-cost', 'euler', 'exponential' or 'quaternion'.
+    index: seconds between snapshots for seeking. Default: no snapshots.
+    rig_apart: keep the rig out of the clip's file, to be shared by several; `Clip.save` takes a file for each.
+    loop: close the seam between the last frame and the first, which makes the clip a loop. What that moves is part of the bound.
+    footsteps: add an event at each frame at which a foot touches down.
+
+    How the motion is changed first, in this order:
+
+    source_rate: frames a second of the source's frames, whatever the source says. All frames stay; the motion gets slower or faster.
     fps: frames a second of the clip; the motion is resampled.
-    cm_per_unit, up: unit of length and vertical direction, instead of what the file says or of a guess.
-    animation: name or number of one of several animations in a file.
+    events: markers to add: pairs of a moment and a name. A moment is a frame's number from 0, or seconds as in '1.5s'.
+    first, last: the first and the last frame to keep: moments, counted after `fps`.
+    joints, drop: names of joints and scalars to keep, and to drop: a glob such as 'Left*', or several; case-insensitive.
+    mirror: exchange left and right.
+    retarget: 'display' puts the motion on a body of 15 joints.
+    joint_map: a file with the names of joints that `retarget` does not recognize.
+    with_file: another file whose scalars are added, such as a face that was recorded with the body.
+    close_loop: take the motion as one cycle, whose first frame follows its last.
+
+    How a file is read:
+
+    cm_per_unit, up: length of the unit in cm and vertical direction (x, y, z, -x, -y or -z), instead of what the file says or of a guess.
+    animation: name or number (from 0) of one of several animations in a file.
     skeleton: the .asf of an .amc.
+
+    memory: limit of the memory that the conversion may take: bytes, or text such as '2GB'. Default: 1 GB.
     jobs: number of threads; default: the number of CPUs. Other threads of Python run meanwhile.
     progress: is called in this thread with the part that is done, from 0 to 1. An exception that it raises ends the conversion, as does Ctrl-C.
 
-    Raises FileNotFoundError and other OSErrors for a file that cannot be read, and PantinError, a ValueError with the attributes `path` and
-    `line`, for one that cannot be converted.
+    Raises FileNotFoundError and other OSErrors for a file that cannot be read, and a PantinError for what cannot be converted. It is a
+    ValueError with the attributes `path`, `line`, `place`, `setting` and `remedy`, and is one of SettingError (a keyword argument is out of range or
+    does not fit), SourceError (the motion is damaged or of an unknown format), ReadError (a file that the motion names), MemoryLimitError and BoundError.
     """
-    shared = (float(max_error_cm), float(max_scalar_error), effort, None if fps is None else float(fps))
+    arguments = dict(locals())
+    given = settings(**{name: value for name, value in arguments.items() if name not in ("motion", "jobs", "progress")})
     threads = 0 if jobs is None else max(1, int(jobs))
-    if isinstance(motion, Motion):
-        given = [("cm_per_unit", cm_per_unit), ("up", up), ("animation", animation), ("skeleton", skeleton)]
-        for name, value in given:
-            if value is not None:
-                raise TypeError(f"{name} is for files: a Motion has its own fields")
-        data, report = _pantin.convert_arrays(*_arrays(motion), *shared, threads, progress)
-    else:
-        path = os.fspath(motion)
-        for needed in [path] if skeleton is None else [path, os.fspath(skeleton)]:
+    path = None if isinstance(motion, Motion) else os.fspath(motion)
+    if path is None:
+        refuse(given, ONLY_FILES, "is for files: a Motion has its own fields")
+    for needed in [path, *(given[name] for name in FILES)]:
+        if needed is not None:
             with open(needed, "rb"):
                 pass
-        named = None if skeleton is None else os.fspath(skeleton)
-        data, report = _pantin.convert(path, *shared, cm_per_unit, up, animation, named, threads, progress)
-    clip = Clip(data)
-    clip.report = json.loads(report)
+    if isinstance(motion, Motion):
+        data, rig, text = _pantin.convert_arrays(_arrays(motion), given, threads, progress)
+    else:
+        data, rig, text = _pantin.convert(os.fspath(motion), given, threads, progress)
+    clip = Clip(data, rig if rig_apart else None)
+    clip.report = json.loads(text)
+    clip.report["notes"] = notes_of(clip.report["notes"])
+    warn(clip.report["notes"], path)
     return clip
 
 
-_Arrays = Tuple[List[Tuple[str, Optional[int], Tuple[float, ...], bool]], bytes, bytes, List[Tuple[str, float, bytes]], int, float, float, str]
-
-
-def _arrays(motion: Motion) -> _Arrays:
+def _arrays(motion: Motion) -> Dict[str, Any]:
     frames = motion._frames()
-    joints = [(joint.name, joint.parent, tuple(map(float, joint.offset)), joint.end_site) for joint in motion.joints]
-    rotations = _data(motion.rotations) if joints else b""
-    places = b"" if motion.translations is None or not joints else _data(motion.translations)
+    joints: List[Tuple[str, Optional[int], Tuple[float, ...], bool]] = [
+        (joint.name, joint.parent, tuple(map(float, joint.offset)), joint.end_site) for joint in motion.joints
+    ]
     scalars = [(name, float(motion.full_scales.get(name, 0.0)), _data(values)) for name, values in motion.scalars.items()]
-    return joints, rotations, places, scalars, frames, float(motion.rate), float(motion.cm_per_unit), motion.up
+    return {
+        "joints": joints,
+        "rotations": _data(motion.rotations) if joints else b"",
+        "places": b"" if motion.translations is None or not joints else _data(motion.translations),
+        "scalars": scalars,
+        "frames": frames,
+        "rate": float(motion.rate),
+        "cm_per_unit": float(motion.cm_per_unit),
+        "up": motion.up,
+    }
 
 
 def _data(array: npt.ArrayLike) -> bytes:

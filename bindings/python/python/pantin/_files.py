@@ -30,5 +30,6 @@ def named(path: StrPath) -> Iterator[None]:
         yield
     except PantinError as error:
         renamed = PantinError(f"{os.fspath(path)}: {error}")
-        renamed.path, renamed.line = os.fspath(path), None
+        renamed.path, renamed.line, renamed.place = os.fspath(path), None, os.fspath(path)
+        renamed.setting, renamed.remedy = None, None
         raise renamed from None

@@ -1,7 +1,7 @@
 """The native half: functions of bytes. Arrays are bytes in the machine's order."""
 
 import os
-from typing import Callable, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 class PantinError(ValueError):
     """What is wrong with a motion, a clip or a bank."""
@@ -10,37 +10,35 @@ class PantinError(ValueError):
     """The file, if the error concerns one."""
     line: Optional[int]
     """Its line, from 1, if the format has lines."""
+    place: Optional[str]
+    """The file, line, joint or frame, if one is known."""
+    setting: Optional[str]
+    """The keyword argument of `pantin.convert` that is refused, if one is."""
+    remedy: Optional[str]
+    """What would help, as a word for programs: state-frame-rate, raise-memory and so on."""
 
-def convert(
-    path: str,
-    max_error_cm: float,
-    max_scalar_error: float,
-    effort: str,
-    fps: Optional[float],
-    cm_per_unit: Optional[float],
-    up: Optional[str],
-    animation: Optional[str],
-    skeleton: Optional[str],
-    jobs: int,
-    progress: Optional[Callable[[float], object]],
-) -> Tuple[bytes, str]: ...
-def convert_arrays(
-    joints: Sequence[Tuple[str, Optional[int], Sequence[float], bool]],
-    rotations: bytes,
-    places: bytes,
-    scalars: Sequence[Tuple[str, float, bytes]],
-    frames: int,
-    rate: float,
-    cm_per_unit: float,
-    up: str,
-    max_error_cm: float,
-    max_scalar_error: float,
-    effort: str,
-    fps: Optional[float],
-    jobs: int,
-    progress: Optional[Callable[[float], object]],
-) -> Tuple[bytes, str]: ...
-def check_options(max_error_cm: float, max_scalar_error: float, effort: str, fps: Optional[float], up: Optional[str]) -> None: ...
+class ReadError(PantinError):
+    """A file that a motion needs cannot be read."""
+
+class SourceError(PantinError):
+    """A motion is damaged, of an unknown format, or has what a clip cannot hold."""
+
+class SettingError(PantinError):
+    """A keyword argument is out of range, or does not fit the motion; `setting` names it."""
+
+class MemoryLimitError(PantinError):
+    """A motion takes more memory than the limit, which `memory` sets."""
+
+class BoundError(PantinError):
+    """No clip within the bound was found."""
+
+_Progress = Optional[Callable[[float], object]]
+# The clip, its rig, and the report as JSON.
+_Made = Tuple[bytes, bytes, str]
+
+def convert(path: str, settings: Dict[str, Any], jobs: int, progress: _Progress) -> _Made: ...
+def convert_arrays(motion: Dict[str, Any], settings: Dict[str, Any], jobs: int, progress: _Progress) -> _Made: ...
+def check_options(settings: Dict[str, Any]) -> None: ...
 def facts(clip: bytes) -> str: ...
 def channel_bytes(clip: bytes) -> bytearray: ...
 def rotations(clip: bytes) -> bytearray: ...

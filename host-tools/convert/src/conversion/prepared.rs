@@ -102,6 +102,13 @@ fn prepared(mut motion: Motion, options: &Options) -> Result<Prepared> {
     Ok(Prepared { motion, rig, notes, options: options.clone(), bound, seam })
 }
 
+impl Options {
+    /// Refuses numbers that no setting takes, whatever the motion.
+    pub fn check(&self) -> Result<(), Error> {
+        check_settings(self).map_err(|error| Error::of(&error, Error::source))
+    }
+}
+
 /// Refuses numbers that no setting takes.
 fn check_settings(options: &Options) -> Result<()> {
     let length = |length: Option<crate::length::Length>| length.is_none_or(crate::length::Length::is_valid);

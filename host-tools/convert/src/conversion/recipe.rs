@@ -4,7 +4,7 @@ use super::prepared::{Prepared, prepare};
 use super::{Converted, Progress, convert};
 use crate::edit::{Edited, Edits};
 use crate::error::Error;
-use crate::import::{self, Files, ImportOptions};
+use crate::import::{self, Files, ImportOptions, Imported};
 use crate::note::{Note, Remedy};
 use crate::options::Options;
 use std::path::Path;
@@ -47,8 +47,13 @@ impl Recipe {
         let mut import = self.import.clone();
         import.quaternions |= self.options.keeps_quaternions();
         let imported = import::import(files, name, &import)?;
+        self.edit(imported, files).map_err(|error| error.in_file(name))
+    }
+
+    /// The motion that was read, after all edits, and what is odd about it.
+    fn edit(&self, imported: Imported, files: &dyn Files) -> Result<Edited, Error> {
         let mut notes = imported.notes;
-        let edited = self.edits.apply(imported.motion, files).map_err(|error| error.in_file(name))?;
+        let edited = self.edits.apply(imported.motion, files)?;
         // A cut that opens a loop needs no advice if the loop is closed again.
         let needed = |note: &Note| !(self.options.looped && note.remedy == Some(Remedy::MakeLoop));
         notes.extend(edited.notes.into_iter().filter(needed));
@@ -66,8 +71,20 @@ impl Recipe {
 
     /// Converts the motion `name` among `files`.
     pub fn convert(&self, files: &dyn Files, name: &Path, progress: Progress<'_>) -> Result<Converted, Error> {
-        let Edited { motion, mut notes } = self.edited(files, name)?;
-        let mut converted = convert(&motion, &self.options, progress).map_err(|error| error.in_file(name))?;
+        let edited = self.edited(files, name)?;
+        self.coded(edited, progress).map_err(|error| error.in_file(name))
+    }
+
+    /// Converts a motion that a program holds, such as one of [`crate::import::arrays`]. `files` has the files that edits read; how a motion is
+    /// imported does not matter.
+    pub fn convert_imported(&self, imported: Imported, files: &dyn Files, progress: Progress<'_>) -> Result<Converted, Error> {
+        let edited = self.edit(imported, files)?;
+        self.coded(edited, progress)
+    }
+
+    fn coded(&self, edited: Edited, progress: Progress<'_>) -> Result<Converted, Error> {
+        let Edited { motion, mut notes } = edited;
+        let mut converted = convert(&motion, &self.options, progress)?;
         notes.append(&mut converted.notes);
         converted.notes = notes;
         Ok(converted)
