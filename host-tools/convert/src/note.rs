@@ -1,7 +1,6 @@
 //! What a conversion reports beside its result: data first, with an English sentence that names no option of any front end.
 
 use crate::error::Setting;
-use serde_json::{Value, json};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -253,25 +252,6 @@ impl Note {
     pub fn at_frame(mut self, frame: usize) -> Note {
         self.place.frame = Some(frame);
         self
-    }
-
-    /// The note as fields of a report, with `text` in a front end's words.
-    pub fn to_json(&self, text: String) -> Value {
-        let Place { file, line, joint, frame } = &self.place;
-        let severity = if self.is_warning() { "warning" } else { "info" };
-        let mut fields = json!({ "kind": self.kind.name(), "severity": severity, "text": text });
-        let places = [
-            ("file", file.as_ref().map(|file| json!(file.display().to_string()))),
-            ("line", line.map(|line| json!(line))),
-            ("joint", joint.as_ref().map(|joint| json!(joint))),
-            ("frame", frame.map(|frame| json!(frame))),
-        ];
-        for (name, value) in places {
-            if let Some(value) = value {
-                fields[name] = value;
-            }
-        }
-        fields
     }
 
     /// Whether it is a warning.

@@ -350,7 +350,12 @@ impl Made {
     /// The fields of a report.
     pub fn fields(&self) -> Map<String, Value> {
         let warnings: Vec<String> = self.notes.iter().filter(|note| note.is_warning()).map(words::sentence).collect();
-        let notes: Vec<Value> = self.notes.iter().map(|note| note.to_json(words::sentence(note))).collect();
+        let in_words = |note: &Note| {
+            let mut fields = note.fields();
+            fields.insert("text".into(), words::sentence(note).into());
+            fields
+        };
+        let notes: Vec<Map<String, Value>> = self.notes.iter().map(in_words).collect();
         let mut fields = self.json.clone();
         fields.insert("bytes".into(), json!(self.len));
         fields.insert("warnings".into(), json!(warnings));

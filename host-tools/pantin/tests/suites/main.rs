@@ -46,6 +46,7 @@ mod own_clips;
 mod own_motions;
 #[cfg(unix)]
 mod play_command;
+mod pose_bounds;
 mod procedural_input;
 mod rates_and_loops;
 mod real;
