@@ -263,7 +263,9 @@ pub(crate) fn with_remedy(error: &anyhow::Error, remedy: Remedy) -> anyhow::Erro
 /// Returns an [`Error`] as [`anyhow::Error`] unless a condition holds.
 macro_rules! require {
     ($condition:expr, $error:expr) => {
-        if !$condition {
+        // NaN fails a comparison, and so is refused.
+        let holds: bool = $condition;
+        if !holds {
             return Err($error.into());
         }
     };

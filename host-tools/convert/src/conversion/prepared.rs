@@ -327,9 +327,6 @@ pub fn of_one_rig(prepared: &[Prepared], labels: &[String], why: &str) -> Result
         }
     };
     let Some(first) = prepared.first() else { return Ok(()) };
-    let others = labels.iter().zip(prepared).skip(1);
-    others
-        .map(|(label, other)| compare(first, label, other))
-        .collect::<Result<()>>()
-        .map_err(|error| Error::of(&error, Error::source))
+    let mut others = labels.iter().zip(prepared).skip(1);
+    others.try_for_each(|(label, other)| compare(first, label, other)).map_err(|error| Error::of(&error, Error::source))
 }
