@@ -12,7 +12,7 @@ use harness::web::{self, slow};
 use harness::{build, clips, paths, screen, setup, simulator, steered};
 use pantin::Clip;
 use pantin_convert::expand::expand;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::verify;
 use pantin_figure::rotation::Rotation;
 use serde_json::{Value, json};
@@ -143,6 +143,19 @@ fn the_modules_stand_whatever_bytes_they_get() {
 }
 
 #[test]
+fn the_converter_reports_what_the_library_does() {
+    if skipped("the page's converter") {
+        return;
+    }
+    assert!(!STAGE.1.is_empty(), "it was built");
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/converter.mjs")).arg(paths::root().join("target/web").join(web::CONVERTER[1]));
+    let output = node.arg(paths::root().join("tests/odd")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
 fn everything_on_the_page_can_be_used() {
     if !skipped("the page's controls") {
         drive("controls", json!({ "clip": own("run.ptn"), "frames": 26 }));
@@ -224,7 +237,9 @@ impl Dropped {
     fn is_good(&self, motion: &Path, fps: Option<f64>) {
         let stem = motion.file_stem().unwrap().to_str().unwrap();
         let bytes = self.file(&format!("{stem}.ptn"));
-        let motion = import::load(motion, &Options { fps, ..Options::default() }).unwrap().motion;
+        let mut options = ImportOptions::new();
+        options.fps = fps;
+        let motion = import::load(motion, &options).unwrap().motion;
         let clip = Clip::new_checked(&bytes).unwrap();
         let report = verify::compare(&motion, &expand(&clip).unwrap()).unwrap();
         assert!(report.max_cm <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
@@ -347,7 +362,7 @@ fn what_cannot_be_converted_is_refused_in_words() {
         "nonsense.bvh:4",
         "picture.png: unknown kind of file",
         "short.glb: the file is shorter than its head says",
-        "“Frames per second” gives the frames a second",
+        "“Frames per second” states it",
     ];
     for (outcome, words) in outcomes.as_array().unwrap().iter().zip(words) {
         assert!(outcome["said"].as_str().unwrap().contains(words), "{outcome} should say {words}");
