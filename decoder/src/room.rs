@@ -4,8 +4,8 @@ use crate::{ChannelState, Clip, Player, TooSmall};
 
 /// Memory for a [`Player`] of clips with up to `MOVING` moving channels and `CHANNELS` channels.
 ///
-/// `pantin info` prints both numbers of a clip, and `pantin expand -o clip.rs` writes them as constants. One room serves
-/// several clips in turn: the player gives it back when it goes out of scope.
+/// `pantin info` prints both numbers of a clip. `pantin expand -o walk.rs` and crate `pantin-build` write them as a type, `WalkRoom`; for a bank
+/// the type has the largest numbers of any clip. One room serves several clips in turn: the player gives it back when it goes out of scope.
 ///
 /// ```
 /// # fn play(walk: pantin::Clip, wave: pantin::Clip) -> Result<(), pantin::TooSmall> {

@@ -31,11 +31,11 @@ pub fn features(machine: Machine, clips: &[&Path]) -> Result<String> {
     Ok([large, feature(clips)?].into_iter().filter(|feature| !feature.is_empty()).collect::<Vec<_>>().join(","))
 }
 
-/// Converts a motion with the tool's defaults to a clip in `folder`.
+/// Converts a motion, whose joints are then drawn as lines, to a clip in `folder`: places alone are bounded, by the default.
 pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {
     let name = motion.file_stem().unwrap_or(motion.as_os_str());
     let clip = folder.join(name).with_extension("ptn");
-    let output = Command::new(build::host_tool()?).arg("convert").arg(motion).arg("-o").arg(&clip).output();
+    let output = Command::new(build::host_tool()?).args(["convert", "--places-only"]).arg(motion).arg("-o").arg(&clip).output();
     let output = output.context("cannot start the host tool")?;
     let words = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "{}: {}", motion.display(), words.trim());

@@ -57,7 +57,8 @@ pub fn motions(folder: &Path) -> Result<Vec<PathBuf>> {
 
 fn convert(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
     let mut command = Command::new(build::host_tool()?);
-    command.arg("convert").args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
+    // The figures are drawn as lines between joints.
+    command.args(["convert", "--places-only"]).args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
     let output = command.output().context("cannot start the host tool")?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(())

@@ -5,7 +5,9 @@ use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use harness::{paths, setup};
-use pantin::{Clip, Room};
+use pantin::{Clip, EulerOrder, Room};
+use pantin_convert::import::Disk;
+use pantin_convert::{Length, Options, Recipe};
 use pantin_figure::{Canvas, FigureRenderer, View};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -141,6 +143,27 @@ fn a_newcomers_display_shows_the_hosts_picture() {
     let rows: Vec<String> = display.0.iter().map(|row| format!("{row:064b}")).collect();
     assert_eq!(printed.lines().collect::<Vec<_>>(), rows);
     assert!(display.0.iter().map(|row| row.count_ones()).sum::<u32>() > 100, "hardly anything is drawn");
+}
+
+/// `examples/build` has no clip in the repository: its build script converts `motions/walk.keys`.
+#[test]
+fn a_program_plays_the_motion_that_its_build_script_converts() {
+    if setup::host_only("a build script") {
+        return;
+    }
+    let printed = output(&paths::root().join("examples/build"));
+    let recipe = Recipe::new().options(Options::new().max_error(Length::cm(1.0)));
+    let converted = recipe.convert(&Disk::default(), &paths::root().join("motions/walk.keys"), &mut |_| ()).unwrap();
+    let clip = Clip::new_checked(&converted.clip).unwrap();
+    let (mut room, knee) = (Room::<96, 144>::new(), clip.find("left-shin").unwrap());
+    let mut player = room.player(clip).unwrap();
+    let mut lines = Vec::new();
+    for frame in 0..clip.frames() {
+        let [z, y, x] = player.turn(&knee).unwrap().euler(EulerOrder::ZYX).map(|angle| angle.centidegrees());
+        lines.push(format!("{frame}: {z} {y} {x}"));
+        player.step();
+    }
+    assert_eq!(printed.lines().collect::<Vec<_>>(), lines);
 }
 
 #[test]

@@ -237,12 +237,10 @@ impl Dropped {
     fn is_good(&self, motion: &Path, fps: Option<f64>) {
         let stem = motion.file_stem().unwrap().to_str().unwrap();
         let bytes = self.file(&format!("{stem}.ptn"));
-        let mut options = ImportOptions::new();
-        options.fps = fps;
-        let motion = import::load(motion, &options).unwrap().motion;
+        let motion = import::load(motion, &ImportOptions::new().fps(fps)).unwrap().motion;
         let clip = Clip::new_checked(&bytes).unwrap();
-        let report = verify::compare(&motion, &expand(&clip).unwrap()).unwrap();
-        assert!(report.max_cm <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
+        let report = verify::compare(&motion, &expand(&clip).unwrap(), verify::shell_radius_cm(&motion)).unwrap();
+        assert!(report.shell_cm.error <= 0.5 && report.max_scalar <= 0.02, "{report:?}");
         let header = String::from_utf8(self.file(&format!("{stem}.h"))).unwrap();
         assert!(header.contains(&format!("_LEN {}\n", bytes.len())), "{header:.300}");
         let sides = self.outcome["sides"].as_array().unwrap();

@@ -87,6 +87,8 @@ pub enum Setting {
     MaxJointError,
     /// The distance of the shell's points.
     Shell,
+    /// Bound places alone.
+    PlacesOnly,
     /// The bound of channels.
     MaxChannelError,
     /// The bound of accelerations.
@@ -130,6 +132,7 @@ impl Setting {
             Setting::MaxRotationError => "largest rotation error",
             Setting::MaxJointError => "largest joint rotation error",
             Setting::Shell => "shell",
+            Setting::PlacesOnly => "places only",
             Setting::MaxChannelError => "largest channel error",
             Setting::MaxAccelError => "largest acceleration error",
             Setting::Exact => "exact coding",

@@ -1,29 +1,33 @@
-//! How a conversion's errors are printed: in cm and in percent of the figure's height, in words and as JSON.
+//! How a conversion's errors are printed: in cm, in percent of the figure's height and in degrees, in words and as JSON.
 
 use crate::import::units::figure_height_cm;
 use crate::motion::Motion;
-use crate::verify::Report;
+use crate::number::Number;
+use crate::verify::{Report, Worst};
 use serde_json::{Map, Value, json};
 
 /// The errors of what the motion has: joints, scalars or both.
 pub fn to_json(report: &Report, motion: &Motion) -> Map<String, Value> {
     let mut fields = Map::new();
     if !motion.rig.joints.is_empty() {
-        fields.insert("max_error_cm".into(), json!(report.max_cm));
+        put(&mut fields, &report.place_cm, ["max_error_cm", "worst_joint", "worst_frame"]);
         fields.insert("mean_error_cm".into(), json!(report.mean_cm));
         fields.insert("mean_joint_error_cm".into(), json!(report.mean_joint_cm));
+        fields.insert("shell_radius_cm".into(), json!(report.shell_radius_cm));
+        put(&mut fields, &report.shell_cm, ["max_shell_cm", "worst_shell_joint", "worst_shell_frame"]);
+        fields.insert("mean_shell_cm".into(), json!(report.mean_shell_cm));
         if let Some(height) = figure_height_cm(motion) {
             fields.insert("figure_height_cm".into(), json!(height));
-            fields.insert("max_error_percent_of_height".into(), json!(100.0 * report.max_cm / height));
+            fields.insert("max_error_percent_of_height".into(), json!(100.0 * report.place_cm.error / height));
             fields.insert("mean_error_percent_of_height".into(), json!(100.0 * report.mean_cm / height));
+            fields.insert("max_shell_percent_of_height".into(), json!(100.0 * report.shell_cm.error / height));
         }
-        fields.insert("worst_joint".into(), json!(report.worst_joint));
-        fields.insert("worst_frame".into(), json!(report.worst_frame));
-    }
-    if report.max_unseen_degrees > 0.0 {
-        fields.insert("max_rotation_error_degrees".into(), json!(report.max_unseen_degrees));
-        fields.insert("worst_rotation_joint".into(), json!(report.unseen_joint));
-        fields.insert("worst_rotation_frame".into(), json!(report.unseen_frame));
+        put(&mut fields, &report.rotation_deg, ["max_rotation_deg", "worst_rotation_joint", "worst_rotation_frame"]);
+        put(
+            &mut fields,
+            &report.joint_deg,
+            ["max_joint_rotation_deg", "worst_joint_rotation_joint", "worst_joint_rotation_frame"],
+        );
     }
     if !motion.rig.scalars.is_empty() {
         fields.insert("max_scalar_error_percent".into(), json!(100.0 * report.max_scalar));
@@ -33,35 +37,66 @@ pub fn to_json(report: &Report, motion: &Motion) -> Map<String, Value> {
     fields
 }
 
-/// The same as a clause for a person.
+/// An error, its joint and its frame under these names.
+fn put(fields: &mut Map<String, Value>, worst: &Worst, [error, joint, frame]: [&str; 3]) {
+    fields.insert(error.into(), json!(worst.error));
+    fields.insert(joint.into(), json!(worst.joint));
+    fields.insert(frame.into(), json!(worst.frame));
+}
+
+/// The same for a person: a line for places, the shell and rotations each, and one for scalars.
 pub fn to_text(report: &Report, motion: &Motion) -> String {
+    let mut lines = Vec::new();
+    if !motion.rig.joints.is_empty() {
+        lines.extend(joint_lines(report, motion));
+    }
+    if !motion.rig.scalars.is_empty() || motion.rig.joints.is_empty() {
+        let (scalar, frame) = (&report.worst_scalar, report.worst_scalar_frame);
+        let place = if scalar.is_empty() { String::new() } else { format!(" ({scalar} at frame {frame})") };
+        lines.push(format!("scalars' error max {:.3} % of full scale{place}", 100.0 * report.max_scalar));
+    }
+    lines.join("\n  ")
+}
+
+fn joint_lines(report: &Report, motion: &Motion) -> [String; 3] {
     let height = figure_height_cm(motion);
     let length = |cm: f64| match height {
         Some(height) => format!("{cm:.4} cm, {:.3} % of the figure's height", 100.0 * cm / height),
         None => format!("{cm:.4} cm"),
     };
-    let (joint, frame) = (&report.worst_joint, report.worst_frame);
-    let joints = format!(
-        "error max {} ({joint} at frame {frame}), mean of the joints {}",
-        length(report.max_cm),
-        length(report.mean_joint_cm)
-    );
-    let (scalar, frame) = (&report.worst_scalar, report.worst_scalar_frame);
-    let place = if scalar.is_empty() { String::new() } else { format!(" ({scalar} at frame {frame})") };
-    let scalars = format!("scalars' error max {:.3} % of full scale{place}", 100.0 * report.max_scalar);
-    match (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty()) {
-        (false, true) => joints,
-        (true, _) => scalars,
-        (false, false) => format!("{joints}; {scalars}"),
-    }
+    let Report { place_cm, shell_cm, rotation_deg, joint_deg, .. } = report;
+    let mean = |cm: f64| format!("mean of the joints {cm:.4} cm");
+    let radius = Number((1e4 * report.shell_radius_cm).round() / 1e4);
+    [
+        format!("error max {}{}, {}", length(place_cm.error), at(place_cm), mean(report.mean_joint_cm)),
+        format!(
+            "shell error max (points {radius} cm from each joint) {}{}, {}",
+            length(shell_cm.error),
+            at(shell_cm),
+            mean(report.mean_shell_cm)
+        ),
+        format!(
+            "rotation error max {:.3} degrees{}, against the parent {:.3} degrees{}",
+            rotation_deg.error,
+            at(rotation_deg),
+            joint_deg.error,
+            at(joint_deg)
+        ),
+    ]
 }
 
-/// The same in a table's column.
+/// ` (head at frame 12)`, or nothing where nothing is off.
+fn at(Worst { joint, frame, .. }: &Worst) -> String {
+    if joint.is_empty() { String::new() } else { format!(" ({joint} at frame {frame})") }
+}
+
+/// The same in a table's column: the greatest errors of the shell and of rotations.
 pub fn to_cell(report: &Report, motion: &Motion) -> String {
     let mut parts = Vec::new();
     if !motion.rig.joints.is_empty() {
-        let percent = figure_height_cm(motion).map(|height| format!(" ({:.2} %)", 100.0 * report.max_cm / height));
-        parts.push(format!("{:.3} cm{}", report.max_cm, percent.unwrap_or_default()));
+        let cm = report.shell_cm.error;
+        let percent = figure_height_cm(motion).map(|height| format!(" ({:.2} %)", 100.0 * cm / height));
+        parts.push(format!("{cm:.3} cm{}, {:.1} degrees", percent.unwrap_or_default(), report.rotation_deg.error));
     }
     if !motion.rig.scalars.is_empty() {
         parts.push(format!("{:.2} % of scale", 100.0 * report.max_scalar));

@@ -3,10 +3,27 @@
 use crate::encode::entropy::{Alphabet, Sink, cost};
 use crate::encode::segment::{Running, Segment};
 use anyhow::Result;
-use pantin::codec::layout::{START_MODE, segment_type};
+use pantin::codec::layout::{BANK_MAGIC, MAGIC, START_MODE, segment_type};
 use pantin::codec::segment::{SLOPE, step};
-use pantin::{ChannelState, Clip, Kind, Player};
+use pantin::{Bank, ChannelState, Clip, Kind, Player};
 use pantin_figure::{Canvas, FigureRenderer, JointInfo};
+
+/// What a file of pantin's format holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// One clip (`.ptn`).
+    Clip,
+    /// Clips of one rig (`.ptb`).
+    Bank,
+}
+
+impl FileKind {
+    /// What the first bytes of a file say; `None` for other files.
+    pub fn of(bytes: &[u8]) -> Option<FileKind> {
+        let kinds = [(MAGIC, FileKind::Clip), (BANK_MAGIC, FileKind::Bank)];
+        kinds.into_iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, kind)| kind)
+    }
+}
 
 /// Memory that playing and drawing a clip takes, in elements of the arrays that a program reserves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +36,17 @@ pub struct MemoryNeeds {
     pub figure_joints: usize,
     /// Elements of the workspace that sets the figure up: one for each joint of the rig, End Sites included.
     pub workspace: usize,
+}
+
+/// One number of [`MemoryNeeds`] under the name that it has in source text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// The end of its name: `MOVING` of `WALK_MOVING`.
+    pub name: &'static str,
+    /// The number.
+    pub value: usize,
+    /// What it is, as a sentence.
+    pub meaning: &'static str,
 }
 
 impl MemoryNeeds {
@@ -34,6 +62,38 @@ impl MemoryNeeds {
         let set_up = renderer.set_up(&mut player, canvas, &mut vec![JointInfo::default(); workspace]);
         let figure_joints = if set_up.is_ok() { renderer.skeleton().bones.len() } else { 0 };
         Ok(MemoryNeeds { moving, channels, figure_joints, workspace })
+    }
+
+    /// The most that any clip of `bank` takes, number by number. Fails for a bank with a damaged clip.
+    pub fn of_bank(bank: &Bank<'_>) -> Result<MemoryNeeds> {
+        bank.entries().try_fold(MemoryNeeds { moving: 0, channels: 0, figure_joints: 0, workspace: 0 }, |most, entry| {
+            let of_clip = MemoryNeeds::of(&bank.open(&entry)?)?;
+            Ok(MemoryNeeds {
+                moving: most.moving.max(of_clip.moving),
+                channels: most.channels.max(of_clip.channels),
+                figure_joints: most.figure_joints.max(of_clip.figure_joints),
+                workspace: most.workspace.max(of_clip.workspace),
+            })
+        })
+    }
+
+    /// All numbers with their names in source text, which are the same in C and in Rust.
+    pub fn sizes(&self) -> [Size; 4] {
+        let size = |name, value, meaning| Size { name, value, meaning };
+        [
+            size("CHANNELS", self.channels, "Values of a pose."),
+            size("MOVING", self.moving, "Channel states that a player needs."),
+            size(
+                "FIGURE_JOINTS",
+                self.figure_joints,
+                "Joints of the figure: `N` of a `pantin_figure::FigureRenderer`. 0 if the clip has no figure.",
+            ),
+            size(
+                "WORKSPACE",
+                self.workspace,
+                "Elements of the workspace that sets the figure up: one `pantin_figure::JointInfo` for each joint of the rig.",
+            ),
+        ]
     }
 
     /// Bytes of a player's channel states and pose on any machine.
@@ -220,6 +280,7 @@ mod tests {
     use crate::expand;
     use crate::fit::descent::Level;
     use crate::fit::fit;
+    use crate::pose_bound::PoseBound;
 
     #[test]
     fn bits_of_segments_are_those_that_the_encoder_wrote() {
@@ -227,7 +288,7 @@ mod tests {
         let bytes = std::fs::read(path).unwrap();
         let motion = expand::expand(&Clip::new_checked(&bytes).unwrap()).unwrap();
         let motion = crate::motion::Motion { looped: false, ..motion };
-        let coded = fit(&motion, Level::Fast.plan(0.5), 0.02, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Level::Fast.plan(PoseBound::places(0.5)), 0.02, &mut |_| ()).unwrap();
         let figure = rig::encode(&motion.rig).unwrap();
         let file = clip::encode(&coded, &figure, false).unwrap();
         let opened = Clip::new_checked(&file).unwrap();

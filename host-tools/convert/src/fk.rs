@@ -23,13 +23,38 @@ pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 ///
 /// A joint's rotations multiply in the order of its channels; position channels replace its offset, axis by axis.
 pub fn positions(rig: &Rig, values: &[Vec<f64>], frame: usize) -> Vec<[f64; 3]> {
+    worlds(locals(rig, values, frame)).into_iter().map(|(_, place)| place.map(|x| x * rig.cm_per_unit)).collect()
+}
+
+/// How all joints are turned at a frame.
+pub(crate) struct FramePose {
+    /// Each joint's rotation in its parent.
+    pub turns: Vec<Matrix>,
+    /// Each joint's rotation, and its place in cm, in the world.
+    pub worlds: Vec<(Matrix, [f64; 3])>,
+}
+
+/// Rotations and places of all joints at `frame`, as for [`positions`].
+pub(crate) fn frame_pose(rig: &Rig, values: &[Vec<f64>], frame: usize) -> FramePose {
+    let locals: Vec<_> = locals(rig, values, frame).collect();
+    let turns = locals.iter().map(|(_, (turn, _))| *turn).collect();
+    let mut worlds = worlds(locals.into_iter());
+    worlds.iter_mut().for_each(|(_, place)| *place = place.map(|x| x * rig.cm_per_unit));
+    FramePose { turns, worlds }
+}
+
+/// Each joint's parent, and its rotation and place in the parent.
+fn locals<'a>(
+    rig: &'a Rig,
+    values: &'a [Vec<f64>],
+    frame: usize,
+) -> impl ExactSizeIterator<Item = (Option<usize>, (Matrix, [f64; 3]))> + 'a {
     let mut next = 0;
-    let joints = rig.joints.iter().map(|joint| {
+    rig.joints.iter().map(move |joint| {
         let channels = &values[next..next + joint.kinds.len()];
         next += joint.kinds.len();
         (joint.parent, local(joint, |channel| channels[channel][frame]))
-    });
-    worlds(joints).into_iter().map(|(_, place)| place.map(|x| x * rig.cm_per_unit)).collect()
+    })
 }
 
 /// Rotations and places in the world of joints, parents first, each with its parent's index and with its rotation and place in the parent.

@@ -26,12 +26,16 @@ pub mod motion;
 mod note;
 pub mod number;
 mod options;
+pub mod pose_bound;
 pub mod verify;
 
 pub use conversion::{
-    Converted, Errors, Made, Prepared, Progress, Recipe, Report, agree_on_up, convert, of_one_rig, prepare, shared_coding,
+    Converted, Errors, Made, Prepared, Progress, Recipe, Report, SeamReport, agree_on_up, convert, of_one_rig, prepare,
+    shared_coding,
 };
 pub use error::{Error, Problem, Setting};
+pub use fit::descent::Level;
+pub use fit::parametrize::{Coding, Rotations};
 pub use length::Length;
 pub use memory::{Memory, parse as parse_size, size as size_text};
 pub use moment::Moment;

@@ -1,6 +1,7 @@
 //! What a conversion reports beside its result: data first, with an English sentence that names no option of any front end.
 
 use crate::error::Setting;
+use serde_json::{Value, json};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -139,8 +140,8 @@ pub enum Remedy {
     RaiseMemory,
     /// Ask for a looser bound.
     LoosenBound,
-    /// Bound rotations too.
-    BoundRotations,
+    /// Bound the shells of joints, not their places alone.
+    BoundShell,
     /// Choose other first and last frames.
     ChooseFrames,
     /// Close the seam to a loop, or take the motion as one cycle.
@@ -167,7 +168,7 @@ impl Remedy {
             Remedy::ChooseSkeleton => "choose another skeleton",
             Remedy::RaiseMemory => "raise the limit of memory",
             Remedy::LoosenBound => "allow a larger error",
-            Remedy::BoundRotations => "bound the rotations",
+            Remedy::BoundShell => "bound the shells of joints",
             Remedy::ChooseFrames => "choose a first and a last frame that are alike",
             Remedy::CloseLoop => "take the motion as one cycle",
             Remedy::MakeLoop => "close the ends to a loop",
@@ -252,6 +253,25 @@ impl Note {
     pub fn at_frame(mut self, frame: usize) -> Note {
         self.place.frame = Some(frame);
         self
+    }
+
+    /// The note as fields of a report, with `text` in a front end's words.
+    pub fn to_json(&self, text: String) -> Value {
+        let Place { file, line, joint, frame } = &self.place;
+        let severity = if self.is_warning() { "warning" } else { "info" };
+        let mut fields = json!({ "kind": self.kind.name(), "severity": severity, "text": text });
+        let places = [
+            ("file", file.as_ref().map(|file| json!(file.display().to_string()))),
+            ("line", line.map(|line| json!(line))),
+            ("joint", joint.as_ref().map(|joint| json!(joint))),
+            ("frame", frame.map(|frame| json!(frame))),
+        ];
+        for (name, value) in places {
+            if let Some(value) = value {
+                fields[name] = value;
+            }
+        }
+        fields
     }
 
     /// Whether it is a warning.

@@ -22,14 +22,23 @@ pub enum ChannelBound {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// The greatest distance of any joint or End Site from where the source has it; 0.5 cm by default, or 6 times `mean_error`.
+    /// The greatest distance of any bounded point from where the source has it: of each joint, of the three points of its shell, and of each
+    /// End Site. 0.5 cm by default, or 6 times `mean_error`.
     pub max_error: Option<Length>,
-    /// The mean distance of all joints, End Sites left out: the clip is as small as this mean allows. `max_error` still holds.
+    /// The distance of the shell's points from their joint, along the joint's own axes, so that `max_error` bounds how each joint is turned,
+    /// too. By default 3 cm, or 3 % of the height of a figure below 1 m.
+    pub shell: Option<Length>,
+    /// Whether the places of joints and End Sites are bounded alone, without their shells; `false` by default. For figures that are drawn as
+    /// lines between joints: a head's yaw or a forearm's twist may be lost.
+    pub places_only: bool,
+    /// The mean error of the joints, End Sites left out: the clip is as small as this mean allows. `max_error` still holds.
     pub mean_error: Option<Length>,
     /// The greatest error of scalars, in percent of their full scale; 2 by default. Above 0.
     pub max_scalar_error: Option<f64>,
-    /// The greatest rotation error of joints that carry nothing away from them, in degrees. Above 0.
+    /// The greatest angle in degrees between the true and the decoded rotation of any joint in the world. Above 0, at most 180.
     pub max_rotation_error: Option<f64>,
+    /// The same against the joint's parent: what a servo or a skinned mesh shows.
+    pub max_joint_error: Option<f64>,
     /// Bounds of each channel, in place of all bounds above.
     pub channels: Option<ChannelBound>,
     /// The encoder's effort: speed against size.
@@ -52,9 +61,12 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             max_error: None,
+            shell: None,
+            places_only: false,
             mean_error: None,
             max_scalar_error: None,
             max_rotation_error: None,
+            max_joint_error: None,
             channels: None,
             effort: Level::Default,
             rotations: Rotations::ByCost,
@@ -81,28 +93,43 @@ impl Options {
     }
 
     /// Bounds the distance of joints.
-    pub fn max_error(self, error: Length) -> Options {
-        Options { max_error: Some(error), ..self }
+    pub fn max_error(self, error: impl Into<Option<Length>>) -> Options {
+        Options { max_error: error.into(), ..self }
     }
 
     /// Aims at a mean distance of joints.
-    pub fn mean_error(self, error: Length) -> Options {
-        Options { mean_error: Some(error), ..self }
+    pub fn mean_error(self, error: impl Into<Option<Length>>) -> Options {
+        Options { mean_error: error.into(), ..self }
     }
 
     /// Bounds scalars, in percent of full scale.
-    pub fn max_scalar_error(self, percent: f64) -> Options {
-        Options { max_scalar_error: Some(percent), ..self }
+    pub fn max_scalar_error(self, percent: impl Into<Option<f64>>) -> Options {
+        Options { max_scalar_error: percent.into(), ..self }
     }
 
-    /// Bounds rotations, in degrees.
-    pub fn max_rotation_error(self, degrees: f64) -> Options {
-        Options { max_rotation_error: Some(degrees), ..self }
+    /// Sets the distance of the shell's points.
+    pub fn shell(self, distance: impl Into<Option<Length>>) -> Options {
+        Options { shell: distance.into(), ..self }
+    }
+
+    /// Bounds places alone.
+    pub fn places_only(self, places_only: bool) -> Options {
+        Options { places_only, ..self }
+    }
+
+    /// Bounds rotations against the parent, in degrees.
+    pub fn max_joint_error(self, degrees: impl Into<Option<f64>>) -> Options {
+        Options { max_joint_error: degrees.into(), ..self }
+    }
+
+    /// Bounds rotations in the world, in degrees.
+    pub fn max_rotation_error(self, degrees: impl Into<Option<f64>>) -> Options {
+        Options { max_rotation_error: degrees.into(), ..self }
     }
 
     /// Bounds channels instead of joints.
-    pub fn channels(self, bound: ChannelBound) -> Options {
-        Options { channels: Some(bound), ..self }
+    pub fn channels(self, bound: impl Into<Option<ChannelBound>>) -> Options {
+        Options { channels: bound.into(), ..self }
     }
 
     /// Sets the encoder's effort.
@@ -116,8 +143,8 @@ impl Options {
     }
 
     /// Stores a snapshot every `seconds`.
-    pub fn index(self, seconds: f64) -> Options {
-        Options { index: Some(seconds), ..self }
+    pub fn index(self, seconds: impl Into<Option<f64>>) -> Options {
+        Options { index: seconds.into(), ..self }
     }
 
     /// Keeps the rig out of the clip.

@@ -2,61 +2,80 @@
 
 use crate::expand::expand_made;
 use crate::fk;
-use crate::motion::{Joint, Motion, Rig};
+use crate::import::units::figure_height_cm;
+use crate::motion::Motion;
+use crate::pose_bound::{PoseBound, angle_deg, bounded, default_shell_cm, shell_distance_cm};
 use anyhow::{Result, ensure};
 use pantin::Clip;
 
-/// How far a clip is from its motion: world-space distances in cm over all frames and joints, End Sites included.
+/// The greatest error of one kind over all frames and joints, and where it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Worst {
+    /// The error, 0 or more.
+    pub error: f64,
+    /// The joint that has it: an End Site by its parent's name. Empty if nothing is off.
+    pub joint: String,
+    /// The frame, from 0.
+    pub frame: usize,
+}
+
+/// How far a clip is from its motion over all frames and joints. Helper bones, and what hangs on them, are left out.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// Greatest distance.
-    pub max_cm: f64,
-    /// Mean distance.
+    /// Greatest distance of a place, End Sites included, in cm.
+    pub place_cm: Worst,
+    /// Mean distance of places, End Sites included, in cm.
     pub mean_cm: f64,
-    /// Mean distance of the joints, End Sites left out.
+    /// Mean distance of the joints' places, End Sites left out, in cm.
     pub mean_joint_cm: f64,
-    /// Where the greatest is.
-    pub worst_joint: String,
-    /// When the greatest is.
-    pub worst_frame: usize,
+    /// The distance in cm of the shell's points from their joint.
+    pub shell_radius_cm: f64,
+    /// Greatest shell error in cm: of a joint's place and the three points along its axes, or of an End Site's place.
+    pub shell_cm: Worst,
+    /// Mean shell error of the joints, End Sites left out, in cm.
+    pub mean_shell_cm: f64,
+    /// Greatest angle in degrees between a joint's rotations in the world.
+    pub rotation_deg: Worst,
+    /// Greatest angle in degrees between a joint's rotations in its parent.
+    pub joint_deg: Worst,
     /// Greatest error of a scalar, as a part of its full scale.
     pub max_scalar: f64,
     /// The scalar that has it.
     pub worst_scalar: String,
     /// When it has it.
     pub worst_scalar_frame: usize,
-    /// Greatest error in degrees of a rotation that moves no joint and no End Site, which a bound on places does not see.
-    pub max_unseen_degrees: f64,
-    /// The joint that has it.
-    pub unseen_joint: String,
-    /// When it has it.
-    pub unseen_frame: usize,
 }
 
-/// Compares two motions of the same figure.
-pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
-    ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
-    let mut report = Report::default();
-    let (mut sum, mut sum_of_joints) = (0.0, 0.0);
-    let joints = original.rig.joints.iter().filter(|joint| !joint.end_site).count();
-    for frame in 0..original.frames {
-        let places = fk::positions(&original.rig, &original.values, frame);
-        for (joint, (p, q)) in places.iter().zip(fk::positions(&other.rig, &other.values, frame)).enumerate() {
-            let distance = (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f64>().sqrt();
-            sum += distance;
-            if !original.rig.joints[joint].end_site {
-                sum_of_joints += distance;
-            }
-            if distance > report.max_cm {
-                (report.max_cm, report.worst_frame) = (distance, frame);
-                report.worst_joint = original.rig.joint_name(joint);
-            }
+/// The greatest of errors so far: the error, the joint's index and the frame.
+#[derive(Clone, Copy, Default)]
+struct Greatest(f64, usize, usize);
+
+impl Greatest {
+    fn put(&mut self, error: f64, joint: usize, frame: usize) {
+        // Not a number is greater than any bound.
+        if error > self.0 || error.is_nan() {
+            *self = Greatest(if error.is_nan() { f64::INFINITY } else { error }, joint, frame);
         }
     }
-    report.mean_joint_cm = sum_of_joints / (original.frames * joints).max(1) as f64;
-    report.mean_cm = sum / (original.frames * original.rig.joints.len()).max(1) as f64;
-    let first = original.rig.joint_channels();
-    for (scalar, channel) in original.rig.scalars.iter().zip(first..) {
+
+    fn named(self, motion: &Motion) -> Worst {
+        let Greatest(error, joint, frame) = self;
+        let joint = if error > 0.0 { motion.rig.joint_name(joint) } else { String::new() };
+        Worst { error, joint, frame }
+    }
+}
+
+/// The shell's radius in cm by which a motion's errors are measured if its bound names none.
+pub fn shell_radius_cm(motion: &Motion) -> f64 {
+    default_shell_cm(figure_height_cm(motion))
+}
+
+/// Compares two motions of the same figure; the shell's points are `shell_cm` from their joints.
+pub fn compare(original: &Motion, other: &Motion, shell_cm: f64) -> Result<Report> {
+    ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
+    let mut report = compare_joints(original, other, shell_cm);
+    for (index, scalar) in original.rig.scalars.iter().enumerate() {
+        let channel = original.rig.joint_channels() + index;
         for (frame, (a, b)) in original.values[channel].iter().zip(&other.values[channel]).enumerate() {
             let part = (a - b).abs() / scalar.full_scale;
             if part > report.max_scalar {
@@ -65,52 +84,56 @@ pub fn compare(original: &Motion, other: &Motion) -> Result<Report> {
             }
         }
     }
-    unseen_rotations(original, other, &mut report);
     Ok(report)
 }
 
-/// Joints that turn and carry nothing that stands away from them.
-pub fn unseen(rig: &Rig) -> Vec<usize> {
-    let mut carries = vec![false; rig.joints.len()];
-    for (index, joint) in rig.joints.iter().enumerate().rev() {
-        let stands = joint.offset != [0.0; 3] || joint.kinds.iter().any(|kind| kind.is_position());
-        if let Some(parent) = joint.parent {
-            carries[parent] |= stands || carries[index];
+fn compare_joints(original: &Motion, other: &Motion, shell_cm: f64) -> Report {
+    let joints = &original.rig.joints;
+    let bounded = bounded(&original.rig);
+    let [mut place, mut shell, mut rotation, mut in_parent] = [Greatest::default(); 4];
+    let [mut sum, mut sum_of_joints, mut sum_of_shells] = [0.0; 3];
+    for frame in 0..original.frames {
+        let a = fk::frame_pose(&original.rig, &original.values, frame);
+        let b = fk::frame_pose(&other.rig, &other.values, frame);
+        for joint in (0..joints.len()).filter(|&joint| bounded[joint]) {
+            let (p, q) = (&a.worlds[joint], &b.worlds[joint]);
+            let distance = fk::distance(p.1, q.1);
+            place.put(distance, joint, frame);
+            sum += distance;
+            if joints[joint].end_site {
+                shell.put(distance, joint, frame);
+                continue;
+            }
+            let around = shell_distance_cm(p, q, shell_cm);
+            shell.put(around, joint, frame);
+            rotation.put(angle_deg(&p.0, &q.0), joint, frame);
+            in_parent.put(angle_deg(&a.turns[joint], &b.turns[joint]), joint, frame);
+            sum_of_joints += distance;
+            sum_of_shells += around;
         }
     }
-    let turns = |joint: &Joint| joint.kinds.iter().any(|kind| !kind.is_position());
-    (0..rig.joints.len()).filter(|&joint| !carries[joint] && turns(&rig.joints[joint])).collect()
-}
-
-fn unseen_rotations(original: &Motion, other: &Motion, report: &mut Report) {
-    let firsts = original.rig.first_channels();
-    for index in unseen(&original.rig) {
-        let joint = &original.rig.joints[index];
-        for frame in 0..original.frames {
-            let turn = |motion: &Motion| fk::local(joint, |channel| motion.values[firsts[index] + channel][frame]).0;
-            let (a, b) = (turn(original), turn(other));
-            // The squared distance of two rotation matrices is 8 sin^2 of half the angle between them.
-            let far: f64 = (0..9).map(|i| (a[i / 3][i % 3] - b[i / 3][i % 3]).powi(2)).sum();
-            let degrees = 2.0 * (far / 8.0).sqrt().min(1.0).asin().to_degrees();
-            if degrees > report.max_unseen_degrees {
-                (report.max_unseen_degrees, report.unseen_frame) = (degrees, frame);
-                report.unseen_joint = original.rig.joint_name(index);
-            }
-        }
+    let all = bounded.iter().filter(|bounded| **bounded).count();
+    let turning = joints.iter().zip(&bounded).filter(|(joint, bounded)| **bounded && !joint.end_site).count();
+    let mean = |sum: f64, joints: usize| sum / (joints * original.frames).max(1) as f64;
+    Report {
+        place_cm: place.named(original),
+        mean_cm: mean(sum, all),
+        mean_joint_cm: mean(sum_of_joints, turning),
+        shell_radius_cm: shell_cm,
+        shell_cm: shell.named(original),
+        mean_shell_cm: mean(sum_of_shells, turning),
+        rotation_deg: rotation.named(original),
+        joint_deg: in_parent.named(original),
+        ..Report::default()
     }
 }
 
 /// Opens `bytes` (with `rig` if they hold none), plays them, and refuses them if a bound is broken.
-pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bound_cm: f64, scalar_part: f64) -> Result<Report> {
+pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bound: &PoseBound, scalar_part: f64) -> Result<Report> {
     let clip = Clip::with_rig(bytes, rig)?;
-    let report = compare(motion, &expand_made(&clip)?)?;
-    ensure!(
-        report.max_cm <= bound_cm,
-        "joint {} at frame {} is {:.4} cm off; the bound is {bound_cm} cm",
-        report.worst_joint,
-        report.worst_frame,
-        report.max_cm
-    );
+    let shell_cm = bound.shell_cm().unwrap_or_else(|| shell_radius_cm(motion));
+    let report = compare(motion, &expand_made(&clip)?, shell_cm)?;
+    report.check(bound)?;
     ensure!(
         report.max_scalar <= scalar_part,
         "channel {} at frame {} is off by {:.3} % of its full scale; the bound is {:.3} %",
@@ -120,4 +143,34 @@ pub fn verify(bytes: &[u8], rig: &[u8], motion: &Motion, bound_cm: f64, scalar_p
         100.0 * scalar_part
     );
     Ok(report)
+}
+
+impl Report {
+    /// Whether distances are bounded in the shell, the greatest of those that are bounded.
+    pub fn bounded_cm(&self, bound: &PoseBound) -> &Worst {
+        if bound.shell_cm().is_some() { &self.shell_cm } else { &self.place_cm }
+    }
+
+    /// The mean that `mean_cm` of a bound is about, in cm.
+    pub fn bounded_mean_cm(&self, bound: &PoseBound) -> f64 {
+        if bound.shell_cm().is_some() { self.mean_shell_cm } else { self.mean_joint_cm }
+    }
+
+    /// Fails if a joint breaks the bound on distances or on rotations. The mean is an aim, which the caller checks.
+    pub fn check(&self, bound: &PoseBound) -> Result<()> {
+        let Worst { error, joint, frame } = self.bounded_cm(bound);
+        let what = if bound.shell_cm().is_some() { "the shell of joint" } else { "joint" };
+        ensure!(*error <= bound.max_cm, "{what} {joint} at frame {frame} is {error:.4} cm off; the bound is {} cm", bound.max_cm);
+        let turned = |worst: &Worst, most: Option<f64>, whose: &str| {
+            let Worst { error, joint, frame } = worst;
+            let most = most.unwrap_or(f64::INFINITY);
+            ensure!(
+                *error <= most,
+                "joint {joint} at frame {frame} is turned by {error:.4} degrees {whose}; the bound is {most}"
+            );
+            Ok(())
+        };
+        turned(&self.rotation_deg, bound.max_rotation_deg, "in the world")?;
+        turned(&self.joint_deg, bound.max_joint_deg, "against its parent")
+    }
 }

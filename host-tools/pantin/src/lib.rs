@@ -11,6 +11,8 @@ pub mod line;
 #[cfg(feature = "cli")]
 pub mod machine;
 #[cfg(feature = "cli")]
+pub mod memory;
+#[cfg(feature = "cli")]
 pub mod open;
 #[cfg(feature = "cli")]
 pub mod output;
@@ -28,3 +30,5 @@ pub mod stream;
 pub mod train;
 #[cfg(feature = "cli")]
 pub mod update;
+#[cfg(feature = "cli")]
+pub mod words;

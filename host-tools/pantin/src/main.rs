@@ -2,8 +2,8 @@
 
 use anyhow::{Context, Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
-use pantin_convert::budget;
-use pantin_tools::{cmd, output};
+use pantin_convert::{Memory, parse_size};
+use pantin_tools::{cmd, memory, output};
 use serde_json::json;
 use std::io::{self, Write};
 use std::path::Path;
@@ -38,10 +38,10 @@ struct Arguments {
     #[arg(long, global = true, help_heading = "Messages")]
     json: bool,
     /// Refuse what takes more memory: a size such as 500MB or 4GB
-    #[arg(long, global = true, value_name = "SIZE", default_value = "1GB", value_parser = budget::parse, help_heading = "Limits")]
+    #[arg(long, global = true, value_name = "SIZE", default_value = "1GB", value_parser = parse_size, help_heading = "Limits")]
     max_memory: u64,
     /// Refuse to write more than this to an output
-    #[arg(long, global = true, value_name = "SIZE", default_value = "1GB", value_parser = budget::parse, help_heading = "Limits")]
+    #[arg(long, global = true, value_name = "SIZE", default_value = "1GB", value_parser = parse_size, help_heading = "Limits")]
     max_output: u64,
 }
 
@@ -109,7 +109,7 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return not_understood(&error),
     };
-    budget::set(arguments.max_memory);
+    memory::set_limit(Memory::new(arguments.max_memory));
     output::set_most_bytes(arguments.max_output);
     output::set_reporting(arguments.quiet, arguments.verbose, arguments.json);
     let name = arguments.command.name();

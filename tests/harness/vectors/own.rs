@@ -25,7 +25,8 @@ pub fn vectors(wanted: impl Fn(&str) -> bool) -> Result<Vec<Vector>> {
         let motion = paths::root().join("motions").join(motion).with_extension("keys");
         let clip = folder.path().join(name);
         let mut convert = Command::new(&tool);
-        convert.arg("convert").arg(&motion).arg("-o").arg(&clip).args(["--quiet", "--max-error", bound]);
+        // The clips are drawn as lines between joints.
+        convert.args(["convert", "--places-only"]).arg(&motion).arg("-o").arg(&clip).args(["--quiet", "--max-error", bound]);
         let output = convert.output().context("cannot start the host tool")?;
         ensure!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr).trim());
         Ok(Vector { name: name.into(), clip: std::fs::read(&clip)?, rig: None })

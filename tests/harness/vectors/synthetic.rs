@@ -3,6 +3,7 @@
 use anyhow::Result;
 use pantin::codec::layout::{FIRST_STEP, GROUPS, HAS_SECTIONS, MAX_STEP, START_MODE, STEP_CHANGES, group, segment_type};
 use pantin::{Event, Kind, Up};
+use pantin_convert::Memory;
 use pantin_convert::encode::clip::{self, Channel, Coded, Start};
 use pantin_convert::encode::rig;
 use pantin_convert::encode::segment::Segment;

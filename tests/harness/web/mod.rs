@@ -19,7 +19,8 @@ use pantin_convert::encode::{clip, rig};
 use pantin_convert::export;
 use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::fit;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
+use pantin_convert::pose_bound::PoseBound;
 use pantin_tools::machine;
 use pantin_tools::serve::{Site, serve};
 use serde_json::json;
@@ -149,7 +150,7 @@ fn clips(out: &Path) -> Result<()> {
     let medley = medley()?;
     write(&out.join("clips/medley.ptn"), &medley)?;
     list.push(json!({ "name": "medley", "file": "clips/medley.ptn", "bytes": medley.len() }));
-    let walk = import::load(&paths::root().join("motions/walk.keys"), &Options::default())?.motion;
+    let walk = import::load(&paths::root().join("motions/walk.keys"), &ImportOptions::new())?.motion;
     let mut bvh = vec![];
     export::bvh::write(&walk, export::bvh::Columns::ThreeRotations, &mut bvh)?;
     write(&out.join("clips/walk.bvh"), &bvh)?;
@@ -169,7 +170,7 @@ fn character(out: &Path) -> Result<()> {
 fn medley() -> Result<Vec<u8>> {
     let load = |name: &&str| {
         let path = paths::root().join("motions/library").join(name).with_extension("keys");
-        anyhow::Ok(import::load(&path, &Options::default())?.motion)
+        anyhow::Ok(import::load(&path, &ImportOptions::new())?.motion)
     };
     let motions = MEDLEY.iter().map(load).collect::<Result<Vec<_>>>()?;
     let [first, others @ ..] = &motions[..] else { return Ok(vec![]) };
@@ -182,7 +183,7 @@ fn medley() -> Result<Vec<u8>> {
     (whole.looped, whole.events) = (false, vec![]);
     whole.keys.fill(None);
     let rig = rig::encode(&whole.rig)?;
-    let coded = fit(&whole, Level::Fast.plan(MEDLEY_CM), SCALAR_PART, &mut |_| {})?;
+    let coded = fit(&whole, Level::Fast.plan(PoseBound::places(MEDLEY_CM)), SCALAR_PART, &mut |_| {})?;
     clip::encode(&coded, &rig, false)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 
 /// Stands between the ASF and the AMC of one input.
 const BETWEEN: &[u8] = b"\n%%\n";
@@ -122,7 +122,7 @@ pub fn load(extension: &str, text: &[u8]) -> bool {
     in_folder(|folder| {
         let path = folder.join("input").with_extension(extension);
         std::fs::write(&path, text).expect("the temporary folder is writable");
-        check(&path, &Options::default())
+        check(&path, &ImportOptions::new())
     })
 }
 
@@ -135,7 +135,7 @@ pub fn amc(text: &[u8]) -> bool {
         let path = folder.join("input.amc");
         std::fs::write(&skeleton, &text[..at]).expect("the temporary folder is writable");
         std::fs::write(&path, amc).expect("the temporary folder is writable");
-        check(&path, &Options { skeleton: Some(skeleton), ..Options::default() })
+        check(&path, &ImportOptions::new().skeleton(skeleton))
     })
 }
 
@@ -163,7 +163,7 @@ fn in_folder(work: impl FnOnce(&Path) -> bool) -> bool {
     FOLDER.with(|folder| work(&folder.0))
 }
 
-fn check(path: &Path, options: &Options) -> bool {
+fn check(path: &Path, options: &ImportOptions) -> bool {
     match import::load(path, options) {
         Ok(imported) => {
             let motion = imported.motion;

@@ -11,7 +11,7 @@ use clap::Args;
 use harness::{build, paths};
 use pantin_convert::expand::expand;
 use pantin_convert::import::{self, units};
-use pantin_convert::verify::compare;
+use pantin_convert::verify::{compare, shell_radius_cm};
 use pantin_tools::output::write_whole;
 use pantin_tools::render::gallery::{self, Cell};
 
@@ -101,7 +101,7 @@ fn name(path: &Path) -> String {
 
 /// Converts by the program, expands by the library, and compares with what the importer reads.
 fn one(tool: &Path, path: &Path, out: &Path) -> Result<Row> {
-    let motion = import::load(path, &import::Options::default())?.motion;
+    let motion = import::load(path, &import::ImportOptions::new())?.motion;
     let height = units::figure_height_cm(&motion);
     let (bound, text) = match height {
         Some(height) if !PERSONS_CM.contains(&height) => (0.005 * height, "0.5%"),
@@ -113,17 +113,18 @@ fn one(tool: &Path, path: &Path, out: &Path) -> Result<Row> {
     ensure!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr).trim());
     let bytes = fs::read(&clip)?;
     let opened = pantin::Clip::new_checked(&bytes)?;
-    let report = compare(&motion, &expand(&opened)?)?;
-    let percent = height.map_or(String::new(), |height| format!(" ({:.2} % of the height)", 100.0 * report.max_cm / height));
+    let report = compare(&motion, &expand(&opened)?, shell_radius_cm(&motion))?;
+    let percent =
+        height.map_or(String::new(), |height| format!(" ({:.2} % of the height)", 100.0 * report.shell_cm.error / height));
     let mut errors = Vec::new();
     if !motion.rig.joints.is_empty() {
-        errors.push(format!("{:.3} cm{percent}", report.max_cm));
+        errors.push(format!("{:.3} cm{percent}", report.shell_cm.error));
     }
     if !motion.rig.scalars.is_empty() {
         errors.push(format!("{:.2} % of scale", 100.0 * report.max_scalar));
     }
     let error = errors.join(", ");
-    ensure!(report.max_cm <= bound && 100.0 * report.max_scalar <= SCALAR_PERCENT, "expanded, it is off by {error}");
+    ensure!(report.shell_cm.error <= bound && 100.0 * report.max_scalar <= SCALAR_PERCENT, "expanded, it is off by {error}");
     let label = format!("{}  {} frames, {} bytes, {error}", name(path), motion.frames, bytes.len());
     let cell = Cell::of(&opened, label)?;
     Ok(Row { frames: motion.frames, channels: motion.rig.channels(), bytes: bytes.len(), error, cell })

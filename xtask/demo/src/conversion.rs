@@ -5,17 +5,11 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
 use harness::build;
-use pantin_convert::fit::descent::Level;
-use pantin_convert::fit::fit;
-use pantin_convert::verify::verify;
-use pantin_convert::{encode, errors, import};
+use pantin_convert::import::{Disk, ImportOptions};
+use pantin_convert::{Options, Recipe};
 use serde_json::Value;
 
 use crate::report::Clip;
-
-/// The host tool's own bounds.
-const ERROR_CM: f64 = 0.5;
-const SCALAR_PART: f64 = 0.02;
 
 /// Formats that this program reads itself.
 const OWN: [&str; 2] = ["keys", "bvh"];
@@ -43,19 +37,16 @@ pub fn convert(motion: &Path, out: &Path, bounds: &Bounds) -> Result<Clip> {
 }
 
 fn by_library(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
-    let options = import::Options { cm_per_unit: bounds.cm_per_unit, ..import::Options::default() };
-    let imported = import::load(motion, &options)?;
-    imported.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
-    eprintln!("{}", imported.units);
-    let motion = imported.motion;
-    let part = bounds.scalar_percent.map_or(SCALAR_PART, |percent| percent / 100.0);
-    ensure!(part > 0.0, "--max-scalar-error: expected a number above 0");
-    let rig = encode::rig::encode(&motion.rig)?;
-    let coded = fit(&motion, Level::Default.plan(ERROR_CM), part, &mut |_| ())?;
-    let bytes = encode::clip::encode(&coded, &rig, false)?;
-    let report = verify(&bytes, &rig, &motion, ERROR_CM, part)?;
-    std::fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-    Ok(errors::to_json(&report, &motion).into())
+    let import = ImportOptions::new().cm_per_unit(bounds.cm_per_unit);
+    // The figure is drawn as lines between joints, so that their places are enough.
+    let options = Options::new().places_only(true).max_scalar_error(bounds.scalar_percent);
+    let recipe = Recipe::new().import(import).options(options);
+    let converted = recipe.convert(&Disk::default(), motion, &mut |_| ())?;
+    for note in &converted.notes {
+        eprintln!("{}{note}", if note.is_warning() { "warning: " } else { "" });
+    }
+    std::fs::write(path, &converted.clip).with_context(|| format!("cannot write {}", path.display()))?;
+    Ok(converted.report.to_json(&converted.motion).into())
 }
 
 fn by_program(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {

@@ -48,7 +48,10 @@ pub fn run(out: &Path) -> Result<()> {
     let motions = paths::root().join("motions");
     let (library, bank) = (out.join("library.ptb"), out.join("character.ptb"));
     say("converting motions/library");
-    pantin(&["convert".as_ref(), &motions.join("library"), "-o".as_ref(), &library], &["--same-form", "--max-error", "0.5cm"])?;
+    pantin(
+        &["convert".as_ref(), &motions.join("library"), "-o".as_ref(), &library],
+        &["--places-only", "--same-form", "--max-error", "0.5cm"],
+    )?;
     let machine = motions.join("character.toml");
     pantin(&["machine".as_ref(), &machine, "--bank".as_ref(), &library, "-o".as_ref(), &bank], &[])?;
     say("playing motions/steer.txt");

@@ -59,33 +59,49 @@ impl Bound {
 }
 
 fn close_within(distance: &mut Distance, motion: &Motion) -> Result<Closed> {
-    let Distance { max_cm, mean_cm, scalar_part } = distance;
-    let closed = loop_seam::close(motion, Most::Distance(*max_cm, *scalar_part))?;
-    let least = closed.moved_cm / CLOSING;
+    let Distance { pose, scalar_part } = distance;
+    let closed = loop_seam::close(motion, Most::Distance(pose, *scalar_part))?;
+    let (max_cm, least) = (pose.max_cm, closed.moved_cm / CLOSING);
     // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
     let too_far = || {
         let Closed { joint, moved_cm, .. } = &closed;
-        let text = format!(
+        format!(
             "closing the seam moves {joint} by {moved_cm:.3} cm, which leaves too little of the bound of {max_cm} cm; a bound above {least:.3} cm will do"
-        );
-        Error::setting(Setting::Loop, text).remedy(Remedy::LoosenBound)
+        )
     };
-    require!(closed.moved_cm < CLOSING * *max_cm, too_far());
-    *max_cm -= closed.moved_cm;
+    require!(closed.moved_cm < CLOSING * max_cm, open(too_far()));
+    pose.max_cm -= closed.moved_cm;
     let scalars = motion.rig.scalars.iter().zip(&closed.moved[motion.rig.joint_channels()..]);
     *scalar_part -= scalars.map(|(scalar, moved)| moved / scalar.full_scale).fold(0.0, f64::max);
-    if let Some(mean_cm) = mean_cm {
-        let moved = compare(&cut(motion, None, Some(closed.motion.frames - 1))?, &closed.motion)?.mean_joint_cm;
+    for (most, turned, whose) in [
+        (&mut pose.max_rotation_deg, closed.turned_deg, "in the world"),
+        (&mut pose.max_joint_deg, closed.turned_joint_deg, "against its parent"),
+    ] {
+        let Some(most) = most else { continue };
         let too_far = || {
-            let text = format!(
-                "closing the seam moves the joints by {moved:.4} cm in the mean, which leaves too little of the mean error, {mean_cm} cm"
-            );
-            Error::setting(Setting::Loop, text).remedy(Remedy::LoosenBound)
+            format!(
+                "closing the seam turns a joint by {turned:.3} degrees {whose}, which leaves too little of the bound of {most} degrees"
+            )
         };
-        require!(moved < CLOSING * *mean_cm, too_far());
-        *mean_cm -= moved;
+        require!(turned < CLOSING * *most, open(too_far()));
+        *most -= turned;
+    }
+    if let Some(mean_cm) = pose.mean_cm {
+        let source = cut(motion, None, Some(closed.motion.frames - 1))?;
+        let moved = compare(&source, &closed.motion, pose.shell_cm().unwrap_or(0.0))?.bounded_mean_cm(pose);
+        let too_far = || {
+            format!(
+                "closing the seam moves the joints by {moved:.4} cm in the mean, which leaves too little of the mean error, {mean_cm} cm"
+            )
+        };
+        require!(moved < CLOSING * mean_cm, open(too_far()));
+        pose.mean_cm = Some(mean_cm - moved);
     }
     Ok(closed)
+}
+
+fn open(text: String) -> Error {
+    Error::setting(Setting::Loop, text).remedy(Remedy::LoosenBound)
 }
 
 /// What closing the loop of `motion` did.

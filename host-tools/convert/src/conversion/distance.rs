@@ -4,15 +4,15 @@ use crate::error::{Error, Setting, require};
 use crate::fit::descent::{Level, Plan};
 use crate::motion::Motion;
 use crate::options::Options;
+use crate::pose_bound::{PoseBound, Shell};
+use crate::verify::shell_radius_cm;
 use anyhow::Result;
 
 /// The errors of joints and scalars that a conversion keeps to.
 #[derive(Clone, Copy, Debug)]
 pub struct Distance {
-    /// Of every joint, in cm.
-    pub max_cm: f64,
-    /// Of all joints in the mean, End Sites left out, in cm.
-    pub mean_cm: Option<f64>,
+    /// Of joints.
+    pub pose: PoseBound,
     /// Of scalars, as a part of full scale.
     pub scalar_part: f64,
 }
@@ -30,23 +30,33 @@ impl Distance {
             let refusal = || Error::setting(Setting::MeanError, format!("{mean} cm is more than the largest error, {max_cm} cm"));
             require!(mean <= max_cm, refusal());
         }
+        let shell = match options.shell {
+            _ if options.places_only => Shell::Places,
+            Some(shell) => Shell::Cm(shell.of(motion)?),
+            None => Shell::Cm(shell_radius_cm(motion)),
+        };
+        let (max_rotation_deg, max_joint_deg) = (options.max_rotation_error, options.max_joint_error);
         let percent = options.max_scalar_error.unwrap_or(Options::MAX_SCALAR_PERCENT);
-        Ok(Distance { max_cm, mean_cm, scalar_part: percent / 100.0 })
+        let pose = PoseBound { max_cm, shell, max_rotation_deg, max_joint_deg, mean_cm };
+        Ok(Distance { pose, scalar_part: percent / 100.0 })
     }
 
     /// What is left of the bound for a motion whose joints are `error_cm` from where the file has them: no joint is farther than all of it from the
     /// file.
     pub fn less(self, error_cm: f64) -> Result<Distance> {
-        let known = error_cm == 0.0 || error_cm < 0.5 * self.mean_cm.unwrap_or(self.max_cm);
+        let PoseBound { max_cm, mean_cm, .. } = self.pose;
+        let known = error_cm == 0.0 || error_cm < 0.5 * mean_cm.unwrap_or(max_cm);
         let refusal = || Error::bound(format!("the file is only known within {error_cm:e} cm, which is too much of the bound"));
         require!(known, refusal());
-        Ok(Distance { max_cm: self.max_cm - error_cm, mean_cm: self.mean_cm.map(|mean| mean - error_cm), ..self })
+        let pose = PoseBound { max_cm: max_cm - error_cm, mean_cm: mean_cm.map(|mean| mean - error_cm), ..self.pose };
+        Ok(Distance { pose, ..self })
     }
 
     /// The plan of the fit.
     pub fn plan(&self, effort: Level) -> Plan {
+        let PoseBound { max_cm, mean_cm, .. } = self.pose;
         // A looser bound than by default saves nothing, and leaves first codes too much room.
-        let max_cm = self.mean_cm.map_or(self.max_cm, |mean| self.max_cm.min(Options::MAX_OF_MEAN * mean));
-        Plan { mean_cm: self.mean_cm, ..effort.plan(max_cm) }
+        let max_cm = mean_cm.map_or(max_cm, |mean| max_cm.min(Options::MAX_OF_MEAN * mean));
+        effort.plan(PoseBound { max_cm, ..self.pose })
     }
 }

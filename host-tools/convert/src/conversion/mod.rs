@@ -5,6 +5,7 @@
 
 mod bound;
 mod distance;
+mod left_out;
 mod prepared;
 mod recipe;
 mod report;
@@ -15,7 +16,7 @@ use crate::note::Note;
 use crate::options::Options;
 pub use prepared::{Made, Prepared, agree_on_up, of_one_rig, prepare, shared_coding};
 pub use recipe::Recipe;
-pub use report::{Errors, Report};
+pub use report::{Errors, Report, SeamReport};
 
 /// A clip that keeps its bound.
 #[derive(Clone, Debug)]

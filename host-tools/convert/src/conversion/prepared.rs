@@ -3,9 +3,12 @@
 use super::Progress;
 use super::bound::{Bound, closed_notes};
 use super::distance::Distance;
-use super::report::{Errors, Report};
+use super::left_out::left_out;
+use super::report::{Errors, Report, SeamReport};
 use crate::channel_error;
+use crate::edit::cut::cut;
 use crate::edit::footsteps::footsteps;
+use crate::edit::loop_seam::Closed;
 use crate::encode::clip::{self, Coded};
 use crate::encode::rig;
 use crate::encode::same_rig::difference;
@@ -16,18 +19,19 @@ use crate::fit::parametrize::{Coding, Rotations, has_choice, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import::up;
 use crate::motion::{Motion, Up};
-use crate::note::{Note, NoteKind, Remedy};
+use crate::note::{Note, NoteKind};
 use crate::number::Number;
 use crate::options::{ChannelBound, Options};
-use crate::verify::{unseen, verify};
+use crate::pose_bound::PoseBound;
+use crate::verify::verify;
 use anyhow::{Context, Result};
 use pantin::codec::layout::MAX_FRAMES;
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Smaller errors of rotations that move nothing are not mentioned, in degrees.
-const TOLD_DEGREES: f64 = 0.01;
+/// The least bound on a rotation in degrees: rounding three angles to steps of 360 / 2^32 degrees turns a joint by nearly as much.
+const LEAST_DEGREES: f64 = 2e-7;
 
 /// A motion after all edits, and what its clip must keep.
 #[derive(Clone, Debug)]
@@ -41,6 +45,17 @@ pub struct Prepared {
     pub notes: Vec<Note>,
     options: Options,
     bound: Bound,
+    seam: Option<Seam>,
+}
+
+/// A loop's source, and what closing its seam took of the bound.
+#[derive(Clone, Debug)]
+struct Seam {
+    /// The motion before its seam was closed, without the last frame.
+    source: Motion,
+    /// The bound against it.
+    bound: Bound,
+    report: SeamReport,
 }
 
 /// A verified clip of a prepared motion.
@@ -67,16 +82,24 @@ fn prepared(mut motion: Motion, options: &Options) -> Result<Prepared> {
         motion = quaternions(&motion);
     }
     let size = [motion.rig.joints.len(), motion.rig.channels()];
-    let beam = options.effort.plan(1.0).effort.beam;
+    let beam = options.effort.plan(PoseBound::places(1.0)).effort.beam;
     options.memory.check_fit(motion.frames, size, beam, motion.origin.bytes)?;
     let mut bound = Bound::of(options, &motion)?;
+    let mut seam = None;
     if options.looped {
+        let whole = bound.clone();
         let closed = bound.close(&motion)?;
         notes.extend(closed_notes(&closed, &motion));
+        if !motion.looped {
+            let source = cut(&motion, None, Some(closed.motion.frames - 1))?;
+            let Closed { seam_cm, seam_joint, moved_cm, joint: moved_joint, turned_deg, .. } = closed;
+            let report = SeamReport { seam_cm, seam_joint, moved_cm, moved_joint, turned_deg };
+            seam = Some(Seam { source, bound: whole, report });
+        }
         motion = closed.motion;
     }
     let rig = rig::encode(&motion.rig)?;
-    Ok(Prepared { motion, rig, notes, options: options.clone(), bound })
+    Ok(Prepared { motion, rig, notes, options: options.clone(), bound, seam })
 }
 
 impl Options {
@@ -90,6 +113,14 @@ impl Options {
 fn check_settings(options: &Options) -> Result<()> {
     let length = |length: Option<crate::length::Length>| length.is_none_or(crate::length::Length::is_valid);
     let number = |number: Option<f64>| number.is_none_or(|number| number.is_finite() && number > 0.0);
+    for (setting, degrees) in
+        [(Setting::MaxRotationError, options.max_rotation_error), (Setting::MaxJointError, options.max_joint_error)]
+    {
+        let wrong = || Error::setting(setting, format!("expected degrees from {LEAST_DEGREES:e} to 180"));
+        require!(degrees.is_none_or(|degrees| (LEAST_DEGREES..=180.0).contains(&degrees)), wrong());
+    }
+    let both = options.places_only && options.shell.is_some();
+    require!(!both, Error::setting(Setting::Shell, "it bounds what the bound of places alone leaves out"));
     let channels = match options.channels {
         Some(ChannelBound::Error(bound)) => (Setting::MaxChannelError, number(Some(bound))),
         Some(ChannelBound::Acceleration(bound)) => (Setting::MaxAccelError, number(Some(bound))),
@@ -99,7 +130,7 @@ fn check_settings(options: &Options) -> Result<()> {
         (Setting::MaxError, length(options.max_error)),
         (Setting::MeanError, length(options.mean_error)),
         (Setting::MaxScalarError, number(options.max_scalar_error)),
-        (Setting::MaxRotationError, number(options.max_rotation_error)),
+        (Setting::Shell, length(options.shell)),
         channels,
     ];
     for (setting, valid) in settings {
@@ -114,18 +145,15 @@ fn check_settings(options: &Options) -> Result<()> {
 /// Settings that bound nothing in this motion.
 fn without_effect(options: &Options, motion: &Motion) -> Vec<Note> {
     let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
-    let nothing_unseen = || unseen(&motion.rig).is_empty();
     // Settings, whether they are given for nothing, and what is missing.
     let given = [
         (Setting::MaxError, options.max_error.is_some() && no_joints, "joints"),
         (Setting::MeanError, options.mean_error.is_some() && no_joints, "joints"),
         (Setting::MaxRotationError, options.max_rotation_error.is_some() && no_joints, "joints"),
         (Setting::MaxScalarError, options.max_scalar_error.is_some() && no_scalars, "scalars"),
-        (
-            Setting::MaxRotationError,
-            options.max_rotation_error.is_some() && !no_joints && nothing_unseen(),
-            "joint that turns and carries nothing away from it",
-        ),
+        (Setting::MaxJointError, options.max_joint_error.is_some() && no_joints, "joints"),
+        (Setting::Shell, options.shell.is_some() && no_joints, "joints"),
+        (Setting::PlacesOnly, options.places_only && no_joints, "joints"),
         (Setting::Rotations, options.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
     ];
     let given = given.into_iter().filter(|(_, for_nothing, _)| *for_nothing);
@@ -177,7 +205,8 @@ impl Prepared {
         progress(1.0);
         let Motion { frames, ref rig, .. } = self.motion;
         let (frame_time_ns, length_exponent) = (coded.frame_time_ns, coded.length_exponent);
-        let report = Report { errors, frames, channels: rig.channels(), frame_time_ns, length_exponent };
+        let seam = self.seam.as_ref().map(|seam| seam.report.clone());
+        let report = Report { errors, frames, channels: rig.channels(), frame_time_ns, length_exponent, seam };
         Ok(Made { clip, report, notes })
     }
 
@@ -192,23 +221,19 @@ impl Prepared {
         let (plan, part) = (distance.plan(options.effort), distance.scalar_part);
         let coded = fit_coding(motion, coding, plan, part, progress)?;
         let bytes = self.file(&coded, notes)?;
-        let report = verify(&bytes, rig, motion, distance.max_cm, part)?;
-        if let Some(mean_cm) = distance.mean_cm {
-            let mean = report.mean_joint_cm;
+        // Errors are those against the source, whatever closing a loop moved.
+        let (source, whole) = match &self.seam {
+            Some(Seam { source, bound: Bound::Distance(whole), .. }) => (source, whole),
+            _ => (motion, distance),
+        };
+        let report = verify(&bytes, rig, source, &whole.pose, whole.scalar_part)?;
+        if let Some(mean_cm) = whole.pose.mean_cm {
+            let mean = report.bounded_mean_cm(&whole.pose);
             let refusal =
                 || Error::bound(format!("joints are {mean:.5} cm off in the mean; the bound of the mean is {mean_cm} cm"));
             require!(mean <= mean_cm, refusal());
         }
-        let (degrees, joint, frame) = (report.max_unseen_degrees, &report.unseen_joint, report.unseen_frame);
-        if let Some(most) = options.max_rotation_error {
-            let text = || format!("joint {joint} at frame {frame} is turned by {degrees:.2} degrees; the bound is {most}");
-            require!(degrees <= most, Error::setting(Setting::MaxRotationError, text()));
-        }
-        if degrees > TOLD_DEGREES {
-            let text = format!("rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame})");
-            let note = Note::info(NoteKind::Unbounded, text).of_joint(joint).at_frame(frame);
-            notes.push(note.remedy(Remedy::BoundRotations));
-        }
+        notes.extend(left_out(motion, &coded, &whole.pose));
         Ok((bytes, coded, Errors::Joints(report)))
     }
 
@@ -269,9 +294,9 @@ impl Prepared {
 /// The cheapest coding for motions of one rig together, by the options of the first.
 pub fn shared_coding(prepared: &[Prepared]) -> Coding {
     let of = |prepared: &Prepared| match &prepared.bound {
-        Bound::Distance(distance) => (distance.plan(prepared.options.effort).filled_cm(), prepared.options.rotations),
+        Bound::Distance(distance) => (distance.plan(prepared.options.effort).bound, prepared.options.rotations),
         // Bounds of channels are bounds of the file's own angles.
-        Bound::Channels(_) => (f64::INFINITY, Rotations::Euler),
+        Bound::Channels(_) => (PoseBound::places(f64::INFINITY), Rotations::Euler),
     };
     let rotations = prepared.first().map_or(Rotations::Euler, |first| of(first).1);
     let motions: Vec<_> = prepared.iter().map(|prepared| (&prepared.motion, of(prepared).0)).collect();

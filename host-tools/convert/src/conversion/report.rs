@@ -29,6 +29,24 @@ pub struct Report {
     pub frame_time_ns: u32,
     /// Positions of the clip are multiples of 2^length_exponent units.
     pub length_exponent: i8,
+    /// What closing the seam of a loop moved: part of the errors, which are those against the source.
+    pub seam: Option<SeamReport>,
+}
+
+/// What closing the seam of a loop moved.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct SeamReport {
+    /// The greatest distance in cm of a joint in the last frame from where it is in the first, before the seam was closed.
+    pub seam_cm: f64,
+    /// The joint that has it.
+    pub seam_joint: String,
+    /// The greatest distance in cm by which a joint was moved.
+    pub moved_cm: f64,
+    /// The joint that was moved so far.
+    pub moved_joint: String,
+    /// The greatest angle in degrees by which a joint was turned in the world.
+    pub turned_deg: f64,
 }
 
 impl Report {
@@ -41,11 +59,18 @@ impl Report {
         if let Some(cm) = motion.origin.retarget_max_cm {
             fields.insert("retarget_max_cm".into(), json!(cm));
         }
+        if let Some(seam) = &self.seam {
+            fields.insert("seam_cm".into(), json!(seam.seam_cm));
+            fields.insert("seam_joint".into(), json!(seam.seam_joint));
+            fields.insert("seam_moved_cm".into(), json!(seam.moved_cm));
+            fields.insert("seam_moved_joint".into(), json!(seam.moved_joint));
+            fields.insert("seam_turned_deg".into(), json!(seam.turned_deg));
+        }
         fields.insert("frames".into(), json!(self.frames));
         fields
     }
 
-    /// The errors as a clause for a person.
+    /// The errors for a person, a line for each kind.
     pub fn to_text(&self, motion: &Motion) -> String {
         match &self.errors {
             Errors::Joints(report) => errors::to_text(report, motion),

@@ -7,7 +7,7 @@ use super::mirror::mirror;
 use super::pick::pick;
 use super::resample::resample;
 use super::retarget;
-use crate::error::{Error, Setting};
+use crate::error::{Error, Setting, require};
 use crate::events;
 use crate::import::{self, Files, ImportOptions, read_from};
 use crate::memory::Memory;
@@ -75,13 +75,13 @@ impl Edits {
     }
 
     /// States the rate of the source's frames.
-    pub fn rate(self, fps: f64) -> Edits {
-        Edits { rate: Some(fps), ..self }
+    pub fn rate(self, fps: impl Into<Option<f64>>) -> Edits {
+        Edits { rate: fps.into(), ..self }
     }
 
     /// Resamples to `fps` frames a second.
-    pub fn fps(self, fps: f64) -> Edits {
-        Edits { fps: Some(fps), ..self }
+    pub fn fps(self, fps: impl Into<Option<f64>>) -> Edits {
+        Edits { fps: fps.into(), ..self }
     }
 
     /// Adds an event marker.
@@ -91,13 +91,13 @@ impl Edits {
     }
 
     /// Keeps the frames from `from` on.
-    pub fn from(self, from: Moment) -> Edits {
-        Edits { from: Some(from), ..self }
+    pub fn from(self, from: impl Into<Option<Moment>>) -> Edits {
+        Edits { from: from.into(), ..self }
     }
 
     /// Keeps the frames up to `to`, this one included.
-    pub fn to(self, to: Moment) -> Edits {
-        Edits { to: Some(to), ..self }
+    pub fn to(self, to: impl Into<Option<Moment>>) -> Edits {
+        Edits { to: to.into(), ..self }
     }
 
     /// Keeps only joints and scalars whose names match the glob, or another one that is given.
@@ -118,8 +118,8 @@ impl Edits {
     }
 
     /// Puts the motion on a body.
-    pub fn retarget(self, body: Body) -> Edits {
-        Edits { retarget: Some(body), ..self }
+    pub fn retarget(self, body: impl Into<Option<Body>>) -> Edits {
+        Edits { retarget: body.into(), ..self }
     }
 
     /// Names joints for [`Edits::retarget`].
@@ -170,6 +170,10 @@ impl Edits {
     }
 
     fn apply_all(&self, edited: &mut Edited, files: &dyn Files) -> Result<()> {
+        for (setting, rate) in [(Setting::SourceRate, self.rate), (Setting::FrameRate, self.fps)] {
+            let wrong = || Error::setting(setting, "expected a number of frames a second above 0");
+            require!(rate.is_none_or(|rate| rate.is_finite() && rate > 0.0), wrong());
+        }
         self.note_sampled(edited);
         self.change_rate(edited)?;
         self.add_events(edited)?;

@@ -7,9 +7,10 @@
 use crate::error::{Error, Setting, require};
 use crate::euler;
 use crate::fit::bounds::Bounds;
-use crate::fk::{distance, local, positions};
+use crate::fk::{FramePose, distance, frame_pose, local, positions};
 use crate::motion::{Kind, Motion};
 use crate::note::Remedy;
+use crate::pose_bound::{PoseBound, angle_deg, bounded, shell_distance_cm};
 use anyhow::Result;
 
 /// A loop, and what closing it took.
@@ -17,14 +18,19 @@ use anyhow::Result;
 pub struct Closed {
     /// Marked as a loop.
     pub motion: Motion,
-    /// The farthest that a joint in the last frame was from where it is in the first, in cm, and that joint.
+    /// The farthest that a joint in the last frame was from where it is in the first, in cm, and that joint. The points of its shell count
+    /// if the bound is one on the shell.
     pub seam_cm: f64,
     /// The joint of the greatest seam.
     pub seam_joint: String,
-    /// The farthest that a joint was moved, in cm.
+    /// The farthest that a joint was moved, in cm, measured alike.
     pub moved_cm: f64,
     /// The joint.
     pub joint: String,
+    /// The farthest that a joint was turned in the world, in degrees.
+    pub turned_deg: f64,
+    /// The farthest that a joint was turned in its parent, in degrees.
+    pub turned_joint_deg: f64,
     /// The farthest that a channel's value was moved, one a channel, in the motion's units.
     pub moved: Vec<f64>,
     /// Channels of the root's place that do not come back: the movement of one cycle.
@@ -34,9 +40,9 @@ pub struct Closed {
 /// What the seam of a motion may be.
 #[derive(Clone, Copy, Debug)]
 pub enum Most<'a> {
-    /// Greatest distance in cm of a joint in the last frame from where it is in the first, and of scalars the greatest difference as
-    /// a part of full scale.
-    Distance(f64, f64),
+    /// Greatest distance and rotation of a joint in the last frame from where it is in the first, and of scalars the greatest difference
+    /// as a part of full scale.
+    Distance(&'a PoseBound, f64),
     /// The greatest difference of each channel.
     Channels(&'a Bounds),
 }
@@ -57,6 +63,8 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
             seam_joint: String::new(),
             moved_cm: 0.0,
             joint: String::new(),
+            turned_deg: 0.0,
+            turned_joint_deg: 0.0,
             moved: vec![0.0; motion.values.len()],
             travel: Vec::new(),
         });
@@ -66,21 +74,22 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     let mut steps = differences(motion);
     let travel = travel(motion, &mut steps, most);
     check(motion, &steps, &travel, most)?;
-    let (seam_cm, seam_joint) = seam(motion, &travel);
-    let seam_joint = if motion.rig.joints.is_empty() { String::new() } else { motion.rig.joint_name(seam_joint) };
+    let shell_cm = most.shell_cm();
+    let gap = seam(motion, &travel, shell_cm);
+    let (seam_cm, seam_joint) = (gap.cm, gap.name(motion));
     let last = (motion.frames - 1) as f64;
     let part = |frame: usize| frame as f64 / last - 0.5;
     let mut out = motion.clone();
     for (values, step) in out.values.iter_mut().zip(&steps) {
         values.iter_mut().enumerate().for_each(|(frame, value)| *value += step * part(frame));
     }
-    let gap = seam(&out, &travel).0;
+    let gap = seam(&out, &travel, shell_cm).cm;
     let jump = || open(format!("the seam's angles are too different to be closed (the pose would still jump by {gap:.3} cm)"));
     require!(gap < CLOSED_CM, jump());
     for (keys, step) in out.keys.iter_mut().zip(&steps) {
         *keys = keys.take().filter(|_| *step == 0.0);
     }
-    let (moved_cm, joint) = farthest(motion, &out);
+    let closing = farthest(motion, &out, shell_cm);
     out.values.iter_mut().for_each(|values| values.truncate(motion.frames - 1));
     out.keys.iter_mut().for_each(|keys| *keys = None);
     out.frames -= 1;
@@ -91,7 +100,17 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     out.looped = true;
     let moved = steps.iter().map(|step| step.abs() / 2.0).collect();
     let named = travel.into_iter().map(|(channel, way)| (motion.rig.channel_name(channel), way)).collect();
-    Ok(Closed { motion: out, seam_cm, seam_joint, moved_cm, joint, moved, travel: named })
+    Ok(Closed {
+        motion: out,
+        seam_cm,
+        seam_joint,
+        moved_cm: closing.cm,
+        joint: closing.name(motion),
+        turned_deg: closing.degrees,
+        turned_joint_deg: closing.joint_degrees,
+        moved,
+        travel: named,
+    })
 }
 
 /// A loop of a motion that was one cycle already.
@@ -188,7 +207,7 @@ fn travel(motion: &Motion, steps: &mut [f64], most: Most) -> Vec<(usize, f64)> {
     let mut found = Vec::new();
     for (channel, step) in steps.iter_mut().enumerate() {
         let limit = match most {
-            Most::Distance(cm, _) => cm / motion.rig.cm_per_unit,
+            Most::Distance(bound, _) => bound.max_cm / motion.rig.cm_per_unit,
             Most::Channels(bounds) => bounds.greatest[channel],
         };
         if places_root(motion, kinds[channel]) && step.abs() > limit {
@@ -199,12 +218,60 @@ fn travel(motion: &Motion, steps: &mut [f64], most: Most) -> Vec<(usize, f64)> {
     found
 }
 
-/// The greatest distance, in cm, of a joint in the last frame from where it is in the first, but for the travel.
-fn seam(motion: &Motion, travel: &[(usize, f64)]) -> (f64, usize) {
+/// How far two poses are from each other: the greatest distance of a bounded joint, that joint, and the greatest rotations.
+#[derive(Clone, Copy, Default)]
+struct Gap {
+    cm: f64,
+    joint: usize,
+    degrees: f64,
+    joint_degrees: f64,
+}
+
+impl Gap {
+    fn between(motion: &Motion, a: &FramePose, b: &FramePose, shell_cm: f64) -> Gap {
+        let mut gap = Gap::default();
+        let joints = motion.rig.joints.iter().zip(bounded(&motion.rig)).enumerate();
+        for (index, (joint, _)) in joints.filter(|(_, (_, bounded))| *bounded) {
+            let shell_cm = if joint.end_site { 0.0 } else { shell_cm };
+            let cm = shell_distance_cm(&a.worlds[index], &b.worlds[index], shell_cm);
+            gap = gap.or(Gap {
+                cm,
+                joint: index,
+                degrees: angle_deg(&a.worlds[index].0, &b.worlds[index].0),
+                joint_degrees: angle_deg(&a.turns[index], &b.turns[index]),
+            });
+        }
+        gap
+    }
+
+    /// The greater of both in each measure.
+    fn or(self, other: Gap) -> Gap {
+        let far = if other.cm > self.cm { other } else { self };
+        let (degrees, joint_degrees) = (self.degrees.max(other.degrees), self.joint_degrees.max(other.joint_degrees));
+        Gap { degrees, joint_degrees, ..far }
+    }
+
+    fn name(&self, motion: &Motion) -> String {
+        if motion.rig.joints.is_empty() { String::new() } else { motion.rig.joint_name(self.joint) }
+    }
+}
+
+impl Most<'_> {
+    /// The distance in cm of the shell's points from their joint; 0 if places alone are measured.
+    fn shell_cm(self) -> f64 {
+        match self {
+            Most::Distance(bound, _) => bound.shell_cm().unwrap_or(0.0),
+            Most::Channels(_) => 0.0,
+        }
+    }
+}
+
+/// How far the last frame's pose is from the first one's, but for the travel.
+fn seam(motion: &Motion, travel: &[(usize, f64)], shell_cm: f64) -> Gap {
     let mut ends: Vec<Vec<f64>> = motion.values.iter().map(|values| vec![values[0], values[motion.frames - 1]]).collect();
     travel.iter().for_each(|&(channel, _)| ends[channel][1] = ends[channel][0]);
-    let places = positions(&motion.rig, &ends, 0).into_iter().zip(positions(&motion.rig, &ends, 1));
-    greatest(places.map(|(a, b)| distance(a, b)))
+    let [first, last] = [0, 1].map(|frame| frame_pose(&motion.rig, &ends, frame));
+    Gap::between(motion, &first, &last, shell_cm)
 }
 
 fn greatest(distances: impl Iterator<Item = f64>) -> (f64, usize) {
@@ -216,13 +283,26 @@ fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) ->
     let rig = &motion.rig;
     let limits: Vec<(usize, f64)> = match most {
         Most::Channels(bounds) => bounds.greatest.iter().copied().enumerate().collect(),
-        Most::Distance(cm, part) => {
-            let (gap, joint) = seam(motion, travel);
-            if gap > cm {
-                let name = rig.joint_name(joint);
+        Most::Distance(bound, part) => {
+            let gap = seam(motion, travel, most.shell_cm());
+            let cm = bound.max_cm;
+            if gap.cm > cm {
+                let (name, gap) = (gap.name(motion), gap.cm);
                 let text =
                     format!("{name} is {gap:.3} cm off in the last frame from where it is in the first; the bound is {cm} cm");
                 return Err(open(text).remedy(Remedy::ChooseFrames).into());
+            }
+            for (degrees, most, whose) in [
+                (gap.degrees, bound.max_rotation_deg, "in the world"),
+                (gap.joint_degrees, bound.max_joint_deg, "against its parent"),
+            ] {
+                let most = most.unwrap_or(f64::INFINITY);
+                let text = || {
+                    format!(
+                        "a joint turns by {degrees:.3} degrees {whose} from the last frame to the first; the bound is {most} degrees"
+                    )
+                };
+                require!(degrees <= most, open(text()).remedy(Remedy::ChooseFrames));
             }
             rig.scalars
                 .iter()
@@ -239,12 +319,11 @@ fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) ->
     Ok(())
 }
 
-/// How far the farthest joint was moved in any frame, and its name.
-fn farthest(from: &Motion, to: &Motion) -> (f64, String) {
+/// How far the farthest joint was moved in any frame.
+fn farthest(from: &Motion, to: &Motion, shell_cm: f64) -> Gap {
     let at = |frame: usize| {
-        let (a, b) = (positions(&from.rig, &from.values, frame), positions(&to.rig, &to.values, frame));
-        greatest(a.into_iter().zip(b).map(|(a, b)| distance(a, b)))
+        let [a, b] = [from, to].map(|motion| frame_pose(&motion.rig, &motion.values, frame));
+        Gap::between(from, &a, &b, shell_cm)
     };
-    let all = (0..from.frames).map(at).max_by(|a, b| a.0.total_cmp(&b.0));
-    all.filter(|_| !from.rig.joints.is_empty()).map_or((0.0, String::new()), |(cm, joint)| (cm, from.rig.joint_name(joint)))
+    (0..from.frames).map(at).fold(Gap::default(), Gap::or)
 }

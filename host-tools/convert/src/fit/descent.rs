@@ -1,23 +1,23 @@
 //! Closed-loop descent (METHOD 5): each channel is coded again inside the tube that the true error of everything below it
 //! still leaves, pass after pass, while the price of an error falls.
 
-use super::figure::{Figure, Places, Poses, lever};
+use super::figure::{Figure, Poses};
+use super::measure::{self, Measure};
 use super::parametrize::Rotations;
 use super::refusal::refusal;
 use super::search::{Effort, Fitted, Tube, search};
 use super::start_cost::{StartCosts, step_of};
 use crate::encode::clip::Start;
 use crate::motion::Kind;
+use crate::pose_bound::PoseBound;
 use anyhow::{Result, bail};
 use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
 
 /// The bound, and the encoder's effort.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Greatest distance of any joint or End Site from where it should be, in cm.
-    pub bound_cm: f64,
-    /// The mean distance of all joints, End Sites left out, to aim at within the bound, in cm. Without it the bound is filled.
-    pub mean_cm: Option<f64>,
+    /// What the clip keeps to.
+    pub bound: PoseBound,
     /// Passes over all channels.
     pub passes: usize,
     /// The price of an error, relative to a bit, in the first and the last pass.
@@ -37,11 +37,6 @@ impl Plan {
         let passes = if self.both_steps { (self.passes as f64 * more) as usize } else { self.passes };
         Plan { passes, ..self }
     }
-
-    /// The bound that a code with this plan's errors would fill.
-    pub fn filled_cm(&self) -> f64 {
-        self.mean_cm.map_or(self.bound_cm, |mean| MEAN_OF_FILLED * mean)
-    }
 }
 
 /// Searches of fewer frames take less time than another thread takes to begin.
@@ -49,9 +44,6 @@ const SHORT: usize = 16;
 /// Clips of fewer values have more passes, up to this many times more: a clip of 25 frames becomes 4 % smaller by four times as many.
 const VALUES_OF_A_PLAN: f64 = 40_000.0;
 const MOST_PASSES: f64 = 4.0;
-
-/// Codes that fill a bound have a mean this many times smaller.
-pub const MEAN_OF_FILLED: f64 = 2.2;
 
 /// Encoder effort: speed against size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,12 +58,11 @@ pub enum Level {
 
 impl Level {
     /// The plan of this level for a bound.
-    pub fn plan(self, bound_cm: f64) -> Plan {
+    pub fn plan(self, bound: PoseBound) -> Plan {
         let plan = |passes, beam, margin, thorough| Plan {
-            bound_cm,
-            mean_cm: None,
+            bound,
             passes,
-            prices: (FIRST_PRICE_AT_1_CM * bound_cm.powf(FIRST_PRICE_FALLS).clamp(0.5, 4.0), 0.2),
+            prices: (FIRST_PRICE_AT_1_CM * bound.max_cm.powf(FIRST_PRICE_FALLS).clamp(0.5, 4.0), 0.2),
             both_steps: thorough,
             effort: Effort { beam, margin, slopes: thorough, all_alike: false },
             rotations: Rotations::ByCost,
@@ -134,7 +125,8 @@ pub struct Descent<'m> {
     rests: &'m [i32],
     /// Kinds as the file has them.
     kinds: &'m [Kind],
-    original: &'m Places,
+    original: &'m Poses,
+    measure: Measure,
     poses: Poses,
     codes: Vec<Option<Code>>,
     /// The last pass that found each channel a better code.
@@ -160,18 +152,33 @@ impl<'m> Descent<'m> {
         scales: &'m [f64],
         rests: &'m [i32],
         kinds: &'m [Kind],
-        original: &'m Places,
+        original: &'m Poses,
         seconds_a_frame: f64,
     ) -> Self {
         let poses = figure.poses(|channel, frame| targets[channel][frame] * scales[channel]);
         let codes = vec![None; targets.len()];
         let improved = vec![0; targets.len()];
-        Descent { figure, plan, first_part, targets, scales, rests, kinds, original, poses, codes, improved, seconds_a_frame }
+        let measure = Measure::of(&plan.bound, figure);
+        Descent {
+            figure,
+            plan,
+            first_part,
+            targets,
+            scales,
+            rests,
+            kinds,
+            original,
+            measure,
+            poses,
+            codes,
+            improved,
+            seconds_a_frame,
+        }
     }
 
     /// All passes. `progress` receives the fraction that is done, 0 to 1.
     pub fn run(mut self, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
-        if let Some(mean_cm) = self.plan.mean_cm {
+        if let Some(mean_cm) = self.plan.bound.mean_cm {
             return self.run_to_mean(mean_cm, progress);
         }
         let passes = self.plan.passes;
@@ -230,7 +237,7 @@ impl<'m> Descent<'m> {
             }
         }
         let Some(kept) = kept else {
-            bail!("no code with a mean error of {mean_cm} cm was found within {} cm at every joint", self.plan.bound_cm);
+            bail!("no code with a mean error of {mean_cm} cm was found within {} cm at every joint", self.measure.max_cm);
         };
         Ok(kept.codes.into_iter().flatten().collect())
     }
@@ -239,31 +246,31 @@ impl<'m> Descent<'m> {
     fn mean(&self) -> f64 {
         let counted: Vec<usize> = (0..self.figure.rig.joints.len()).filter(|&joint| self.counts(joint)).collect();
         let frames = |joint: usize| (0..self.figure.frames).map(move |frame| (joint, frame));
-        let distances =
-            counted.iter().flat_map(|&joint| frames(joint)).map(|(joint, frame)| square(&self.error(joint, frame)).sqrt());
-        distances.sum::<f64>() / (counted.len() * self.figure.frames).max(1) as f64
+        let distance = |(joint, frame)| self.measure.distance_cm(self.figure, &self.poses, self.original, joint, frame);
+        counted.iter().flat_map(|&joint| frames(joint)).map(distance).sum::<f64>()
+            / (counted.len() * self.figure.frames).max(1) as f64
     }
 
     /// Whether a joint is part of the mean.
     fn counts(&self, joint: usize) -> bool {
-        !self.figure.rig.joints[joint].end_site
+        !self.figure.rig.joints[joint].end_site && self.measure.bounded[joint]
     }
 
-    /// The price, in bits, of a joint's squared distance in cm, where it is off by `error` now: the distance itself has the price.
-    fn price_to_mean(&self, joint: usize, error: &[f64; 3], price: f64, mean_cm: f64) -> f64 {
-        let part = if self.counts(joint) { 1.0 } else { END_SITE_PART };
+    /// The price, in bits, of a point's squared distance in cm, where it is off by the root of `square` now: the distance itself has the price.
+    fn price_to_mean(&self, joint: usize, square: f64, price: f64, mean_cm: f64) -> f64 {
+        let part = if self.counts(joint) { 1.0 / self.measure.points(self.figure, &[joint]) as f64 } else { END_SITE_PART };
         // In proportion to the square below the mean: otherwise what is exact by chance would stay so at any price.
-        part * price / (2.0 * square(error).sqrt().max(mean_cm))
+        part * price / (2.0 * square.sqrt().max(mean_cm))
     }
 
     /// Codes one channel again if that is better.
     fn improve(&mut self, channel: usize, price: f64, pass: usize) -> Result<()> {
-        let moved = self.figure.moved(channel);
-        let bound = self.plan.bound_cm * USED;
+        let moved = self.measure.moved(self.figure, channel);
+        let bound = self.measure.max_cm * USED;
         let coded = self.codes[channel].is_some();
         let mut bounds = vec![if coded { bound } else { bound * self.first_part }; self.figure.frames];
         let axes = self.figure.axes(channel, |channel, frame| self.value(channel, frame), &self.poses);
-        let worst_now = self.worst(&moved);
+        let worst_now = self.worst(channel, &moved);
         let attempts = if coded { ATTEMPTS } else { FIRST_ATTEMPTS };
         for attempt in 0..attempts {
             let shrink = SHRINK.powi((attempt as i32 - 1).max(0));
@@ -282,7 +289,7 @@ impl<'m> Descent<'m> {
             }
             let before = self.codes[channel].replace(best);
             self.refresh(channel);
-            let worst = self.worst(&moved);
+            let worst = self.worst(channel, &moved);
             if worst.iter().all(|&distance| distance <= bound) {
                 self.improved[channel] = pass;
                 return Ok(());
@@ -297,7 +304,7 @@ impl<'m> Descent<'m> {
             self.refresh(channel);
         }
         if self.codes[channel].is_none() {
-            bail!(refusal(self.figure, &self.poses.places, self.original, channel, &moved, self.plan.bound_cm));
+            bail!(refusal(self.figure, &self.measure, &self.poses, self.original, channel, &moved));
         }
         Ok(())
     }
@@ -321,80 +328,81 @@ impl<'m> Descent<'m> {
         }
     }
 
-    /// The greatest error of these joints at each frame, in cm.
-    fn worst(&self, joints: &[usize]) -> Vec<f64> {
+    /// The greatest error of these joints, which the channel moves, at each frame, in cm.
+    fn worst(&self, channel: usize, joints: &[usize]) -> Vec<f64> {
+        let mover = self.figure.channels[channel].0;
         let mut worst = vec![0f64; self.figure.frames];
         for &joint in joints {
+            let own = mover == Some(joint);
             for (frame, worst) in worst.iter_mut().enumerate() {
-                *worst = worst.max(square(&self.error(joint, frame)));
+                *worst = worst.max(self.measure.worst_square(self.figure, &self.poses, self.original, joint, frame, own));
             }
         }
         worst.iter().map(|square| square.sqrt()).collect()
-    }
-
-    fn error(&self, joint: usize, frame: usize) -> [f64; 3] {
-        let (p, q) = (&self.poses.places[joint][frame], &self.original[joint][frame]);
-        [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
     }
 
     /// The tube that the other channels' codes leave to this one.
     fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64], shrink: f64) -> Tube {
         let frames = self.figure.frames;
         let target = &self.targets[channel];
-        let path = self.path(channel);
         let scale = self.scales[channel];
         let translates = self.figure.translates(channel);
-        let trust = if translates { f64::MAX } else { TRUST_DEGREES / scale.abs() };
-        // Many joints below share one error: their sum counts as the root of their number.
-        let share = price / (self.plan.bound_cm.powi(2) * (moved.len().max(1) as f64).sqrt());
+        let now: Vec<f64> = self.path(channel).iter().zip(target).map(|(p, x)| p - x).collect();
+        let trust = self.trust(channel, translates, scale);
+        // Many points below share one error: their sum counts as the root of their number.
+        let points = self.measure.points(self.figure, moved).max(1) as f64;
+        let share = price / (self.measure.max_cm.powi(2) * points.sqrt());
         let zeros = || vec![0.0; frames];
         let mut tube = Tube {
             x: target.clone(),
-            lo: zeros(),
-            hi: zeros(),
+            lo: now.iter().map(|now| now - trust).collect(),
+            hi: now.iter().map(|now| now + trust).collect(),
             a: zeros(),
             b: zeros(),
             bend: f64::INFINITY,
             start: self.start_costs(channel),
         };
-        let center = self.figure.channels[channel].0.map(|joint| &self.poses.places[joint]);
-        let Some(center) = center else { return tube };
-        for frame in 0..frames {
-            let now = path[frame] - target[frame];
-            let (mut lo, mut hi) = (now - trust, now + trust);
-            let (mut a, mut b) = (0.0, 0.0);
-            let axis = axes[frame].map(|x| x * scale);
-            let limit = bounds[frame] * bounds[frame];
-            for &joint in moved {
-                let error = self.error(joint, frame);
-                let lever = lever(&axis, translates, &center[frame], &self.poses.places[joint][frame]);
-                // With this channel off by e, the joint is off by `rest + lever e`.
-                let rest: [f64; 3] = std::array::from_fn(|i| error[i] - lever[i] * now);
-                let (jj, jr) = (dot(&lever, &lever), dot(&lever, &rest));
-                let used = square(&error) / (self.plan.bound_cm * self.plan.bound_cm);
-                let weight = match self.plan.mean_cm {
-                    Some(mean_cm) => self.price_to_mean(joint, &error, price, mean_cm),
-                    None => share * (1.0 + CROWDING * used * used * used),
-                };
-                a += weight * jj;
-                b += weight * jr;
-                if jj > 0.0 {
-                    let root = jr * jr - jj * (square(&rest) - limit);
-                    if root <= 0.0 {
-                        (lo, hi) = (lo.max(now), hi.min(now));
-                    } else {
-                        let root = root.sqrt();
-                        lo = lo.max(((-jr - root) / jj).min(now));
-                        hi = hi.min(((-jr + root) / jj).max(now));
-                    }
-                }
+        let Some(mover) = self.figure.channels[channel].0 else { return tube };
+        for &joint in moved {
+            for frame in 0..frames {
+                let now = now[frame];
+                let center = &self.poses.places[mover][frame];
+                let motion = measure::Motion { axis: axes[frame].map(|x| x * scale), translates, center, now };
+                let limit = bounds[frame] * bounds[frame];
+                self.measure.each(self.figure, &self.poses, self.original, [joint, mover], frame, &motion, |quantity| {
+                    let weight = self.weight(joint, quantity.ee, price, share);
+                    tube.a[frame] += weight * quantity.jj;
+                    tube.b[frame] += weight * quantity.jr;
+                    let (lo, hi) = quantity.within(limit, now);
+                    tube.lo[frame] = tube.lo[frame].max(lo);
+                    tube.hi[frame] = tube.hi[frame].min(hi);
+                });
             }
-            tube.lo[frame] = target[frame] + now + shrink * (lo - now);
-            tube.hi[frame] = target[frame] + now + shrink * (hi - now);
-            tube.a[frame] = a;
-            tube.b[frame] = b;
+        }
+        for frame in 0..frames {
+            let (middle, now) = (target[frame] + now[frame], now[frame]);
+            tube.lo[frame] = middle + shrink * (tube.lo[frame] - now);
+            tube.hi[frame] = middle + shrink * (tube.hi[frame] - now);
         }
         tube
+    }
+
+    /// By how many raw units a channel may change while its levers are taken as constant. One of a joint that is not bounded may rest.
+    fn trust(&self, channel: usize, translates: bool, scale: f64) -> f64 {
+        let free = self.figure.channels[channel].0.is_some_and(|joint| !self.measure.bounded[joint]);
+        if translates || free { f64::MAX } else { TRUST_DEGREES / scale.abs() }
+    }
+
+    /// The price, in bits, of a quantity's squared error in cm, where that square is `ee` now.
+    #[inline(always)]
+    fn weight(&self, joint: usize, ee: f64, price: f64, share: f64) -> f64 {
+        match self.plan.bound.mean_cm {
+            Some(mean_cm) => self.price_to_mean(joint, ee, price, mean_cm),
+            None => {
+                let used = ee / (self.measure.max_cm * self.measure.max_cm);
+                share * (1.0 + CROWDING * used * used * used)
+            }
+        }
     }
 
     /// What the channel's start costs beside those of the others.
@@ -468,12 +476,4 @@ fn objective(code: &Fitted, tube: &Tube) -> f64 {
 /// Index of the channel step nearest to `size` raw units.
 fn step_index(size: f64) -> u8 {
     (2.0 * size.max(1.0).log2()).round().clamp(0.0, f64::from(MAX_STEP)) as u8
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn square(a: &[f64; 3]) -> f64 {
-    dot(a, a)
 }

@@ -6,10 +6,11 @@ use crate::motion::{Kind, Rig};
 /// Where every joint is, in cm: `[joint][frame]`.
 pub type Places = Vec<Vec<[f64; 3]>>;
 
-/// Rotations and places of every joint at every frame, `[joint][frame]`; places in cm. Joints with nothing below them have no rotations.
+/// Rotations and places of every joint at every frame, `[joint][frame]`; places in cm. End Sites have no rotations.
 #[derive(Clone)]
 pub struct Poses {
-    turns: Vec<Vec<Matrix>>,
+    /// How every joint is turned in the world.
+    pub(super) turns: Vec<Vec<Matrix>>,
     /// Where every joint is, in cm.
     pub places: Places,
 }
@@ -45,19 +46,10 @@ impl Figure {
         Figure { rig, frames, first, channels, below }
     }
 
-    /// Joints that a channel moves.
-    pub fn moved(&self, channel: usize) -> Vec<usize> {
-        let (Some(joint), kind, _) = self.channels[channel] else { return Vec::new() };
-        let mut moved = self.below[joint].clone();
-        if kind.is_position() {
-            moved.insert(0, joint);
-        }
-        moved
-    }
-
     /// All joints at all frames. `value` has each channel at each frame.
     pub fn poses(&self, value: impl Fn(usize, usize) -> f64) -> Poses {
-        let turns = self.below.iter().map(|below| vec![IDENTITY; if below.is_empty() { 0 } else { self.frames }]).collect();
+        let turns =
+            (0..self.rig.joints.len()).map(|joint| vec![IDENTITY; if self.turns(joint) { self.frames } else { 0 }]).collect();
         let mut poses = Poses { turns, places: vec![vec![[0.0; 3]; self.frames]; self.rig.joints.len()] };
         for joint in 0..self.rig.joints.len() {
             for frame in 0..self.frames {
@@ -67,6 +59,11 @@ impl Figure {
             }
         }
         poses
+    }
+
+    /// Whether a joint has rotations: an End Site has none.
+    fn turns(&self, joint: usize) -> bool {
+        !self.rig.joints[joint].end_site || !self.below[joint].is_empty()
     }
 
     /// Joint `joint` after its channels changed, and all below it, which turn and move with it.
@@ -155,18 +152,8 @@ fn orthonormal(m: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| 1.5 * m[row][column] - 0.5 * square[row][column]))
 }
 
-fn transposed(m: &Matrix) -> Matrix {
+pub(super) fn transposed(m: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| m[column][row]))
-}
-
-/// How a joint at `place` moves by one unit of a channel with this axis whose joint is at `center`: cm.
-#[inline]
-pub fn lever(axis: &[f64; 3], translates: bool, center: &[f64; 3], place: &[f64; 3]) -> [f64; 3] {
-    if translates {
-        return *axis;
-    }
-    let [x, y, z] = [place[0] - center[0], place[1] - center[1], place[2] - center[2]];
-    [axis[1] * z - axis[2] * y, axis[2] * x - axis[0] * z, axis[0] * y - axis[1] * x]
 }
 
 /// The exponential map, in degrees, of a rotation; of all those that turn alike, the one nearest to `before`.

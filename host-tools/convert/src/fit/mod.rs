@@ -7,6 +7,7 @@ pub mod channelwise;
 pub mod cost;
 pub mod descent;
 pub mod figure;
+mod measure;
 pub mod parametrize;
 pub mod raw;
 pub mod refusal;
@@ -35,7 +36,7 @@ const FIRST_PARTS: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 /// Codes `motion` within the plan's bound, in the coding that is cheapest for it. `progress` receives the fraction that is
 /// done, 0 to 1.
 pub fn fit(motion: &Motion, plan: Plan, scalar_part: f64, progress: &mut dyn FnMut(f64)) -> Result<Coded> {
-    fit_coding(motion, &Coding::of(&[(motion, plan.filled_cm())], plan.rotations), plan, scalar_part, progress)
+    fit_coding(motion, &Coding::of(&[(motion, plan.bound)], plan.rotations), plan, scalar_part, progress)
 }
 
 /// Codes `motion` in a given coding, which clips of its rig can share.
@@ -57,7 +58,7 @@ pub fn fit_coding(
     // In turn, so that a long take is not held twice.
     let channels = chosen_values.into_iter().zip(kinds).zip(&scales);
     let targets: Vec<_> = channels.map(|((values, (_, kind)), &scale)| raw::target(&values, kind, scale)).collect();
-    let original = Figure::new(motion.rig.clone(), motion.frames).poses(|channel, frame| motion.values[channel][frame]).places;
+    let original = Figure::new(motion.rig.clone(), motion.frames).poses(|channel, frame| motion.values[channel][frame]);
     // What will be played has the rig's rounded offsets.
     let bytes = rig_bytes::encode(&motion.rig)?;
     let mut played = rig_bytes::decode(&pantin::Rig::new_checked(&bytes)?);

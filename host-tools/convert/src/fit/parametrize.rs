@@ -4,6 +4,7 @@ use super::figure::exponential_near;
 use super::raw;
 use crate::fk::{local, quaternion};
 use crate::motion::{Joint, Kind, Motion, Rig};
+use crate::pose_bound::PoseBound;
 
 /// How joints with three Euler angles about three axes are coded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,12 +65,22 @@ pub struct Coding {
 }
 
 impl Coding {
-    /// The coding that the clips of `motions` share: motions of one rig, each with its bound in cm. A joint is coded as an
+    /// Positions are multiples of 2 to this power of the motion's units.
+    pub fn length_exponent(&self) -> i8 {
+        self.length_exponent
+    }
+
+    /// How many joints are coded as exponential maps.
+    pub fn exponential_joints(&self) -> usize {
+        self.exponentials.iter().filter(|exponential| **exponential).count()
+    }
+
+    /// The coding that the clips of `motions` share: motions of one rig, each with its bound. A joint is coded as an
     /// exponential map if all motions together cost less that way and each of them allows it.
-    pub fn of(motions: &[(&Motion, f64)], rotations: Rotations) -> Coding {
+    pub fn of(motions: &[(&Motion, PoseBound)], rotations: Rotations) -> Coding {
         let mut costs: Vec<Costs> = Vec::new();
-        for &(motion, bound_cm) in motions {
-            let of_motion = costs_of(motion, bound_cm);
+        for (motion, bound) in motions {
+            let of_motion = costs_of(motion, bound);
             costs.resize(of_motion.len(), Costs { euler: 0.0, exponential: 0.0, possible: true });
             costs.iter_mut().zip(of_motion).for_each(|(total, cost)| total.add(&cost));
         }
@@ -121,8 +132,9 @@ impl Costs {
 }
 
 /// The costs of each joint of [`turning`].
-fn costs_of(motion: &Motion, bound_cm: f64) -> Vec<Costs> {
-    let reach = reach_cm(motion);
+fn costs_of(motion: &Motion, bound: &PoseBound) -> Vec<Costs> {
+    let reach = reach_cm(motion, bound);
+    let bound_cm = bound.filled_cm();
     // Longer than the clip, it finds no bends.
     let stride = ((5.0 / 30.0 / motion.frame_time).round() as usize).clamp(1, motion.frames.max(1));
     let of = |turning: &Turning| {
@@ -193,17 +205,20 @@ impl Turning {
     }
 }
 
-/// Length of the longest chain below each joint: what its rotations can move.
-fn reach_cm(motion: &Motion) -> Vec<f64> {
+/// Length of the longest chain below each joint, its shell included: what its rotations can move. A bound on rotations is as strict as
+/// the bound on distances at the reach where both allow the same angle.
+fn reach_cm(motion: &Motion, bound: &PoseBound) -> Vec<f64> {
     let joints = &motion.rig.joints;
-    let mut reach = vec![0f64; joints.len()];
+    let shell = bound.shell_cm().unwrap_or(0.0);
+    let mut reach: Vec<f64> = joints.iter().map(|joint| if joint.end_site { 0.0 } else { shell }).collect();
     for (index, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
             let bone = joint.offset.iter().map(|x| x * x).sum::<f64>().sqrt() * motion.rig.cm_per_unit;
             reach[parent] = reach[parent].max(reach[index] + bone);
         }
     }
-    reach
+    let degrees = [bound.max_rotation_deg, bound.max_joint_deg].into_iter().flatten().fold(f64::INFINITY, f64::min);
+    reach.iter().map(|reach| reach.max(bound.filled_cm() / degrees.to_radians())).collect()
 }
 
 /// About how many bits the bends of a curve take: second differences over a sixth of a second, in bounds.

@@ -1,6 +1,7 @@
 //! What is said when a bound cannot be met.
 
-use super::figure::{Figure, Places};
+use super::figure::{Figure, Poses};
+use super::measure::Measure;
 
 /// `x` with four digits of what `bound` has, however small that is.
 pub fn amount(x: f64, bound: f64) -> String {
@@ -9,20 +10,21 @@ pub fn amount(x: f64, bound: f64) -> String {
 }
 
 /// Names the joint and frame at which a channel without a code has the least room: `moved` are the joints that it moves.
-pub fn refusal(figure: &Figure, places: &Places, original: &Places, channel: usize, moved: &[usize], bound_cm: f64) -> String {
+pub fn refusal(figure: &Figure, measure: &Measure, poses: &Poses, original: &Poses, channel: usize, moved: &[usize]) -> String {
     let name = figure.rig.channel_name(channel);
-    let distance = |joint: usize, frame: usize| {
-        let (p, q) = (places[joint][frame], original[joint][frame]);
-        (0..3).map(|axis| (p[axis] - q[axis]).powi(2)).sum::<f64>().sqrt()
-    };
-    let all = moved.iter().flat_map(|&joint| (0..figure.frames).map(move |frame| (joint, frame, distance(joint, frame))));
+    let off = |joint: usize, frame: usize| (joint, frame, measure.distance_cm(figure, poses, original, joint, frame));
+    let all = moved
+        .iter()
+        .flat_map(|&joint| (0..figure.frames).map(move |frame| (joint, frame)))
+        .map(|(joint, frame)| off(joint, frame));
     let Some((joint, frame, off)) = all.max_by(|a, b| a.2.total_cmp(&b.2)) else {
         return format!("channel {name}: no code within its bound was found");
     };
-    let (off, bound) = (amount(off, bound_cm), amount(bound_cm, bound_cm));
+    let (off, bound) = (amount(off, measure.max_cm), amount(measure.max_cm, measure.max_cm));
     let joint = figure.rig.joint_name(joint);
+    let rotations = measure.rotation_bounds();
     format!(
-        "channel {name}: no code within {bound} cm was found; joint {joint} at frame {frame} is {off} cm off before it is coded"
+        "channel {name}: no code within {bound} cm{rotations} was found; joint {joint} at frame {frame} is {off} cm off before it is coded"
     )
 }
 

@@ -174,6 +174,7 @@ mod tests {
     use super::*;
     use crate::fit::descent::Level;
     use crate::motion::Scalar;
+    use crate::pose_bound::PoseBound;
 
     const RAW: f64 = 1e9;
     const BOUND: f64 = 0.02;
@@ -191,7 +192,7 @@ mod tests {
         let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
         let raw = |values: &Vec<f64>| values.iter().map(|x| x * RAW).collect();
         let aims: Vec<Aim> = values.iter().map(|values| Aim { target: raw(values), bound: BOUND * RAW }).collect();
-        let codes = fit(&rig, &aims, Level::Default.plan(1.0).effort).unwrap();
+        let codes = fit(&rig, &aims, Level::Default.plan(PoseBound::places(1.0)).effort).unwrap();
         assert_eq!((codes[1].start, codes[3].start), (Start::Rest, Start::Follows { leader: 0 }));
         assert!([0, 2, 4].iter().all(|&alone| matches!(codes[alone].start, Start::Moving { .. })));
         for (code, aim) in codes.iter().zip(&aims) {

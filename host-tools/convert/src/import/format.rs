@@ -2,7 +2,7 @@
 
 use super::list::{self, Entry};
 use super::request::Request;
-use super::{Source, amc, bvh, fap, fbx, gltf, keyframes, livelink, procedural, table, vrml};
+use super::{Source, amc, bvh, fap, fbx, gltf, keyframes, livelink, procedural, table, vrml, zip};
 use anyhow::Result;
 use std::path::{Path, PathBuf};
 
@@ -92,6 +92,16 @@ pub const FORMATS: &[Format] = &[
     Format { name: "FAP", extensions: &["fap"], begins: fap::begins, read: fap::read, ..PLAIN },
     Format { name: "Live Link Face", extensions: &["csv"], begins: livelink::begins, read: livelink::read, ..PLAIN },
     Format { name: "table", extensions: &["csv", "tsv"], begins: table::begins, read: table::read, ..PLAIN },
+    Format {
+        name: "ZIP",
+        extensions: &["zip"],
+        has_animations: true,
+        has_skeleton: true,
+        begins: zip::begins,
+        read: zip::read,
+        list: zip::list,
+        ..PLAIN
+    },
 ];
 
 impl Format {

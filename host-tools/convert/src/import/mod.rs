@@ -41,6 +41,11 @@ pub mod units;
 pub mod up;
 pub mod vrml;
 mod written;
+#[cfg(feature = "zip")]
+pub mod zip;
+#[cfg(not(feature = "zip"))]
+#[path = "zip_absent.rs"]
+pub mod zip;
 
 use crate::error::{Error, Setting, require};
 use crate::motion::{Motion, Origin, Up};
@@ -65,6 +70,8 @@ pub struct Source {
     pub error: f64,
     /// Whether the file was read at the times of [`ImportOptions::fps`], from its first to its last, instead of frame by frame.
     pub sampled: bool,
+    /// Whether unit, vertical direction and angles are settled: the motion was imported from a file inside of this one.
+    pub settled: bool,
     /// What was odd or could not be used.
     pub notes: Vec<Note>,
 }
@@ -72,7 +79,7 @@ pub struct Source {
 impl Source {
     /// A source of frames that is read as it is, and states no unit of length.
     fn plain(motion: Motion, notes: Vec<Note>) -> Source {
-        Source { motion, unit_known: false, error: 0.0, sampled: false, notes }
+        Source { motion, unit_known: false, error: 0.0, sampled: false, settled: false, notes }
     }
 }
 
@@ -99,7 +106,8 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Imported, Error> {
     import(&Disk::new(options.memory), path, options)
 }
 
-/// The animations of the file `name`: of a glTF or FBX file, or the time sensors of a VRML world. Other formats hold one motion without a name.
+/// The animations of the file `name`: of a glTF or FBX file, the time sensors of a VRML world, or the motions of an archive with several. Other
+/// formats hold one motion without a name.
 pub fn list(files: &dyn Files, name: &Path, options: &ImportOptions) -> Result<Vec<list::Entry>, Error> {
     let request = Request::new(files, options);
     format_of(name, &request).and_then(|format| (format.list)(name, &request)).map_err(|error| Error::of(&error, Error::source))
@@ -112,7 +120,11 @@ fn imported(path: &Path, request: &Request) -> Result<Imported> {
     let format = format_of(path, request)?;
     let place = || path.display().to_string();
     check_settings(format, request).with_context(place)?;
-    let Source { mut motion, unit_known, error, sampled, mut notes } = (format.read)(path, request)?;
+    let Source { mut motion, unit_known, error, sampled, settled, mut notes } = (format.read)(path, request)?;
+    if settled {
+        motion.origin.bytes = request.bytes_read();
+        return Ok(Imported { motion, notes });
+    }
     notes.extend(replaced(&motion));
     let channels = motion.rig.channels();
     require!(
@@ -121,6 +133,11 @@ fn imported(path: &Path, request: &Request) -> Result<Imported> {
     );
     if !format.has_rows {
         request.memory.check(motion.frames, channels).with_context(place)?;
+    }
+    if motion.rig.joints.is_empty() {
+        let given = [(Setting::Unit, request.cm_per_unit.is_some()), (Setting::Up, request.up.is_some())];
+        let given = given.into_iter().filter(|(_, given)| *given);
+        notes.extend(given.map(|(setting, _)| Note::no_effect(setting, "the motion has no joints")));
     }
     let known = unit_known.then_some(motion.rig.cm_per_unit);
     let (unit, note) = units::settle(&motion, request.cm_per_unit, known).with_context(place)?;

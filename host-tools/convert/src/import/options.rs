@@ -32,18 +32,18 @@ impl ImportOptions {
     }
 
     /// States the length of the source's unit in cm.
-    pub fn cm_per_unit(self, cm: f64) -> ImportOptions {
-        ImportOptions { cm_per_unit: Some(cm), ..self }
+    pub fn cm_per_unit(self, cm: impl Into<Option<f64>>) -> ImportOptions {
+        ImportOptions { cm_per_unit: cm.into(), ..self }
     }
 
     /// States the direction that is vertical.
-    pub fn up(self, up: Up) -> ImportOptions {
-        ImportOptions { up: Some(up), ..self }
+    pub fn up(self, up: impl Into<Option<Up>>) -> ImportOptions {
+        ImportOptions { up: up.into(), ..self }
     }
 
     /// States the frames a second.
-    pub fn fps(self, fps: f64) -> ImportOptions {
-        ImportOptions { fps: Some(fps), ..self }
+    pub fn fps(self, fps: impl Into<Option<f64>>) -> ImportOptions {
+        ImportOptions { fps: fps.into(), ..self }
     }
 
     /// Gives the skeleton's file.

@@ -47,6 +47,12 @@ impl<'a> Request<'a> {
         self.files.beside(folder).map_err(|error| unreadable(folder, error))
     }
 
+    /// Where the motion's files are.
+    #[cfg(feature = "zip")]
+    pub(super) fn files(&self) -> &'a dyn Files {
+        self.files
+    }
+
     /// Bytes of all files that were read so far.
     pub(super) fn bytes_read(&self) -> u64 {
         self.bytes.load(Ordering::Relaxed)

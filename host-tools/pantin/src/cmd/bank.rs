@@ -1,14 +1,13 @@
 //! `pantin pack`, `pantin unpack` and `pantin list`: many clips of one rig in one file.
 
 use crate::machine::playback::has_machine;
+use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
 use pantin_animator::machine::{Machine, Table};
-use pantin_convert::budget;
 use pantin_convert::encode::bank::{self, CheckedRig, Named};
-use pantin_convert::input;
 use serde_json::json;
 use std::collections::HashMap;
 use std::io::Write;
@@ -78,12 +77,12 @@ pub fn pack(arguments: &Pack) -> Result<()> {
     refuse_foreign(&arguments.output, Wanted::Bank)?;
     let inputs: Vec<&Path> = arguments.inputs.iter().chain(&arguments.rig).map(PathBuf::as_path).collect();
     output::check(&inputs, &[&arguments.output])?;
-    let apart = arguments.rig.as_deref().map(input::read).transpose()?;
+    let apart = arguments.rig.as_deref().map(memory::read).transpose()?;
     let mut clips: Vec<Named> = Vec::new();
     let (mut needed, mut held) = (false, 0);
     for path in &arguments.inputs {
         let place = path.display().to_string();
-        let bytes = input::read(path)?;
+        let bytes = memory::read(path)?;
         ensure!(!is_bank(&bytes), "{place}: a bank already; `pantin unpack {place} -o FOLDER` writes its clips as files");
         // With its own rig, or the one given.
         let opened = pantin::Clip::with_rig(&bytes, apart.as_deref().unwrap_or(&[]));
@@ -98,7 +97,7 @@ pub fn pack(arguments: &Pack) -> Result<()> {
         let rig = clips.last().map(|clip| &clip.rig).filter(|last| last[..] == *rig).map_or_else(|| Arc::from(rig), Arc::clone);
         let clip = bank::without_rig(&bytes, &CheckedRig::new(&rig)?).with_context(|| place.clone())?;
         held += clip.len() as u64;
-        budget::check_bytes_held(held)?;
+        memory::limit().check_bytes_held(held)?;
         clips.push(Named { name: name_of(path)?, place, clip, rig });
     }
     ensure!(needed || apart.is_none(), "--rig has no effect: every clip has its own");
@@ -174,7 +173,7 @@ fn files<'a>(arguments: &Unpack, bank: &Bank<'a>) -> Result<Vec<(BankEntry<'a>, 
 pub fn unpack(arguments: &Unpack) -> Result<()> {
     let (place, folder) = (|| arguments.input.display().to_string(), &arguments.output);
     ensure!(folder.as_os_str() != "-", "-o -: a bank has several clips, and standard output takes one; name a folder");
-    let bytes = input::read(&arguments.input)?;
+    let bytes = memory::read(&arguments.input)?;
     let bank = open(&arguments.input, &bytes)?;
     ensure!(!folder.is_file(), "{}: a file; the clips need a folder", folder.display());
     let files = files(arguments, &bank)?;
@@ -229,7 +228,7 @@ fn open<'a>(path: &Path, bytes: &'a [u8]) -> Result<Bank<'a>> {
 
 /// Runs `pantin list`.
 pub fn list(arguments: &List) -> Result<()> {
-    let bytes = input::read(&arguments.input)?;
+    let bytes = memory::read(&arguments.input)?;
     print(&arguments.input, &bytes)
 }
 

@@ -5,10 +5,11 @@
 
 use super::convert::{Arguments, Made, Progress, convert, say_of_each};
 use super::is_free;
+use crate::memory;
 use crate::output::{self, note, outln};
+use crate::words;
 use anyhow::{Context, Result, bail, ensure};
 use pantin_convert::import;
-use pantin_convert::input;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeSet, HashMap};
@@ -77,9 +78,10 @@ pub fn run_animations(arguments: &Arguments) -> Result<()> {
             None
         }
     };
-    ensure!(import::takes(input)?[0], "{}: --animation all: the file holds one motion", input.display());
+    let format = import::format(&memory::disk(), input)?;
+    ensure!(format.has_animations, "{}: --animation all: the file holds one motion", input.display());
     let (mut tasks, mut names) = (Vec::new(), Vec::new());
-    let entries = import::list::list(input, arguments.fps())?;
+    let entries = import::list(&memory::disk(), input, &arguments.recipe().import)?;
     for (number, name) in chosen_animations(input, &entries)? {
         let file = file_name(prefix.as_deref(), &name, &number);
         let output = if prefix.is_some() { output.with_file_name(file) } else { output.join(file) };
@@ -130,7 +132,8 @@ fn with_options_that_apply(arguments: &Arguments, mut tasks: Vec<Arguments>) -> 
     let mut used = [false; 2];
     for task in &mut tasks {
         // A pipe is read once, by the conversion, which refuses what does not apply; so is what has no known format.
-        let takes = if task.input.is_file() { import::takes(&task.input).unwrap_or([true; 2]) } else { [true; 2] };
+        let format = if task.input.is_file() { import::format(&memory::disk(), &task.input).ok() } else { None };
+        let takes = format.map_or([true; 2], |format| [format.has_animations, format.has_skeleton]);
         task.animation.take_if(|_| !takes[0]);
         task.skeleton.take_if(|_| !takes[1]);
         used.iter_mut().zip(takes).for_each(|(used, takes)| *used |= takes);
@@ -191,7 +194,7 @@ fn sources_stay(tasks: &[Arguments]) -> Result<()> {
     let mut sources = HashMap::new();
     for task in tasks {
         sources.insert(output::file_id(&task.input), task.input.clone());
-        sources.extend(import::companions(&task.input).into_iter().map(|path| (output::file_id(&path), path)));
+        sources.extend(import::companions(&memory::disk(), &task.input).into_iter().map(|path| (output::file_id(&path), path)));
     }
     sources.remove(&None);
     for task in tasks {
@@ -231,15 +234,12 @@ fn convert_all(arguments: &Arguments, tasks: Vec<Arguments>, labels: Vec<String>
         table(labels, &outcomes).iter().try_for_each(|line| outln!("{line}"))?;
     }
     for (file, outcome) in labels.iter().zip(&outcomes) {
-        match outcome {
-            Outcome::Converted { made, .. } => {
-                made.warnings.iter().for_each(|warning| note!("{file}: warning: {warning}"));
-            }
-            // The table and the JSON name them; without either, somebody must.
-            Outcome::Refused(why) if output::is_quiet() && !output::is_json() => {
-                output::print_error(format_args!("{file}: {why}"));
-            }
-            _ => {}
+        // The table and the JSON name them; without either, somebody must.
+        if let Outcome::Refused(why) = outcome
+            && output::is_quiet()
+            && !output::is_json()
+        {
+            output::print_error(format_args!("{file}: {why}"));
         }
     }
     say_of_each(labels.iter().zip(&outcomes).filter_map(|(file, outcome)| match outcome {
@@ -374,14 +374,14 @@ fn outcome(task: &Arguments, progress: Progress<'_>) -> Outcome {
     };
     match catch_unwind(AssertUnwindSafe(convert)) {
         Ok(Ok(outcome)) => outcome,
-        Ok(Err(error)) => Outcome::Refused(format!("{error:#}").replace('\n', " ")),
+        Ok(Err(error)) => Outcome::Refused(words::explanation(&error).replace('\n', " ")),
         Err(_) => Outcome::Refused("a fault of this program stopped the conversion; please report it".into()),
     }
 }
 
 /// Whether the clip opens, its checksum included.
 fn is_whole(path: &Path) -> bool {
-    input::read(path).is_ok_and(|bytes| pantin::Clip::new_checked(&bytes).is_ok())
+    memory::read(path).is_ok_and(|bytes| pantin::Clip::new_checked(&bytes).is_ok())
 }
 
 /// The time that a clip carries if it was made of these sources, by these options and this program; and the sources.
@@ -396,7 +396,7 @@ fn stamp(task: &Arguments) -> Result<(SystemTime, BTreeSet<PathBuf>)> {
     take(&std::env::current_exe()?)?;
     let time = take(&task.input)?;
     let inputs = task.inputs();
-    let companions = inputs.iter().flat_map(|path| import::companions(path));
+    let companions = inputs.iter().flat_map(|path| import::companions(&memory::disk(), path));
     let sources: BTreeSet<PathBuf> = inputs.iter().map(|path| path.to_path_buf()).chain(companions).collect();
     for path in &sources {
         // One that is missing fails the conversion, if it is needed.
@@ -427,7 +427,6 @@ impl Outcome {
                 let mut fields = made.fields();
                 fields.insert("error".into(), made.cell.as_str().into());
                 fields.insert("seconds".into(), json!(seconds));
-                fields.insert("notes".into(), json!(made.notes));
                 fields.into()
             }
             Outcome::UpToDate => json!({"up_to_date": true}),

@@ -1,10 +1,6 @@
 //! The flags of `pantin convert` that bound channels instead of joints.
 
 use anyhow::Result;
-use pantin_convert::fit::bounds::Bounds;
-use pantin_convert::fit::chain::Constraint;
-use pantin_convert::motion::Motion;
-
 /// Bounds for each channel, in place of --max-error.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChannelBound {
@@ -30,6 +26,20 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The least bound on a rotation in degrees: rounding three angles to steps of 360 / 2^32 degrees turns a joint by nearly as much.
+const LEAST_DEGREES: f64 = 2e-7;
+
+/// The greatest angle between two rotations, in degrees: above 0, not above 180.
+pub fn degrees(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if (LEAST_DEGREES..=180.0).contains(&number) => Ok(number),
+        Ok(number) if number > 0.0 && number < LEAST_DEGREES => {
+            Err(format!("a clip's angles have steps of 8.4e-8 degrees: the least bound is {LEAST_DEGREES:e} degrees"))
+        }
+        _ => Err("expected degrees, above 0 and at most 180".into()),
+    }
+}
+
 impl ChannelBound {
     /// The options' names for clap.
     pub const OPTIONS: [&str; 3] = ["max_channel_error", "max_accel_error", "exact"];
@@ -39,18 +49,24 @@ impl ChannelBound {
         self.exact || self.max_channel_error.is_some() || self.max_accel_error.is_some()
     }
 
-    /// Whether curves are coded as they are.
-    pub fn is_exact(&self) -> bool {
-        self.exact
+    /// The bound that the flags ask for, if any.
+    pub fn bound(&self) -> Option<pantin_convert::ChannelBound> {
+        match (self.max_channel_error, self.max_accel_error) {
+            (Some(delta), _) => Some(pantin_convert::ChannelBound::Error(delta)),
+            (_, Some(epsilon)) => Some(pantin_convert::ChannelBound::Acceleration(epsilon)),
+            _ => self.exact.then_some(pantin_convert::ChannelBound::Exact),
+        }
     }
+}
 
-    /// The bounds that the flags ask for, if any.
-    pub fn bounds(&self, motion: &Motion) -> Result<Option<Bounds>> {
-        Ok(match (self.max_channel_error, self.max_accel_error) {
-            (Some(delta), _) => Some(Bounds::of(motion, Constraint::Positions, delta)),
-            (_, Some(epsilon)) => Some(Bounds::of(motion, Constraint::Accelerations, epsilon)),
-            _ if self.exact => Some(Bounds::exact(motion)?),
-            _ => None,
-        })
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_are_above_what_an_angle_can_hold_and_up_to_half_a_turn() {
+        assert_eq!(["2", "180", "1e-6"].map(|text| degrees(text).unwrap()), [2.0, 180.0, 1e-6]);
+        assert!(["0", "-1", "nan", "inf", "180.1", "two"].iter().all(|text| degrees(text).unwrap_err().contains("at most 180")));
+        assert!(degrees("1e-9").unwrap_err().contains("steps"));
     }
 }

@@ -1,36 +1,24 @@
 //! `pantin convert`.
 
-use super::channel_bound::{ChannelBound, above_zero};
+use super::channel_bound::{ChannelBound, above_zero, degrees};
 use super::edits::Edits;
 use super::encoder::{Effort, Rotations};
-use super::joint_error::{self, JointError};
 use super::shard::{self, Shard};
-use super::{bank, batch, check_fit, convert_bank, convert_list, default_output, same_form, up_axis};
+use super::{bank, batch, convert_bank, convert_list, default_output, same_form, up_axis};
+use crate::memory::{self, limit};
 use crate::output::{self, Wanted, detail, note, outln, refuse_foreign};
+use crate::words;
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
 use pantin::Up;
-use pantin::codec::layout::MAX_FRAMES;
-use pantin_convert::channel_error;
-use pantin_convert::edit::cut::cut;
 use pantin_convert::edit::find_loop::{self, Cut};
-use pantin_convert::edit::loop_seam::{self, Closed, Most};
-use pantin_convert::encode::{clip, rig};
-use pantin_convert::errors;
-use pantin_convert::fit::bounds::Bounds;
-use pantin_convert::fit::chain::Constraint;
-use pantin_convert::fit::descent::{Level, Plan};
-use pantin_convert::fit::parametrize::{self, Coding, has_choice, quaternions};
-use pantin_convert::fit::{channelwise, fit_coding};
-use pantin_convert::import;
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
-use pantin_convert::number::Number;
-use pantin_convert::verify::{compare, unseen, verify};
+use pantin_convert::{Coding, Length, Note, Options, Prepared, Recipe, shared_coding};
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Turn a motion file into a clip.
 ///
@@ -85,17 +73,26 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["output", "rig_out", "animation"])]
     list: bool,
     /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
-    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
+    #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "max_joint_error", "shell", "places_only", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
     find_loop: bool,
-    /// Largest distance of any joint or End Site from its original position: a number with cm, mm, m or in (default unit cm), or
-    /// with % of the figure's height
+    /// Largest distance of any bounded point from its original position: of each joint, of the three points of its shell (see --shell)
+    /// and of each End Site. A number with cm, mm, m or in (default unit cm), or with % of the figure's height
     /// [default: 0.5cm, or 6 times --mean-error]
-    #[arg(long, group = "bound", value_parser = joint_error::parse)]
-    max_error: Option<JointError>,
-    /// Mean distance of the joints, End Sites left out, from their original positions, in the same units: the clip is as small as its
-    /// mean allows, instead of filling --max-error, which still holds for every joint
-    #[arg(long, conflicts_with_all = ChannelBound::OPTIONS, value_parser = joint_error::parse)]
-    mean_error: Option<JointError>,
+    #[arg(long, group = "bound", value_parser = str::parse::<Length>)]
+    max_error: Option<Length>,
+    /// Mean error of the joints, End Sites left out, in the same units: the clip is as small as its mean allows, instead of filling
+    /// --max-error, which still holds for every joint. A joint's error is the largest distance of its shell's points
+    #[arg(long, conflicts_with_all = ChannelBound::OPTIONS, value_parser = str::parse::<Length>)]
+    mean_error: Option<Length>,
+    /// Distance of the shell's points from their joint, in the units of --max-error. The points lie along the joint's own axes, so that
+    /// --max-error bounds how each joint is turned, too
+    /// [default: 3cm, or 3% for a figure below 1 m]
+    #[arg(long, value_name = "LENGTH|PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = str::parse::<Length>)]
+    shell: Option<Length>,
+    /// Bound the places of joints and End Sites alone, without their shells. For figures that are drawn as lines between joints: a head's
+    /// yaw or a forearm's twist may be lost
+    #[arg(long, conflicts_with = "shell", conflicts_with_all = ChannelBound::OPTIONS)]
+    places_only: bool,
     /// Encoder effort: speed against size
     #[arg(long, value_enum, default_value = "default")]
     effort: Effort,
@@ -106,9 +103,12 @@ pub struct Arguments {
     /// [default: 2]
     #[arg(long, value_name = "PERCENT", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
     max_scalar_error: Option<f64>,
-    /// Largest rotation error of joints that carry nothing away from them, such as those with an End Site of length 0, in degrees
-    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = above_zero)]
+    /// Largest angle between the original and the decoded rotation of any joint in the world, in degrees, at most 180
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = degrees)]
     max_rotation_error: Option<f64>,
+    /// The same against the joint's parent: what a servo or a skinned mesh shows
+    #[arg(long, value_name = "DEGREES", conflicts_with_all = ChannelBound::OPTIONS, value_parser = degrees)]
+    max_joint_error: Option<f64>,
     #[command(flatten)]
     channels: ChannelBound,
     /// Length of the source's unit in cm, instead of a guess
@@ -155,28 +155,27 @@ impl Arguments {
         self.output.as_deref().unwrap_or(Path::new(""))
     }
 
-    /// How the source is read.
-    fn import_options(&self) -> import::Options {
-        import::Options {
-            cm_per_unit: self.cm_per_unit,
-            up: self.up,
-            // At its own rate first, so that --rate means the frames of the file.
-            fps: self.fps.filter(|_| self.edits.rate.is_none()),
-            skeleton: self.skeleton.clone(),
-            quaternions: self.channels.is_exact() || self.rotations == Rotations::Quaternion,
-            animation: self.animation.clone(),
-            files: import::Files::default(),
-        }
+    /// The conversion that the options ask for.
+    pub(super) fn recipe(&self) -> Recipe {
+        let mut import = ImportOptions::new().memory(limit());
+        (import.cm_per_unit, import.up) = (self.cm_per_unit, self.up);
+        // At its own rate first, so that --rate means the frames of the file.
+        import.fps = self.fps.filter(|_| self.edits.rate.is_none());
+        (import.skeleton, import.animation) = (self.skeleton.clone(), self.animation.clone());
+        let mut options = Options::new().effort(self.effort.into()).rotations(self.rotations.into()).memory(limit());
+        (options.max_error, options.mean_error) = (self.max_error, self.mean_error);
+        (options.max_scalar_error, options.max_rotation_error) = (self.max_scalar_error, self.max_rotation_error);
+        (options.shell, options.places_only) = (self.shell, self.places_only);
+        options.max_joint_error = self.max_joint_error;
+        (options.channels, options.index) = (self.channels.bound(), self.index);
+        (options.looped, options.footsteps) = (self.edits.looped, self.edits.footsteps);
+        options.rig_apart = self.rig_out.is_some();
+        Recipe::new().import(import).edits(self.edits.edits(self.fps)).options(options)
     }
 
     /// Whether the user says which way is up.
     pub(super) fn up_is_given(&self) -> bool {
         self.up.is_some()
-    }
-
-    /// The rate of the clips, if the user gives one.
-    pub(super) fn fps(&self) -> Option<f64> {
-        self.fps
     }
 
     /// The same with a name for the clip: without --output that of the motion, ending in .ptn.
@@ -200,36 +199,11 @@ impl Arguments {
         refuse_foreign(self.output(), Wanted::Clip)
     }
 
-    /// Bounds that were given and bound nothing in this motion, a sentence each.
-    fn without_effect(&self, motion: &Motion) -> Vec<String> {
-        let (no_joints, no_scalars) = (motion.rig.joints.is_empty(), motion.rig.scalars.is_empty());
-        let nothing_unseen = || unseen(&motion.rig).is_empty();
-        // Options, whether they are given for nothing, and what is missing.
-        let given = [
-            ("--max-error", self.max_error.is_some() && no_joints, "joints"),
-            ("--mean-error", self.mean_error.is_some() && no_joints, "joints"),
-            ("--max-rotation-error", self.max_rotation_error.is_some() && no_joints, "joints"),
-            ("--cm-per-unit", self.cm_per_unit.is_some() && no_joints, "joints"),
-            ("--up", self.up.is_some() && no_joints, "joints"),
-            ("--max-scalar-error", self.max_scalar_error.is_some() && no_scalars, "scalars"),
-            (
-                "--max-rotation-error",
-                self.max_rotation_error.is_some() && !no_joints && nothing_unseen(),
-                "joint that turns and carries nothing away from it",
-            ),
-            ("--rotations", self.rotations != Rotations::ByCost && !has_choice(&motion.rig), "joint with three Euler angles"),
-        ];
-        let given = given.into_iter().filter(|(_, for_nothing, _)| *for_nothing);
-        let mut said: Vec<String> =
-            given.map(|(name, _, what)| format!("{name} has no effect: the motion has no {what}")).collect();
-        if self.channels.is_given() {
-            let given = [("--effort", self.effort != Effort::Default), ("--rotations", self.rotations == Rotations::Exponential)];
-            let given = given.into_iter().filter(|(_, given)| *given);
-            said.extend(
-                given.map(|(name, _)| format!("{name} has no effect: channels with bounds of their own are coded as they are")),
-            );
+    /// Prints notes, unless a table of many replaces them.
+    fn say(&self, notes: &[Note]) {
+        if !self.silent {
+            notes.iter().for_each(print);
         }
-        said
     }
 
     /// The same for one of several motions.
@@ -288,7 +262,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let made = convert(arguments, &|part| bar.get_or_init(begin).set_position((part * 1000.0) as u64))?;
     bar.get_or_init(begin).finish_and_clear();
     output::report(made.fields().into());
-    note!("{}", made.sentence(arguments.output()));
+    made.sentence(arguments.output()).lines().for_each(|line| note!("{line}"));
     Ok(())
 }
 
@@ -299,16 +273,13 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
         "--find-loop writes no file: leave --output and --rig-out out"
     );
     let place = || arguments.input.display().to_string();
-    let options = arguments.import_options();
-    let imported = import::load(&arguments.input, &options)?;
-    imported.warnings.iter().for_each(|warning| note!("warning: {warning}"));
-    let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
-    edited.said.iter().for_each(|sentence| note!("{sentence}"));
+    let edited = arguments.recipe().edited(&memory::disk(), &arguments.input)?;
+    edited.notes.iter().for_each(print);
     let motion = edited.motion;
     if motion.looped {
         note!("{}: a loop already: --from and --to would make another of it", place());
     }
-    let mut cuts = find_loop::find(&motion).with_context(place)?;
+    let mut cuts = find_loop::find(&motion, limit()).with_context(place)?;
     // Frames count as those of --from and --to do: before the cut.
     let first = arguments.edits.first_frame(motion.frame_time);
     cuts.iter_mut().for_each(|cut| (cut.from, cut.to) = (cut.from + first, cut.to + first));
@@ -333,15 +304,17 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// Smaller errors of rotations that move nothing are not mentioned.
-const TOLD_DEGREES: f64 = 0.01;
+/// Prints a note.
+fn print(note: &Note) {
+    note!("{}", words::line(note));
+}
 
 /// A clip that keeps its bound.
 pub(super) struct Made {
     pub bytes: Vec<u8>,
     /// Number of its bytes, which outlives them.
     pub len: usize,
-    pub json: Value,
+    json: Map<String, Value>,
     /// The errors as a clause for the user.
     errors: String,
     /// The same for a table's column.
@@ -350,27 +323,22 @@ pub(super) struct Made {
     channels: usize,
     /// Every file that was read for it.
     pub read: Vec<PathBuf>,
-    /// What is odd about the motion, a sentence each.
-    pub warnings: Vec<String>,
-    /// What else the user should know, a sentence each.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl Made {
-    /// A clip of `motion`. What was read for it, and what is odd, is for the caller to add.
-    fn new(motion: &Motion, bytes: Vec<u8>, json: Value, errors: String, cell: String, notes: Notes) -> Made {
-        let (frames, channels) = (motion.frames, motion.rig.channels());
+    fn new(made: pantin_convert::Made, motion: &Motion, read: &[PathBuf]) -> Made {
+        let pantin_convert::Made { clip, report, notes, .. } = made;
         Made {
-            len: bytes.len(),
-            bytes,
-            json,
-            errors,
-            cell,
-            frames,
-            channels,
-            read: Vec::new(),
-            warnings: Vec::new(),
-            notes: notes.said,
+            len: clip.len(),
+            bytes: clip,
+            json: report.to_json(motion),
+            errors: report.to_text(motion),
+            cell: report.to_cell(motion),
+            frames: report.frames,
+            channels: report.channels,
+            read: read.to_vec(),
+            notes,
         }
     }
 
@@ -381,10 +349,12 @@ impl Made {
 
     /// The fields of a report.
     pub fn fields(&self) -> Map<String, Value> {
-        let mut fields = self.json.as_object().cloned().unwrap_or_default();
-        fields.insert("frames".into(), json!(self.frames));
+        let warnings: Vec<String> = self.notes.iter().filter(|note| note.is_warning()).map(words::sentence).collect();
+        let notes: Vec<Value> = self.notes.iter().map(|note| note.to_json(words::sentence(note))).collect();
+        let mut fields = self.json.clone();
         fields.insert("bytes".into(), json!(self.len));
-        fields.insert("warnings".into(), json!(self.warnings));
+        fields.insert("warnings".into(), json!(warnings));
+        fields.insert("notes".into(), json!(notes));
         fields
     }
 
@@ -406,34 +376,20 @@ impl Made {
     }
 }
 
-/// What a conversion says: at once, or kept for the report of many.
-struct Notes {
-    silent: bool,
-    said: Vec<String>,
-}
-
-impl Notes {
-    fn of(arguments: &Arguments) -> Notes {
-        Notes { silent: arguments.silent, said: Vec::new() }
-    }
-
-    fn say(&mut self, sentence: String) {
-        if !self.silent {
-            note!("{sentence}");
-        }
-        self.said.push(sentence);
-    }
-}
-
-/// Prints what the conversions of several motions say, each under its label. What several of them say alike is said once.
-pub(super) fn say_of_each<'a>(all: impl Iterator<Item = (&'a str, &'a [String])>) {
-    let mut sentences: Vec<(&str, &str, usize)> = Vec::new();
-    let mut places: HashMap<&str, usize> = HashMap::new();
+/// Prints the notes of several motions, each under its label. A note that several of them have is printed once.
+pub(super) fn say_of_each<'a>(all: impl Iterator<Item = (&'a str, &'a [Note])>) {
+    let mut sentences: Vec<(String, &str, usize)> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
     let mut motions = 0;
-    for (label, said) in all {
+    for (label, notes) in all {
         motions += 1;
-        for sentence in said {
-            let place = *places.entry(sentence).or_insert(sentences.len());
+        for note in notes {
+            let sentence = words::line(note);
+            // Each warning names its file.
+            let place = match note.is_warning() {
+                true => sentences.len(),
+                false => *places.entry(sentence.clone()).or_insert(sentences.len()),
+            };
             match sentences.get_mut(place) {
                 Some((.., count)) => *count += 1,
                 None => sentences.push((sentence, label, 1)),
@@ -454,9 +410,14 @@ pub(super) type Progress<'a> = &'a (dyn Fn(f64) + Sync);
 
 /// Converts one file and writes the clip.
 pub(super) fn convert(arguments: &Arguments, progress: Progress<'_>) -> Result<Made> {
-    let prepared = prepare(arguments)?;
-    arguments.check_outputs(&prepared.read)?;
-    let made = prepared.code(arguments, &prepared.coding(arguments), progress)?;
+    let (mut prepared, read) = prepare(arguments)?;
+    let before = prepared.notes.len();
+    prepared.find_footsteps().with_context(|| arguments.input.display().to_string())?;
+    arguments.say(&prepared.notes[before..]);
+    arguments.check_outputs(&read)?;
+    let coding = shared_coding(std::slice::from_ref(&prepared));
+    let made = code(arguments, &prepared, &read, &coding, progress)?;
+    arguments.say(&made.notes[prepared.notes.len()..]);
     // A clip opens with its own rig alone: a new one beside an old one would be lost.
     let rig = arguments.rig_out.as_deref().map(|path| (path, prepared.rig.as_slice()));
     let outputs: Vec<(&Path, &[u8])> = rig.into_iter().chain([(arguments.output(), made.bytes.as_slice())]).collect();
@@ -464,337 +425,26 @@ pub(super) fn convert(arguments: &Arguments, progress: Progress<'_>) -> Result<M
     Ok(made)
 }
 
-/// A motion after all edits, and what its clip must keep.
-pub(super) struct Prepared {
-    pub motion: Motion,
-    /// The bytes of the motion's rig.
-    pub rig: Vec<u8>,
-    /// Every file that was read for it.
-    pub read: Vec<PathBuf>,
-    /// What is odd about the motion, a sentence each.
-    warnings: Vec<String>,
-    notes: Vec<String>,
-    bound: Bound,
-    retarget_max_cm: Option<f64>,
-}
-
-/// Imports one file and applies the edits.
-pub(super) fn prepare(arguments: &Arguments) -> Result<Prepared> {
-    let mut prepared = prepare_without_footsteps(arguments)?;
-    prepared.find_footsteps(arguments)?;
-    Ok(prepared)
-}
-
-/// The same before footsteps are found: they depend on the direction that is up, on which several motions agree first.
-pub(super) fn prepare_without_footsteps(arguments: &Arguments) -> Result<Prepared> {
-    let options = arguments.import_options();
-    let imported = import::load(&arguments.input, &options)?;
-    let mut notes = Notes::of(arguments);
-    if !arguments.silent {
-        imported.warnings.iter().for_each(|warning| note!("warning: {warning}"));
-    }
-    notes.say(imported.units);
-    let place = || arguments.input.display().to_string();
-    if let Some(sentence) = arguments.edits.on_sampled(&arguments.input, &options)? {
-        notes.say(sentence);
-    }
-    let edited = arguments.edits.apply(imported.motion, arguments.fps, &options.files).with_context(place)?;
-    let read = options.files.read_so_far();
+/// Imports one file and applies the edits, but for footsteps: they depend on the direction that is up, on which several motions agree first.
+/// Returns also every file that was read.
+pub(super) fn prepare(arguments: &Arguments) -> Result<(Prepared, Vec<PathBuf>)> {
+    let disk = memory::disk();
+    let prepared = arguments.recipe().prepare(&disk, &arguments.input)?;
+    let read = disk.read_so_far();
     read.iter().for_each(|path| detail!("read {}", path.display()));
-    edited.said.into_iter().chain(arguments.without_effect(&edited.motion)).for_each(|sentence| notes.say(sentence));
-    let mut motion = edited.motion;
-    if arguments.rotations == Rotations::Quaternion {
-        motion = quaternions(&motion);
-    }
-    check_fit(&motion, arguments.effort.into(), &options.files).with_context(place)?;
-    let mut bound = match arguments.channels.bounds(&motion)? {
-        Some(bounds) => {
-            // Bounds of channels do not see where the joints are.
-            let usual = joint_error::DEFAULT.cm(&motion).unwrap_or(1.0);
-            ensure!(
-                imported.error_cm < 0.5 * usual,
-                "{}: the file's joints are only known within {:.3e} cm; a bound of channels needs them within {:.3e} cm",
-                place(),
-                imported.error_cm,
-                0.5 * usual
-            );
-            Bound::Channels(bounds)
-        }
-        None => {
-            Bound::Distance(Distance::of(arguments, &motion).and_then(|bound| bound.less(imported.error_cm)).with_context(place)?)
-        }
-    };
-    if arguments.edits.looped {
-        let closed = bound.close(&motion).with_context(place)?;
-        closed_sentences(&closed, &motion).into_iter().for_each(|sentence| notes.say(sentence));
-        motion = closed.motion;
-    }
-    let rig = rig::encode(&motion.rig)?;
-    let (warnings, notes) = (imported.warnings, notes.said);
-    Ok(Prepared { motion, rig, read, warnings, notes, bound, retarget_max_cm: edited.retarget_max_cm })
+    arguments.say(&prepared.notes);
+    Ok((prepared, read))
 }
 
-impl Prepared {
-    /// States another direction as up.
-    pub fn set_up(&mut self, up: Up) -> Result<()> {
-        self.motion.rig.up = up;
-        self.rig = rig::encode(&self.motion.rig)?;
-        Ok(())
-    }
-
-    /// Adds the events of footsteps, if they are asked for.
-    pub fn find_footsteps(&mut self, arguments: &Arguments) -> Result<()> {
-        let found = arguments.edits.add_footsteps(&mut self.motion);
-        if let Some(sentence) = found.with_context(|| arguments.input.display().to_string())? {
-            let mut notes = Notes::of(arguments);
-            notes.say(sentence);
-            self.notes.append(&mut notes.said);
-        }
-        Ok(())
-    }
-
-    /// The cheapest coding for this motion alone.
-    fn coding(&self, arguments: &Arguments) -> Coding {
-        shared_coding(std::slice::from_ref(self), arguments)
-    }
-
-    /// The clip in a coding; its errors are those of the device's decoder.
-    pub fn code(&self, arguments: &Arguments, coding: &Coding, progress: Progress<'_>) -> Result<Made> {
-        progress(0.0);
-        let mut made = match &self.bound {
-            Bound::Channels(bounds) => by_channel(arguments, self, bounds, coding, progress)?,
-            Bound::Distance(distance) => by_distance(arguments, self, distance, coding, progress)?,
-        };
-        if let (Some(cm), Some(fields)) = (self.retarget_max_cm, made.json.as_object_mut()) {
-            fields.insert("retarget_max_cm".into(), json!(cm));
-        }
-        (made.read, made.warnings) = (self.read.clone(), self.warnings.clone());
-        made.notes.splice(0..0, self.notes.iter().cloned());
-        Ok(made)
-    }
-}
-
-/// The cheapest coding for motions of one rig together.
-pub(super) fn shared_coding(prepared: &[Prepared], arguments: &Arguments) -> Coding {
-    let motion = |prepared: &Prepared| match &prepared.bound {
-        Bound::Distance(distance) => (distance.plan(arguments.effort.into()).filled_cm(), arguments.rotations.into()),
-        // Bounds of channels are bounds of the file's own angles.
-        Bound::Channels(_) => (f64::INFINITY, parametrize::Rotations::Euler),
-    };
-    let rotations = prepared.first().map_or(parametrize::Rotations::Euler, |first| motion(first).1);
-    let motions: Vec<_> = prepared.iter().map(|prepared| (&prepared.motion, motion(prepared).0)).collect();
-    Coding::of(&motions, rotations)
-}
-
-/// What a conversion keeps to.
-enum Bound {
-    Distance(Distance),
-    Channels(Bounds),
-}
-
-/// The errors of joints and scalars that a conversion keeps to.
-struct Distance {
-    /// Of every joint.
-    max_cm: f64,
-    /// Of all joints in the mean, End Sites left out.
-    mean_cm: Option<f64>,
-    /// Of scalars, as a part of full scale.
-    scalar_part: f64,
-}
-
-/// The bound of scalars without an option, in percent of full scale.
-const MAX_SCALAR_PERCENT: f64 = 2.0;
-/// The bound of every joint, relative to the mean.
-const MAX_OF_MEAN: f64 = 6.0;
-
-impl Distance {
-    fn of(arguments: &Arguments, motion: &Motion) -> Result<Distance> {
-        let mean_cm = arguments.mean_error.map(|mean| mean.cm(motion)).transpose()?;
-        let max_cm = match (arguments.max_error, mean_cm) {
-            (Some(max), _) => max.cm(motion)?,
-            (None, Some(mean)) => MAX_OF_MEAN * mean,
-            (None, None) => joint_error::DEFAULT.cm(motion)?,
-        };
-        ensure!(
-            mean_cm.is_none_or(|mean| mean <= max_cm),
-            "--mean-error {} cm is more than --max-error, {max_cm} cm",
-            mean_cm.unwrap_or_default()
-        );
-        Ok(Distance { max_cm, mean_cm, scalar_part: arguments.max_scalar_error.unwrap_or(MAX_SCALAR_PERCENT) / 100.0 })
-    }
-
-    /// What is left of the bound for a motion whose joints are `error_cm` from where the file has them: no joint is farther than all of it from the
-    /// file.
-    fn less(self, error_cm: f64) -> Result<Distance> {
-        ensure!(
-            error_cm == 0.0 || error_cm < 0.5 * self.mean_cm.unwrap_or(self.max_cm),
-            "the file is only known within {error_cm:e} cm, which is too much of the bound"
-        );
-        Ok(Distance { max_cm: self.max_cm - error_cm, mean_cm: self.mean_cm.map(|mean| mean - error_cm), ..self })
-    }
-
-    fn plan(&self, effort: Level) -> Plan {
-        // A looser bound than by default saves nothing, and leaves first codes too much room.
-        let max_cm = self.mean_cm.map_or(self.max_cm, |mean| self.max_cm.min(MAX_OF_MEAN * mean));
-        Plan { mean_cm: self.mean_cm, ..effort.plan(max_cm) }
-    }
-}
-
-/// What closing a loop may take of the bound.
-const CLOSING: f64 = 0.9;
-
-impl Bound {
-    /// Closes a loop, and leaves of the bound what that did not take: in the end no joint is farther than all of it from the source.
-    fn close(&mut self, motion: &Motion) -> Result<Closed> {
-        let scalars = |moved: &[f64]| {
-            let parts = motion
-                .rig
-                .scalars
-                .iter()
-                .zip(&moved[motion.rig.joint_channels()..])
-                .map(|(scalar, moved)| moved / scalar.full_scale);
-            parts.fold(0.0, f64::max)
-        };
-        match self {
-            Bound::Distance(distance) => {
-                let Distance { max_cm, mean_cm, scalar_part } = distance;
-                let closed = loop_seam::close(motion, Most::Distance(*max_cm, *scalar_part))?;
-                // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
-                ensure!(
-                    closed.moved_cm < CLOSING * *max_cm,
-                    "--loop: closing the seam moves {} by {:.3} cm, which leaves too little of the bound of {max_cm} cm; a bound above {:.3} cm will do",
-                    closed.joint,
-                    closed.moved_cm,
-                    closed.moved_cm / CLOSING
-                );
-                *max_cm -= closed.moved_cm;
-                *scalar_part -= scalars(&closed.moved);
-                if let Some(mean_cm) = mean_cm {
-                    let moved = compare(&cut(motion, None, Some(closed.motion.frames - 1))?, &closed.motion)?.mean_joint_cm;
-                    ensure!(
-                        moved < CLOSING * *mean_cm,
-                        "--loop: closing the seam moves the joints by {moved:.4} cm in the mean, which leaves too little of --mean-error {mean_cm} cm"
-                    );
-                    *mean_cm -= moved;
-                }
-                Ok(closed)
-            }
-            Bound::Channels(bounds) => {
-                let closed = loop_seam::close(motion, Most::Channels(bounds))?;
-                bounds.greatest.iter_mut().zip(&closed.moved).for_each(|(greatest, moved)| *greatest -= moved);
-                Ok(closed)
-            }
-        }
-    }
-}
-
-fn closed_sentences(closed: &Closed, motion: &Motion) -> Vec<String> {
-    if motion.looped {
-        return vec!["loop: it is one already".into()];
-    }
-    let joint = if closed.joint.is_empty() { String::new() } else { format!(" ({})", closed.joint) };
-    let travel =
-        closed.travel.iter().map(|(name, way)| format!("loop: {name} goes {way:.3} units on each time round, which stays"));
-    let seam = format!("loop: the greatest seam is {:.4} cm ({})", closed.seam_cm, closed.seam_joint);
-    let moved =
-        format!("loop: closing the seam moved joints by up to {:.4} cm{joint}; {} frames", closed.moved_cm, closed.motion.frames);
-    (!closed.seam_joint.is_empty()).then_some(seam).into_iter().chain([moved]).chain(travel).collect()
-}
-
-/// The clip's bytes, with the index that was asked for; says what it costs.
-fn file(arguments: &Arguments, coded: &clip::Coded, rig: &[u8], notes: &mut Notes) -> Result<Vec<u8>> {
-    let apart = arguments.rig_out.is_some();
-    let plain = clip::encode(coded, rig, apart)?;
-    let Some(seconds) = arguments.index else { return Ok(plain) };
-    let spacing = (seconds * 1e9 / f64::from(coded.frame_time_ns)).round();
-    let frame = f64::from(coded.frame_time_ns) * 1e-9;
-    ensure!(
-        (1.0..=f64::from(MAX_FRAMES)).contains(&spacing),
-        "--index {}: expected seconds, from {frame} (a frame) to {} ({MAX_FRAMES} frames)",
-        Number(seconds),
-        frame * f64::from(MAX_FRAMES)
-    );
-    let bytes = clip::encode_with_index(coded, rig, apart, spacing as u32)?;
-    let cost = bytes.len() - plain.len();
-    let part = 100.0 * cost as f64 / plain.len() as f64;
-    notes.say(format!("index: a snapshot each {spacing} frames costs {cost} bytes ({part:.1} % more)"));
-    Ok(bytes)
-}
-
-fn by_distance(
+/// The clip of a prepared motion in a coding.
+pub(super) fn code(
     arguments: &Arguments,
     prepared: &Prepared,
-    distance: &Distance,
+    read: &[PathBuf],
     coding: &Coding,
     progress: Progress<'_>,
 ) -> Result<Made> {
-    let Prepared { motion, rig, .. } = prepared;
-    let (plan, part) = (distance.plan(arguments.effort.into()), distance.scalar_part);
-    let coded = fit_coding(motion, coding, plan, part, &mut |done| progress(done))?;
-    let mut notes = Notes::of(arguments);
-    let bytes = file(arguments, &coded, rig, &mut notes)?;
-    let not_written = || format!("{}: not written", arguments.output().display());
-    let report = verify(&bytes, rig, motion, distance.max_cm, part).with_context(not_written)?;
-    if let Some(mean_cm) = distance.mean_cm {
-        let mean = report.mean_joint_cm;
-        ensure!(mean <= mean_cm, "{}: joints are {mean:.5} cm off in the mean; --mean-error is {mean_cm} cm", not_written());
-    }
-    let (degrees, joint, frame) = (report.max_unseen_degrees, &report.unseen_joint, report.unseen_frame);
-    if let Some(most) = arguments.max_rotation_error.filter(|most| degrees > *most) {
-        bail!(
-            "{}: joint {joint} at frame {frame} is turned by {degrees:.2} degrees; --max-rotation-error is {most}",
-            not_written()
-        );
-    }
-    if degrees > TOLD_DEGREES {
-        notes.say(format!(
-            "rotations that move nothing are up to {degrees:.2} degrees off ({joint} at frame {frame}); --max-rotation-error bounds it"
-        ));
-    }
-    let (errors, cell) = (errors::to_text(&report, motion), errors::to_cell(&report, motion));
-    Ok(Made::new(motion, bytes, errors::to_json(&report, motion).into(), errors, cell, notes))
-}
-
-fn by_channel(
-    arguments: &Arguments,
-    prepared: &Prepared,
-    bounds: &Bounds,
-    coding: &Coding,
-    progress: Progress<'_>,
-) -> Result<Made> {
-    let Prepared { motion, rig, .. } = prepared;
-    let mut bounds = bounds.clone();
-    bounds.at_least_steps(motion, coding.length_exponent);
-    let bounds = &bounds;
-    let (channels, done) = (motion.rig.channels() as f64, AtomicUsize::new(0));
-    let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / channels);
-    let not_written = || format!("{}: not written", arguments.output().display());
-    let coded = channelwise::fit_exponent(motion, bounds, coding.length_exponent, &step).with_context(not_written)?;
-    let mut notes = Notes::of(arguments);
-    if let Some((channel, asked)) = bounds.raised(motion) {
-        notes.say(format!(
-            "warning: the figure is so far from its origin that positions have steps of {:.3e}: {} and channels like it keep this bound, not the {asked:.3e} \
-             that was asked for",
-            bounds.greatest[channel],
-            motion.rig.channel_name(channel)
-        ));
-    }
-    let bytes = file(arguments, &coded, rig, &mut notes)?;
-    let report = channel_error::verify(&bytes, rig, motion, bounds).with_context(not_written)?;
-    let worst = &report.worst;
-    let json = json!({
-        "max_error": worst.error,
-        "part_of_bound": worst.part,
-        "worst_channel": motion.rig.channel_name(worst.channel),
-        "worst_frame": worst.frame,
-        "max_drift": report.drift.error,
-        "drifting_channel": motion.rig.channel_name(report.drift.channel),
-    });
-    let errors = match bounds.constraint {
-        Constraint::Positions => format!("error max {}", worst.sentence(motion)),
-        Constraint::Accelerations => {
-            format!("error max {}, a frame^2; drift max {}", worst.sentence(motion), report.drift.sentence(motion))
-        }
-    };
-    Ok(Made::new(motion, bytes, json, errors, worst.sentence(motion), notes))
+    let made = prepared.code(coding, &mut |part| progress(part));
+    let made = made.with_context(|| format!("{}: not written", arguments.output().display()))?;
+    Ok(Made::new(made, &prepared.motion, read))
 }

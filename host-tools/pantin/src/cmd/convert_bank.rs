@@ -2,14 +2,15 @@
 
 use super::bank::said;
 use super::batch;
-use super::convert::{Arguments, Made, Prepared, prepare_without_footsteps, say_of_each, shared_coding};
+use super::convert::{Arguments, Made, code, prepare, say_of_each};
 use super::convert_list::{self, Line};
+use crate::memory;
 use crate::output::{self, Wanted, note, outln, refuse_foreign};
-use anyhow::{Context, Result, bail, ensure};
-use pantin_convert::budget;
+use crate::words;
+use anyhow::{Context, Result, ensure};
 use pantin_convert::encode::bank::{self, Named};
-use pantin_convert::encode::same_rig::difference;
-use pantin_convert::import::{self, list};
+use pantin_convert::import::list;
+use pantin_convert::{Prepared, agree_on_up, of_one_rig, shared_coding};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -36,39 +37,39 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let held = AtomicUsize::new(0);
     let prepare = |task: &Task| {
-        let prepared = prepare_without_footsteps(&task.arguments);
+        let prepared = prepare(&task.arguments);
         // The message names the motion.
         let prepared = match &task.line {
             Some(line) => prepared.with_context(|| line.clone())?,
             None => prepared?,
         };
-        let values = prepared.motion.frames * (prepared.motion.rig.channels() + 1);
-        budget::check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
+        let motion = &prepared.0.motion;
+        let values = motion.frames * (motion.rig.channels() + 1);
+        memory::limit().check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
         Ok(prepared)
     };
     let bar = output::progress(tasks.len() as u64, "reading {wide_bar} {pos} of {len} motions {eta} left")?;
     let prepare = |task: &Task| prepare(task).inspect(|_| bar.inc(1));
-    let mut prepared: Vec<Prepared> =
-        pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
+    let prepared = pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
+    let (mut prepared, read): (Vec<Prepared>, Vec<Vec<PathBuf>>) = prepared.into_iter().unzip();
     bar.finish_and_clear();
-    agree_on_up(&mut prepared, arguments.up_is_given())?;
-    tasks.iter().zip(&mut prepared).try_for_each(|(task, prepared)| prepared.find_footsteps(&task.arguments))?;
     let labels: Vec<String> = tasks.iter().map(|task| task.label.clone()).collect();
+    agree(&mut prepared, &labels, arguments.up_is_given())?;
     of_one_rig(&prepared, &labels, "a bank holds clips of one rig")?;
-    let shared = arguments.same_form.then(|| shared_coding(&prepared, arguments));
+    let shared = arguments.same_form.then(|| shared_coding(&prepared));
     let bar = output::Pieces::new(tasks.len(), "clips")?;
-    let code = |(task, prepared): (&Task, &Prepared)| {
-        let own = || shared_coding(std::slice::from_ref(prepared), arguments);
+    let code = |((task, prepared), read): ((&Task, &Prepared), &Vec<PathBuf>)| {
+        let own = || shared_coding(std::slice::from_ref(prepared));
         let piece = bar.begin();
         let coding = shared.clone().unwrap_or_else(own);
-        prepared.code(&task.arguments, &coding, &|part| piece.set(part)).with_context(|| task.label.clone())
+        code(&task.arguments, prepared, read, &coding, &|part| piece.set(part)).with_context(|| task.label.clone())
     };
     let made: Vec<Made> = pool.install(|| {
-        tasks.par_iter().with_max_len(1).zip(prepared.par_iter().with_max_len(1)).map(code).collect::<Result<Vec<_>>>()
+        let all = tasks.par_iter().with_max_len(1).zip(prepared.par_iter().with_max_len(1)).zip(read.par_iter().with_max_len(1));
+        all.map(code).collect::<Result<Vec<_>>>()
     })?;
     bar.finish();
-    let read: Vec<PathBuf> = prepared.iter().flat_map(|prepared| prepared.read.clone()).collect();
-    output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &[output])?;
+    output::check(&read.iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>(), &[output])?;
     // Equal bytes, or `encode` refuses them.
     let mut rigs: Vec<Arc<[u8]>> = Vec::new();
     for prepared in &prepared {
@@ -89,15 +90,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             outln!("{}: {} frames, {} bytes, {}", task.name, made.frames, made.bytes.len(), made.cell)?;
         }
     }
-    for (task, made) in tasks.iter().zip(&made) {
-        made.warnings.iter().for_each(|warning| note!("{}: warning: {warning}", task.label));
-    }
     say_of_each(tasks.iter().zip(&made).map(|(task, made)| (task.label.as_str(), made.notes.as_slice())));
     let object = |(task, made): (&Task, &Made)| {
         let mut fields = made.fields();
         fields.insert("name".into(), task.name.as_str().into());
         fields.insert("file".into(), task.arguments.input.display().to_string().into());
-        fields.insert("notes".into(), json!(made.notes));
         Value::Object(fields)
     };
     output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
@@ -105,27 +102,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// A guess of which way is up may fail for a motion on the floor: those of one figure share that of most of them.
-pub fn agree_on_up(prepared: &mut [Prepared], given: bool) -> Result<()> {
-    let count = |up| prepared.iter().filter(|prepared| prepared.motion.rig.up == up).count();
-    let most = prepared.iter().map(|prepared| prepared.motion.rig.up).max_by_key(|&up| (count(up), std::cmp::Reverse(up.byte())));
-    let Some(most) = most.filter(|&up| !given && count(up) < prepared.len()) else { return Ok(()) };
-    let others = prepared.len() - count(most);
-    note!("up: {others} of {} motions look as if another axis were up; all take {}", prepared.len(), import::up::text(most));
-    for prepared in prepared {
-        prepared.set_up(most)?;
+/// Lets all motions share the direction that is up, and finds footsteps in each, which depend on it.
+pub fn agree(prepared: &mut [Prepared], labels: &[String], up_is_given: bool) -> Result<()> {
+    if let Some(note) = agree_on_up(prepared, up_is_given)? {
+        note!("{}", words::line(&note));
     }
-    Ok(())
-}
-
-/// Refuses motions of different rigs; `why` says what needs one.
-pub fn of_one_rig(prepared: &[Prepared], labels: &[String], why: &str) -> Result<()> {
-    for (label, other) in labels.iter().zip(prepared).skip(1) {
-        if let Some(difference) = difference(&prepared[0].motion.rig, &other.motion.rig).with_context(|| label.clone())? {
-            bail!("{label}: another rig than {}: {difference}; {why}", labels[0]);
-        }
-    }
-    Ok(())
+    labels.iter().zip(prepared).try_for_each(|(label, prepared)| prepared.find_footsteps().with_context(|| label.clone()))
 }
 
 /// The clips: of a folder's motions, of several files, or of a file's animations.
@@ -137,7 +119,7 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
     let input = &arguments.input;
     if arguments.animation.as_deref() == Some("all") {
         ensure!(arguments.more.is_empty() && !input.is_dir(), "--animation all takes one file");
-        let entries = list::list(input, arguments.fps())?;
+        let entries = list(&memory::disk(), input, &arguments.recipe().import)?;
         let tasks = batch::chosen_animations(input, &entries)?.into_iter().map(|(number, name)| {
             let name = if name.is_empty() { number.clone() } else { name };
             let label = format!("{}: animation {name}", input.display());

@@ -1,16 +1,8 @@
 //! The flags of `pantin convert` that change the motion before it is fitted.
 
-use super::render::Moment;
+use crate::memory::limit;
 use anyhow::{Context, Result};
-use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
-use pantin_convert::edit::{
-    cut::cut, footsteps::footsteps, join::join, loop_seam, mirror::mirror, pick::pick, resample::resample, retarget,
-};
-use pantin_convert::events;
-use pantin_convert::import;
-use pantin_convert::motion::{Event, Motion};
-use pantin_convert::number::Number;
-use std::collections::HashSet;
+use pantin_convert::{Moment, edit, events};
 use std::path::{Path, PathBuf};
 
 /// Changes of the motion. They apply in this order: --rate, --fps, --event, --from and --to, --joints and --drop, --mirror, --retarget, --with, --loop, --footsteps.
@@ -32,7 +24,7 @@ pub struct Edits {
     events: Vec<Marker>,
     /// Find the frames at which a foot begins to bear weight, and mark them as the events left_foot_down and right_foot_down
     #[arg(long)]
-    footsteps: bool,
+    pub footsteps: bool,
     /// First frame to convert, counted from 0 after --fps: a number, or seconds as in 1.5s
     #[arg(long, value_name = "MOMENT")]
     from: Option<Moment>,
@@ -66,11 +58,6 @@ struct Marker {
     moment: Moment,
 }
 
-/// How many events a clip of the motion has: those of one name at one frame are one.
-fn distinct(motion: &Motion) -> usize {
-    motion.events.iter().map(|event| (event.frame, &event.name)).collect::<HashSet<_>>().len()
-}
-
 /// Frames per second that a clip can have: its frame time takes 32 bits of nanoseconds.
 fn rate(text: &str) -> Result<f64, String> {
     let rate = text.trim().parse().ok().filter(|rate| (0.24..=1e9).contains(rate));
@@ -90,27 +77,16 @@ enum Body {
     Display,
 }
 
-/// What the edits gave.
-pub struct Edited {
-    /// The motion.
-    pub motion: Motion,
-    /// How far --retarget is off.
-    pub retarget_max_cm: Option<f64>,
-    /// For the user, a sentence each.
-    pub said: Vec<String>,
-}
-
 impl Edits {
-    /// A sentence for a cycle of a file that is read at the times of `fps`.
-    pub fn on_sampled(&self, path: &Path, options: &import::Options) -> Result<Option<String>> {
-        let Some(fps) = options.fps.filter(|_| self.close_loop) else { return Ok(None) };
-        let sentence = || {
-            format!(
-                "loop: the file was read at {} frames a second up to its last time, which one such frame parts from its first; at its own rate, it is one of its own frames",
-                Number(fps)
-            )
-        };
-        Ok(import::is_sampled(path, options)?.then(sentence))
+    /// The edits for the library, but for the loop and the footsteps, which depend on the bound. `fps` is the rate to have.
+    pub fn edits(&self, fps: Option<f64>) -> edit::Edits {
+        let mut edits = edit::Edits::new().memory(limit()).mirror(self.mirror).close_loop(self.close_loop);
+        (edits.rate, edits.fps, edits.from, edits.to) = (self.rate, fps, self.from, self.to);
+        edits.events = self.events.iter().map(|marker| (marker.name.clone(), marker.moment)).collect();
+        (edits.joints, edits.drop) = (self.joints.clone(), self.drop.clone());
+        edits.retarget = self.retarget.map(|Body::Display| edit::Body::Display);
+        (edits.map, edits.with) = (self.map.clone(), self.with.clone());
+        edits
     }
 
     /// Whether there is any.
@@ -123,18 +99,6 @@ impl Edits {
         self.from.map_or(0, |moment| moment.nearest(frame_time))
     }
 
-    /// Adds the footsteps, if they are asked for, to a motion after all other edits; a sentence about them.
-    pub fn add_footsteps(&self, motion: &mut Motion) -> Result<Option<String>> {
-        if !self.footsteps {
-            return Ok(None);
-        }
-        let steps = footsteps(motion)?;
-        let count = |name: &str| steps.iter().filter(|step| step.name == name).count();
-        let sentence = format!("footsteps: {} left, {} right", count(LEFT_FOOT_DOWN), count(RIGHT_FOOT_DOWN));
-        motion.add_events(steps);
-        Ok(Some(sentence))
-    }
-
     /// Takes the paths of files that the edits read as ones from `folder`.
     pub fn read_from(&mut self, folder: &Path) {
         self.map.iter_mut().chain(&mut self.with).for_each(|path| *path = folder.join(&path));
@@ -143,126 +107,5 @@ impl Edits {
     /// The files that the edits read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.map.iter().chain(&self.with).map(PathBuf::as_path)
-    }
-
-    /// All but the loop, which depends on the bound. `fps` is the rate to have; other motions and names are read from `files`.
-    pub fn apply(&self, motion: Motion, fps: Option<f64>, files: &import::Files) -> Result<Edited> {
-        let mut said = Vec::new();
-        let mut motion = motion;
-        if let Some(rate) = self.rate {
-            said.push(format!(
-                "rate: {} frames, {:.3} a second by the file, are now {} a second",
-                motion.frames,
-                1.0 / motion.frame_time,
-                Number(rate)
-            ));
-            motion.frame_time = 1.0 / rate;
-        }
-        if let Some(fps) = fps {
-            let before = (motion.frames, 1.0 / motion.frame_time);
-            let events = distinct(&motion);
-            // What will be closed to a loop is one from the start: frames at another rate run on from its last frame to its first.
-            let whole = self.to.is_none() && self.first_frame(motion.frame_time) == 0;
-            let cycle = self.close_loop && !motion.looped && whole;
-            if cycle {
-                motion.looped = true;
-                motion.keys.fill(None);
-            }
-            motion = resample(&motion, fps)?;
-            motion.looped &= !cycle;
-            let merged = events - distinct(&motion);
-            if merged > 0 {
-                said.push(format!(
-                    "events: {merged} of {events} come to a frame that has one of their name, and are one with it"
-                ));
-            }
-            if (before.1 / fps - 1.0).abs() > 1e-3 {
-                said.push(format!("{} frames at {:.3} a second became {} at {}", before.0, before.1, motion.frames, Number(fps)));
-            }
-        }
-        for Marker { name, moment } in &self.events {
-            let frame =
-                moment.frame(motion.frames as u32, motion.frame_time).with_context(|| format!("--event {name}"))? as usize;
-            motion.add_events([Event { frame, name: name.clone() }]);
-        }
-        if self.from.is_some() || self.to.is_some() {
-            let frame = |moment: Moment| moment.nearest(motion.frame_time);
-            let before = motion.events.len();
-            let looped = motion.looped;
-            motion = cut(&motion, self.from.map(frame), self.to.map(frame))?;
-            if looped && !motion.looped && !self.looped && !self.close_loop {
-                said.push("loop: a part of a loop is no loop; --loop or --close-loop makes one".into());
-            }
-            let left_out = before - motion.events.len();
-            if left_out > 0 {
-                said.push(format!("events: {left_out} of {before} are not between --from and --to"));
-            }
-        }
-        if !self.joints.is_empty() || !self.drop.is_empty() {
-            motion = pick(&motion, &self.joints, &self.drop)?;
-        }
-        if self.mirror {
-            motion = mirror(&motion)?;
-        }
-        let mut retarget_max_cm = None;
-        if let Some(Body::Display) = self.retarget {
-            let read = |path: &PathBuf| {
-                String::from_utf8(files.read(path)?).with_context(|| format!("{}: expected UTF-8 text", path.display()))
-            };
-            let map = self.map.as_ref().map(read).transpose()?.unwrap_or_default();
-            let done = retarget::display(&motion, &map)?;
-            let pairs: Vec<String> = done.sources.iter().map(|(display, source)| format!("{display} {source}")).collect();
-            said.push(format!("display's joints: {}", pairs.join(", ")));
-            let (cm, joint, frame) = (done.max_cm, done.joint, done.frame);
-            said.push(format!("retarget: at most {cm:.2} cm from the source's joints ({joint} at frame {frame})"));
-            retarget_max_cm = Some(cm);
-            motion = done.motion;
-        }
-        if let Some(path) = &self.with {
-            let mut options = import::Options { files: files.clone(), ..Default::default() };
-            let mut imported = import::load(path, &options)?;
-            if (imported.motion.frame_time / motion.frame_time - 1.0).abs() > 1e-9 {
-                // A file that is read at the rate is nearer to what it says than its frames at another are.
-                options.fps = Some(1.0 / motion.frame_time);
-                imported.motion = import::load(path, &options)?.motion;
-            }
-            said.extend(imported.warnings.iter().map(|warning| format!("with: warning: {warning}")));
-            let other = imported.motion;
-            let before = motion;
-            motion = join(&before, &other).with_context(|| format!("--with {}", path.display()))?;
-            said.push(format!("with: {} scalars more, {} frames", other.rig.scalars.len(), motion.frames));
-            if self.close_loop && motion.frames < before.frames {
-                let (left, whole) = (motion.frames, before.frames);
-                said.push(format!(
-                    "with: warning: the other file ends before the cycle does: {left} of {whole} frames become the loop"
-                ));
-            }
-            if before.looped && !motion.looped {
-                said.push(
-                    "with: the clip is no loop any more, as the two are not loops of one length; --close-loop makes one".into(),
-                );
-            }
-            let lost = before.events.len() + other.events.len() - motion.events.len();
-            if lost > 0 {
-                said.push(format!("events: {lost} are behind the end of the shorter of the two, or in both"));
-            }
-        }
-        if self.close_loop && motion.looped {
-            said.push("loop: it is one already".into());
-        } else if self.close_loop {
-            let joined = loop_seam::join_ends(&motion)?;
-            motion = joined.motion;
-            if let Some([seam, inside]) = joined.joints_cm {
-                said.push(format!(
-                    "loop: from the last frame to the first, joints go up to {seam:.4} cm; within the clip up to {inside:.4} cm a frame"
-                ));
-            }
-            if let Some([seam, inside]) = joined.scalars.map(|parts| parts.map(|part| 100.0 * part)) {
-                said.push(format!(
-                    "loop: from the last frame to the first, scalars change by up to {seam:.2} % of full scale; within the clip by up to {inside:.2} % a frame"
-                ));
-            }
-        }
-        Ok(Edited { motion, retarget_max_cm, said })
     }
 }

@@ -1,11 +1,11 @@
 //! `pantin expand`.
 
 use super::{Files, default_output, format_of};
+use crate::memory;
 use crate::output::{self, Staged, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail};
 use indicatif::ProgressBar;
 use pantin::Clip;
-use pantin_convert::budget;
 use pantin_convert::expand::{Expanded, gather};
 use pantin_convert::export::{self, bvh::Columns};
 use pantin_convert::motion::{Event, Frames, Motion, Rig};
@@ -124,7 +124,7 @@ impl Frames for Watched<'_, '_> {
 }
 
 fn glb(clip: &Clip, frames: &impl Frames, out: &mut impl Write) -> Result<()> {
-    budget::check(frames.frames(), frames.rig().channels())?;
+    memory::limit().check(frames.frames(), frames.rig().channels())?;
     let motion = Motion { looped: clip.looped(), ..gather(frames)? };
     Ok(out.write_all(&export::gltf::write(&motion)?)?)
 }

@@ -1,13 +1,14 @@
 //! `pantin info`.
 
 use super::{Files, bank};
+use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, clean, note, outln};
 use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
 use pantin_convert::events;
 use pantin_convert::facts::{self, Channel, MemoryNeeds, Track};
-use pantin_convert::import::{list, up};
+use pantin_convert::import::{self, ImportOptions, list, up};
 use pantin_convert::motion::Event;
 use pantin_store::BLOCK_BYTES;
 use pantin_store::region::{REGIONS, Region};
@@ -229,7 +230,7 @@ fn tracks(channels: &[Channel]) -> String {
 
 /// The animations of a file, one a line; `pantin convert --animation` takes their numbers or names.
 pub fn animations(path: &Path) -> Result<()> {
-    let entries = list::list(path, None)?;
+    let entries = import::list(&memory::disk(), path, &ImportOptions::new().memory(memory::limit()))?;
     if output::is_json() {
         let object = |entry: &list::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
         output::report(json!({"animations": entries.iter().map(object).collect::<Vec<_>>()}));

@@ -2,13 +2,13 @@
 
 use super::bank::is_bank_name;
 use crate::machine::{Source, Text, graph, make};
+use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin::Bank;
 use pantin_animator::machine::SECTION;
 use pantin_convert::encode::bank;
-use pantin_convert::input;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let outputs: Vec<&Path> = arguments.output.iter().chain(&arguments.graph).map(PathBuf::as_path).collect();
     output::check(&[&arguments.input], &outputs)?;
     ensure!(!is_bank_name(&arguments.input), "{place}: a bank; the state machine is a .toml file, and --bank names the bank");
-    let text = input::read(&arguments.input)?;
+    let text = memory::read(&arguments.input)?;
     let text = String::from_utf8(text).map_err(|_| anyhow!("{place}: not text (UTF-8)"))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let file = Text { name: &place, text };
@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let path =
         path.with_context(|| format!("{place}: no bank; write `bank = \"FILE.ptb\"` above the states, or give --bank FILE.ptb"))?;
     output::check(&[&path], &outputs)?;
-    let bytes = input::read(&path)?;
+    let bytes = memory::read(&path)?;
     if !is_bank(&bytes) {
         bail!("{}: not a bank; `pantin convert --same-form` and `pantin pack` make one", path.display());
     }

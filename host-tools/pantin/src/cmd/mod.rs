@@ -12,7 +12,6 @@ pub mod expand;
 pub mod face;
 pub mod flash_image;
 pub mod info;
-mod joint_error;
 pub mod machine;
 pub mod play;
 pub mod render;
@@ -25,16 +24,14 @@ mod stream_live;
 pub mod train;
 pub mod update;
 
+use crate::memory;
 use crate::open::no_clip;
-use crate::output::{self, detail};
+use crate::output::{self, detail, note};
+use crate::words;
 use anyhow::{Context, Result, anyhow, ensure};
 use pantin::OpenError;
-use pantin_convert::budget;
-use pantin_convert::encode;
-use pantin_convert::fit::{descent::Level, fit};
-use pantin_convert::import;
-use pantin_convert::motion::Motion;
-use pantin_convert::verify::verify;
+use pantin_convert::import::{self, Disk, ImportOptions};
+use pantin_convert::{Level, Options, Recipe, shared_coding};
 use std::path::{Path, PathBuf};
 
 /// A direction of the world.
@@ -48,20 +45,13 @@ pub struct Files {
     clip: Vec<u8>,
     rig: Vec<u8>,
     /// Where both were read from, and what belongs to a motion.
-    from: import::Files,
+    from: Disk,
 }
 
 /// Refuses outputs that are one of the files which were read from `files`. Some are known only then: a glTF names its buffers itself.
-fn check_read(files: &import::Files, outputs: &[&Path]) -> Result<()> {
+fn check_read(files: &Disk, outputs: &[&Path]) -> Result<()> {
     let read = files.read_so_far();
     output::check(&read.iter().map(PathBuf::as_path).collect::<Vec<_>>(), outputs)
-}
-
-/// Refuses a motion whose fit takes more memory than the limit; `files` are what it was read from.
-fn check_fit(motion: &Motion, level: Level, files: &import::Files) -> Result<()> {
-    let read = files.read_so_far().iter().filter_map(|path| std::fs::metadata(path).ok()).map(|file| file.len()).sum();
-    let size = [motion.rig.joints.len(), motion.rig.channels()];
-    budget::check_fit(motion.frames, size, level.plan(SHOWN_CM).effort.beam, read)
 }
 
 /// Refuses a rig for clips that all have their own.
@@ -97,19 +87,15 @@ fn format_of<T: clap::ValueEnum>(output: &Path, option: Option<T>) -> Result<Opt
     Ok(option.or(by_name))
 }
 
-/// Bounds of a motion that is converted only to be shown: in cm, and as a part of a scalar's full scale.
-const SHOWN_CM: f64 = 0.5;
-const SHOWN_PART: f64 = 0.02;
-
 impl Files {
     /// Reads both; `-` is standard input.
     pub fn read(clip: &Path, rig: Option<&Path>) -> Result<Files> {
-        Files::read_from(&import::Files::default(), clip, rig)
+        Files::read_from(&memory::disk(), clip, rig)
     }
 
-    fn read_from(files: &import::Files, clip: &Path, rig: Option<&Path>) -> Result<Files> {
+    fn read_from(files: &Disk, clip: &Path, rig: Option<&Path>) -> Result<Files> {
         let read = |path: &Path| {
-            let bytes = files.read(path)?;
+            let bytes = import::read_from(files, path)?;
             detail!("read {}: {} bytes", path.display(), bytes.len());
             anyhow::Ok(bytes)
         };
@@ -119,19 +105,21 @@ impl Files {
 
     /// The same for a command that shows clips: a motion file is converted first, quickly and in memory.
     pub fn read_to_show(clip: &Path, rig: Option<&Path>) -> Result<Files> {
-        let from = import::Files::default();
+        let from = memory::disk();
         let mut files = Files::read_from(&from, clip, rig)?;
         if files.is_motion() {
-            let motion = import::load(clip, &import::Options { files: from.clone(), ..Default::default() })?.motion;
-            let place = || clip.display().to_string();
-            check_fit(&motion, Level::Fast, &from).with_context(place)?;
-            let rig = encode::rig::encode(&motion.rig).with_context(place)?;
+            let import = ImportOptions::new().memory(memory::limit());
+            // Only to be shown: as lines between joints, so that places are enough.
+            let options = Options::new().effort(Level::Fast).places_only(true).memory(memory::limit());
+            let prepared = Recipe::new().import(import).options(options).prepare(&from, clip)?;
+            prepared.notes.iter().for_each(|note| note!("{}", words::line(note)));
             let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;
             let moved = &mut |part: f64| bar.set_position((part * 1000.0) as u64);
-            let coded = fit(&motion, Level::Fast.plan(SHOWN_CM), SHOWN_PART, moved).with_context(place)?;
+            let made = prepared.code(&shared_coding(std::slice::from_ref(&prepared)), moved);
+            let made = made.with_context(|| clip.display().to_string())?;
             bar.finish_and_clear();
-            files.clip = encode::clip::encode(&coded, &rig, false).with_context(place)?;
-            verify(&files.clip, &rig, &motion, SHOWN_CM, SHOWN_PART).with_context(place)?;
+            made.notes[prepared.notes.len()..].iter().for_each(|note| note!("{}", words::line(note)));
+            files.clip = made.clip;
         }
         Ok(files)
     }

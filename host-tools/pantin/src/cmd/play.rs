@@ -23,7 +23,7 @@ use crate::render::palette::Palette;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::Clip;
 use pantin::Up;
-use pantin_convert::expand::expand;
+use pantin_convert::expand::expand_within;
 use pantin_figure::{Track, View};
 use serde_json::json;
 use std::io::{IsTerminal, Write, stdin, stdout};
@@ -145,7 +145,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 /// Sets up what shows a clip.
 fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Result<T>) -> Result<T> {
     if clip.rig().joint_count() == 0 && !is_face(clip)? {
-        return play(&mut Meters::of(expand(clip)?));
+        return play(&mut Meters::of(expand_within(clip, crate::memory::limit())?));
     }
     let (mut room, mut memory) = (Room::of(clip), PlayerBuffers::of(clip));
     let playback = Playback::new(*clip, &mut room)?;

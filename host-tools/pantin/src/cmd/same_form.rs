@@ -1,10 +1,11 @@
 //! `pantin convert A B C --same-form -o FOLDER`: clips of one rig which one figure renderer plays in turn.
 
 use super::batch::regular;
-use super::convert::{Arguments, Made, Prepared, prepare_without_footsteps, shared_coding};
-use super::convert_bank::{agree_on_up, of_one_rig};
+use super::convert::{Arguments, Made, code, prepare};
+use super::convert_bank::agree;
 use crate::output::{self, Wanted, note, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
+use pantin_convert::{Prepared, of_one_rig, shared_coding};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -21,20 +22,20 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     output::make_folder(folder)?;
     tasks.iter().try_for_each(|task| regular(task.output()))?;
     output::check(&inputs, &outputs)?;
-    let mut prepared = tasks.iter().map(prepare_without_footsteps).collect::<Result<Vec<_>>>()?;
-    agree_on_up(&mut prepared, arguments.up_is_given())?;
-    tasks.iter().zip(&mut prepared).try_for_each(|(task, prepared)| prepared.find_footsteps(task))?;
+    let (mut prepared, read): (Vec<Prepared>, Vec<Vec<PathBuf>>) =
+        tasks.iter().map(prepare).collect::<Result<Vec<_>>>()?.into_iter().unzip();
     let labels: Vec<String> = tasks.iter().map(|task| task.input.display().to_string()).collect();
+    agree(&mut prepared, &labels, arguments.up_is_given())?;
     of_one_rig(&prepared, &labels, "--same-form needs one rig")?;
-    let coding = shared_coding(&prepared, arguments);
+    let coding = shared_coding(&prepared);
     let bar = output::Pieces::new(tasks.len(), "clips")?;
-    let code = |(task, prepared): (&Arguments, &Prepared)| {
+    let code = |((task, prepared), read): ((&Arguments, &Prepared), &Vec<PathBuf>)| {
         let piece = bar.begin();
-        prepared.code(task, &coding, &|part| piece.set(part))
+        code(task, prepared, read, &coding, &|part| piece.set(part))
     };
-    let made = tasks.iter().zip(&prepared).map(code).collect::<Result<Vec<_>>>()?;
+    let made = tasks.iter().zip(&prepared).zip(&read).map(code).collect::<Result<Vec<_>>>()?;
     bar.finish();
-    let read: Vec<&Path> = prepared.iter().flat_map(|prepared| prepared.read.iter().map(PathBuf::as_path)).collect();
+    let read: Vec<&Path> = read.iter().flatten().map(PathBuf::as_path).collect();
     output::check(&read, &outputs)?;
     let clips = tasks.iter().zip(&made).map(|(task, made)| (task.output(), made.bytes.as_slice()));
     let rig = arguments.rig_out.as_deref().map(|path| (path, prepared[0].rig.as_slice()));
@@ -43,16 +44,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let object = |(task, made): (&Arguments, &Made)| {
             let mut fields = made.fields();
             fields.insert("file".into(), task.input.display().to_string().into());
-            fields.insert("notes".into(), json!(made.notes));
             Value::Object(fields)
         };
         output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
     }
     for (task, made) in tasks.iter().zip(&made) {
-        note!("{}", made.sentence(task.output()));
+        made.sentence(task.output()).lines().for_each(|line| note!("{line}"));
     }
-    let count = coding.exponentials.iter().filter(|exponential| **exponential).count();
-    note!("{} clips of one form: length exponent {}, {count} joints as exponential maps", made.len(), coding.length_exponent);
+    let count = coding.exponential_joints();
+    note!("{} clips of one form: length exponent {}, {count} joints as exponential maps", made.len(), coding.length_exponent());
     Ok(())
 }
 

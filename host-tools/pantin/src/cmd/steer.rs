@@ -3,6 +3,7 @@
 use super::format_of;
 use super::render::{EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, Size, easy_scale, is_smooth};
 use crate::machine::playback::{Stage, has_machine, joints, play, session};
+use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, progress, refuse_foreign, report};
 use crate::render::animation::Animation;
 use crate::render::apng::{self, Apng};
@@ -13,7 +14,6 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin_animator::Character;
 use pantin_animator::machine::Table;
 use pantin_animator::session::Replay;
-use pantin_convert::input;
 use pantin_figure::{Track, View};
 use serde_json::json;
 use std::io::Write;
@@ -122,10 +122,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         .with_context(|| format!("{}: expected a name that ends in .gif, .apng, .png or .csv, or --format", output.display()))?;
     arguments.check(format)?;
     refuse_foreign(output, if format == Format::Csv { Wanted::Motion } else { Wanted::Picture })?;
-    let bytes = input::read(path)?;
+    let bytes = memory::read(path)?;
     let place = || path.display().to_string();
     ensure!(has_machine(&bytes), "{}: no bank with a state machine; `pantin machine` makes one", place());
-    let text = String::from_utf8(input::read(script)?).map_err(|_| anyhow!("{}: not text (UTF-8)", script.display()))?;
+    let text = String::from_utf8(memory::read(script)?).map_err(|_| anyhow!("{}: not text (UTF-8)", script.display()))?;
     let table = Table::of_bank(&bytes).with_context(place)?;
     let session = session(&text, &script.display().to_string(), &table)?;
     let pictures = Replay::new(session, arguments.fps).pictures();

@@ -1,12 +1,12 @@
 //! `pantin stream`: clips over a line, while they play.
 
 use crate::cmd::{Files, rig_is_needed};
+use crate::memory;
 use crate::output::{note, report};
 use crate::sender::{ByteCounts, Line, Sender, Source};
 use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
 use pantin::Clip;
-use pantin_convert::budget;
 use pantin_convert::input;
 use pantin_link::packet::TagKey;
 use serde_json::json;
@@ -139,7 +139,7 @@ pub(super) fn sender() -> Sender {
 
 fn source(clip: &Clip, path: &Path) -> Result<Source> {
     // The sender keeps the state of every channel at every frame.
-    budget::check(clip.frames() as usize, clip.rig().channels()).with_context(|| path.display().to_string())?;
+    memory::limit().check(clip.frames() as usize, clip.rig().channels()).with_context(|| path.display().to_string())?;
     Source::new(clip)
         .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
 }

@@ -1,6 +1,7 @@
 //! `pantin train`.
 
 use super::channel_bound::above_zero;
+use crate::memory;
 use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
 use crate::train::Counts;
 use anyhow::{Context, Result};
@@ -9,6 +10,7 @@ use pantin_convert::encode::{clip::Coded, rig};
 use pantin_convert::fit::{bounds::Bounds, chain::Constraint, channelwise, descent::Level, fit};
 use pantin_convert::import;
 use pantin_convert::motion::{Interpolation, Keys, Kind, Motion};
+use pantin_convert::pose_bound::PoseBound;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -139,10 +141,16 @@ impl Sample {
             let bounds = Bounds { constraint: Constraint::Positions, exact: true, asked: greatest.clone(), greatest };
             channelwise::fit(&self.motion, &bounds, &|| ())?
         } else {
-            fit(&self.motion, TRAINING.plan(self.bound), 0.02, &mut |_| ())?
+            fit(&self.motion, TRAINING.plan(PoseBound::places(self.bound)), 0.02, &mut |_| ())?
         };
         Ok((coded, bytes))
     }
+}
+
+/// Refuses a motion whose fit takes more memory than the limit.
+fn check_fit(motion: &Motion) -> Result<()> {
+    let size = [motion.rig.joints.len(), motion.rig.channels()];
+    memory::limit().check_fit(motion.frames, size, TRAINING.plan(PoseBound::places(1.0)).effort.beam, motion.origin.bytes)
 }
 
 /// Runs the command.
@@ -152,11 +160,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     check(&inputs, &[&arguments.output])?;
     let mut counts = Counts::default();
     for path in &arguments.inputs {
-        let files = import::Files::default();
-        let motion =
-            import::load(path, &import::Options { fps: arguments.fps, files: files.clone(), ..Default::default() })?.motion;
+        let files = memory::disk();
+        let mut options = import::ImportOptions::new().memory(memory::limit());
+        options.fps = arguments.fps;
+        let motion = import::import(&files, path, &options)?.motion;
         super::check_read(&files, &[&arguments.output])?;
-        super::check_fit(&motion, TRAINING, &files).with_context(|| path.display().to_string())?;
+        check_fit(&motion).with_context(|| path.display().to_string())?;
         let mut samples = Vec::new();
         if motion.frames > KEY_SPANS[5] {
             for (&span, &bound) in KEY_SPANS.iter().flat_map(|span| KEYED_BOUNDS.iter().map(move |bound| (span, bound))) {

@@ -4,9 +4,9 @@ use super::blueprint::{Blueprint, Drive, Shape};
 use super::head::{Vector, cross, minus, plus, unit};
 use super::paper::shape;
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
-use pantin_convert::import::Files;
 use pantin_convert::import::gltf::mesh::{self, Mesh};
 use pantin_convert::import::text::{number_in, quoted};
+use pantin_convert::import::{self, Disk, Files};
 use pantin_face::shape::Interpolation;
 use std::fmt::Display;
 use std::path::Path;
@@ -58,7 +58,7 @@ pub fn obj_points(path: &Path, text: &str) -> Result<Vec<Vector>> {
 }
 
 /// Reads a mesh: an .obj, a .wfm (Candide), or the first mesh of a glTF.
-pub fn mesh(path: &Path, files: &Files) -> Result<Mesh> {
+pub fn mesh(path: &Path, files: &dyn Files) -> Result<Mesh> {
     let place = || path.display().to_string();
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     let read = match extension.as_deref() {
@@ -68,7 +68,7 @@ pub fn mesh(path: &Path, files: &Files) -> Result<Mesh> {
         _ => bail!("{}: expected a mesh: .obj, .glb, .gltf or .wfm", place()),
     };
     // Comments of old files are in Latin-1.
-    let mesh = read(path, &String::from_utf8_lossy(&files.read(path)?))?;
+    let mesh = read(path, &String::from_utf8_lossy(&import::read_from(files, path)?))?;
     ensure!(!mesh.points.is_empty() && !mesh.triangles.is_empty(), "{}: no triangles", place());
     Ok(mesh)
 }
@@ -133,11 +133,11 @@ pub fn wfm(path: &Path, text: &str) -> Result<Mesh> {
 
 /// Reads the points of a .glb that `pantin face export` wrote, in millimetres.
 pub fn glb_points(path: &Path) -> Result<Vec<Vector>> {
-    Ok(mesh::read(path, &Files::default())?.points.iter().map(|place| place.map(|x| x * 1000.0)).collect())
+    Ok(mesh::read(path, &Disk::default())?.points.iter().map(|place| place.map(|x| x * 1000.0)).collect())
 }
 
 /// Returns the first mesh of a glTF among `files` that has morph targets, one shape per target. All its points are stored, none is a mirror image.
-pub fn model(path: &Path, files: &Files) -> Result<Blueprint> {
+pub fn model(path: &Path, files: &dyn Files) -> Result<Blueprint> {
     let mesh = mesh::read(path, files)?;
     ensure!(!mesh.targets.is_empty(), "{}: no mesh with morph targets", path.display());
     let shapes: Vec<Shape> = mesh.targets.iter().zip(&mesh.names).map(|(ways, name)| of_target(ways, name)).collect();

@@ -31,6 +31,7 @@ mod tests {
             keys: vec![None],
             looped: false,
             events: Vec::new(),
+            origin: Default::default(),
         };
         assert!(save_bvh(&motion, &folder.path().join("face.bvh")).is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

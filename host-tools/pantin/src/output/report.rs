@@ -4,6 +4,7 @@
 //! standard output is the command's own output (`-o -`). A command that fails prints the same object with the field `error`.
 
 use super::terminal;
+use crate::words;
 use anyhow::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,16 +78,9 @@ pub fn finish(command: &str) -> Result<()> {
     terminal::print_json(&object)
 }
 
-/// An error with its causes. Some libraries print a cause as their own error: it is printed once.
-fn sentence(error: &Error) -> String {
-    let mut parts: Vec<String> = error.chain().map(ToString::to_string).collect();
-    parts.dedup();
-    parts.join(": ")
-}
-
 /// Prints an error for people, and as the field `error` of the report of `command`.
 pub fn fail(command: &str, error: &Error) {
-    let text = sentence(error);
+    let text = words::explanation(error);
     terminal::print_error(format_args!("{text}"));
     report(json!({ "error": text }));
     // Where it cannot be printed, the exit code alone says so.

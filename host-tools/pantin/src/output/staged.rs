@@ -5,7 +5,7 @@ use super::place::{Place, folder};
 use super::report;
 use super::terminal::{detail, noticed};
 use anyhow::{Context, Result, ensure};
-use pantin_convert::budget;
+use pantin_convert::size_text;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -35,7 +35,7 @@ pub fn set_most_bytes(bytes: u64) {
 /// Refuses an output of `bytes` or more, before it is begun.
 pub fn check_size(path: &Path, bytes: u64) -> Result<()> {
     let most = MOST_BYTES.load(Ordering::Relaxed);
-    let (size, limit) = (budget::size(bytes), budget::size(most));
+    let (size, limit) = (size_text(bytes), size_text(most));
     ensure!(bytes <= most, "{}: would have {size} or more; the limit is {limit}, and --max-output raises it", path.display());
     Ok(())
 }

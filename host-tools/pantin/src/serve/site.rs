@@ -1,10 +1,10 @@
 //! All that is served, by its path.
 
+use crate::memory;
 use crate::open::no_clip;
 use crate::output::note;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
-use pantin_convert::input;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::fs;
@@ -115,7 +115,7 @@ impl Site {
         self.files.retain(|path, _| !path.starts_with(&format!("/{CLIPS}/")));
         let mut list = vec![];
         for (number, path) in clips.iter().enumerate() {
-            let bytes = input::read(path)?;
+            let bytes = memory::read(path)?;
             if let Err(error) = Clip::new_checked(&bytes) {
                 return Err(no_clip(path, &bytes, error).context(path.display().to_string()));
             }
@@ -166,7 +166,7 @@ impl Site {
                     note!("warning: {}: not served, because it is a link to a file outside of the site's folder", path.display());
                     continue;
                 }
-                let bytes = input::read(&path)?;
+                let bytes = memory::read(&path)?;
                 self.add(format!("{prefix}{name}"), bytes)?;
             }
         }

@@ -8,12 +8,12 @@ pub mod uf2;
 pub use send::{Outcome, RetryPolicy, TransferError, send};
 
 use crate::machine::playback::has_machine;
+use crate::memory;
 use crate::open::no_clip;
 use crate::output::{clean, is_hostile, note};
 use anyhow::{Context, Result, anyhow};
 use pantin::codec::layout::BANK_MAGIC;
 use pantin::{Bank, Clip, OpenError};
-use pantin_convert::input;
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
@@ -31,7 +31,7 @@ pub fn board_name(text: &str) -> Result<String, String> {
 /// Reads a clip for a board, one that holds its rig, or a bank. It is called `name`, or else as its file, as far as a board keeps that.
 pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
     let place = || path.display().to_string();
-    let clip = input::read(path)?;
+    let clip = memory::read(path)?;
     if clip.starts_with(&BANK_MAGIC) {
         let bank = Bank::new_checked(&clip).with_context(place)?;
         for entry in bank.entries() {

@@ -1,7 +1,8 @@
 //! ASF and AMC files as they come: what is broken gets one error with its file and line.
 
+use crate::told::Told;
 use pantin_convert::fk;
-use pantin_convert::import::{self, Imported, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Kind, Motion};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -84,8 +85,8 @@ impl Files {
         Files { first: folder.join(files[0].0), folder }
     }
 
-    fn load(&self, options: &Options) -> anyhow::Result<Imported> {
-        import::load(&self.first, options)
+    fn load(&self, options: &ImportOptions) -> anyhow::Result<Told> {
+        crate::told::load(&self.first, options)
     }
 }
 
@@ -96,8 +97,8 @@ impl Drop for Files {
     }
 }
 
-fn load(asf: &str, amc: &str) -> anyhow::Result<Imported> {
-    Files::new(&[("walk.amc", amc), ("walk.asf", asf)]).load(&Options::default())
+fn load(asf: &str, amc: &str) -> anyhow::Result<Told> {
+    Files::new(&[("walk.amc", amc), ("walk.asf", asf)]).load(&ImportOptions::new())
 }
 
 fn motion(asf: &str, amc: &str) -> Motion {
@@ -131,7 +132,7 @@ fn near(found: [f64; 3], expected: [f64; 3]) {
 
 #[test]
 fn a_good_pair_is_read() {
-    let Imported { motion, warnings, units, .. } = load(ASF, AMC).unwrap();
+    let Told { motion, warnings, units, .. } = load(ASF, AMC).unwrap();
     assert_eq!((motion.frames, motion.frame_time), (2, 1.0 / 120.0));
     assert_eq!(warnings, ["the format states no frame rate, so 120 a second; --fps overrides"]);
     assert_eq!(units, "units: 5.08 cm, as the file says");
@@ -193,7 +194,7 @@ fn units_rates_and_offsets_are_read() {
     assert_eq!(motion(ASF, &stated).frame_time, 1.0 / 60.0);
     let files = Files::new(&[("walk.amc", &stated), ("walk.asf", ASF)]);
     // A rate that the file states stands; what --fps asks for is made of it later.
-    let read = files.load(&Options { fps: Some(50.0), ..Options::default() }).unwrap();
+    let read = files.load(&ImportOptions::new().fps(50.0)).unwrap();
     assert_eq!((read.motion.frame_time, read.warnings.len()), (1.0 / 60.0, 0));
     let moved = motion(&but(ASF, "position 0 0 0", "position 5 0 -5"), AMC);
     assert_eq!(moved.values[..3], [[6.0; 2], [2.0; 2], [-2.0; 2]]);
@@ -204,7 +205,7 @@ fn translations_go_along_the_bones_axes() {
     let asf = but(&but(ASF, "dof rx ry rz", "dof rx ry rz tx"), "dof rx rz", "dof rx rz l");
     let amc = AMC.replace("femur 0 0 0", "femur 0 0 0 2").replace("femur 90 0 0", "femur 90 0 0 0");
     let amc = amc.replace("hand 10 20", "hand 10 20 0").replace("hand 11 21", "hand 11 21 0");
-    let Imported { motion, warnings, .. } = load(&asf, &amc).unwrap();
+    let Told { motion, warnings, .. } = load(&asf, &amc).unwrap();
     assert!(warnings.contains(&"the bone `hand` changes its length, which is left out".to_string()), "{warnings:?}");
     let place = fk::positions(&motion.rig, &motion.values, 0)[2].map(|x| x / 5.08);
     near(place, [2.0 + 2.0 * 30f64.to_radians().cos(), 3.0, 3.0]);
@@ -214,7 +215,7 @@ fn translations_go_along_the_bones_axes() {
 fn the_skeleton_is_found_by_name_and_comment() {
     let other = but(ASF, "length 3", "length 33");
     let reach = |files: &[(&str, &str)]| {
-        let read = Files::new(files).load(&Options::default()).unwrap_or_else(|error| panic!("{error:#}"));
+        let read = Files::new(files).load(&ImportOptions::new()).unwrap_or_else(|error| panic!("{error:#}"));
         (read.motion.rig.joints[5].offset[1], read.warnings.len())
     };
     assert_eq!(reach(&[("walk1.amc", AMC), ("walk1.ASF", ASF), ("walk.asf", &other), ("figure.asf", &other)]), (3.0, 1));
@@ -222,20 +223,20 @@ fn the_skeleton_is_found_by_name_and_comment() {
     assert_eq!(reach(&[("walk.amc", AMC), ("figure.asf", ASF), ("a.asf", &other), ("walking.asf", &other)]), (3.0, 2));
     assert_eq!(reach(&[("walk", AMC), ("walk.asf", ASF)]), (3.0, 1));
     let files = Files::new(&[("walk.amc", AMC), ("walk.asf", ASF), ("given.asf", &other)]);
-    let options = Options { skeleton: Some(files.folder.join("given.asf")), ..Options::default() };
+    let options = ImportOptions::new().skeleton(files.folder.join("given.asf"));
     assert_eq!(files.load(&options).unwrap().motion.rig.joints[5].offset[1], 33.0);
 }
 
 #[test]
 fn an_absent_skeleton_is_said() {
-    let error = |options: &Options, amc: &str| format!("{:#}", Files::new(&[("walk.amc", amc)]).load(options).unwrap_err());
-    let said = error(&Options::default(), AMC);
+    let error = |options: &ImportOptions, amc: &str| format!("{:#}", Files::new(&[("walk.amc", amc)]).load(options).unwrap_err());
+    let said = error(&ImportOptions::new(), AMC);
     assert!(said.contains("neither walk.asf nor the `Figure.ASF` that the file names; --skeleton FILE gives one"), "{said}");
-    let said = error(&Options::default(), &but(AMC, "#!OML", "#"));
+    let said = error(&ImportOptions::new(), &but(AMC, "#!OML", "#"));
     assert!(said.ends_with("walk.amc:1: no skeleton beside it: no walk.asf; --skeleton FILE gives one"), "{said}");
-    let said = error(&Options { skeleton: Some("no/such.asf".into()), ..Options::default() }, AMC);
+    let said = error(&ImportOptions::new().skeleton("no/such.asf"), AMC);
     assert!(said.starts_with("no/such.asf: "), "{said}");
-    let said = format!("{:#}", Files::new(&[("walk.asf", ASF)]).load(&Options::default()).unwrap_err());
+    let said = format!("{:#}", Files::new(&[("walk.asf", ASF)]).load(&ImportOptions::new()).unwrap_err());
     assert!(said.contains("AMC (.amc)"), "{said}");
 }
 

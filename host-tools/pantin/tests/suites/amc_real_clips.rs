@@ -1,8 +1,9 @@
 //! CMU's AMC clips, where they are at hand, against Acclaim's own rule written out a second time here.
 
+use crate::told::Told;
 use pantin_convert::fk;
+use pantin_convert::import::ImportOptions;
 use pantin_convert::import::units::rest_height_cm;
-use pantin_convert::import::{self, Imported, Options};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -26,10 +27,10 @@ fn folder() -> Option<PathBuf> {
     Some(folder)
 }
 
-fn clips() -> impl Iterator<Item = (&'static str, PathBuf, usize, Imported)> {
+fn clips() -> impl Iterator<Item = (&'static str, PathBuf, usize, Told)> {
     folder().into_iter().flat_map(|folder| {
         CLIPS.map(|(name, skeleton, frames)| {
-            let read = import::load(&folder.join(format!("{name}.amc")), &Options::default());
+            let read = crate::told::load(&folder.join(format!("{name}.amc")), &ImportOptions::new());
             let read = read.unwrap_or_else(|error| panic!("{error:#}"));
             (name, folder.join(format!("{skeleton}.asf")), frames, read)
         })
@@ -38,7 +39,7 @@ fn clips() -> impl Iterator<Item = (&'static str, PathBuf, usize, Imported)> {
 
 #[test]
 fn people_stand_on_the_ground() {
-    for (name, _, frames, Imported { motion, units, warnings, .. }) in clips() {
+    for (name, _, frames, Told { motion, units, warnings, .. }) in clips() {
         assert_eq!(motion.frames, frames, "{name}");
         assert!((motion.rig.cm_per_unit - 5.6444).abs() < 1e-4, "{name}: {units}");
         assert!(warnings.iter().any(|warning| warning.contains("120 a second")), "{name}: {warnings:?}");
@@ -56,7 +57,7 @@ fn people_stand_on_the_ground() {
 /// All values but those of bones whose axes are skew to the world's come through as they are in the file, up to sign and turns.
 #[test]
 fn values_are_kept() {
-    for (name, _, _, Imported { motion, .. }) in clips() {
+    for (name, _, _, Told { motion, .. }) in clips() {
         let kept =
             ["root", "lowerback", "upperback", "thorax", "lowerneck", "upperneck", "head", "lclavicle", "lwrist", "rfingers"];
         let text = std::fs::read_to_string(folder().unwrap().join(format!("{name}.amc"))).unwrap();
@@ -82,7 +83,7 @@ fn values_are_kept() {
 
 #[test]
 fn joints_stand_where_acclaim_puts_them() {
-    for (name, skeleton, frames, Imported { motion, .. }) in clips() {
+    for (name, skeleton, frames, Told { motion, .. }) in clips() {
         let asf = std::fs::read_to_string(skeleton).unwrap();
         let amc = std::fs::read_to_string(folder().unwrap().join(format!("{name}.amc"))).unwrap();
         let mut worst: f64 = 0.0;

@@ -1,6 +1,7 @@
 //! BVH files as they come: what is broken gets one error with its line, what other readers accept is read as they read it.
 
-use pantin_convert::import::{self, Imported, Options};
+use crate::told::Told;
+use pantin_convert::import::ImportOptions;
 use std::path::PathBuf;
 
 const GOOD: &str = "HIERARCHY
@@ -25,18 +26,18 @@ Frame Time: 0.01
 1 2 3 4 5 6 8
 ";
 
-fn load_bytes(name: &str, bytes: &[u8], options: &Options) -> anyhow::Result<Imported> {
+fn load_bytes(name: &str, bytes: &[u8], options: &ImportOptions) -> anyhow::Result<Told> {
     let folder = std::env::temp_dir().join(format!("pantin-bvh-bad-input-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path: PathBuf = folder.join(format!("{name}.bvh"));
     std::fs::write(&path, bytes).unwrap();
-    let loaded = import::load(&path, options);
+    let loaded = crate::told::load(&path, options);
     std::fs::remove_file(&path).unwrap();
     loaded
 }
 
-fn load(name: &str, text: &str) -> anyhow::Result<Imported> {
-    load_bytes(name, text.as_bytes(), &Options::default())
+fn load(name: &str, text: &str) -> anyhow::Result<Told> {
+    load_bytes(name, text.as_bytes(), &ImportOptions::new())
 }
 
 /// The error for `text` is one line, begins with the file and `line`, and says `part`.
@@ -60,7 +61,7 @@ fn same(name: &str, text: &str) {
 
 #[test]
 fn a_good_file_is_read() {
-    let Imported { motion, warnings, .. } = load("good", GOOD).unwrap();
+    let Told { motion, warnings, .. } = load("good", GOOD).unwrap();
     assert!(warnings.is_empty(), "{warnings:?}");
     assert_eq!((motion.frames, motion.frame_time), (2, 0.01));
     assert_eq!(motion.values[6], [7.0, 8.0]);
@@ -136,7 +137,7 @@ fn times_and_counts_that_mean_nothing_are_refused() {
     refused("negative-time", &good_but("0.01", "-0.01"), 18, "frame time above 0");
     refused("no-frames", &good_but("Frames: 2", "Frames: 0"), 17, "from 1");
     refused("negative-frames", &good_but("Frames: 2", "Frames: -2"), 17, "from 1");
-    let fps = Options { fps: Some(50.0), ..Options::default() };
+    let fps = ImportOptions::new().fps(50.0);
     assert_eq!(load_bytes("fps", good_but("0.01", "0").as_bytes(), &fps).unwrap().motion.frame_time, 0.02);
     assert_eq!(load_bytes("fps-unused", GOOD.as_bytes(), &fps).unwrap().motion.frame_time, 0.01);
 }
@@ -170,10 +171,10 @@ fn broken_hierarchies_are_refused() {
 
 #[test]
 fn empty_files_directories_and_absent_files_are_refused() {
-    let error = |name: &str, bytes: &[u8]| format!("{:#}", load_bytes(name, bytes, &Options::default()).unwrap_err());
+    let error = |name: &str, bytes: &[u8]| format!("{:#}", load_bytes(name, bytes, &ImportOptions::new()).unwrap_err());
     assert!(error("empty", b"").ends_with("empty.bvh: the file is empty; expected a motion file"));
     assert!(error("blank", b" \n \n").contains("blank.bvh:3: expected `HIERARCHY`"));
-    let of_path = |path: &std::path::Path| format!("{:#}", import::load(path, &Options::default()).unwrap_err());
+    let of_path = |path: &std::path::Path| format!("{:#}", crate::told::load(path, &ImportOptions::new()).unwrap_err());
     assert!(of_path(&std::env::temp_dir()).contains("a directory; expected a motion file"));
     assert!(of_path("no/such/file.bvh".as_ref()).starts_with("no/such/file.bvh: "));
 }
@@ -182,7 +183,7 @@ fn empty_files_directories_and_absent_files_are_refused() {
 fn names_that_are_not_utf8_or_not_unique_are_kept() {
     let mut bytes = GOOD.as_bytes().to_vec();
     bytes[16] = 0xe9;
-    let read = load_bytes("latin1", &bytes, &Options::default()).unwrap();
+    let read = load_bytes("latin1", &bytes, &ImportOptions::new()).unwrap();
     assert_eq!(read.motion.rig.joints[0].name, "h\u{fffd}p");
     assert!(read.warnings[0].starts_with("the name `h\u{fffd}p` has letters that are not UTF-8"), "{:?}", read.warnings);
     let read = load("repeated", &good_but("left knee", "hip")).unwrap();
@@ -205,7 +206,7 @@ fn a_joint_without_channels_stands_still() {
 #[test]
 fn bad_options_are_refused() {
     for (cm_per_unit, fps) in [(Some(0.0), None), (Some(f64::NAN), None), (None, Some(-1.0))] {
-        assert!(load_bytes("options", GOOD.as_bytes(), &Options { cm_per_unit, fps, ..Options::default() }).is_err());
+        assert!(load_bytes("options", GOOD.as_bytes(), &ImportOptions::new().cm_per_unit(cm_per_unit).fps(fps)).is_err());
     }
 }
 

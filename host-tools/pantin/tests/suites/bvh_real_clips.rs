@@ -2,7 +2,7 @@
 
 use crate::real::files;
 use pantin_convert::fk;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Joint, Motion, Rig};
 
 #[test]
@@ -15,7 +15,7 @@ fn units_are_guessed_right() {
             name if name.contains("diema") => 2.54,
             _ => 1.0,
         };
-        let read = import::load(&clip, &Options::default()).unwrap();
+        let read = crate::told::load(&clip, &ImportOptions::new()).unwrap();
         println!("{name}: {}", read.units);
         assert_eq!(read.motion.rig.cm_per_unit, expected, "{name}: {}", read.units);
     }
@@ -27,10 +27,10 @@ fn what_is_written_reads_back() {
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("back.bvh");
     for clip in files(&["bvh"]) {
-        let motion = import::load(&clip, &Options::default()).unwrap().motion;
+        let motion = crate::told::load(&clip, &ImportOptions::new()).unwrap().motion;
         pantin_tools::output::save_bvh(&motion, &path).unwrap();
-        let options = Options { cm_per_unit: Some(motion.rig.cm_per_unit), ..Options::default() };
-        let back = import::load(&path, &options).unwrap().motion;
+        let options = ImportOptions::new().cm_per_unit(motion.rig.cm_per_unit);
+        let back = crate::told::load(&path, &options).unwrap().motion;
         let bare = |rig: &Rig| rig.joints.iter().map(|joint| Joint { offset: [0.0; 3], ..joint.clone() }).collect::<Vec<_>>();
         assert_eq!(bare(&back.rig), bare(&motion.rig), "{}", clip.display());
         assert_eq!(back.frames, motion.frames);

@@ -5,13 +5,13 @@ use pantin_convert::encode::{clip, rig};
 use pantin_convert::fit::bounds::{Bounds, EXACT_DEGREES};
 use pantin_convert::fit::chain::Constraint;
 use pantin_convert::fit::channelwise;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 use std::path::Path;
 
 fn own(name: &str) -> Motion {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../motions/{name}.keys"));
-    import::load(&path, &Options::default()).unwrap().motion
+    crate::told::load(&path, &ImportOptions::new()).unwrap().motion
 }
 
 /// A motion of one block of keys.
@@ -23,7 +23,7 @@ fn keyed(interpolation: &str, looped: bool) -> Motion {
     let rows = "0 90 -20 5 0\n13 88.5 14 40 0.5\n14 88.25 15 41 0.6\n42 93 200 10 -0.25\n60 91 340 5 0\n";
     let keys = format!("keys {interpolation} hip knee smile\n{rows}");
     std::fs::write(&path, format!("{head}{tail}{}{keys}", if looped { "loop\n" } else { "" })).unwrap();
-    import::load(&path, &Options::default()).unwrap().motion
+    crate::told::load(&path, &ImportOptions::new()).unwrap().motion
 }
 
 /// Bytes of the motion apart from its rig, and the errors; a broken bound fails the test.

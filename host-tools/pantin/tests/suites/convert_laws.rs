@@ -2,8 +2,9 @@
 
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::fit::{descent::Level, fit};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Kind, Motion};
+use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::verify::verify;
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ fn repository() -> PathBuf {
 }
 
 fn load(path: &Path) -> Motion {
-    import::load(path, &Options::default()).unwrap_or_else(|error| panic!("{error:#}")).motion
+    crate::told::load(path, &ImportOptions::new()).unwrap_or_else(|error| panic!("{error:#}")).motion
 }
 
 fn own(name: &str) -> Motion {
@@ -34,10 +35,11 @@ fn captured(prefix: &str) -> Vec<PathBuf> {
 
 fn convert(motion: &Motion, bound_cm: f64, level: Level) -> Vec<u8> {
     let rig = rig::encode(&motion.rig).unwrap();
-    let coded = fit(motion, level.plan(bound_cm), 0.02, &mut |_| ()).unwrap_or_else(|error| panic!("{error:#}"));
+    let coded =
+        fit(motion, level.plan(PoseBound::places(bound_cm)), 0.02, &mut |_| ()).unwrap_or_else(|error| panic!("{error:#}"));
     let bytes = clip::encode(&coded, &rig, false).unwrap();
-    let report = verify(&bytes, &rig, motion, bound_cm, 0.02).unwrap_or_else(|error| panic!("{error:#}"));
-    assert!(report.max_cm <= bound_cm && report.mean_cm <= report.max_cm);
+    let report = verify(&bytes, &rig, motion, &PoseBound::places(bound_cm), 0.02).unwrap_or_else(|error| panic!("{error:#}"));
+    assert!(report.place_cm.error <= bound_cm && report.mean_cm <= report.place_cm.error);
     bytes
 }
 
@@ -118,9 +120,10 @@ fn rotations_are_coded_as_asked() {
     motion.values.insert(channel, (0..motion.frames).map(|frame| 9.0 * (frame as f64 * 0.1).sin()).collect());
     motion.keys.insert(channel, None);
     let chosen = |rotations| {
-        let coded = fit(&motion, Plan { rotations, ..Level::Fast.plan(0.5) }, 0.02, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Plan { rotations, ..Level::Fast.plan(PoseBound::places(0.5)) }, 0.02, &mut |_| ()).unwrap();
         let bytes = clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap();
-        verify(&bytes, &rig::encode(&motion.rig).unwrap(), &motion, 0.5, 0.02).unwrap_or_else(|error| panic!("{error:#}"));
+        verify(&bytes, &rig::encode(&motion.rig).unwrap(), &motion, &PoseBound::places(0.5), 0.02)
+            .unwrap_or_else(|error| panic!("{error:#}"));
         coded.exponentials.iter().filter(|&&chosen| chosen).count()
     };
     let (euler, exponential) = (chosen(Rotations::Euler), chosen(Rotations::Exponential));

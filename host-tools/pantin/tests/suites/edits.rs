@@ -1,15 +1,22 @@
 //! Changes of a motion before the fit: what they keep, and what they refuse.
 
+use crate::told::load;
+use pantin_convert::Memory;
 use pantin_convert::edit::loop_seam::{Most, close};
-use pantin_convert::edit::{cut::cut, mirror::mirror, pick::pick, resample::resample, retarget};
+use pantin_convert::edit::{cut::cut, mirror::mirror, pick::pick, resample, retarget};
 use pantin_convert::fk::positions;
-use pantin_convert::import::{Options, load};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::keys::{sample, sample_pieces};
 use pantin_convert::motion::{Interpolation, Joint, Keys, Kind, Motion, Rig, Scalar};
+use pantin_convert::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
 
+fn resample(motion: &Motion, fps: f64) -> anyhow::Result<Motion> {
+    resample::resample(motion, fps, Memory::default())
+}
+
 fn own(name: &str) -> Motion {
-    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions").join(name), &Options::default()).unwrap().motion
+    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions").join(name), &ImportOptions::new()).unwrap().motion
 }
 
 /// The captured clips whose names begin and end so, or none where they are not at hand.
@@ -103,7 +110,7 @@ fn a_mirror_in_a_mirror_shows_the_motion_itself() {
     let walk = own("walk.keys");
     assert_eq!(mirror(&mirror(&walk).unwrap()).unwrap(), walk);
     for path in captured("bvh_", ".bvh") {
-        let motion = load(&path, &Options::default()).unwrap().motion;
+        let motion = load(&path, &ImportOptions::new()).unwrap().motion;
         let other = mirror(&motion).unwrap_or_else(|error| panic!("{}: {error:#}", path.display()));
         assert_ne!(other.values, motion.values);
         assert_eq!(mirror(&other).unwrap(), motion, "{}", path.display());
@@ -214,7 +221,7 @@ fn curves_of_close_keys_are_the_same_at_another_rate() {
                  keys {word} hip.Xrotation\n 0 -1\n 2 60\n 3 -51\n 10 7\nkeys {word} hip.Zrotation\n 0 5\n 10 -20\n"
             );
             std::fs::write(&path, text).unwrap();
-            let fine = resample(&load(&path, &Options::default()).unwrap().motion, 60.0).unwrap();
+            let fine = resample(&load(&path, &ImportOptions::new()).unwrap().motion, 60.0).unwrap();
             let mut keys = vec![(0, -1.0), (12, 60.0), (18, -51.0), (60, 7.0)];
             if last == 12 {
                 keys.push((66, -1.0));
@@ -299,7 +306,7 @@ fn a_seam_is_closed_within_its_bound_or_refused() {
     let mut motion = arms(25);
     let arm = channel(&motion, "larm.Zrotation");
     motion.values[arm][24] += 0.5;
-    let closed = close(&motion, Most::Distance(1.0, 0.02)).unwrap();
+    let closed = close(&motion, Most::Distance(&PoseBound::places(1.0), 0.02)).unwrap();
     // Half a degree of 60 cm is 0.52 cm, half of which each end moves.
     assert!((closed.moved_cm - 0.262).abs() < 0.01, "{}", closed.moved_cm);
     assert_eq!(closed.joint, "larm/end");
@@ -316,19 +323,19 @@ fn a_seam_is_closed_within_its_bound_or_refused() {
     let over = values[0] - values[23];
     let before = values[23] - values[22];
     assert!((over - before).abs() < 2.0, "{before} and then {over}");
-    let refused = close(&motion, Most::Distance(0.5, 0.02)).unwrap_err().to_string();
+    let refused = close(&motion, Most::Distance(&PoseBound::places(0.5), 0.02)).unwrap_err().to_string();
     assert!(refused.contains("larm/end is 0.52") && refused.contains("the bound is 0.5 cm"), "{refused}");
     let mut motion = arms(25);
     motion.values[10][24] += 0.1;
-    let refused = close(&motion, Most::Distance(0.5, 0.02)).unwrap_err().to_string();
+    let refused = close(&motion, Most::Distance(&PoseBound::places(0.5), 0.02)).unwrap_err().to_string();
     assert!(refused.contains("smileRight differs by 0.1000"), "{refused}");
-    assert!(close(&arms(2), Most::Distance(0.5, 0.02)).is_err());
+    assert!(close(&arms(2), Most::Distance(&PoseBound::places(0.5), 0.02)).is_err());
 }
 
 #[test]
 fn every_captured_body_goes_on_the_display() {
     for path in captured("bvh_", ".bvh").into_iter().chain(captured("amc_", ".amc")) {
-        let motion = load(&path, &Options::default()).unwrap().motion;
+        let motion = load(&path, &ImportOptions::new()).unwrap().motion;
         let done = retarget::display(&motion, "").unwrap_or_else(|error| panic!("{}: {error:#}", path.display()));
         assert_eq!(done.motion.rig.joints.iter().filter(|joint| !joint.end_site).count(), 15);
         println!("{}: {:.2} cm ({} at frame {})", path.display(), done.max_cm, done.joint, done.frame);

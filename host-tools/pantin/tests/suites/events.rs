@@ -1,11 +1,12 @@
 //! Event markers: given on the command line, by files and found in the motion; their names in clips, and what `pantin info` prints.
 
 use pantin::{Clip, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
+use pantin_convert::Memory;
 use pantin_convert::edit::footsteps::footsteps;
 use pantin_convert::edit::mirror::mirror;
 use pantin_convert::events;
 use pantin_convert::fk::positions;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Kind, Motion};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -15,7 +16,7 @@ fn own(name: &str) -> PathBuf {
 }
 
 fn load(path: &Path) -> Motion {
-    import::load(path, &Options::default()).unwrap().motion
+    crate::told::load(path, &ImportOptions::new()).unwrap().motion
 }
 
 fn convert(motion: &Path, clip: &Path, options: &[&str]) -> Output {
@@ -108,7 +109,7 @@ fn files_have_events_of_their_own() {
         ("event step -1", "expected a frame of 0 to 4"),
     ] {
         std::fs::write(path("b.keys"), keys.replace("event 9 2", line)).unwrap();
-        let error = import::load(&path("b.keys"), &Options::default()).unwrap_err().to_string();
+        let error = crate::told::load(&path("b.keys"), &ImportOptions::new()).unwrap_err().to_string();
         assert!(error.contains(why) && error.contains("b.keys:5"), "{error}");
     }
     let table = "time,a,event,b\n0.0,1,,5\n0.1,2,clap | step,6\n0.2,3,clap,7\n";
@@ -129,7 +130,7 @@ fn files_have_events_of_their_own() {
 
 /// Steps of a motion: the frame, and whether the foot is the left one.
 fn steps(motion: &Motion) -> Vec<(usize, bool)> {
-    footsteps(motion).unwrap().into_iter().map(|event| (event.frame, event.name == LEFT_FOOT_DOWN)).collect()
+    footsteps(motion, Memory::default()).unwrap().into_iter().map(|event| (event.frame, event.name == LEFT_FOOT_DOWN)).collect()
 }
 
 /// Checks that the feet alternate and that a foot is low and slow for a while from each step on.

@@ -22,7 +22,7 @@ fn fitted(arguments: &[&str], keys: &Path) -> (String, Motion) {
         .output()
         .unwrap();
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-    let motion = import::load(keys, &import::Options::default()).unwrap().motion;
+    let motion = crate::told::load(keys, &import::ImportOptions::new()).unwrap().motion;
     (String::from_utf8(out.stdout).unwrap(), motion)
 }
 

@@ -1,6 +1,6 @@
 //! The paper's rules on meshes: Candide-3, a round head of our own, and Pantin's head as a mesh of others.
 
-use pantin_convert::import::Files;
+use pantin_convert::import::Disk;
 use pantin_face::shape::Interpolation;
 use pantin_face::{FaceView, Model};
 use pantin_figure::Canvas;
@@ -23,7 +23,7 @@ type Subject = (&'static str, Blueprint, Points);
 
 fn subjects() -> Vec<Subject> {
     let mut subjects = Vec::new();
-    let ball = outside::mesh(&meshes().join("ball.obj"), &Files::default()).unwrap();
+    let ball = outside::mesh(&meshes().join("ball.obj"), &Disk::default()).unwrap();
     subjects.push(("ball", ball, read("ball.points")));
     let face = Face::new().unwrap();
     let neutral = pose::parse(&face.blueprint, "").unwrap();
@@ -33,7 +33,7 @@ fn subjects() -> Vec<Subject> {
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     let candide = data.join("facemodel_candide3.wfm");
     if candide.exists() {
-        subjects.push(("candide", outside::mesh(&candide, &Files::default()).unwrap(), read("candide3.points")));
+        subjects.push(("candide", outside::mesh(&candide, &Disk::default()).unwrap(), read("candide3.points")));
     } else {
         eprintln!("skipped: facemodel_candide3.wfm is not in $PANTIN_DATA");
     }
@@ -117,7 +117,7 @@ fn models_of_meshes_keep_the_devices_tolerance_and_show_every_unit() {
 
 #[test]
 fn missing_and_contradicting_points_are_named() {
-    let mesh = outside::mesh(&meshes().join("ball.obj"), &Files::default()).unwrap();
+    let mesh = outside::mesh(&meshes().join("ball.obj"), &Disk::default()).unwrap();
     let all = read("ball.points");
     let mut some = all.clone();
     some.remove("4.5");
@@ -183,7 +183,7 @@ fn what_is_wrong_in_a_mesh_is_named_with_its_line() {
     let refused = |name: &str, text: &str, wanted: &str| {
         let path = folder.path().join(name);
         std::fs::write(&path, text).unwrap();
-        let said = format!("{:#}", outside::mesh(&path, &Files::default()).expect_err(wanted));
+        let said = format!("{:#}", outside::mesh(&path, &Disk::default()).expect_err(wanted));
         assert!(said.contains(&format!("{name}:{wanted}")), "{text:?}: no `{wanted}` in: {said}");
     };
     let obj = "# three\nv 0 0 0\nv 1 0 0 # right\nv 0 1 0\nf 1/1 2/2 3/3\n";
@@ -226,7 +226,7 @@ fn what_is_wrong_in_a_mesh_is_named_with_its_line() {
     }
     for (name, text) in [("a.obj", obj), ("a.wfm", wfm)] {
         std::fs::write(folder.path().join(name), text).unwrap();
-        let mesh = outside::mesh(&folder.path().join(name), &Files::default()).unwrap();
+        let mesh = outside::mesh(&folder.path().join(name), &Disk::default()).unwrap();
         assert_eq!((mesh.points.len(), &mesh.triangles[..]), (3, &[[0, 1, 2]][..]), "{name}");
     }
 }

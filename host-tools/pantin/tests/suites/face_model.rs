@@ -206,7 +206,7 @@ fn names_are_told_apart_by_their_hashes() {
 #[test]
 fn all_that_arkit_tracks_is_known_but_the_eyes_own_angles() {
     let Some(path) = data("face_neurosync_angry_arkit.csv") else { return };
-    let motion = import::load(&path, &import::Options::default()).unwrap().motion;
+    let motion = crate::told::load(&path, &import::ImportOptions::new()).unwrap().motion;
     let face = Face::new().unwrap();
     for scalar in &motion.rig.scalars {
         let known = pose::parse(&face.blueprint, &scalar.name).is_ok();
@@ -235,7 +235,7 @@ fn a_pose_is_taken_apart_into_its_units() {
 #[test]
 fn faces_of_other_meshes_are_taken_apart_by_their_feature_points() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
-    let mesh = outside::mesh(&folder.join("ball.obj"), &import::Files::default()).unwrap();
+    let mesh = outside::mesh(&folder.join("ball.obj"), &import::Disk::default()).unwrap();
     let points = points::parse(&std::fs::read_to_string(folder.join("ball.points")).unwrap()).unwrap();
     let built = onmesh::build(&mesh, &points).unwrap().blueprint;
     let face = Face::new().unwrap();
@@ -265,7 +265,7 @@ fn a_recording_is_taken_apart_into_few_weights_a_frame() {
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     let report: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
     let frames = report["frames"].as_array().unwrap();
-    let motion = import::load(&keys, &import::Options::default()).unwrap().motion;
+    let motion = crate::told::load(&keys, &import::ImportOptions::new()).unwrap().motion;
     assert_eq!(motion.frames, frames.len());
     for frame in frames {
         assert!(frame["weights"].as_u64().unwrap() <= 8, "{frame}");
@@ -278,7 +278,7 @@ fn a_recording_is_taken_apart_into_few_weights_a_frame() {
 fn meshes_from_outside_become_models() {
     for (name, vertices, targets) in [("gltf_khronos_morph-cube.glb", 24, 2), ("gltf_khronos_morph-stress.gltf", 1528, 8)] {
         let Some(path) = data(name) else { continue };
-        let blueprint = outside::model(&path, &import::Files::default()).unwrap();
+        let blueprint = outside::model(&path, &import::Disk::default()).unwrap();
         let bytes = pantin_tools::face::compact::encode(&blueprint).unwrap();
         let model = Model::new_checked(&bytes).unwrap();
         assert_eq!((model.vertices(), model.shape_count()), (vertices, targets));
@@ -303,7 +303,7 @@ fn own_motions_are_small_faces_that_begin_and_end_at_rest() {
         total += bytes.len();
         let clip = pantin::Clip::new_checked(&bytes).unwrap();
         assert!(clip.frames() > 30 && is_face(&clip).unwrap(), "{}", file.display());
-        let motion = import::load(file, &import::Options::default()).unwrap().motion;
+        let motion = crate::told::load(file, &import::ImportOptions::new()).unwrap().motion;
         let rests = |values: &Vec<f64>| values[0].abs() < 1e-9 && values[values.len() - 1].abs() < 1e-9;
         assert!(motion.values.iter().all(rests), "{}: begins or ends with a face", file.display());
         let view = pantin_figure::View { orbit: 0, tilt: 0, ..Default::default() };

@@ -5,7 +5,8 @@ use pantin_convert::encode::{clip, rig};
 use pantin_convert::expand::expand;
 use pantin_convert::export;
 use pantin_convert::fit::{descent::Level, fit};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
+use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::verify::verify;
 use std::path::PathBuf;
 
@@ -32,16 +33,16 @@ fn faces_come_back_within_the_bound() {
     let table = std::env::temp_dir().join(format!("pantin-face-real-clips-{}.csv", std::process::id()));
     for path in faces() {
         let name = path.display();
-        let motion = import::load(&path, &Options::default()).unwrap().motion;
+        let motion = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
         assert!(motion.rig.joints.is_empty() && motion.frames > 100, "{name}");
         let bytes = rig::encode(&motion.rig).unwrap();
         // A second or two are enough here: the rest of a recording is like its beginning.
         let mut short = motion.clone();
         short.frames = motion.frames.min(200);
         short.values.iter_mut().for_each(|values| values.truncate(short.frames));
-        let coded = fit(&short, Level::Fast.plan(1.0), BOUND, &mut |_| ()).unwrap();
+        let coded = fit(&short, Level::Fast.plan(PoseBound::places(1.0)), BOUND, &mut |_| ()).unwrap();
         let clip = clip::encode(&coded, &bytes, true).unwrap();
-        let report = verify(&clip, &bytes, &short, 1.0, BOUND).unwrap();
+        let report = verify(&clip, &bytes, &short, &PoseBound::places(1.0), BOUND).unwrap();
         let rate = clip.len() as f64 / (short.frames as f64 * short.frame_time);
         println!(
             "{name}: {} bytes, {rate:.0} a second, {:.3} % at {}",
@@ -54,7 +55,7 @@ fn faces_come_back_within_the_bound() {
         let mut written = Vec::new();
         export::table::write(&played, &mut written).unwrap();
         std::fs::write(&table, written).unwrap();
-        let back = import::load(&table, &Options::default()).unwrap().motion;
+        let back = crate::told::load(&table, &ImportOptions::new()).unwrap().motion;
         assert_eq!(back.frames, short.frames, "{name}");
         assert!((back.frame_time / short.frame_time - 1.0).abs() < 1e-6, "{name}");
         for (channel, scalar) in short.rig.scalars.iter().enumerate() {

@@ -1,13 +1,14 @@
 //! MPEG-4 FAP text: small faces are read as they say, and mistakes are named with their line.
 
+use crate::told::load;
 use anyhow::Result;
-use pantin_convert::import::{Options, load};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 
 fn read_as(name: &str, text: impl AsRef<[u8]>) -> Result<(Motion, Vec<String>)> {
     let path = std::env::temp_dir().join(format!("pantin-fap-{name}-{}.fap", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let read = load(&path, &Options::default());
+    let read = load(&path, &ImportOptions::new());
     std::fs::remove_file(&path).unwrap();
     read.map(|imported| (imported.motion, imported.warnings))
 }

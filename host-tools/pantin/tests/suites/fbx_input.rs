@@ -1,23 +1,24 @@
 //! FBX from a small text file of our own: what is read, what is refused, and that neither takes long.
 
+use crate::told::Told;
 use pantin_convert::fk;
-use pantin_convert::import::{self, Imported, Options};
+use pantin_convert::import::ImportOptions;
 
 /// In metres and z up: a hip that a pre-rotation turns a quarter about x, a knee and a foot below it, a camera, a face with a weight; one
 /// stack of a second that turns the hip a quarter about x and shows half of the smile, and one that does nothing.
 const LEG: &str = include_str!("../data/leg.fbx");
 
-fn load_as(file: &[u8], options: &Options) -> Result<Imported, String> {
+fn load_as(file: &[u8], options: &ImportOptions) -> Result<Told, String> {
     let name = format!("pantin-fbx-{}-{:?}.fbx", std::process::id(), std::thread::current().id());
     let path = std::env::temp_dir().join(name);
     std::fs::write(&path, file).unwrap();
-    let read = import::load(&path, options).map_err(|error| format!("{error:#}"));
+    let read = crate::told::load(&path, options).map_err(|error| format!("{error:#}"));
     std::fs::remove_file(&path).unwrap();
     read
 }
 
-fn load(file: &str) -> Result<Imported, String> {
-    load_as(file.as_bytes(), &Options::default())
+fn load(file: &str) -> Result<Told, String> {
+    load_as(file.as_bytes(), &ImportOptions::new())
 }
 
 fn near(a: [f64; 3], b: [f64; 3]) {
@@ -177,8 +178,7 @@ fn a_place_that_another_stack_moves_is_its_own() {
     let file = with_curve(&file, 80, 1, "Lcl Translation", "X", "0,0.7")
         .replace("C: \"OO\",80,21", "C: \"OO\",80,41\n\tC: \"OO\",41,40");
     let file = file.replace("\tAnimationLayer: 21,", &format!("\t{other}\tAnimationLayer: 21,"));
-    let stack =
-        |name: &str| load_as(file.as_bytes(), &Options { animation: Some(name.into()), ..Options::default() }).unwrap().motion;
+    let stack = |name: &str| load_as(file.as_bytes(), &ImportOptions::new().animation(name)).unwrap().motion;
     let kick = stack("kick");
     for frame in 0..25 {
         near(fk::positions(&kick.rig, &kick.values, frame)[0], [0.0, 100.0, 0.0]);
@@ -243,12 +243,12 @@ fn a_bound_is_kept_against_the_file() {
 #[test]
 fn stacks_are_chosen_by_name_or_number() {
     for choice in ["kick", "0"] {
-        let options = Options { animation: Some(choice.into()), fps: Some(60.0), ..Options::default() };
+        let options = ImportOptions::new().animation(choice).fps(60.0);
         assert_eq!(load_as(LEG.as_bytes(), &options).unwrap().motion.frames, 61);
     }
-    let rest = load_as(LEG.as_bytes(), &Options { animation: Some("rest".into()), ..Options::default() }).unwrap();
+    let rest = load_as(LEG.as_bytes(), &ImportOptions::new().animation("rest")).unwrap();
     assert!(rest.warnings.iter().any(|warning| warning.contains("moves nothing")));
-    let wrong = load_as(LEG.as_bytes(), &Options { animation: Some("2".into()), ..Options::default() });
+    let wrong = load_as(LEG.as_bytes(), &ImportOptions::new().animation("2"));
     assert!(wrong.unwrap_err().contains("there are 0 (kick), 1 (rest)"));
 }
 

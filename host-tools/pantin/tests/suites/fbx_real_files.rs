@@ -4,7 +4,7 @@
 use crate::real::probe::probed;
 use crate::real::{SAME, converts, distance, files, height};
 use pantin_convert::fk;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, Disk, ImportOptions};
 use pantin_convert::motion::Motion;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -13,10 +13,10 @@ use ufbx::CoordinateAxis;
 /// Every animation of every file.
 fn motions() -> Vec<(PathBuf, usize, Motion)> {
     let of_file = |path: PathBuf| {
-        let count = import::fbx::list(&path, None).unwrap().len();
+        let count = import::list(&Disk::default(), &path, &ImportOptions::new()).unwrap().len();
         (0..count).map(move |animation| {
-            let options = Options { animation: Some(animation.to_string()), ..Options::default() };
-            let motion = import::load(&path, &options).unwrap_or_else(|error| panic!("{error:#}")).motion;
+            let options = ImportOptions::new().animation(animation.to_string());
+            let motion = crate::told::load(&path, &options).unwrap_or_else(|error| panic!("{error:#}")).motion;
             (path.clone(), animation, motion)
         })
     };

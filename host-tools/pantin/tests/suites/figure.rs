@@ -352,7 +352,7 @@ fn clips() -> Vec<(String, Motion)> {
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "bvh"));
     paths.sort();
     let name = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().into_owned();
-    let load = |path: &PathBuf| import::load(path, &import::Options::default()).unwrap().motion;
+    let load = |path: &PathBuf| crate::told::load(path, &import::ImportOptions::new()).unwrap().motion;
     paths.iter().map(|path| (name(path), load(path))).collect()
 }
 

@@ -1,9 +1,10 @@
 //! Small glTF files of our own: curves that convert exactly, scales, accessors, several animations, and what is refused.
 
+use crate::told::Told;
 use base64::Engine as _;
 use pantin_convert::fit::bounds::Bounds;
 use pantin_convert::fit::channelwise;
-use pantin_convert::import::{self, Files, Imported, Options};
+use pantin_convert::import::{Disk, ImportOptions, InMemory};
 use pantin_convert::motion::{Keys, Kind, Motion};
 use pantin_convert::{channel_error, encode, expand, export, fk};
 use pantin_tools::face::outside;
@@ -75,15 +76,15 @@ impl Builder {
         root.to_string()
     }
 
-    fn load(&self, name: &str) -> Imported {
-        load(name, &self.text(), &Options::default()).unwrap_or_else(|error| panic!("{name}: {error:#}"))
+    fn load(&self, name: &str) -> Told {
+        load(name, &self.text(), &ImportOptions::new()).unwrap_or_else(|error| panic!("{name}: {error:#}"))
     }
 }
 
-fn load(name: &str, text: &str, options: &Options) -> anyhow::Result<Imported> {
+fn load(name: &str, text: &str, options: &ImportOptions) -> anyhow::Result<Told> {
     let path = std::env::temp_dir().join(format!("pantin-gltf-{name}-{}.gltf", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let loaded = import::load(&path, options);
+    let loaded = crate::told::load(&path, options);
     std::fs::remove_file(&path).unwrap();
     loaded
 }
@@ -121,7 +122,7 @@ fn spline() -> Builder {
 fn an_animation_of_nodes_outside_of_the_scene_alone_is_refused() {
     let mut builder = Builder::new(json!([{"name": "root"}, {"name": "other"}]));
     builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
-    let error = load("outside", &builder.text(), &Options::default()).err().unwrap();
+    let error = load("outside", &builder.text(), &ImportOptions::new()).err().unwrap();
     assert!(format!("{error:#}").contains("animations[0]: no channel moves a node of the scene, so nothing moves"), "{error:#}");
 }
 
@@ -188,7 +189,7 @@ fn cubic_rotations_convert_without_a_fit_as_quaternions() {
     ];
     builder.animate(1, "rotation", "CUBICSPLINE", &[0.0, 0.71, 2.0], turns.as_flattened());
     builder.animate(2, "rotation", "LINEAR", &[0.0, 2.0], &[0.0, 0.0, 0.6, 0.8, 0.0, 0.0, 0.6, 0.8]);
-    let options = Options { quaternions: true, ..Options::default() };
+    let options = ImportOptions::new().quaternions(true);
     let motion = load("quaternions", &builder.text(), &options).unwrap().motion;
     let kinds = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion];
     assert_eq!(motion.rig.joints[0].kinds, kinds);
@@ -200,7 +201,7 @@ fn cubic_rotations_convert_without_a_fit_as_quaternions() {
     // 61 frames of 4 components take 488 bytes at 16 bits.
     assert!(bytes.len() < 150, "{} bytes", bytes.len());
     // Both ways to read the file put the head at the same place.
-    let angles = load("angles", &builder.text(), &Options::default()).unwrap().motion;
+    let angles = load("angles", &builder.text(), &ImportOptions::new()).unwrap().motion;
     assert!(Bounds::exact(&angles).unwrap_err().to_string().contains("CUBICSPLINE or STEP"));
     for frame in 0..61 {
         let [a, b] = [&motion, &angles].map(|motion| fk::positions(&motion.rig, &motion.values, frame));
@@ -220,7 +221,7 @@ fn scales_move_the_joints_below() {
     ]));
     builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 0.0, 5.0]);
     builder.animate(2, "scale", "LINEAR", &[0.0, 1.0], &[1.0, 1.0, 1.0, 1.0, 2.0, 1.0]);
-    let Imported { motion, warnings, .. } = builder.load("scales");
+    let Told { motion, warnings, .. } = builder.load("scales");
     assert!(warnings.iter().any(|warning| warning.contains("the scale of `b` changes")), "{warnings:?}");
     assert_eq!(motion.rig.joints.len(), 3, "what only carries the figure is one joint with it");
     let last = fk::positions(&motion.rig, &motion.values, motion.frames - 1).map_each();
@@ -254,7 +255,7 @@ fn several_roots_get_one_above_them() {
     builder.root["scenes"] = json!([{"nodes": [0, 1, 2]}]);
     builder.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
     builder.animate(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    let Imported { motion, warnings, units, .. } = builder.load("roots");
+    let Told { motion, warnings, units, .. } = builder.load("roots");
     let names: Vec<&str> = motion.rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(names, ["root", "left", "right"]);
     assert_eq!(units, "units: 100 cm, as the file says");
@@ -329,7 +330,7 @@ fn an_animation_is_chosen_by_name_or_number() {
     other["channels"].as_array_mut().unwrap().remove(0);
     builder.push("animations", other);
     let text = builder.text();
-    let chosen = |wanted: &str| load("chosen", &text, &Options { animation: Some(wanted.into()), ..Options::default() });
+    let chosen = |wanted: &str| load("chosen", &text, &ImportOptions::new().animation(wanted));
     assert_eq!(chosen("walk").unwrap().motion.rig.channels(), 5);
     for wanted in ["face", "1"] {
         let motion = chosen(wanted).unwrap().motion;
@@ -348,7 +349,7 @@ fn what_is_exported_comes_back() {
     assert_eq!(gltf.animations().next().unwrap().channels().count(), 3);
     let path = std::env::temp_dir().join(format!("pantin-gltf-back-{}.glb", std::process::id()));
     std::fs::write(&path, bytes).unwrap();
-    let back = import::load(&path, &Options::default()).unwrap().motion;
+    let back = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
     std::fs::remove_file(&path).unwrap();
     assert_eq!((back.frames, back.frame_time), (motion.frames, motion.frame_time));
     assert_eq!(back.rig.scalars, motion.rig.scalars);
@@ -368,7 +369,7 @@ fn a_buffer_beside_the_file_is_read_and_no_other() {
         let mut root: Value = serde_json::from_str(&spline().text()).unwrap();
         root["buffers"][0]["uri"] = json!(uri);
         std::fs::write(&path, root.to_string()).unwrap();
-        import::load(&path, &Options::default()).map_err(|error| format!("{error:#}"))
+        crate::told::load(&path, &ImportOptions::new()).map_err(|error| format!("{error:#}"))
     };
     std::fs::write(folder.join("the data.bin"), &spline().bytes).unwrap();
     assert_eq!(load("the%20data.bin").unwrap().motion.frames, 61);
@@ -386,9 +387,8 @@ fn files_that_are_handed_over_are_all_that_there_is() {
     let mut root: Value = serde_json::from_str(&spline().text()).unwrap();
     root["buffers"][0]["uri"] = json!("data.bin");
     let load = |given: &[(&str, &[u8])]| {
-        let files = Files::Given(given.iter().map(|(name, bytes)| (name.into(), bytes.to_vec())).collect());
-        let options = Options { files, ..Options::default() };
-        import::load("a.gltf".as_ref(), &options).map(|imported| imported.motion.frames).map_err(|error| format!("{error:#}"))
+        let files: InMemory = given.iter().map(|(name, bytes)| (*name, bytes.to_vec())).collect();
+        crate::told::load_given(&files, "a.gltf").map(|imported| imported.motion.frames).map_err(|error| format!("{error:#}"))
     };
     let (text, data) = (root.to_string(), spline().bytes);
     assert_eq!(load(&[("a.gltf", text.as_bytes()), ("data.bin", &data)]), Ok(61));
@@ -402,7 +402,7 @@ fn what_is_wrong_is_refused_with_its_place() {
     let refused = |name: &str, damage: &dyn Fn(&mut Value), part: &str| {
         let mut root: Value = serde_json::from_str(&spline().text()).unwrap();
         damage(&mut root);
-        let error = load(name, &root.to_string(), &Options::default()).expect_err(name);
+        let error = load(name, &root.to_string(), &ImportOptions::new()).expect_err(name);
         let error = format!("{error:#}");
         assert!(error.contains(&format!("pantin-gltf-{name}")), "{name}: no file in: {error}");
         assert!(error.contains(part), "{name}: no `{part}` in: {error}");
@@ -451,7 +451,7 @@ fn numbers_that_are_none_and_times_that_go_back_are_refused() {
         let mut builder = Builder::new(json!([{"name": "joint"}]));
         let values: Vec<f32> = times.iter().flat_map(|_| [0.0, 0.0, value]).collect();
         builder.animate(0, "translation", "LINEAR", times, &values);
-        let error = format!("{:#}", load("numbers", &builder.text(), &Options::default()).unwrap_err());
+        let error = format!("{:#}", load("numbers", &builder.text(), &ImportOptions::new()).unwrap_err());
         assert!(error.contains(part), "no `{part}` in: {error}");
     };
     refused(&[0.0, 0.1], f32::NAN, "accessors[1]: element 0 is NaN");
@@ -491,7 +491,7 @@ fn damaged_binaries_never_panic() {
             _ => (0..4).for_each(|_| damaged[below(bytes.len())] = below(256) as u8),
         }
         std::fs::write(&path, &damaged).unwrap();
-        match import::load(&path, &Options::default()) {
+        match crate::told::load(&path, &ImportOptions::new()) {
             Ok(read) => assert!(read.motion.values.iter().flatten().all(|value| value.is_finite())),
             Err(error) => assert!(format!("{error:#}").contains("pantin-gltf-damaged"), "{error:#}"),
         }
@@ -546,7 +546,7 @@ fn events_stand_in_the_extras_of_an_animation() {
     assert_eq!(found(&motion), [(15, "clap".into()), (30, "step".into()), (60, "end".into())]);
     let path = std::env::temp_dir().join(format!("pantin-gltf-events-back-{}.glb", std::process::id()));
     std::fs::write(&path, export::gltf::write(&motion).unwrap()).unwrap();
-    assert_eq!(found(&import::load(&path, &Options::default()).unwrap().motion), found(&motion));
+    assert_eq!(found(&crate::told::load(&path, &ImportOptions::new()).unwrap().motion), found(&motion));
     std::fs::remove_file(&path).unwrap();
 }
 
@@ -556,7 +556,7 @@ fn a_mesh_whose_points_are_missing_is_refused() {
         "asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 3}}]}],
         "animations": [{"samplers": [], "channels": []}],
     });
-    let error = format!("{:#}", load("points", &text.to_string(), &Options::default()).unwrap_err());
+    let error = format!("{:#}", load("points", &text.to_string(), &ImportOptions::new()).unwrap_err());
     assert!(error.contains("meshes[0]: no such accessor"), "{error}");
 }
 
@@ -565,7 +565,7 @@ fn versions_and_required_extensions_that_are_not_read_are_refused_by_name() {
     let with = |change: &dyn Fn(&mut Value)| {
         let mut builder = spline();
         change(&mut builder.root);
-        load("versions", &builder.text(), &Options::default()).map_err(|error| format!("{error:#}"))
+        load("versions", &builder.text(), &ImportOptions::new()).map_err(|error| format!("{error:#}"))
     };
     for (version, least, wanted) in [
         ("1.0", None, Some("asset.version is `1.0`")),
@@ -617,7 +617,7 @@ fn versions_and_required_extensions_that_are_not_read_are_refused_by_name() {
     let folder = tempfile::TempDir::new().unwrap();
     let path = folder.path().join("draco.gltf");
     std::fs::write(&path, builder.text()).unwrap();
-    let said = format!("{:#}", outside::mesh(&path, &Files::default()).err().unwrap());
+    let said = format!("{:#}", outside::mesh(&path, &Disk::default()).err().unwrap());
     assert!(said.contains("part 0 of the mesh is compressed (KHR_draco_mesh_compression)"), "{said}");
 }
 
@@ -632,11 +632,11 @@ fn bytes_behind_a_binary_are_left_out_with_a_warning() {
     for behind in [&b""[..], b"more"] {
         bytes.extend(behind);
         std::fs::write(&path, &bytes).unwrap();
-        let read = import::load(&path, &Options::default()).unwrap();
-        assert_eq!(read.motion, import::load(&path, &Options::default()).unwrap().motion);
+        let read = crate::told::load(&path, &ImportOptions::new()).unwrap();
+        assert_eq!(read.motion, crate::told::load(&path, &ImportOptions::new()).unwrap().motion);
         warnings.push(read.warnings.iter().filter(|warning| warning.contains("left out") && warning.contains("head")).count());
     }
     assert_eq!(warnings, [0, 1]);
-    let read = import::load(&path, &Options::default()).unwrap();
+    let read = crate::told::load(&path, &ImportOptions::new()).unwrap();
     assert!(read.warnings[0].contains(&format!("4 bytes stand after the {length}")), "{:?}", read.warnings);
 }

@@ -6,8 +6,9 @@ use gltf::animation::util::ReadOutputs;
 use gltf::animation::{Interpolation, Property};
 use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::fit;
-use pantin_convert::import::{self, Options, units};
+use pantin_convert::import::{self, Disk, ImportOptions, units};
 use pantin_convert::motion::Motion;
+use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::{encode, export, fk, verify};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -19,10 +20,10 @@ const SCALAR_BOUND: f64 = 0.02;
 /// Every animation of every file.
 fn motions() -> Vec<(PathBuf, usize, Motion)> {
     let of_file = |path: PathBuf| {
-        let count = import::gltf::list(&path, None).unwrap().len();
+        let count = import::list(&Disk::default(), &path, &ImportOptions::new()).unwrap().len();
         (0..count).map(move |animation| {
-            let options = Options { animation: Some(animation.to_string()), ..Options::default() };
-            let motion = import::load(&path, &options).unwrap_or_else(|error| panic!("{error:#}")).motion;
+            let options = ImportOptions::new().animation(animation.to_string());
+            let motion = crate::told::load(&path, &options).unwrap_or_else(|error| panic!("{error:#}")).motion;
             (path.clone(), animation, motion)
         })
     };
@@ -198,15 +199,15 @@ fn files_convert_expand_and_export_within_the_bound() {
         let height = units::posed_height_cm(&motion).max(motion.rig.cm_per_unit);
         let bound = BOUND * height;
         let rig = encode::rig::encode(&motion.rig).unwrap();
-        let coded = fit(&motion, Level::Fast.plan(bound), SCALAR_BOUND, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Level::Fast.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
         let bytes = encode::clip::encode(&coded, &rig, false).unwrap();
-        let report = verify::verify(&bytes, &[], &motion, bound, SCALAR_BOUND).unwrap();
-        println!("{} {animation}: {} bytes, {:.4} cm of {bound:.4}", path.display(), bytes.len(), report.max_cm);
+        let report = verify::verify(&bytes, &[], &motion, &PoseBound::places(bound), SCALAR_BOUND).unwrap();
+        println!("{} {animation}: {} bytes, {:.4} cm of {bound:.4}", path.display(), bytes.len(), report.place_cm.error);
 
         let expanded = pantin_convert::expand::expand(&pantin::Clip::new_checked(&bytes).unwrap()).unwrap();
         std::fs::write(&written, export::gltf::write(&expanded).unwrap()).unwrap();
-        let options = Options { fps: Some(1.0 / expanded.frame_time), ..Options::default() };
-        let back = import::load(&written, &options).unwrap().motion;
+        let options = ImportOptions::new().fps(1.0 / expanded.frame_time);
+        let back = crate::told::load(&written, &options).unwrap().motion;
         // f32 keeps 24 bits of a place, and errors add up along a limb.
         assert!(far(&expanded, &back) < 1e-5 * height, "{} {animation}: {}", path.display(), far(&expanded, &back));
         assert!(far(&motion, &back) < bound + 1e-5 * height, "{} {animation}", path.display());

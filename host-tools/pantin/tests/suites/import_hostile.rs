@@ -1,6 +1,6 @@
 //! Damaged text of every importer gives an error or a motion that holds together, never a panic.
 
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use std::path::Path;
 
 /// A small generator of repeatable noise (Knuth's MMIX constants).
@@ -44,7 +44,7 @@ fn damaged_files_never_panic() {
         let path = std::env::temp_dir().join(format!("pantin-hostile-{}.{extension}", std::process::id()));
         for _ in 0..400 {
             std::fs::write(&path, damage(text, &mut noise)).unwrap();
-            match import::load(&path, &Options::default()) {
+            match crate::told::load(&path, &ImportOptions::new()) {
                 Ok(read_back) => {
                     let motion = read_back.motion;
                     read += 1;

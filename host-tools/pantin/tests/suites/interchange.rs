@@ -1,7 +1,7 @@
 //! What other programs must read of ours, and joints whose rotation a bound on places would not see.
 
 use super::outputs::{Folder, err};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use serde_json::{Value, json};
 
 /// A figure whose arm turns by 60 degrees about one axis and ends without an End Site.
@@ -29,13 +29,13 @@ Frame Time: 0.0333333
 fn a_leaf_without_an_end_site_gets_one() {
     let folder = Folder::new();
     folder.put("leaf.bvh", LEAF);
-    let loaded = import::load(&folder.path("leaf.bvh"), &Options::default()).unwrap();
+    let loaded = crate::told::load(&folder.path("leaf.bvh"), &ImportOptions::new()).unwrap();
     let site = loaded.motion.rig.joints.last().unwrap();
     assert!(site.end_site && site.parent == Some(1) && site.offset == [0.0, 40.0, 0.0], "{site:?}");
     assert_eq!(loaded.warnings.iter().filter(|warning| warning.contains("End Site")).count(), 1, "{:?}", loaded.warnings);
     folder.done(&["convert", "leaf.bvh", "-o", "leaf.ptn", "--cm-per-unit", "1"]);
     folder.done(&["expand", "leaf.ptn", "-o", "back.bvh"]);
-    let back = import::load(&folder.path("back.bvh"), &Options::default()).unwrap().motion;
+    let back = crate::told::load(&folder.path("back.bvh"), &ImportOptions::new()).unwrap().motion;
     let arm = back.rig.joints.iter().position(|joint| joint.name == "arm").unwrap();
     let turned = &back.values[back.rig.first_channels()[arm]];
     // Half a cm at 40 cm is 0.7 degrees.
@@ -44,7 +44,7 @@ fn a_leaf_without_an_end_site_gets_one() {
     }
     // An End Site of length 0 says that turning does not count.
     folder.put("zero.bvh", LEAF.replace("CHANNELS 1 Xrotation", "CHANNELS 1 Xrotation End Site { OFFSET 0 0 0 }"));
-    let loaded = import::load(&folder.path("zero.bvh"), &Options::default()).unwrap();
+    let loaded = crate::told::load(&folder.path("zero.bvh"), &ImportOptions::new()).unwrap();
     assert_eq!(loaded.motion.rig.joints.len(), 3);
     assert!(loaded.warnings.iter().all(|warning| !warning.contains("End Site")), "{:?}", loaded.warnings);
 }
@@ -144,7 +144,7 @@ fn skin_at_rest() -> String {
 fn a_skin_that_nothing_moves_keeps_its_bones() {
     let folder = Folder::new();
     folder.put("skin.gltf", skin_at_rest());
-    let motion = import::load(&folder.path("skin.gltf"), &Options::default()).unwrap().motion;
+    let motion = crate::told::load(&folder.path("skin.gltf"), &ImportOptions::new()).unwrap().motion;
     let joints: Vec<&str> = motion.rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(joints, ["a", "b"]);
     folder.done(&["convert", "skin.gltf", "-o", "skin.ptn"]);
@@ -311,6 +311,6 @@ fn exported_glb_files_hold_together() {
             }
         }
         // What we write is read by our own importer too.
-        import::load(&folder.path("a.glb"), &Options::default()).unwrap();
+        crate::told::load(&folder.path("a.glb"), &ImportOptions::new()).unwrap();
     }
 }

@@ -1,6 +1,7 @@
 //! Key-frame text: the example of docs/KEYFRAMES.md is read as it says, and mistakes are named with their line.
 
-use pantin_convert::import::{self, Imported, Options};
+use crate::told::Told;
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Interpolation, Keys, Kind, Motion};
 
 /// The first example of the document.
@@ -9,12 +10,12 @@ fn example() -> String {
     text.split("```text\n").nth(1).unwrap().split("```").next().unwrap().to_string()
 }
 
-fn load(name: &str, text: &str) -> anyhow::Result<Imported> {
+fn load(name: &str, text: &str) -> anyhow::Result<Told> {
     let folder = std::env::temp_dir().join(format!("pantin-keyframes-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join(format!("{name}.keys"));
     std::fs::write(&path, text).unwrap();
-    let loaded = import::load(&path, &Options::default());
+    let loaded = crate::told::load(&path, &ImportOptions::new());
     std::fs::remove_file(&path).unwrap();
     loaded
 }
@@ -44,7 +45,7 @@ fn keys<'a>(motion: &'a Motion, name: &str) -> &'a [(usize, f64)] {
 
 #[test]
 fn the_documents_example_is_read() {
-    let Imported { motion, units, warnings, .. } = load("example", &example()).unwrap();
+    let Told { motion, units, warnings, .. } = load("example", &example()).unwrap();
     assert!(warnings.is_empty());
     assert_eq!(units, "units: 1 cm, as the file says");
     assert_eq!((motion.frames, motion.frame_time, motion.looped), (60, 1.0 / 30.0, true));

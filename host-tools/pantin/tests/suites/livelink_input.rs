@@ -1,14 +1,15 @@
 //! Live Link Face CSV: small recordings are read as they say, and mistakes are named with their place.
 
 use super::outputs::{Folder, err};
+use crate::told::load;
 use anyhow::Result;
-use pantin_convert::import::{Options, load};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 
 fn read_as(name: &str, text: impl AsRef<[u8]>) -> Result<(Motion, Vec<String>)> {
     let path = std::env::temp_dir().join(format!("pantin-livelink-{name}-{}.csv", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let read = load(&path, &Options::default());
+    let read = load(&path, &ImportOptions::new());
     std::fs::remove_file(&path).unwrap();
     read.map(|imported| (imported.motion, imported.warnings))
 }

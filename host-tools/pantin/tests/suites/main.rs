@@ -57,6 +57,7 @@ mod source_places;
 mod steer;
 mod table_input;
 mod terminal;
+mod told;
 mod update_command;
 mod vrml_input;
 mod vrml_real_files;

@@ -4,8 +4,9 @@ use crate::real::files;
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::fit::descent::{Level, Plan};
 use pantin_convert::fit::fit;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
+use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::verify::{Report, verify};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +18,7 @@ const GUARD: f64 = 6.0;
 fn coded(motion: &Motion, plan: Plan) -> (usize, Report) {
     let rig = rig::encode(&motion.rig).unwrap();
     let bytes = clip::encode(&fit(motion, plan, SCALAR_PART, &mut |_| ()).unwrap(), &rig, true).unwrap();
-    let report = verify(&bytes, &rig, motion, plan.bound_cm, SCALAR_PART).unwrap();
+    let report = verify(&bytes, &rig, motion, &plan.bound, SCALAR_PART).unwrap();
     (bytes.len(), report)
 }
 
@@ -25,14 +26,14 @@ fn coded(motion: &Motion, plan: Plan) -> (usize, Report) {
 ///
 /// The mean is at least `least` of what was asked for.
 fn saved(path: &Path, mean_cm: f64, least: f64) -> f64 {
-    let motion = import::load(path, &Options::default()).unwrap().motion;
-    let plan = Plan { mean_cm: Some(mean_cm), ..Level::Default.plan(GUARD * mean_cm) };
+    let motion = crate::told::load(path, &ImportOptions::new()).unwrap().motion;
+    let plan = Level::Default.plan(PoseBound { mean_cm: Some(mean_cm), ..PoseBound::places(GUARD * mean_cm) });
     let (bytes, report) = coded(&motion, plan);
-    let (mean, max) = (report.mean_joint_cm, report.max_cm);
+    let (mean, max) = (report.mean_joint_cm, report.place_cm.error);
     assert!((least * mean_cm..=mean_cm).contains(&mean), "{}: {mean} cm in the mean; asked for {mean_cm}", path.display());
-    let filled = |bound_cm: f64| coded(&motion, Level::Default.plan(bound_cm));
+    let filled = |bound_cm: f64| coded(&motion, Level::Default.plan(PoseBound::places(bound_cm)));
     // The bound that leads to this mean: two steps of a proportion.
-    let first = plan.filled_cm();
+    let first = plan.bound.filled_cm();
     let second = first * mean / filled(first).1.mean_joint_cm;
     let (filled_bytes, filled_report) = filled(second);
     let part = bytes as f64 / filled_bytes as f64;

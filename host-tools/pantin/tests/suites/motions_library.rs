@@ -4,7 +4,7 @@
 use pantin::{Bank, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use pantin_convert::expand::expand;
 use pantin_convert::fk::{distance, positions};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,11 @@ fn library() -> (Vec<u8>, BTreeMap<String, Motion>) {
     let folder = tempfile::tempdir().unwrap();
     let bank = folder.path().join("moves.ptb");
     let mut command = Command::new(env!("CARGO_BIN_EXE_pantin"));
-    command.arg("convert").arg(motions().join("library")).args(["--same-form", "--max-error", "0.5cm", "-o"]).arg(&bank);
+    command
+        .arg("convert")
+        .arg(motions().join("library"))
+        .args(["--places-only", "--same-form", "--max-error", "0.5cm", "-o"])
+        .arg(&bank);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let bytes = std::fs::read(bank).unwrap();
@@ -155,15 +159,16 @@ fn motions_that_step_say_when_each_foot_comes_down() {
         ("turn_right", &[RIGHT_FOOT_DOWN, LEFT_FOOT_DOWN]),
     ];
     for (name, events) in expected {
-        let motion =
-            import::load(&motions().join("library").join(name).with_extension("keys"), &Options::default()).unwrap().motion;
+        let motion = crate::told::load(&motions().join("library").join(name).with_extension("keys"), &ImportOptions::new())
+            .unwrap()
+            .motion;
         assert_eq!(motion.events.iter().map(|event| event.name.as_str()).collect::<Vec<_>>(), events, "{name}");
     }
 }
 
 #[test]
 fn the_library_has_the_skeleton_of_the_walk() {
-    let rig = |path: &str| import::load(&motions().join(path), &Options::default()).unwrap().motion.rig;
+    let rig = |path: &str| crate::told::load(&motions().join(path), &ImportOptions::new()).unwrap().motion.rig;
     let (walk, ours) = (rig("walk.keys"), rig("library/walk.keys"));
     assert_eq!(walk.joints.len(), ours.joints.len());
     for (walk, ours) in walk.joints.iter().zip(&ours.joints) {

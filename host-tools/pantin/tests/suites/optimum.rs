@@ -6,6 +6,7 @@ use pantin_convert::encode::entropy::{Alphabet, Sink, cost};
 use pantin_convert::encode::segment::{Running, Segment};
 use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::search::{Effort, Fitted, SEGMENT_BITS, Tube, search};
+use pantin_convert::pose_bound::PoseBound;
 
 const FRAMES: usize = 12;
 const STEP: u8 = 40;
@@ -166,7 +167,7 @@ fn a_wide_search_finds_the_optimum() {
 
 #[test]
 fn default_comes_near_best() {
-    let [default, best] = [Level::Default, Level::Best].map(|level| level.plan(1.0).effort);
+    let [default, best] = [Level::Default, Level::Best].map(|level| level.plan(PoseBound::places(1.0)).effort);
     for frames in [FRAMES, 120] {
         let (mut differ, mut default_bits, mut best_bits) = (0, 0.0, 0.0);
         for case in 0..CASES {

@@ -1,4 +1,5 @@
-//! The clips that boards play of their own are what `pantin convert` makes of our motions by its defaults.
+//! The clips that boards play of their own are what `pantin convert` makes of our motions by its defaults, but for the bound:
+//! they are drawn as lines between joints, so that the places of joints are bounded alone.
 //!
 //! After a change of the motions, the fit or the format, `PANTIN_UPDATE=1 cargo test -p pantin-tools own_clips::` writes them again.
 
@@ -13,7 +14,13 @@ fn motions() -> PathBuf {
 }
 
 fn converted(motion: &Path, clip: &Path) -> Vec<u8> {
-    let out = Command::new(env!("CARGO_BIN_EXE_pantin")).arg("convert").arg(motion).arg("-o").arg(clip).output().unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_pantin"))
+        .args(["convert", "--places-only"])
+        .arg(motion)
+        .arg("-o")
+        .arg(clip)
+        .output()
+        .unwrap();
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     std::fs::read(clip).unwrap()
 }

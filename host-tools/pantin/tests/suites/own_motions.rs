@@ -3,8 +3,9 @@
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::fit::{descent::Level, fit};
 use pantin_convert::fk;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Keys, Motion};
+use pantin_convert::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
 
 /// The way forward.
@@ -25,7 +26,7 @@ fn motions(name: &str) -> PathBuf {
 }
 
 fn load(name: &str) -> Clip {
-    let motion = import::load(&motions(name), &Options::default()).unwrap().motion;
+    let motion = crate::told::load(&motions(name), &ImportOptions::new()).unwrap().motion;
     let places: Vec<_> = (0..motion.frames).map(|frame| fk::positions(&motion.rig, &motion.values, frame)).collect();
     let forward = channel(&motion, FORWARD);
     let stride = (forward[1] - forward[0]) * motion.frames as f64;
@@ -127,7 +128,7 @@ fn has_shape(name: &str, motion: &Motion, frames: usize, key_frames: usize) {
 
 /// What a walk and a run have in common.
 fn goes_on_two_legs(clip: &Clip) {
-    let height = import::units::rest_height_cm(&clip.motion);
+    let height = pantin_convert::import::units::rest_height_cm(&clip.motion);
     assert!((150.0..180.0).contains(&height), "{height} cm");
     let [left, right] = ["left", "right"].map(|side| clip.ahead(clip.joint(&format!("{side}-foot"))));
     let swaps = (0..left.len()).filter(|&i| (left[i] > right[i]) != (left[(i + 1) % left.len()] > right[(i + 1) % left.len()]));
@@ -176,7 +177,7 @@ fn elbow(clip: &Clip, side: &str) -> Vec<f64> {
 /// At 0.5 cm it takes no more than `most` bytes, and `least` channels at least are coded as moving.
 fn costs(clip: &Clip, most: usize, least: usize) {
     let rig = rig::encode(&clip.motion.rig).unwrap();
-    let coded = fit(&clip.motion, Level::Default.plan(0.5), 0.0, &mut |_| ()).unwrap();
+    let coded = fit(&clip.motion, Level::Default.plan(PoseBound::places(0.5)), 0.0, &mut |_| ()).unwrap();
     let bytes = clip::encode(&coded, &rig, false).unwrap();
     let opened = pantin::Clip::new_checked(&bytes).unwrap();
     let (size, moving) = (opened.motion_len(), opened.moving());
@@ -240,7 +241,7 @@ fn the_run_is_a_run() {
 /// Its clip is for whoever reads a knee's angle: the rig names three Euler angles, the clip holds an exponential map.
 #[test]
 fn the_knees_bend_and_are_coded_as_exponential_maps() {
-    let motion = import::load(&motions("kneebend"), &Options::default()).unwrap().motion;
+    let motion = crate::told::load(&motions("kneebend"), &ImportOptions::new()).unwrap().motion;
     let places: Vec<_> = (0..motion.frames).map(|frame| fk::positions(&motion.rig, &motion.values, frame)).collect();
     let clip = Clip { motion, places, stride: 0.0 };
     loops_smoothly(&clip);
@@ -275,7 +276,7 @@ fn both_come_back_from_bvh() {
     for name in ["walk", "run"] {
         let motion = load(name).motion;
         pantin_tools::output::save_bvh(&motion, &path).unwrap();
-        let back = import::load(&path, &Options::default()).unwrap().motion;
+        let back = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
         assert_eq!(back.rig, motion.rig, "{name}: joints, and the unit guessed");
         let pairs = motion.values.iter().flatten().zip(back.values.iter().flatten());
         let far = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! Procedural text: the example of docs/PROCEDURAL.md is read as it says, and mistakes are named with their line.
 
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -14,7 +14,7 @@ fn example() -> String {
 fn load(name: &str, text: &str) -> anyhow::Result<Motion> {
     let path = std::env::temp_dir().join(format!("pantin-procedural-{name}-{}.proc", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let loaded = import::load(&path, &Options::default());
+    let loaded = crate::told::load(&path, &ImportOptions::new());
     std::fs::remove_file(&path).unwrap();
     loaded.map(|imported| imported.motion)
 }
@@ -75,7 +75,7 @@ fn mistakes_are_named_with_their_line() {
 #[test]
 fn the_wave_closes_its_loop_with_both_feet_on_the_floor() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/wave.proc");
-    let motion = import::load(&path, &Options::default()).unwrap().motion;
+    let motion = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
     for (channel, values) in motion.values.iter().enumerate() {
         let bend = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs();
         let inside = values.windows(3).map(|w| bend(w[0], w[1], w[2])).fold(0.0, f64::max);

@@ -108,7 +108,13 @@ fn quaternions_keep_the_bound_against_the_file_too() {
 #[test]
 fn clips_of_others_keep_their_bound_against_the_file() {
     for path in files(&["glb", "gltf"]) {
-        let count = pantin_convert::import::gltf::list(&path, None).unwrap().len();
+        let count = pantin_convert::import::list(
+            &pantin_convert::import::Disk::default(),
+            &path,
+            &pantin_convert::import::ImportOptions::new(),
+        )
+        .unwrap()
+        .len();
         for animation in 0..count.min(2) {
             let number = animation.to_string();
             let back = converted_by(&path, 0.02, &["--animation", &number]);

@@ -20,7 +20,10 @@ fn pantin(arguments: &[&str], paths: &[&Path]) -> std::process::Output {
 static BANK: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     let [library, bank] = ["library.ptb", "character.ptb"].map(|name| folder.path().join(name));
-    let made = pantin(&["convert", "--same-form", "--max-error", "0.5cm", "-o"], &[&library, &motions().join("library")]);
+    let made = pantin(
+        &["convert", "--places-only", "--same-form", "--max-error", "0.5cm", "-o"],
+        &[&library, &motions().join("library")],
+    );
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let made = pantin(&["machine", "-o"], &[&bank, "--bank".as_ref(), &library, &motions().join("character.toml")]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
@@ -189,7 +192,7 @@ fn captured(machine: &str) -> Vec<u8> {
     std::fs::write(path("m.toml"), machine).unwrap();
     let [library, bank] = ["library.ptb", "m.ptb"].map(path);
     let clips = [path("walk.keys"), path("stand.keys")];
-    let made = pantin(&["convert", "--same-form", "-o"], &[&library, &clips[0], &clips[1]]);
+    let made = pantin(&["convert", "--places-only", "--same-form", "-o"], &[&library, &clips[0], &clips[1]]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let made = pantin(&["machine", "-o"], &[&bank, "--bank".as_ref(), &library, &path("m.toml")]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));

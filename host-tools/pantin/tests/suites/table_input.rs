@@ -1,13 +1,14 @@
 //! Tables: columns of any name are read, and mistakes are named with their place.
 
+use crate::told::load;
 use anyhow::Result;
-use pantin_convert::import::{Options, load, table};
+use pantin_convert::import::{ImportOptions, table};
 use pantin_convert::motion::Motion;
 
 fn read_with(name: &str, text: impl AsRef<[u8]>, fps: Option<f64>) -> Result<(Motion, Vec<String>)> {
     let path = std::env::temp_dir().join(format!("pantin-table-{name}-{}.csv", std::process::id()));
     std::fs::write(&path, text).unwrap();
-    let read = load(&path, &Options { fps, ..Options::default() });
+    let read = load(&path, &ImportOptions::new().fps(fps));
     std::fs::remove_file(&path).unwrap();
     read.map(|imported| (imported.motion, imported.warnings))
 }

@@ -1,26 +1,27 @@
 //! VRML from small worlds of our own: what is read, what is refused, and that neither takes long.
 
+use crate::told::Told;
 use pantin_convert::fk;
-use pantin_convert::import::{self, Imported, Options};
+use pantin_convert::import::ImportOptions;
 use std::time::{Duration, Instant};
 
-fn load_as(world: &str, options: &Options) -> Result<Imported, String> {
+fn load_as(world: &str, options: &ImportOptions) -> Result<Told, String> {
     let name = format!("pantin-vrml-{}-{:?}.wrl", std::process::id(), std::thread::current().id());
     let path = std::env::temp_dir().join(name);
     std::fs::write(&path, world).unwrap();
     let started = Instant::now();
-    let read = import::load(&path, options).map_err(|error| format!("{error:#}"));
+    let read = crate::told::load(&path, options).map_err(|error| format!("{error:#}"));
     assert!(started.elapsed() < Duration::from_secs(5), "it took {:?}", started.elapsed());
     std::fs::remove_file(&path).unwrap();
     read
 }
 
-fn load(world: &str) -> Result<Imported, String> {
-    load_as(world, &Options { cm_per_unit: Some(1.0), ..Options::default() })
+fn load(world: &str) -> Result<Told, String> {
+    load_as(world, &ImportOptions::new().cm_per_unit(1.0))
 }
 
 /// The world's place of a joint.
-fn place(imported: &Imported, joint: &str, frame: usize) -> [f64; 3] {
+fn place(imported: &Told, joint: &str, frame: usize) -> [f64; 3] {
     let motion = &imported.motion;
     let index = motion.rig.joints.iter().position(|entry| entry.name == joint).unwrap_or_else(|| panic!("no {joint}"));
     fk::positions(&motion.rig, &motion.values, frame)[index]
@@ -138,12 +139,12 @@ fn of_several_clocks_the_longest_is_read_and_another_can_be_chosen() {
     assert!(leg.warnings.iter().any(|warning| warning.contains("2 time sensors; `T` with 2 s is read")), "{:?}", leg.warnings);
     assert!(leg.warnings.iter().any(|warning| warning.contains("1 interpolators")), "{:?}", leg.warnings);
     for choice in ["short", "1"] {
-        let options = Options { animation: Some(choice.into()), cm_per_unit: Some(1.0), ..Options::default() };
+        let options = ImportOptions::new().animation(choice).cm_per_unit(1.0);
         let short = load_as(&world, &options).unwrap();
         assert_eq!(short.motion.frames, 16);
         near(place(&short, "foot", 15), [8.0, 0.0, 0.0]);
     }
-    let options = Options { animation: Some("none".into()), ..Options::default() };
+    let options = ImportOptions::new().animation("none");
     assert!(load_as(&world, &options).unwrap_err().contains("there are 0 (T), 1 (short)"));
 }
 

@@ -3,7 +3,7 @@
 
 use crate::real::{SAME, converts, distance, files, height};
 use pantin_convert::fk;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::ImportOptions;
 use std::collections::HashMap;
 
 type Matrix = [[f64; 4]; 4];
@@ -155,7 +155,7 @@ impl World {
 #[test]
 fn joints_stand_where_the_scene_graph_has_them() {
     for path in files(&["wrl"]) {
-        let motion = import::load(&path, &Options::default()).unwrap_or_else(|error| panic!("{error:#}")).motion;
+        let motion = crate::told::load(&path, &ImportOptions::new()).unwrap_or_else(|error| panic!("{error:#}")).motion;
         let world = parse(&std::fs::read_to_string(&path).unwrap());
         let sensor = world.nodes.values().find(|node| node.kind == "TimeSensor").unwrap();
         let cycle = sensor.fields["cycleInterval"][0];
@@ -179,7 +179,7 @@ fn joints_stand_where_the_scene_graph_has_them() {
 #[test]
 fn worlds_convert_and_expand_within_the_bound() {
     for path in files(&["wrl"]) {
-        let motion = import::load(&path, &Options::default()).unwrap().motion;
+        let motion = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
         converts(&path.display().to_string(), &motion);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::motion::Motion;
 
 use super::reference::{self, Reference};
@@ -20,7 +20,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let Some(clips) = reference::all(setting)? else { return Ok(vec![]) };
     let (mut rows, mut more) = (vec![], [vec![], vec![]]);
     for clip in &clips {
-        let options = Options { cm_per_unit: clip.cm_per_unit(), ..Options::default() };
+        let options = ImportOptions::new().cm_per_unit(clip.cm_per_unit());
         let motion = import::load(&clip.path, &options)?.motion;
         if (motion.frame_time * 120.0 - 1.0).abs() > 0.01 {
             continue;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, ensure};
 use pantin_convert::fk;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::motion::{Joint, Motion, Rig};
 
 /// Distances in cm over all frames.
@@ -25,7 +25,7 @@ pub const SHELL_CM: f64 = 3.0;
 
 /// Compares two motion files of one figure.
 pub fn between(original: &Path, other: &Path, cm_per_unit: Option<f64>) -> Result<Distance> {
-    let load = |path| import::load(path, &Options { cm_per_unit, ..Options::default() }).map(|imported| imported.motion);
+    let load = |path| import::load(path, &ImportOptions::new().cm_per_unit(cm_per_unit)).map(|imported| imported.motion);
     let (original, mut other) = (load(original)?, load(other)?);
     other.rig.cm_per_unit = original.rig.cm_per_unit;
     ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
@@ -93,6 +93,7 @@ mod tests {
             values: vec![vec![angle]],
             keys: vec![None],
             looped: false,
+            origin: Default::default(),
             events: vec![],
         };
         let distance = of(&turned(0.0), &turned(60.0));

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use harness::paths;
 use harness::qemu::{LM3S6965EVB, MICROBIT, Machine};
 use pantin_convert::expand::expand;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::motion::Motion;
 use pantin_face::{Binding, FaceRenderer, Morph, VERTICES, Weights};
 
@@ -171,7 +171,7 @@ fn recordings(setting: &Setting) -> Result<(Vec<Goal>, Clips)> {
 }
 
 fn measure(setting: &Setting, name: &'static str, path: &Path, most: f64) -> Result<(Row, PathBuf)> {
-    let motion = import::load(path, &Options::default())?.motion;
+    let motion = import::load(path, &ImportOptions::new())?.motion;
     let options = ["--max-scalar-error".to_owned(), PERCENT.to_string()];
     let made = setting.tool.converted(path, &format!("face-{name}-{PERCENT}percent"), &options)?;
     let bytes = std::fs::read(&made.clip).with_context(|| made.clip.display().to_string())?;

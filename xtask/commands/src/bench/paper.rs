@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use harness::paths;
 use pantin_convert::fit::bounds::EXACT_DEGREES;
-use pantin_convert::import::{self, Options};
+use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::motion::{Kind, Motion};
 
 use super::tool::{self, Converted};
@@ -112,7 +112,7 @@ fn row(name: &str, bound: &str, keys: Option<&Keys>, papers: f64, made: &Convert
 
 /// The walk's first frames, the walk, and the walk walked again.
 fn saving(setting: &Setting) -> Result<Vec<Goal>> {
-    let walk = import::load(&paths::root().join("motions/walk.keys"), &Options::default())?.motion;
+    let walk = import::load(&paths::root().join("motions/walk.keys"), &ImportOptions::new())?.motion;
     let whole = walk.frames;
     let lengths = [whole / 8, whole / 4, whole / 2, whole, 2 * whole, 4 * whole];
     let (mut rows, mut points) = (vec![], vec![]);

@@ -60,7 +60,7 @@ pub fn read(path: &Path, options: &Request) -> Result<Source> {
     }
     notes.extend(nodes::unused(&scene, left_out));
     let (error, sampled) = (figure.error, options.fps.is_some());
-    Ok(Source { motion: figure.motion, unit_known: true, error, sampled, notes })
+    Ok(Source { unit_known: true, error, sampled, ..Source::plain(figure.motion, notes) })
 }
 
 /// Half of the step in which the format counts time, in seconds. A frame's time may be a little before that of its key, where a stepped curve still has the value of

@@ -82,7 +82,7 @@ pub fn read(path: &Path, options: &Request) -> Result<Source> {
     motion.add_events(events(&file.root.animations[number], &grid, motion.frames, &mut notes));
     let error = from_transforms::error(&motion, &worlds.iter().map(Vec::as_slice).collect::<Vec<_>>());
     notes.extend(doubts(&file, &tree, &motion, options));
-    Ok(Source { motion, unit_known: true, error, sampled: options.fps.is_some(), notes })
+    Ok(Source { unit_known: true, error, sampled: options.fps.is_some(), ..Source::plain(motion, notes) })
 }
 
 /// The animation that the user names, by name or by number from 0, or the first.

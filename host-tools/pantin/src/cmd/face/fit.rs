@@ -5,12 +5,12 @@ use crate::cmd::render::Moment;
 use crate::face::fit::{Fit, LEAST};
 use crate::face::head::{Vector, plus};
 use crate::face::{Face, exact, fit, outside, points, pose};
+use crate::memory;
 use crate::output::{Wanted, check, is_json, outln, progress, refuse_foreign, report, write_whole};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{ChannelState, Player};
-use pantin_convert::expand::expand;
+use pantin_convert::expand::expand_within;
 use pantin_convert::import;
-use pantin_convert::input;
 use pantin_convert::motion::Motion;
 use pantin_face::{Binding, Morph, VERTICES, Weights};
 use rayon::prelude::*;
@@ -132,7 +132,7 @@ fn extension(path: &Path) -> Option<String> {
 }
 
 fn obj(path: &Path) -> Result<Vec<Vector>> {
-    let text = String::from_utf8(input::read(path)?).with_context(|| path.display().to_string())?;
+    let text = String::from_utf8(memory::read(path)?).with_context(|| path.display().to_string())?;
     outside::obj_points(path, &text)
 }
 
@@ -176,9 +176,9 @@ fn of_motion(arguments: &Arguments, face: &Face) -> Result<Poses> {
     let motion = match extension(path).as_deref() {
         Some("ptn") => {
             let files = Files::read(path, arguments.rig.as_deref())?;
-            expand(&files.open_alone().with_context(|| path.display().to_string())?)?
+            expand_within(&files.open_alone().with_context(|| path.display().to_string())?, memory::limit())?
         }
-        _ => import::load(path, &import::Options::default())?.motion,
+        _ => import::import(&memory::disk(), path, &import::ImportOptions::new().memory(memory::limit()))?.motion,
     };
     let scalars = motion.values.len() - motion.rig.scalars.len();
     let known = |name: &str| face.blueprint.names.iter().any(|drive| drive.name == name);
@@ -205,10 +205,10 @@ fn rate(motion: &Motion) -> f64 {
 /// Poses of another mesh, by its feature points.
 fn of_others(arguments: &Arguments, face: &Face, extension: Option<&str>, points: &Path) -> Result<Poses> {
     let path = &arguments.target;
-    let text = input::read(points)?;
+    let text = memory::read(points)?;
     let points = points::parse(&String::from_utf8_lossy(&text)).with_context(|| points.display().to_string())?;
     let paths = if path.is_dir() { objs(path)? } else { vec![path.clone()] };
-    let files = import::Files::default();
+    let files = memory::disk();
     let neutral = outside::mesh(arguments.neutral.as_ref().unwrap_or(&paths[0]), &files)?;
     for (name, &vertex) in &points {
         let count = neutral.points.len();
@@ -217,7 +217,7 @@ fn of_others(arguments: &Arguments, face: &Face, extension: Option<&str>, points
     let matched = fit::Matched::new(&face.head, &neutral, &points)?;
     let rows = |pose: &[Vector]| matched.rows(&face.head, &neutral.points, pose);
     if !path.is_dir() && matches!(extension, Some("glb" | "gltf")) && !neutral.targets.is_empty() {
-        let motion = import::load(path, &import::Options::default())?.motion;
+        let motion = import::import(&memory::disk(), path, &import::ImportOptions::new().memory(memory::limit()))?.motion;
         let first = motion.values.len() - motion.rig.scalars.len();
         // A scalar is called as its target, or ends with it.
         let target = |name: &str| neutral.names.iter().position(|target| name == target || name.ends_with(&format!(".{target}")));

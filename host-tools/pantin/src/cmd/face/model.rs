@@ -4,9 +4,10 @@ use super::face_picture;
 use crate::cmd::check_read;
 use crate::face::blueprint::Blueprint;
 use crate::face::{Face, cartoon, compact, error, onmesh, outside, points, sheet, small};
+use crate::memory;
 use crate::output::{Wanted, check, note, refuse_foreign, report, write_together};
 use anyhow::{Context, Result};
-use pantin_convert::import::Files;
+use pantin_convert::import::{self, Files};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         refuse_foreign(names, Wanted::Names)?;
     }
     check(&inputs, &outputs)?;
-    let files = Files::default();
+    let files = memory::disk();
     let mut blueprint: Blueprint = match (&arguments.mesh, &arguments.points) {
         (Some(path), Some(points)) => on_mesh(path, points, &files)?,
         (Some(path), None) => outside::model(path, &files)?,
@@ -113,17 +114,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// The face of filled shapes of a table.
-fn of_shapes(table: Option<&Path>, files: &Files) -> Result<Blueprint> {
+fn of_shapes(table: Option<&Path>, files: &dyn Files) -> Result<Blueprint> {
     let face = Face::new()?;
     let Some(path) = table else { return cartoon::build(&face.head, &face.blueprint, cartoon::TABLE) };
-    let text = String::from_utf8(files.read(path)?.to_vec()).with_context(|| path.display().to_string())?;
+    let text = String::from_utf8(import::read_from(files, path)?).with_context(|| path.display().to_string())?;
     cartoon::build(&face.head, &face.blueprint, &text).with_context(|| path.display().to_string())
 }
 
 /// The paper's units on a mesh. Prints the feature points that are missing.
-fn on_mesh(path: &Path, points: &Path, files: &Files) -> Result<Blueprint> {
+fn on_mesh(path: &Path, points: &Path, files: &dyn Files) -> Result<Blueprint> {
     let mesh = outside::mesh(path, files)?;
-    let text = files.read(points)?;
+    let text = import::read_from(files, points)?;
     let points = points::parse(&String::from_utf8_lossy(&text)).with_context(|| points.display().to_string())?;
     let built = onmesh::build(&mesh, &points).with_context(|| path.display().to_string())?;
     if !built.missing.is_empty() {

@@ -1,9 +1,9 @@
 //! `pantin face speak`
 
 use crate::face::speak;
+use crate::memory;
 use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
 use anyhow::{Context, Result, ensure};
-use pantin_convert::input;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let track = match &arguments.wav {
         Some(path) => {
             let place = || path.display().to_string();
-            speak::of_wav(&input::read(path)?, &format!("The level of {}.", place())).with_context(place)?
+            speak::of_wav(&memory::read(path)?, &format!("The level of {}.", place())).with_context(place)?
         }
         None => {
             let phonemes = if arguments.rules { None } else { phonemes(text)? };

@@ -6,6 +6,7 @@ mod output;
 use super::{Files, check_read, default_output, format_of, up_axis};
 use crate::face::cast::drives;
 use crate::face::{Face, cartoon, compact};
+use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
 use crate::render::chart;
 use crate::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
@@ -14,8 +15,7 @@ use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
 use pantin::Up;
-use pantin_convert::expand::expand;
-use pantin_convert::input;
+use pantin_convert::expand::expand_within;
 use pantin_face::Model;
 use pantin_figure::{Track, View};
 use serde_json::json;
@@ -174,7 +174,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         if let Some(option) = arguments.option_of_figures() {
             bail!("{}: {option} does not apply to a clip without joints, which is drawn as a chart", arguments.input.display());
         }
-        chart::write(&mut file, &expand(&clip)?)?;
+        chart::write(&mut file, &expand_within(&clip, memory::limit())?)?;
     } else {
         let joints = clip.rig().joint_count() > 0;
         ensure!(joints || arguments.up.is_none(), "{}: --up does not apply to a clip without joints", arguments.input.display());
@@ -215,7 +215,7 @@ impl Arguments {
                 "{}: a model has its interpolations; `pantin face model --interpolation` writes one with others",
                 place()
             );
-            return input::read(path).with_context(place);
+            return memory::read(path).with_context(place);
         }
         if self.interpolation.is_empty() {
             return Ok(if is_cartoon { pantin_face::CARTOON } else { pantin_face::MODEL }.to_vec());

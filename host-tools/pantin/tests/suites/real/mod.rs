@@ -11,6 +11,7 @@ use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::fit;
 use pantin_convert::import::units;
 use pantin_convert::motion::Motion;
+use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::{encode, expand, fk, verify};
 
 /// Part of the figure's height, and of scalars' full scale, that conversions keep to.
@@ -27,9 +28,9 @@ pub fn height(motion: &Motion) -> f64 {
 pub fn converts(name: &str, motion: &Motion) {
     let bound = BOUND * height(motion);
     let rig = encode::rig::encode(&motion.rig).unwrap();
-    let coded = fit(motion, Level::Fast.plan(bound), SCALAR_BOUND, &mut |_| ()).unwrap();
+    let coded = fit(motion, Level::Fast.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
     let bytes = encode::clip::encode(&coded, &rig, false).unwrap();
-    verify::verify(&bytes, &[], motion, bound, SCALAR_BOUND).unwrap();
+    verify::verify(&bytes, &[], motion, &PoseBound::places(bound), SCALAR_BOUND).unwrap();
     let back = expand::expand(&pantin::Clip::new_checked(&bytes).unwrap()).unwrap();
     assert_eq!((back.frames, back.rig.joints.len()), (motion.frames, motion.rig.joints.len()));
     let (mut worst, mut worst_scalar) = (0f64, 0f64);
