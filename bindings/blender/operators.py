@@ -1,5 +1,6 @@
 """What a user can do: export, preview, import."""
 
+import warnings
 from pathlib import Path
 
 import bpy
@@ -45,25 +46,35 @@ def armature_of(context):
     return active
 
 
-def convert(context):
-    """A clip of the active action."""
+def convert(context, report):
+    """A clip of the active action. `report` shows what is odd about it, as that of an operator does."""
     settings = context.scene.pantin
     motion = capture(context, armature_of(context), settings.deforming_only)
     manager = context.window_manager
     manager.progress_begin(0, 1)
     try:
         options = {"max_scalar_error": settings.scalar_bound, "effort": settings.effort}
-        clip = pantin.convert(motion, settings.bound, progress=manager.progress_update, **options)
+        with warnings.catch_warnings():
+            # They are shown below, each time.
+            warnings.simplefilter("ignore", pantin.ConversionWarning)
+            clip = pantin.convert(motion, settings.bound, progress=manager.progress_update, **options)
     finally:
         manager.progress_end()
-    report = clip.report
+    measured = clip.report
     parts = [f"{clip.nbytes} bytes, {clip.frames} frames"]
     if clip.joints:
-        parts.append(f"{report['max_error_cm']:.3f} cm off at most ({report['worst_joint']} at frame {report['worst_frame']})")
+        parts.append(f"{measured['max_error_cm']:.3f} cm off at most ({measured['worst_joint']} at frame {measured['worst_frame']})")
     if clip.scalar_names:
-        parts.append(f"weights {report['max_scalar_error_percent']:.2f} % off at most")
+        parts.append(f"weights {measured['max_scalar_error_percent']:.2f} % off at most")
     settings.result = "; ".join(parts)
+    show_notes(clip, report)
     return clip
+
+
+def show_notes(clip, report):
+    """Reports all notes about a clip. Their hints name arguments of Python, which the panel has not."""
+    for note in clip.report["notes"]:
+        report({"WARNING" if note.severity == "warning" else "INFO"}, note.text)
 
 
 def show(clip, frame):
@@ -101,7 +112,7 @@ class PANTIN_OT_export(Guarded, bpy.types.Operator, ExportHelper):
     filter_glob: bpy.props.StringProperty(default="*.ptn", options={"HIDDEN"})
 
     def run(self, context):
-        convert(context).save(self.filepath)
+        convert(context, self.report).save(self.filepath)
         return context.scene.pantin.result
 
 
@@ -112,7 +123,7 @@ class PANTIN_OT_preview(Guarded, bpy.types.Operator):
     bl_label = "Preview"
 
     def run(self, context):
-        clip = convert(context)
+        clip = convert(context, self.report)
         action = armature_of(context).animation_data.action
         first = int(action.frame_range[0]) if action else context.scene.frame_start
         show(clip, context.scene.frame_current - first)
@@ -134,8 +145,9 @@ class PANTIN_OT_import(Guarded, bpy.types.Operator, ImportHelper):
         active = context.object
         armature = active if active is not None and active.type == "ARMATURE" and not self.new_armature else None
         armature, left = apply(context, clip, Path(self.filepath).stem, armature)
-        without = f"; nothing is called {', '.join(left[:5])}" if left else ""
-        return f"{clip.frames} frames for `{armature.name}`{without}"
+        if left:
+            self.report({"WARNING"}, f"no bone, shape key or property is called {', '.join(left)}")
+        return f"{clip.frames} frames for `{armature.name}`"
 
 
 def export_entry(menu, _context):

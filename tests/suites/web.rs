@@ -143,6 +143,19 @@ fn the_modules_stand_whatever_bytes_they_get() {
 }
 
 #[test]
+fn the_converter_reports_what_the_library_does() {
+    if skipped("the page's converter") {
+        return;
+    }
+    assert!(!STAGE.1.is_empty(), "it was built");
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/converter.mjs")).arg(paths::root().join("target/web").join(web::CONVERTER[1]));
+    let output = node.arg(paths::root().join("tests/odd")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
 fn everything_on_the_page_can_be_used() {
     if !skipped("the page's controls") {
         drive("controls", json!({ "clip": own("run.ptn"), "frames": 26 }));
@@ -347,7 +360,7 @@ fn what_cannot_be_converted_is_refused_in_words() {
         "nonsense.bvh:4",
         "picture.png: unknown kind of file",
         "short.glb: the file is shorter than its head says",
-        "“Frames per second” gives the frames a second",
+        "“Frames per second” states it",
     ];
     for (outcome, words) in outcomes.as_array().unwrap().iter().zip(words) {
         assert!(outcome["said"].as_str().unwrap().contains(words), "{outcome} should say {words}");

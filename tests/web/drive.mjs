@@ -660,8 +660,8 @@ const cases = {
     assert.deepEqual([kept.trouble, kept.hidden], ["That was no file.", false]);
     // Two bodies; a body and a face; a file that nothing needs.
     const two = await files(args.bvh, args.other, args.text);
-    assert.match(two.said, /other\.bvh was left out: one body/);
-    assert.match(two.said, /notes\.txt was left out: nothing refers to it/);
+    assert.match(two.said, /other\.bvh: left out: one body/);
+    assert.match(two.said, /notes\.txt: left out: nothing refers to it/);
     const both = await files(args.face, args.bvh);
     assert.match(both.said, /body and face are one clip/);
     assert.deepEqual(await page.evaluate(() => [converted.facts.joints > 10, converted.facts.scalars]), [true, 2]);

@@ -283,19 +283,38 @@ gallery().catch((error) => table($("facts"), [["gallery", error.message]]));
 
 let worker = null;
 
-// The encoder speaks of the host tool's options: here they are fields, or files.
-const WORDS = [
-  ["--fps", "\u201cFrames per second\u201d"],
-  ["--cm-per-unit", "\u201ccm per unit\u201d"],
-  ["--animation takes another, --list shows all", "\u201cAnimation\u201d takes another"],
-  ["--skeleton FILE gives one", "drop it together with the motion"],
-  ["this pantin is built without FBX; build it with `--features fbx`, which needs a C compiler", "this page does not read FBX; export the motion as glTF or BVH"],
-  ["`pantin expand` turns a clip back into one", "drop it alone to play it"],
-];
-const here = (text) => WORDS.reduce((text, [theirs, ours]) => text.replaceAll(theirs, ours), text);
+// The page's words for what the converter reports by name: its own fields, where it has one.
+const SETTINGS = {
+  "frame-rate": "\u201cFrames per second\u201d",
+  unit: "\u201ccm per unit\u201d",
+  animation: "\u201cAnimation\u201d",
+  "max-error": "\u201cLargest error\u201d",
+  effort: "\u201cEffort\u201d",
+};
+const REMEDIES = {
+  "state-frame-rate": "\u201cFrames per second\u201d states it",
+  "change-frame-rate": "\u201cFrames per second\u201d changes it",
+  "lower-frame-rate": "lower \u201cFrames per second\u201d",
+  "state-unit": "\u201ccm per unit\u201d changes it",
+  "state-centimetre": "if its unit is the centimetre, enter 1 as \u201ccm per unit\u201d",
+  "choose-animation": "\u201cAnimation\u201d takes another",
+  "give-skeleton": "drop it together with the motion",
+  "choose-skeleton": "drop the motion with one skeleton",
+  "raise-memory": "the command-line tool converts larger motions",
+  "loosen-bound": "raise \u201cLargest error\u201d",
+};
+
+// A note or an error as a sentence: its own words, or the page's where it has a field for it.
+function sentence({ kind, text, file, place, setting, remedy }) {
+  const name = SETTINGS[setting];
+  if (kind === "no-effect" && name) text = `${name} has no effect on this motion`;
+  else if (kind === "setting" && name) text = `${name}: ${text}`;
+  const where = place ?? file;
+  return [where, text].filter(Boolean).join(": ") + (REMEDIES[remedy] ? `; ${REMEDIES[remedy]}` : "");
+}
 
 function trouble(text) {
-  $("trouble").textContent = here(text);
+  $("trouble").textContent = text;
 }
 
 function done() {
@@ -375,7 +394,8 @@ function convert(effort = $("effort").value) {
     if (data.progress !== undefined) {
       $("progress").value = data.progress;
       $("step").textContent = `fitting, ${Math.floor(100 * data.progress)} %`;
-    } else if (data.error) failed(data.error);
+    } else if (data.refused) failed(sentence(data.refused));
+    else if (data.error) failed(data.error);
     else {
       done();
       shown(data, given).catch((error) => trouble(error.message));
@@ -430,9 +450,12 @@ async function shown({ report, clip, header, rig, poses, seconds }, files) {
     ["frames, channels", `${frames}, ${channels}`],
     ["converted in", `${seconds.toFixed(1)} s`],
   ]);
-  $("said").replaceChildren(...report.said.map((sentence) => {
+  // Warnings first.
+  const notes = [...report.notes].sort((a, b) => (b.severity === "warning") - (a.severity === "warning"));
+  $("said").replaceChildren(...notes.map((note) => {
     const item = document.createElement("li");
-    item.textContent = here(sentence);
+    item.className = note.severity;
+    item.textContent = sentence(note);
     return item;
   }));
   const table_ = { rig, poses, frames, frameTime: frame_time_ns, lengthExponent: length_exponent };

@@ -45,7 +45,7 @@ async function convert({ files, options }) {
   const good = wasm.convert(put(words), words.length);
   const seconds = (performance.now() - begun) / 1000;
   const report = JSON.parse(new TextDecoder().decode(output(OUTPUTS.REPORT)));
-  if (!good) throw new Error(report.error);
+  if (!good) return { refused: report };
   const [clip, header, rig, poses] = [OUTPUTS.CLIP, OUTPUTS.HEADER, OUTPUTS.RIG, OUTPUTS.POSES].map(output);
   return { report, clip, header, rig, poses: new Int32Array(poses.buffer), seconds };
 }

@@ -203,6 +203,27 @@ def test_the_preview_is_the_display_s_picture():
     assert bpy.context.scene.frame_current == 20
 
 
+def test_every_note_is_reported(monkeypatch):
+    armature = rig()
+    armature.data.bones["arm"].name = "IK_arm"
+    odd = pantin.Note("joints", "warning", "something is odd", joint="arm", hint="another way (argument=)")
+
+    def convert(*given, **options):
+        clip = pantin_convert(*given, **options)
+        clip.report["notes"].append(odd)
+        return clip
+
+    pantin_convert = pantin.convert
+    monkeypatch.setattr(pantin, "convert", convert)
+    seen = []
+    clip = pantin_addon.operators.convert(bpy.context, lambda levels, text: seen.append((*levels, text)))
+    assert len(seen) == len(clip.report["notes"]) and seen[-1] == ("WARNING", "something is odd")
+    assert ("INFO", "the unit is 100 cm, as given") in seen
+    assert any(text.startswith("helper bones are not bounded") for _, text in seen), seen
+    # With the add-on's operators, nothing of it is an error.
+    assert bpy.ops.pantin.preview() == {"FINISHED"}
+
+
 def refused(match, **arguments):
     with pytest.raises(RuntimeError, match=match):
         bpy.ops.pantin.export(**arguments)

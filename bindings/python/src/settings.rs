@@ -20,6 +20,10 @@ pub struct Settings {
     mean_error_percent: Option<f64>,
     max_scalar_error: Option<f64>,
     max_rotation_error: Option<f64>,
+    max_joint_error: Option<f64>,
+    shell_cm: Option<f64>,
+    shell_percent: Option<f64>,
+    places_only: bool,
     max_channel_error: Option<f64>,
     max_accel_error: Option<f64>,
     exact: bool,
@@ -119,6 +123,9 @@ impl Settings {
         options.mean_error = length(Setting::MeanError, self.mean_error_cm, self.mean_error_percent)?;
         options.max_scalar_error = self.max_scalar_error;
         options.max_rotation_error = self.max_rotation_error;
+        options.max_joint_error = self.max_joint_error;
+        options.shell = length(Setting::Shell, self.shell_cm, self.shell_percent)?;
+        options.places_only = self.places_only;
         options.channels = self.channels()?;
         options.index = self.index;
         Ok(options.rig_apart(self.rig_apart).looped(self.looped).footsteps(self.footsteps))
@@ -140,6 +147,10 @@ impl Settings {
             ("mean_error_percent", self.mean_error_percent),
             ("max_scalar_error", self.max_scalar_error),
             ("max_rotation_error", self.max_rotation_error),
+            ("max_joint_error", self.max_joint_error),
+            ("shell_cm", self.shell_cm),
+            ("shell_percent", self.shell_percent),
+            ("places_only", self.places_only.then_some(1.0)),
         ];
         let other = given
             .next()
@@ -175,6 +186,7 @@ impl Settings {
         match setting {
             Setting::MaxError if self.max_error_percent.is_some() => "max_error_percent",
             Setting::MeanError if self.mean_error_percent.is_some() => "mean_error_percent",
+            Setting::Shell if self.shell_percent.is_some() => "shell_percent",
             other => crate::words::keyword(other),
         }
     }
@@ -191,6 +203,8 @@ impl Settings {
             Setting::MeanError => number(self.mean_error_percent.or(self.mean_error_cm)),
             Setting::MaxScalarError => number(self.max_scalar_error),
             Setting::MaxRotationError => number(self.max_rotation_error),
+            Setting::MaxJointError => number(self.max_joint_error),
+            Setting::Shell => number(self.shell_percent.or(self.shell_cm)),
             Setting::MaxChannelError => number(self.max_channel_error),
             Setting::MaxAccelError => number(self.max_accel_error),
             Setting::FrameRate => number(self.fps),
@@ -214,6 +228,7 @@ impl Settings {
             Setting::Loop => flag(self.looped),
             Setting::CloseLoop => flag(self.close_loop),
             Setting::Exact => flag(self.exact),
+            Setting::PlacesOnly => flag(self.places_only),
             _ => None,
         }
     }

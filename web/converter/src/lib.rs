@@ -11,8 +11,9 @@
 #![allow(unsafe_code)]
 
 mod convert;
+mod sources;
 
-use convert::Converted;
+use convert::Outputs;
 use std::cell::RefCell;
 use std::path::PathBuf;
 
@@ -25,7 +26,7 @@ unsafe extern "C" {
 
 thread_local! {
     static FILES: RefCell<Vec<(PathBuf, Vec<u8>)>> = const { RefCell::new(Vec::new()) };
-    static OUTPUTS: RefCell<Converted> = RefCell::default();
+    static OUTPUTS: RefCell<Outputs> = RefCell::default();
 }
 
 /// Reserves a number of bytes, permanently.
@@ -52,7 +53,7 @@ extern "C" fn give(name: *mut u8, name_len: usize, bytes: *mut u8, len: usize) {
     FILES.with_borrow_mut(|files| files.push((String::from_utf8_lossy(&name).into_owned().into(), bytes)));
 }
 
-/// Converts the added files. Returns 1 if there is a clip, 0 if there is none; the report has the reason.
+/// Converts the added files. Returns 1 if there is a clip, 0 if there is none; the report has the reason: `kind`, `setting`, `remedy`, `place` and `text`.
 #[unsafe(no_mangle)]
 extern "C" fn convert(options: *mut u8, len: usize) -> u32 {
     std::panic::set_hook(Box::new(|info| {
@@ -63,7 +64,7 @@ extern "C" fn convert(options: *mut u8, len: usize) -> u32 {
     let options = unsafe { taken(options, len) };
     let made = convert::convert(FILES.take(), &options, &mut |part| progress(part));
     let good = made.is_ok();
-    OUTPUTS.set(made.unwrap_or_else(|error| Converted::failed(&error)));
+    OUTPUTS.set(made.unwrap_or_else(|error| Outputs::failed(&error)));
     good.into()
 }
 

@@ -28,6 +28,10 @@ def convert(
     mean_error_percent: Optional[float] = None,
     max_scalar_error: Optional[float] = None,
     max_rotation_error: Optional[float] = None,
+    max_joint_error: Optional[float] = None,
+    shell_cm: Optional[float] = None,
+    shell_percent: Optional[float] = None,
+    places_only: bool = False,
     max_channel_error: Optional[float] = None,
     max_accel_error: Optional[float] = None,
     exact: bool = False,
@@ -59,17 +63,22 @@ def convert(
 ) -> Clip:
     """Converts a motion file (BVH, AMC, glTF, FBX, VRML, CSV and more) or a `Motion` of arrays to a clip.
 
-    The bound is verified: the device's own decoder plays the clip, and every joint is compared with the motion at every frame.
+    The bound is verified: the device's own decoder plays the clip, and every bounded point is compared with the motion at every frame.
     What was measured is in the clip's `report`, with `notes` about what was done and what is odd. Notes that are warnings are raised as
     `pantin.ConversionWarning`, too.
 
     What the clip must keep:
 
-    max_error_cm, max_error_percent: largest distance of any joint or End Site from its position, in cm or in percent of the figure's height;
-        above 0. Default: 0.5 cm, or 6 times the mean error if that is set.
+    max_error_cm, max_error_percent: largest distance of any bounded point from its position, in cm or in percent of the figure's height; above 0.
+        These points are each joint, each End Site, and the three points of each joint's shell. Default: 0.5 cm, or 6 times the mean error if
+        that is set.
+    shell_cm, shell_percent: distance of the shell's points from their joint, along the joint's axes, so that the bound holds how joints are turned,
+        too. Default: 3 cm, or 3 % of the height of a figure below 1 m.
+    places_only: bound joints and End Sites alone, without their shells, for figures that are drawn as lines.
     mean_error_cm, mean_error_percent: mean distance of all joints, End Sites left out. The clip is as small as this mean allows.
     max_scalar_error: largest error of channels that move no joint, in percent of their full scale, above 0. Default: 2.
-    max_rotation_error: largest rotation error of leaf joints whose End Site has zero length, in degrees, above 0. Default: no bound.
+    max_rotation_error: largest rotation error of any joint in the world, in degrees, above 0 and at most 180. Default: no bound of its own.
+    max_joint_error: the same against the joint's parent: what a servo or a skinned mesh shows.
     max_channel_error: largest error of each channel, in place of all bounds above: degrees for rotations, percent of the range for others.
     max_accel_error: largest error of each channel's second difference, in place of all bounds above: degrees or percent per frame squared.
     exact: code known curves as they are, in place of all bounds above.

@@ -25,6 +25,10 @@ def settings(
     mean_error_percent: Optional[float] = None,
     max_scalar_error: Optional[float] = None,
     max_rotation_error: Optional[float] = None,
+    max_joint_error: Optional[float] = None,
+    shell_cm: Optional[float] = None,
+    shell_percent: Optional[float] = None,
+    places_only: bool = False,
     max_channel_error: Optional[float] = None,
     max_accel_error: Optional[float] = None,
     exact: bool = False,
@@ -60,6 +64,9 @@ def settings(
         "mean_error_percent": mean_error_percent,
         "max_scalar_error": max_scalar_error,
         "max_rotation_error": max_rotation_error,
+        "max_joint_error": max_joint_error,
+        "shell_cm": shell_cm,
+        "shell_percent": shell_percent,
         "max_channel_error": max_channel_error,
         "max_accel_error": max_accel_error,
         "index": index,
@@ -67,7 +74,15 @@ def settings(
         "fps": fps,
         "cm_per_unit": cm_per_unit,
     }
-    flags = {"exact": exact, "rig_apart": rig_apart, "loop": loop, "footsteps": footsteps, "mirror": mirror, "close_loop": close_loop}
+    flags = {
+        "places_only": places_only,
+        "exact": exact,
+        "rig_apart": rig_apart,
+        "loop": loop,
+        "footsteps": footsteps,
+        "mirror": mirror,
+        "close_loop": close_loop,
+    }
     paths = {"joint_map": joint_map, "with_file": with_file, "skeleton": skeleton}
     return {
         **{name: None if value is None else float(value) for name, value in numbers.items()},

@@ -10,12 +10,12 @@ pub fn begins(head: &[u8]) -> bool {
     head.starts_with(b"Kaydara FBX Binary") || head.starts_with(b"; FBX")
 }
 
-/// Says how to build with FBX.
+/// Says what to do instead.
 pub fn read(path: &Path, _: &Request) -> Result<Source> {
-    bail!("{}: this pantin is built without FBX; build it with `--features fbx`, which needs a C compiler", path.display())
+    bail!("{}: this build does not read FBX; export the motion as glTF or BVH", path.display())
 }
 
-/// Says how to build with FBX.
+/// Says what to do instead.
 pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
     read(path, options).map(|_| Vec::new())
 }

@@ -10,12 +10,12 @@ pub fn begins(head: &[u8]) -> bool {
     head.starts_with(b"PK\x03\x04")
 }
 
-/// Returns an error that says how to build with ZIP.
+/// Returns an error that says what to do instead.
 pub fn read(path: &Path, _: &Request) -> Result<Source> {
-    bail!("{}: this pantin is built without ZIP; build it with `--features zip`, or unpack the archive", path.display())
+    bail!("{}: this build does not read ZIP archives; unpack the archive", path.display())
 }
 
-/// Returns an error that says how to build with ZIP.
+/// Returns an error that says what to do instead.
 pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
     read(path, options).map(|_| Vec::new())
 }
