@@ -261,7 +261,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let begin = || output::progress(1000, "fitting {wide_bar} {percent} % {eta} left").unwrap_or_else(|_| ProgressBar::hidden());
     let made = convert(arguments, &|part| bar.get_or_init(begin).set_position((part * 1000.0) as u64))?;
     bar.get_or_init(begin).finish_and_clear();
-    output::report(made.fields().into());
+    let mut fields = made.fields();
+    // Printed already, which puts them into the report.
+    fields.remove("notes");
+    output::report(fields.into());
     made.sentence(arguments.output()).lines().for_each(|line| note!("{line}"));
     Ok(())
 }
@@ -350,16 +353,18 @@ impl Made {
     /// The fields of a report.
     pub fn fields(&self) -> Map<String, Value> {
         let warnings: Vec<String> = self.notes.iter().filter(|note| note.is_warning()).map(words::sentence).collect();
-        let in_words = |note: &Note| {
+        let infos: Vec<String> = self.notes.iter().filter(|note| !note.is_warning()).map(words::sentence).collect();
+        let typed = |note: &Note| {
             let mut fields = note.fields();
             fields.insert("text".into(), words::sentence(note).into());
             fields
         };
-        let notes: Vec<Map<String, Value>> = self.notes.iter().map(in_words).collect();
+        let diagnostics: Vec<Map<String, Value>> = self.notes.iter().map(typed).collect();
         let mut fields = self.json.clone();
         fields.insert("bytes".into(), json!(self.len));
         fields.insert("warnings".into(), json!(warnings));
-        fields.insert("notes".into(), json!(notes));
+        fields.insert("notes".into(), json!(infos));
+        fields.insert("diagnostics".into(), json!(diagnostics));
         fields
     }
 

@@ -25,7 +25,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let mut goals = polynomials()?;
     let guest = Guest::new(LM3S6965EVB, "decode")?;
     let walk = paths::root().join("motions/walk.keys");
-    goals.extend(link(setting, &guest, "our walk", &walk, "walk-0.5cm", &tool::options(0.5, None))?);
+    goals.extend(link(setting, &guest, "our walk", &walk, "walk-0.5cm", &tool::places_options(0.5, None))?);
     if let Some(clip) = reference::named("bvh_xia_strut-walk")? {
         let options = tool::options(1.0, clip.cm_per_unit());
         goals.extend(link(setting, &guest, &clip.name, &clip.path, &format!("{}-1cm", clip.name), &options)?);

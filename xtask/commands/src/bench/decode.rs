@@ -61,7 +61,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let reference = clips.len();
     for name in ["walk", "run"] {
         let path = paths::root().join("motions").join(name).with_extension("keys");
-        let made = setting.tool.converted(&path, &format!("{name}-{BOUND_CM}cm"), &tool::options(BOUND_CM, None))?;
+        let made = setting.tool.converted(&path, &format!("{name}-{BOUND_CM}cm"), &tool::places_options(BOUND_CM, None))?;
         clips.push(Played { name: format!("our {name}"), bytes: std::fs::read(&made.clip)?, path: made.clip });
     }
     let mut goals = vec![];

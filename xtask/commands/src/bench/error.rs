@@ -12,11 +12,12 @@ use pantin_convert::motion::{Joint, Motion, Rig};
 pub struct Distance {
     /// Greatest, End Sites included.
     pub greatest: f64,
-    /// Greatest at joints alone: what peers are compared at.
+    /// Greatest at joints alone.
     pub joints: f64,
-    /// Mean at joints alone.
+    /// Mean shell error of joints: of each, the greatest distance of its place and its three points.
     pub mean: f64,
-    /// Greatest at the points [`SHELL_CM`] from each joint along its own axes, as ACL measures: how the last joints turn counts, too.
+    /// Greatest shell error, which peers are compared at: of all places, and of the points [`SHELL_CM`] from each joint along its own axes, as ACL
+    /// measures.
     pub shell: f64,
 }
 
@@ -37,7 +38,7 @@ pub fn between(original: &Path, other: &Path, cm_per_unit: Option<f64>) -> Resul
 fn of(original: &Motion, other: &Motion) -> Distance {
     let mut distance = Distance::default();
     let [shell, other_shell] = [original, other].map(|motion| with_shell(&motion.rig));
-    let (mut sum, mut count) = (0.0, 0);
+    let (mut sum, mut count, mut shells) = (0.0, 0, Vec::new());
     for frame in 0..original.frames {
         let places = fk::positions(&shell, &original.values, frame);
         let others = fk::positions(&other_shell, &other.values, frame);
@@ -46,14 +47,19 @@ fn of(original: &Motion, other: &Motion) -> Distance {
             distance.greatest = distance.greatest.max(off);
             if !joint.end_site {
                 distance.joints = distance.joints.max(off);
-                (sum, count) = (sum + off, count + 1);
+                shells.push(off);
             }
         }
-        for (p, q) in places.iter().zip(&others).skip(original.rig.joints.len()) {
-            distance.shell = distance.shell.max(fk::distance(*p, *q));
+        // The three points of a joint follow each other.
+        let points = places.iter().zip(&others).skip(original.rig.joints.len()).map(|(p, q)| fk::distance(*p, *q));
+        for (point, off) in points.enumerate() {
+            shells[point / 3] = shells[point / 3].max(off);
         }
+        distance.shell = shells.iter().fold(distance.shell.max(distance.greatest), |most, shell| most.max(*shell));
+        (sum, count) = (sum + shells.iter().sum::<f64>(), count + shells.len());
+        shells.clear();
     }
-    distance.mean = sum / f64::from(count.max(1));
+    distance.mean = sum / count.max(1) as f64;
     distance
 }
 

@@ -36,7 +36,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
             goals
                 .push(Goal::told(format!("our {name} within {degrees} degrees"), format!("{:.0} bytes", made.info.motion_bytes)));
         }
-        let made = setting.tool.converted(&path, &format!("{name}-{BOUND_CM}cm"), &tool::options(BOUND_CM, None))?;
+        let made = setting.tool.converted(&path, &format!("{name}-{BOUND_CM}cm"), &tool::places_options(BOUND_CM, None))?;
         rows.push(row(name, &format!("{BOUND_CM} cm"), Some(&keys), papers, &made));
         let what = format!("our {name} within {BOUND_CM} cm ({} frames, {} moving channels)", made.info.frames, made.info.moving);
         goals.push(Goal::at_most(what, made.info.motion_bytes, most, 0, "bytes"));
@@ -119,7 +119,8 @@ fn saving(setting: &Setting) -> Result<Vec<Goal>> {
     for frames in lengths {
         let path = cut(setting, &walk, frames)?;
         let unit = Some(walk.rig.cm_per_unit);
-        let made = setting.tool.converted(&path, &format!("walk-{frames}-{BOUND_CM}cm"), &tool::options(BOUND_CM, unit))?;
+        let made =
+            setting.tool.converted(&path, &format!("walk-{frames}-{BOUND_CM}cm"), &tool::places_options(BOUND_CM, unit))?;
         rows.push(row("walk", &format!("{BOUND_CM} cm"), None, 0.0, &made));
         points.push((frames as f64, saved(&made)));
     }

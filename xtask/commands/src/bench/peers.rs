@@ -21,11 +21,11 @@ pub struct Clip {
     pub cm_per_unit: f64,
     /// How long it plays.
     pub seconds: f64,
-    /// Bytes against the greatest error of a joint, by peer.
+    /// Bytes against the greatest shell error, by peer.
     pub greatest: BTreeMap<String, Curve>,
-    /// Bytes against the mean error of joints, by peer.
+    /// Bytes against the mean shell error, by peer.
     pub mean: BTreeMap<String, Curve>,
-    /// The mean error of joints in cm, and bytes, of ACL by default, by the precision that it was asked for.
+    /// The mean shell error in cm, and bytes, of ACL by default, by the precision that it was asked for.
     pub acl: BTreeMap<String, (f64, f64)>,
 }
 
@@ -60,9 +60,13 @@ pub fn read(path: &Path) -> Result<Option<BTreeMap<String, Clip>>> {
         };
         let clip = clips.entry(field("clip")?.to_owned()).or_default();
         (clip.cm_per_unit, clip.seconds) = (number("cm_per_unit")?, number("frames")? / number("fps")?);
+        // A row that was not measured at the shell cannot be compared.
+        if field("max_shell_cm")?.is_empty() {
+            continue;
+        }
         let (peer, bytes) = (field("peer")?, number("bytes")?);
-        clip.greatest.entry(peer.to_owned()).or_default().push((number("max_joint_cm")?, bytes));
-        let mean = number("mean_joint_cm")?;
+        clip.greatest.entry(peer.to_owned()).or_default().push((number("max_shell_cm")?, bytes));
+        let mean = number("mean_shell_cm")?;
         clip.mean.entry(peer.to_owned()).or_default().push((mean, bytes));
         if peer == ACL {
             clip.acl.insert(field("setting")?.to_owned(), (mean, bytes));
@@ -72,7 +76,7 @@ pub fn read(path: &Path) -> Result<Option<BTreeMap<String, Clip>>> {
 }
 
 impl Clip {
-    /// The peers' bytes at this greatest error of a joint.
+    /// The peers' bytes at this greatest shell error.
     pub fn at(&self, error: f64) -> Bytes {
         let mut found = Bytes::default();
         for (name, curve) in &self.greatest {
@@ -90,7 +94,7 @@ impl Clip {
         found
     }
 
-    /// The least bytes of any peer, the ideal one too, at this mean error.
+    /// The least bytes of any peer, the ideal one too, at this mean shell error.
     pub fn at_mean(&self, error: f64) -> Option<f64> {
         self.mean.values().filter_map(|curve| at(curve, error)).min_by(f64::total_cmp)
     }

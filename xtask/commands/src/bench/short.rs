@@ -21,7 +21,7 @@ pub fn run(setting: &Setting, clips: &[Reference]) -> Result<Vec<Goal>> {
     let mut goals = cuts(setting, clips)?;
     for (name, most) in SMALL {
         let Some(clip) = clips.iter().find(|clip| clip.name == name) else { continue };
-        let options = tool::options(BOUND_CM, clip.cm_per_unit());
+        let options = tool::shell_options(BOUND_CM, clip.cm_per_unit());
         let made = setting.tool.converted(&clip.path, &format!("{name}-{BOUND_CM}cm"), &options)?;
         goals.push(Goal::at_most(format!("bytes of {name} at {BOUND_CM} cm"), made.info.motion_bytes, most, 0, "bytes"));
     }
@@ -36,7 +36,7 @@ fn cuts(setting: &Setting, clips: &[Reference]) -> Result<Vec<Goal>> {
     for cut in CUTS {
         let mut bytes = vec![];
         for clip in clips {
-            let mut options = tool::options(BOUND_CM, clip.cm_per_unit());
+            let mut options = tool::shell_options(BOUND_CM, clip.cm_per_unit());
             let whole = setting.tool.converted(&clip.path, &format!("{}-{BOUND_CM}cm", clip.name), &options)?;
             if whole.info.frames < 2.0 * cut {
                 continue;
@@ -55,14 +55,14 @@ fn cuts(setting: &Setting, clips: &[Reference]) -> Result<Vec<Goal>> {
 fn noisy(setting: &Setting, clip: &Reference) -> Result<Vec<Goal>> {
     let (mut goals, mut lines) = (vec![], vec![]);
     for (bound, most) in NOISY_BOUNDS {
-        let options = tool::options(bound, clip.cm_per_unit());
+        let options = tool::shell_options(bound, clip.cm_per_unit());
         let made = setting.tool.converted(&clip.path, &format!("{}-{bound}cm", clip.name), &options)?;
         let back = tempfile::Builder::new().suffix(".bvh").tempfile()?;
         setting.tool.expand(&made.clip, back.path())?;
         let got = error::between(&clip.path, back.path(), clip.cm_per_unit())?;
-        let ideal = clip.peers.as_ref().and_then(|peers| peers.at(got.joints).ideal);
+        let ideal = clip.peers.as_ref().and_then(|peers| peers.at(got.shell).ideal);
         let ratio = ideal.map(|ideal| made.info.motion_bytes / ideal);
-        lines.push(vec![bound.to_string(), format!("{:.4}", got.joints), made.info.motion_bytes.to_string(), number(ratio, 3)]);
+        lines.push(vec![bound.to_string(), format!("{:.4}", got.shell), made.info.motion_bytes.to_string(), number(ratio, 3)]);
         let what = format!("bytes of {NOISY} at {bound} cm, relative to an ideal second-difference coder");
         goals.extend(ratio.map(|ratio| match most {
             Some(most) => Goal::at_most(what, ratio, most, 3, ""),

@@ -153,9 +153,20 @@ pub fn options(bound_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
     options
 }
 
-/// The options of a conversion that keeps a mean error.
+/// The options of a conversion that bounds the shell as ACL measures it, whatever the figure's height.
+pub fn shell_options(bound_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
+    [options(bound_cm, cm_per_unit), vec!["--shell".to_owned(), format!("{}cm", super::error::SHELL_CM)]].concat()
+}
+
+/// The options of a conversion that bounds places alone.
+pub fn places_options(bound_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
+    [options(bound_cm, cm_per_unit), vec!["--places-only".to_owned()]].concat()
+}
+
+/// The options of a conversion that keeps a mean error of the same shell.
 pub fn mean_options(mean_cm: f64, cm_per_unit: Option<f64>) -> Vec<String> {
     let mut options = vec!["--mean-error".to_owned(), format!("{mean_cm}cm")];
+    options.extend(["--shell".to_owned(), format!("{}cm", super::error::SHELL_CM)]);
     options.extend(unit(cm_per_unit));
     options
 }
