@@ -36,17 +36,21 @@ impl Angle {
         Angle(((scaled + if scaled < 0 { -180 } else { 180 }) / 360) as i32)
     }
 
-    /// The angle of the vector (x, y) from the x axis, in any unit: within 2^-28 turns for a vector longer than 2^26; 0 for no vector.
+    /// The angle of the vector (x, y) from the x axis, in any unit: within 6 * 2^-32 turns for a vector longer than 2^26; 0 for no vector.
+    ///
+    /// Costs at most 130 instructions on a Cortex-M3.
     pub fn atan2(y: i32, x: i32) -> Angle {
         Angle(crate::trig::atan2(y, x))
     }
 
-    /// [`Angle::atan2`] in half the instructions, within 2^-16 turns.
+    /// [`Angle::atan2`] within 2^-16 turns, by additions and shifts: for processors without a long product, on which it takes a third of the instructions.
     pub fn atan2_coarse(y: i32, x: i32) -> Angle {
         Angle(crate::trig::atan2_coarse(y, x))
     }
 
-    /// Sine and cosine, each within 6e-8.
+    /// Sine and cosine, each within 6e-9, and exact at quarter turns.
+    ///
+    /// Costs at most 110 instructions on a Cortex-M3.
     pub fn sin_cos(self) -> (Component, Component) {
         let (sin, cos) = crate::trig::sin_cos(self.0);
         (Component::from_bits(sin), Component::from_bits(cos))
