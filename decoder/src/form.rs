@@ -103,8 +103,9 @@ impl FormRef<'_> {
         Form::new(self.rig_id, self.length_exponent, self.exponentials.iter().copied())
     }
 
-    /// Whether the joint that stands after `choice` other joints with a choice is coded as an exponential map.
-    pub(crate) fn is_exponential_choice(&self, choice: usize) -> bool {
+    /// Whether a joint is coded as an exponential map that has three rotation channels, as `choice` joints before it have. For a walk over all joints:
+    /// [`FormRef::is_exponential`] counts them again for each joint.
+    pub fn is_exponential_choice(&self, choice: usize) -> bool {
         self.exponentials.get(choice / 8).is_some_and(|byte| byte >> (choice % 8) & 1 != 0)
     }
 

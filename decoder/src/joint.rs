@@ -84,7 +84,8 @@ impl<'a> JointRef<'a> {
         crate::form::order_of(self.kinds)
     }
 
-    pub(crate) fn rig_id(&self) -> u32 {
+    /// The id of its rig: [`Rig::id`].
+    pub fn rig_id(&self) -> u32 {
         self.rig_id
     }
 

@@ -8,7 +8,7 @@ use pantin::{Clip, JointRef, Matrix, Pose, WrongForm};
 ///
 /// ```
 /// # fn reach(player: &pantin::Player) -> Option<()> {
-/// let hand = pantin_figure::JointChain::<32>::to(player.clip(), "LeftHand").ok()?;
+/// let hand = pantin_math::JointChain::<32>::to(player.clip(), "LeftHand").ok()?;
 /// let [x, y, z] = hand.locate(player.pose()).ok()?.position;
 /// println!("{x} {y} {z} cm");
 /// # Some(())
