@@ -153,6 +153,7 @@ impl<'f> From<&'f Form> for FormRef<'f> {
 /// Why a pose cannot be used here: it has another form than the clip for which this was set up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum WrongForm {
     /// The pose is of another rig.
     Rig,

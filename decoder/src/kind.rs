@@ -6,6 +6,7 @@
 /// map's x, y and z in their place: [`Clip::kinds`](crate::Clip::kinds) returns the kinds as coded, and
 /// [`Pose::turn`](crate::Pose::turn) takes care of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kind {
     /// Replaces the x of the joint's offset.
     Xposition,

@@ -28,6 +28,7 @@ pub struct Rig<'a> {
 
 /// The direction of the world that is vertical.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Up(u8);
 
 impl Default for Up {

@@ -38,6 +38,7 @@ use crate::units::{Angle, Component};
 
 /// An axis of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Axis {
     /// The x axis.
     X,
@@ -70,6 +71,7 @@ impl Axis {
 ///
 /// `EulerOrder::ZYX` is the rotation matrix Rz Ry Rx; arrays of its angles hold z, y, x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[allow(missing_docs)]
 pub enum EulerOrder {
     XYZ,

@@ -1,7 +1,7 @@
 //! Units of a pose's values, in types of the `fixed` crate: angles, quaternion components, fractions of a range.
 
 use core::ops::{Add, Neg, Sub};
-use fixed::types::{I0F32, I2F30, I16F16};
+use fixed::types::{I0F32, I2F30, I3F29, I16F16};
 
 /// A component of a quaternion, -2 to 2 (exclusive).
 pub type Component = I2F30;
@@ -66,6 +66,12 @@ impl Angle {
         I16F16::from_bits(((self.0 as i64 * 360 + (1 << 15)) >> 16) as i32)
     }
 
+    /// In radians: -pi to pi, rounded to 2^-29.
+    pub const fn radians(self) -> I3F29 {
+        // pi / 4, times 2^31: a half turn, 2^31, becomes pi in Q29.
+        I3F29::from_bits(((self.0 as i64 * 1_686_629_713 + (1 << 30)) >> 31) as i32)
+    }
+
     /// In hundredths of a degree: -18000 to 18000, rounded to the nearest.
     pub const fn centidegrees(self) -> i32 {
         ((self.0 as i64 * 36_000 + (1 << 31)) >> 32) as i32
@@ -108,6 +114,10 @@ mod tests {
             assert!((f64::from(angle.centidegrees()) - degrees * 100.0).abs() <= 0.51, "{degrees}");
         }
         assert_eq!(Angle::from_bits(i32::MIN).centidegrees(), -18_000);
+        for bits in [i32::MIN, -(1 << 30), -12_345_678, -1, 0, 1, 99, 1 << 29, i32::MAX] {
+            let truth = f64::from(bits) / 4_294_967_296.0 * std::f64::consts::TAU;
+            assert!((Angle::from_bits(bits).radians().to_num::<f64>() - truth).abs() < 2e-9, "{bits}");
+        }
         assert_eq!(Angle::from_degrees(I16F16::from_num(450)).centidegrees(), 9_000);
         assert_eq!(Angle::from_bits(i32::MIN) + Angle::from_bits(i32::MIN), Angle::ZERO);
     }

@@ -72,6 +72,7 @@ pub const RIG_JOINTS: usize = 192;
 /// Why a rig makes no figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Error {
     /// There are more joints than memory for them: the scratch elements that a rig needs, or the joints of the figure, of
     /// which at least this many are needed.

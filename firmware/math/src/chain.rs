@@ -32,6 +32,7 @@ struct Link<'a> {
 /// Why there is no chain to a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum ChainError {
     /// The rig has no joint of this name.
     NoSuchJoint,
