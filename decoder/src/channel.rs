@@ -4,6 +4,7 @@ use crate::layout::{LENGTHS, MAX_STEP, START_MODE};
 
 /// A moving channel between two frames: 20 bytes. Its position p stands in the pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ChannelState {
     /// Velocity, acceleration, slope: what p, v and w grow by (docs/METHOD.md 2.2).
     pub(crate) v: i32,

@@ -113,7 +113,7 @@ impl<'a> Parts<'a> {
 /// Checks the magic, the version and the flags.
 pub(crate) fn check_fixed([magic0, magic1, version, flags]: [u8; 4]) -> Result<(), OpenError> {
     if [magic0, magic1] != MAGIC {
-        Err(OpenError::BadMagic)
+        Err(if [magic0, magic1] == BANK_MAGIC { OpenError::IsBank } else { OpenError::BadMagic })
     } else if version != VERSION {
         Err(OpenError::UnsupportedVersion(version))
     } else if flags & !KNOWN_FLAGS != 0 {
@@ -191,6 +191,7 @@ pub const RIGHT_FOOT_DOWN: &str = "right_foot_down";
 
 /// A marker of a moment that a program may react to: a footfall, a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Event {
     /// The frame it stands at.
     pub frame: u32,

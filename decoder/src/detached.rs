@@ -55,11 +55,14 @@ impl<'a> DetachedPlayer<'a> {
         Pose { values: values.get(..self.clip.rig().channels()).unwrap_or(values), form: self.clip.form_ref() }
     }
 
-    /// Goes on by one frame; at the last frame it stays. (A [`Player`] goes to frame 0.)
+    /// Goes on by one frame; from the last frame to frame 0, as [`Player::step`].
     #[inline(never)]
     pub fn step(&mut self, states: &mut [ChannelState], values: &mut [i32]) {
         let (input, frames) = (self.clip.input(), self.clip.frames());
-        let Some(states) = states.get_mut(..self.moving.into()).filter(|_| self.position.frame + 1 < frames) else { return };
+        if self.position.frame + 1 >= frames {
+            return self.seek(0, states, values);
+        }
+        let Some(states) = states.get_mut(..self.moving.into()) else { return };
         self.position.step(&mut Channels { states, pose: values }, &input, frames);
     }
 

@@ -19,6 +19,8 @@ pub enum OpenError {
     WrongRig,
     /// The bank holds no clip of this name.
     NoSuchClip,
+    /// The file is a bank of clips: [`Bank::new_checked`](crate::Bank::new_checked) opens it.
+    IsBank,
 }
 
 /// The memory lent to a player is too small for the clip.
@@ -36,6 +38,7 @@ pub struct TooSmall {
 /// The memory that a caller lends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Memory {
     /// Channel states: [`Clip::moving`](crate::Clip::moving) of them.
     States,
@@ -56,6 +59,7 @@ impl core::fmt::Display for OpenError {
             OpenError::BadCrc => f.write_str("a CRC does not match: the clip is damaged"),
             OpenError::Malformed => f.write_str("the clip is malformed"),
             OpenError::NoSuchClip => f.write_str("the bank has no clip of this name"),
+            OpenError::IsBank => f.write_str("a bank of clips, not a clip: open it as a bank"),
             OpenError::WrongRig => f.write_str("the clip needs another rig"),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::joint::JointRef;
 use crate::joint::has_choice;
-use crate::kind::Kind;
+use crate::kind::{ANGLE, Kind, MAP, QUATERNION};
 use crate::layout::MAX_CHANNELS;
 use crate::rig::Rig;
 use crate::scalar::ScalarRef;
@@ -103,8 +103,9 @@ impl FormRef<'_> {
         Form::new(self.rig_id, self.length_exponent, self.exponentials.iter().copied())
     }
 
-    /// Whether the joint that stands after `choice` other joints with a choice is coded as an exponential map.
-    pub(crate) fn is_exponential_choice(&self, choice: usize) -> bool {
+    /// Whether a joint is coded as an exponential map that has three rotation channels, as `choice` joints before it have. For a walk over all joints:
+    /// [`FormRef::is_exponential`] counts them again for each joint.
+    pub fn is_exponential_choice(&self, choice: usize) -> bool {
         self.exponentials.get(choice / 8).is_some_and(|byte| byte >> (choice % 8) & 1 != 0)
     }
 
@@ -152,6 +153,7 @@ impl<'f> From<&'f Form> for FormRef<'f> {
 /// Why a pose cannot be used here: it has another form than the clip for which this was set up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum WrongForm {
     /// The pose is of another rig.
     Rig,
@@ -198,55 +200,53 @@ impl Pose<'_> {
             return Err(WrongForm::Rig);
         }
         let exponential = joint.choice().is_some_and(|choice| self.form.is_exponential_choice(choice));
-        let channels = (joint.first_channel()..).zip(joint.kinds());
-        let value = |channel: usize| self.values.get(channel).copied().unwrap_or(0);
-        // Euler angles in the joint's order, x, y, z of a map, and w, x, y, z of a quaternion.
-        let (mut axes, mut angles, mut count) = ([0; 3], [Angle::ZERO; 3], 0usize);
-        let (mut map, mut quaternion) = (None, None);
-        for (channel, kind) in channels {
-            let raw = value(channel);
-            if kind.is_rotation() {
-                put(&mut axes, count, kind.axis().unwrap_or(0));
-                put(&mut angles, count, Angle::from_bits(raw));
-                count += 1;
-            } else if kind.is_exponential() {
-                put(map.get_or_insert([0; 3]), kind.axis().unwrap_or(0), raw);
-            } else if kind.is_quaternion() {
-                put(quaternion.get_or_insert([0; 4]), kind.axis().map_or(0, |axis| axis + 1), raw);
-            }
+        // The values of a joint of one form: Euler angles in the joint's order, x, y, z of a map, or w, x, y, z of a quaternion.
+        let (mut own, mut axes, mut count, mut parts) = ([0; 4], [0; 3], 0, 0);
+        for (channel, kind) in (joint.first_channel()..).zip(joint.kinds()) {
+            let (part, member) = kind.turning();
+            let place = match part {
+                0 => continue,
+                ANGLE => {
+                    put(&mut axes, count, member);
+                    count += 1;
+                    count - 1
+                }
+                _ => member,
+            };
+            parts |= part;
+            put(&mut own, place, self.values.get(channel).copied().unwrap_or(0));
         }
-        let (parts, order) =
-            (usize::from(count > 0) + usize::from(map.is_some()) + usize::from(quaternion.is_some()), order(axes, count));
-        Ok(match (order, map, quaternion) {
-            _ if exponential && parts == 1 => Turn::Exponential(angles),
-            (_, Some(map), None) if parts == 1 => Turn::Exponential(map.map(Angle::from_bits)),
-            (_, None, Some(q)) if parts == 1 => Turn::Quaternion(q.map(Component::from_bits)),
-            (Some(order), None, None) => Turn::Euler { order, angles },
-            _ => Turn::Quaternion(self.chain(joint, exponential, map, quaternion).map(Component::from_bits)),
+        let [w, x, y, _] = own;
+        let three = [w, x, y].map(Angle::from_bits);
+        Ok(match (parts, order(axes, count)) {
+            (ANGLE, _) if exponential => Turn::Exponential(three),
+            (MAP, _) => Turn::Exponential(three),
+            (QUATERNION, _) => Turn::Quaternion(own.map(Component::from_bits)),
+            (0 | ANGLE, Some(order)) => Turn::Euler { order, angles: three },
+            _ => Turn::Quaternion(self.chain(joint, exponential).map(Component::from_bits)),
         })
     }
 
     /// The product of everything that turns a joint of more parts than a [`Turn`] has forms for: FORMAT.md 11.
     #[inline(never)]
-    fn chain(&self, joint: &JointRef<'_>, exponential: bool, map: Option<[i32; 3]>, quaternion: Option<[i32; 4]>) -> [i32; 4] {
+    fn chain(&self, joint: &JointRef<'_>, exponential: bool) -> [i32; 4] {
         let mut unit = NO_ROTATION;
-        let (mut coded, mut at) = ([0; 3], 0);
-        for (channel, kind) in (joint.first_channel()..).zip(joint.kinds()).filter(|(_, kind)| kind.is_rotation()) {
+        let (mut coded, mut count, mut quaternion, mut map) = ([0; 3], 0, [0; 4], [0; 3]);
+        for (channel, kind) in (joint.first_channel()..).zip(joint.kinds()) {
             let raw = self.values.get(channel).copied().unwrap_or(0);
-            if exponential {
-                put(&mut coded, at, raw);
-                at += 1;
-            } else {
-                unit = product(unit, about(kind.axis().unwrap_or(0), Angle::from_bits(raw)));
+            match kind.turning() {
+                (ANGLE, _) if exponential => {
+                    put(&mut coded, count, raw);
+                    count += 1;
+                }
+                (ANGLE, axis) => unit = product(unit, about(axis, Angle::from_bits(raw))),
+                (MAP, component) => put(&mut map, component, raw),
+                (QUATERNION, component) => put(&mut quaternion, component, raw),
+                _ => {}
             }
         }
-        if exponential {
-            unit = product(unit, of_exponential(coded));
-        }
-        if let Some(q) = quaternion {
-            unit = product(unit, normalized(q));
-        }
-        map.map_or(unit, |map| product(unit, of_exponential(map)))
+        // What the joint lacks is no rotation here, and a product with that is exact.
+        [of_exponential(coded), normalized(quaternion), of_exponential(map)].into_iter().fold(unit, product)
     }
 
     /// A scalar as a fraction of its range: a morph weight of 0 to 1 with the exponent 0 is its own fraction. Times
@@ -279,28 +279,34 @@ fn put<T, const N: usize>(array: &mut [T; N], index: usize, value: T) {
 }
 
 /// The order that begins with the first `count` axes; `None` if they are not different or more than three.
-fn order(axes: [usize; 3], count: usize) -> Option<EulerOrder> {
-    use crate::turn::Axis;
-    let [first, second, third] = axes;
-    match count {
-        0 => Some(EulerOrder::XYZ),
-        1 => EulerOrder::of(Axis::of_index(first), Axis::of_index((first + 1) % 3)),
-        2 => EulerOrder::of(Axis::of_index(first), Axis::of_index(second)),
-        3 => EulerOrder::of(Axis::of_index(first), Axis::of_index(second)).filter(|_| third != first && third != second),
-        _ => None,
+fn order([mut first, mut second, mut third]: [usize; 3], count: usize) -> Option<EulerOrder> {
+    if count == 0 {
+        first = 0;
     }
+    if count < 2 {
+        second = if first == 2 { 0 } else { first + 1 };
+    }
+    if count < 3 {
+        third = 3usize.wrapping_sub(first).wrapping_sub(second);
+    }
+    let axes = [first, second, third].into_iter().fold(0, |axes, axis| axes | 1u32.wrapping_shl(axis as u32));
+    if count > 3 || axes != 0b111 {
+        return None;
+    }
+    EulerOrder::ALL.get(2 * first + usize::from(second > third)).copied()
 }
 
 /// The Euler order of a joint of the rig.
 pub(crate) fn order_of(kinds: crate::Kinds<'_>) -> Option<EulerOrder> {
     let (mut axes, mut count) = ([0; 3], 0);
     for kind in kinds {
-        if kind.is_quaternion() || kind.is_exponential() {
-            return None;
-        }
-        if kind.is_rotation() {
-            put(&mut axes, count, kind.axis().unwrap_or(0));
-            count += 1;
+        match kind.turning() {
+            (0, _) => {}
+            (ANGLE, axis) => {
+                put(&mut axes, count, axis);
+                count += 1;
+            }
+            _ => return None,
         }
     }
     order(axes, count).filter(|_| count > 0)

@@ -47,17 +47,18 @@ pub struct JointRef<'a> {
 }
 
 impl<'a> JointRef<'a> {
-    /// The joint of this index in the rig.
-    pub(crate) fn new(rig: &Rig<'a>, index: usize) -> Option<JointRef<'a>> {
-        let mut choices = 0;
-        for (at, joint) in rig.joints().enumerate() {
-            let choice = has_choice(&joint);
-            if at == index {
-                let Joint { first_channel, kinds, .. } = joint;
-                let choice = choice.then_some(choices);
-                return Some(JointRef { rig_id: rig.id(), index: index as u16, first_channel, choice, kinds });
+    /// The first joint of the rig that is `wanted`, of its index.
+    #[inline(always)]
+    pub(crate) fn first(rig: &Rig<'a>, wanted: impl Fn(usize, &Joint<'a>) -> bool) -> Option<JointRef<'a>> {
+        let (mut walk, mut index, mut choices) = (rig.joints(), 0u16, 0);
+        while walk.read() {
+            let (joint, choice) = (&walk.joint, has_choice(&walk.joint));
+            if wanted(usize::from(index), joint) {
+                let Joint { first_channel, kinds, .. } = *joint;
+                return Some(JointRef { rig_id: rig.id(), index, first_channel, choice: choice.then_some(choices), kinds });
             }
             choices += u16::from(choice);
+            index += 1;
         }
         None
     }
@@ -83,7 +84,8 @@ impl<'a> JointRef<'a> {
         crate::form::order_of(self.kinds)
     }
 
-    pub(crate) fn rig_id(&self) -> u32 {
+    /// The id of its rig: [`Rig::id`].
+    pub fn rig_id(&self) -> u32 {
         self.rig_id
     }
 

@@ -6,6 +6,7 @@
 /// map's x, y and z in their place: [`Clip::kinds`](crate::Clip::kinds) returns the kinds as coded, and
 /// [`Pose::turn`](crate::Pose::turn) takes care of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kind {
     /// Replaces the x of the joint's offset.
     Xposition,
@@ -86,10 +87,29 @@ impl Kind {
         }
     }
 
+    /// How it turns a joint: one of [`ANGLE`], [`MAP`] and [`QUATERNION`], or 0; and the axis of an angle, or which component of a map or a
+    /// quaternion it is.
+    #[inline(always)]
+    pub(crate) fn turning(self) -> (u8, usize) {
+        const A: u8 = ANGLE << 2;
+        const M: u8 = MAP << 2;
+        const Q: u8 = QUATERNION << 2;
+        static TURNING: [u8; 14] = [0, 0, 0, A, A + 1, A + 2, Q, Q + 1, Q + 2, Q + 3, M, M + 1, M + 2, 0];
+        let own = TURNING.get(self as usize).copied().unwrap_or(0);
+        (own >> 2, usize::from(own & 3))
+    }
+
     fn from_code(code: u8) -> Option<Kind> {
         Kind::ALL.get(usize::from(code)).copied()
     }
 }
+
+/// An Euler angle.
+pub(crate) const ANGLE: u8 = 1;
+/// A component of an exponential map.
+pub(crate) const MAP: u8 = 2;
+/// A component of a quaternion.
+pub(crate) const QUATERNION: u8 = 4;
 
 /// Iterates over the kinds of one joint's channels, in the order in which they apply.
 #[derive(Clone, Copy, Debug)]

@@ -36,7 +36,7 @@
 //! | read a joint's angles | [`Clip::find`], [`Player::turn`], then [`Turn::euler`] in any order ([`JointRef::euler_order`] is the source's) |
 //! | know how far a hinge bends, wherever its axis lies | [`Turn::angle`] |
 //! | read a morph weight or a servo channel by name | [`Clip::find_scalar`], [`Player::scalar`] |
-//! | know where a joint is in the world | `pantin_figure::JointChain` |
+//! | know where joints are in the world | `pantin_math::Kinematics`, `pantin_math::JointChain` |
 //! | draw a figure or a face | `pantin_figure::FigureRenderer`, `pantin_face` |
 //! | step back, or seek often | [`SeekCache`] with [`Player::step_back`] and [`Player::seek_with`] |
 //! | play bytes as they arrive and forget them | [`Stream`]; [`RigCollector`] if the rig arrives too |
@@ -61,6 +61,8 @@ mod channel;
 mod clip;
 mod clock;
 pub mod codec;
+#[cfg(feature = "defmt")]
+mod defmt_formats;
 mod detached;
 mod error;
 mod form;
@@ -70,6 +72,8 @@ mod history;
 mod index;
 mod joint;
 mod kind;
+#[cfg(feature = "mint")]
+mod mint_types;
 pub mod names;
 mod partial;
 mod play_state;
@@ -87,6 +91,9 @@ mod turn;
 pub mod units;
 
 use codec::{crc, entropy, layout, segment, tables};
+
+/// The crate of the types of [`units`], so that programs need not depend on it.
+pub use fixed;
 
 pub use bank::{Bank, BankEntry};
 pub use channel::ChannelState;

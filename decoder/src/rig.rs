@@ -28,6 +28,7 @@ pub struct Rig<'a> {
 
 /// The direction of the world that is vertical.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Up(u8);
 
 impl Default for Up {
@@ -156,13 +157,13 @@ impl<'a> Rig<'a> {
     /// Finds a joint by its name, of equal names the first. Names are compared byte by byte; an empty name finds nothing.
     #[inline(never)]
     pub fn find(&self, name: &str) -> Option<JointRef<'a>> {
-        let named = |joint: Joint<'_>| !joint.end_site && joint.name_bytes() == name.as_bytes();
-        JointRef::new(self, self.joints().position(named).filter(|_| !name.is_empty())?)
+        // End Sites have no name.
+        JointRef::first(self, |_, joint| !name.is_empty() && joint.name_bytes() == name.as_bytes())
     }
 
     /// The joint of this index, End Sites counted, to be asked for frame by frame.
     pub fn joint_ref(&self, index: usize) -> Option<JointRef<'a>> {
-        JointRef::new(self, index)
+        JointRef::first(self, |at, _| at == index)
     }
 
     /// Finds a scalar by its name, of equal names the first. Names are compared byte by byte.

@@ -35,6 +35,7 @@ pub struct RigCollector<'m> {
 /// Why a rig cannot be collected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum CollectError {
     /// The bytes are no clip, or a clip without a rig ([`OpenError::WrongRig`]). It stays so.
     Open(OpenError),

@@ -35,6 +35,7 @@ impl<'a> Scalar<'a> {
 
 /// A scalar of a rig, found once ([`crate::Rig::find_scalar`]) and then asked for frame by frame ([`crate::Pose::scalar`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ScalarRef {
     pub(crate) rig_id: u32,
     pub(crate) channel: u16,

@@ -20,6 +20,7 @@ use crate::turn::Turn;
 
 /// What a step of a [`Stream`] came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Progress {
     /// Feed more bytes. The pose is to be shown again only after the next `Frame`.
     NeedMore,

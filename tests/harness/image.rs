@@ -91,6 +91,11 @@ impl Image {
         Ok(Self { code: size(".text") - memory, memory, tables: size(".rodata"), symbols })
     }
 
+    /// Bytes of all of it.
+    pub fn size(&self) -> u64 {
+        self.code + self.memory + self.tables
+    }
+
     /// Symbols of panic, formatting, float, divide or heap.
     pub fn unwanted(&self) -> Vec<&str> {
         let bad = |name: &&str| UNWANTED.iter().any(|part| name.contains(part));

@@ -30,3 +30,14 @@ fn the_decoder_alone_cannot_panic_and_stays_small() {
         assert!(code <= most && tables <= TABLES, "{what}: {code} bytes of code, {tables} of tables");
     }
 }
+
+#[test]
+fn a_joints_angles_stay_small() {
+    setup::rust_target(MICROBIT.target).unwrap();
+    let (step, euler) = (Image::read("image-step").unwrap(), Image::read("image-euler").unwrap());
+    let holds = |part: &&str| euler.symbols.iter().any(|(name, _)| name.contains(part));
+    assert!(["Rig::find", "trig::atan2"].iter().all(holds), "it measures something else");
+    assert!(euler.unwanted().is_empty(), "{:?}", euler.unwanted());
+    let bytes = euler.size() - step.size();
+    assert!(bytes <= 3072, "{bytes} bytes of code and tables");
+}

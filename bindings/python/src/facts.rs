@@ -15,7 +15,7 @@ use serde_json::json;
 /// Opens the bytes of a clip's file.
 pub fn open(bytes: &[u8]) -> Result<Clip<'_>> {
     Clip::new_checked(bytes).or_else(|error| match error {
-        OpenError::BadMagic if bytes.starts_with(&pantin::codec::layout::BANK_MAGIC) => {
+        OpenError::IsBank => {
             bail!("a bank of several clips, which pantin.Bank opens")
         }
         OpenError::BadMagic => bail!("{error}; pantin.convert makes clips of motions"),

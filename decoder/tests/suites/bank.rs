@@ -67,6 +67,7 @@ fn each_rule_of_a_bank_is_checked() {
     let list = contents(&[(b"walk", clip.len())]);
     let good = bank(&[(RIG, &rig), (CONTENTS, &list), (CLIPS, &clip)]);
     assert!(Bank::new_checked(&good).is_ok_and(|bank| bank.clip("walk").is_ok()));
+    assert_eq!(Clip::new_checked(&good).err(), Some(OpenError::IsBank));
     for (at, error) in [(0, OpenError::BadMagic), (1, OpenError::BadMagic), (2, OpenError::UnsupportedVersion(VERSION ^ 1))] {
         let mut bytes = good.clone();
         bytes[at] ^= 1;

@@ -105,6 +105,7 @@ fn errors_say_what_is_wrong() {
         (OpenError::Malformed, "malformed"),
         (OpenError::WrongRig, "another rig"),
         (OpenError::NoSuchClip, "no clip of this name"),
+        (OpenError::IsBank, "a bank"),
     ];
     for (error, words) in errors {
         assert!(error.to_string().contains(words), "{error}");

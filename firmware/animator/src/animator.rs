@@ -14,6 +14,7 @@ use pantin::{ChannelState, Clip, FormRef, Pose, WrongForm};
 
 /// How one clip follows another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Transition {
     /// At once. The pose jumps; place and heading do not.
     Cut,
@@ -35,6 +36,7 @@ impl Transition {
 
 /// What the figure's root does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RootMotion {
     /// The figure travels: [`Animator::placement`].
     #[default]

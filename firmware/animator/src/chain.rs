@@ -3,11 +3,10 @@
 use crate::Error;
 use crate::groups::{Group, Shape};
 use crate::math;
-use crate::vector::{Vector, add, direction, transposed};
 use heapless::Vec;
 use pantin::{Angle, Clip, Component, Kinds};
-use pantin_figure::rotation::Rotation;
-use pantin_figure::trig::{FRACTION_BITS, angle_of_unit, sin_cos};
+use pantin_math::rotation::{Rotation, Vector};
+use pantin_math::vector::{add, transposed};
 
 /// A joint of a chain.
 #[derive(Clone, Copy, Debug)]
@@ -156,7 +155,7 @@ impl Bone<'_> {
         let first = usize::from(self.first);
         let Some(own) = pose.get_mut(first..first + usize::from(self.len)) else { return };
         match self.shape {
-            Shape::Map | Shape::Quaternion => math::write(self.shape, self.kinds, quaternion(&local), own),
+            Shape::Map | Shape::Quaternion => math::write(self.shape, self.kinds, local.quaternion(), own),
             _ => {
                 let [first, second, third] = self.axes.map(usize::from);
                 let axes = match self.len {
@@ -165,7 +164,7 @@ impl Bone<'_> {
                     2 => [first, second, (6 - first - second) % 3],
                     _ => [first, second, third],
                 };
-                let angles = euler(&local, axes);
+                let angles = local.euler(axes);
                 // The triple that is nearest to what stood there.
                 let mut near = angles;
                 if let (Some(was), true) = (own.get(..3), self.shape == Shape::Euler) {
@@ -177,47 +176,6 @@ impl Bone<'_> {
             }
         }
     }
-}
-
-/// The angles about three different axes (two, of which the third is left out, if they are not): within 2e-4 turns.
-fn euler(Rotation(columns): &Rotation, [i, j, k]: [usize; 3]) -> [i32; 3] {
-    let at = |row: usize, column: usize| columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0);
-    let sign = if (i + 1) % 3 == j { 1 } else { -1 };
-    let narrow = |q30: i32| q30 >> FRACTION_BITS;
-    // Its length is the second angle's cosine; the others are unit vectors.
-    let c = direction([at(i, i), -sign * at(i, j), 0]).map_or(0, |([x, y, _], _)| angle_of_unit(y, x));
-    let (sin, cos) = sin_cos(c);
-    let cos_b = narrow(at(i, i) * cos - sign * at(i, j) * sin);
-    let b = angle_of_unit(sign * at(i, k), cos_b);
-    let image = |row: usize| narrow(sign * at(row, i) * sin + at(row, j) * cos);
-    let a = angle_of_unit(sign * image(k), image(j));
-    [a, b, c]
-}
-
-/// The unit quaternion of a rotation, by its largest component (Shepperd 1978).
-fn quaternion(Rotation([x, y, z]): &Rotation) -> [Component; 4] {
-    let ([xx, xy, xz], [yx, yy, yz], [zx, zy, zz]) = (*x, *y, *z);
-    let one = 1 << FRACTION_BITS;
-    // Four times the product of the largest component with each; `xy` is row y of column x.
-    let of_w = [one + xx + yy + zz, yz - zy, zx - xz, xy - yx];
-    let of_x = [yz - zy, one + xx - yy - zz, xy + yx, zx + xz];
-    let of_y = [zx - xz, xy + yx, one - xx + yy - zz, yz + zy];
-    let of_z = [xy - yx, zx + xz, yz + zy, one - xx - yy + zz];
-    let [w, _, _, _] = of_w;
-    let [_, x, _, _] = of_x;
-    let [_, _, y, _] = of_y;
-    let [_, _, _, z] = of_z;
-    let q = if w >= x && w >= y && w >= z {
-        of_w
-    } else if x >= y && x >= z {
-        of_x
-    } else if y >= z {
-        of_y
-    } else {
-        of_z
-    };
-    // Below 2^18: normalized by the decoder.
-    pantin::Turn::Quaternion(q.map(|x| Component::from_bits(x << 12))).quaternion()
 }
 
 /// `value` / 2^`shift`, cut off at the range.

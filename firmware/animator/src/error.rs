@@ -4,6 +4,7 @@ use pantin::{OpenError, TooSmall, WrongForm};
 
 /// Why a call was refused. The animator is as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Error {
     /// The player's memory does not hold the clip.
     Player(TooSmall),

@@ -91,7 +91,6 @@ pub mod session;
 mod sync;
 mod track;
 mod two_bone;
-mod vector;
 
 pub use animator::{Animator, Memory, RootMotion, Transition, Workspace};
 pub use character::{Character, LayerMemory, first_clip, visit_poses};

@@ -4,10 +4,11 @@ use crate::Error;
 use crate::chain::{Chain, Joint, shifted};
 use crate::groups::Group;
 use crate::two_bone::Reach;
-use crate::vector::{Vector, add, cross, direction, dot, sub, swing};
 use heapless::Vec;
 use pantin::{Angle, Clip};
-use pantin_figure::trig::{ONE, sin_cos};
+use pantin_math::rotation::Vector;
+use pantin_math::trig::{ONE, sin_cos};
+use pantin_math::vector::{add, cross, direction, dot, sub, swing};
 
 /// Most joints from the root to the last that looks.
 const JOINTS: usize = 12;

@@ -57,6 +57,7 @@ const IN_STEP: u8 = 255;
 
 /// Why a table cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TableError {
     /// The bank has no section of a state machine, or ends before it should.
     Missing,

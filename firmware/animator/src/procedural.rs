@@ -39,7 +39,7 @@ impl<'c> Breath<'c> {
 
     /// Adds the breath to a pose, times a weight.
     pub fn apply(&self, pose: &mut [i32], weight: Weight) {
-        let (sin, _) = pantin_figure::trig::sin_cos(self.phase as i32);
+        let (sin, _) = pantin_math::trig::sin_cos(self.phase as i32);
         // Q15 by Q15: the sine's sign and the weight in one factor.
         let magnitude = Weight::from_bits(((sin.unsigned_abs() * u32::from(weight.to_bits())) >> 15) as u16);
         for channel in self.channels {

@@ -45,6 +45,7 @@ pub struct Timed {
 
 /// What is wrong with a line of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Fault {
     /// It does not begin with seconds from 0 to 3600.
     Time,

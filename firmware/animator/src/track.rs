@@ -162,6 +162,7 @@ impl<'a, 'm> Track<'a, 'm> {
     }
 
     fn go_to(&mut self, frame: u32) {
+        let frame = frame.min(self.clip().frames().saturating_sub(1));
         let ahead = frame.wrapping_sub(self.player.frame());
         if ahead <= 8 {
             (0..ahead).for_each(|_| self.player.step(self.states, self.pose));

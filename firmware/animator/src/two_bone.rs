@@ -3,9 +3,10 @@
 use crate::Error;
 use crate::chain::{Chain, Joint, shifted};
 use crate::groups::Group;
-use crate::vector::{Vector, add, between, cross, direction, dot, sub, times};
 use pantin::{Angle, Clip};
-use pantin_figure::trig::{ONE, sin_cos};
+use pantin_math::rotation::Vector;
+use pantin_math::trig::{ONE, sin_cos};
+use pantin_math::vector::{add, between, cross, direction, dot, sub, times};
 
 /// How near inverse kinematics came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +130,7 @@ impl<'a> Limb<'a> {
             },
         };
         if bent.is_some() {
-            self.hinge = Some(crate::vector::transposed(&knee.rotation).apply(axis));
+            self.hinge = Some(pantin_math::vector::transposed(&knee.rotation).apply(axis));
         }
         let reached = distance.max(self.least).min(self.greatest);
         let Some((n, _)) = direction(match pole {

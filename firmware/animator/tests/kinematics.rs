@@ -5,7 +5,7 @@ mod common;
 use common::{Random, run, walk};
 use pantin::{Clip, Pose};
 use pantin_animator::{Animator, FootLock, Limb, Limits, Look, Share, Workspace};
-use pantin_figure::JointChain;
+use pantin_math::JointChain;
 
 type Room = Workspace<96, 160>;
 

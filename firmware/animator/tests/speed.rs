@@ -6,7 +6,7 @@ use common::{Random, run, walk};
 use fixed::types::I16F16;
 use pantin::Clip;
 use pantin_animator::{Animator, Transition, Workspace};
-use pantin_figure::JointChain;
+use pantin_math::JointChain;
 
 const JOINTS: [&str; 6] = ["left-hand", "right-hand", "left-foot", "right-foot", "head", "left-shin"];
 

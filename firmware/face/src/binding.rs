@@ -4,7 +4,7 @@ use crate::model::{Model, NameEntry};
 use crate::target::Target;
 use crate::weights::{Weights, shifted};
 use heapless::Vec;
-use pantin::{Rig, Scalars};
+use pantin::{Pose, Rig, Scalars, WrongForm};
 
 /// A scalar that drives a shape.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ pub const BINDINGS: usize = 80;
 /// # let (mut states, mut pose) = (vec![pantin::ChannelState::default(); clip.moving()], vec![0; clip.rig().channels()]);
 /// let player = pantin::Player::new(clip, &mut states, &mut pose)?;
 /// // In every frame:
-/// binding.read(player.pose().values, &mut weights);
+/// binding.read_checked(player.pose(), &mut weights)?;
 /// morph.apply(&model, &weights);
 /// # Ok(())
 /// # }
@@ -42,6 +42,8 @@ pub struct Binding {
     drives: Vec<Drive, BINDINGS>,
     driving: u16,
     scalars: u16,
+    /// That of the rig whose scalars are bound; `None` for scalars alone.
+    rig_id: Option<u32>,
 }
 
 /// A clip with this many scalars that drive a face is a face, whatever else it holds.
@@ -49,7 +51,7 @@ const SUFFICIENT: u16 = 3;
 
 impl Binding {
     /// A binding of no scalars, for [`Binding::set_up`].
-    pub const EMPTY: Binding = Binding { drives: Vec::new(), driving: 0, scalars: 0 };
+    pub const EMPTY: Binding = Binding { drives: Vec::new(), driving: 0, scalars: 0, rig_id: None };
 
     /// Binds the scalars of `rig` whose names `model` has. Bindings beyond [`BINDINGS`] are dropped.
     #[inline(always)]
@@ -62,6 +64,7 @@ impl Binding {
     /// Binds in place, where nothing was bound before: [`Binding::new`] may copy its result, for which a small machine may have no RAM.
     #[inline(never)]
     pub fn set_up(&mut self, rig: &Rig, model: &Model) {
+        self.rig_id = Some(rig.id());
         self.bind_scalars(rig.scalars(), rig.joint_channels(), model);
     }
 
@@ -93,7 +96,18 @@ impl Binding {
         self.driving >= SUFFICIENT || (self.driving > 0 && self.driving == self.scalars)
     }
 
-    /// Sets `weights` to those of `pose`, the values of a player. Weights that no scalar drives become 0.
+    /// [`Binding::read`] of a pose that may be of another rig: then the error is [`WrongForm::Rig`], and the weights stay as they were. A binding that
+    /// was made of scalars alone takes every pose.
+    pub fn read_checked(&self, pose: Pose<'_>, weights: &mut Weights) -> Result<(), WrongForm> {
+        if self.rig_id.is_some_and(|id| id != pose.form.rig_id()) {
+            return Err(WrongForm::Rig);
+        }
+        self.read(pose.values, weights);
+        Ok(())
+    }
+
+    /// Sets `weights` to those of `pose`, the values of a player of the rig that was bound: those of another rig give wrong weights
+    /// ([`Binding::read_checked`] refuses them). Weights that no scalar drives become 0.
     pub fn read(&self, pose: &[i32], weights: &mut Weights) {
         weights.clear();
         for drive in &self.drives {

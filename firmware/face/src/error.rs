@@ -4,6 +4,7 @@ use crate::format::VERSION;
 
 /// The reason why bytes are not a usable model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ModelError {
     /// The bytes end before the model does.
     Truncated,

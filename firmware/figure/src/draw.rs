@@ -20,6 +20,7 @@ pub struct DrawStyle {
 
 /// Why a figure was not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum DrawError<E> {
     /// The pose has another form than the clip for which the renderer was set up.
     WrongForm(WrongForm),

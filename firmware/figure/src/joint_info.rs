@@ -3,8 +3,9 @@
 use crate::Error;
 use crate::names::contains;
 use crate::root::{integer_root, shift_for};
-use crate::rotation::{Vector, shift_right};
-use pantin::{Joint, Rig};
+use crate::rotation::Vector;
+use pantin::Rig;
+use pantin_math::units::FigureUnits;
 
 /// What is known of one joint of the whole rig before the figure's skeleton is built. Lengths are in figure units.
 #[derive(Clone, Copy, Debug)]
@@ -82,8 +83,6 @@ pub(crate) struct JointTable<'w> {
     pub hips: usize,
 }
 
-/// Bits of the longest bone's largest component in figure units: the product with a Q15 row stays below 2^31.
-const BONE_BITS: i32 = 14;
 /// The size of a figure without bones.
 const NO_SIZE: i32 = 1 << 14;
 
@@ -94,22 +93,11 @@ impl<'w> JointTable<'w> {
         let (needed, given) = (rig.joint_count(), scratch.len().min(usize::from(NO_PARENT)));
         let table = scratch.get_mut(..needed).filter(|_| needed <= given);
         let table = table.ok_or(Error::TooManyJoints { needed, given })?;
-        let hips = placement_end(rig);
-        let exponent_of = |moved| i32::from(if moved { position_exponent } else { rig.length_exponent() });
-        let mut longest = None;
-        for joint in rig.joints().skip(hips + 1) {
-            for (raw, moved) in bone(&joint, pose) {
-                if raw != 0 {
-                    longest = longest.max(Some(exponent_of(moved) + 32 - raw.unsigned_abs().leading_zeros() as i32));
-                }
-            }
-        }
-        let exponent = longest.unwrap_or(0) - BONE_BITS;
+        let units = FigureUnits::new(rig, pose, position_exponent);
+        let (hips, exponent) = (units.hips, units.exponent);
         let mut has_head = false;
         for ((index, joint), info) in rig.joints().enumerate().zip(table.iter_mut()) {
-            let bone = if index <= hips { [(0, false); 3] } else { bone(&joint, pose) };
-            // Below 2^14 by the choice of the exponent.
-            let bone = bone.map(|(raw, moved)| shift_right(raw, exponent - exponent_of(moved)) as i16);
+            let bone = if index <= hips { [0; 3] } else { units.bone(&joint, pose) };
             let head = !has_head && contains(joint.name_bytes(), b"head");
             has_head |= head;
             let parent = joint.parent.map_or(NO_PARENT, |parent| parent as u8);
@@ -226,30 +214,6 @@ impl<'w> JointTable<'w> {
             .min()
             .map(|(_, index)| index)
     }
-}
-
-/// The last joint of the chain that only places the figure: the root, and an only child of it that has its own three
-/// positions in place of an offset, as rigs with a joint on the floor above the hips do.
-fn placement_end(rig: &Rig) -> usize {
-    let only_child = rig.joints().filter(|joint| joint.parent == Some(0) && !joint.helper).count() == 1;
-    let placed = rig.joints().nth(1).is_some_and(|joint| {
-        let positions = joint.kinds.filter(|kind| kind.is_position()).count();
-        positions == 3 && joint.offset == [0; 3]
-    });
-    usize::from(only_child && placed)
-}
-
-/// Raw components of a joint's bone, and whether each comes from a position channel.
-#[inline(never)]
-fn bone(joint: &Joint, pose: &[i32]) -> [(i32, bool); 3] {
-    let mut bone = joint.offset.map(|raw| (raw, false));
-    for (slot, kind) in joint.kinds.enumerate().filter(|(_, kind)| kind.is_position()) {
-        let raw = pose.get(usize::from(joint.first_channel) + slot).copied().unwrap_or(0);
-        if let Some(component) = kind.axis().and_then(|axis| bone.get_mut(axis)) {
-            *component = (raw, true);
-        }
-    }
-    bone
 }
 
 /// Length of a vector, rounded down to a few units.

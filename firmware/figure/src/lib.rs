@@ -36,7 +36,7 @@
 //! | look from elsewhere | [`View`] with [`FigureRenderer::aim`] |
 //! | draw lines yourself | [`FigureRenderer::lines`] |
 //! | draw faster into memory of a display's own layout | [`surface::Framebuffer`] with [`FigureRenderer::draw_on`] |
-//! | know where a joint is in the world | [`JointChain`] |
+//! | know where joints are in the world | [`pantin_math::Kinematics`], or [`JointChain`] |
 //!
 //! A renderer takes poses of the form of its clip ([`pantin::Form`]). For others it returns [`pantin::WrongForm`], which names the difference.
 #![cfg_attr(not(test), no_std)]
@@ -53,21 +53,18 @@ mod names;
 pub mod raster;
 pub mod renderer;
 mod root;
-pub mod rotation;
 #[cfg(feature = "micromath")]
 pub mod rotation_float;
 pub mod skeleton;
 pub mod surface;
-pub mod trig;
-mod world;
 
 pub use camera::{Canvas, Track, View};
 pub use draw::{DrawError, DrawStyle};
 pub use ink::Ink;
 pub use joint_info::JointInfo;
+pub use pantin_math::{ChainError, JointChain, WorldJoint, rotation, trig};
 pub use renderer::{FigureRenderer, Stand};
 pub use skeleton::{Detail, Skeleton};
-pub use world::{ChainError, JointChain, WorldJoint};
 
 /// Most joints of a rig that a figure is made of, End Sites included, before fingers and the like are left out.
 pub const RIG_JOINTS: usize = 192;
@@ -75,6 +72,7 @@ pub const RIG_JOINTS: usize = 192;
 /// Why a rig makes no figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Error {
     /// There are more joints than memory for them: the scratch elements that a rig needs, or the joints of the figure, of
     /// which at least this many are needed.

@@ -160,6 +160,7 @@ const DRIVES: usize = 4;
 
 /// How much of the rig is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Detail {
     /// Every joint and End Site, at its index in the rig.
     Full,

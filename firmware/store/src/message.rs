@@ -96,6 +96,7 @@ pub enum Response {
 
 /// The reason why a clip is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The slot is too small.
     TooLong {
@@ -199,7 +200,7 @@ impl Refusal {
             Refusal::TooBig => (4, 0),
             Refusal::Flash => (5, 0),
             Refusal::TooManyStarts => (6, 0),
-            Refusal::Clip(OpenError::BadMagic) => (16, 0),
+            Refusal::Clip(OpenError::BadMagic | OpenError::IsBank) => (16, 0),
             Refusal::Clip(OpenError::UnsupportedVersion(version)) => (17, version.into()),
             Refusal::Clip(OpenError::Truncated) => (18, 0),
             Refusal::Clip(OpenError::BadCrc) => (19, 0),

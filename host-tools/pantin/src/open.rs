@@ -17,7 +17,7 @@ pub fn no_clip(path: &Path, bytes: &[u8], error: OpenError) -> Error {
         OpenError::BadMagic if import::looks_like_motion(path, bytes) && !is_bank(bytes) => {
             anyhow!("a motion, not a clip; `pantin convert {place} -o {}` makes one", path.with_extension("ptn").display())
         }
-        OpenError::BadMagic if is_bank(bytes) => anyhow!(
+        OpenError::IsBank | OpenError::BadMagic if is_bank(bytes) => anyhow!(
             "a bank of several clips; `pantin list {place}` prints their names, and `pantin unpack {place} -o FOLDER` writes them as files"
         ),
         OpenError::BadMagic => anyhow!("{error}; `pantin convert` makes clips of motions"),

@@ -85,7 +85,7 @@ pub enum Trouble {
 impl From<OpenError> for Trouble {
     fn from(error: OpenError) -> Trouble {
         match error {
-            OpenError::BadMagic => Trouble::Magic,
+            OpenError::BadMagic | OpenError::IsBank => Trouble::Magic,
             OpenError::UnsupportedVersion(_) => Trouble::Version,
             OpenError::Truncated => Trouble::Truncated,
             OpenError::BadCrc => Trouble::Damaged,

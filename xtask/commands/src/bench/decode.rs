@@ -9,10 +9,13 @@ use pantin::{ChannelState, Clip, Player};
 
 use super::guest::Guest;
 use super::table::mean;
-use super::{Goal, Setting, reference, table, tool};
+use super::{Goal, Setting, reference, table, tool, turns};
 use xtask::steps::say;
 
 const BOUND_CM: f64 = 1.0;
+
+/// The name of a clip of ours.
+const WALK: &str = "our walk";
 
 /// The most instructions that playing should take.
 #[derive(Clone, Copy)]
@@ -78,6 +81,8 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
             goals.extend(backwards(machine, &clips[judged.clone()], &costs[judged])?);
         }
     }
+    let walk = clips.iter().find(|clip| clip.name == WALK).context("our walk is not among the clips")?;
+    goals.extend(turns::run(&walk.path)?);
     Ok(goals)
 }
 

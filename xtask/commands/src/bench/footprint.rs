@@ -21,11 +21,12 @@ const SHOWN: usize = 12;
 pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let empty = Image::read("image-empty")?;
     let images = DECODERS.iter().map(|(name, _)| Image::read(name)).collect::<Result<Vec<_>>>()?;
-    let decoder = images.last().context("no image of the decoder")?;
+    let (step, decoder) = images.first().zip(images.last()).context("no image of the decoder")?;
     let own = decoder.symbols.iter().filter(|symbol| !empty.symbols.contains(symbol));
     let rows: Vec<_> = own.take(SHOWN).map(|(name, size)| vec![name.clone(), size.to_string()]).collect();
     table::print(&["largest functions and tables, Cortex-M0", "bytes"], &rows);
-    let unwanted: Vec<&str> = images.iter().flat_map(Image::unwanted).collect();
+    let euler = Image::read("image-euler")?;
+    let unwanted: Vec<&str> = images.iter().chain([&euler]).flat_map(Image::unwanted).collect();
     if !unwanted.is_empty() {
         say(&format!("   panic, formatting, float, divide or heap in the images: {}", unwanted.join(", ")));
     }
@@ -40,6 +41,13 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     goals.extend([
         Goal::told("the compiler's memory functions, in addition", format!("{} bytes", decoder.memory)),
         Goal::at_most("tables", (decoder.tables - empty.tables) as f64, 2048.0, 0, "bytes"),
+        Goal::at_most(
+            "code and tables of finding a joint and reading its Euler angles",
+            (euler.size() - step.size()) as f64,
+            3072.0,
+            0,
+            "bytes",
+        ),
         Goal::at_most("symbols of panic, formatting, float, divide or heap", unwanted.len() as f64, 0.0, 0, ""),
     ]);
     let (name, clip) = clip(setting)?;

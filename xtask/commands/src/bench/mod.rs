@@ -24,6 +24,7 @@ mod short;
 mod size;
 mod table;
 mod tool;
+mod turns;
 mod web;
 
 pub use document::{store, write};
@@ -44,7 +45,7 @@ pub enum Part {
     Decimation,
     /// Our own versions of the paper's walk and run
     Paper,
-    /// Guest instructions per pose and per seek
+    /// Guest instructions per pose and per seek, and of reading a joint's angles and places
     Decode,
     /// Code, tables, RAM and stack of the decoder
     Footprint,

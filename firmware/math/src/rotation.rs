@@ -3,14 +3,16 @@
 //! Every product fits 32 bits because rows and columns of a rotation are unit vectors: no partial sum of their products
 //! exceeds 1, that is 2^30.
 
-use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, series, sin_cos, table};
+use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, angle_of_unit, series, sin_cos, table};
+use crate::vector::direction;
+use pantin::{Component, Turn};
 
 /// A vector: Q15 for directions, figure units for places.
 pub type Vector = [i32; 3];
 
 /// A vector, axis by axis: where it is to be small, less code than an array of the library's.
 #[inline(always)]
-pub(crate) fn vector(of: impl Fn(usize) -> i32) -> Vector {
+pub fn vector(of: impl Fn(usize) -> i32) -> Vector {
     [of(0), of(1), of(2)]
 }
 
@@ -135,6 +137,50 @@ impl Rotation {
         Rotation(local.0.map(|column| self.apply(column)))
     }
 
+    /// The angles about three axes (0, 1, 2 for x, y, z), the first one first, in 2^-32 turns: of which the rotation is the turns about them one after the other, each
+    /// about the axis as turned by those before. Within 2e-4 turns. The first two axes must differ, and the third is the one that is left.
+    pub fn euler(&self, [i, j, k]: [usize; 3]) -> [i32; 3] {
+        let Rotation(columns) = self;
+        let at = |row: usize, column: usize| columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0);
+        let sign = if (i + 1) % 3 == j { 1 } else { -1 };
+        let narrow = |q30: i32| q30 >> FRACTION_BITS;
+        // Its length is the second angle's cosine; the others are unit vectors.
+        let c = direction([at(i, i), -sign * at(i, j), 0]).map_or(0, |([x, y, _], _)| angle_of_unit(y, x));
+        let (sin, cos) = sin_cos(c);
+        let cos_b = narrow(at(i, i) * cos - sign * at(i, j) * sin);
+        let b = angle_of_unit(sign * at(i, k), cos_b);
+        let image = |row: usize| narrow(sign * at(row, i) * sin + at(row, j) * cos);
+        let a = angle_of_unit(sign * image(k), image(j));
+        [a, b, c]
+    }
+
+    /// The unit quaternion w, x, y, z, by its largest component (Shepperd 1978).
+    pub fn quaternion(&self) -> [Component; 4] {
+        let Rotation([x, y, z]) = self;
+        let ([xx, xy, xz], [yx, yy, yz], [zx, zy, zz]) = (*x, *y, *z);
+        let one = 1 << FRACTION_BITS;
+        // Four times the product of the largest component with each; `xy` is row y of column x.
+        let of_w = [one + xx + yy + zz, yz - zy, zx - xz, xy - yx];
+        let of_x = [yz - zy, one + xx - yy - zz, xy + yx, zx + xz];
+        let of_y = [zx - xz, xy + yx, one - xx + yy - zz, yz + zy];
+        let of_z = [xy - yx, zx + xz, yz + zy, one - xx - yy + zz];
+        let [w, _, _, _] = of_w;
+        let [_, x, _, _] = of_x;
+        let [_, _, y, _] = of_y;
+        let [_, _, _, z] = of_z;
+        let q = if w >= x && w >= y && w >= z {
+            of_w
+        } else if x >= y && x >= z {
+            of_x
+        } else if y >= z {
+            of_y
+        } else {
+            of_z
+        };
+        // Below 2^18: normalized by the decoder.
+        Turn::Quaternion(q.map(|x| Component::from_bits(x << 12))).quaternion()
+    }
+
     /// The rotation of a quaternion w, x, y, z of length 1 in Q15.
     fn of_unit([w, x, y, z]: [i32; 4]) -> Rotation {
         // Q30 to Q15, times two. |ab| + |cd| of four components of a unit quaternion is at most 1/2.
@@ -251,7 +297,7 @@ fn square_of(q: [i32; 4]) -> u32 {
 
 /// `value` / 2^`shift`, rounded; a negative shift multiplies and saturates.
 #[inline(never)]
-pub(crate) fn shift_right(value: i32, shift: i32) -> i32 {
+pub fn shift_right(value: i32, shift: i32) -> i32 {
     match shift {
         32.. => 0,
         1.. => (value >> (shift - 1)).saturating_add(1) >> 1,

@@ -1,37 +1,38 @@
 //! Vectors and rotations in Q15: what inverse kinematics computes with, in products of 32 bits.
 
-pub(crate) use pantin_figure::rotation::Vector;
-use pantin_figure::rotation::{Rotation, inverse_length};
-use pantin_figure::trig::ONE;
+use crate::rotation::{Rotation, Vector, inverse_length};
+use crate::trig::ONE;
 
-pub(crate) fn sub([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+/// The first vector minus the second one; wraps.
+pub fn sub([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
     [a.wrapping_sub(x), b.wrapping_sub(y), c.wrapping_sub(z)]
 }
 
-pub(crate) fn add([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+/// The sum of two vectors; wraps.
+pub fn add([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
     [a.wrapping_add(x), b.wrapping_add(y), c.wrapping_add(z)]
 }
 
 /// The vector product of two of length 1 at most, in Q15.
-pub(crate) fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
+pub fn cross([a, b, c]: Vector, [x, y, z]: Vector) -> Vector {
     let narrow = |q30: i32| (q30 + (1 << 14)) >> 15;
     [narrow(b * z - c * y), narrow(c * x - a * z), narrow(a * y - b * x)]
 }
 
 /// The scalar product of two of length 1 at most, in Q15.
-pub(crate) fn dot([a, b, c]: Vector, [x, y, z]: Vector) -> i32 {
+pub fn dot([a, b, c]: Vector, [x, y, z]: Vector) -> i32 {
     (a * x + b * y + c * z + (1 << 14)) >> 15
 }
 
 /// A vector of length 1 at most, times a length below 2^16 in Q0.
-pub(crate) fn times(v: Vector, by: i32) -> Vector {
+pub fn times(v: Vector, by: i32) -> Vector {
     let by = by.clamp(-0xffff, 0xffff);
     v.map(|x| (x.clamp(-ONE, ONE) * (by >> 1)) >> 14)
 }
 
 /// The length of a vector, and its direction in Q15; none for a vector of no length. A length past 2^30 is cut off.
 #[inline(never)]
-pub(crate) fn direction([x, y, z]: Vector) -> Option<(Vector, i32)> {
+pub fn direction([x, y, z]: Vector) -> Option<(Vector, i32)> {
     let largest = x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs();
     if largest == 0 {
         return None;
@@ -57,17 +58,18 @@ pub(crate) fn direction([x, y, z]: Vector) -> Option<(Vector, i32)> {
 }
 
 /// The rotation from one frame of three unit vectors to another: each frame is a vector, one at a right angle to it, and their product.
-pub(crate) fn between(from: (Vector, Vector), to: (Vector, Vector)) -> Rotation {
+pub fn between(from: (Vector, Vector), to: (Vector, Vector)) -> Rotation {
     let columns = |(a, b): (Vector, Vector)| Rotation([a, b, cross(a, b)]);
     columns(to).then(&transposed(&columns(from)))
 }
 
-pub(crate) fn transposed(Rotation([[a, b, c], [d, e, f], [g, h, i]]): &Rotation) -> Rotation {
+/// The inverse rotation: rows become columns.
+pub fn transposed(Rotation([[a, b, c], [d, e, f], [g, h, i]]): &Rotation) -> Rotation {
     Rotation([[*a, *d, *g], [*b, *e, *h], [*c, *f, *i]])
 }
 
 /// The shortest rotation from one unit vector to another; none where they are opposite.
-pub(crate) fn swing(from: Vector, to: Vector) -> Option<Rotation> {
+pub fn swing(from: Vector, to: Vector) -> Option<Rotation> {
     let [x, y, z] = cross(from, to);
     let cos = dot(from, to);
     // 1 + cos is at least 2^-5: opposite to within 14 degrees there is no one shortest way.

@@ -8,13 +8,14 @@ pub const FRACTION_BITS: u32 = 15;
 pub const ONE: i32 = 1 << FRACTION_BITS;
 
 /// Half a unit of the last place, for rounding shifts by [`FRACTION_BITS`].
-pub(crate) const HALF: i32 = ONE / 2;
+pub const HALF: i32 = ONE / 2;
 
 /// Whether entries of tables are worked out where they are needed, by the same instructions that the compiler works the tables out with, to the
 /// same bits: in a page, where a byte to be loaded counts and numbers are cheap.
 pub const WORKED_OUT: bool = cfg!(target_arch = "wasm32");
 
 /// A table of what a constant function makes of each index.
+#[macro_export]
 macro_rules! table {
     ($entry:ident, $len:expr) => {{
         let mut table = [$entry(0); $len];
@@ -26,7 +27,7 @@ macro_rules! table {
         table
     }};
 }
-pub(crate) use table;
+pub use table;
 
 /// Angles of the table in a turn.
 const ANGLES: usize = 128;
@@ -63,7 +64,7 @@ const fn round(x: f64) -> i32 {
 /// The alternating series sum of (-u)^k / (first + 2k)! * first!: with `first` 0 the cosine of the root of u, with 1 its sine
 /// over the root. Converges to the last bit for u up to 16.
 #[inline(never)]
-pub(crate) const fn series(u: f64, first: f64) -> f64 {
+pub const fn series(u: f64, first: f64) -> f64 {
     let mut sum = 0.0;
     let mut term = 1.0;
     let mut n = first;

@@ -8,7 +8,7 @@ use pantin::{Clip, JointRef, Matrix, Pose, WrongForm};
 ///
 /// ```
 /// # fn reach(player: &pantin::Player) -> Option<()> {
-/// let hand = pantin_figure::JointChain::<32>::to(player.clip(), "LeftHand").ok()?;
+/// let hand = pantin_math::JointChain::<32>::to(player.clip(), "LeftHand").ok()?;
 /// let [x, y, z] = hand.locate(player.pose()).ok()?.position;
 /// println!("{x} {y} {z} cm");
 /// # Some(())
@@ -32,6 +32,7 @@ struct Link<'a> {
 /// Why there is no chain to a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum ChainError {
     /// The rig has no joint of this name.
     NoSuchJoint,
