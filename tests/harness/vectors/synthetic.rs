@@ -275,7 +275,8 @@ fn turn_orders() -> Made {
     let mut coded = motion(6);
     coded.exponentials = [false, true].repeat(4);
     let orders = [[X, Y, Z], [X, Z, Y], [Y, X, Z], [Y, Z, X], [Z, X, Y], [Z, Y, X]];
-    let joints = [&orders.each_ref().map(|order| &order[..])[..], &[&[Z], &[Y, X], &[Z, Y, Z], &[X, X], &chain, &chosen]].concat();
+    let joints =
+        [&orders.each_ref().map(|order| &order[..])[..], &[&[Z], &[Y, X], &[Z, Y, Z], &[X, X], &chain, &chosen]].concat();
     simple("turn-orders", &joints, 0, coded)
 }
 

@@ -19,8 +19,7 @@ use super::Vector;
 pub const NAME: &str = "turns.txt";
 
 /// The clips, which together code joints in every form.
-const CLIPS: [&str; 6] =
-    ["exponential-choice", "exponential-map", "mixed", "quaternion", "rests-and-choices", "turn-orders"];
+const CLIPS: [&str; 6] = ["exponential-choice", "exponential-map", "mixed", "quaternion", "rests-and-choices", "turn-orders"];
 
 /// The file's text, of the committed clips.
 pub fn text(folder: &Path) -> Result<String> {
