@@ -195,6 +195,11 @@ impl Settings {
     pub fn value(&self, setting: Setting) -> Option<(String, String)> {
         let number = |number: Option<f64>| number.map(|number| (Number(number).to_string(), Number(number).to_string()));
         let text = |text: Option<&str>| text.map(|text| (text.to_owned(), format!("{text:?}")));
+        // A frame's number has no quotes.
+        let moment = |moment: Option<&str>| match moment {
+            Some(frame) if frame.parse::<u32>().is_ok() => Some((frame.to_owned(), frame.to_owned())),
+            other => text(other),
+        };
         let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         let list = |list: &[String]| (!list.is_empty()).then(|| (String::new(), format!("{list:?}")));
         let flag = |flag: bool| flag.then(|| (String::new(), "True".to_owned()));
@@ -216,8 +221,8 @@ impl Settings {
             Setting::Effort => text(Some(&self.effort)),
             Setting::Rotations => text(Some(&self.rotations)),
             Setting::Retarget => text(self.retarget.as_deref()),
-            Setting::From => text(self.first.as_deref()),
-            Setting::To => text(self.last.as_deref()),
+            Setting::From => moment(self.first.as_deref()),
+            Setting::To => moment(self.last.as_deref()),
             Setting::Skeleton => text(path(&self.skeleton).as_deref()),
             Setting::Map => text(path(&self.joint_map).as_deref()),
             Setting::With => text(path(&self.with_file).as_deref()),

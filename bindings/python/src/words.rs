@@ -72,10 +72,10 @@ fn hint(remedy: Remedy) -> String {
 
 /// The message of an exception. `settings` are those of a conversion.
 pub fn message(error: &Error, settings: Option<&Settings>) -> String {
-    let Problem { place, text, remedy } = error.problem();
+    let Problem { place, value, text, remedy } = error.problem();
     let mut message = if place.is_empty() { String::new() } else { format!("{place}: ") };
     match error.refused() {
-        Some(setting) => message += &refusal(setting, text, settings),
+        Some(setting) => message += &refusal(setting, value, text, settings),
         None => message += text,
     }
     if let Some(remedy) = remedy {
@@ -84,16 +84,13 @@ pub fn message(error: &Error, settings: Option<&Settings>) -> String {
     message
 }
 
-/// `fps=0: expected a number above 0`. The library's reason may begin with the value.
-fn refusal(setting: Setting, text: &str, settings: Option<&Settings>) -> String {
+/// `fps=0: expected a number above 0`.
+fn refusal(setting: Setting, value: &str, text: &str, settings: Option<&Settings>) -> String {
     let name = settings.map_or_else(|| keyword(setting), |settings| settings.keyword(setting));
     match settings.and_then(|settings| settings.value(setting)) {
-        Some((plain, shown)) => {
-            let prefix = format!("{plain}: ");
-            let reason = if plain.is_empty() { text } else { text.strip_prefix(&prefix).unwrap_or(text) };
-            format!("{name}={shown}: {reason}")
-        }
-        None => format!("{name}: {text}"),
+        Some((_, shown)) => format!("{name}={shown}: {text}"),
+        None if value.is_empty() => format!("{name}: {text}"),
+        None => format!("{name}={value}: {text}"),
     }
 }
 

@@ -33,7 +33,7 @@ def test_frames_are_cut_by_number_and_by_seconds(bvh):
     with pytest.raises(pantin.SettingError, match='first="soon": expected a frame') as caught:
         pantin.convert(bvh, first="soon")
     assert caught.value.setting == "first"
-    with pytest.raises(pantin.SettingError, match='last="9999": the last frame is 159') as caught:
+    with pytest.raises(pantin.SettingError, match="last=9999: the last frame is 159") as caught:
         pantin.convert(bvh, last=9999)
     assert (caught.value.setting, caught.value.path) == ("last", str(bvh))
 

@@ -151,7 +151,7 @@ impl<'a, 'm> Kinematics<'a, 'm> {
     /// Sets up the joints of a clip's rig, End Sites included, in `joints`: [`pantin::Rig::joint_count`] of them. `pose` is any pose of the clip; its values
     /// determine the figure unit where position channels move joints.
     ///
-    /// Costs some 150,000 instructions on a Cortex-M3 for 23 joints: once a clip.
+    /// Costs some 51,000 instructions on a Cortex-M3 for 23 joints and 6 End Sites: once a clip.
     #[inline(never)]
     pub fn new(clip: &Clip<'a>, pose: Pose<'_>, joints: &'m mut [JointPlace]) -> Result<Self, KinematicsError> {
         let (rig, form) = (clip.rig(), clip.form_ref());
@@ -177,7 +177,7 @@ impl<'a, 'm> Kinematics<'a, 'm> {
 
     /// Places all joints. The pose is one of the clip: the error names the difference.
     ///
-    /// Costs some 420 instructions a joint on a Cortex-M3.
+    /// Costs some 290 instructions a joint on a Cortex-M3: 8,300 for the 23 joints and 6 End Sites of a person.
     #[inline(never)]
     pub fn set_pose(&mut self, pose: Pose<'_>) -> Result<(), WrongForm> {
         self.form.check(pose.form)?;
@@ -189,7 +189,7 @@ impl<'a, 'm> Kinematics<'a, 'm> {
 
     /// Places one joint and those above it, and returns it. All others keep the places that they had.
     ///
-    /// Costs some 450 instructions on a Cortex-M3 for each joint from the root down to it.
+    /// Costs some 370 instructions on a Cortex-M3 for each joint from the root down to it: 2,300 for the toes of a person.
     #[inline(never)]
     pub fn place(&mut self, pose: Pose<'_>, joint: &JointRef<'_>) -> Result<&JointPlace, WrongForm> {
         self.form.check(pose.form)?;

@@ -27,6 +27,8 @@ pub enum Error {
 pub struct Problem {
     /// The file, line, joint or frame, as in `walk.bvh:12`; empty if none is known.
     pub place: String,
+    /// The value of the setting that is refused, as the user gave it; empty if the text says all.
+    pub value: String,
     /// The reason in English, without a full stop.
     pub text: String,
     /// What would help.
@@ -159,6 +161,11 @@ impl Error {
         Error::Setting(setting, Problem::new(text))
     }
 
+    /// A setting whose value is out of range, or does not fit.
+    pub fn value(setting: Setting, value: impl fmt::Display, text: impl Into<String>) -> Error {
+        Error::Setting(setting, Problem { value: value.to_string(), ..Problem::new(text) })
+    }
+
     /// A motion that takes too much memory.
     pub fn memory(text: impl Into<String>) -> Error {
         Error::Memory(Problem { remedy: Some(Remedy::RaiseMemory), ..Problem::new(text) })
@@ -227,7 +234,7 @@ impl Error {
 impl Problem {
     /// A problem without a place.
     pub fn new(text: impl Into<String>) -> Problem {
-        Problem { place: String::new(), text: text.into(), remedy: None }
+        Problem { text: text.into(), ..Problem::default() }
     }
 }
 
@@ -247,7 +254,8 @@ impl fmt::Display for Error {
             write!(f, "{}: ", problem.place)?;
         }
         if let Error::Setting(setting, _) = self {
-            write!(f, "{}: ", setting.text())?;
+            let value = if problem.value.is_empty() { String::new() } else { format!(" {}", problem.value) };
+            write!(f, "{}{value}: ", setting.text())?;
         }
         f.write_str(&problem.text)
     }

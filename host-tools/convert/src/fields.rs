@@ -44,14 +44,15 @@ impl Error {
         }
     }
 
-    /// All fields: `kind`, `setting`, `remedy`, `place` and `text`. A field of which nothing is known is null.
+    /// All fields: `kind`, `setting`, `remedy`, `place`, `value` and `text`. A field of which nothing is known is null.
     pub fn fields(&self) -> Map<String, Value> {
-        let Problem { place, text, remedy } = self.problem();
+        let Problem { place, value, text, remedy } = self.problem();
         let fields = json!({
             "kind": self.kind(),
             "setting": self.refused().map(Setting::name),
             "remedy": remedy.map(Remedy::name),
             "place": (!place.is_empty()).then_some(place),
+            "value": (!value.is_empty()).then_some(value),
             "text": text,
         });
         fields.as_object().cloned().unwrap_or_default()
@@ -137,8 +138,7 @@ mod tests {
         });
         assert_eq!(note, expected);
         let error = Error::setting(Setting::CloseLoop, "open").remedy(Remedy::ChooseFrames);
-        let expected =
-            json!({ "kind": "setting", "setting": "close-loop", "remedy": "choose-frames", "place": null, "text": "open" });
+        let expected = json!({ "kind": "setting", "setting": "close-loop", "remedy": "choose-frames", "place": null, "value": null, "text": "open" });
         assert_eq!(Value::from(error.fields()), expected);
     }
 }

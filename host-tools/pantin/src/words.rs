@@ -93,7 +93,10 @@ pub fn explanation(error: &Error) -> String {
                 let problem = typed.problem();
                 parts.extend((!problem.place.is_empty()).then(|| problem.place.clone()));
                 parts.push(match typed {
-                    pantin_convert::Error::Setting(setting, _) => format!("{}: {}", option(*setting), problem.text),
+                    pantin_convert::Error::Setting(setting, _) => {
+                        let value = if problem.value.is_empty() { String::new() } else { format!(" {}", problem.value) };
+                        format!("{}{value}: {}", option(*setting), problem.text)
+                    }
                     _ => problem.text.clone(),
                 });
                 remedy = problem.remedy;
@@ -116,9 +119,9 @@ mod tests {
 
     #[test]
     fn every_setting_has_its_option_and_every_remedy_its_advice() {
-        let error = pantin_convert::Error::setting(Setting::To, "9: the last frame is 3").remedy(Remedy::ChooseFrames);
+        let error = pantin_convert::Error::value(Setting::To, 9, "the last frame is 3").remedy(Remedy::ChooseFrames);
         let error = Error::new(error).context("walk.bvh");
-        let expected = "walk.bvh: --to: 9: the last frame is 3; --from and --to choose frames that are alike";
+        let expected = "walk.bvh: --to 9: the last frame is 3; --from and --to choose frames that are alike";
         assert_eq!(explanation(&error), expected);
         let note = Note::no_effect(Setting::Effort, "nothing is searched");
         assert_eq!(line(&note), "--effort has no effect: nothing is searched");

@@ -27,7 +27,9 @@ impl Distance {
             (None, None) => Options::MAX_ERROR.of(motion)?,
         };
         if let Some(mean) = mean_cm {
-            let refusal = || Error::setting(Setting::MeanError, format!("{mean} cm is more than the largest error, {max_cm} cm"));
+            let refusal = || {
+                Error::value(Setting::MeanError, format!("{mean} cm"), format!("it is more than the largest error, {max_cm} cm"))
+            };
             require!(mean <= max_cm, refusal());
         }
         let shell = match options.shell {

@@ -278,8 +278,8 @@ impl Prepared {
         let frame = f64::from(coded.frame_time_ns) * 1e-9;
         let refusal = || {
             let (given, most) = (Number(seconds), frame * f64::from(MAX_FRAMES));
-            let text = format!("{given}: expected seconds, from {frame} (a frame) to {most} ({MAX_FRAMES} frames)");
-            Error::setting(Setting::Index, text)
+            let text = format!("expected seconds, from {frame} (a frame) to {most} ({MAX_FRAMES} frames)");
+            Error::value(Setting::Index, given, text)
         };
         require!((1.0..=f64::from(MAX_FRAMES)).contains(&spacing), refusal());
         let bytes = clip::encode_with_index(coded, &self.rig, rig_apart, spacing as u32, memory)?;

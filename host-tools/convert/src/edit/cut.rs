@@ -12,8 +12,8 @@ use anyhow::Result;
 pub fn cut(motion: &Motion, from: Option<usize>, to: Option<usize>) -> Result<Motion> {
     let last = motion.frames - 1;
     let (from, to) = (from.unwrap_or(0), to.unwrap_or(last));
-    require!(to <= last, Error::setting(Setting::To, format!("{to}: the last frame is {last}")));
-    require!(from <= to, Error::setting(Setting::From, format!("{from} is after frame {to}, the last one kept")));
+    require!(to <= last, Error::value(Setting::To, to, format!("the last frame is {last}")));
+    require!(from <= to, Error::value(Setting::From, from, format!("it is after frame {to}, the last one kept")));
     if (from, to) == (0, last) {
         return Ok(motion.clone());
     }

@@ -245,7 +245,7 @@ impl Edits {
 
     fn add_events(&self, Edited { motion, .. }: &mut Edited) -> Result<()> {
         for (name, moment) in &self.events {
-            let wrong = |error: anyhow::Error| Error::setting(Setting::Event, format!("{name}: {error:#}"));
+            let wrong = |error: anyhow::Error| Error::value(Setting::Event, name, format!("{error:#}"));
             events::check_name(name).map_err(wrong)?;
             let frame = moment.frame(motion.frames as u32, motion.frame_time).map_err(wrong)? as usize;
             motion.add_events([Event { frame, name: name.clone() }]);

@@ -79,9 +79,8 @@ fn globs(rig: &Rig, setting: Setting, texts: &[String]) -> Result<Vec<Pattern>> 
     let joints = rig.joints.iter().filter(|joint| !joint.end_site).map(|joint| joint.name.as_str());
     let names: Vec<&str> = joints.chain(rig.scalars.iter().map(|scalar| scalar.name.as_str())).collect();
     let glob = |text: &String| {
-        let glob = Pattern::new(text).map_err(|error| Error::setting(setting, format!("{text}: {error}")))?;
-        let unknown =
-            || Error::setting(setting, format!("{text}: no joint or scalar is called so; there are {}", names.join(", ")));
+        let glob = Pattern::new(text).map_err(|error| Error::value(setting, text, error.to_string()))?;
+        let unknown = || Error::value(setting, text, format!("no joint or scalar is called so; there are {}", names.join(", ")));
         require!(names.iter().any(|name| any(std::slice::from_ref(&glob), name)), unknown());
         Ok(glob)
     };

@@ -40,7 +40,7 @@ pub fn resample(motion: &Motion, fps: f64, memory: Memory) -> Result<Motion> {
         ((steps + (ROUNDED * steps).clamp(1e-9, 0.01)).floor(), factor)
     };
     let too_many =
-        || Error::setting(Setting::FrameRate, format!("{fps} gives more than {MAX_FRAMES} frames, too many for a clip"));
+        || Error::value(Setting::FrameRate, fps, format!("it gives more than {MAX_FRAMES} frames, too many for a clip"));
     require!(steps < f64::from(MAX_FRAMES), too_many());
     if steps as usize >= motion.frames {
         memory.check(steps as usize + 1, motion.values.len()).with_context(|| format!("at {fps} frames a second"))?;

@@ -115,7 +115,7 @@ pub fn list(files: &dyn Files, name: &Path, options: &ImportOptions) -> Result<V
 
 fn imported(path: &Path, request: &Request) -> Result<Imported> {
     if let Some(fps) = request.fps {
-        require!(fps.is_finite() && fps > 0.0, Error::setting(Setting::FrameRate, format!("{fps}: expected a number above 0")));
+        require!(fps.is_finite() && fps > 0.0, Error::value(Setting::FrameRate, fps, "expected a number above 0"));
     }
     let format = format_of(path, request)?;
     let place = || path.display().to_string();
@@ -161,12 +161,12 @@ fn imported(path: &Path, request: &Request) -> Result<Imported> {
 fn check_settings(format: &Format, request: &Request) -> Result<()> {
     let name = format.name;
     if let Some(animation) = &request.animation {
-        let reason = || format!("{animation}: a file of {name} holds one motion");
-        require!(format.has_animations, Error::setting(Setting::Animation, reason()));
+        let reason = format!("a file of {name} holds one motion");
+        require!(format.has_animations, Error::value(Setting::Animation, animation, reason));
     }
     if let Some(skeleton) = &request.skeleton {
-        let reason = || format!("{}: only an .amc takes one, and this is {name}", skeleton.display());
-        require!(format.has_skeleton, Error::setting(Setting::Skeleton, reason()));
+        let reason = format!("only an .amc takes one, and this is {name}");
+        require!(format.has_skeleton, Error::value(Setting::Skeleton, skeleton.display(), reason));
     }
     Ok(())
 }

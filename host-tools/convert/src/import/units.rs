@@ -21,7 +21,7 @@ const PLAUSIBLE_CM: std::ops::Range<f64> = 60.0..400.0;
 pub fn settle(motion: &Motion, user: Option<f64>, source: Option<f64>) -> Result<(f64, Note)> {
     let info = |text: String| Note::info(NoteKind::Unit, text);
     if let Some(cm) = user {
-        let wrong = || Error::setting(Setting::Unit, format!("{}: expected a number above 0", Number(cm)));
+        let wrong = || Error::value(Setting::Unit, Number(cm), "expected a number above 0");
         require!(cm.is_finite() && cm > 0.0, wrong());
         return Ok((cm, info(format!("units: {} cm, as given", Number(cm)))));
     }

@@ -133,7 +133,7 @@ fn words_in_place_of_numbers_are_named() {
 
 #[test]
 fn times_and_counts_that_mean_nothing_are_refused() {
-    refused("zero-time", &good_but("0.01", "0"), 18, "expected a frame time above 0, found 0; --fps gives one");
+    refused("zero-time", &good_but("0.01", "0"), 18, "expected a frame time above 0, found 0; --fps gives the frames a second");
     refused("negative-time", &good_but("0.01", "-0.01"), 18, "frame time above 0");
     refused("no-frames", &good_but("Frames: 2", "Frames: 0"), 17, "from 1");
     refused("negative-frames", &good_but("Frames: 2", "Frames: -2"), 17, "from 1");

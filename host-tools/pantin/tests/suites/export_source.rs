@@ -8,6 +8,9 @@ use pantin_convert::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Stands in for the crate whose type the text uses.
+const CRATE: &str = "extern crate self as pantin;\npub struct Room<const MOVING: usize, const CHANNELS: usize>;\n";
+
 fn walk() -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/walk.keys");
     let motion = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
@@ -44,7 +47,8 @@ fn a_rust_module_holds_the_clip() {
     let (bytes, folder) = (walk(), folder("rust"));
     let opened = pantin::Clip::new_checked(&bytes).unwrap();
     std::fs::write(folder.join("walk.rs"), rust_module(&opened, &bytes, "walk").unwrap()).unwrap();
-    let main = "mod walk;\nuse std::io::Write;\nfn main() {\n    assert!(walk::WALK_FRAMES == 160 && walk::WALK_MOVING <= walk::WALK_CHANNELS && walk::WALK_FRAME_TIME_NS > 0);\n    assert!(walk::WALK_FIGURE_JOINTS == 25 && walk::WALK_WORKSPACE == 29 && walk::WALK_NAMES[0] == \"root.Zposition\");\n    std::io::stdout().write_all(&walk::WALK).unwrap();\n}\n";
+    let main = String::from(CRATE)
+        + "mod walk;\nuse std::io::Write;\nfn main() {\n    assert!(walk::WALK_FRAMES == 160 && walk::WALK_MOVING <= walk::WALK_CHANNELS && walk::WALK_FRAME_TIME_NS > 0);\n    assert!(walk::WALK_FIGURE_JOINTS == 25 && walk::WALK_WORKSPACE == 29 && walk::WALK_NAMES[0] == \"root.Zposition\");\n    std::io::stdout().write_all(&walk::WALK).unwrap();\n}\n";
     std::fs::write(folder.join("main.rs"), main).unwrap();
     if let Some(out) = printed("rustc", &folder.join("main.rs"), &folder) {
         assert_eq!(out, bytes);
@@ -170,7 +174,7 @@ fn headers_of_any_names_compile_together() {
     c += &format!("int main(void) {{ printf(\"%d\", 0{length}); return 0; }}\n");
     rust += &format!("fn main() {{ print!(\"{{}}\", 0{uses}); }}\n");
     std::fs::write(folder.join("main.c"), &c).unwrap();
-    std::fs::write(folder.join("main.rs"), format!("#![deny(warnings)]\n#![allow(dead_code)]\n{rust}")).unwrap();
+    std::fs::write(folder.join("main.rs"), format!("#![deny(warnings)]\n#![allow(dead_code)]\n{CRATE}{rust}")).unwrap();
     for (compiler, options, program) in [
         ("cc", &["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"][..], "main.c"),
         ("rustc", &["--edition=2024"][..], "main.rs"),

@@ -461,7 +461,7 @@ fn numbers_that_are_none_and_times_that_go_back_are_refused() {
     refused(&[0.0, 0.0], 1.0, "expected later than 0 s");
     refused(&[0.0, 1e8], 1.0, "too long for a clip");
     refused(&[0.0, 3e5], 1.0, "animations[0]: 9000001 frames are too many for this figure");
-    refused(&[0.0, 1e-6], 1.0, "--fps gives a rate of at most 1000");
+    refused(&[0.0, 1e-6], 1.0, "frames a second, more than 1000; --fps takes fewer");
 }
 
 #[test]

@@ -113,5 +113,5 @@ fn warnings_of_a_face_beside_a_body_are_said() {
     folder.put("face.csv", recording(codes));
     let walk = concat!(env!("CARGO_MANIFEST_DIR"), "/../../motions/walk.keys");
     let said = err(&folder.done(&["convert", walk, "--with", "face.csv", "--fps", "60", "-o", "both.ptn", "--effort", "fast"]));
-    assert!(said.contains("with: warning: 3 of 90 frames were dropped"), "{said}");
+    assert!(said.contains("warning: with: 3 of 90 frames were dropped"), "{said}");
 }

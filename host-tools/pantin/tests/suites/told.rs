@@ -1,7 +1,7 @@
 //! Imports as the command line reports them: notes and errors as its sentences.
 
 use pantin_convert::import::{Disk, ImportOptions, Imported, InMemory, import};
-use pantin_convert::motion::Motion;
+use pantin_convert::motion::{Motion, Origin};
 use pantin_convert::{Error, NoteKind};
 use pantin_tools::words;
 use std::path::Path;
@@ -15,6 +15,11 @@ pub struct Told {
     /// All other sentences.
     pub warnings: Vec<String>,
     pub error_cm: f64,
+}
+
+/// An error of the library in the command line's words.
+pub fn said(error: &anyhow::Error) -> String {
+    words::explanation(error)
 }
 
 /// Imports the file `path`.
@@ -32,6 +37,8 @@ fn told(imported: Result<Imported, Error>) -> anyhow::Result<Told> {
     let (units, others): (Vec<_>, Vec<_>) =
         imported.notes.iter().partition(|note| note.kind == NoteKind::Unit && !note.is_warning());
     let error_cm = imported.motion.origin.error_cm;
+    // Motions are compared whatever they were read from.
+    let motion = Motion { origin: Origin::default(), ..imported.motion };
     let sentences = |notes: Vec<_>| notes.into_iter().map(words::sentence).collect::<Vec<String>>();
-    Ok(Told { units: sentences(units).join("; "), warnings: sentences(others), error_cm, motion: imported.motion })
+    Ok(Told { units: sentences(units).join("; "), warnings: sentences(others), error_cm, motion })
 }
