@@ -59,6 +59,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
                 "decoder.min.js" => decoder(&source)?,
+                "turns.min.js" => tools::minified(read(&source.join("turns.js"))?)?,
                 name if [&PLAYER[..], &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
                     read(&site.join(name))?
                 }

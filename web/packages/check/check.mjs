@@ -3,6 +3,8 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { openClip } from "@pantin/decoder";
 import * as min from "@pantin/decoder/min";
+import { findJoint } from "@pantin/decoder/turns";
+import * as minTurns from "@pantin/decoder/turns/min";
 import { PantinPlayer } from "@pantin/player";
 import { PantinPose, toAnimationClip } from "@pantin/three";
 import { AnimationMixer, Bone, Float32BufferAttribute, BufferGeometry, Group, Mesh, Skeleton, Vector3 } from "three";
@@ -10,7 +12,11 @@ import { AnimationMixer, Bone, Float32BufferAttribute, BufferGeometry, Group, Me
 const bytes = readFileSync(process.argv[2]);
 const clip = openClip(bytes);
 const short = min.openClip(bytes).play();
-for (const player = clip.play(); player.step() && short.step(); ) assert.deepEqual(player.raw, short.raw);
+const named = clip.joints.filter(({ name }) => name).map(({ name }) => name);
+for (const player = clip.play(); player.step() && short.step(); ) {
+  assert.deepEqual(player.raw, short.raw);
+  for (const name of named) assert.deepEqual(findJoint(player, name).euler("YZX"), minTurns.findJoint(short, name).euler("YZX"));
+}
 
 // Without a page, the element is a class and nothing more.
 assert.equal(typeof PantinPlayer, "function");

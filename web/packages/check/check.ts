@@ -1,6 +1,8 @@
 // What the packages' types allow, and what they do not.
 import { openBank, openClip, type Clip, type Player } from "@pantin/decoder";
 import { openClip as openShort } from "@pantin/decoder/min";
+import { degrees, findJoint, type EulerOrder } from "@pantin/decoder/turns";
+import { findJoint as findShort } from "@pantin/decoder/turns/min";
 import { PantinPlayer, type Heard } from "@pantin/player";
 import { PantinPose, toAnimationClip } from "@pantin/three";
 import { AnimationMixer, Object3D, Skeleton } from "three";
@@ -11,6 +13,12 @@ export async function use(bytes: ArrayBuffer, root: Object3D): Promise<number> {
   openBank(bytes).open("walk");
   const player: Player = clip.play().seek(3);
   const turns: Float32Array = player.rotation(0, new Float32Array(4));
+  const knee = findJoint(player, "LeftLeg");
+  const order: EulerOrder = knee.order ?? "ZYX";
+  const angles: Int32Array = knee.euler(order, new Int32Array(3));
+  turns[0] = findShort(player, "LeftLeg").euler("XYZ").map(degrees)[0] ?? angles[0];
+  // @ts-expect-error There is no such order.
+  knee.euler("XYX");
   new AnimationMixer(root).clipAction(toAnimationClip(clip, root, { name: "walk", map: { Hips: "hips", Toe: null } })).play();
   const pose = new PantinPose(clip, new Skeleton([]), { morphs: (name) => name.toLowerCase(), scale: 0.01 }).update(0.1);
   const element: PantinPlayer = document.createElement("pantin-player");

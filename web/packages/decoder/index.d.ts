@@ -13,7 +13,7 @@ export interface Joint {
   readonly isHelper: boolean;
   /** The position in the parent while no channel moves it: x, y, z in units of the source. */
   readonly offset: readonly number[];
-  /** The kinds of its channels: 0-2 position x, y, z; 3-5 Euler angle x, y, z; 6-9 quaternion w, x, y, z; 10-12 exponential map x, y, z. */
+  /** The kinds of its channels as the clip codes them: 0-2 position x, y, z; 3-5 Euler angle x, y, z; 6-9 quaternion w, x, y, z; 10-12 exponential map x, y, z. */
   readonly kinds: readonly number[];
   /** The index of its first channel in `Player.raw`. */
   readonly first: number;
@@ -66,7 +66,7 @@ export interface Clip {
   readonly exponent: number;
   /** Whether frame 0 follows the last frame. */
   readonly looped: boolean;
-  /** The index of the joint with this name, or -1. */
+  /** The index of the joint with this name, of several the first. Throws an Error that names it if there is none. */
   joint(name: string): number;
   /** The index of the scalar with this name, or -1. */
   scalar(name: string): number;
@@ -79,7 +79,11 @@ export interface Player {
   readonly clip: Clip;
   /** The frame that is shown. */
   readonly frame: number;
-  /** The raw values of all channels at this frame. The array is changed by every step and seek. */
+  /**
+   * The raw values of all channels at this frame: Euler angles and exponential maps in 2^-32 turns, positions in 2^`Clip.exponent` units of the source,
+   * quaternions in 2^-30. The components of an exponential map or a quaternion are no angles about axes: `rotation`, and `findJoint` of
+   * "@pantin/decoder/turns", read rotations. The array is changed by every step and seek.
+   */
   readonly raw: Int32Array;
   /** Shows the next frame. Returns false at the last one. */
   step(): boolean;

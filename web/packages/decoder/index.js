@@ -181,7 +181,11 @@ export const openClip = (data, rig) => {
     rig, joints, scalars, events, eventNames, frames, frameTimeNs, exponent, looped,
     // Seconds. In a loop, the last frame lasts as long as the others.
     duration: ((frames - !looped) * frameTimeNs) / 1e9,
-    joint: (name) => joints.findIndex((joint) => !joint.isEnd && joint.name === name),
+    joint: (name) => {
+      const index = joints.findIndex((joint) => name && joint.name === name);
+      check(index >= 0, "no joint " + name);
+      return index;
+    },
     scalar: (name) => scalars.findIndex((scalar) => scalar.name === name),
     play: () => play(clip, payload, at()),
   };
@@ -223,9 +227,9 @@ export const openBank = (data) => {
   };
 };
 
-// A rotation that is being computed, and what of it follows Euler angles: a quaternion w, x, y, z and an exponential map.
+// A rotation that is being computed, and what of it follows Euler angles: a quaternion w, x, y, z, an exponential map, and one that stands for Euler angles.
 const Q = new Float64Array(4);
-const PARTS = new Float64Array(7);
+const PARTS = new Float64Array(10);
 const turn = (a, b, c, d) => {
   const x = Q[0];
   const y = Q[1];
@@ -238,6 +242,10 @@ const turn = (a, b, c, d) => {
 };
 // Turns by a vector's direction, scaled, and a real part.
 const turnBy = (first, scale, real) => turn(PARTS[first] * scale, PARTS[first + 1] * scale, PARTS[first + 2] * scale, real);
+const turnByMap = (first) => {
+  const angle = hypot(PARTS[first], PARTS[first + 1], PARTS[first + 2]);
+  if (angle) turnBy(first, sin(angle) / angle, cos(angle));
+};
 
 const play = (clip, payload, at) => {
   const { rig, joints, frames, frameTimeNs } = clip;
@@ -392,7 +400,7 @@ const play = (clip, payload, at) => {
     for (let index = 0; index < kinds.length; index++) {
       const kind = kinds[index];
       const half = raw[first + index] * HALF_ANGLE;
-      if (kind > 5) PARTS[kind - 6] = half;
+      if (kind > 5) PARTS[rig.joints[joint].kinds[index] < 6 ? kind - 3 : kind - 6] = half;
       else if (kind > 2) {
         const sine = sin(half);
         turn(kind === 3 ? sine : 0, kind === 4 ? sine : 0, kind > 4 ? sine : 0, cos(half));
@@ -401,9 +409,9 @@ const play = (clip, payload, at) => {
     }
     if (last > 5) {
       const length = hypot(PARTS[0], PARTS[1], PARTS[2], PARTS[3]);
-      const angle = hypot(PARTS[4], PARTS[5], PARTS[6]);
+      turnByMap(7);
       if (length) turnBy(1, 1 / length, PARTS[0] / length);
-      if (angle) turnBy(4, sin(angle) / angle, cos(angle));
+      turnByMap(4);
     }
     for (let index = 0; index < 4; index++) out[place + index] = Q[index];
     return out;

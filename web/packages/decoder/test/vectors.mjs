@@ -6,6 +6,7 @@ import { pathToFileURL } from "node:url";
 import { decode } from "../../../../tests/independent/decode.mjs";
 
 const { openBank, openClip, openRig } = await import(process.argv[2] ? pathToFileURL(resolve(process.argv[2])) : "../index.js");
+const { degrees, findJoint } = await import("../turns.js");
 const folder = new URL("../../../../tests/vectors/", import.meta.url);
 const read = (name) => readFileSync(new URL(name, folder));
 const json = (name) => JSON.parse(read(name));
@@ -33,23 +34,28 @@ const about = ([x, y, z], angle) => {
 const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 function placed(clip, raw) {
   const result = [];
-  for (const { parent, kinds, first, offset } of clip.joints) {
-    const [at, w, axis] = [[...offset], [0, 0, 0, 0], [0, 0, 0]];
+  for (const [joint, { parent, kinds, first, offset }] of clip.joints.entries()) {
+    // Euler angles coded as an exponential map stand before the joint's own quaternion and map.
+    const [at, coded, w, axis] = [[...offset], [0, 0, 0], [0, 0, 0, 0], [0, 0, 0]];
     let matrix = IDENTITY;
     kinds.forEach((kind, index) => {
       const value = raw[first + index];
       if (kind < 3) at[kind] = value * 2 ** clip.exponent;
       else if (kind < 6) matrix = product(matrix, about(IDENTITY[kind - 3], (value / 2 ** 31) * Math.PI));
       else if (kind < 10) w[kind - 6] = value;
-      else axis[kind - 10] = (value / 2 ** 31) * Math.PI;
+      else (clip.rig.joints[joint].kinds[index] < 6 ? coded : axis)[kind - 10] = (value / 2 ** 31) * Math.PI;
     });
+    const byMap = (axis) => {
+      const angle = Math.hypot(...axis);
+      if (angle) matrix = product(matrix, about(axis.map((value) => value / angle), angle));
+    };
+    byMap(coded);
     if (w.some(Boolean)) {
       const length = Math.hypot(...w);
       const half = Math.hypot(w[1], w[2], w[3]);
       if (half) matrix = product(matrix, about(w.slice(1).map((value) => value / half), 2 * Math.atan2(half / length, w[0] / length)));
     }
-    const angle = Math.hypot(...axis);
-    if (angle) matrix = product(matrix, about(axis.map((value) => value / angle), angle));
+    byMap(axis);
     const above = result[parent];
     result.push(above ? { at: above.at.map((value, row) => value + above.matrix[row].reduce((sum, factor, index) => sum + factor * at[index], 0)), matrix: product(above.matrix, matrix) } : { at, matrix });
   }
@@ -130,7 +136,39 @@ for (const file of readdirSync(folder).filter((name) => /\.pt[nb]$/.test(name)))
   assert.equal(later.seekTime(walk.duration + 2.5 * seconds).frame, walk.looped ? 2 : walk.frames - 1);
   assert.equal(later.seekTime(-seconds).frame, walk.looped ? walk.frames - 1 : 0);
   walk.joints.forEach(({ name, isEnd }, index) => isEnd || assert.equal(walk.joints[walk.joint(name)].name, walk.joints[index].name));
-  assert.equal(walk.joint("nobody"), -1);
+  assert.throws(() => walk.joint("nobody"), /no joint nobody/);
+}
+
+// Rotations by joints that were found once, as the decoder in Rust computes them.
+let turned = 0;
+{
+  const ORDERS = ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"];
+  const players = new Map();
+  const handles = new Map();
+  for (const line of read("turns.txt").toString().trim().split("\n")) {
+    const [file, name, frame, ...values] = line.split(" ");
+    if (!players.has(file)) players.set(file, openClip(read(`${file}.ptn`)).play());
+    const player = players.get(file).seek(+frame);
+    const key = `${file} ${name}`;
+    if (!handles.has(key)) handles.set(key, findJoint(player, name));
+    const joint = handles.get(key);
+    const checksum = values.pop();
+    assert.deepEqual([...joint.euler("XYZ"), ...joint.euler("ZXY"), ...joint.quaternion()], values.map(Number), line);
+    assert.equal(crc16(Int32Array.from([...joint.matrix(), joint.angle(), ...ORDERS.flatMap((order) => joint.euler(order))])), checksum, line);
+    // The same rotation in floating point, of either sign.
+    const [x, y, z, w] = player.rotation(joint.index);
+    const along = joint.quaternion().reduce((sum, value, index) => sum + value * [w, x, y, z][index], 0);
+    assert.ok(Math.abs(Math.abs(along) / 2 ** 30 - 1) < 1e-6, line);
+    assert.deepEqual(joint.raw(), [...player.raw.subarray(player.clip.joints[joint.index].first)].slice(0, joint.kinds.length));
+    turned++;
+  }
+  const player = players.get("turn-orders");
+  assert.deepEqual([findJoint(player, "j7").order, findJoint(player, "j8").order], ["YXZ", undefined]);
+  assert.throws(() => findJoint(player, "nobody"), /no joint nobody/);
+  assert.throws(() => findJoint(player, ""), /no joint/);
+  assert.throws(() => findJoint(player, "j0").euler("XYX"), /no order of Euler angles XYX/);
+  assert.throws(() => findJoint(player, "j8").euler(), /no order of Euler angles/);
+  assert.equal(degrees(-(2 ** 30)), -90);
 }
 
 // Damaged files: both decoders refuse the same ones, and play the others alike. The generator is fixed, so that a failure repeats.
@@ -193,4 +231,4 @@ for (const file of readdirSync(folder).filter((name) => name.endsWith(".ptn") &&
   }
 }
 assert.ok(played > mutants / 10, `${played} of ${mutants} changed clips could be played`);
-console.log(`${vectors} vectors, ${poses} poses, ${joints} joints placed; ${mutants} changed files, ${played} of them playable`);
+console.log(`${vectors} vectors, ${poses} poses, ${joints} joints placed, ${turned} rotations; ${mutants} changed files, ${played} of them playable`);
