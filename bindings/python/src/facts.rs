@@ -53,6 +53,12 @@ fn text(bytes: &[u8]) -> Result<String> {
             "helper": joint.helper,
         })
     };
+    // Channels by what the clip stores: where three Euler angles are coded as an exponential map, its components.
+    let coded = (0..figure.joints.len()).flat_map(|joint| clip.kinds(joint).map(move |kind| (joint, kind)));
+    let channels: Vec<String> = coded
+        .map(|(joint, kind)| format!("{}.{kind:?}", figure.joints[joint].name))
+        .chain(figure.scalars.iter().map(|scalar| scalar.name.clone()))
+        .collect();
     let events: Vec<_> = events::of_clip(&clip).into_iter().map(|event| json!([event.frame, event.name])).collect();
     let facts = json!({
         "frames": clip.frames(),
@@ -62,7 +68,7 @@ fn text(bytes: &[u8]) -> Result<String> {
         "up": up::text(figure.up),
         "joints": figure.joints.iter().map(joint).collect::<Vec<_>>(),
         "scalars": figure.scalars.iter().map(|scalar| json!([scalar.name, scalar.full_scale])).collect::<Vec<_>>(),
-        "channels": (0..figure.channels()).map(|channel| figure.channel_name(channel)).collect::<Vec<_>>(),
+        "channels": channels,
         "events": events,
     });
     Ok(facts.to_string())

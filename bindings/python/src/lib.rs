@@ -36,7 +36,7 @@ mod _pantin {
     #[pymodule_export]
     use super::image::image;
     #[pymodule_export]
-    use super::poses::{places, positions, raw, rotations, scalars};
+    use super::poses::{euler, places, positions, raw, rotations, scalars};
     #[pymodule_export]
     use super::sources::{companions, is_motion};
 }

@@ -3,8 +3,8 @@
 use crate::array::floats;
 use crate::error::exception;
 use crate::facts::open;
-use anyhow::{Error, Result};
-use pantin::{ChannelState, Player};
+use anyhow::{Context, Error, Result};
+use pantin::{ChannelState, EulerOrder, Player};
 use pantin_convert::motion::Motion;
 use pantin_convert::{Memory, expand, fk};
 use pyo3::prelude::*;
@@ -99,6 +99,33 @@ fn raw_values(bytes: &[u8]) -> Result<Vec<u8>> {
             player.step();
         }
         values.extend(player.pose().values.iter().flat_map(|value| value.to_ne_bytes()));
+    }
+    Ok(values)
+}
+
+/// The Euler angles of a joint of this index in all frames: three of 32 bits each, in 2^-32 turns.
+#[pyfunction]
+pub fn euler<'py>(py: Python<'py>, clip: &[u8], joint: usize, order: &str) -> PyResult<Bound<'py, PyByteArray>> {
+    let values = py.detach(|| euler_values(clip, joint, order)).map_err(|error| exception(py, &error, None))?;
+    Ok(PyByteArray::new(py, &values))
+}
+
+fn euler_values(bytes: &[u8], joint: usize, order: &str) -> Result<Vec<u8>> {
+    let clip = open(bytes)?;
+    let known = EulerOrder::ALL.into_iter().find(|known| format!("{known:?}") == order);
+    let order = known.with_context(|| format!("no order of Euler angles {order:?}: XYZ, XZY, YXZ, YZX, ZXY or ZYX"))?;
+    let joint = clip.rig().joint_ref(joint).with_context(|| format!("no joint {joint}"))?;
+    Memory::default().check(clip.frames() as usize, clip.rig().channels())?;
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; clip.rig().channels()];
+    let mut player = Player::new(clip, &mut states, &mut pose)?;
+    let mut values = Vec::new();
+    for frame in 0..clip.frames() {
+        if frame > 0 {
+            player.step();
+        }
+        let turn = player.turn(&joint).map_err(Error::msg)?;
+        values.extend(turn.euler(order).iter().flat_map(|angle| angle.to_bits().to_ne_bytes()));
     }
     Ok(values)
 }

@@ -78,6 +78,39 @@ def test_the_bvh_has_the_positions(walk, bvh):
     assert np.abs(positions[:, order] * scale - walk.positions()[:, own]).max() < 1e-5
 
 
+def test_rotations_by_name_are_those_of_the_decoder(vectors):
+    clips, found = {}, {}
+    lines = [line.split() for line in (vectors / "turns.txt").read_text().splitlines()]
+    assert len(lines) > 600
+    for file, joint, frame, *values in lines:
+        clip = clips.setdefault(file, pantin.Clip.open(vectors / f"{file}.ptn"))
+        if (file, joint) not in found:
+            orders = [np.round(clip.euler(joint, order) * (2**32 / 360)).astype(int).tolist() for order in ("XYZ", "ZXY")]
+            found[file, joint] = (*orders, clip.rotations(joint))
+        xyz, zxy, quaternions = found[file, joint]
+        numbers = [int(value) for value in values[:-1]]
+        assert xyz[int(frame)] + zxy[int(frame)] == numbers[:6], (file, joint, frame)
+        alike = abs(np.dot(quaternions[int(frame)], numbers[6:])) / 2**30
+        assert abs(alike - 1) < 1e-6, (file, joint, frame)
+
+
+def test_raw_channels_are_named_by_their_coding(vectors):
+    clip = pantin.Clip.open(vectors / "exponential-choice.ptn")
+    names = clip.channel_names
+    assert names[:6] == ("j0.Zrotation", "j0.Xrotation", "j0.Yrotation", "j1.Xexponential", "j1.Yexponential", "j1.Zexponential")
+    assert len(set(names)) == clip.raw().shape[1]
+
+
+def test_missing_joints_and_unknown_orders_are_named(walk):
+    for act in (lambda: walk.euler("nobody", "XYZ"), lambda: walk.rotations("nobody"), lambda: walk.joint_index("nobody")):
+        with pytest.raises(KeyError, match="nobody"):
+            act()
+    with pytest.raises(KeyError):
+        walk.joint_index("")
+    with pytest.raises(pantin.PantinError, match="XYX"):
+        walk.euler("left-shin", "XYX")
+
+
 def test_scalars_are_by_name(motions):
     clip = pantin.Clip.open(motions / "face/joy.ptn")
     scalars = clip.scalars()

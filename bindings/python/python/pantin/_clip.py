@@ -113,7 +113,7 @@ class Clip:
 
     @property
     def channel_names(self) -> Tuple[str, ...]:
-        """Names of all channels, in the order of `raw`."""
+        """Names of all channels, in the order of `raw`: the joint, and what the clip stores, such as `Spine.Xexponential`."""
         return tuple(self._facts["channels"])
 
     @property
@@ -121,12 +121,31 @@ class Clip:
         """The markers: frame and name, in the order of frames."""
         return [(frame, name) for frame, name in self._facts["events"]]
 
-    def rotations(self) -> Floats:
-        """Rotations of the joints in their parents, as quaternions w, x, y, z of length 1: (frames, joints, 4).
+    def joint_index(self, name: str) -> int:
+        """The index of the joint with this name, of several the first. Raises KeyError if there is none."""
+        for index, joint in enumerate(self.joints):
+            if name and joint.name == name:
+                return index
+        raise KeyError(f"no joint {name!r}")
 
-        End Sites have the rotation 1, 0, 0, 0. From frame to frame, the sign is that of the nearer quaternion.
+    def rotations(self, joint: Optional[str] = None) -> Floats:
+        """Rotations of the joints in their parents, as quaternions w, x, y, z of length 1: (frames, joints, 4). With a joint's name, those of this
+        joint: (frames, 4).
+
+        End Sites have the rotation 1, 0, 0, 0. From frame to frame, the sign is that of the nearer quaternion. Raises KeyError if there is no such joint.
         """
-        return self._floats(_pantin.rotations(self._bytes), len(self.joints), 4)
+        index = None if joint is None else self.joint_index(joint)
+        every = self._floats(_pantin.rotations(self._bytes), len(self.joints), 4)
+        return every if index is None else every[:, index]
+
+    def euler(self, joint: str, order: str) -> Floats:
+        """Rotations of a joint in its parent as Euler angles in degrees, -180 to 180, however the clip codes them: (frames, 3).
+
+        `order` is one of the six from 'XYZ' to 'ZYX': each angle turns about the axis as turned by those before it, as in BVH. The angles are those of the
+        decoder on a device: multiples of 2^-32 turns. Raises KeyError if there is no such joint.
+        """
+        turns = np.frombuffer(_pantin.euler(self._bytes, self.joint_index(joint), order), np.int32)
+        return turns.reshape(self.frames, 3) * (360 / 2**32)
 
     def positions(self) -> Floats:
         """Positions of the joints in the world, in cm: (frames, joints, 3)."""
@@ -144,7 +163,8 @@ class Clip:
     def raw(self) -> npt.NDArray[np.int32]:
         """The decoder's own integers: (frames, channels). They are equal, bit for bit, on every machine.
 
-        FORMAT.md has their units: turns of 2^-32 for angles, 2^-30 for components of quaternions.
+        `channel_names` says what each is. FORMAT.md has their units: 2^-32 turns for Euler angles and exponential maps, 2^-30 for components of
+        quaternions. The components of a map or a quaternion are no angles about axes: `euler` and `rotations` have rotations.
         """
         values = np.frombuffer(_pantin.raw(self._bytes), np.int32)
         return values.reshape(self.frames, len(self.channel_names))
