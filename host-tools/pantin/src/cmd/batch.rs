@@ -217,6 +217,9 @@ fn convert_all(arguments: &Arguments, tasks: Vec<Arguments>, labels: Vec<String>
         None => (tasks, labels),
     };
     let (tasks, labels) = (tasks.as_slice(), labels.as_slice());
+    if arguments.dry_run {
+        return dry_run(tasks, labels);
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.unwrap_or(0).into()).build()?;
     let bar = output::Pieces::new(tasks.len(), "files")?;
     let convert = |task: &Arguments| {
@@ -252,6 +255,27 @@ fn convert_all(arguments: &Arguments, tasks: Vec<Arguments>, labels: Vec<String>
     note!("{done} converted, {fresh} up to date, {refused} refused{others}");
     ensure!(refused == 0, "{refused} of {} files could not be converted", outcomes.len());
     Ok(())
+}
+
+/// Prints which clips would be written.
+fn dry_run(tasks: &[Arguments], labels: &[String]) -> Result<()> {
+    let mut files = Vec::new();
+    for (task, label) in tasks.iter().zip(labels) {
+        let (fresh, output) = (is_up_to_date(task, stamp(task)?.0), task.output().display().to_string());
+        if !output::is_json() {
+            let what = if fresh { "is up to date".into() } else { format!("would become {output}") };
+            outln!("{label} {what}")?;
+        }
+        files.push(json!({"file": task.input.display().to_string(), "output": output, "up_to_date": fresh}));
+    }
+    output::report(json!({"files": files}));
+    note!("nothing was written");
+    Ok(())
+}
+
+/// Whether a task's clip is there, whole, and made of these sources by these options.
+fn is_up_to_date(task: &Arguments, stamp: SystemTime) -> bool {
+    fs::metadata(task.output()).and_then(|clip| clip.modified()).is_ok_and(|time| time == stamp) && is_whole(task.output())
 }
 
 /// The motion files in and below a folder, in the order of names.
@@ -353,8 +377,7 @@ fn outcome(task: &Arguments, progress: Progress<'_>) -> Outcome {
     let begun = std::time::Instant::now();
     let convert = || -> Result<Outcome> {
         let (stamp, taken) = stamp(task)?;
-        if fs::metadata(task.output()).and_then(|clip| clip.modified()).is_ok_and(|time| time == stamp) && is_whole(task.output())
-        {
+        if is_up_to_date(task, stamp) {
             return Ok(Outcome::UpToDate);
         }
         let output = task.output().display();

@@ -38,6 +38,7 @@ use std::sync::OnceLock;
   pantin convert walk.bvh -o walk.ptn --footsteps --event clap@12 --event 'door opens@1.5s'
   pantin convert face.csv -o face.ptn --max-scalar-error 2
   pantin convert servos.tsv -o servos.ptn --fps 50
+  pantin convert captures -o clips --dry-run
   pantin convert --list fox.glb
   pantin convert fox.glb -o walk.ptn --animation Walk --cm-per-unit 1
   pantin convert walk.bvh -o walk.ptn --fps 30 --from 40 --to 71 --loop
@@ -75,6 +76,9 @@ pub struct Arguments {
     /// Write nothing; print the stretches of the motion that make the best loops, with the options that cut them out
     #[arg(long, conflicts_with_all = ["list", "same_form", "more", "bound", "mean_error", "max_scalar_error", "max_rotation_error", "max_joint_error", "shell", "places_only", "index", "jobs", "events", "footsteps", "looped", "close_loop"])]
     find_loop: bool,
+    /// Write nothing; print what would be written, after reading and checking the motions
+    #[arg(long, conflicts_with_all = ["list", "find_loop"])]
+    pub(super) dry_run: bool,
     /// Largest distance of any bounded point from its original position: of each joint, of the three points of its shell (see --shell)
     /// and of each End Site. A number with cm, mm, m or in (default unit cm), or with % of the figure's height
     /// [default: 0.5cm, or 6 times --mean-error]
@@ -256,6 +260,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     ensure!(arguments.shard.is_none(), "--shard divides several files, and this is one");
     let arguments = &arguments.with_output()?;
     arguments.check_outputs(&[])?;
+    if arguments.dry_run {
+        return dry_run(arguments);
+    }
     // Drawn when the motion is read.
     let bar = OnceLock::new();
     let begin = || output::progress(1000, "fitting {wide_bar} {percent} % {eta} left").unwrap_or_else(|_| ProgressBar::hidden());
@@ -266,6 +273,25 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     fields.remove("notes");
     output::report(fields.into());
     made.sentence(arguments.output()).lines().for_each(|line| note!("{line}"));
+    Ok(())
+}
+
+/// Reads and checks one motion, and prints what a conversion would write.
+fn dry_run(arguments: &Arguments) -> Result<()> {
+    let (prepared, read) = prepare(arguments)?;
+    arguments.check_outputs(&read)?;
+    let (motion, output) = (&prepared.motion, arguments.output().display().to_string());
+    let seconds = motion.frames as f64 * motion.frame_time;
+    let rig = arguments.rig_out.as_ref().map(|rig| rig.display().to_string());
+    output::report(json!({
+        "would_write": rig.iter().chain([&output]).collect::<Vec<_>>(),
+        "frames": motion.frames,
+        "channels": motion.rig.channels(),
+        "seconds": seconds,
+    }));
+    let rig = rig.map_or_else(String::new, |rig| format!(", and its rig as {rig}"));
+    let (frames, channels) = (motion.frames, motion.rig.channels());
+    note!("{output}: would be written{rig}: {frames} frames, {channels} channels, {seconds:.2} s; nothing was written");
     Ok(())
 }
 

@@ -48,6 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         memory::limit().check_numbers(held.fetch_add(values, Ordering::Relaxed) + values, "all motions of the bank together")?;
         Ok(prepared)
     };
+    if arguments.dry_run {
+        return dry_run(output, &tasks);
+    }
     let bar = output::progress(tasks.len() as u64, "reading {wide_bar} {pos} of {len} motions {eta} left")?;
     let prepare = |task: &Task| prepare(task).inspect(|_| bar.inc(1));
     let prepared = pool.install(|| tasks.par_iter().with_max_len(1).map(prepare).collect::<Result<Vec<_>>>())?;
@@ -99,6 +102,18 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     };
     output::report(json!({"clips": tasks.iter().zip(&made).map(object).collect::<Vec<_>>()}));
     said(output, &bytes, &clips);
+    Ok(())
+}
+
+/// Prints which motions would become clips of the bank.
+fn dry_run(output: &Path, tasks: &[Task]) -> Result<()> {
+    if !output::is_json() {
+        tasks.iter().try_for_each(|task| outln!("{} would become {}", task.label, task.name))?;
+    }
+    let clips: Vec<Value> =
+        tasks.iter().map(|task| json!({"file": task.arguments.input.display().to_string(), "name": task.name})).collect();
+    output::report(json!({"would_write": [output.display().to_string()], "clips": clips}));
+    note!("{}: would hold {} clips; nothing was written", output.display(), tasks.len());
     Ok(())
 }
 

@@ -1,11 +1,12 @@
 //! `pantin info`.
 
-use super::{Files, bank};
+use super::{Files, against, bank};
 use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, clean, note, outln};
 use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
+use pantin_convert::errors;
 use pantin_convert::events;
 use pantin_convert::facts::{self, Channel, MemoryNeeds, Track};
 use pantin_convert::import::{self, ImportOptions, list, up};
@@ -20,6 +21,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   pantin info walk.ptn
   pantin info walk.ptn --json         `motion_bytes` is the file without its rig
+  pantin info walk.ptn --against walk.bvh
   pantin info figure.glb")]
 pub struct Arguments {
     /// The clip, or a .glb, .gltf, .fbx, .wrl or .x3dv
@@ -27,12 +29,16 @@ pub struct Arguments {
     /// The rig of a clip that was made with --rig-out
     #[arg(long)]
     rig: Option<PathBuf>,
+    /// The motion that the clip was made of: print the greatest place, shell and rotation error of the clip, each with its joint and frame
+    #[arg(long, value_name = "MOTION")]
+    against: Option<PathBuf>,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     if list::chooses(&arguments.input) {
         ensure!(arguments.rig.is_none(), "{}: --rig is for clips, and this is a motion", arguments.input.display());
+        ensure!(arguments.against.is_none(), "{}: --against is for clips, and this is a motion", arguments.input.display());
         return animations(&arguments.input);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
@@ -42,6 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             "{}: --rig is for clips without one, and a bank holds its rig",
             arguments.input.display()
         );
+        ensure!(arguments.against.is_none(), "{}: --against is for one clip, and this is a bank", arguments.input.display());
         return bank::print(&arguments.input, files.clip());
     }
     let clip = files.open_alone().with_context(|| arguments.input.display().to_string())?;
@@ -90,6 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let (built_in, by_update) = boards(&clip, &memory, file);
     let fields = fields.into_iter().chain([("boards", json!(built_in)), ("boards_by_update", json!(by_update))]);
     let fields: Vec<(&str, Value)> = fields.collect();
+    let compared = arguments.against.as_deref().map(|motion| against::errors(&clip, motion)).transpose()?;
     let channels = facts::channels(&clip)?;
     let events = events::of_clip(&clip);
     let seconds = |frame: usize| (frame as f64 * f64::from(clip.frame_time_ns()) / 1e6).round() / 1000.0;
@@ -98,6 +106,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let event = |event: &Event| json!({"frame": event.frame, "seconds": seconds(event.frame), "name": event.name});
         object.insert("event_markers".into(), events.iter().map(event).collect());
         object.insert("rig".into(), rig_json(&clip, &channels));
+        if let Some((report, motion)) = &compared {
+            object.insert("errors".into(), Value::Object(errors::to_json(report, motion)));
+        }
         output::report(Value::Object(object));
     } else {
         for (name, value) in fields.into_iter().filter(|(_, value)| !value.is_null()) {
@@ -107,6 +118,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
                 value => value.to_string(),
             };
             outln!("{:22} {value}", name.replace('_', " "))?;
+        }
+        if let Some((report, motion)) = &compared {
+            errors::to_text(report, motion).lines().try_for_each(|line| outln!("{}", line.trim_start()))?;
         }
         table(&clip, &channels).iter().try_for_each(|line| outln!("{line}"))?;
         if let Some(seconds) = spacing {

@@ -1,5 +1,6 @@
 //! One file a command; its arguments' doc comment is the manual.
 
+mod against;
 pub mod bank;
 mod batch;
 mod channel_bound;

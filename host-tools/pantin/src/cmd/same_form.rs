@@ -3,7 +3,7 @@
 use super::batch::regular;
 use super::convert::{Arguments, Made, code, prepare};
 use super::convert_bank::agree;
-use crate::output::{self, Wanted, note, refuse_foreign};
+use crate::output::{self, Wanted, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use pantin_convert::{Prepared, of_one_rig, shared_coding};
 use serde_json::{Value, json};
@@ -19,6 +19,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let tasks = tasks(arguments)?;
     let outputs: Vec<&Path> = arguments.rig_out.as_deref().into_iter().chain(tasks.iter().map(Arguments::output)).collect();
     let inputs: Vec<&Path> = tasks.iter().flat_map(Arguments::inputs).collect();
+    if arguments.dry_run {
+        let pairs = tasks.iter().map(|task| (task.input.display(), task.output().display()));
+        pairs.into_iter().try_for_each(|(input, output)| outln!("{input} would become {output}"))?;
+        note!("nothing was written");
+        return Ok(());
+    }
     output::make_folder(folder)?;
     tasks.iter().try_for_each(|task| regular(task.output()))?;
     output::check(&inputs, &outputs)?;

@@ -40,6 +40,7 @@ mod machine;
 mod manners;
 mod mean_error;
 mod motions_library;
+mod odd;
 mod optimum;
 mod outputs;
 mod own_clips;
