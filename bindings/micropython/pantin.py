@@ -182,10 +182,15 @@ class Rig:
         return h
 
     def joint(self, name):
-        """The joint with this name, or None."""
-        for j in self.joints:
-            if j.name == name and not j.end_site:
-                return j
+        """The joint with this name. Raises KeyError if there is none."""
+        return self.joints[self.index(name)]
+
+    def index(self, name):
+        """The index of the joint with this name, of several the first. Raises KeyError if there is none."""
+        for index, j in enumerate(self.joints):
+            if name and j.name == name:
+                return index
+        raise KeyError("no joint " + name)
 
 
 class Clip:
@@ -228,6 +233,7 @@ class Clip:
                 self.event_names.append(n.name())
         _check(f.at == end or flags & 64, "length")
         self.pose = array("i", bytes(4 * rig.channels))
+        self._found = {}
         self.restart()
 
     def _open_head(self, flags):
@@ -464,21 +470,30 @@ class Clip:
         self.seek(frame)
         return True
 
-    def degrees(self, name, index=0):
-        """The angle of a joint: of its first rotation channel, or the `index`th after it."""
-        j = self.rig.joint(name)
-        turning = [c for c, kind in enumerate(j.kinds) if kind >= 3]
-        return self.pose[j.first + turning[index]] * 360 / 4294967296
+    def find(self, name):
+        """The joint with this name, whose rotation is then read frame by frame: a pantin_turns.JointRef. Raises KeyError if there
+        is none."""
+        return _joint_ref(self, self.rig.index(name))
+
+    def kinds(self, index):
+        """The kinds of a joint's channels as this clip codes them: 0-2 position x, y, z; 3-5 Euler angle x, y, z; 6-9 quaternion
+        w, x, y, z; 10-12 exponential map x, y, z."""
+        kinds = self.rig.joints[index].kinds
+        if index not in self.exponential:
+            return kinds
+        component = iter(b"\x0a\x0b\x0c")
+        return bytes(next(component) if 3 <= kind <= 5 else kind for kind in kinds)
 
     def scalar(self, name):
-        """The value of a scalar channel."""
+        """The value of a scalar channel. Raises KeyError if there is none of this name."""
         for channel, exponent, own in self.rig.scalars:
             if own == name:
                 return self.pose[channel] * 2.0 ** (exponent - 31)
+        raise KeyError("no scalar " + name)
 
     def draw(self, fb, width, height, color=1, orbit=-50, scale=None):
         """Draws the figure into a framebuf.FrameBuffer, seen from `orbit` degrees about the vertical; the hips are in the middle.
-        `scale` is pixels for each unit of the source; by default 30 times the longest bone fit the height. Euler angles only."""
+        `scale` is pixels for each unit of the source; by default 30 times the longest bone fit the height."""
         up = self.rig.up & 3
         sin, cos = math.sin(math.radians(orbit)), math.cos(math.radians(orbit))
         placed = _place(self)
@@ -498,18 +513,31 @@ class Clip:
                 fb.line(start[0], start[1], end[0], end[1], color)
 
 
+def _joint_ref(clip, index):
+    # Programs that read no rotations need no pantin_turns.py.
+    if index not in clip._found:
+        from pantin_turns import JointRef
+
+        clip._found[index] = JointRef(clip, index)
+    return clip._found[index]
+
+
 def _place(clip):
     # Where each joint is, and its axes as three rows.
     placed = []
     rig, pose = clip.rig, clip.pose
-    for j in rig.joints:
+    for index, j in enumerate(rig.joints):
         offset = [x * 2.0**rig.offset_exponent for x in j.offset]
         axes = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-        for c, kind in enumerate(j.kinds):
+        kinds = clip.kinds(index)
+        # Quaternions and exponential maps in integers: most joints have Euler angles, which floating point turns faster.
+        if kinds and max(kinds) > 5:
+            axes = tuple(tuple(x / 1073741824 for x in row) for row in _joint_ref(clip, index).matrix())
+        for c, kind in enumerate(kinds):
             raw = pose[j.first + c]
             if kind < 3:
                 offset[kind] = raw * 2.0**clip.exponent
-            elif kind < 6:
+            elif kind < 6 and max(kinds) < 6:
                 a = raw * (2 * math.pi / 4294967296)
                 s, c = math.sin(a), math.cos(a)
                 y, z = (kind - 2) % 3, (kind - 1) % 3

@@ -20,7 +20,8 @@
 //! * Euler angles: each alone has w = `cos` and `sin` in the place of its axis, by `sin_cos(angle >> 1)` with the sign kept. The first times
 //!   the second, then that times the third: (aw, ax, ay, az) times (w, x, y, z) is dot(a, (w, -x, -y, -z)), dot(a, (x, w, z, -y)),
 //!   dot(a, (y, -z, w, x)), dot(a, (z, y, -x, w)).
-//! * A joint with several of these: their product, in the order of FORMAT.md 11.
+//! * A joint with several of these, or with Euler angles that are not one to three about different axes: `direction` of their product, in the
+//!   order of FORMAT.md 11. Euler angles that the clip codes as an exponential map come before the joint's own quaternion and map.
 //!
 //! **`angles_of`** gives the Euler angles about the axes i, j, k of a unit quaternion w, x, y, z (Bernardes and Viollet 2022). `a`, `b`, `c` are its
 //! components of i, j, k, with `c` negated if the order is odd (XZY, YXZ, ZYX):

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use harness::vectors::{self, bank, c_figure, c_header, constants, coverage, record, sums, synthetic};
+use harness::vectors::{self, bank, c_figure, c_header, constants, coverage, record, sums, synthetic, turns};
 use pantin::Bank;
 
 /// Bytes that the folder may have.
-const MOST: u64 = 74_000;
+const MOST: u64 = 160_000;
 
 #[test]
 fn every_vector_decodes_to_its_record() {
@@ -38,6 +38,12 @@ fn seeking_finds_the_poses_that_stepping_makes() {
 fn the_tables_as_json_are_those_of_the_decoder() {
     let committed = fs::read_to_string(vectors::folder().join(constants::NAME)).unwrap();
     assert_eq!(committed, constants::text(), "`cargo xtask vectors` regenerates them");
+}
+
+#[test]
+fn the_rotations_are_those_of_the_decoder() {
+    let committed = fs::read_to_string(vectors::folder().join(turns::NAME)).unwrap();
+    assert_eq!(committed, turns::text(&vectors::folder()).unwrap(), "`cargo xtask vectors` writes them");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 import json
 import os
 import sys
+from array import array
 
 import pantin
 
@@ -17,7 +18,37 @@ def crcs(clip):
     return found
 
 
+def turn_matches(line, joint):
+    # The line's angles, quaternion, and checksum of the matrix, the whole angle and all orders.
+    values = [int(x) for x in line[3:13]]
+    assert list(joint.euler("XYZ") + joint.euler("ZXY") + joint.quaternion()) == values, line
+    rest = array("i", [x for row in joint.matrix() for x in row] + [joint.angle()])
+    for order in ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"):
+        rest.extend(array("i", joint.euler(order)))
+    assert pose_crc(rest) == line[13], line
+    for degrees, raw in zip(joint.degrees("ZXY"), values[3:]):
+        assert abs(degrees - raw * 360 / 2.0**32) < 1e-3
+
+
+def raises_key_error(act, name):
+    try:
+        act(name)
+    except KeyError as error:
+        assert name in str(error)
+        return True
+
+
+def product(a, b):
+    return [[sum(a[i][n] * b[n][k] for n in range(3)) for k in range(3)] for i in range(3)]
+
+
 folder = sys.argv[1]
+turns = {}
+with open(folder + "/turns.txt") as lines:
+    for line in lines:
+        line = line.split()
+        turns.setdefault(line[0], []).append(line)
+turned = 0
 files = frames = 0
 for name in sorted(os.listdir(folder)):
     stem, ending = name[:-4], name[-4:]
@@ -52,6 +83,23 @@ for name in sorted(os.listdir(folder)):
     for frame, pose in record.get("poses", {}).items():
         clip.seek(int(frame))
         assert list(clip.pose) == pose, (name, frame)
+    # Rotations by joints that were found once, in the order of the file: frame by frame.
+    if stem in turns:
+        joints = {}
+        for line in turns[stem]:
+            clip.seek(int(line[2]))
+            if line[1] not in joints:
+                joints[line[1]] = clip.find(line[1])
+            turn_matches(line, joints[line[1]])
+            turned += 1
+        world = None
+        for j, (_, axes) in zip(clip.rig.joints, pantin._place(clip)):
+            own = [[x / 2.0**30 for x in row] for row in joints[j.name].matrix()]
+            world = product(world, own) if j.parent is not None else own
+            for i in range(3):
+                assert all(abs(axes[i][k] - world[i][k]) < 1e-5 for k in range(3)), (name, j.name)
+        assert raises_key_error(clip.find, "nobody") and raises_key_error(clip.rig.joint, "nobody")
+        assert raises_key_error(clip.scalar, "nothing")
     # A flipped bit is refused, or decoded to something else, without any other error.
     for at in range(0, len(data), 1 + len(data) // 50):
         damaged = bytearray(data)
@@ -62,4 +110,5 @@ for name in sorted(os.listdir(folder)):
             pass
     files += 1
     frames += clip.frames
-print(files, "files,", frames, "frames")
+assert turned == sum(len(lines) for lines in turns.values()) > 600
+print(files, "files,", frames, "frames,", turned, "rotations")

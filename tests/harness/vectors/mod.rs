@@ -10,6 +10,7 @@ pub mod own;
 pub mod record;
 pub mod sums;
 pub mod synthetic;
+pub mod turns;
 
 use std::path::{Path, PathBuf};
 

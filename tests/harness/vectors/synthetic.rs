@@ -267,6 +267,19 @@ fn rests_and_choices() -> Made {
     made
 }
 
+/// Joints with Euler angles in every order, with fewer and with more angles than three, and with several forms at once.
+fn turn_orders() -> Made {
+    use Kind::{Xrotation as X, Yrotation as Y, Zrotation as Z};
+    let chain = [&[Y, X][..], &QUATERNION, &EXPONENTIAL].concat();
+    let chosen = [&EXPONENTIAL[..], &[Z, Y, X]].concat();
+    let mut coded = motion(6);
+    coded.exponentials = [false, true].repeat(4);
+    let orders = [[X, Y, Z], [X, Z, Y], [Y, X, Z], [Y, Z, X], [Z, X, Y], [Z, Y, X]];
+    let joints =
+        [&orders.each_ref().map(|order| &order[..])[..], &[&[Z], &[Y, X], &[Z, Y, Z], &[X, X], &chain, &chosen]].concat();
+    simple("turn-orders", &joints, 0, coded)
+}
+
 /// A loop with enough events that the fields before the first symbol cross from one block into the next.
 fn events() -> Made {
     let mut coded = motion(120);
@@ -398,6 +411,7 @@ pub fn all() -> Vec<Made> {
         odd_rate(),
         widest_steps(),
         rests_and_choices(),
+        turn_orders(),
         crowd(),
         followers(),
         apart,
