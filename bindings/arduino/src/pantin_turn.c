@@ -7,7 +7,45 @@
 /* ---- Integers ---- */
 
 /* The upper half of a product. */
+#if defined(__AVR__) && defined(__AVR_HAVE_MUL__)
+/* Column by column of the bytes' products. 110 cycles, half of what the compiler's own product takes. */
+#define PANTIN_PRODUCT(a, b, low, middle, top) "mul " a ", " b "\n\tadd " low ", r0\n\tadc " middle ", r1\n\tadc " top ", %[z]\n\t"
+static uint32_t high(uint32_t a, uint32_t b) __attribute__((noinline));
+static uint32_t high(uint32_t a, uint32_t b) {
+    uint32_t upper;
+    uint8_t t0, t1, t2, z;
+    __asm__(
+        "clr %[z]\n\tmul %A[a], %A[b]\n\tmov %[t1], r1\n\tclr %[t2]\n\t"
+        "clr %[t0]\n\t"
+        PANTIN_PRODUCT("%A[a]", "%B[b]", "%[t1]", "%[t2]", "%[t0]")
+        PANTIN_PRODUCT("%B[a]", "%A[b]", "%[t1]", "%[t2]", "%[t0]")
+        "clr %A0\n\t"
+        PANTIN_PRODUCT("%A[a]", "%C[b]", "%[t2]", "%[t0]", "%A0")
+        PANTIN_PRODUCT("%B[a]", "%B[b]", "%[t2]", "%[t0]", "%A0")
+        PANTIN_PRODUCT("%C[a]", "%A[b]", "%[t2]", "%[t0]", "%A0")
+        "clr %B0\n\t"
+        PANTIN_PRODUCT("%A[a]", "%D[b]", "%[t0]", "%A0", "%B0")
+        PANTIN_PRODUCT("%B[a]", "%C[b]", "%[t0]", "%A0", "%B0")
+        PANTIN_PRODUCT("%C[a]", "%B[b]", "%[t0]", "%A0", "%B0")
+        PANTIN_PRODUCT("%D[a]", "%A[b]", "%[t0]", "%A0", "%B0")
+        "clr %C0\n\t"
+        PANTIN_PRODUCT("%B[a]", "%D[b]", "%A0", "%B0", "%C0")
+        PANTIN_PRODUCT("%C[a]", "%C[b]", "%A0", "%B0", "%C0")
+        PANTIN_PRODUCT("%D[a]", "%B[b]", "%A0", "%B0", "%C0")
+        "clr %D0\n\t"
+        PANTIN_PRODUCT("%C[a]", "%D[b]", "%B0", "%C0", "%D0")
+        PANTIN_PRODUCT("%D[a]", "%C[b]", "%B0", "%C0", "%D0")
+        "mul %D[a], %D[b]\n\tadd %C0, r0\n\tadc %D0, r1\n\t"
+        "clr r1"
+        : "=&r"(upper), [t0] "=&r"(t0), [t1] "=&r"(t1), [t2] "=&r"(t2), [z] "=&r"(z)
+        : [a] "r"(a), [b] "r"(b)
+        : "r0");
+    return upper;
+}
+#undef PANTIN_PRODUCT
+#else
 static uint32_t high(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
+#endif
 
 static uint32_t magnitude(int32_t x) { return x < 0 ? 0u - (uint32_t)x : (uint32_t)x; }
 
@@ -27,16 +65,30 @@ static uint8_t leading_zeros(uint32_t x) {
     return count;
 }
 
-/* The sum of `count` products, exact, from Q60 to Q30 with `up` (2), or to twice that (3). */
+/* Shifts by whole bytes first: an 8-bit processor shifts by one place at a time. */
+static uint32_t shifted(uint32_t x, uint8_t up) {
+    for (; up >= 8; up = (uint8_t)(up - 8)) x <<= 8;
+    for (; up > 0; up--) x <<= 1;
+    return x;
+}
+
+/* The sum of `count` products, exact, from Q60 to Q30 with `up` (2), or to twice that (3). In two words of 32 bits, which an 8-bit processor adds faster
+ * than one of 64. */
 static int32_t dot(const int32_t *a, const int32_t *b, uint8_t count, uint8_t up) {
-    uint64_t sum = up == 2 ? 0x20000000u : 0x10000000u;
-    uint8_t i;
-    for (i = 0; i < count; i++) {
-        if (a[i] != 0 && b[i] != 0) sum += (uint64_t)((int64_t)a[i] * b[i]);
+    uint32_t upper = 0, lower = up == 2 ? 0x20000000UL : 0x10000000UL;
+    for (; count > 0; count--, a++, b++) {
+        uint32_t x = magnitude(*a), y = magnitude(*b), product;
+        if (x == 0 || y == 0) continue;
+        product = x * y;
+        if ((*a < 0) == (*b < 0)) {
+            lower += product;
+            upper += high(x, y) + (lower < product);
+        } else {
+            upper -= high(x, y) + (lower < product);
+            lower -= product;
+        }
     }
-    sum <<= 2;
-    if (up == 3) sum <<= 1;
-    return (int32_t)(uint32_t)(sum >> 32);
+    return (int32_t)(up == 2 ? upper << 2 | (uint8_t)(lower >> 24) >> 6 : upper << 3 | (uint8_t)(lower >> 24) >> 5);
 }
 
 static int32_t scaled(int32_t a, int32_t q30) { return dot(&a, &q30, 1, 2); }
@@ -55,7 +107,8 @@ static uint32_t alternating(const uint32_t *coefficients, uint8_t count, uint32_
 }
 
 static void sin_cos(int32_t angle, int32_t *sine, int32_t *cosine) {
-    uint32_t quarter = ((uint32_t)angle + 0x20000000UL) >> 30, rest = (uint32_t)angle - (quarter << 30);
+    uint8_t quarter = (uint8_t)((uint8_t)(((uint32_t)angle + 0x20000000UL) >> 24) >> 6);
+    uint32_t rest = (uint32_t)angle - ((uint32_t)(uint8_t)(quarter << 6) << 24);
     uint32_t t = ((rest & 0x80000000UL) ? 0u - rest : rest) << 2, u = high(t, t);
     int32_t sin = negated(high(t, alternating(pantin_turn_sine, 4, u)), (rest & 0x80000000UL) != 0);
     int32_t cos = ONE - (int32_t)high(u, alternating(pantin_turn_cosine, 4, u));
@@ -81,8 +134,8 @@ static int32_t atan2_of(int32_t y, int32_t x) {
     large = across > along ? across : along;
     if (large == 0) return 0;
     up = leading_zeros(large);
-    small = (small << up) >> 1;
-    large = (large << up) >> 1;
+    small = shifted(small, up) >> 1;
+    large = shifted(large, up) >> 1;
     far = small > large >> 1;
     if (far) {
         uint32_t sum = large + small;
@@ -124,7 +177,7 @@ static uint32_t direction(int32_t *q) {
     }
     down = up = leading_zeros(largest);
     for (i = 0; i < 4; i++) {
-        raised[i] = (raised[i] << up) >> 1;
+        raised[i] = shifted(raised[i], up) >> 1;
         square += high(raised[i], raised[i]);
     }
     if (square < 0x40000000UL) {
@@ -154,10 +207,34 @@ static void multiply(int32_t *a, const int32_t *b) {
     memcpy(a, product, sizeof product);
 }
 
-static void about(int32_t *q, uint8_t axis, int32_t angle) {
-    int32_t half = (int32_t)(((uint32_t)angle >> 1) | ((uint32_t)angle & 0x80000000UL));
+/* q becomes the rotation by q, then by the angle about the axis that q has turned: `multiply` without the products with 0. */
+static void turn_about(int32_t *q, uint8_t axis, int32_t angle) {
+    uint8_t second = (uint8_t)(axis == 2 ? 1 : axis + 2), third = (uint8_t)(axis == 0 ? 3 : axis);
+    int32_t a[2], factors[2], sin, product[4];
+    /* No rotation: the products are exact. */
+    if (angle == 0) return;
+    sin_cos((int32_t)(((uint32_t)angle >> 1) | ((uint32_t)angle & 0x80000000UL)), &sin, &factors[0]);
+    factors[1] = -sin;
+    axis = (uint8_t)(axis + 1);
+    a[0] = q[0];
+    a[1] = q[axis];
+    product[0] = dot(a, factors, 2, 2);
+    a[0] = q[third];
+    a[1] = q[second];
+    product[third] = dot(a, factors, 2, 2);
+    factors[1] = sin;
+    a[0] = q[second];
+    a[1] = q[third];
+    product[second] = dot(a, factors, 2, 2);
+    a[0] = q[axis];
+    a[1] = q[0];
+    product[axis] = dot(a, factors, 2, 2);
+    memcpy(q, product, sizeof product);
+}
+
+static void no_rotation(int32_t *q) {
     memset(q, 0, 4 * sizeof *q);
-    sin_cos(half, &q[axis + 1], &q[0]);
+    q[0] = ONE;
 }
 
 /* q[1] to q[3] hold an exponential map. */
@@ -298,10 +375,9 @@ static void own_values(const pantin_player *player, const pantin_joint_ref *join
 /* The product of everything that turns a joint of several parts. */
 static void chain(const pantin_player *player, const pantin_joint_ref *joint, int32_t *q) {
     const int32_t *value = player->pose + joint->first_channel;
-    int32_t coded[4] = {0, 0, 0, 0}, quaternion[4] = {0, 0, 0, 0}, map[4] = {0, 0, 0, 0}, one[4];
+    int32_t coded[4] = {0, 0, 0, 0}, quaternion[4] = {0, 0, 0, 0}, map[4] = {0, 0, 0, 0};
     uint8_t c, count = 0;
-    memset(q, 0, 4 * sizeof *q);
-    q[0] = ONE;
+    no_rotation(q);
     for (c = 0; c < joint->channels; c++, value++) {
         uint8_t kind = kind_of(joint, c);
         if (kind >= PANTIN_EXPONENTIAL_X) {
@@ -311,8 +387,7 @@ static void chain(const pantin_player *player, const pantin_joint_ref *joint, in
         } else if (kind >= PANTIN_EULER_X && joint->exponential) {
             if (count < 3) coded[++count] = *value;
         } else if (kind >= PANTIN_EULER_X) {
-            about(one, (uint8_t)(kind - PANTIN_EULER_X), *value);
-            multiply(q, one);
+            turn_about(q, (uint8_t)(kind - PANTIN_EULER_X), *value);
         }
     }
     of_exponential(coded);
@@ -325,7 +400,7 @@ static void chain(const pantin_player *player, const pantin_joint_ref *joint, in
 }
 
 static void unit(const pantin_player *player, const pantin_joint_ref *joint, int32_t *q) {
-    int32_t own[4], one[4];
+    int32_t own[4];
     uint8_t axes[3], i;
     if (joint->form == PANTIN_FORM_CHAIN) {
         chain(player, joint, q);
@@ -343,11 +418,8 @@ static void unit(const pantin_player *player, const pantin_joint_ref *joint, int
         break;
     default:
         axes_of(own_order(joint), axes);
-        about(q, axes[0], own[0]);
-        for (i = 1; i < 3; i++) {
-            about(one, axes[i], own[i]);
-            multiply(q, one);
-        }
+        no_rotation(q);
+        for (i = 0; i < 3; i++) turn_about(q, axes[i], own[i]);
     }
 }
 
