@@ -182,14 +182,14 @@ pub fn uno(folder: &TempDir) -> Result<()> {
 fn angles() -> Result<Vec<String>> {
     let bytes = std::fs::read(paths::root().join("motions/walk.ptn"))?;
     let clip = pantin::Clip::new_checked(&bytes)?;
-    let channel = clip.rig().joints().find(|joint| joint.name_bytes() == b"left-thigh").context("the joint")?.first_channel;
+    let thigh = clip.find("left-thigh").context("the joint")?;
     let mut memory = pantin::Room::<64, 64>::new();
     let mut player = memory.player(clip)?;
-    let angle = |raw: i32| format!("{:.2}", (((i64::from(raw) >> 16) * 36_000) >> 16) as f64 / 100.0);
     let mut angles = vec![];
     for frame in 0..player.clip().frames() {
         player.seek(frame);
-        angles.push(angle(player.pose().values.get(usize::from(channel)).copied().unwrap_or_default()));
+        let [x, _, _] = player.turn(&thigh)?.euler(pantin::EulerOrder::XYZ);
+        angles.push(format!("{:.2}", f64::from(x.centidegrees()) / 100.0));
     }
     Ok(angles)
 }
