@@ -10,6 +10,14 @@
 
 #include "pantin.h"
 #include "pantin_figure.h"
+#include "pantin_turn.h"
+
+/* A joint, found once by PantinPlayer::find. False if the rig has no such joint. */
+class PantinJoint : public pantin_joint_ref {
+  public:
+    PantinJoint() { found = 0; }
+    explicit operator bool() const { return found != 0; }
+};
 
 /* Plays clips of at most CHANNELS channels: for servos, lights and faces. */
 template <uint16_t CHANNELS> class PantinPlayer {
@@ -57,16 +65,40 @@ template <uint16_t CHANNELS> class PantinPlayer {
     /* Starts the clip again. */
     bool play() { return start(); }
 
-    /* The angle of a joint in degrees, -180 to 180: of its first rotation channel, or the `index`th after it. 0 if there is none. */
-    float joint(const char *name, uint8_t index = 0) {
-        pantin_joint found;
-        if (!ready || !pantin_find_joint(&clip.rig, name, &found)) return 0;
-        for (uint8_t channel = 0; channel < found.channels; channel++) {
-            if (pantin_joint_kind(&found, channel) >= PANTIN_EULER_X && index-- == 0) {
-                return static_cast<float>(pantin_centidegrees(pose[found.first_channel + channel])) / 100.0f;
-            }
-        }
-        return 0;
+    /* Finds a joint by name: once, in setup(). The result is false if the rig has no such joint. It is valid for all clips of a bank. */
+    PantinJoint find(const char *name) {
+        PantinJoint joint;
+        if (ready) (void)pantin_find(&clip, name, &joint);
+        return joint;
+    }
+
+    /* Gives the joint's three Euler angles in degrees, -180 to 180, however the clip codes it: degrees[0] is about the first axis of the order. PANTIN_XYZ
+     * gives a joint that has one axis its angle in degrees[0], [1] or [2]. Returns false, and leaves `degrees`, if there is no such joint. */
+    bool euler(PantinJoint &joint, pantin_order order, float (&degrees)[3]) {
+        int32_t angles[3];
+        if (!ready || pantin_euler(&player, &joint, order, angles) != PANTIN_OK) return false;
+        for (uint8_t i = 0; i < 3; i++) degrees[i] = static_cast<float>(pantin_centidegrees(angles[i])) / 100.0f;
+        return true;
+    }
+
+    /* The same in hundredths of a degree, without floating point: -18000 to 18000. */
+    bool centidegrees(PantinJoint &joint, pantin_order order, int16_t (&angles)[3]) {
+        int32_t raw[3];
+        if (!ready || pantin_euler(&player, &joint, order, raw) != PANTIN_OK) return false;
+        for (uint8_t i = 0; i < 3; i++) angles[i] = pantin_centidegrees(raw[i]);
+        return true;
+    }
+
+    /* Gives the unit quaternion w, x, y, z in 2^-30. Returns false if there is no such joint. */
+    bool quaternion(PantinJoint &joint, int32_t (&wxyz)[4]) { return ready && pantin_quaternion(&player, &joint, wxyz) == PANTIN_OK; }
+
+    /* Gives the rotation matrix in 2^-30, row by row. Returns false if there is no such joint. */
+    bool matrix(PantinJoint &joint, int32_t (&rows)[9]) { return ready && pantin_matrix(&player, &joint, rows) == PANTIN_OK; }
+
+    /* Gives the raw value of one of the joint's channels as the clip codes it, which is no angle if that is an exponential map or a quaternion.
+     * Returns false if there is no such joint or channel. */
+    bool rawValue(const PantinJoint &joint, uint8_t channel, int32_t &value) {
+        return ready && pantin_raw_value(&player, &joint, channel, &value) == PANTIN_OK;
     }
 
     /* The value of a scalar channel, for example a unit of a face from 0 to 1. 0 if there is none. */

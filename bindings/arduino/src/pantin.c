@@ -482,7 +482,9 @@ static void open_head(pantin_clip *clip) {
             }
             bits += eulers == 3;
         }
-        for (i = 0; i < bits; i += 8) (void)next_byte(&r);
+        /* Another number than that of a clip without exponential maps. */
+        clip->coding = 0x811c9dc5u;
+        for (i = 0; i < bits; i += 8) clip->coding = (clip->coding ^ next_byte(&r)) * 0x01000193u;
     }
     if (clip->flags & HAS_EVENTS) clip->event_count = next_varint(&r);
     clip->events = r.position;
@@ -926,8 +928,9 @@ pantin_result pantin_seek(pantin_player *p, uint32_t frame) {
 pantin_result pantin_step_back(pantin_player *p) { return p->frame == 0 ? PANTIN_END : pantin_seek(p, p->frame - 1); }
 
 int16_t pantin_centidegrees(int32_t raw) {
-    int32_t high = (raw < 0 ? ~(~raw >> 16) : raw >> 16) * 36000;
-    return (int16_t)(high < 0 ? ~(~high >> 16) : high >> 16);
+    /* The upper half of raw, which may be negative, and the lower one, each times 36000. */
+    int32_t sum = (raw < 0 ? ~(~raw >> 16) : raw >> 16) * 36000 + (int32_t)(((uint32_t)raw & 0xffffu) * 36000u >> 16) + 32768;
+    return (int16_t)(sum < 0 ? ~(~sum >> 16) : sum >> 16);
 }
 
 /* ---- Bank (16) ---- */

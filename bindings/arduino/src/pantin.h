@@ -199,6 +199,7 @@ typedef struct pantin_clip {
     uint32_t frames;             /* 1 to 2^24 */
     uint32_t frame_time_ns;      /* at least 1 */
     uint32_t event_count;
+    uint32_t coding;             /* a hash of which joints are coded as exponential maps: 0 if none is */
     uint16_t crc;                /* of the motion's last block */
     int8_t exponent;             /* positions are in 2^exponent units of the source */
     uint8_t flags;
@@ -290,7 +291,7 @@ pantin_result pantin_seek(pantin_player *player, uint32_t frame);
 /* Shows the frame before this one. Returns PANTIN_END at frame 0. */
 pantin_result pantin_step_back(pantin_player *player);
 
-/* Converts an angle to hundredths of a degree, -18000 to 17999. */
+/* Converts an angle in 2^-32 turns to hundredths of a degree, -18000 to 18000, rounded to the nearest. */
 int16_t pantin_centidegrees(int32_t raw);
 
 /* ---- Bank --------------------------------------------------------------------------------------------------------------------------- */

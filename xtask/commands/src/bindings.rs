@@ -19,8 +19,8 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, and figures.
-const SOURCES: [&str; 2] = ["src/pantin.c", "src/pantin_figure.c"];
+/// The decoder, rotations, and figures.
+const SOURCES: [&str; 3] = ["src/pantin.c", "src/pantin_turn.c", "src/pantin_figure.c"];
 
 /// Every warning is an error.
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
@@ -169,6 +169,7 @@ impl Bindings {
         for compiler in ["gcc", "clang"] {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
         }
+        steps.run("rotations against the crate's", || turns(&folder));
         steps.run("C++", || {
             for (compiler, source) in ["g++", "clang++"].into_iter().flat_map(|compiler| SOURCES.map(|source| (compiler, source)))
             {
@@ -298,6 +299,31 @@ fn agrees(file: &Path, printed: &[u8]) -> Result<()> {
             _ => ensure!(actual == expected, "{name} is {actual}, not {expected}"),
         }
     }
+    Ok(())
+}
+
+/// Compares the rotations of all joints at every frame with those of the Rust decoder.
+fn turns(folder: &TempDir) -> Result<()> {
+    let expected = std::fs::read_to_string(vectors::folder().join(vectors::turns::NAME))?;
+    let program = host_program(folder, "gcc", "turns")?;
+    let mut compared = 0;
+    for (file, rig) in files()?.iter().filter(|(file, _)| file.extension().is_some_and(|extension| extension == "ptn")) {
+        let mut command = Command::new(&program);
+        command.arg(file).args(rig);
+        let printed = String::from_utf8(output(command).with_context(|| file.display().to_string())?.stdout)?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let wanted: Vec<&str> = expected.lines().filter_map(|line| line.strip_prefix(name.as_ref())?.strip_prefix(' ')).collect();
+        if wanted.is_empty() {
+            continue;
+        }
+        ensure!(printed.lines().count() == wanted.len(), "{name}: {} rotations", wanted.len());
+        for (actual, wanted) in printed.lines().zip(&wanted) {
+            ensure!(actual == *wanted, "{name}: {actual}, not {wanted}");
+        }
+        compared += wanted.len();
+    }
+    ensure!(compared > 600, "{compared} rotations");
+    println!("   {compared} rotations");
     Ok(())
 }
 

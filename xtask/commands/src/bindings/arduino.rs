@@ -12,8 +12,16 @@ use tempfile::TempDir;
 use super::output;
 
 /// Files of the decoder in C that the library contains.
-const COPIES: [&str; 6] =
-    ["pantin.c", "pantin.h", "pantin_tables.h", "pantin_figure.c", "pantin_figure.h", "pantin_figure_tables.h"];
+const COPIES: [&str; 8] = [
+    "pantin.c",
+    "pantin.h",
+    "pantin_tables.h",
+    "pantin_turn.c",
+    "pantin_turn.h",
+    "pantin_figure.c",
+    "pantin_figure.h",
+    "pantin_figure_tables.h",
+];
 
 /// Our motions, and the examples that contain their headers.
 const HEADERS: [(&str, &[&str]); 2] =
@@ -118,7 +126,7 @@ pub fn uno(folder: &TempDir) -> Result<()> {
     }
     let core = Path::new(CORE).join("cores/arduino");
     let sources = CORE_SOURCES.map(|name| core.join(name));
-    let library = ["pantin.c", "pantin_figure.c"].map(|name| home().join("src").join(name));
+    let library = ["pantin.c", "pantin_turn.c", "pantin_figure.c"].map(|name| home().join("src").join(name));
     let mut objects = vec![];
     for source in sources.into_iter().chain(library).chain([place.join("readme.ino")]) {
         let c = source.extension().is_some_and(|extension| extension == "c");
@@ -174,14 +182,14 @@ pub fn uno(folder: &TempDir) -> Result<()> {
 fn angles() -> Result<Vec<String>> {
     let bytes = std::fs::read(paths::root().join("motions/walk.ptn"))?;
     let clip = pantin::Clip::new_checked(&bytes)?;
-    let channel = clip.rig().joints().find(|joint| joint.name_bytes() == b"left-thigh").context("the joint")?.first_channel;
+    let thigh = clip.find("left-thigh").context("the joint")?;
     let mut memory = pantin::Room::<64, 64>::new();
     let mut player = memory.player(clip)?;
-    let angle = |raw: i32| format!("{:.2}", (((i64::from(raw) >> 16) * 36_000) >> 16) as f64 / 100.0);
     let mut angles = vec![];
     for frame in 0..player.clip().frames() {
         player.seek(frame);
-        angles.push(angle(player.pose().values.get(usize::from(channel)).copied().unwrap_or_default()));
+        let [x, _, _] = player.turn(&thigh)?.euler(pantin::EulerOrder::XYZ);
+        angles.push(format!("{:.2}", f64::from(x.centidegrees()) / 100.0));
     }
     Ok(angles)
 }
@@ -206,7 +214,7 @@ pub fn metadata(folder: &TempDir) -> Result<()> {
     let version = format!("version: \"{}\"", property("version").unwrap_or_default());
     ensure!(read("idf_component.yml")?.lines().any(|line| line == version), "the version of idf_component.yml");
     let sources: Vec<String> = read("CMakeLists.txt")?.split('"').skip(1).step_by(2).map(str::to_owned).collect();
-    ensure!(sources.len() == 3 && sources.iter().all(|path| home().join(path).exists()), "the paths of CMakeLists.txt");
+    ensure!(sources.len() == 4 && sources.iter().all(|path| home().join(path).exists()), "the paths of CMakeLists.txt");
     let Some(pio) = xtask::paths::program("pio") else {
         println!("   `pio pkg pack` skipped: PlatformIO is not installed (pip install platformio)");
         return Ok(());
