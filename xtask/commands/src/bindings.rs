@@ -170,6 +170,11 @@ impl Bindings {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
         }
         steps.run("rotations against the crate's", || turns(&folder));
+        steps.run("a damaged clip hides no other", || {
+            let mut command = Command::new(host_program(&folder, "gcc", "errors")?);
+            command.args(["bank.ptb", "scalars.ptn"].map(|name| vectors::folder().join(name)));
+            output(command).map(drop)
+        });
         steps.run("C++", || {
             for (compiler, source) in ["g++", "clang++"].into_iter().flat_map(|compiler| SOURCES.map(|source| (compiler, source)))
             {
