@@ -51,10 +51,11 @@ const TARGETS: [Target; 3] = [
 ];
 
 /// Functions of banks and streams, which the slice decoder does not need.
-const EXTRAS: [&str; 12] = [
+const EXTRAS: [&str; 13] = [
     "pantin_open_bank",
     "pantin_first_entry",
     "pantin_next_entry",
+    "next_entry",
     "pantin_open_entry",
     "pantin_open_named",
     "pantin_open_stream",
