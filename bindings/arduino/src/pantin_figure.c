@@ -311,13 +311,16 @@ static uint8_t raw_bone(const pantin_joint *joint, const int32_t *pose, int32_t 
     return moved;
 }
 
+/* Moves to the next joint unless something could not be read: set-up reports that at its end. */
+static int next_joint(pantin_joint *joint) { return joint->rig->source->error == PANTIN_OK && pantin_next_joint(joint); }
+
 /* 1 if the only child of the root places the figure too: three positions in place of an offset. */
 static uint8_t placement_end(const pantin_rig *rig) {
     pantin_joint joint;
     uint16_t children = 0;
     uint8_t placed = 0, c;
     pantin_first_joint(&joint, rig);
-    while (pantin_next_joint(&joint)) {
+    while (next_joint(&joint)) {
         children = (uint16_t)(children + (joint.parent == 0 && !joint.helper));
         if (joint.index == 1) {
             uint8_t positions = 0;
@@ -366,7 +369,7 @@ static void read_table(table *t, const pantin_rig *rig, const int32_t *pose, int
     uint8_t moved, i, has_head = 0;
     t->hips = placement_end(rig);
     pantin_first_joint(&joint, rig);
-    while (pantin_next_joint(&joint)) {
+    while (next_joint(&joint)) {
         if (joint.index <= t->hips) continue;
         moved = raw_bone(&joint, pose, bone);
         for (i = 0; i < 3; i++) {
@@ -376,7 +379,7 @@ static void read_table(table *t, const pantin_rig *rig, const int32_t *pose, int
     }
     t->exponent = (int16_t)((longest == -1000 ? 0 : longest) - 14);
     pantin_first_joint(&joint, rig);
-    while (pantin_next_joint(&joint)) {
+    while (next_joint(&joint)) {
         pantin_joint_info *info = &t->of[joint.index];
         uint8_t head = (uint8_t)(!has_head && names_head(&joint.name));
         has_head |= head;
@@ -588,7 +591,7 @@ static pantin_result add_joint(pantin_figure *f, const pantin_clip *clip, const 
 static int go_to(pantin_joint *joint, const pantin_rig *rig, uint8_t index) {
     if (joint->index == 0xffff || joint->index > index) pantin_first_joint(joint, rig);
     while (joint->index != index) {
-        if (!pantin_next_joint(joint)) return 0;
+        if (!next_joint(joint)) return 0;
     }
     return 1;
 }
@@ -606,7 +609,7 @@ static void find_sides(pantin_figure *f, const pantin_rig *rig, const table *t) 
         if (bone->parent != NONE) bone->part = f->bones[bone->parent].part;
         if (!go_to(&own, rig, bone->joint)) return;
         pantin_first_joint(&other, rig);
-        while (left < 0 && pantin_next_joint(&other)) {
+        while (left < 0 && next_joint(&other)) {
             if (other.index != own.index && (t->of[other.index].flags & KEPT)) left = left_of(&own.name, &other.name);
         }
         if (left >= 0) {

@@ -304,6 +304,7 @@ pantin_result pantin_refer(const pantin_clip *clip, const pantin_joint *at, pant
     memset(joint, 0, sizeof *joint);
     rig->error = clip->source->error = PANTIN_OK;
     for (c = 0; c < at->channels; c++) joint->kinds[c >> 1] |= (uint8_t)(pantin_joint_kind(at, c) << (c & 1 ? 4 : 0));
+    if (rig->error != PANTIN_OK) return rig->error;
     joint->exponential = (uint8_t)pantin_joint_is_exponential(clip, at);
     if (rig->error != PANTIN_OK || clip->source->error != PANTIN_OK) {
         return rig->error != PANTIN_OK ? rig->error : clip->source->error;

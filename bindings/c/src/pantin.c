@@ -200,7 +200,7 @@ void pantin_first_joint(pantin_joint *joint, const pantin_rig *rig) {
     joint->index = 0xffff;
 }
 
-int pantin_next_joint(pantin_joint *joint) {
+static int next_joint(pantin_joint *joint) {
     const pantin_rig *rig = joint->rig;
     fields f = fields_of(rig->source, joint->next, rig->end);
     pantin_joint next = *joint;
@@ -228,10 +228,15 @@ int pantin_next_joint(pantin_joint *joint) {
     return 1;
 }
 
+int pantin_next_joint(pantin_joint *joint) {
+    joint->rig->source->error = PANTIN_OK;
+    return next_joint(joint);
+}
+
 int pantin_find_joint(const pantin_rig *rig, const char *name, pantin_joint *joint) {
     rig->source->error = PANTIN_OK;
     pantin_first_joint(joint, rig);
-    while (pantin_next_joint(joint)) {
+    while (next_joint(joint)) {
         if (!joint->end_site && pantin_name_is(&joint->name, name)) return 1;
     }
     return 0;
@@ -250,7 +255,7 @@ void pantin_first_scalar(pantin_scalar *scalar, const pantin_rig *rig) {
     scalar->channel = (uint16_t)(rig->channels - rig->scalars - 1u);
 }
 
-int pantin_next_scalar(pantin_scalar *scalar) {
+static int next_scalar(pantin_scalar *scalar) {
     const pantin_rig *rig = scalar->rig;
     pantin_scalar next = *scalar;
     next.index = (uint16_t)(scalar->index + 1u);
@@ -281,10 +286,15 @@ int pantin_next_scalar(pantin_scalar *scalar) {
     return 1;
 }
 
+int pantin_next_scalar(pantin_scalar *scalar) {
+    scalar->rig->source->error = PANTIN_OK;
+    return next_scalar(scalar);
+}
+
 int pantin_find_scalar(const pantin_rig *rig, const char *name, pantin_scalar *scalar) {
     rig->source->error = PANTIN_OK;
     pantin_first_scalar(scalar, rig);
-    while (pantin_next_scalar(scalar)) {
+    while (next_scalar(scalar)) {
         if (pantin_name_is(&scalar->name, name)) return 1;
     }
     return 0;
@@ -322,7 +332,7 @@ static void check_rig(pantin_rig *rig, pantin_source *source, uint32_t start, ui
     rig->scalars = (uint16_t)scalars;
     channels = scalars;
     pantin_first_joint(&joint, rig);
-    while (pantin_next_joint(&joint)) {
+    while (next_joint(&joint)) {
         uint8_t c;
         for (c = 0; c < joint.channels; c++) {
             if (pantin_joint_kind(&joint, c) >= PANTIN_SCALAR) fail(source, PANTIN_ERROR_RIG);
@@ -334,7 +344,7 @@ static void check_rig(pantin_rig *rig, pantin_source *source, uint32_t start, ui
     rig->scalars_start = joint.next;
     if (source->error != PANTIN_OK) return;
     pantin_first_scalar(&scalar, rig);
-    while (pantin_next_scalar(&scalar)) {}
+    while (next_scalar(&scalar)) {}
     if (scalar.next != rig->end) fail(source, PANTIN_ERROR_LENGTH);
 }
 
@@ -474,7 +484,7 @@ static void open_head(pantin_clip *clip) {
     if (clip->flags & HAS_EXPONENTIALS) {
         uint32_t bits = 0;
         pantin_first_joint(&joint, &clip->rig);
-        while (pantin_next_joint(&joint)) {
+        while (next_joint(&joint)) {
             uint8_t c, eulers = 0;
             for (c = 0; c < joint.channels; c++) {
                 uint8_t kind = pantin_joint_kind(&joint, c);
@@ -542,9 +552,10 @@ int pantin_joint_is_exponential(const pantin_clip *clip, const pantin_joint *joi
     pantin_reader r;
     uint8_t bits = 0, n = 0, is = 0;
     if (!(clip->flags & HAS_EXPONENTIALS)) return 0;
+    clip->source->error = clip->rig.source->error = PANTIN_OK;
     reader_of(&r, clip->source, clip->start, clip->end, clip->exponentials);
     pantin_first_joint(&other, &clip->rig);
-    while (other.index != joint->index && pantin_next_joint(&other)) {
+    while (other.index != joint->index && next_joint(&other)) {
         uint8_t c, eulers = 0;
         for (c = 0; c < other.channels; c++) {
             uint8_t kind = pantin_joint_kind(&other, c);
@@ -727,7 +738,7 @@ pantin_result pantin_continue(pantin_player *p) {
         int32_t rest = 0;
         if (p->resume < rig->channels - rig->scalars) {
             while (p->resume >= p->joint.first_channel + p->joint.channels) {
-                if (!pantin_next_joint(&p->joint)) return PANTIN_ERROR_READ;
+                if (!next_joint(&p->joint)) return PANTIN_ERROR_READ;
             }
             kind = pantin_joint_kind(&p->joint, (uint8_t)(p->resume - p->joint.first_channel));
             if (rig->source->error != PANTIN_OK) return rig->source->error;
@@ -935,6 +946,8 @@ int16_t pantin_centidegrees(int32_t raw) {
 
 /* ---- Bank (16) ---- */
 
+static int next_entry(pantin_entry *entry);
+
 pantin_result pantin_open_bank(pantin_bank *bank, pantin_source *source) {
     fields f = fields_of(source, 0, source->length);
     pantin_entry entry;
@@ -963,7 +976,7 @@ pantin_result pantin_open_bank(pantin_bank *bank, pantin_source *source) {
     bank->clips_start = start[3];
     check_crc(source, bank->contents, bank->contents_end, CRC_START);
     pantin_first_entry(&entry, bank);
-    while (pantin_next_entry(&entry)) {
+    while (next_entry(&entry)) {
         if (entry.name.length == 0 || entry.length > length[3] - total) fail(source, PANTIN_ERROR_BANK);
         total += entry.length;
         bank->clips++;
@@ -979,7 +992,7 @@ void pantin_first_entry(pantin_entry *entry, const pantin_bank *bank) {
     entry->start = bank->clips_start;
 }
 
-int pantin_next_entry(pantin_entry *entry) {
+static int next_entry(pantin_entry *entry) {
     const pantin_bank *bank = entry->bank;
     fields f = fields_of(bank->source, entry->next, bank->contents_end);
     if (f.position >= f.end || bank->source->error != PANTIN_OK) return 0;
@@ -988,6 +1001,11 @@ int pantin_next_entry(pantin_entry *entry) {
     entry->length = field_varint(&f);
     entry->next = f.position;
     return bank->source->error == PANTIN_OK;
+}
+
+int pantin_next_entry(pantin_entry *entry) {
+    entry->bank->source->error = PANTIN_OK;
+    return next_entry(entry);
 }
 
 pantin_result pantin_open_entry(pantin_clip *clip, const pantin_entry *entry) {
@@ -1000,7 +1018,7 @@ pantin_result pantin_open_named(pantin_clip *clip, const pantin_bank *bank, cons
     pantin_entry entry;
     bank->source->error = PANTIN_OK;
     pantin_first_entry(&entry, bank);
-    while (pantin_next_entry(&entry)) {
+    while (next_entry(&entry)) {
         if (pantin_name_is(&entry.name, name)) return pantin_open_entry(clip, &entry);
     }
     return bank->source->error != PANTIN_OK ? bank->source->error : PANTIN_NOT_FOUND;

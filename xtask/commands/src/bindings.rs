@@ -51,10 +51,11 @@ const TARGETS: [Target; 3] = [
 ];
 
 /// Functions of banks and streams, which the slice decoder does not need.
-const EXTRAS: [&str; 12] = [
+const EXTRAS: [&str; 13] = [
     "pantin_open_bank",
     "pantin_first_entry",
     "pantin_next_entry",
+    "next_entry",
     "pantin_open_entry",
     "pantin_open_named",
     "pantin_open_stream",
@@ -170,6 +171,11 @@ impl Bindings {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
         }
         steps.run("rotations against the crate's", || turns(&folder));
+        steps.run("a damaged clip hides no other", || {
+            let mut command = Command::new(host_program(&folder, "gcc", "errors")?);
+            command.args(["bank.ptb", "scalars.ptn"].map(|name| vectors::folder().join(name)));
+            output(command).map(drop)
+        });
         steps.run("C++", || {
             for (compiler, source) in ["g++", "clang++"].into_iter().flat_map(|compiler| SOURCES.map(|source| (compiler, source)))
             {
