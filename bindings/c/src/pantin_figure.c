@@ -490,14 +490,27 @@ static pantin_result group(const pantin_joint *joint, uint8_t act, uint8_t first
     return PANTIN_OK;
 }
 
-/* Adds what drives a joint. What turns one that nothing hangs on is left out. */
+static pantin_result push_drive(pantin_figure *f, const pantin_drive *drive, uint8_t *count) {
+    if (f->drive_count >= f->drive_room) return PANTIN_NO_ROOM;
+    f->drives[f->drive_count++] = *drive;
+    ++*count;
+    return PANTIN_OK;
+}
+
+/* Adds what drives a joint. What turns one that nothing hangs on is left out. What works as a group turns after all Euler angles: the map in their place,
+   the quaternion, the joint's own map (FORMAT.md 11). */
 static pantin_result add_drives(pantin_figure *f, const pantin_joint *joint, uint8_t turns, uint8_t exponential, uint8_t *count) {
-    uint8_t c, moved = 0, grouped = !turns;
+#ifndef PANTIN_EULER_ONLY
+    /* First kind, number of kinds and act of each group. */
+    static const uint8_t GROUPS[3][3] = {{PANTIN_EULER_X, 3, EXPONENTIAL}, {PANTIN_QUATERNION_W, 4, QUATERNION}, {PANTIN_EXPONENTIAL_X, 3, EXPONENTIAL}};
+#endif
+    uint8_t c, i, moved = 0, groups = 0;
+    pantin_drive drive;
+    pantin_result result;
     *count = 0;
     for (c = 0; c < joint->channels; c++) {
         uint8_t kind = pantin_joint_kind(joint, c);
-        pantin_drive drive;
-        pantin_result result = PANTIN_OK;
+        result = PANTIN_OK;
         if (kind < PANTIN_EULER_X) {
             if (moved) continue;
             moved = 1;
@@ -506,24 +519,21 @@ static pantin_result add_drives(pantin_figure *f, const pantin_joint *joint, uin
             drive.first = (uint16_t)(joint->first_channel + c);
             drive.what = (uint16_t)(kind - PANTIN_EULER_X);
         } else {
-            if (grouped) continue;
-            grouped = 1;
-#ifdef PANTIN_EULER_ONLY
-            return PANTIN_ERROR_RIG;
-#else
-            if (kind < PANTIN_QUATERNION_W) {
-                result = group(joint, EXPONENTIAL, PANTIN_EULER_X, 3, 1, &drive);
-            } else if (kind < PANTIN_EXPONENTIAL_X) {
-                result = group(joint, QUATERNION, PANTIN_QUATERNION_W, 4, 0, &drive);
-            } else {
-                result = group(joint, EXPONENTIAL, PANTIN_EXPONENTIAL_X, 3, 0, &drive);
-            }
-#endif
+            groups |= (uint8_t)(kind < PANTIN_QUATERNION_W ? 1 : kind < PANTIN_EXPONENTIAL_X ? 2 : 4);
+            continue;
         }
+        if (result == PANTIN_OK) result = push_drive(f, &drive, count);
         if (result != PANTIN_OK) return result;
-        if (f->drive_count >= f->drive_room) return PANTIN_NO_ROOM;
-        f->drives[f->drive_count++] = drive;
-        ++*count;
+    }
+    for (i = 0; turns && i < 3; i++) {
+        if (!(groups >> i & 1)) continue;
+#ifdef PANTIN_EULER_ONLY
+        return PANTIN_ERROR_RIG;
+#else
+        result = group(joint, GROUPS[i][2], GROUPS[i][0], GROUPS[i][1], (uint8_t)(i == 0), &drive);
+        if (result == PANTIN_OK) result = push_drive(f, &drive, count);
+        if (result != PANTIN_OK) return result;
+#endif
     }
     return PANTIN_OK;
 }

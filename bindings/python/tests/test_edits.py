@@ -48,7 +48,7 @@ def test_rates(bvh):
 def test_events(bvh):
     clip = pantin.convert(bvh, effort="fast", events=[(3, "clap"), ("0.5s", "step")])
     assert clip.events == [(3, "clap"), (60, "step")]
-    with pytest.raises(pantin.SettingError, match="events: clap: frame 900 is not in the clip"):
+    with pytest.raises(pantin.SettingError, match="events=clap: frame 900 is not in the clip"):
         pantin.convert(bvh, events=[(900, "clap")])
 
 

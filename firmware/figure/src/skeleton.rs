@@ -275,7 +275,7 @@ impl<const N: usize> Skeleton<N> {
     fn drive(&mut self, joint: &Joint, turns: bool, exponential: bool) -> Result<u8, Error> {
         use Kind::*;
         let before = self.driven;
-        let (mut moved, mut grouped) = (false, !turns);
+        let mut moved = false;
         // The first channels of `count` consecutive kinds.
         let of = |first: Kind, count: usize, act| {
             let mut members = [None; 4];
@@ -286,29 +286,33 @@ impl<const N: usize> Skeleton<N> {
             }
             Drive::group(act, members.get(..count).unwrap_or(&[]))
         };
+        // What works as a group turns after all Euler angles: the map in their place, the quaternion, the joint's own map (FORMAT.md 11).
+        let [mut coded, mut quaternion, mut map] = [false; 3];
         for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
             let drive = match kind {
-                Scalar => continue,
                 _ if kind.is_position() && moved => continue,
                 _ if kind.is_position() => {
                     moved = true;
                     of(Xposition, 3, 3)
                 }
                 _ if kind.is_rotation() && !exponential && turns => Some(Drive::turn(kind.axis().unwrap_or(0) as u16, channel)),
-                // The rest work as a group, in the place of its first channel.
-                _ if grouped => continue,
                 _ => {
-                    grouped = true;
-                    if kind.is_quaternion() {
-                        of(Wquaternion, 4, 5)
-                    } else if kind.is_exponential() {
-                        of(Xexponential, 3, 4)
-                    } else {
-                        angles(joint)
-                    }
+                    coded |= kind.is_rotation();
+                    quaternion |= kind.is_quaternion();
+                    map |= kind.is_exponential();
+                    continue;
                 }
             };
             self.push_drive(drive)?;
+        }
+        if coded && turns {
+            self.push_drive(angles(joint))?;
+        }
+        if quaternion && turns {
+            self.push_drive(of(Wquaternion, 4, 5))?;
+        }
+        if map && turns {
+            self.push_drive(of(Xexponential, 3, 4))?;
         }
         Ok((self.driven - before) as u8)
     }
