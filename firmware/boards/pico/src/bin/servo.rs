@@ -1,5 +1,5 @@
 //! The first clip moves a puppet: the angles of joints become pulses for four servos on GP6 to GP9, within each servo's limits. For servos convert with
-//! `--max-joint-error 1`, which bounds the angle of each joint; `pantin info` lists the joints of a clip.
+//! `--max-joint-error 1`, which bounds the angle of each joint.
 #![no_std]
 #![no_main]
 
@@ -69,15 +69,14 @@ fn play(mut set: impl FnMut([u16; 4])) -> ! {
     let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: slew(SLEW_US_PER_S, clip.frame_time_ns()) };
     // The servos of the right side are mounted mirrored.
     let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
-    // The servo of a joint that the clip lacks gets no pulse, which leaves it without force.
-    let angles = JOINTS.map(|joint| JointAngle::find(&clip, joint, Axis::X));
+    let angle = |joint| JointAngle::find(&clip, joint, Axis::X).unwrap_or_else(|| panic!("the clip has no joint {joint}"));
+    let angles = JOINTS.map(angle);
     let mut timer = SysTick::<CPU_HZ>::new();
     timer.start(clip.frame_time_ns());
     let mut start = SoftStart::new(JOINTS.len() as u32);
     let mut follow = |player: &Player, start: &SoftStart| {
         let mut widths = [0; 4];
         for (((number, width), servo), angle) in (0..).zip(&mut widths).zip(&mut servos).zip(&angles) {
-            let Some(angle) = angle else { continue };
             let followed = servo.follow(start.ease(angle.at(player)));
             // A width of 0 is no pulse.
             *width = if start.is_on(number) { followed } else { 0 };
