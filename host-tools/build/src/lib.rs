@@ -41,7 +41,7 @@
 //! opt-level = 2
 //! ```
 //!
-//! The same input and recipe give the same file on every machine.
+//! The generated file depends on the input and the recipe alone, not on the machine.
 
 mod asset;
 mod error;

@@ -176,13 +176,13 @@ impl Error {
         Error::Bound(Problem::new(text))
     }
 
-    /// The same with what would help.
+    /// Sets what would help.
     pub fn remedy(mut self, remedy: Remedy) -> Error {
         self.problem_mut().remedy = Some(remedy);
         self
     }
 
-    /// The same for a source, a bound or a file: its reason.
+    /// The reason and its place.
     pub fn problem(&self) -> &Problem {
         match self {
             Error::Read(problem)
@@ -203,7 +203,7 @@ impl Error {
         }
     }
 
-    /// The same about a file, whose name stands before all else.
+    /// Puts the name of a file in front of the place.
     pub(crate) fn in_file(mut self, file: &std::path::Path) -> Error {
         let problem = self.problem_mut();
         problem.place = match problem.place.is_empty() {
@@ -263,7 +263,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The same error with what would help.
+/// Sets what would help in an error, which becomes an [`Error`].
 pub(crate) fn with_remedy(error: &anyhow::Error, remedy: Remedy) -> anyhow::Error {
     Error::of(error, Error::source).remedy(remedy).into()
 }

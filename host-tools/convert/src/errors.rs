@@ -44,7 +44,7 @@ fn put(fields: &mut Map<String, Value>, worst: &Worst, [error, joint, frame]: [&
     fields.insert(frame.into(), json!(worst.frame));
 }
 
-/// The same for a person: a line for places, the shell and rotations each, and one for scalars.
+/// The errors as text. Places, the shell and rotations have a line each; scalars have one more.
 pub fn to_text(report: &Report, motion: &Motion) -> String {
     let mut lines = Vec::new();
     if !motion.rig.joints.is_empty() {

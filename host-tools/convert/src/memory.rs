@@ -41,11 +41,6 @@ impl Memory {
         self.0
     }
 
-    /// Values of channels at frames within the limit.
-    pub fn most_values(self) -> usize {
-        usize::try_from(self.0 / BYTES_A_VALUE).unwrap_or(usize::MAX)
-    }
-
     /// Refuses a motion that takes more memory than the limit.
     pub fn check(self, frames: usize, channels: usize) -> Result<()> {
         check_motion(frames, channels, (channels as u64).saturating_mul(BYTES_A_VALUE), self.0)

@@ -87,6 +87,9 @@ impl Options {
     /// The bound of joints relative to the mean error, where only the mean is set.
     pub const MAX_OF_MEAN: f64 = 6.0;
 
+    /// The least bound on a rotation in degrees: rounding three angles to steps of 360 / 2^32 degrees turns a joint by nearly as much.
+    pub const LEAST_DEGREES: f64 = 2e-7;
+
     /// The defaults.
     pub fn new() -> Options {
         Options::default()

@@ -30,9 +30,6 @@ use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The least bound on a rotation in degrees: rounding three angles to steps of 360 / 2^32 degrees turns a joint by nearly as much.
-const LEAST_DEGREES: f64 = 2e-7;
-
 /// A motion after all edits, and what its clip must keep.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -116,8 +113,8 @@ fn check_settings(options: &Options) -> Result<()> {
     for (setting, degrees) in
         [(Setting::MaxRotationError, options.max_rotation_error), (Setting::MaxJointError, options.max_joint_error)]
     {
-        let wrong = || Error::setting(setting, format!("expected degrees from {LEAST_DEGREES:e} to 180"));
-        require!(degrees.is_none_or(|degrees| (LEAST_DEGREES..=180.0).contains(&degrees)), wrong());
+        let wrong = || Error::setting(setting, format!("expected degrees from {:e} to 180", Options::LEAST_DEGREES));
+        require!(degrees.is_none_or(|degrees| (Options::LEAST_DEGREES..=180.0).contains(&degrees)), wrong());
     }
     let both = options.places_only && options.shell.is_some();
     require!(!both, Error::setting(Setting::Shell, "it bounds what the bound of places alone leaves out"));
@@ -136,9 +133,8 @@ fn check_settings(options: &Options) -> Result<()> {
     for (setting, valid) in settings {
         require!(valid, Error::setting(setting, "expected a number above 0"));
     }
-    let exact = options.channels.is_some() && options.channels != Some(ChannelBound::Error(0.0));
-    let loops = matches!(options.channels, Some(ChannelBound::Exact | ChannelBound::Acceleration(_)));
-    require!(!(exact && loops && options.looped), Error::setting(Setting::Loop, "closing a seam needs a bound of positions"));
+    let drifts = matches!(options.channels, Some(ChannelBound::Exact | ChannelBound::Acceleration(_)));
+    require!(!(drifts && options.looped), Error::setting(Setting::Loop, "closing a seam needs a bound of positions"));
     Ok(())
 }
 

@@ -82,7 +82,7 @@ impl Report {
         }
     }
 
-    /// The same for a table's column.
+    /// The errors in short, for a table's column.
     pub fn to_cell(&self, motion: &Motion) -> String {
         match &self.errors {
             Errors::Joints(report) => errors::to_cell(report, motion),

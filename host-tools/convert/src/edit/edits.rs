@@ -142,24 +142,9 @@ impl Edits {
         Edits { memory, ..self }
     }
 
-    /// Whether there is any edit.
-    pub fn any(&self) -> bool {
-        *self != Edits { memory: self.memory, ..Edits::default() }
-    }
-
     /// The frame from which the motion is kept.
-    pub fn first_frame(&self, frame_time: f64) -> usize {
+    fn first_frame(&self, frame_time: f64) -> usize {
         self.from.map_or(0, |moment| moment.nearest(frame_time))
-    }
-
-    /// Takes the paths of files that the edits read as ones from `folder`.
-    pub fn read_from(&mut self, folder: &Path) {
-        self.map.iter_mut().chain(&mut self.with).for_each(|path| *path = folder.join(&path));
-    }
-
-    /// The files that the edits read.
-    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
-        self.map.iter().chain(&self.with).map(PathBuf::as_path)
     }
 
     /// Changes `motion`. Other motions and names are read from `files`.

@@ -1,4 +1,4 @@
-//! The same motion at another rate.
+//! Resampling: a motion is taken at another frame rate.
 
 use super::curve;
 use crate::error::{Error, Setting, require};

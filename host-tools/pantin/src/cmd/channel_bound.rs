@@ -1,6 +1,7 @@
 //! The flags of `pantin convert` that bound channels instead of joints.
 
 use anyhow::Result;
+use pantin_convert::Options;
 /// Bounds for each channel, in place of --max-error.
 #[derive(clap::Args, Clone, Debug)]
 pub struct ChannelBound {
@@ -26,15 +27,12 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The least bound on a rotation in degrees: rounding three angles to steps of 360 / 2^32 degrees turns a joint by nearly as much.
-const LEAST_DEGREES: f64 = 2e-7;
-
 /// The greatest angle between two rotations, in degrees: above 0, not above 180.
 pub fn degrees(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
-        Ok(number) if (LEAST_DEGREES..=180.0).contains(&number) => Ok(number),
-        Ok(number) if number > 0.0 && number < LEAST_DEGREES => {
-            Err(format!("a clip's angles have steps of 8.4e-8 degrees: the least bound is {LEAST_DEGREES:e} degrees"))
+        Ok(number) if (Options::LEAST_DEGREES..=180.0).contains(&number) => Ok(number),
+        Ok(number) if number > 0.0 && number < Options::LEAST_DEGREES => {
+            Err(format!("a clip's angles have steps of 8.4e-8 degrees: the least bound is {:e} degrees", Options::LEAST_DEGREES))
         }
         _ => Err("expected degrees, above 0 and at most 180".into()),
     }

@@ -346,7 +346,7 @@ pub(super) struct Made {
     json: Map<String, Value>,
     /// The errors as a clause for the user.
     errors: String,
-    /// The same for a table's column.
+    /// The errors in short, for a table's column.
     pub cell: String,
     pub frames: usize,
     channels: usize,

@@ -60,7 +60,7 @@ fn sizes(row: &[f64], prior: impl Fn(usize) -> f64) -> Vec<u16> {
 }
 
 #[test]
-#[ignore = "prints tables.rs: PANTIN_TRAIN names the clips, set apart by commas"]
+#[ignore = "prints tables.rs: PANTIN_TRAIN=A.ptn,B.ptn cargo test -p pantin-tools --lib sender::train -- --ignored --nocapture"]
 fn train() {
     let mut counts = Counts::default();
     for path in std::env::var("PANTIN_TRAIN").expect("PANTIN_TRAIN").split(',') {

@@ -402,7 +402,7 @@ fn a_signal_ends_it_where_the_terminal_has_stopped_reading() {
 
 /// Runs in the terminal of the test below.
 #[test]
-#[ignore = "panics on purpose: a_panic_restores_the_terminal_and_is_read runs it"]
+#[ignore = "panics on purpose: `cargo test -p pantin-tools --test suites a_panic_restores_the_terminal` runs it in a terminal"]
 fn panics_while_it_plays() {
     let _terminal = Terminal::enter(Colours::All).unwrap();
     panic!("on purpose");
