@@ -1,6 +1,6 @@
 //! The displays of the emulated machines, and pictures of them.
 
-use pantin_tools::render::image::Image;
+use pantin_images::image::Image;
 
 /// The meaning of a pixel's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! A line that loses packets and flips bits, the same way each time; and a receiver at its end, in clip time.
 
+use pantin_line::sender::{Line, Source, TimedPacket};
 use pantin_link::packet::{Receiver, kind};
 use pantin_link::{Channel, Link, MAX_PACKET, Messages, QUEUE_PACKETS};
-use pantin_tools::sender::{Line, Source, TimedPacket};
 
 /// What a line does to packets.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

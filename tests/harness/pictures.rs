@@ -2,10 +2,10 @@
 
 use crate::display::Picture;
 use anyhow::{Context, Result};
-use pantin_tools::render::animation::{Animation, stride};
-use pantin_tools::render::gif::{Gif, MOST_A_SECOND};
-use pantin_tools::render::palette::{Palette, Rgb};
-use pantin_tools::render::sheet::{Layout, arrange};
+use pantin_images::animation::{Animation, stride};
+use pantin_images::gif::{Gif, MOST_A_SECOND};
+use pantin_images::palette::{Palette, Rgb};
+use pantin_images::sheet::{Layout, arrange};
 
 /// Columns that an animation's picture has at most.
 const ANIMATED: usize = 512;

@@ -2,9 +2,9 @@
 //! drift. Every frame is checked.
 
 use anyhow::{Result, ensure};
+use pantin_line::sender::{Line, Schedule, Sender, Source, TimedPacket};
 use pantin_link::packet::Receiver;
 use pantin_link::{Channel, Link, MAX_PACKET, QUEUE_PACKETS};
-use pantin_tools::sender::{Line, Schedule, Sender, Source, TimedPacket};
 
 use crate::lossy::{Damage, Lossy};
 

@@ -10,7 +10,7 @@ use pantin_animator::session::{Input, Replay};
 use pantin_app::CHARACTER_KEYS;
 use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::{DrawStyle, View};
-use pantin_tools::machine::playback::{Stage, play, session};
+use pantin_pictures::machine::playback::{Stage, play, session};
 
 use crate::build::Firmware;
 use crate::display::{OLED, Picture};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, ensure};
-use pantin_tools::update::uf2::{self, PAGE};
+use pantin_line::update::uf2::{self, PAGE};
 
 use crate::segments::{self, Segment};
 
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
     use object::elf::{self, FileHeader32, Ident, PT_LOAD, ProgramHeader32};
     use object::{LittleEndian as LE, U16, U32, pod::bytes_of};
-    use pantin_tools::update::uf2::{BLOCK, END, FAMILY, MAGIC};
+    use pantin_line::update::uf2::{BLOCK, END, FAMILY, MAGIC};
 
     /// An ELF file of 32 bits with these segments, by address.
     fn elf(segments: &[(u32, &[u8])]) -> Vec<u8> {

@@ -15,7 +15,7 @@ use harness::stm32::{Outcome, Pin, Request, TARGET};
 use harness::{clips, equal, image, paths, pictures, screen, simulator, steered, unicorn};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::rotation_float::FloatRotation;
-use pantin_tools::face::speak;
+use pantin_pictures::face::speak;
 
 /// Pictures of our walk, our run, and a face with its body.
 const PICTURES: [(&str, usize); 3] = [("walk", 30), ("run", 26), ("greet", 20)];

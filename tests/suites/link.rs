@@ -14,9 +14,9 @@ use harness::lossy::{Damage, Lossy, arrivals};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
+use pantin_line::sender::{Line, Sender, Source};
 use pantin_link::packet::{Receiver, TagKey};
 use pantin_link::{Channel, Link, MAX_PACKET, QUEUE_PACKETS};
-use pantin_tools::sender::{Line, Sender, Source};
 use tempfile::TempDir;
 
 /// Our greeting: a body and its face.

@@ -15,7 +15,7 @@ use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::TextScreen;
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Framebuffer, MonoPages};
-use pantin_tools::sender::{Line, Sender, Source};
+use pantin_line::sender::{Line, Sender, Source};
 use tempfile::TempDir;
 
 /// Our walk, as converted now, and a greeting with body and face.

@@ -12,11 +12,12 @@ use harness::rp2040::{self, Answered, OLED, Outcome, Request};
 use harness::update::{line, requests};
 use harness::{clips, paths, screen, setup, simulator};
 use pantin_figure::rotation::Rotation;
+use pantin_line::update::image;
 use pantin_link::packet::Receiver;
 use pantin_store::message::MAX_RESPONSE;
 use pantin_store::region::Region;
 use pantin_store::{ClipInfo, Response};
-use pantin_tools::update::{self, image};
+use pantin_tools::board_clip;
 use tempfile::TempDir;
 
 /// Pictures that identify a clip.
@@ -43,7 +44,7 @@ struct Film {
 
 impl Film {
     fn of(path: &Path) -> Film {
-        let (bytes, info) = update::read(path, None).unwrap();
+        let (bytes, info) = board_clip::read(path, None).unwrap();
         let keys = [&b""[..]; 60];
         let pictures = simulator::play::<Rotation>(OLED, &[path.to_owned()], &[], &keys).unwrap();
         Film { bytes, info, pictures: pictures.into_iter().map(|(_, picture)| picture).collect() }

@@ -2,7 +2,7 @@
 
 use harness::{paths, soak};
 use pantin::Clip;
-use pantin_tools::sender::{Line, Source};
+use pantin_line::sender::{Line, Source};
 
 #[test]
 fn an_hour_of_a_clip_over_a_line_that_damages_is_exact_whenever_it_says_so() {

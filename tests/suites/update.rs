@@ -21,9 +21,10 @@ use harness::{clips, paths, screen, setup, simulator};
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol};
 use pantin_figure::rotation::Rotation;
+use pantin_line::update::{self, RetryPolicy, image};
 use pantin_store::region::{REGIONS, Region};
 use pantin_store::{ClipInfo, Refusal, Request, Response};
-use pantin_tools::update::{self, RetryPolicy, image};
+use pantin_tools::board_clip;
 use tempfile::TempDir;
 
 /// Pictures that distinguish clips.
@@ -49,7 +50,7 @@ struct Film {
 
 impl Film {
     fn of(path: PathBuf) -> Film {
-        let (bytes, info) = update::read(&path, None).unwrap();
+        let (bytes, info) = board_clip::read(&path, None).unwrap();
         let keys = [&b""[..]; PICTURES - 1];
         let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&path), &[], &keys).unwrap();
         Film { bytes, info, path, pictures }
@@ -73,7 +74,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 
 /// A clip of more channels than the board has room for.
 fn wide() -> (Vec<u8>, ClipInfo) {
-    update::read(&paths::root().join("tests/vectors/channels-300.ptn"), None).unwrap()
+    board_clip::read(&paths::root().join("tests/vectors/channels-300.ptn"), None).unwrap()
 }
 
 /// The bench; none where there is no emulator.

@@ -21,7 +21,7 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 27] = [
+const LIST: [(&str, Place, &str); 28] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
@@ -53,6 +53,7 @@ const LIST: [(&str, Place, &str); 27] = [
     ("sizes", COMMANDS, "Measures flash, RAM and stack of every image, and compares them with tests/sizes.txt"),
     ("soak", COMMANDS, "Plays 24 hours of a clip over a simulated line with damage, restarts and drift"),
     ("strips", COMMANDS, "Plays motions on every emulated board and draws a contact sheet of each"),
+    ("train", COMMANDS, "Computes the format's tables from motions, for a new version of the format"),
     ("uf2", COMMANDS, "Makes a file to drag onto a board's drive"),
     ("vectors", COMMANDS, "Makes the golden vectors again"),
     ("web", COMMANDS, "Builds the web page with its player and our clips"),

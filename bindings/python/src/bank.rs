@@ -3,7 +3,7 @@
 use crate::error::exception;
 use anyhow::{Context, Result};
 use pantin::Bank;
-use pantin_convert::encode::bank::{self, CheckedRig, Named};
+use pantin_convert::bank::{self, CheckedRig, Named};
 use pyo3::prelude::*;
 use std::sync::Arc;
 

@@ -4,9 +4,10 @@ use crate::array::floats;
 use crate::error::exception;
 use anyhow::{Error, Result, bail};
 use pantin::{Clip, OpenError};
-use pantin_convert::encode::rig;
 use pantin_convert::facts::segment_bits;
+
 use pantin_convert::import::up;
+use pantin_convert::motion::Rig;
 use pantin_convert::{Memory, events};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
@@ -43,7 +44,7 @@ pub fn channel_bytes<'py>(py: Python<'py>, clip: &[u8]) -> PyResult<Bound<'py, P
 
 fn text(bytes: &[u8]) -> Result<String> {
     let clip = open(bytes)?;
-    let figure = rig::decode(&clip.rig());
+    let figure = Rig::from(&clip.rig());
     let joint = |joint: &pantin_convert::motion::Joint| {
         json!({
             "name": joint.name,

@@ -58,6 +58,7 @@ fn arguments(remedy: Remedy) -> &'static str {
         Remedy::CloseLoop => "close_loop=True",
         Remedy::DropScales => "drop=",
         Remedy::MapJoints => "joint_map=",
+        Remedy::FindFootsteps => "footsteps=",
         _ => "",
     }
 }

@@ -1,4 +1,4 @@
-//! Statistics of motion, frozen with the format: made by `pantin train`, not by hand.
+//! Statistics of motion, frozen with the format: made by `cargo xtask train`, not by hand.
 //!
 //! Trained on motion of the CMU Graphics Lab ("free for use in research and commercial projects"): backflip, charleston1, charleston2 and 131_01, at 120, 60 and 30 frames a second, whole and in parts of 24 and 56 frames, and as curves through every 6th to 48th frame.
 //!

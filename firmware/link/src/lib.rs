@@ -1,7 +1,7 @@
 //! Receives live motion over a line that loses bytes: a serial line, or UDP. No heap, no float, no panic path.
 //!
 //! The bytes of a line go to a [`packet::Receiver`], its packets to a [`Link`], and [`Link::step`] yields a pose per frame. After a loss the
-//! receiver recovers by itself. `LINK.md` specifies the protocol; the sender runs on a host and is part of the crate `pantin-tools`.
+//! receiver recovers by itself. `LINK.md` specifies the protocol; the sender runs on a host and is part of the crate `pantin-line`.
 //!
 //! ```
 //! use pantin_link::packet::Receiver;
@@ -45,7 +45,7 @@ pub use head::{ChannelKind, EXPONENTIAL_BYTES, Head, MAX_PACE, fits, pace, read_
 pub use link::{ClipMismatch, Counts, Link, MAX_PACKET, MAX_PAYLOAD, QUEUE_PACKETS};
 pub use message::{Message, Messages, Refresh, units};
 
-/// The fields of payloads, for encoders: the crate `pantin-tools` has one, which runs on a host.
+/// The fields of payloads, for encoders: the crate `pantin-line` has one, which runs on a host.
 pub mod wire {
     pub use crate::head::{COUNT_BITS, FIRST_BITS, HEAD_CHECK};
     pub use crate::message::{AHEAD_BITS, END, FRAME, FRAME_BITS, PASS};

@@ -1,4 +1,4 @@
-//! Probabilities of the symbols of payloads, written by `PANTIN_TRAIN=a.ptn,b.ptn cargo test -p pantin-tools -- --ignored --nocapture train`, not by hand.
+//! Probabilities of the symbols of payloads, written by `PANTIN_TRAIN=a.ptn,b.ptn cargo test -p pantin-line sender::train -- --ignored --nocapture`, not by hand.
 
 /// Neither, refresh, cut, both.
 pub static FLAGS: [u16; 4] = [1947, 1095, 46, 1008];

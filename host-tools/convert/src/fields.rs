@@ -79,6 +79,8 @@ impl Remedy {
             Remedy::CloseLoop => "close-loop",
             Remedy::DropScales => "drop-scales",
             Remedy::MapJoints => "map-joints",
+            Remedy::ShareForm => "share-form",
+            Remedy::FindFootsteps => "find-footsteps",
         }
     }
 }

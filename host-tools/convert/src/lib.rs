@@ -5,7 +5,12 @@
 pub mod channel_error;
 mod conversion;
 pub mod edit;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod encode;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, reason = "tests and benches measure single steps")]
+mod encode;
 mod error;
 pub mod errors;
 mod euler;
@@ -14,7 +19,12 @@ pub mod expand;
 pub mod export;
 pub mod facts;
 mod fields;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
 pub mod fit;
+#[cfg(not(feature = "internals"))]
+#[allow(dead_code, reason = "tests and benches measure single steps")]
+mod fit;
 pub mod fk;
 pub mod import;
 pub mod input;
@@ -33,9 +43,11 @@ pub use conversion::{
     Converted, Errors, Made, Prepared, Progress, Recipe, Report, SeamReport, agree_on_up, convert, of_one_rig, prepare,
     shared_coding,
 };
+pub use encode::{bank, rans};
 pub use error::{Error, Problem, Setting};
 pub use fit::descent::Level;
 pub use fit::parametrize::{Coding, Rotations};
+pub use fit::raw;
 pub use length::Length;
 pub use memory::{Memory, parse as parse_size, size as size_text};
 pub use moment::Moment;

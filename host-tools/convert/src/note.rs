@@ -151,6 +151,10 @@ pub enum Remedy {
     DropScales,
     /// Name the joints that were not recognized.
     MapJoints,
+    /// Convert the motions of a state machine with one form.
+    ShareForm,
+    /// Find the footsteps of the motions.
+    FindFootsteps,
 }
 
 impl Remedy {
@@ -173,6 +177,8 @@ impl Remedy {
             Remedy::MakeLoop => "close the ends to a loop",
             Remedy::DropScales => "leave out the scalars of scales",
             Remedy::MapJoints => "map the names of the joints",
+            Remedy::ShareForm => "convert the motions with one form",
+            Remedy::FindFootsteps => "find the footsteps of the motions",
         }
     }
 }

@@ -72,7 +72,6 @@ enum Command {
     Serve(cmd::serve::Arguments),
     Steer(cmd::steer::Arguments),
     Stream(cmd::stream::Arguments),
-    Train(cmd::train::Arguments),
     Unpack(cmd::bank::Unpack),
     Update(cmd::update::Arguments),
 }
@@ -96,7 +95,6 @@ impl Command {
             Command::Serve(_) => "serve",
             Command::Steer(_) => "steer",
             Command::Stream(_) => "stream",
-            Command::Train(_) => "train",
             Command::Unpack(_) => "unpack",
             Command::Update(_) => "update",
         }
@@ -129,7 +127,6 @@ fn main() -> ExitCode {
         Command::Serve(arguments) => cmd::serve::run(&arguments),
         Command::Steer(arguments) => cmd::steer::run(&arguments),
         Command::Stream(arguments) => cmd::stream::run(&arguments),
-        Command::Train(arguments) => cmd::train::run(&arguments),
         Command::Unpack(arguments) => cmd::bank::unpack(&arguments),
         Command::Update(arguments) => cmd::update::run(&arguments),
     };

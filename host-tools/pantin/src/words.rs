@@ -61,6 +61,8 @@ pub fn advice(remedy: Remedy) -> &'static str {
         Remedy::CloseLoop => "--close-loop makes one",
         Remedy::DropScales => "--drop '*.scale.*' leaves them out",
         Remedy::MapJoints => "--map FILE names them",
+        Remedy::ShareForm => "`pantin convert --same-form` gives them one form",
+        Remedy::FindFootsteps => "`pantin convert --footsteps` finds them",
         other => other.text(),
     }
 }
@@ -71,9 +73,14 @@ pub fn sentence(note: &Note) -> String {
         Some(setting) => note.text.replacen(setting.text(), option(setting), 1),
         None => note.text.clone(),
     };
-    match note.remedy {
+    with_advice(&text, note.remedy)
+}
+
+/// A sentence with the option that helps.
+pub fn with_advice(text: &str, remedy: Option<Remedy>) -> String {
+    match remedy {
         Some(remedy) => format!("{text}; {}", advice(remedy)),
-        None => text,
+        None => text.into(),
     }
 }
 
@@ -106,11 +113,7 @@ pub fn explanation(error: &Error) -> String {
     }
     parts.dedup();
     // A command and the library may both name the file.
-    let text = parts.join(": ");
-    match remedy {
-        Some(remedy) => format!("{text}; {}", advice(remedy)),
-        None => text,
-    }
+    with_advice(&parts.join(": "), remedy)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use pantin::Bank;
 use pantin::codec::layout::section;
-use pantin_convert::encode::bank::{self, Named};
+use pantin_convert::bank::{self, Named};
 use serde_json::{Value, json};
 
 use super::{json, record, synthetic};

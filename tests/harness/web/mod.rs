@@ -15,13 +15,13 @@ use std::thread;
 pub use xtask::browser;
 
 use anyhow::{Context, Result, ensure};
+use pantin_convert::Level;
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::export;
-use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::fit;
 use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::pose_bound::PoseBound;
-use pantin_tools::machine;
+use pantin_pictures::machine;
 use pantin_tools::serve::{Site, serve};
 use serde_json::json;
 

@@ -2,7 +2,7 @@
 
 use pantin::{Bank, ChannelState, Clip, Player, Progress, Rig, SeekCache, SnapshotPos, Stream, Undo};
 
-use pantin_convert::encode::bank;
+use pantin_convert::bank;
 
 use crate::fix;
 use crate::noise::Noise;

@@ -2,12 +2,12 @@
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use pantin::{Clip, Form};
+use pantin_line::sender::{Line, Sender, Source};
 use pantin_link::packet::{self, Receiver};
 use pantin_link::{Channel, Head, Link, MAX_PACKET, Messages, QUEUE_PACKETS, read_starts};
 use pantin_store::header::Header;
 use pantin_store::message::{MAX_RESPONSE, MAX_STARTS};
 use pantin_store::{BLOCK_BYTES, ClipInfo, Request, Response, Slot, Store, Update};
-use pantin_tools::sender::{Line, Sender, Source};
 
 use crate::clips::RIG;
 use crate::fix;

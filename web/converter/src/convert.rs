@@ -3,8 +3,8 @@
 use crate::sources::{self, Chosen, Given};
 use pantin::Clip;
 use pantin_convert::export::source::c_header;
-use pantin_convert::fit::descent::Level;
-use pantin_convert::fit::raw;
+use pantin_convert::Level;
+use pantin_convert::raw;
 use pantin_convert::import::list;
 use pantin_convert::motion::Motion;
 use pantin_convert::{Converted, Error, Length, Note, Options, Progress, Recipe, Setting};

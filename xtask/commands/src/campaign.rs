@@ -11,7 +11,7 @@ use clap::Args;
 use harness::differential::{self, Decoder};
 use harness::{paths, soak};
 use pantin::Clip;
-use pantin_tools::sender::{Line, Source};
+use pantin_line::sender::{Line, Source};
 use xtask::setup;
 use xtask::steps::say;
 
@@ -135,7 +135,7 @@ impl Coverage {
         COVERED.iter().for_each(|package| words.extend(["--package", package]));
         cargo(&words, &[])?;
         // The link's receiver is tested by what the sender sends.
-        cargo(&["llvm-cov", "--no-report", "--package", "pantin-tools", "--lib", "--", "sender::"], &[])?;
+        cargo(&["llvm-cov", "--no-report", "--package", "pantin-line", "--lib", "--", "sender::"], &[])?;
         let form = if self.html { "--html" } else { "--summary-only" };
         cargo(&["llvm-cov", "report", form, "--ignore-filename-regex", UNCOVERED], &[])
     }

@@ -12,8 +12,8 @@ use harness::{build, paths};
 use pantin_convert::expand::expand;
 use pantin_convert::import::{self, units};
 use pantin_convert::verify::{compare, shell_radius_cm};
+use pantin_pictures::render::gallery::{self, Cell};
 use pantin_tools::output::write_whole;
-use pantin_tools::render::gallery::{self, Cell};
 
 use xtask::steps::say;
 

@@ -14,6 +14,7 @@ mod images;
 mod log;
 mod sizes;
 mod strips;
+mod train;
 mod uf2;
 mod vectors;
 mod web;
@@ -45,6 +46,7 @@ enum Command {
     Sizes(sizes::Sizing),
     Soak(campaign::Soak),
     Strips(strips::Strips),
+    Train(train::Train),
     Uf2(uf2::Uf2),
     Vectors(vectors::Vectors),
     Web(web::Web),
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
         Command::Sizes(sizes) => sizes.run(),
         Command::Soak(soak) => soak.run(),
         Command::Strips(strips) => strips.run(),
+        Command::Train(train) => train.run(),
         Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
         Command::Web(web) => web.run(),

@@ -97,7 +97,14 @@ fn code(kind: Kind) -> u8 {
     kind as u8
 }
 
-/// The rig that `bytes` hold, in source units.
+impl From<&pantin::Rig<'_>> for Rig {
+    /// Lengths are in the units of the source.
+    fn from(rig: &pantin::Rig<'_>) -> Rig {
+        decode(rig)
+    }
+}
+
+/// The rig that a clip has, in source units.
 pub fn decode(rig: &pantin::Rig) -> Rig {
     let step = f64::from(rig.length_exponent()).exp2();
     Rig {

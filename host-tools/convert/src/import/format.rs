@@ -12,6 +12,8 @@ pub struct Format {
     pub name: &'static str,
     /// Extensions of its files, in lower case.
     pub extensions: &'static [&'static str],
+    /// Extensions of files that belong to its files and hold no motion, in lower case.
+    pub companion_extensions: &'static [&'static str],
     /// Whether its files may hold several animations, of which one is chosen.
     pub has_animations: bool,
     /// Whether its files take their skeleton from another one.
@@ -33,6 +35,7 @@ pub struct Format {
 const PLAIN: Format = Format {
     name: "",
     extensions: &[],
+    companion_extensions: &[],
     has_animations: false,
     has_skeleton: false,
     states_up: false,
@@ -49,6 +52,7 @@ pub const FORMATS: &[Format] = &[
     Format {
         name: "AMC",
         extensions: &["amc"],
+        companion_extensions: &["asf"],
         has_skeleton: true,
         has_rows: true,
         begins: amc::begins,

@@ -1,51 +1,51 @@
 //! Motion files in: one file a format, one entry in [`FORMATS`]. [`import`] finds the format and settles the units.
 
 mod acclaim;
-pub mod amc;
+mod amc;
 mod angles;
 pub mod arrays;
 mod asf;
-pub mod bvh;
+mod bvh;
 mod ends;
 mod expression;
-pub mod fap;
+mod fap;
 mod fap_names;
 #[cfg(feature = "fbx")]
-pub mod fbx;
+mod fbx;
 #[cfg(not(feature = "fbx"))]
 #[path = "fbx_absent.rs"]
-pub mod fbx;
+mod fbx;
 mod files;
 mod format;
 mod from_transforms;
 #[cfg(feature = "gltf")]
-pub mod gltf;
+mod gltf;
 #[cfg(not(feature = "gltf"))]
 #[path = "gltf_absent.rs"]
-pub mod gltf;
+mod gltf;
 mod grid;
 mod helpers;
-pub mod keyframes;
+mod keyframes;
 pub mod list;
-pub mod livelink;
+mod livelink;
 mod options;
-pub mod procedural;
+mod procedural;
 mod request;
 mod scalars;
 mod scales;
 mod sheet;
-pub mod table;
+mod table;
 pub mod text;
 mod timecode;
 pub mod units;
 pub mod up;
-pub mod vrml;
+mod vrml;
 mod written;
 #[cfg(feature = "zip")]
-pub mod zip;
+mod zip;
 #[cfg(not(feature = "zip"))]
 #[path = "zip_absent.rs"]
-pub mod zip;
+mod zip;
 
 use crate::error::{Error, Setting, require};
 use crate::motion::{Motion, Origin, Up};
@@ -53,6 +53,9 @@ use crate::note::{Note, NoteKind};
 use anyhow::{Context, Result};
 pub use files::{Disk, Files, InMemory, read as read_file, read_from};
 pub use format::{FORMATS, Format};
+#[cfg(feature = "gltf")]
+pub use gltf::mesh;
+pub use livelink::live_link_name;
 pub use options::ImportOptions;
 use pantin::codec::layout::MAX_CHANNELS;
 pub(crate) use request::Request;

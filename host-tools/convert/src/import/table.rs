@@ -314,3 +314,14 @@ fn last_digit(times: &[f64]) -> f64 {
     let scales = (0..9).map(|digits| 10f64.powi(digits));
     scales.into_iter().find(|&scale| whole(scale)).unwrap_or(1e9).recip()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_told_by_its_second_line() {
+        assert!(begins(b"a,b\n1,2\n") && begins(b"a\tb\n-1e3\t2\n"));
+        assert!(!begins(b"a,b\nc,d\n") && !begins(b"a\n1\n") && !begins(b""));
+    }
+}

@@ -1,13 +1,13 @@
 //! `pantin pack`, `pantin unpack` and `pantin list`: many clips of one rig in one file.
 
-use crate::machine::playback::has_machine;
 use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
 use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
 use pantin_animator::machine::{Machine, Table};
-use pantin_convert::encode::bank::{self, CheckedRig, Named};
+use pantin_convert::bank::{self, CheckedRig, Named};
+use pantin_pictures::machine::playback::has_machine;
 use serde_json::json;
 use std::collections::HashMap;
 use std::io::Write;

@@ -8,7 +8,7 @@ use crate::memory;
 use crate::output::{self, Wanted, note, outln, refuse_foreign};
 use crate::words;
 use anyhow::{Context, Result, ensure};
-use pantin_convert::encode::bank::{self, Named};
+use pantin_convert::bank::{self, Named};
 use pantin_convert::import::list;
 use pantin_convert::{Prepared, agree_on_up, of_one_rig, shared_coding};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! Options of the encoder as words of the command line.
 
-use pantin_convert::fit::{descent::Level, parametrize};
+use pantin_convert::Level;
 
 /// Encoder effort: speed against size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -36,13 +36,13 @@ pub enum Rotations {
     Quaternion,
 }
 
-impl From<Rotations> for parametrize::Rotations {
-    fn from(rotations: Rotations) -> parametrize::Rotations {
+impl From<Rotations> for pantin_convert::Rotations {
+    fn from(rotations: Rotations) -> pantin_convert::Rotations {
         match rotations {
-            Rotations::ByCost => parametrize::Rotations::ByCost,
-            Rotations::Euler => parametrize::Rotations::Euler,
-            Rotations::Exponential => parametrize::Rotations::Exponential,
-            Rotations::Quaternion => parametrize::Rotations::Quaternion,
+            Rotations::ByCost => pantin_convert::Rotations::ByCost,
+            Rotations::Euler => pantin_convert::Rotations::Euler,
+            Rotations::Exponential => pantin_convert::Rotations::Exponential,
+            Rotations::Quaternion => pantin_convert::Rotations::Quaternion,
         }
     }
 }

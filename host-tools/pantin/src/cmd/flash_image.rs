@@ -1,10 +1,11 @@
 //! `pantin flash-image`.
 
 use super::default_output;
+use crate::board_clip;
 use crate::output::{check, note, report, write_whole};
-use crate::update::{self, image};
 use anyhow::{Context, Result, bail};
 use clap::builder::PossibleValuesParser;
+use pantin_line::update::image;
 use pantin_store::region::{REGIONS, Region};
 use serde_json::json;
 use std::path::PathBuf;
@@ -33,7 +34,7 @@ pub struct Arguments {
     #[arg(long, value_parser = PossibleValuesParser::new(REGIONS.map(|region| region.board)))]
     board: String,
     /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
-    #[arg(long, value_parser = update::board_name)]
+    #[arg(long, value_parser = board_clip::board_name)]
     name: Option<String>,
 }
 
@@ -54,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => default_output(&arguments.input, extension(region))?,
     };
     check(&[&arguments.input], &[output])?;
-    let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
+    let (clip, info) = board_clip::read(&arguments.input, arguments.name.as_deref())?;
     let place = || arguments.input.display().to_string();
     let bytes = match output.extension().and_then(|extension| extension.to_str()) {
         Some("bin") => image::binary(region, &clip, &info).with_context(place)?,

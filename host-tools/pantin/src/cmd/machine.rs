@@ -1,14 +1,15 @@
 //! `pantin machine`
 
 use super::bank::is_bank_name;
-use crate::machine::{Source, Text, graph, make};
 use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Wanted, note, refuse_foreign};
+use crate::words;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin::Bank;
 use pantin_animator::machine::SECTION;
-use pantin_convert::encode::bank;
+use pantin_convert::bank;
+use pantin_pictures::machine::{Source, Text, graph, make};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -82,14 +83,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let files = [(&arguments.output, whole.as_slice()), (&arguments.graph, picture.as_bytes())];
     let files: Vec<(&Path, &[u8])> = files.into_iter().filter_map(|(path, bytes)| Some((path.as_deref()?, bytes))).collect();
     output::write_together(&files)?;
-    made.warnings.iter().for_each(|warning| note!("{place}: warning: {warning}"));
+    let warnings: Vec<String> = made.warnings.iter().map(|warning| words::with_advice(&warning.text, warning.remedy)).collect();
+    warnings.iter().for_each(|warning| note!("{place}: warning: {warning}"));
     let transitions = source.any.len() + source.states.iter().map(|state| state.transitions.len()).sum::<usize>();
     output::report(json!({
         "states": source.states.len(),
         "transitions": transitions,
         "table_bytes": made.table.len(),
         "bytes": whole.len(),
-        "warnings": made.warnings,
+        "warnings": warnings,
     }));
     let count = format!("{} states, {transitions} transitions, a table of {} bytes", source.states.len(), made.table.len());
     match &arguments.output {

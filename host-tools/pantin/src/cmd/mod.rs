@@ -22,7 +22,6 @@ mod shard;
 pub mod steer;
 pub mod stream;
 mod stream_live;
-pub mod train;
 pub mod update;
 
 use crate::memory;

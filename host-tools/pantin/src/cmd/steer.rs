@@ -2,19 +2,19 @@
 
 use super::format_of;
 use super::render::{EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, Size, easy_scale, is_smooth};
-use crate::machine::playback::{Stage, has_machine, joints, play, session};
 use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, progress, refuse_foreign, report};
-use crate::render::animation::Animation;
-use crate::render::apng::{self, Apng};
-use crate::render::gif::{self, Gif};
-use crate::render::palette::Palette;
-use crate::render::sheet::{Layout, arrange};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin_animator::Character;
 use pantin_animator::machine::Table;
 use pantin_animator::session::Replay;
 use pantin_figure::{Track, View};
+use pantin_images::animation::Animation;
+use pantin_images::apng::{self, Apng};
+use pantin_images::gif::{self, Gif};
+use pantin_images::palette::Palette;
+use pantin_images::sheet::{Layout, arrange};
+use pantin_pictures::machine::playback::{Stage, has_machine, joints, play, session};
 use serde_json::json;
 use std::io::Write;
 use std::path::PathBuf;

@@ -3,11 +3,11 @@
 use crate::cmd::{Files, rig_is_needed};
 use crate::memory;
 use crate::output::{note, report};
-use crate::sender::{ByteCounts, Line, Sender, Source};
-use crate::stream::{address::Address, pace};
 use anyhow::{Context, Result, bail};
 use pantin::Clip;
 use pantin_convert::input;
+use pantin_line::sender::{ByteCounts, Line, Sender, Source};
+use pantin_line::stream::{address::Address, pace};
 use pantin_link::packet::TagKey;
 use serde_json::json;
 use std::hash::{BuildHasher, Hasher, RandomState};

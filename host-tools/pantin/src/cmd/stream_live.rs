@@ -3,11 +3,11 @@
 use super::stream::{Arguments, closing, sender};
 use crate::cmd::Files;
 use crate::output::note;
-use crate::sender::{Line, Live, LiveChannel, Source};
-use crate::stream::live::Feed;
-use crate::stream::pace;
 use anyhow::{Context, Result, ensure};
 use pantin_convert::import::one_line;
+use pantin_line::sender::{Line, Live, LiveChannel, Source};
+use pantin_line::stream::live::Feed;
+use pantin_line::stream::pace;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -38,7 +38,8 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let clip = files.open_alone().with_context(|| path.display().to_string())?;
     ensure!(clip.rig().joint_count() == 0, "{}: a clip with joints; --live sends faces alone", path.display());
     let form = clip.form();
-    let mut feed = Feed::open(from, stop)?;
+    let option = || format!("--live {from}");
+    let mut feed = Feed::open(from, stop).with_context(option)?;
     let names = feed.names();
     let places: Vec<Place> = clip
         .rig()
@@ -97,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let (mut values, mut left) = (vec![0.0; names.len()], Live::delay(&line));
     let (mut at, mut cut) = (start, 0_u32);
     while !stop.load(Ordering::Relaxed) && left > 0 {
-        match feed.next(at.saturating_duration_since(Instant::now()), &values, stop)? {
+        match feed.next(at.saturating_duration_since(Instant::now()), &values, stop).with_context(option)? {
             Some(next) => values = next,
             // What has been made is still to be shown.
             None => left -= 1,

@@ -1,9 +1,10 @@
 //! `pantin update`.
 
+use crate::board_clip;
 use crate::output::{note, progress, report};
-use crate::update::place::Place;
-use crate::update::{self, RetryPolicy};
 use anyhow::{Context, Result};
+use pantin_line::update::place::Place;
+use pantin_line::update::{self, RetryPolicy};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -27,7 +28,7 @@ pub struct Arguments {
     #[arg(long)]
     to: Place,
     /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
-    #[arg(long, value_parser = update::board_name)]
+    #[arg(long, value_parser = board_clip::board_name)]
     name: Option<String>,
     /// Seconds to wait for an answer before a message is sent again
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
@@ -43,7 +44,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let (clip, info) = update::read(&arguments.input, arguments.name.as_deref())?;
+    let (clip, info) = board_clip::read(&arguments.input, arguments.name.as_deref())?;
     let mut line = arguments.to.open()?;
     let bar = progress(info.length.into(), "{wide_bar} {bytes} of {total_bytes} {eta} left")?;
     let patience = RetryPolicy { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };

@@ -1,6 +1,7 @@
 //! Names that belong to another kind of file: `-o walk.bvh` for a clip would destroy a capture, or fool whoever opens it.
 
 use anyhow::{Result, bail};
+use pantin_convert::import::FORMATS;
 use std::path::Path;
 
 /// What a command writes.
@@ -28,17 +29,15 @@ pub enum Wanted {
     Other,
 }
 
+/// The hint for files that are read and not written.
+const READ_ALONE: &str = "Pantin reads these files and does not write them; `pantin expand` writes .bvh, .glb and .csv";
+
 /// Kinds of file, their extensions, and which command writes them.
 const KINDS: &[(Wanted, &[&str], &str)] = &[
     (Wanted::Clip, &["ptn"], "`pantin convert` writes clips"),
     (Wanted::Bank, &["ptb"], "`pantin pack` and `pantin convert FOLDER` write banks"),
     (Wanted::Rig, &["rig"], "`pantin convert --rig-out` writes rigs"),
     (Wanted::Motion, &["bvh", "glb", "csv", "h"], "to write a motion or source text use `pantin expand`"),
-    (
-        Wanted::Other,
-        &["gltf", "fbx", "amc", "asf", "wrl", "vrml", "x3dv", "proc", "fap", "tsv"],
-        "Pantin reads these files and does not write them; `pantin expand` writes .bvh, .glb and .csv",
-    ),
     (
         Wanted::Keys,
         &["keys"],
@@ -57,16 +56,24 @@ const KINDS: &[(Wanted, &[&str], &str)] = &[
     (Wanted::Names, &["txt"], "that is another kind of file"),
     (
         Wanted::Other,
-        &["md", "json", "html", "htm", "js", "py", "c", "cpp", "toml", "yaml", "yml", "xml", "log", "zip", "gz"],
+        &["md", "json", "html", "htm", "js", "py", "c", "cpp", "toml", "yaml", "yml", "xml", "log", "gz"],
         "that is another kind of file",
     ),
 ];
 
+/// The kind of file that an extension belongs to, and a hint; none where the extension is no kind's. What Pantin reads, it reads alone
+/// unless [`KINDS`] says more.
+fn kind(extension: &str) -> Option<(Wanted, &'static str)> {
+    let known = KINDS.iter().find(|(_, extensions, _)| extensions.contains(&extension)).map(|&(kind, _, hint)| (kind, hint));
+    let is_read =
+        || FORMATS.iter().any(|format| format.extensions.iter().chain(format.companion_extensions).any(|&its| its == extension));
+    known.or_else(|| is_read().then_some((Wanted::Other, READ_ALONE)))
+}
+
 /// Refuses an output whose extension belongs to another kind of file than the one `wanted`, and says which command writes that kind.
 pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let found = KINDS.iter().find(|(_, extensions, _)| extensions.contains(&extension.as_str()));
-    let Some((kind, _, hint)) = found.filter(|(kind, ..)| *kind != wanted) else { return Ok(()) };
+    let Some((kind, hint)) = kind(&extension).filter(|(kind, _)| *kind != wanted) else { return Ok(()) };
     let expected = match wanted {
         Wanted::Clip => "a clip's name ends in .ptn",
         Wanted::Bank => "a bank's name ends in .ptb",
@@ -79,7 +86,7 @@ pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
         Wanted::Names => "a list of names ends in .txt, or has no extension",
         Wanted::Other => "expected another name",
     };
-    if wanted == Wanted::Motion && *kind == Wanted::Source {
+    if wanted == Wanted::Motion && kind == Wanted::Source {
         return Ok(());
     }
     bail!("{}: {expected}; {hint}", path.display())

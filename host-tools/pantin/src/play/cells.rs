@@ -1,9 +1,9 @@
 //! What a terminal shows: cells of one letter in two colours, and pixels as such letters.
 
 use crate::output::is_hostile;
-use crate::render::palette::{Palette, Rgb};
-use crate::render::shades::{Mark, Shades};
 use pantin_figure::ink::BodyPart;
+use pantin_images::palette::{Palette, Rgb};
+use pantin_images::shades::{Mark, Shades};
 
 /// How pixels become letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

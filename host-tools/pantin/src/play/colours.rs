@@ -1,7 +1,7 @@
 //! The colours that a terminal has.
 
-use crate::render::palette::Rgb;
 use crossterm::style::Color;
+use pantin_images::palette::Rgb;
 
 /// How many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

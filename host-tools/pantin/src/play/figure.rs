@@ -4,12 +4,12 @@ use super::cells::{Dots, Grid};
 use super::picture::Show;
 use super::playback::Playback;
 use super::settings::Settings;
-use crate::face::cast::Cast;
-use crate::render::figure::MOST_PIXELS;
-use crate::render::shades::Shades;
 use anyhow::{Context, Result};
 use pantin::Player;
 use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
+use pantin_images::shades::Shades;
+use pantin_pictures::face::cast::Cast;
+use pantin_pictures::render::figure::MOST_PIXELS;
 
 /// A clip's body, its face, or both; their cameras are set up again when the terminal or the view changes.
 pub struct Figure<'a, 'm> {

@@ -3,10 +3,10 @@
 use super::cells::Grid;
 use super::picture::Show;
 use super::settings::Settings;
-use crate::render::palette::{FARTHEST, NEAREST};
 use anyhow::Result;
 use pantin_convert::motion::Motion;
 use pantin_figure::ink::BodyPart;
+use pantin_images::palette::{FARTHEST, NEAREST};
 
 /// Letters of a channel's name and of its value.
 const NAME: usize = 22;

@@ -3,8 +3,8 @@
 use super::cells::Dots;
 use super::colours::Colours;
 use super::keys::Action;
-use crate::render::palette::Palette;
 use pantin_figure::{Track, View};
+use pantin_images::palette::Palette;
 
 /// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
 const ROWS_FOR_HALF: usize = 48;

@@ -4,14 +4,14 @@ use super::cells::{Dots, Grid};
 use super::keys::Action;
 use super::session::Session;
 use super::settings::Settings;
-use crate::machine::playback::{Room, Stage};
 use crate::output::clean;
-use crate::render::figure::MOST_PIXELS;
 use anyhow::Result;
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use pantin_animator::Character;
 use pantin_animator::machine::{Cause, Table};
 use pantin_figure::View;
+use pantin_pictures::machine::playback::{Room, Stage};
+use pantin_pictures::render::figure::MOST_PIXELS;
 use std::time::{Duration, Instant};
 
 /// Time between pictures.

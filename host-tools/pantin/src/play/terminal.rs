@@ -156,7 +156,7 @@ impl Pen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::palette::Palette;
+    use pantin_images::palette::Palette;
 
     #[test]
     fn what_is_the_same_is_not_sent_again() {

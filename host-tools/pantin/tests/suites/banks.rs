@@ -354,7 +354,7 @@ fn unpacking_replaces_no_file_that_nobody_named() {
 
 /// A folder with a bank, `moves.ptb`, that holds one clip `clips` times, called c0, c1 and so on. Returns the clip too.
 fn folder_with_bank(clips: usize) -> (super::outputs::Folder, Vec<u8>) {
-    use pantin_convert::encode::bank::{Named, encode, rig_of};
+    use pantin_convert::bank::{Named, encode, rig_of};
     let folder = super::outputs::Folder::new();
     folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
     let clip = folder.get("a.ptn");

@@ -105,8 +105,8 @@ fn angles_that_begin_turns_away_are_kept() {
 
 #[test]
 fn rotations_are_coded_as_asked() {
+    use pantin_convert::Rotations;
     use pantin_convert::fit::descent::Plan;
-    use pantin_convert::fit::parametrize::Rotations;
     let mut motion = own("walk.keys");
     // Three angles a joint, which our motions do without.
     let joint =

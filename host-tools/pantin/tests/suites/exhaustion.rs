@@ -400,7 +400,7 @@ pub fn with_frames(clip: &[u8], frames: u32) -> Vec<u8> {
     assert!(payload[0] != 0 && u32::from(payload[1]) == opened.frames());
     let varint = (0..4).map(|digit| (frames >> (7 * digit)) as u8 & 0x7f | if digit < 3 { 0x80 } else { 0 });
     payload.splice(1..2, varint);
-    let rig = pantin_convert::encode::bank::rig_of(clip).unwrap();
+    let rig = pantin_convert::bank::rig_of(clip).unwrap();
     pantin_convert::encode::clip::assembled(clip[3], &rig, &payload, None)
 }
 
@@ -431,7 +431,7 @@ fn a_clip_that_lasts_for_ever_is_described_soon() {
 
 #[test]
 fn a_bank_of_many_clips_with_a_large_rig_is_listed_and_written_soon() {
-    use pantin_convert::encode::bank::{Named, encode, rig_of};
+    use pantin_convert::bank::{Named, encode, rig_of};
     let folder = Folder::new();
     let mut text = String::from("procedural 1\nfps 30\nframes 3\n");
     (0..300).for_each(|scalar| text += &format!("scalar s{scalar}{} scale 1\n", "x".repeat(200)));
@@ -441,8 +441,7 @@ fn a_bank_of_many_clips_with_a_large_rig_is_listed_and_written_soon() {
     let clip = folder.get("a.ptn");
     let rig: std::sync::Arc<[u8]> = rig_of(&clip).unwrap().into();
     assert!(rig.len() > 50_000);
-    let apart =
-        pantin_convert::encode::bank::without_rig(&clip, &pantin_convert::encode::bank::CheckedRig::new(&rig).unwrap()).unwrap();
+    let apart = pantin_convert::bank::without_rig(&clip, &pantin_convert::bank::CheckedRig::new(&rig).unwrap()).unwrap();
     let named = |number| Named { name: format!("clip {number}"), place: String::new(), clip: apart.clone(), rig: rig.clone() };
     let begun = std::time::Instant::now();
     folder.put("moves.ptb", encode(&(0..4000).map(named).collect::<Vec<_>>()).unwrap());

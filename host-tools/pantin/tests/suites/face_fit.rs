@@ -2,7 +2,7 @@
 
 use pantin_convert::import;
 use pantin_convert::motion::Motion;
-use pantin_tools::face::{Face, export, pose};
+use pantin_pictures::face::{Face, export, pose};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::process::Command;

@@ -1,10 +1,10 @@
 //! The geometric law of each action unit of the paper (docs/METHOD.md 3.1), and of the interpolations (3.3, 3.4).
 
 use pantin_face::shape::Interpolation;
-use pantin_tools::face::compare::{jaw, under};
-use pantin_tools::face::head::{Vector, dot, minus, plus};
-use pantin_tools::face::subject::{Subject, cosine_law};
-use pantin_tools::face::{Face, compare, exact, paper, pose};
+use pantin_pictures::face::compare::{jaw, under};
+use pantin_pictures::face::head::{Vector, dot, minus, plus};
+use pantin_pictures::face::subject::{Subject, cosine_law};
+use pantin_pictures::face::{Face, compare, exact, paper, pose};
 
 fn face() -> Face {
     Face::new().unwrap()
@@ -291,7 +291,7 @@ fn spherical_deltas_move_on_an_arc_about_their_centre() {
     // Without an arc it is refused.
     let mut bare = under.clone();
     bare.shapes.iter_mut().for_each(|shape| shape.arc = None);
-    let refused = pantin_tools::face::compact::encode(&bare).unwrap_err().to_string();
+    let refused = pantin_pictures::face::compact::encode(&bare).unwrap_err().to_string();
     assert!(refused.contains("centre"), "{refused}");
 }
 

@@ -4,10 +4,10 @@ use pantin_convert::import::Disk;
 use pantin_face::shape::Interpolation;
 use pantin_face::{FaceView, Model};
 use pantin_figure::Canvas;
-use pantin_tools::face::blueprint::Blueprint;
-use pantin_tools::face::head::Vector;
-use pantin_tools::face::points::{self, Points};
-use pantin_tools::face::{Face, compact, draw, error, exact, export, onmesh, outside, pose};
+use pantin_pictures::face::blueprint::Blueprint;
+use pantin_pictures::face::head::Vector;
+use pantin_pictures::face::points::{self, Points};
+use pantin_pictures::face::{Face, compact, draw, error, exact, export, onmesh, outside, pose};
 use std::path::{Path, PathBuf};
 
 fn meshes() -> PathBuf {

@@ -6,8 +6,8 @@ use pantin_face::{
     Binding, CARTOON_VERTICES, FaceRenderer, FaceView, Model, Morph, SMALL_HEIGHT, SMALL_VERTICES, Target, VERTICES, Weights,
 };
 use pantin_figure::Canvas;
-use pantin_tools::face::cast::{Cast, is_face};
-use pantin_tools::face::{Face, cartoon, error, exact, export, fit, onmesh, outside, points, pose, small};
+use pantin_pictures::face::cast::{Cast, is_face};
+use pantin_pictures::face::{Face, cartoon, error, exact, export, fit, onmesh, outside, points, pose, small};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ fn the_device_keeps_within_a_tenth_of_a_percent() {
 fn the_committed_cartoon_is_what_its_table_makes() {
     let face = Face::new().unwrap();
     let cartoon = cartoon::build(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
-    let bytes = pantin_tools::face::compact::encode(&cartoon).unwrap();
+    let bytes = pantin_pictures::face::compact::encode(&cartoon).unwrap();
     assert!(pantin_face::CARTOON == bytes, "write it again by `pantin face model --cartoon -o firmware/face/cartoon.model`");
     let error = error::greatest(&cartoon, &bytes).unwrap();
     assert!(error.part < 0.002, "{error:?}");
@@ -124,7 +124,7 @@ fn assert_same_lines(one: &[u8], other: &[u8], heights: &[u16]) {
 fn the_face_of_small_displays_is_the_same_with_fewer_vertices() {
     let face = Face::new().unwrap();
     let small = small::small(&face.blueprint);
-    let bytes = pantin_tools::face::compact::encode(&small).unwrap();
+    let bytes = pantin_pictures::face::compact::encode(&small).unwrap();
     assert!(pantin_face::SMALL == bytes, "write it again by `pantin face model --small -o firmware/face/small.model`");
     assert_eq!(small.vertices(), SMALL_VERTICES);
     assert!(face.blueprint.vertices() <= VERTICES && small.vertices() + 40 <= face.blueprint.vertices());
@@ -141,7 +141,7 @@ fn points_that_a_cartoon_does_not_draw_change_nothing() {
     let reduced = cartoon::build(&face.head, &face.blueprint, cartoon::TABLE).unwrap();
     assert!(reduced.vertices() < whole.vertices(), "{} vertices", reduced.vertices());
     assert_eq!(reduced.vertices(), CARTOON_VERTICES);
-    let [whole, reduced] = [whole, reduced].map(|face| pantin_tools::face::compact::encode(&face).unwrap());
+    let [whole, reduced] = [whole, reduced].map(|face| pantin_pictures::face::compact::encode(&face).unwrap());
     assert_same_lines(&whole, &reduced, &[32, 64, 160, 240]);
 }
 
@@ -279,7 +279,7 @@ fn meshes_from_outside_become_models() {
     for (name, vertices, targets) in [("gltf_khronos_morph-cube.glb", 24, 2), ("gltf_khronos_morph-stress.gltf", 1528, 8)] {
         let Some(path) = data(name) else { continue };
         let blueprint = outside::model(&path, &import::Disk::default()).unwrap();
-        let bytes = pantin_tools::face::compact::encode(&blueprint).unwrap();
+        let bytes = pantin_pictures::face::compact::encode(&blueprint).unwrap();
         let model = Model::new_checked(&bytes).unwrap();
         assert_eq!((model.vertices(), model.shape_count()), (vertices, targets));
         let error = error::greatest(&blueprint, &bytes).unwrap();

@@ -2,8 +2,8 @@
 
 use pantin_face::{FaceView, Model};
 use pantin_figure::Canvas;
-use pantin_tools::face::blueprint::Blueprint;
-use pantin_tools::face::{Face, cartoon, compact, draw, pose};
+use pantin_pictures::face::blueprint::Blueprint;
+use pantin_pictures::face::{Face, cartoon, compact, draw, pose};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -278,7 +278,7 @@ fn morph_targets_without_a_centre_are_never_spherical() {
     // Where the rule has a centre, the deltas really move on an arc.
     let mut spherical = face.blueprint.clone();
     spherical.choose("smile=spherical:60").unwrap();
-    let places = |face: &Blueprint| pantin_tools::face::exact::places(face, &pose::parse(face, "smile=0.5").unwrap());
+    let places = |face: &Blueprint| pantin_pictures::face::exact::places(face, &pose::parse(face, "smile=0.5").unwrap());
     let mut linear = face.blueprint.clone();
     linear.choose("smile=linear").unwrap();
     let corner = face.head.find("8.3").unwrap();

@@ -2,8 +2,8 @@
 
 use pantin::{ChannelState, Clip, Player};
 use pantin_face::{Binding, Model, Morph, VERTICES, Weights};
-use pantin_tools::face::speak::{self, Spoken};
-use pantin_tools::face::{Face, compact};
+use pantin_pictures::face::speak::{self, Spoken};
+use pantin_pictures::face::{Face, compact};
 use std::process::Command;
 
 /// Milliseconds by which the mouth may be early or late.

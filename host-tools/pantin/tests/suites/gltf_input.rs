@@ -7,7 +7,7 @@ use pantin_convert::fit::channelwise;
 use pantin_convert::import::{Disk, ImportOptions, InMemory};
 use pantin_convert::motion::{Keys, Kind, Motion};
 use pantin_convert::{channel_error, encode, expand, export, fk};
-use pantin_tools::face::outside;
+use pantin_pictures::face::outside;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 

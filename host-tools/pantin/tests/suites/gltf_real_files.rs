@@ -4,7 +4,7 @@ use crate::real::probe::probed;
 use crate::real::{SAME, distance, files};
 use gltf::animation::util::ReadOutputs;
 use gltf::animation::{Interpolation, Property};
-use pantin_convert::fit::descent::Level;
+use pantin_convert::Level;
 use pantin_convert::fit::fit;
 use pantin_convert::import::{self, Disk, ImportOptions, units};
 use pantin_convert::motion::Motion;

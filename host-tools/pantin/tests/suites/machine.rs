@@ -3,8 +3,8 @@
 use pantin::Bank;
 use pantin_animator::machine::{Cause, Machine, SECTION, Table};
 use pantin_animator::{Animator, Transition, Workspace};
-use pantin_convert::encode::bank::{self, CheckedRig, Named};
-use pantin_tools::machine::{Source, Text, graph, make};
+use pantin_convert::bank::{self, CheckedRig, Named};
+use pantin_pictures::machine::{Source, Text, graph, make};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
@@ -72,7 +72,10 @@ fn the_table_says_what_the_text_says() {
     let unused = format!("{SMALL}\n[[parameter]]\nname = \"wind\"\nrange = [0, 1]\n");
     let file = Text { name: "a.toml", text: &unused };
     let warnings = make(&Source::parse(&file).unwrap(), &file, &bank).unwrap().warnings;
-    assert!(warnings.len() == 1 && warnings[0].ends_with("parameter `wind`: no blend and no transition uses it"), "{warnings:?}");
+    assert!(
+        warnings.len() == 1 && warnings[0].text.ends_with("parameter `wind`: no blend and no transition uses it"),
+        "{warnings:?}"
+    );
     let table = Table::new(&made.table, bank.len()).unwrap();
     let names: Vec<&str> = (0..table.states() as u8).map(|state| table.state_name(state)).collect();
     assert_eq!(names, ["stop", "go", "run"]);

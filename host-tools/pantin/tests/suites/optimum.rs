@@ -1,10 +1,10 @@
 //! The search against brute force: on tubes of 12 frames, every segmentation into W and K segments with every number that matters.
 
 use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
+use pantin_convert::Level;
 use pantin_convert::encode::clip::{Start, position_grid, velocity_grid};
 use pantin_convert::encode::entropy::{Alphabet, Sink, cost};
 use pantin_convert::encode::segment::{Running, Segment};
-use pantin_convert::fit::descent::Level;
 use pantin_convert::fit::search::{Effort, Fitted, SEGMENT_BITS, Tube, search};
 use pantin_convert::pose_bound::PoseBound;
 

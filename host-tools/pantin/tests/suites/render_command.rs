@@ -2,9 +2,9 @@
 
 use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
 use pantin_figure::{View, surface};
+use pantin_pictures::render::figure::PlayerBuffers;
+use pantin_pictures::render::screen;
 use pantin_tools::cmd::Files;
-use pantin_tools::render::figure::PlayerBuffers;
-use pantin_tools::render::screen;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

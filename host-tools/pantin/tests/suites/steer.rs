@@ -3,7 +3,7 @@
 use pantin_animator::machine::Table;
 use pantin_animator::session::{Fault, Replay, Session};
 use pantin_figure::View;
-use pantin_tools::machine::playback::{Stage, joints, play};
+use pantin_pictures::machine::playback::{Stage, joints, play};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;

@@ -2,7 +2,7 @@
 
 use crate::told::load;
 use anyhow::Result;
-use pantin_convert::import::{ImportOptions, table};
+use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 
 fn read_with(name: &str, text: impl AsRef<[u8]>, fps: Option<f64>) -> Result<(Motion, Vec<String>)> {
@@ -173,12 +173,6 @@ fn what_is_wrong_is_named_with_its_place() {
     assert!(strange.contains(".csv:1: column 2: ") && strange.contains("is not UTF-8"), "{strange}");
     let strange = format!("{:#}", read_with("strange-value", b"a,b\n1,\xff\n", fps).unwrap_err());
     assert!(strange.contains(".csv:2: column 2 (b): expected a number"), "{strange}");
-}
-
-#[test]
-fn a_table_is_told_by_its_second_line() {
-    assert!(table::begins(b"a,b\n1,2\n") && table::begins(b"a\tb\n-1e3\t2\n"));
-    assert!(!table::begins(b"a,b\nc,d\n") && !table::begins(b"a\n1\n") && !table::begins(b""));
 }
 
 #[test]

@@ -7,8 +7,8 @@ use anyhow::{Context, Result};
 use harness::lossy::{Damage, Lossy, last_frame, play};
 use harness::paths;
 use pantin::Clip;
+use pantin_line::sender::{ByteCounts, Line, Sender, Source};
 use pantin_link::{Link, QUEUE_PACKETS};
-use pantin_tools::sender::{ByteCounts, Line, Sender, Source};
 
 use super::link_board::{Board, Seen};
 use super::{Goal, Setting, table};
@@ -131,7 +131,7 @@ impl Run {
         let mut lossy = Lossy::new(seed);
         let (mut last, mut exact_at) = (None::<u16>, None::<u16>);
         let harmed = std::cell::Cell::new(None::<u16>);
-        let damaged = |timed: &pantin_tools::sender::TimedPacket| {
+        let damaged = |timed: &pantin_line::sender::TimedPacket| {
             // Both ends know what the channels are, so STARTS packets are rare.
             match last_frame(&timed.bytes, line).filter(|_| harms(timed.at, seed)) {
                 None => timed.bytes.clone(),
@@ -171,7 +171,7 @@ impl Run {
         let mut lossy = Lossy::new(99);
         let (mut frames, mut exact, mut moving, mut heads, mut wrong) = (0.0, 0.0, 0.0, 0, 0);
         let mut before = (None, vec![]);
-        let damaged = |timed: &pantin_tools::sender::TimedPacket| lossy.pass(&timed.bytes, self.damage).0;
+        let damaged = |timed: &pantin_line::sender::TimedPacket| lossy.pass(&timed.bytes, self.damage).0;
         play(Sender::new(1).clip(source, line, Some(1)), source, line, damaged, |link| {
             wrong += u32::from(!agrees(link, played));
             heads += u32::from(before.0.is_some() && before.0 != link.head().copied());

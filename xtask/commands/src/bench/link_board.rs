@@ -8,7 +8,7 @@ use harness::lossy::{Damage, Lossy, arrivals, last_frame};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::simulator;
 use harness::sync::Session;
-use pantin_tools::sender::{BEGIN, Line, Sender, Source};
+use pantin_line::sender::{BEGIN, Line, Sender, Source};
 
 /// What was seen in and after stretches of damage.
 #[derive(Default)]

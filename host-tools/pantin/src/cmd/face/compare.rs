@@ -1,11 +1,11 @@
 //! `pantin face compare`
 
 use super::face_picture;
-use crate::face::compare::{Compared, Jaw, METHODS, TABLES, jaw, pictures, write};
-use crate::face::subject::Subject;
-use crate::face::{Face, paper};
 use crate::output::{check, is_json, outln, report, write_whole};
 use anyhow::{Context, Result};
+use pantin_pictures::face::compare::{Compared, Jaw, METHODS, TABLES, jaw, pictures, write};
+use pantin_pictures::face::subject::Subject;
+use pantin_pictures::face::{Face, paper};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -46,7 +46,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             let method = METHODS[cell.method].1;
             json!({"weight": cell.weight, "method": method, "mm": cell.deviation.mm, "pixels": cell.deviation.pixels})
         };
-        let row = |(table, action, cells): &(&crate::face::compare::Table, &crate::face::compare::Action, Vec<Compared>)| json!({"table": table.title, "action": action.label, "from_linear": cells.iter().map(cell).collect::<Vec<_>>()});
+        let row = |(table, action, cells): &(
+            &pantin_pictures::face::compare::Table,
+            &pantin_pictures::face::compare::Action,
+            Vec<Compared>,
+        )| json!({"table": table.title, "action": action.label, "from_linear": cells.iter().map(cell).collect::<Vec<_>>()});
         report(json!({
             "mouth_degrees": angle,
             "jaw_lengths": jaws.iter().map(jaw).collect::<Vec<_>>(),

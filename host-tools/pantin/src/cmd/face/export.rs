@@ -1,13 +1,13 @@
 //! `pantin face export`
 
 use crate::cmd::render::Size;
-use crate::face::draw::picture;
-use crate::face::{Face, export, pose};
 use crate::output::{check, write_whole};
-use crate::render::figure::MOST_PIXELS;
-use crate::render::image::Image;
 use anyhow::{Result, bail, ensure};
 use pantin_face::FaceView;
+use pantin_images::image::Image;
+use pantin_pictures::face::draw::picture;
+use pantin_pictures::face::{Face, export, pose};
+use pantin_pictures::render::figure::MOST_PIXELS;
 use std::path::PathBuf;
 
 /// Write the face: its mesh as .glb with one morph target per unit or as .obj, or a picture of it as .png.

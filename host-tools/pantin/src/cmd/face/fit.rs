@@ -2,9 +2,6 @@
 
 use crate::cmd::Files;
 use crate::cmd::render::Moment;
-use crate::face::fit::{Fit, LEAST};
-use crate::face::head::{Vector, plus};
-use crate::face::{Face, exact, fit, outside, points, pose};
 use crate::memory;
 use crate::output::{Wanted, check, is_json, outln, progress, refuse_foreign, report, write_whole};
 use anyhow::{Context, Result, bail, ensure};
@@ -13,6 +10,9 @@ use pantin_convert::expand::expand_within;
 use pantin_convert::import;
 use pantin_convert::motion::Motion;
 use pantin_face::{Binding, Morph, VERTICES, Weights};
+use pantin_pictures::face::fit::{Fit, LEAST};
+use pantin_pictures::face::head::{Vector, plus};
+use pantin_pictures::face::{Face, exact, fit, outside, points, pose};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};

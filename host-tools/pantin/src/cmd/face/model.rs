@@ -2,12 +2,12 @@
 
 use super::face_picture;
 use crate::cmd::check_read;
-use crate::face::blueprint::Blueprint;
-use crate::face::{Face, cartoon, compact, error, onmesh, outside, points, sheet, small};
 use crate::memory;
 use crate::output::{Wanted, check, note, refuse_foreign, report, write_together};
 use anyhow::{Context, Result};
 use pantin_convert::import::{self, Files};
+use pantin_pictures::face::blueprint::Blueprint;
+use pantin_pictures::face::{Face, cartoon, compact, error, onmesh, outside, points, sheet, small};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
 //! `pantin face sheet`
 
 use super::face_picture;
-use crate::face::{Face, sheet};
 use crate::output::{check, write_whole};
 use anyhow::Result;
+use pantin_pictures::face::{Face, sheet};
 use std::path::PathBuf;
 
 /// Draw every unit and emotion of the face, labelled.

@@ -1,9 +1,9 @@
 //! `pantin face speak`
 
-use crate::face::speak;
 use crate::memory;
 use crate::output::{Wanted, check, note, refuse_foreign, write_whole};
 use anyhow::{Context, Result, ensure};
+use pantin_pictures::face::speak;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

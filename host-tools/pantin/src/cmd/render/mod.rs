@@ -4,13 +4,8 @@ mod options;
 mod output;
 
 use super::{Files, check_read, default_output, format_of, up_axis};
-use crate::face::cast::drives;
-use crate::face::{Face, cartoon, compact};
 use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
-use crate::render::chart;
-use crate::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
-use crate::render::palette::Palette;
 use anyhow::{Context, Result, bail, ensure};
 pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
@@ -18,6 +13,11 @@ use pantin::Up;
 use pantin_convert::expand::expand_within;
 use pantin_face::Model;
 use pantin_figure::{Track, View};
+use pantin_images::palette::Palette;
+use pantin_pictures::face::cast::drives;
+use pantin_pictures::face::{Face, cartoon, compact};
+use pantin_pictures::render::chart;
+use pantin_pictures::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

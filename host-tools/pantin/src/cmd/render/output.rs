@@ -2,14 +2,14 @@
 
 use super::{Arguments, EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, easy_scale};
 use crate::output::{note, progress};
-use crate::render::animation::{Animation, Timing};
-use crate::render::apng::{self, Apng};
-use crate::render::figure::{Figure, LineStyle};
-use crate::render::gif::{self, Gif};
-use crate::render::image::Image;
-use crate::render::sheet::{Layout, arrange};
-use crate::render::svg;
 use anyhow::{Result, ensure};
+use pantin_images::animation::{Animation, Timing};
+use pantin_images::apng::{self, Apng};
+use pantin_images::gif::{self, Gif};
+use pantin_images::image::Image;
+use pantin_images::sheet::{Layout, arrange};
+use pantin_pictures::render::figure::{Figure, LineStyle};
+use pantin_pictures::render::svg;
 use std::io::Write;
 
 /// Pictures of a contact sheet of one view, and how many of them are in a row.

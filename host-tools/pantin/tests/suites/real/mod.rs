@@ -7,7 +7,7 @@ pub mod probe;
 pub use files::files;
 pub use places::{SAME, distance};
 
-use pantin_convert::fit::descent::Level;
+use pantin_convert::Level;
 use pantin_convert::fit::fit;
 use pantin_convert::import::units;
 use pantin_convert::motion::Motion;

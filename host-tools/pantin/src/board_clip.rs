@@ -1,0 +1,50 @@
+//! The clip that a board is to store, and its name there.
+
+use crate::memory;
+use crate::open::no_clip;
+use crate::output::{clean, is_hostile, note};
+use anyhow::{Context, Result, anyhow};
+use pantin::codec::layout::BANK_MAGIC;
+use pantin::{Bank, Clip, OpenError};
+use pantin_pictures::machine::playback::has_machine;
+use pantin_store::ClipInfo;
+use pantin_store::header::NAME_BYTES;
+use std::path::Path;
+
+/// Reads a name for a clip on a board: what fits its header, and what a screen can show.
+pub fn board_name(text: &str) -> Result<String, String> {
+    match text {
+        "" => Err(format!("expected 1 to {NAME_BYTES} bytes")),
+        _ if text.len() > NAME_BYTES => Err(format!("{} bytes, and a board keeps at most {NAME_BYTES}", text.len())),
+        _ if text.chars().any(is_hostile) => Err("expected no control characters".into()),
+        _ => Ok(text.into()),
+    }
+}
+
+/// Reads a clip for a board, one that holds its rig, or a bank. It is called `name`, or else as its file, as far as a board keeps that.
+pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
+    let place = || path.display().to_string();
+    let clip = memory::read(path)?;
+    if clip.starts_with(&BANK_MAGIC) {
+        let bank = Bank::new_checked(&clip).with_context(place)?;
+        for entry in bank.entries() {
+            bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
+        }
+        note!("{}: a bank of {} clips, for firmware that is built with feature `bank`", place(), bank.len());
+        if has_machine(&clip) {
+            note!("warning: {}: the boards' firmware plays the clips one after the other, not the state machine", place());
+        }
+    } else {
+        Clip::new_checked(&clip).map_err(|error| match error {
+            OpenError::WrongRig => anyhow!("{}: a clip without its rig (--rig-out), which a board cannot open", place()),
+            error => no_clip(path, &clip, error).context(format!("{}: a board cannot open it", place())),
+        })?;
+    }
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let shown: String = stem.chars().map(|c| if is_hostile(c) { '_' } else { c }).collect();
+    let info = ClipInfo::of(&clip, name.unwrap_or(&shown)).with_context(|| format!("{}: too long", place()))?;
+    if name.is_none() && info.name.as_str() != stem {
+        note!("{}: the board shows it as `{}`; --name chooses another name", place(), info.name.as_str());
+    }
+    Ok((clip, info))
+}

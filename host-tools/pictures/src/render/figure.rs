@@ -1,0 +1,107 @@
+//! A clip's figure, or its face, before one camera or several.
+
+use super::scene::Scene;
+use super::smooth;
+use crate::face::cast::Cast;
+use anyhow::{Context, Result};
+use pantin::{ChannelState, Clip, Player};
+use pantin_face::Model;
+use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
+use pantin_images::image::Image;
+use pantin_images::palette::Palette;
+use pantin_images::shades::Shades;
+
+/// Most columns and rows of a picture made of a display's pixels: the figure's places have 16 bits, four of them below the pixel.
+pub const MOST_PIXELS: usize = 1024;
+
+/// How lines are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineStyle {
+    /// One pixel wide, as the firmware draws on a display.
+    Pixels,
+    /// Smooth, thicker the nearer.
+    Smooth,
+}
+
+/// The memory of a player.
+pub struct PlayerBuffers {
+    states: Vec<ChannelState>,
+    pose: Vec<i32>,
+}
+
+impl PlayerBuffers {
+    /// Allocates what `clip` needs.
+    pub fn of(clip: &Clip) -> PlayerBuffers {
+        PlayerBuffers { states: vec![ChannelState::default(); clip.moving()], pose: vec![0; clip.rig().channels()] }
+    }
+
+    /// A player at frame 0.
+    pub fn player<'a, 'm>(&'m mut self, clip: Clip<'a>) -> Result<Player<'a, 'm>> {
+        Ok(Player::new(clip, &mut self.states, &mut self.pose)?)
+    }
+}
+
+/// Draws the figure of one frame after another, each view by its own camera.
+pub struct Figure<'a, 'm> {
+    player: Player<'a, 'm>,
+    /// One for each view; none if the clip has no body.
+    bodies: Vec<FigureRenderer<RIG_JOINTS>>,
+    face: Option<Box<Cast<'a>>>,
+    size: [usize; 2],
+    factor: usize,
+}
+
+impl<'a, 'm> Figure<'a, 'm> {
+    /// Sets up the cameras for pictures of `size` (columns, rows). `model` is the face that the clip drives.
+    pub fn new(mut player: Player<'a, 'm>, size: [usize; 2], views: &[View], model: Model<'a>) -> Result<Figure<'a, 'm>> {
+        let factor = size[0].max(size[1]).div_ceil(MOST_PIXELS);
+        let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
+        let canvas = Canvas { width, height };
+        let has_body = player.clip().rig().joint_count() > 0;
+        // From where a body is seen by default, its face looks straight ahead, as in the firmware.
+        let ahead = |view: &View| (view.orbit, view.tilt) == (View::default().orbit, View::default().tilt);
+        let face_view = |view: &View| if has_body && ahead(view) { View { orbit: 0, tilt: 0, ..*view } } else { *view };
+        let face_views: Vec<View> = views.iter().map(face_view).collect();
+        let face = Cast::of_model(model, player.clip(), canvas, &face_views)?.map(Box::new);
+        let area = if face.is_some() { canvas.with_face().body } else { canvas };
+        let renderer = |view: &View| FigureRenderer::of_clip(&mut player, area, *view).context("this figure cannot be drawn");
+        let bodies = if has_body { views.iter().map(renderer).collect::<Result<_>>()? } else { Vec::new() };
+        Ok(Figure { player, bodies, face, size, factor })
+    }
+
+    /// Goes to a frame.
+    pub fn seek(&mut self, frame: u32) {
+        self.player.seek(frame);
+    }
+
+    /// The frame as a view's camera sees it.
+    pub fn scene(&mut self, view: usize) -> Scene {
+        let (factor, pose) = (self.factor as f32, self.player.pose());
+        let mut scene = self.bodies.get_mut(view).map_or_else(Scene::default, |body| Scene::of(body, pose, factor));
+        if let Some(cast) = &mut self.face {
+            // The canvas is rounded up to whole pixels of the display.
+            let [width, height] = self.size.map(|pixels| pixels as f32);
+            let side = (f32::from(cast.side()) * factor).min(width).min(height);
+            scene.add_face(&cast.lines(pose.values, view), factor, side);
+        }
+        scene
+    }
+
+    /// The same as a picture. Pixels are at most [`MOST_PIXELS`] a side.
+    pub fn image(&mut self, view: usize, look: LineStyle, palette: &Palette) -> Image {
+        let [width, height] = self.size;
+        match look {
+            LineStyle::Smooth => smooth::draw(&self.scene(view), width, height, palette),
+            LineStyle::Pixels => {
+                let mut shades = Shades::new(width, height);
+                if let Some(body) = self.bodies.get_mut(view) {
+                    shades.draw(body, self.player.pose(), true, palette.is_mono());
+                }
+                if let Some(cast) = &mut self.face {
+                    shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
+                }
+                shades.image(palette)
+            }
+        }
+    }
+}
