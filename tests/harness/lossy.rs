@@ -1,6 +1,6 @@
 //! A line that loses packets and flips bits, the same way each time; and a receiver at its end, in clip time.
 
-use pantin_line::sender::{Line, Source, TimedPacket};
+use pantin_line::sender::{LineSettings, Source, TimedPacket};
 use pantin_link::packet::{Receiver, kind};
 use pantin_link::{Channel, Link, MAX_PACKET, Messages, QUEUE_PACKETS};
 
@@ -55,7 +55,7 @@ impl Lossy {
 }
 
 /// The last frame that a packet of motion tells of.
-pub fn last_frame(bytes: &[u8], line: Line) -> Option<u16> {
+pub fn last_frame(bytes: &[u8], line: LineSettings) -> Option<u16> {
     let mut receiver = if line.parity { Receiver::<MAX_PACKET>::with_parity() } else { Receiver::new() };
     let packets = bytes.iter().filter_map(|&byte| {
         let packet = receiver.push(byte).filter(|packet| packet.kind == kind::MOTION)?;
@@ -71,7 +71,7 @@ pub fn last_frame(bytes: &[u8], line: Line) -> Option<u16> {
 pub fn arrivals(
     timed_packets: impl Iterator<Item = TimedPacket>,
     source: &Source,
-    line: Line,
+    line: LineSettings,
     mut pass: impl FnMut(usize, TimedPacket) -> Vec<u8>,
 ) -> Vec<Vec<u8>> {
     let mut frames = vec![];
@@ -88,7 +88,7 @@ pub fn arrivals(
 pub fn play(
     timed_packets: impl Iterator<Item = TimedPacket>,
     source: &Source,
-    line: Line,
+    line: LineSettings,
     mut damage: impl FnMut(&TimedPacket) -> Vec<u8>,
     mut each: impl FnMut(&Link<QUEUE_PACKETS>),
 ) {

@@ -2,7 +2,7 @@
 //! drift. Every frame is checked.
 
 use anyhow::{Result, ensure};
-use pantin_line::sender::{Line, Schedule, Sender, Source, TimedPacket};
+use pantin_line::sender::{LineSettings, Schedule, Sender, Source, TimedPacket};
 use pantin_link::packet::Receiver;
 use pantin_link::{Channel, Link, MAX_PACKET, QUEUE_PACKETS};
 
@@ -71,7 +71,7 @@ struct Sending<'s> {
 
 impl Sending<'_> {
     /// The next packet, and when it has arrived.
-    fn arrival(&mut self, line: Line) -> Option<f64> {
+    fn arrival(&mut self, line: LineSettings) -> Option<f64> {
         let next = self.next.as_ref()?;
         let there = next.at + next.bytes.len() as f64 / line.rate;
         Some(there + self.offset + drift(there + self.offset))
@@ -85,7 +85,7 @@ fn drift(time: f64) -> f64 {
 }
 
 /// Plays a clip around and around for this many hours. `each_minute` receives what was seen so far.
-pub fn run(source: &Source, line: Line, hours: f64, seed: u64, mut each_minute: impl FnMut(&Seen)) -> Result<Seen> {
+pub fn run(source: &Source, line: LineSettings, hours: f64, seed: u64, mut each_minute: impl FnMut(&Seen)) -> Result<Seen> {
     let states = source.expected_states(line.cycle);
     ensure!(!states.is_empty(), "the clip has no channel that moves");
     let mut noise = Lossy::new(seed);
@@ -168,7 +168,7 @@ pub fn run(source: &Source, line: Line, hours: f64, seed: u64, mut each_minute: 
 }
 
 /// A sender that starts now.
-fn begin<'s>(source: &'s Source, line: Line, session: &mut u16, now: f64) -> Sending<'s> {
+fn begin<'s>(source: &'s Source, line: LineSettings, session: &mut u16, now: f64) -> Sending<'s> {
     *session = session.wrapping_add(1);
     let mut schedule = Sender::new(*session).clip(source, line, None);
     let next = schedule.next();

@@ -14,7 +14,7 @@ use harness::lossy::{Damage, Lossy, arrivals};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::{clips, defmt_log, paths, setup, simulator, sync};
 use pantin::Clip;
-use pantin_line::sender::{Line, Sender, Source};
+use pantin_line::sender::{LineSettings, Sender, Source};
 use pantin_link::packet::{Receiver, TagKey};
 use pantin_link::{Channel, Link, MAX_PACKET, QUEUE_PACKETS};
 use tempfile::TempDir;
@@ -36,13 +36,13 @@ fn source() -> Source {
 }
 
 /// What arrives in each frame's time of two rounds over a line of 38,400 baud that is damaged between two of them.
-fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
+fn line(source: &Source, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, LineSettings) {
     keyed_line(source, None, damage, from, to)
 }
 
 /// The same, with tags of a key.
-fn keyed_line(source: &Source, key: Option<TagKey>, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, Line) {
-    let wanted = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false, key };
+fn keyed_line(source: &Source, key: Option<TagKey>, damage: Damage, from: usize, to: usize) -> (Vec<Vec<u8>>, LineSettings) {
+    let wanted = LineSettings { rate: 3840.0, ahead: 48, share: 1.0, cycle: 12, parity: false, key };
     let fit = wanted.fitted(source).expect("the line carries it");
     let mut lossy = Lossy::new(5);
     let frames = arrivals(Sender::new(3).clip(source, fit, Some(2)), source, fit, |frame, timed| {

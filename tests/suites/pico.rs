@@ -15,7 +15,7 @@ use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::TextScreen;
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Framebuffer, MonoPages};
-use pantin_line::sender::{Line, Sender, Source};
+use pantin_line::sender::{LineSettings, Sender, Source};
 use tempfile::TempDir;
 
 /// Our walk, as converted now, and a greeting with body and face.
@@ -298,7 +298,7 @@ fn says(outcome: &Outcome, text: &str) {
     }
 }
 
-/// Line and column of a text in a file of the firmware, from 1.
+/// LineSettings and column of a text in a file of the firmware, from 1.
 fn place(file: &str, text: &str) -> (usize, usize) {
     let source = std::fs::read_to_string(paths::firmware().join(file)).unwrap();
     (1..).zip(source.lines()).find_map(|(number, line)| Some((number, line.find(text)? + 1))).unwrap()
@@ -405,7 +405,7 @@ fn poses_of_a_stream_come_over_the_usb_port() {
     let (_folder, image) = program("pico", "face,usb,link", std::slice::from_ref(clip));
     let bytes = fs::read(clip).unwrap();
     let source = Source::new(&Clip::new_checked(&bytes).unwrap()).unwrap();
-    let wanted = Line { rate: 11520.0, ahead: 12, share: 1.0, cycle: 12, parity: false, key: None };
+    let wanted = LineSettings { rate: 11520.0, ahead: 12, share: 1.0, cycle: 12, parity: false, key: None };
     let fit = wanted.fitted(&source).expect("the line carries it");
     let mut frames = arrivals(Sender::new(3).clip(&source, fit, Some(1)), &source, fit, |_, timed| timed.bytes);
     frames.truncate(60);

@@ -215,12 +215,12 @@ pub struct Channel {
     /// The kind as the clip codes it: not the rig's where Euler angles are coded as an exponential map.
     pub kind: Kind,
     /// What the channel does over the clip.
-    pub track: Track,
+    pub status: Status,
 }
 
 /// What a channel does over a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Track {
+pub enum Status {
     /// It keeps its value.
     Constant,
     /// It has segments of its own.
@@ -237,12 +237,12 @@ pub fn channels(clip: &Clip<'_>) -> Result<Vec<Channel>> {
     let player = Player::new(*clip, &mut states, &mut pose)?;
     let kinds = (0..rig.joint_count()).flat_map(|joint| clip.kinds(joint));
     let kinds = kinds.chain(rig.scalars().map(|_| Kind::Scalar));
-    let mut channels: Vec<Channel> = kinds.map(|kind| Channel { kind, track: Track::Constant }).collect();
+    let mut channels: Vec<Channel> = kinds.map(|kind| Channel { kind, status: Status::Constant }).collect();
     let states = player.states();
     for (index, state) in states.iter().enumerate() {
         let leader = state.follows().and_then(|back| states.get(index.checked_sub(back)?));
         if let Some(channel) = channels.get_mut(state.slot()) {
-            channel.track = leader.map_or(Track::Moving, |leader| Track::Follows(leader.slot()));
+            channel.status = leader.map_or(Status::Moving, |leader| Status::Follows(leader.slot()));
         }
     }
     Ok(channels)

@@ -10,7 +10,7 @@ const SP: u32 = 2;
 /// What those at an address do.
 pub fn effects(code: &[u8], start: u32) -> Result<Vec<Effect>> {
     let half = |at: usize| code.get(at..at + 2).map(|bytes| u32::from(bytes[0]) | u32::from(bytes[1]) << 8);
-    let mut reader = Reader { known: [None; 32], effects: vec![] };
+    let mut reader = Registers { known: [None; 32], effects: vec![] };
     let mut at = 0;
     while let Some(low) = half(at) {
         let address = start + at as u32;
@@ -26,13 +26,13 @@ pub fn effects(code: &[u8], start: u32) -> Result<Vec<Effect>> {
     Ok(reader.effects)
 }
 
-struct Reader {
+struct Registers {
     /// What LUI, AUIPC and additions to them have left in the registers.
     known: [Option<u32>; 32],
     effects: Vec<Effect>,
 }
 
-impl Reader {
+impl Registers {
     fn narrow(&mut self, code: u32, address: u32) -> Result<()> {
         let (destination, source) = (code >> 7 & 31, code >> 2 & 31);
         let immediate = signed((code >> 12 & 1) << 5 | code >> 2 & 31, 6);

@@ -2,7 +2,7 @@
 
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use pantin::{Clip, Form};
-use pantin_line::sender::{Line, Sender, Source};
+use pantin_line::sender::{LineSettings, Sender, Source};
 use pantin_link::packet::{self, Receiver};
 use pantin_link::{Channel, Head, Link, MAX_PACKET, Messages, QUEUE_PACKETS, read_starts};
 use pantin_store::header::Header;
@@ -31,7 +31,7 @@ pub fn streams() -> Vec<Vec<u8>> {
         return vec![];
     };
     let packets = |parity| {
-        let line = Line { rate: 3840.0, ahead: 48, share: 1.0, cycle: 60, parity, key: None };
+        let line = LineSettings { rate: 3840.0, ahead: 48, share: 1.0, cycle: 60, parity, key: None };
         Sender::new(3).clip(&source, line, Some(1)).flat_map(|timed| timed.bytes).take(LINE_BYTES / 4).collect()
     };
     [false, true].map(packets).to_vec()

@@ -17,18 +17,18 @@ pub struct Buffers {
     offsets: [Offset; CHANNELS],
     pose: [i32; CHANNELS],
     groups: [MaybeUninit<Group>; CHANNELS],
-    second: Track,
+    second: TrackMemory,
     layers: [Layer; LAYERS],
     visited: Layer,
 }
 
-struct Track {
+struct TrackMemory {
     states: [ChannelState; CHANNELS],
     values: [i32; CHANNELS],
 }
 
 struct Layer {
-    track: Track,
+    track: TrackMemory,
     sampled: [i32; CHANNELS],
     words: [u32; CHANNELS / 32],
 }
@@ -62,7 +62,7 @@ impl Steered {
         let mut character = Character::new(bank, Memory { states, values, offsets, pose, groups })?;
         character.lend_second(&mut second.states, &mut second.values)?;
         for Layer { track, sampled, words } in layers.iter_mut().take(character.table().layers()) {
-            let Track { states, values } = track;
+            let TrackMemory { states, values } = track;
             character.lend_layer(LayerMemory { states, values, sampled, words })?;
         }
         Ok(Steered { character, bank, visited, first: first_clip(bank)? })

@@ -11,7 +11,7 @@ use clap::Args;
 use harness::differential::{self, Decoder};
 use harness::{paths, soak};
 use pantin::Clip;
-use pantin_line::sender::{Line, Source};
+use pantin_line::sender::{LineSettings, Source};
 use xtask::setup;
 use xtask::steps::say;
 
@@ -89,7 +89,8 @@ impl Soak {
         let path = paths::root().join(&self.clip);
         let bytes = fs::read(&path).with_context(|| path.display().to_string())?;
         let source = Source::new(&Clip::new_checked(&bytes)?)?;
-        let wanted = Line { rate: f64::from(self.baud) / 10.0, ahead: 48, share: 1.0, cycle: 12, parity: self.fec, key: None };
+        let wanted =
+            LineSettings { rate: f64::from(self.baud) / 10.0, ahead: 48, share: 1.0, cycle: 12, parity: self.fec, key: None };
         let line = wanted.fitted(&source).with_context(|| format!("{} baud do not carry the clip", self.baud))?;
         let (start, total) = (Instant::now(), (60.0 * self.hours) as usize);
         let mut minutes = 0;

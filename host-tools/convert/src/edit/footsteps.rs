@@ -47,7 +47,7 @@ pub fn footsteps(motion: &Motion, memory: Memory) -> Result<Vec<Event>> {
         .map(|foot| (foot, LEFT_FOOT_DOWN))
         .chain(right.into_iter().map(|foot| (foot, RIGHT_FOOT_DOWN)))
         .collect();
-    let tracks: Vec<Vec<Track>> = feet.iter().map(|&(foot, _)| tracks(motion, &poses, foot)).collect();
+    let tracks: Vec<Vec<FootPoint>> = feet.iter().map(|&(foot, _)| tracks(motion, &poses, foot)).collect();
     let ground = ground(&tracks);
     for ((_, name), points) in feet.into_iter().zip(&tracks) {
         let starts = starts(motion, &down(motion, points, ground));
@@ -58,7 +58,7 @@ pub fn footsteps(motion: &Motion, memory: Memory) -> Result<Vec<Event>> {
 }
 
 /// A point of a foot.
-struct Track {
+struct FootPoint {
     /// Above the lowest place of the clip, in cm.
     height: Vec<f64>,
     /// In cm a second.
@@ -70,7 +70,7 @@ struct Track {
 }
 
 /// The foot's joint and all that hangs on it.
-fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<Track> {
+fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<FootPoint> {
     let joints = &motion.rig.joints;
     let mut of_foot = vec![false; joints.len()];
     for (index, joint) in joints.iter().enumerate() {
@@ -90,7 +90,7 @@ fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<Track> {
             let seconds = (after - before).max(1) as f64 * motion.frame_time;
             std::array::from_fn(|axis| (poses[after][point][axis] - poses[before][point][axis]) / seconds)
         };
-        Track {
+        FootPoint {
             height: heights.iter().map(|height| height - lowest).collect(),
             velocity: (0..poses.len()).map(velocity).collect(),
             low: LOW * leg,
@@ -101,9 +101,9 @@ fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<Track> {
 }
 
 /// The velocity of what is near the ground, axis by axis in the median.
-fn ground(feet: &[Vec<Track>]) -> [f64; 3] {
+fn ground(feet: &[Vec<FootPoint>]) -> [f64; 3] {
     std::array::from_fn(|axis| {
-        let near = |track: &'_ Track| -> Vec<f64> {
+        let near = |track: &'_ FootPoint| -> Vec<f64> {
             let frames = track.height.iter().zip(&track.velocity);
             frames.filter(|(height, _)| **height < track.low / 2.0).map(|(_, velocity)| velocity[axis]).collect()
         };
@@ -114,8 +114,8 @@ fn ground(feet: &[Vec<Track>]) -> [f64; 3] {
 }
 
 /// Whether the foot is down, for each frame.
-fn down(motion: &Motion, points: &[Track], ground: [f64; 3]) -> Vec<bool> {
-    let planted = |track: &Track| -> Vec<bool> {
+fn down(motion: &Motion, points: &[FootPoint], ground: [f64; 3]) -> Vec<bool> {
+    let planted = |track: &FootPoint| -> Vec<bool> {
         let speeds: Vec<f64> = track.velocity.iter().map(|&velocity| distance(velocity, ground)).collect();
         // Of the moving frames alone: how long a foot stands before and after says nothing about its steps.
         let mut moving: Vec<f64> = speeds.iter().copied().filter(|&speed| speed > SLOW * track.stepping).collect();

@@ -38,7 +38,7 @@ pub fn read(path: &Path, options: &Request) -> Result<Source> {
         notes.push(note.in_file(&skeleton_path).remedy(Remedy::ChooseSkeleton));
     }
     let mut words = Words::new(path, &bytes);
-    let mut reader = Reader::new(&skeleton);
+    let mut reader = FrameParser::new(&skeleton);
     while let Some(line) = words.next_line() {
         reader.line(&words, &line)?;
     }
@@ -94,7 +94,7 @@ fn named(bytes: &[u8]) -> Option<String> {
     (!name.is_empty()).then(|| name.to_string())
 }
 
-struct Reader<'a> {
+struct FrameParser<'a> {
     skeleton: &'a Skeleton,
     /// Factor that makes degrees of a rotation.
     to_degrees: f64,
@@ -110,7 +110,7 @@ struct Reader<'a> {
     fps: Option<f64>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> FrameParser<'a> {
     fn new(skeleton: &'a Skeleton) -> Self {
         let firsts = skeleton.bones.iter().scan(0, |next, bone| {
             let first = *next;
@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
             Some(first)
         });
         let total = skeleton.bones.iter().map(|bone| bone.dofs.len()).sum();
-        Reader {
+        FrameParser {
             skeleton,
             to_degrees: if skeleton.radians { 1f64.to_degrees() } else { 1.0 },
             firsts: firsts.collect(),

@@ -21,7 +21,7 @@ pub fn begins(head: &[u8]) -> bool {
 /// Reads the file `path`.
 pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let bytes = options.read(path)?;
-    let mut reader = Reader {
+    let mut reader = FapParser {
         file: path.display().to_string(),
         lines: lines(&bytes).peekable(),
         line: 1,
@@ -80,7 +80,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-struct Reader<'a, L: Iterator<Item = (usize, &'a [u8])>> {
+struct FapParser<'a, L: Iterator<Item = (usize, &'a [u8])>> {
     file: String,
     lines: std::iter::Peekable<L>,
     line: usize,
@@ -90,7 +90,7 @@ struct Reader<'a, L: Iterator<Item = (usize, &'a [u8])>> {
     frames: usize,
 }
 
-impl<'a, L: Iterator<Item = (usize, &'a [u8])>> Reader<'a, L> {
+impl<'a, L: Iterator<Item = (usize, &'a [u8])>> FapParser<'a, L> {
     fn error(&self, message: impl std::fmt::Display) -> Error {
         anyhow!("{}: {message}", self.place())
     }

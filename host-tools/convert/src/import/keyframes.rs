@@ -1,6 +1,6 @@
 //! Our own key-frame text, written by hand: docs/KEYFRAMES.md describes it.
 
-use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, number, rig, wrong};
+use super::written::{self, HEADINGS, Header, LineParser as _, Read, Wrong, number, rig, wrong};
 use super::{Request, Source};
 use crate::keys::{cubics, sample};
 use crate::motion::{Interpolation, Keys, Motion, Origin, Piece, Rig};
@@ -9,12 +9,12 @@ use std::path::Path;
 
 /// Whether `head` begins such a file.
 pub fn begins(head: &[u8]) -> bool {
-    written::begins(head, Reader::FIRST[0])
+    written::begins(head, KeysText::FIRST[0])
 }
 
 /// Reads the key-frame file `path`.
 pub fn read(path: &Path, options: &Request) -> Result<Source> {
-    Reader::default().read(path, options)
+    KeysText::default().read(path, options)
 }
 
 /// A `keys` block.
@@ -27,12 +27,12 @@ struct Block {
 }
 
 #[derive(Default)]
-struct Reader {
+struct KeysText {
     header: Header,
     blocks: Vec<Block>,
 }
 
-impl written::Reader for Reader {
+impl written::LineParser for KeysText {
     const FIRST: [&'static str; 2] = ["keyframes", "1"];
 
     fn line(&mut self, line: usize, first: &str, rest: &[&str]) -> Read<()> {
@@ -71,7 +71,7 @@ impl written::Reader for Reader {
     }
 }
 
-impl Reader {
+impl KeysText {
     fn keys(&mut self, line: usize, words: &[&str]) -> Read<()> {
         if self.header.frames.is_none() {
             return wrong("expected `frames NUMBER` before the first `keys`");

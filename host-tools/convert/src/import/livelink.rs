@@ -6,7 +6,7 @@
 use super::scalars::{self, Grid};
 use super::sheet::{Sheet, delimiter};
 use super::text::{quoted, shown};
-use super::timecode::{Clock, NTSC, Timecode};
+use super::timecode::{NTSC, Timecode, TimecodeCount};
 use super::{Request, Source};
 use crate::note::{Note, NoteKind};
 use anyhow::{Context, Result};
@@ -107,7 +107,7 @@ impl Rows {
 
     /// The frames of the rows, frames a second, and what is odd about them.
     fn grid(&self, sheet: &Sheet, channels: usize, options: &Request) -> Result<(Grid, f64, Vec<Note>)> {
-        let clock = Clock::of(&self.codes);
+        let clock = TimecodeCount::of(&self.codes);
         let mut notes = Vec::new();
         if clock.guessed {
             let text = format!("too short to tell what its timecode counts to: taken as {} frames a second", clock.rate);
@@ -143,7 +143,7 @@ impl Rows {
     }
 
     /// Timecodes in frames, which run on over midnight.
-    fn counts(&self, sheet: &Sheet, clock: &Clock) -> Result<Vec<f64>> {
+    fn counts(&self, sheet: &Sheet, clock: &TimecodeCount) -> Result<Vec<f64>> {
         let mut counts: Vec<f64> = Vec::with_capacity(self.codes.len());
         let mut days = 0.0;
         for (code, &line) in self.codes.iter().zip(&self.lines) {
@@ -171,7 +171,7 @@ impl Rows {
 }
 
 /// Frames a second: what the timecode says, or NTSC's, if every row stays within half a frame of it; else as measured.
-fn rate(grid: &Grid, clock: &Clock) -> f64 {
+fn rate(grid: &Grid, clock: &TimecodeCount) -> f64 {
     let measured = clock.real_rate() / grid.period;
     let usual = clock.real_rate() / grid.period.round().max(1.0);
     let intervals = (grid.len() - 1) as f64;

@@ -3,7 +3,7 @@
 
 use super::expression::{Expression, is_free};
 use super::text::quoted;
-use super::written::{self, HEADINGS, Header, Read, Reader as _, Wrong, rig, wrong};
+use super::written::{self, HEADINGS, Header, LineParser as _, Read, Wrong, rig, wrong};
 use super::{Request, Source};
 use crate::memory::Memory;
 use crate::motion::{Motion, Origin, Rig};
@@ -18,19 +18,19 @@ const MOST_NAMES: usize = 1024;
 
 /// Whether `head` begins such a file.
 pub fn begins(head: &[u8]) -> bool {
-    written::begins(head, Reader::FIRST[0])
+    written::begins(head, ProceduralText::FIRST[0])
 }
 
 /// Reads the file `path`.
 pub fn read(path: &Path, options: &Request) -> Result<Source> {
-    let mut reader = Reader::default();
+    let mut reader = ProceduralText::default();
     reader.header.fps = options.fps;
     reader.memory = options.memory;
     reader.read(path, options)
 }
 
 #[derive(Default)]
-struct Reader {
+struct ProceduralText {
     header: Header,
     /// What expressions may name, at every frame.
     names: BTreeMap<String, Vec<f64>>,
@@ -38,7 +38,7 @@ struct Reader {
     memory: Memory,
 }
 
-impl written::Reader for Reader {
+impl written::LineParser for ProceduralText {
     const FIRST: [&'static str; 2] = ["procedural", "1"];
 
     fn line(&mut self, _: usize, first: &str, rest: &[&str]) -> Read<()> {
@@ -75,7 +75,7 @@ impl written::Reader for Reader {
     }
 }
 
-impl Reader {
+impl ProceduralText {
     /// The names that every expression may use.
     fn begin(&mut self) -> Read<()> {
         if !self.names.is_empty() {

@@ -43,7 +43,7 @@ pub fn begins(head: &[u8]) -> bool {
 pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let bytes = options.read(path)?;
     let mut sheet = Sheet::open(path, &bytes)?;
-    let clock = Clock::of(&sheet.header);
+    let clock = TimeColumns::of(&sheet.header);
     if let Some(column) = (clock.columns..sheet.header.len()).find(|&column| sheet.header[column].is_empty()) {
         return Err(sheet.error_in(1, column, "expected a name"));
     }
@@ -99,7 +99,7 @@ fn is_events(name: &str) -> bool {
 }
 
 /// What the first columns say about time.
-struct Clock {
+struct TimeColumns {
     /// Column and length of its unit in seconds.
     time: Option<(usize, f64)>,
     frame: Option<usize>,
@@ -107,9 +107,9 @@ struct Clock {
     columns: usize,
 }
 
-impl Clock {
-    fn of(header: &[String]) -> Clock {
-        let mut clock = Clock { time: None, frame: None, columns: 0 };
+impl TimeColumns {
+    fn of(header: &[String]) -> TimeColumns {
+        let mut clock = TimeColumns { time: None, frame: None, columns: 0 };
         for (column, name) in header.iter().enumerate().take(2) {
             match name.to_ascii_lowercase().as_str() {
                 "" | "frame" | "frames" | "frame_number" | "#" if clock.frame.is_none() => clock.frame = Some(column),
@@ -151,7 +151,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn read(sheet: &mut Sheet, clock: &Clock, channels: &[usize]) -> Result<Rows> {
+    fn read(sheet: &mut Sheet, clock: &TimeColumns, channels: &[usize]) -> Result<Rows> {
         let column = clock.time.map(|(column, _)| column).or(clock.frame);
         let mut rows = Rows {
             lines: Vec::new(),

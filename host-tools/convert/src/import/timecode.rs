@@ -34,7 +34,7 @@ impl Timecode {
 
 /// How a recording's timecodes count.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
+pub struct TimecodeCount {
     /// What FF counts to, a second.
     pub rate: u32,
     /// Whether numbers are skipped each minute, so that they keep up with NTSC's time.
@@ -43,15 +43,15 @@ pub struct Clock {
     pub guessed: bool,
 }
 
-impl Clock {
+impl TimecodeCount {
     /// The clock that wrote `codes`: FF comes near the rate before each new second.
-    pub fn of(codes: &[Timecode]) -> Clock {
+    pub fn of(codes: &[Timecode]) -> TimecodeCount {
         let rolls = codes.windows(2).any(|pair| pair[0].second != pair[1].second);
         let most = codes.iter().fold(0, |most, code| most.max(code.frame as u32));
         let above = RATES.into_iter().find(|&rate| rate > most).unwrap_or(DEFAULT_RATE);
         let rate = if rolls { above } else { DEFAULT_RATE };
-        let clock = Clock { rate, drop_frame: false, guessed: !rolls };
-        Clock { drop_frame: clock.skips(codes), ..clock }
+        let clock = TimecodeCount { rate, drop_frame: false, guessed: !rolls };
+        TimecodeCount { drop_frame: clock.skips(codes), ..clock }
     }
 
     /// Numbers that drop-frame timecode skips at each minute but the tenths.
@@ -128,19 +128,19 @@ mod tests {
 
     #[test]
     fn the_rate_is_what_frames_count_to() {
-        assert_eq!(Clock::of(&codes(&["00:00:00:29", "00:00:01:00"])).rate, 30);
-        assert_eq!(Clock::of(&codes(&["00:00:00:58.9", "00:00:01:00"])).rate, 60);
-        let short = Clock::of(&codes(&["00:00:00:10", "00:00:00:11"]));
+        assert_eq!(TimecodeCount::of(&codes(&["00:00:00:29", "00:00:01:00"])).rate, 30);
+        assert_eq!(TimecodeCount::of(&codes(&["00:00:00:58.9", "00:00:01:00"])).rate, 60);
+        let short = TimecodeCount::of(&codes(&["00:00:00:10", "00:00:00:11"]));
         assert!(short.guessed && short.rate == 60);
     }
 
     #[test]
     fn skipped_numbers_are_no_frames() {
         let codes = codes(&["00:00:58:00", "00:00:59:59", "00:01:00:04", "00:01:00:05"]);
-        let clock = Clock::of(&codes);
+        let clock = TimecodeCount::of(&codes);
         assert!(clock.drop_frame);
         assert_eq!(clock.count(&codes[2]) - clock.count(&codes[1]), 1.0);
         assert!((clock.day() / clock.real_rate() - 86399.9136).abs() < 1e-6);
-        assert!(!Clock::of(&codes[..2]).drop_frame);
+        assert!(!TimecodeCount::of(&codes[..2]).drop_frame);
     }
 }

@@ -3,7 +3,7 @@
 
 use super::pack::pack;
 use super::plan::ScheduledMessage;
-use super::schedule::{ByteCounts, Line, Schedule, TimedPacket};
+use super::schedule::{ByteCounts, LineSettings, Schedule, TimedPacket};
 use super::source::Source;
 use pantin::Form;
 use pantin::codec::layout::{LENGTHS, MAX_FRAMES, MAX_STEP};
@@ -43,7 +43,7 @@ struct ChannelEncoder {
 #[derive(Debug)]
 pub struct Live<'s> {
     schedule: Schedule<'s>,
-    line: Line,
+    line: LineSettings,
     begin: u32,
     channels: Vec<ChannelEncoder>,
     /// Frames from the one on that is coded next.
@@ -70,11 +70,11 @@ impl Source {
 
 impl<'s> Live<'s> {
     /// Frames from when one is made until it is shown, but for the time that the line takes.
-    pub fn delay(line: &Line) -> u32 {
+    pub fn delay(line: &LineSettings) -> u32 {
         LOOK + TOGETHER + line.ahead
     }
 
-    pub(super) fn new(source: &'s Source, head: Head, line: Line, making: &[LiveChannel], sequence: u8) -> Self {
+    pub(super) fn new(source: &'s Source, head: Head, line: LineSettings, making: &[LiveChannel], sequence: u8) -> Self {
         let mut channels = vec![];
         for (channel, (start, making)) in source.starts.iter().zip(making).enumerate() {
             if let &ChannelKind::Moving { step, .. } = start {

@@ -13,7 +13,7 @@ mod train;
 mod writer;
 
 pub use live::{Live, LiveChannel};
-pub use schedule::{ByteCounts, Line, Schedule, TimedPacket};
+pub use schedule::{ByteCounts, LineSettings, Schedule, TimedPacket};
 pub use source::{Source, SourceError};
 
 use pantin_link::Head;
@@ -37,7 +37,7 @@ impl Sender {
 
     /// The packets of the next clip, `rounds` times around, or for ever. The line begins to carry them its look-ahead before the clip's first frame.
     /// [`Sender::end_clip`] has to be told what came of it.
-    pub fn clip<'s>(&mut self, source: &'s Source, line: Line, rounds: Option<u32>) -> Schedule<'s> {
+    pub fn clip<'s>(&mut self, source: &'s Source, line: LineSettings, rounds: Option<u32>) -> Schedule<'s> {
         let head = Head { session: self.session, clip: self.clip, begin: BEGIN, ..source.head };
         self.clip = self.clip.wrapping_add(1);
         let start = -f64::from(line.ahead) * f64::from(head.frame_time_ns) / 1e9;
@@ -45,7 +45,7 @@ impl Sender {
     }
 
     /// Motion that is made while it is sent: `making` is what `source` was made with. Nothing comes after it.
-    pub fn live<'s>(self, source: &'s Source, line: Line, making: &[LiveChannel]) -> Live<'s> {
+    pub fn live<'s>(self, source: &'s Source, line: LineSettings, making: &[LiveChannel]) -> Live<'s> {
         let head = Head { session: self.session, clip: self.clip, begin: BEGIN, ..source.head };
         Live::new(source, head, line, making, self.sequence)
     }
@@ -56,10 +56,10 @@ impl Sender {
     }
 }
 
-impl Line {
+impl LineSettings {
     /// The line with the shortest cycle that carries the clip, from `self.cycle` up: in time and within the share. None if none does.
-    pub fn fitted(self, source: &Source) -> Option<Line> {
-        let with = |cycle: u32| Line { cycle, ..self };
+    pub fn fitted(self, source: &Source) -> Option<LineSettings> {
+        let with = |cycle: u32| LineSettings { cycle, ..self };
         let (mut low, mut high) = (self.cycle, LONGEST_CYCLE);
         if !schedule::fits(source, with(high)) {
             return None;

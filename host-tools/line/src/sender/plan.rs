@@ -1,6 +1,6 @@
 //! Plans what is sent of each channel, and when: its segments, split so that none lasts longer than the refresh cycle allows.
 
-use super::source::{Segment, Source, Track};
+use super::source::{MovingChannel, Segment, Source};
 use super::writer::Writer;
 use pantin::codec::layout::segment_type;
 use pantin_link::wire::Coder;
@@ -30,7 +30,7 @@ pub(crate) fn round(source: &Source, cycle: u32) -> Vec<ScheduledMessage> {
 /// Longest run of a message.
 const LONGEST: u32 = 127;
 
-fn tell(track: &Track, frames: u32, cycle: u32, first: u32, told: &mut Vec<ScheduledMessage>) {
+fn tell(track: &MovingChannel, frames: u32, cycle: u32, first: u32, told: &mut Vec<ScheduledMessage>) {
     // The frame by which the next refresh must come.
     let mut by = first.min(cycle);
     let ends = track.segments.iter().skip(1).map(|segment| segment.frame).chain([frames]);
@@ -54,7 +54,7 @@ fn tell(track: &Track, frames: u32, cycle: u32, first: u32, told: &mut Vec<Sched
     }
 }
 
-fn message(track: &Track, segment: &Segment, at: u32, next: u32, refresh: bool) -> Message {
+fn message(track: &MovingChannel, segment: &Segment, at: u32, next: u32, refresh: bool) -> Message {
     let Segment { frame, mut mode, mut w, k } = *segment;
     if at != frame && mode >> 4 == segment_type::WK {
         // The acceleration has run on from what was told.

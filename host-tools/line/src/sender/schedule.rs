@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 
 /// What the sender may do with the line.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
+pub struct LineSettings {
     /// Bytes that it carries a second.
     pub rate: f64,
     /// Frames that messages are sent ahead of their time at most: so long nothing is shown at first, and as much has to wait at the receiver.
@@ -87,7 +87,7 @@ pub struct TimedPacket {
 pub struct Schedule<'s> {
     source: &'s Source,
     head: Head,
-    line: Line,
+    line: LineSettings,
     /// Seconds of a frame.
     frame: f64,
     batches: VecDeque<MotionPacket>,
@@ -111,7 +111,7 @@ pub struct Schedule<'s> {
 
 impl<'s> Schedule<'s> {
     /// A clip that begins at the line's frame `head.begin`, which is shown at `begin.0` seconds; the line is free from `begin.1` on.
-    pub(crate) fn new(source: &'s Source, head: Head, line: Line, rounds: Option<u32>, sequence: u8, free: f64) -> Self {
+    pub(crate) fn new(source: &'s Source, head: Head, line: LineSettings, rounds: Option<u32>, sequence: u8, free: f64) -> Self {
         let mut schedule = Schedule {
             source,
             head,
@@ -291,7 +291,7 @@ impl Iterator for Schedule<'_> {
 }
 
 /// How a clip fits a line with this cycle: whether all is there in time, and the part of the line that refreshes take.
-pub(crate) fn fits(source: &Source, line: Line) -> bool {
+pub(crate) fn fits(source: &Source, line: LineSettings) -> bool {
     let head = Head { begin: 1 << 8, ..source.head };
     let start = -f64::from(line.ahead) * f64::from(head.frame_time_ns) / 1e9;
     // Twice around: the seam is the hardest place.

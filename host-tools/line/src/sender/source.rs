@@ -18,7 +18,7 @@ pub(crate) struct Segment {
 
 /// A channel that moves and leads itself.
 #[derive(Clone, Debug)]
-pub(crate) struct Track {
+pub(crate) struct MovingChannel {
     pub channel: u16,
     pub step: u8,
     pub segments: Vec<Segment>,
@@ -32,7 +32,7 @@ pub struct Source {
     /// What the head says; session, clip and begin are the sender's.
     pub(crate) head: Head,
     pub(crate) starts: Vec<ChannelKind>,
-    pub(crate) tracks: Vec<Track>,
+    pub(crate) tracks: Vec<MovingChannel>,
     /// Frame, id and name of each event.
     pub(crate) events: Vec<(u32, u32, String)>,
 }
@@ -72,13 +72,13 @@ impl Source {
         for (index, state) in player.states().iter().enumerate() {
             if let Some(step) = state.step_index() {
                 let channel = state.slot() as u16;
-                tracks.push((index, Track { channel, step, segments: vec![], states: vec![] }));
+                tracks.push((index, MovingChannel { channel, step, segments: vec![], states: vec![] }));
             } else if let Some(leader) = state.follows().and_then(|back| player.states().get(index.checked_sub(back)?)) {
                 starts[state.slot()] = ChannelKind::Follower((state.slot() - leader.slot()) as u16);
             }
         }
         record(&mut player, &mut tracks);
-        let tracks: Vec<Track> = tracks.into_iter().map(|(_, track)| track).collect();
+        let tracks: Vec<MovingChannel> = tracks.into_iter().map(|(_, track)| track).collect();
         for track in &tracks {
             starts[usize::from(track.channel)] = ChannelKind::Moving { step: track.step, pace: track.pace(join) };
         }
@@ -119,7 +119,7 @@ impl Source {
 
     /// The greatest distance of what is played from the file's, in parts of the channel's step, and of which channel of the pose.
     pub fn deviation(&self, cycle: u32) -> (f64, u16) {
-        let off = |(track, (channel, states)): (&Track, (u16, Vec<[i32; 4]>))| {
+        let off = |(track, (channel, states)): (&MovingChannel, (u16, Vec<[i32; 4]>))| {
             let apart = track.states.iter().zip(&states).map(|(a, b)| a[0].wrapping_sub(b[0]).unsigned_abs()).max();
             (f64::from(apart.unwrap_or(0)) / f64::from(pantin::codec::step_size(track.step)), channel)
         };
@@ -144,7 +144,7 @@ fn head_of(clip: &Clip<'_>) -> Result<Head, SourceError> {
 }
 
 /// Plays the clip and writes down what it reads.
-fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, Track)]) {
+fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, MovingChannel)]) {
     let frames = player.clip().frames();
     for frame in 0..frames {
         let before: Vec<(i32, ChannelState)> =
@@ -170,7 +170,7 @@ fn record(player: &mut Player<'_, '_>, tracks: &mut [(usize, Track)]) {
     }
 }
 
-impl Track {
+impl MovingChannel {
     fn segment(&self, frame: u32, mode: u8, w: i32, k: i32) -> Segment {
         if mode >> 4 == segment_type::CARRY
             && k != 0

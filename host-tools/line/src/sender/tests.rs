@@ -33,7 +33,11 @@ impl Played<'_> {
 }
 
 /// Plays what `line` makes of the timed_packets, a call of `each` a frame.
-fn play(timed_packets: impl Iterator<Item = TimedPacket>, (source, line): (&Source, Line), mut each: impl FnMut(f64, &Link<64>)) {
+fn play(
+    timed_packets: impl Iterator<Item = TimedPacket>,
+    (source, line): (&Source, LineSettings),
+    mut each: impl FnMut(f64, &Link<64>),
+) {
     let channels = usize::from(source.head.channels);
     let (mut states, mut pose) = (vec![Channel::default(); channels], vec![0; channels]);
     let mut link = Link::<64>::new(source.head.form, &mut states, &mut pose);
@@ -60,9 +64,9 @@ fn play(timed_packets: impl Iterator<Item = TimedPacket>, (source, line): (&Sour
     }
 }
 
-fn line(source: &Source, rate: f64) -> Line {
+fn line(source: &Source, rate: f64) -> LineSettings {
     let ahead = (1e9 / f64::from(source.head.frame_time_ns)) as u32;
-    Line { rate, ahead, share: 1.0, cycle: 4, parity: false, key: None }.fitted(source).expect("it fits")
+    LineSettings { rate, ahead, share: 1.0, cycle: 4, parity: false, key: None }.fitted(source).expect("it fits")
 }
 
 #[test]
@@ -124,7 +128,7 @@ fn made(frame: usize, channel: usize) -> i32 {
 fn what_is_made_now_is_there_within_its_bound_after_the_delay() {
     let making = [LiveChannel { bound: 1 << 25, way: 1 << 30 }; 8];
     let source = Source::live(pantin::Form::default(), 33_333_333, &making);
-    let line = Line { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false, key: None };
+    let line = LineSettings { rate: 960.0, ahead: 6, share: 1.0, cycle: 24, parity: false, key: None };
     let mut live = Sender::new(5).live(&source, line, &making);
     let (mut states, mut pose) = ([Channel::default(); 8], [0; 8]);
     let mut link = Link::<24>::new(source.form(), &mut states, &mut pose);
@@ -295,7 +299,7 @@ fn fate() -> impl Strategy<Value = Fate> {
 }
 
 /// The packets of two rounds, as these fates leave them, and the frame of the last one that was touched.
-fn fated(source: &Source, line: Line, fates: &[(usize, Fate)]) -> (Vec<TimedPacket>, f64) {
+fn fated(source: &Source, line: LineSettings, fates: &[(usize, Fate)]) -> (Vec<TimedPacket>, f64) {
     let sent: Vec<TimedPacket> = Sender::new(7).clip(source, line, Some(2)).collect();
     let foreign: Vec<TimedPacket> = Sender::new(8).clip(source, line, Some(2)).collect();
     let mut came: Vec<(f64, TimedPacket)> = sent.iter().enumerate().map(|(i, timed)| (i as f64, timed.clone())).collect();
@@ -402,7 +406,7 @@ proptest! {
 fn the_bytes_on_the_line_stay_the_same() {
     let sent = |(bytes, parity)| {
         let source = source(bytes);
-        let line = Line { parity, ..line(&source, 20_000.0) };
+        let line = LineSettings { parity, ..line(&source, 20_000.0) };
         let sent: Vec<u8> = Sender::new(7).clip(&source, line, Some(2)).flat_map(|timed| timed.bytes).collect();
         (sent.len(), pantin::codec::crc::of(&sent))
     };

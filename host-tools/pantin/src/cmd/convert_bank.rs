@@ -3,7 +3,7 @@
 use super::bank::said;
 use super::batch;
 use super::convert::{Arguments, Made, code, prepare, say_of_each};
-use super::convert_list::{self, Line};
+use super::convert_list::{self, ListEntry};
 use crate::memory;
 use crate::output::{self, Wanted, note, outln, refuse_foreign};
 use crate::words;
@@ -151,7 +151,7 @@ fn tasks(arguments: &Arguments) -> Result<Vec<Task>> {
             "{}: the lines of a list say how each motion is cut and changed; leave those options out of the command",
             input.display()
         );
-        let of_line = |(place, line): (String, Line)| {
+        let of_line = |(place, line): (String, ListEntry)| {
             let name = line.name.map_or_else(|| super::bank::name_of(&line.motion), Ok).with_context(|| place.clone())?;
             let label = format!("{place}: {}", line.motion.display());
             let mut task = task(line.motion, name, label);

@@ -20,7 +20,7 @@ const MOST_BYTES: u64 = 1 << 20;
 /// A line of a list.
 #[derive(Parser)]
 #[command(no_binary_name = true, disable_help_flag = true)]
-pub struct Line {
+pub struct ListEntry {
     /// The motion.
     pub motion: PathBuf,
     /// The clip's name in the bank.
@@ -43,7 +43,7 @@ pub fn is_list(path: &Path) -> bool {
 
 /// The lines of a list, each with its place for messages. Motions, and files that options name, lie in the list's folder, or where their paths lead
 /// from there.
-pub fn read(path: &Path) -> Result<Vec<(String, Line)>> {
+pub fn read(path: &Path) -> Result<Vec<(String, ListEntry)>> {
     let text = input::read_short_text(path, MOST_BYTES).with_context(|| path.display().to_string())?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut lines = Vec::new();
@@ -53,7 +53,7 @@ pub fn read(path: &Path) -> Result<Vec<(String, Line)>> {
         if words.is_empty() {
             continue;
         }
-        let mut line = Line::try_parse_from(words).map_err(|error| {
+        let mut line = ListEntry::try_parse_from(words).map_err(|error| {
             let said = error.to_string();
             let first = said.lines().next().unwrap_or_default();
             anyhow!("{place}: {}", first.trim_start_matches("error: "))

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
 use pantin_convert::errors;
 use pantin_convert::events;
-use pantin_convert::facts::{self, Channel, MemoryNeeds, Track};
+use pantin_convert::facts::{self, Channel, MemoryNeeds, Status};
 use pantin_convert::import::{self, ImportOptions, list, up};
 use pantin_convert::motion::Event;
 use pantin_store::BLOCK_BYTES;
@@ -161,8 +161,8 @@ fn boards(clip: &Clip, memory: &MemoryNeeds, file: usize) -> (Vec<&'static str>,
 /// Joints and scalars with how they are coded; `channels` are the pose's.
 fn rig_json(clip: &Clip, channels: &[Channel]) -> Value {
     let channel = |(index, channel): (usize, &Channel)| {
-        let mut object = json!({"channel": index, "kind": format!("{:?}", channel.kind), "track": word(channel.track)});
-        if let (Track::Follows(leader), Some(object)) = (channel.track, object.as_object_mut()) {
+        let mut object = json!({"channel": index, "kind": format!("{:?}", channel.kind), "track": word(channel.status)});
+        if let (Status::Follows(leader), Some(object)) = (channel.status, object.as_object_mut()) {
             object.insert("leader".into(), json!(leader));
         }
         object
@@ -196,11 +196,11 @@ fn rig_json(clip: &Clip, channels: &[Channel]) -> Value {
     json!({"joints": joints, "scalars": scalars})
 }
 
-fn word(track: Track) -> &'static str {
-    match track {
-        Track::Constant => "constant",
-        Track::Moving => "moving",
-        Track::Follows(_) => "follows",
+fn word(status: Status) -> &'static str {
+    match status {
+        Status::Constant => "constant",
+        Status::Moving => "moving",
+        Status::Follows(_) => "follows",
     }
 }
 
@@ -228,15 +228,15 @@ fn table(clip: &Clip, channels: &[Channel]) -> Vec<String> {
 
 /// `2 moving, 1 constant`, and which channels are followed.
 fn tracks(channels: &[Channel]) -> String {
-    let count = |track: Track| channels.iter().filter(|channel| channel.track == track).count();
+    let count = |status: Status| channels.iter().filter(|channel| channel.status == status).count();
     let mut parts = Vec::new();
-    for track in [Track::Moving, Track::Constant] {
+    for track in [Status::Moving, Status::Constant] {
         if count(track) > 0 {
             parts.push(format!("{} {}", count(track), word(track)));
         }
     }
-    parts.extend(channels.iter().filter_map(|channel| match channel.track {
-        Track::Follows(leader) => Some(format!("1 follows channel {leader}")),
+    parts.extend(channels.iter().filter_map(|channel| match channel.status {
+        Status::Follows(leader) => Some(format!("1 follows channel {leader}")),
         _ => None,
     }));
     parts.join(", ")

@@ -6,11 +6,11 @@ use super::{Files, rig_is_needed};
 use crate::open::is_bank;
 use crate::output::{noticed, report, take_stdout};
 use crate::play::cells::Dots;
-use crate::play::clock::Clock;
 use crate::play::colours::Colours;
 use crate::play::figure::Figure;
 use crate::play::meters::Meters;
 use crate::play::picture::{Show, Title, draw};
+use crate::play::play_time::PlayTime;
 use crate::play::playback::{Playback, Room};
 use crate::play::session::{Outcome, Session};
 use crate::play::settings::Settings;
@@ -228,7 +228,7 @@ impl Arguments {
             let frames = if loops { left } else { left.min(clip.frames()) };
             with_show(clip, self.ahead(), |show| {
                 for frame in 0..frames {
-                    let clock = Clock::new(clip.frame_time_ns(), Duration::ZERO);
+                    let clock = PlayTime::new(clip.frame_time_ns(), Duration::ZERO);
                     let grid = draw(show, &title, frame % clip.frames(), &clock, &settings, self.size.0)?;
                     noticed(out.write_all(grid.text().as_bytes())).context("the text cannot be written")?;
                 }

@@ -6,7 +6,7 @@ use crate::output::{note, report};
 use anyhow::{Context, Result, bail};
 use pantin::Clip;
 use pantin_convert::input;
-use pantin_line::sender::{ByteCounts, Line, Sender, Source};
+use pantin_line::sender::{ByteCounts, LineSettings, Sender, Source};
 use pantin_line::stream::{address::Address, pace};
 use pantin_link::packet::TagKey;
 use serde_json::json;
@@ -144,9 +144,9 @@ fn source(clip: &Clip, path: &Path) -> Result<Source> {
         .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
 }
 
-fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
+fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<LineSettings> {
     let frames = |seconds: f64| (seconds / source.frame_seconds()).round();
-    let wanted = Line {
+    let wanted = LineSettings {
         rate: arguments.to.rate(),
         ahead: frames(arguments.ahead).clamp(4.0, 250.0) as u32,
         share: arguments.refresh / 100.0,
@@ -155,7 +155,7 @@ fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
         key: arguments.tag_key()?,
     };
     wanted.fitted(source).with_context(|| {
-        if (Line { share: 1.0, ..wanted }).fitted(source).is_some() {
+        if (LineSettings { share: 1.0, ..wanted }).fitted(source).is_some() {
             let share = arguments.refresh;
             return format!("{}: refreshes take more than {share} % of the line; a larger --refresh, or a faster line", path.display());
         }
@@ -167,7 +167,7 @@ fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<Line> {
     })
 }
 
-fn opening(source: &Source, fit: &Line, path: &Path) -> String {
+fn opening(source: &Source, fit: &LineSettings, path: &Path) -> String {
     let (off, _) = source.deviation(fit.cycle);
     let milliseconds = |frames: u32| 1000.0 * f64::from(frames) * source.frame_seconds();
     format!(

@@ -5,7 +5,7 @@ use crate::cmd::Files;
 use crate::output::note;
 use anyhow::{Context, Result, ensure};
 use pantin_convert::import::one_line;
-use pantin_line::sender::{Line, Live, LiveChannel, Source};
+use pantin_line::sender::{LineSettings, Live, LiveChannel, Source};
 use pantin_line::stream::live::Feed;
 use pantin_line::stream::pace;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, from: &str, stop: &AtomicBool) -> Resul
     let source = Source::live(form, clip.frame_time_ns(), &making);
     let rate = arguments.to.rate();
     let cycle = REFRESH_BYTES * places.len() as f64 / (REFRESHES * rate) / source.frame_seconds();
-    let line = Line {
+    let line = LineSettings {
         rate,
         ahead: AHEAD,
         share: 1.0,

@@ -1,8 +1,8 @@
 //! One clip in a grid of cells: what fills it, and the status line below.
 
 use super::cells::Grid;
-use super::clock::Clock;
 use super::keys::HELP;
+use super::play_time::PlayTime;
 use super::settings::Settings;
 use anyhow::Result;
 
@@ -29,7 +29,7 @@ pub struct Title {
 
 impl Title {
     /// The status line.
-    pub fn status(&self, frame: u32, clock: &Clock, settings: &Settings, views: bool) -> String {
+    pub fn status(&self, frame: u32, clock: &PlayTime, settings: &Settings, views: bool) -> String {
         let [index, count] = self.place;
         let place = if count > 1 { format!("{}/{count} ", index + 1) } else { String::new() };
         let seconds = f64::from(frame) * self.frame_time;
@@ -61,7 +61,7 @@ pub fn draw(
     show: &mut dyn Show,
     title: &Title,
     frame: u32,
-    clock: &Clock,
+    clock: &PlayTime,
     settings: &Settings,
     [columns, rows]: [usize; 2],
 ) -> Result<Grid> {

@@ -1,8 +1,8 @@
 //! A clip playing in the terminal, until another one is asked for or all ends.
 
-use super::clock::Clock;
 use super::keys::{Action, action};
 use super::picture::{Show, Title, draw};
+use super::play_time::PlayTime;
 use super::settings::Settings;
 use super::terminal::Terminal;
 use anyhow::Result;
@@ -32,7 +32,7 @@ pub enum Outcome {
 pub struct Session {
     pub(super) terminal: Terminal,
     pub(super) settings: Settings,
-    clock: Clock,
+    clock: PlayTime,
     begun: Instant,
     once: bool,
     /// Pictures that may still be shown, if they are counted.
@@ -42,7 +42,7 @@ pub struct Session {
 impl Session {
     /// Nothing plays yet. `once` ends each clip at its end; `frames` is the number of pictures after which all ends.
     pub fn new(terminal: Terminal, settings: Settings, once: bool, frames: Option<u32>) -> Session {
-        Session { terminal, settings, clock: Clock::new(1, Duration::ZERO), begun: Instant::now(), once, left: frames }
+        Session { terminal, settings, clock: PlayTime::new(1, Duration::ZERO), begun: Instant::now(), once, left: frames }
     }
 
     /// Plays a clip.

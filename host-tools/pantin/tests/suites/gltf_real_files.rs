@@ -31,13 +31,13 @@ fn motions() -> Vec<(PathBuf, usize, Motion)> {
 }
 
 /// Keys of a node's translation, rotation or scale, read by the gltf crate.
-pub struct Track {
+pub struct NodeKeys {
     times: Vec<f32>,
     interpolation: Interpolation,
     values: Vec<Vec<f64>>,
 }
 
-impl Track {
+impl NodeKeys {
     fn at(&self, time: f64, frame_time: f64, turns: bool) -> Vec<f64> {
         // Times that were rounded to f32 still belong to their frame.
         let late = if self.interpolation == Interpolation::Step { 1e-4 * frame_time } else { 0.0 };
@@ -75,7 +75,7 @@ impl Track {
 }
 
 /// Tracks of an animation by node and path (0 translation, 1 rotation, 2 scale), and its first time.
-pub fn tracks(document: &gltf::Document, buffers: &[Vec<u8>], animation: usize) -> (HashMap<(usize, usize), Track>, f64) {
+pub fn tracks(document: &gltf::Document, buffers: &[Vec<u8>], animation: usize) -> (HashMap<(usize, usize), NodeKeys>, f64) {
     let mut tracks = HashMap::new();
     let mut first = f64::MAX;
     for channel in document.animations().nth(animation).unwrap().channels() {
@@ -94,7 +94,7 @@ pub fn tracks(document: &gltf::Document, buffers: &[Vec<u8>], animation: usize) 
             Property::Rotation => 1,
             _ => 2,
         };
-        let track = Track { times, interpolation: channel.sampler().interpolation(), values };
+        let track = NodeKeys { times, interpolation: channel.sampler().interpolation(), values };
         tracks.insert((channel.target().node().index(), path), track);
     }
     (tracks, first)
@@ -108,7 +108,7 @@ fn product(a: &Affine, b: &Affine) -> Affine {
     })
 }
 
-fn affine(node: &gltf::Node, tracks: &HashMap<(usize, usize), Track>, time: f64, frame_time: f64) -> Affine {
+fn affine(node: &gltf::Node, tracks: &HashMap<(usize, usize), NodeKeys>, time: f64, frame_time: f64) -> Affine {
     let track = |path: usize| tracks.get(&(node.index(), path)).map(|track| track.at(time, frame_time, path == 1));
     if (0..3).all(|path| track(path).is_none()) {
         let m = node.transform().matrix();
@@ -130,7 +130,7 @@ fn affine(node: &gltf::Node, tracks: &HashMap<(usize, usize), Track>, time: f64,
 /// World matrices of all nodes by the name that their joint has.
 pub fn worlds(
     document: &gltf::Document,
-    tracks: &HashMap<(usize, usize), Track>,
+    tracks: &HashMap<(usize, usize), NodeKeys>,
     time: f64,
     frame_time: f64,
 ) -> HashMap<String, Affine> {

@@ -21,7 +21,7 @@ struct Text<'a> {
 }
 
 /// A line's number from 1, and its words.
-type Line<'a> = (usize, Vec<&'a str>);
+type NumberedWords<'a> = (usize, Vec<&'a str>);
 
 impl<'a> Text<'a> {
     fn new(path: &'a Path, content: &'a str) -> Result<Text<'a>> {
@@ -37,7 +37,7 @@ impl<'a> Text<'a> {
     }
 
     /// The lines that have words; `#` begins a comment.
-    fn lines(&self) -> impl Iterator<Item = Line<'a>> {
+    fn lines(&self) -> impl Iterator<Item = NumberedWords<'a>> {
         let words = |line: &'a str| line.split('#').next().unwrap_or("").split_whitespace().collect::<Vec<_>>();
         (1..).zip(self.content.lines().map(words)).filter(|(_, words)| !words.is_empty())
     }
@@ -101,21 +101,21 @@ pub fn obj(path: &Path, text: &str) -> Result<Mesh> {
 pub fn wfm(path: &Path, text: &str) -> Result<Mesh> {
     let text = Text::new(path, text)?;
     // Titles stand in comments: the number of the title's line, that of the count's, and the rows.
-    let rows = |title: &str| -> Result<Vec<Line>> {
+    let rows = |title: &str| -> Result<Vec<NumberedWords>> {
         let at = text.content.lines().position(|line| line.contains(title));
         let at = at.with_context(|| format!("{}: no `{title}`", path.display()))? + 1;
         let mut lines = text.lines().filter(|(line, _)| *line > at);
         let wrong = |line| text.error(line, format!("expected the number of rows of `{title}`"));
         let (line, count) = lines.next().ok_or_else(|| wrong(at))?;
         let count: usize = count[0].parse().map_err(|_| wrong(line))?;
-        let rows: Vec<Line> = lines.take(count).collect();
+        let rows: Vec<NumberedWords> = lines.take(count).collect();
         if rows.len() < count {
             return Err(text.error(line, format!("`{title}` has {} rows; its number says {count}", rows.len())));
         }
         Ok(rows)
     };
     let points = rows("VERTEX LIST:")?.iter().map(|(line, words)| text.point(*line, words)).collect::<Result<Vec<_>>>()?;
-    let triangle = |(line, words): &Line| {
+    let triangle = |(line, words): &NumberedWords| {
         let corner = |word: &str| {
             let place = word.parse().ok().filter(|&place: &usize| place < points.len());
             let wrong = || format!("expected a vertex of 0 to {}, found {}", points.len() - 1, quoted(word));

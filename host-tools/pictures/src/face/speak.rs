@@ -168,7 +168,7 @@ const PHONEMES: [(&str, &[&str]); 64] = [
 /// The visemes of a text by rules of English spelling.
 pub fn of_text(text: &str) -> Result<Vec<Spoken>> {
     ensure!(text.chars().count() <= MOST_LETTERS, "the text has more than {MOST_LETTERS} letters");
-    let mut track = Track::new();
+    let mut track = Speech::new();
     for word in text.to_lowercase().split_inclusive(|c: char| !c.is_alphanumeric() && c != '\'') {
         let letters: String = word.chars().filter(char::is_ascii_alphabetic).collect();
         track.say(silent_end(&letters), &SPELLINGS);
@@ -201,7 +201,7 @@ fn silent_end(word: &str) -> &str {
 /// The visemes of what `espeak-ng -q -x` prints: mnemonics of phonemes, a line for each clause.
 pub fn of_phonemes(lines: &str) -> Result<Vec<Spoken>> {
     ensure!(lines.len() <= MOST_LETTERS, "there are more than {MOST_LETTERS} phonemes");
-    let mut track = Track::new();
+    let mut track = Speech::new();
     for line in lines.lines() {
         for word in line.split_whitespace() {
             track.say(word, &PHONEMES);
@@ -211,14 +211,14 @@ pub fn of_phonemes(lines: &str) -> Result<Vec<Spoken>> {
     track.finish("there are no phonemes")
 }
 
-struct Track {
+struct Speech {
     spoken: Vec<Spoken>,
     at_ms: f64,
 }
 
-impl Track {
-    fn new() -> Track {
-        let mut track = Track { spoken: Vec::new(), at_ms: 0.0 };
+impl Speech {
+    fn new() -> Speech {
+        let mut track = Speech { spoken: Vec::new(), at_ms: 0.0 };
         track.rest(REST_MS);
         track
     }

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use harness::lossy::{Damage, Lossy, last_frame, play};
 use harness::paths;
 use pantin::Clip;
-use pantin_line::sender::{ByteCounts, Line, Sender, Source};
+use pantin_line::sender::{ByteCounts, LineSettings, Sender, Source};
 use pantin_link::{Link, QUEUE_PACKETS};
 
 use super::link_board::{Board, Seen};
@@ -65,7 +65,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let (mut goals, mut rows) = (vec![], vec![]);
     for (baud, ahead, exact) in LINES {
         let fitted = |parity: bool| {
-            let wanted = Line { rate: f64::from(baud) / 10.0, ahead, share: 1.0, cycle: 1, parity, key: None };
+            let wanted = LineSettings { rate: f64::from(baud) / 10.0, ahead, share: 1.0, cycle: 1, parity, key: None };
             wanted.fitted(&source).with_context(|| format!("{baud} baud do not carry the clip"))
         };
         let lines = [fitted(false)?, fitted(true)?];
@@ -115,7 +115,7 @@ struct Run {
 }
 
 impl Run {
-    fn of(source: &Source, line: Line, damage: Damage, quick: bool) -> Run {
+    fn of(source: &Source, line: LineSettings, damage: Damage, quick: bool) -> Run {
         let mut run = Run { damage, parity: line.parity, ..Run::default() };
         let played = source.expected_states(line.cycle);
         for pass in 0..if quick { 2 } else { PASSES } {
@@ -126,7 +126,7 @@ impl Run {
     }
 
     /// Damage for a while, then none: how long until all is exact.
-    fn recover(&mut self, source: &Source, line: Line, played: &[(u16, Vec<[i32; 4]>)], seed: u64) {
+    fn recover(&mut self, source: &Source, line: LineSettings, played: &[(u16, Vec<[i32; 4]>)], seed: u64) {
         let milliseconds = 1000.0 * source.frame_seconds();
         let mut lossy = Lossy::new(seed);
         let (mut last, mut exact_at) = (None::<u16>, None::<u16>);
@@ -167,7 +167,7 @@ impl Run {
     }
 
     /// Damage all the time.
-    fn endure(&mut self, source: &Source, line: Line, played: &[(u16, Vec<[i32; 4]>)]) {
+    fn endure(&mut self, source: &Source, line: LineSettings, played: &[(u16, Vec<[i32; 4]>)]) {
         let mut lossy = Lossy::new(99);
         let (mut frames, mut exact, mut moving, mut heads, mut wrong) = (0.0, 0.0, 0.0, 0, 0);
         let mut before = (None, vec![]);
@@ -246,7 +246,7 @@ fn print(rows: &[Vec<String>]) {
 }
 
 /// Milliseconds from the first byte that a receiver hears of a clip under way until all is exact, at worst.
-fn late_join(source: &Source, line: Line) -> f64 {
+fn late_join(source: &Source, line: LineSettings) -> f64 {
     let join = |number: u32| {
         let from = source.seconds() * f64::from(number) / f64::from(JOINS);
         let timed_packets = Sender::new(1).clip(source, line, Some(2)).filter(|timed| timed.at >= from);
@@ -269,13 +269,13 @@ fn late_join(source: &Source, line: Line) -> f64 {
 }
 
 /// What a round of the clip takes.
-fn carried(source: &Source, line: Line) -> ByteCounts {
+fn carried(source: &Source, line: LineSettings) -> ByteCounts {
     let mut schedule = Sender::new(1).clip(source, line, Some(1));
     schedule.by_ref().for_each(drop);
     schedule.bytes()
 }
 
-fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [Line; 2], runs: &[Run]) -> Vec<Goal> {
+fn judged(baud: u32, exact: f64, source: &Source, [line, mending]: [LineSettings; 2], runs: &[Run]) -> Vec<Goal> {
     let ByteCounts { line: all, framing, announced, refresh, motion, .. } = carried(source, line);
     let with = carried(source, mending);
     let rate = |bytes: f64| format!("{:.0} bytes/s ({:.1} %)", bytes / source.seconds(), 100.0 * bytes / all);

@@ -8,7 +8,7 @@ use harness::lossy::{Damage, Lossy, arrivals, last_frame};
 use harness::qemu::{LM3S6965EVB, Launch};
 use harness::simulator;
 use harness::sync::Session;
-use pantin_line::sender::{BEGIN, Line, Sender, Source};
+use pantin_line::sender::{BEGIN, LineSettings, Sender, Source};
 
 /// What was seen in and after stretches of damage.
 #[derive(Default)]
@@ -51,7 +51,14 @@ impl Board<'_> {
     }
 
     /// Plays a line that is damaged, as the seed has it, while `harms` says so of a timed's time.
-    pub fn plays(&self, source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Result<Seen> {
+    pub fn plays(
+        &self,
+        source: &Source,
+        line: LineSettings,
+        damage: Damage,
+        seed: u64,
+        harms: impl Fn(f64) -> bool,
+    ) -> Result<Seen> {
         let words: &[&str] = if line.parity { &["fec"] } else { &[] };
         let (bytes, harmed) = damaged(source, line, damage, seed, harms);
         let whole = simulator::link(self.clip, words, &damaged(source, line, damage, seed, |_| false).0)?;
@@ -73,7 +80,7 @@ impl Board<'_> {
     }
 }
 
-fn damaged(source: &Source, line: Line, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Arrivals {
+fn damaged(source: &Source, line: LineSettings, damage: Damage, seed: u64, harms: impl Fn(f64) -> bool) -> Arrivals {
     let (mut lossy, mut harmed) = (Lossy::new(seed), vec![]);
     let frames = arrivals(Sender::new(1).clip(source, line, Some(1)), source, line, |at, timed| {
         let Some(frame) = last_frame(&timed.bytes, line).filter(|_| harms(timed.at)) else { return timed.bytes };

@@ -2,8 +2,8 @@
 
 use super::file::File;
 use super::place::{Base, Rest, Stretch, affine, settled};
+use super::sampler::SamplerKeys;
 use super::scalars::Weight;
-use super::track::Track;
 use super::tree::Tree;
 use super::{Channels, POSITIONS, Target, Tracks, Values};
 use crate::fk::{self, Matrix, apply, from_quaternion, product};
@@ -124,12 +124,12 @@ fn rest(file: &File, node: usize) -> Result<Rest> {
 /// A node on the frames. What stands still is there once.
 struct Moving<'t> {
     rest: Rest,
-    translation: Option<&'t Track>,
+    translation: Option<&'t SamplerKeys>,
     /// Its place in what carries it, where a track moves it.
     own: Vec<[f64; 3]>,
     /// The track of its rotation, if that is one of four curves.
-    curves: Option<&'t Track>,
-    scaled: Option<&'t Track>,
+    curves: Option<&'t SamplerKeys>,
+    scaled: Option<&'t SamplerKeys>,
     turns: Vec<Matrix>,
     scale: Vec<[f64; 3]>,
     steps: bool,
@@ -150,7 +150,7 @@ impl<'t> Moving<'t> {
             None => vec![rest.scale],
         };
         let scaled = scaled.filter(|_| scale.len() > 1);
-        let steps = turned.is_some_and(Track::steps);
+        let steps = turned.is_some_and(SamplerKeys::steps);
         let translation = tracks.get(&Target::Translation(node));
         let own = translation.map_or_else(Vec::new, |track| vectors(&[0, 1, 2].map(|i| sampled(track, i, grid))));
         let curves = turned.filter(|track| track.is_cubic());
@@ -208,7 +208,7 @@ impl<'t> Moving<'t> {
 }
 
 /// The four curves of a quaternion. What carries the joint stands still, so it mixes them at every time alike.
-fn quaternion(track: &Track, base: &Base, grid: &Grid) -> Vec<(Kind, Values)> {
+fn quaternion(track: &SamplerKeys, base: &Base, grid: &Grid) -> Vec<(Kind, Values)> {
     const KINDS: [Kind; 4] = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquaternion, Kind::Zquaternion];
     let curves = [3, 0, 1, 2].map(|component| track.pieces(component, grid.first, grid.frame_time));
     let [x, y, z, w] = fk::quaternion(&base.turn);
@@ -231,7 +231,7 @@ fn quaternion(track: &Track, base: &Base, grid: &Grid) -> Vec<(Kind, Values)> {
     (0..4).map(channel).collect()
 }
 
-fn sampled(track: &Track, component: usize, grid: &Grid) -> Vec<f64> {
+fn sampled(track: &SamplerKeys, component: usize, grid: &Grid) -> Vec<f64> {
     sample_pieces(&track.pieces(component, grid.first, grid.frame_time), grid.frames)
 }
 

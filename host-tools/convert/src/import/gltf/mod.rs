@@ -10,8 +10,8 @@ mod joints;
 mod list;
 pub mod mesh;
 mod place;
+mod sampler;
 mod scalars;
-mod track;
 mod tree;
 
 use super::from_transforms::{self, Affine};
@@ -28,9 +28,9 @@ use gltf::json::Root;
 use gltf::json::animation::Property;
 use gltf::json::validation::Checked;
 pub use list::list;
+use sampler::SamplerKeys;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use track::Track;
 
 /// glTF's unit of length is the metre.
 const CM_PER_UNIT: f64 = 100.0;
@@ -144,7 +144,7 @@ enum Target {
 }
 
 /// Tracks of an animation by node and property.
-type Tracks = BTreeMap<Target, Track>;
+type Tracks = BTreeMap<Target, SamplerKeys>;
 
 fn tracks(file: &File, number: usize, notes: &mut Vec<Note>) -> Result<Tracks> {
     let animation = &file.root.animations[number];
@@ -159,7 +159,7 @@ fn tracks(file: &File, number: usize, notes: &mut Vec<Note>) -> Result<Tracks> {
             Checked::Valid(Property::MorphTargetWeights) => (Target::Weights(node), 1),
             Checked::Invalid => bail!(file.error(&format!("animations[{number}].channels[{index}]"), "unknown target path")),
         };
-        let track = Track::read(file, number, animation, channel.sampler.value(), components)?;
+        let track = SamplerKeys::read(file, number, animation, channel.sampler.value(), components)?;
         if tracks.insert(target, track).is_some() {
             let text = format!("animations[{number}].channels[{index}]: {target:?} has a channel already; the last one counts");
             notes.push(Note::warning(NoteKind::Joints, text));

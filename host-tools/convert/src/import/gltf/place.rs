@@ -4,7 +4,7 @@
 //! rotations above a node and A that of all its linear parts, its place in the rig is D t with D = transposed(Q) A, and below
 //! the node D becomes transposed(R) D R S. Without scales D is 1; a uniform one commutes with R.
 
-use super::track::unit;
+use super::sampler::unit;
 use crate::fk::{IDENTITY, Matrix, apply, from_quaternion, product, quaternion};
 use crate::import::from_transforms::Affine;
 use gltf::json::Node;

@@ -1,7 +1,7 @@
 //! Channels that move no joint: morph weights, and scales that change.
 
 use super::file::{File, one_line};
-use super::track::Track;
+use super::sampler::SamplerKeys;
 use super::{Target, Tracks, Values, joints};
 use crate::import::grid::Grid;
 use crate::keys::sample_pieces;
@@ -18,7 +18,7 @@ pub struct Weight {
 
 impl Weight {
     /// Component `component` of a track of the node called `node`; its full scale is at least `least`.
-    pub fn new(name: String, node: &str, track: &Track, component: usize, least: f64, grid: &Grid) -> Weight {
+    pub fn new(name: String, node: &str, track: &SamplerKeys, component: usize, least: f64, grid: &Grid) -> Weight {
         let pieces = track.pieces(component, grid.first, grid.frame_time);
         let values = sample_pieces(&pieces, grid.frames);
         let largest = values.iter().fold(least, |largest, value| largest.max(value.abs()));

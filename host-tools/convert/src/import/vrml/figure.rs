@@ -1,7 +1,7 @@
 //! The tree of what has a place, and where everything is at a time.
 
+use super::interpolator::{InterpolatorKeys, quaternion};
 use super::lexer::Words;
-use super::track::{Track, quaternion};
 use super::world::{World, children, is_joint, is_transform};
 use crate::fk::{Matrix, from_quaternion};
 use crate::import::from_transforms::{Affine, Role, UNMOVED, chained};
@@ -75,7 +75,7 @@ pub const SCALE: usize = 2;
 const CENTER: usize = 4;
 
 /// The tracks that move nodes, by node and index of [`FIELDS`].
-pub type Moves = HashMap<(usize, usize), Track>;
+pub type Moves = HashMap<(usize, usize), InterpolatorKeys>;
 
 /// The part that each stand has in the figure; `moved` tells nodes that anything moves.
 pub fn roles(world: &World, stands: &[Stand], moved: impl Fn(usize) -> bool) -> Vec<Role> {

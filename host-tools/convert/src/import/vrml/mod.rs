@@ -2,11 +2,11 @@
 //!
 //! The scene graph is evaluated on the frames, with centers, scales and their orientations; rotations become Euler angles.
 
-mod clock;
 mod figure;
+mod interpolator;
 mod lexer;
 mod parse;
-mod track;
+mod time_sensor;
 mod world;
 
 use super::from_transforms::{self, Figure, Node};
@@ -17,10 +17,10 @@ use crate::memory::Memory;
 use crate::motion::Scalar;
 use crate::note::{Note, NoteKind, Remedy};
 use anyhow::{Context, Result, anyhow, bail};
-use clock::{Clock, Tracks};
 use lexer::Words;
 use std::collections::HashSet;
 use std::path::Path;
+use time_sensor::{TimeSensor, Tracks};
 use world::{World, is_transform};
 
 /// Whether `head` begins a world.
@@ -34,9 +34,9 @@ pub fn read(path: &Path, options: &Request) -> Result<Source> {
     let place = || path.display().to_string();
     let bytes = options.read(path)?;
     let (words, world) = open(path, &bytes)?;
-    let clocks = clock::clocks(&world).with_context(place)?;
+    let clocks = time_sensor::clocks(&world).with_context(place)?;
     let chosen = chosen(&world, &clocks, options.animation.as_deref()).with_context(place)?;
-    let tracks = clock::tracks(&world, &chosen, &words)?;
+    let tracks = time_sensor::tracks(&world, &chosen, &words)?;
     if tracks.times().is_empty() {
         bail!("{}: the interpolators have no keys, so nothing moves", place());
     }
@@ -59,8 +59,8 @@ pub fn read(path: &Path, options: &Request) -> Result<Source> {
 pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
     let bytes = options.read(path)?;
     let (words, world) = open(path, &bytes)?;
-    let entry = |clock: &Clock| {
-        let tracks = clock::tracks(&world, &[clock], &words)?;
+    let entry = |clock: &TimeSensor| {
+        let tracks = time_sensor::tracks(&world, &[clock], &words)?;
         let name = world.nodes[clock.node].def.as_deref().map(one_line);
         if tracks.times().is_empty() {
             return Ok(Entry { name, frames: 0, fps: 0.0, tracks: 0 });
@@ -68,12 +68,12 @@ pub fn list(path: &Path, options: &Request) -> Result<Vec<Entry>> {
         let grid = frames(&tracks, clock, options.fps).with_context(|| path.display().to_string())?;
         Ok(Entry { name, frames: grid.frames, fps: 1.0 / grid.frame_time, tracks: tracks.times().len() })
     };
-    clock::clocks(&world).with_context(|| path.display().to_string())?.iter().map(entry).collect()
+    time_sensor::clocks(&world).with_context(|| path.display().to_string())?.iter().map(entry).collect()
 }
 
 /// Frames of a whole cycle: the figure holds its first and last key.
-fn frames(tracks: &Tracks, clock: &Clock, fps: Option<f64>) -> Result<Grid> {
-    grid::between(0.0, clock.seconds, fps, track::distance(&tracks.times(), clock.seconds))
+fn frames(tracks: &Tracks, clock: &TimeSensor, fps: Option<f64>) -> Result<Grid> {
+    grid::between(0.0, clock.seconds, fps, interpolator::distance(&tracks.times(), clock.seconds))
 }
 
 fn open<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<(Words<'a>, World)> {
@@ -89,7 +89,7 @@ fn open<'a>(path: &'a Path, bytes: &'a [u8]) -> Result<(Words<'a>, World)> {
 }
 
 /// The clock that the user names, by its sensor's name or by number from 0, or those with the longest cycle.
-fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Result<Vec<&'c Clock>> {
+fn chosen<'c>(world: &World, clocks: &'c [TimeSensor], wanted: Option<&str>) -> Result<Vec<&'c TimeSensor>> {
     let longest = clocks.iter().map(|clock| clock.seconds).fold(0.0, f64::max);
     if clocks.is_empty() {
         bail!("no TimeSensor moves anything through an interpolator");
@@ -102,7 +102,7 @@ fn chosen<'c>(world: &World, clocks: &'c [Clock], wanted: Option<&str>) -> Resul
     })
 }
 
-fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: &Words, memory: Memory) -> Result<Figure> {
+fn motion(world: &World, clocks: &[TimeSensor], tracks: &Tracks, grid: &Grid, words: &Words, memory: Memory) -> Result<Figure> {
     let stands = figure::stands(world, words)?;
     // The figure is the same for every clock.
     let drives = clocks.iter().flat_map(|clock| &clock.drives);
@@ -128,7 +128,7 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
         let worlds = figure::evaluate(&stands, &tracks.moves, seconds(frame));
         joints.iter_mut().zip(&worlds[worlds.len() - kept.len()..]).for_each(|(joint, world)| joint.worlds.push(*world));
     }
-    let scalar = |(name, track): &(String, track::Track)| {
+    let scalar = |(name, track): &(String, interpolator::InterpolatorKeys)| {
         let values: Vec<f64> = (0..grid.frames).map(|frame| track.at(seconds(frame))[0]).collect();
         let full_scale = values.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
         (Scalar { name: name.clone(), full_scale }, values)
@@ -137,7 +137,7 @@ fn motion(world: &World, clocks: &[Clock], tracks: &Tracks, grid: &Grid, words: 
 }
 
 /// Which clock runs, and what is not used.
-fn doubts(world: &World, clocks: &[Clock], chosen: &[&Clock]) -> Vec<Note> {
+fn doubts(world: &World, clocks: &[TimeSensor], chosen: &[&TimeSensor]) -> Vec<Note> {
     let mut doubts = Vec::new();
     if clocks.len() > chosen.len() {
         let (count, first) = (clocks.len(), chosen[0]);

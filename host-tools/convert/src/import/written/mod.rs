@@ -53,7 +53,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Reads a text of lines.
-pub trait Reader: Sized {
+pub trait LineParser: Sized {
     /// The first line: a word and the version that this reader knows.
     const FIRST: [&'static str; 2];
 

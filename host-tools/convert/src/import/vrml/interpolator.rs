@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 
 /// A track's keys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Track {
+pub struct InterpolatorKeys {
     /// Seconds, ascending; of two equal ones the later counts from there on.
     pub times: Vec<f64>,
     values: Vec<f64>,
@@ -24,9 +24,9 @@ pub fn width(kind: &str) -> Option<usize> {
     }
 }
 
-impl Track {
+impl InterpolatorKeys {
     /// Of the interpolator `node`, in a cycle of `seconds`; `None` if it has no keys.
-    pub fn read(world: &World, node: usize, seconds: f64, words: &Words) -> Result<Option<Track>> {
+    pub fn read(world: &World, node: usize, seconds: f64, words: &Words) -> Result<Option<InterpolatorKeys>> {
         let Some(width) = width(world.kind(node)) else { return Ok(None) };
         let (Some(keys), Some(values)) = (world.field(node, "key"), world.field(node, "keyValue")) else { return Ok(None) };
         let count = keys.numbers.len();
@@ -44,7 +44,7 @@ impl Track {
         }
         let times = keys.numbers.iter().map(|key| key * seconds).collect();
         let values = if width == 4 { quaternions(&values.numbers) } else { values.numbers.clone() };
-        Ok(Some(Track { times, values, width }))
+        Ok(Some(InterpolatorKeys { times, values, width }))
     }
 
     /// How many numbers it holds.

@@ -1,8 +1,8 @@
 //! Time sensors, and what they drive through interpolators.
 
 use super::figure::{FIELDS, Moves};
+use super::interpolator::{InterpolatorKeys, width};
 use super::lexer::Words;
-use super::track::{Track, width};
 use super::world::{World, is_transform};
 use anyhow::{Result, bail, ensure};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -14,7 +14,7 @@ const MOST_NUMBERS: usize = 1 << 24;
 
 /// A time sensor that drives interpolators.
 #[derive(Clone, Debug)]
-pub struct Clock {
+pub struct TimeSensor {
     /// Its node.
     pub node: usize,
     /// Seconds of a cycle.
@@ -51,7 +51,7 @@ impl Drive {
 }
 
 /// The time sensors that drive anything, in the file's order.
-pub fn clocks(world: &World) -> Result<Vec<Clock>> {
+pub fn clocks(world: &World) -> Result<Vec<TimeSensor>> {
     let found = |(node, name): &(Option<usize>, String)| node.or_else(|| world.names.get(name).copied());
     let known = world.routes.iter();
     let known = known.filter_map(|route| Some((found(&route.source)?, found(&route.target)?, route.event.as_str())));
@@ -64,7 +64,7 @@ pub fn clocks(world: &World) -> Result<Vec<Clock>> {
             targets.entry(source).or_insert_with(Vec::new).push(drive);
         }
     }
-    let mut clocks: BTreeMap<usize, Clock> = BTreeMap::new();
+    let mut clocks: BTreeMap<usize, TimeSensor> = BTreeMap::new();
     for &(source, target, event) in &routes {
         if world.kind(source) != "TimeSensor" || !event.ends_with("fraction") {
             continue;
@@ -75,7 +75,7 @@ pub fn clocks(world: &World) -> Result<Vec<Clock>> {
         let right = given.filter(|&seconds| seconds > 0.0);
         let wrong = field.filter(|_| right.is_none()).map(|_| given.map_or("no number".into(), |number| number.to_string()));
         let seconds = right.unwrap_or(1.0);
-        let clock = clocks.entry(source).or_insert_with(|| Clock { node: source, seconds, wrong, drives: Vec::new() });
+        let clock = clocks.entry(source).or_insert_with(|| TimeSensor { node: source, seconds, wrong, drives: Vec::new() });
         count += drives.len();
         ensure!(count <= MOST_DRIVES, "time sensors drive more than {MOST_DRIVES} fields");
         clock.drives.extend(drives.iter().filter(|drive| drive.place(world).is_some() || drive.scalar(world)).cloned());
@@ -89,16 +89,16 @@ pub struct Tracks {
     /// Tracks of places, rotations and scales.
     pub moves: Moves,
     /// Tracks of other fields, with their names.
-    pub scalars: Vec<(String, Track)>,
+    pub scalars: Vec<(String, InterpolatorKeys)>,
 }
 
 /// The tracks that these clocks drive.
-pub fn tracks(world: &World, clocks: &[&Clock], words: &Words) -> Result<Tracks> {
+pub fn tracks(world: &World, clocks: &[&TimeSensor], words: &Words) -> Result<Tracks> {
     let mut tracks = Tracks::default();
     let mut numbers = 0;
     for clock in clocks {
         for drive in &clock.drives {
-            let Some(track) = Track::read(world, drive.interpolator, clock.seconds, words)? else { continue };
+            let Some(track) = InterpolatorKeys::read(world, drive.interpolator, clock.seconds, words)? else { continue };
             numbers += track.numbers();
             if numbers > MOST_NUMBERS {
                 bail!(words.error_at(world.nodes[clock.node].line, format!("it drives more than {MOST_NUMBERS} numbers")));

@@ -9,7 +9,7 @@ use gltf::json::validation::Checked;
 
 /// The keys of one sampler.
 #[derive(Clone, Debug)]
-pub struct Track {
+pub struct SamplerKeys {
     /// Seconds, strictly ascending, at least one.
     pub times: Vec<f64>,
     interpolation: Interpolation,
@@ -19,9 +19,9 @@ pub struct Track {
     values: Vec<f64>,
 }
 
-impl Track {
+impl SamplerKeys {
     /// The sampler `sampler` of animation `number`: vectors of 3 or 4 numbers, or, for 1, as many weights as there are.
-    pub fn read(file: &File, number: usize, animation: &Animation, sampler: usize, components: usize) -> Result<Track> {
+    pub fn read(file: &File, number: usize, animation: &Animation, sampler: usize, components: usize) -> Result<SamplerKeys> {
         let at = format!("animations[{number}].samplers[{sampler}]");
         let error = |message: String| file.error(&at, message);
         let Some(entry) = animation.samplers.get(sampler) else { return Err(error("no such sampler".into())) };
@@ -40,7 +40,7 @@ impl Track {
             let keys = times.len();
             return Err(error(format!("{} output numbers do not make {interpolation:?} values for {keys} keys", values.len())));
         }
-        Ok(Track { times, interpolation, components, values })
+        Ok(SamplerKeys { times, interpolation, components, values })
     }
 
     /// Whether the track jumps from key to key.
@@ -135,8 +135,8 @@ fn slerp(a: [f64; 4], b: [f64; 4], part: f64) -> [f64; 4] {
 mod tests {
     use super::*;
 
-    fn track(interpolation: Interpolation, times: &[f64], components: usize, values: &[f64]) -> Track {
-        Track { times: times.to_vec(), interpolation, components, values: values.to_vec() }
+    fn track(interpolation: Interpolation, times: &[f64], components: usize, values: &[f64]) -> SamplerKeys {
+        SamplerKeys { times: times.to_vec(), interpolation, components, values: values.to_vec() }
     }
 
     #[test]

@@ -7,7 +7,7 @@ const SPEEDS: std::ops::RangeInclusive<i32> = -3..=3;
 
 /// A clip's own time, driven by the time since the program began. Counts on over the clip's end: loops are the caller's.
 #[derive(Clone, Debug)]
-pub struct Clock {
+pub struct PlayTime {
     /// Nanoseconds of a frame.
     frame_time: i128,
     /// Speed is 2 to this power.
@@ -18,10 +18,10 @@ pub struct Clock {
     anchor: (i128, Duration),
 }
 
-impl Clock {
+impl PlayTime {
     /// Begins at frame 0, at the clip's own rate.
-    pub fn new(frame_time_ns: u32, now: Duration) -> Clock {
-        Clock { frame_time: i128::from(frame_time_ns.max(1)), speed: 0, reversed: false, paused: false, anchor: (0, now) }
+    pub fn new(frame_time_ns: u32, now: Duration) -> PlayTime {
+        PlayTime { frame_time: i128::from(frame_time_ns.max(1)), speed: 0, reversed: false, paused: false, anchor: (0, now) }
     }
 
     /// The same for another clip: from its begin, at the same speed.
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_frame_is_due_by_the_clips_rate_however_often_it_is_asked() {
-        let mut clock = Clock::new(FRAME, ms(5));
+        let mut clock = PlayTime::new(FRAME, ms(5));
         assert_eq!([5, 13, 14, 1005].map(|now| clock.frame(ms(now))), [0, 0, 1, 120]);
         // An hour of questions and of changes that cancel each other: not a frame off.
         for second in 1..3600 {
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn the_next_frame_is_due_when_it_says_so() {
         for (speed, reversed) in [(0, false), (3, false), (-3, false), (0, true), (-2, true), (2, true)] {
-            let mut clock = Clock::new(FRAME, ms(0));
+            let mut clock = PlayTime::new(FRAME, ms(0));
             clock.change_speed(speed, ms(0));
             if reversed {
                 clock.reverse(ms(0));
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn pausing_stepping_and_reversing_keep_the_place() {
-        let mut clock = Clock::new(10_000_000, ms(0));
+        let mut clock = PlayTime::new(10_000_000, ms(0));
         clock.pause(ms(25));
         assert_eq!((clock.frame(ms(900)), clock.until_next(ms(900))), (2, None));
         clock.step(-1, ms(900));
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn speed_has_ends() {
-        let mut clock = Clock::new(FRAME, ms(0));
+        let mut clock = PlayTime::new(FRAME, ms(0));
         assert_eq!(clock.speed(), "x1");
         (0..9).for_each(|_| clock.change_speed(1, ms(0)));
         assert_eq!(clock.speed(), "x8");
