@@ -17,7 +17,6 @@ mod panels;
 mod pico;
 mod pico_update;
 mod qemu;
-mod shape;
 mod sizes;
 mod soak;
 mod steered;

@@ -3,6 +3,7 @@
 pub mod browser;
 pub mod clip;
 pub mod core_library;
+pub mod crates;
 pub mod npm;
 pub mod packages;
 pub mod paths;
@@ -10,3 +11,4 @@ pub mod setup;
 pub mod shape;
 pub mod steps;
 pub mod test_programs;
+pub mod tree;

@@ -1,7 +1,10 @@
-//! `cargo xtask shape`: lines that boards repeat, and circles of imports.
+//! `cargo xtask shape`: the crates and what they need, lines that boards repeat, and circles of imports.
 //!
 //! ```text
 //! $ cargo xtask shape
+//! decoder             ->  nothing
+//! ...
+//! crates that need themselves: none
 //! equal lines among the boards: 2 places of 6 lines or more
 //!   9 lines: blackpill/src/board.rs:12 and esp32c3/src/board.rs:20
 //!   ...
@@ -17,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use crate::paths;
+use crate::{crates, paths};
 
 /// Equal lines of code that make a repetition.
 pub const LINES: usize = 6;
@@ -34,8 +37,13 @@ pub struct Repetition {
     pub lines: usize,
 }
 
-/// Prints repetitions and circles.
+/// Prints the crates, repetitions and circles.
 pub fn print() -> Result<()> {
+    let crates = crates::all()?;
+    print!("{}", crates::drawn(&crates));
+    let found = crates::circles(&crates);
+    println!("crates that need themselves: {}", if found.is_empty() { "none".into() } else { found.join(", ") });
+    crates::forbidden(&crates).iter().for_each(|arrow| println!("must not be: {arrow}"));
     let found = among_boards()?;
     println!("equal lines among the boards: {} places of {LINES} lines or more", found.len());
     for Repetition { places: [one, other], lines } in &found {

@@ -43,6 +43,8 @@ pub struct MemoryNeeds {
 pub struct Size {
     /// The end of its name: `MOVING` of `WALK_MOVING`.
     pub name: &'static str,
+    /// The name in reports: `moving`.
+    pub field: &'static str,
     /// The number.
     pub value: usize,
     /// What it is, as a sentence.
@@ -79,17 +81,19 @@ impl MemoryNeeds {
 
     /// All numbers with their names in source text, which are the same in C and in Rust.
     pub fn sizes(&self) -> [Size; 4] {
-        let size = |name, value, meaning| Size { name, value, meaning };
+        let size = |name, field, value, meaning| Size { name, field, value, meaning };
         [
-            size("CHANNELS", self.channels, "Values of a pose."),
-            size("MOVING", self.moving, "Channel states that a player needs."),
+            size("CHANNELS", "channels", self.channels, "Values of a pose."),
+            size("MOVING", "moving", self.moving, "Channel states that a player needs."),
             size(
                 "FIGURE_JOINTS",
+                "figure_joints",
                 self.figure_joints,
                 "Joints of the figure: `N` of a `pantin_figure::FigureRenderer`. 0 if the clip has no figure.",
             ),
             size(
                 "WORKSPACE",
+                "workspace",
                 self.workspace,
                 "Elements of the workspace that sets the figure up: one `pantin_figure::JointInfo` for each joint of the rig.",
             ),

@@ -1,5 +1,6 @@
 //! `pantin pack`, `pantin unpack` and `pantin list`: many clips of one rig in one file.
 
+use super::info::memory_fields;
 use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, clean, note, outln, refuse_foreign};
@@ -7,6 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use pantin::{Bank, BankEntry};
 use pantin_animator::machine::{Machine, Table};
 use pantin_convert::bank::{self, CheckedRig, Named};
+use pantin_convert::facts::MemoryNeeds;
 use pantin_pictures::machine::playback::has_machine;
 use serde_json::json;
 use std::collections::HashMap;
@@ -240,6 +242,7 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
         let clip = bank.open(&entry).with_context(|| format!("{}: clip {}", path.display(), shown(&entry)))?;
         rows.push((entry, clip));
     }
+    let memory = MemoryNeeds::of_bank(&bank).with_context(|| path.display().to_string())?;
     let fps = |clip: &pantin::Clip| (1e11 / f64::from(clip.frame_time_ns())).round() / 100.0;
     let seconds = |clip: &pantin::Clip| (clip.duration_ns() as f64 / 1e6).round() / 1000.0;
     if output::is_json() {
@@ -256,6 +259,9 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
         };
         let clips: Vec<_> = rows.iter().map(object).collect();
         let mut object = json!({"clips": clips, "rig_bytes": bank.rig_bytes().len(), "file_bytes": bytes.len()});
+        for (name, value) in memory_fields(&memory) {
+            object[name] = value;
+        }
         if let Some(table) = machine(path, bytes)? {
             object["machine"] = facts_of(&table, &rows);
         }
@@ -270,6 +276,9 @@ pub fn print(path: &Path, bytes: &[u8]) -> Result<()> {
         outln!("{name:wide$} {frames:7} {:7} {:9.3} {events:7} {len:9}{looped}", fps(clip), seconds(clip))?;
     }
     outln!("{} clips, {} bytes, of which {} are the rig", rows.len(), bytes.len(), bank.rig_bytes().len())?;
+    let most: Vec<String> =
+        memory_fields(&memory).iter().map(|(name, value)| format!("{} {value}", name.replace('_', " "))).collect();
+    outln!("the most that a clip needs: {}", most.join(", "))?;
     if let Some(table) = machine(path, bytes)? {
         let facts = facts_of(&table, &rows);
         let words = |list: &serde_json::Value| {

@@ -2,10 +2,11 @@
 
 use super::{Files, default_output, format_of};
 use crate::memory;
+use crate::open::is_bank;
 use crate::output::{self, Staged, Wanted, note, refuse_foreign};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
-use pantin::Clip;
+use pantin::{Bank, Clip};
 use pantin_convert::expand::{Expanded, gather};
 use pantin_convert::export::{self, bvh::Columns};
 use pantin_convert::motion::{Event, Frames, Motion, Rig};
@@ -13,11 +14,12 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Turn a clip back into per-frame motion, or into source text for firmware.
+/// Turn a clip back into per-frame motion, or a clip or a bank into source text for firmware.
 ///
 /// The output's extension selects the format: .bvh has the same joints and frames, and three rotations a joint; .glb is a
 /// tree of nodes, with scalars as morph weights; .csv has one row per frame with the time in seconds and
-/// all channels' values; .h and .rs hold the clip's bytes, their length, the frame rate and the channels' names.
+/// all channels' values; .h and .rs hold the bytes of the clip or the bank, names, and the sizes of the memory that it takes: in Rust as a
+/// type, `WalkRoom`.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin expand walk.ptn -o walk.bvh
@@ -26,9 +28,10 @@ use std::path::{Path, PathBuf};
   pantin expand walk.ptn -o walk.glb
   pantin expand face.ptn -o face.csv
   pantin expand walk.ptn -o walk.h
-  pantin expand walk.ptn -o src/walk.rs")]
+  pantin expand walk.ptn -o src/walk.rs
+  pantin expand moves.ptb -o src/moves.rs")]
 pub struct Arguments {
-    /// The clip
+    /// The clip, or the bank for .h and .rs
     input: PathBuf,
     /// The file to write: .bvh, .glb (glTF), .csv, .h or .rs [default: the clip's name, ending in .bvh, or in .csv without joints;
     /// a file that is there already is kept]
@@ -65,6 +68,12 @@ impl Arguments {
         refuse_foreign(output, Wanted::Motion)
     }
 
+    /// What names in source text are made of: the output's name, or the input's where standard output has none.
+    fn stem(&self, output: &Path) -> String {
+        let named = if output.as_os_str() == "-" { &self.input } else { output };
+        named.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// The name of an output that the user does not name.
     fn default_output(&self, clip: &Clip) -> Result<PathBuf> {
         let format = match self.format {
@@ -80,6 +89,38 @@ impl Arguments {
         self.check(&output)?;
         Ok(output)
     }
+}
+
+/// Writes a bank as source text: other files hold one motion.
+fn bank(arguments: &Arguments, bytes: &[u8]) -> Result<()> {
+    let place = || arguments.input.display().to_string();
+    ensure!(arguments.rig.is_none(), "{}: --rig is for clips without one, and a bank holds its rig", place());
+    let format = match (&arguments.output, arguments.format) {
+        (Some(output), format) => format_of(output, format)?,
+        (None, format) => format,
+    };
+    let (extension, write): (&str, fn(&Bank, &[u8], &str) -> Result<String>) = match format {
+        Some(Format::H) => ("h", export::source::c_header_of_bank),
+        Some(Format::Rs) => ("rs", export::source::rust_module_of_bank),
+        _ => bail!(
+            "{0}: a bank of several clips becomes .h or .rs alone; `pantin unpack {0} -o FOLDER` writes its clips as files",
+            place()
+        ),
+    };
+    let output = match &arguments.output {
+        Some(output) => output.clone(),
+        None => default_output(&arguments.input, extension)?,
+    };
+    arguments.check(&output)?;
+    output::check_size(&output, 3 * bytes.len() as u64)?;
+    let bank = Bank::new_checked(bytes).with_context(place)?;
+    let text = write(&bank, bytes, &arguments.stem(&output)).with_context(place)?;
+    output::write_whole(&output, text.as_bytes())?;
+    output::report(json!({"clips": bank.len()}));
+    if arguments.output.is_none() {
+        note!("{}: written", output.display());
+    }
+    Ok(())
 }
 
 impl Format {
@@ -137,6 +178,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let place = || arguments.input.display().to_string();
+    if is_bank(files.clip()) {
+        return bank(arguments, files.clip());
+    }
     let clip = files.open_alone().with_context(place)?;
     let output = &match &arguments.output {
         Some(output) => output.clone(),
@@ -145,9 +189,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let Some(format) = format_of(output, arguments.format)? else {
         bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs, or --format", output.display());
     };
-    // Standard output has no name.
-    let named = if output.as_os_str() == "-" { &arguments.input } else { output };
-    let stem = named.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = arguments.stem(output);
     let expanded = Expanded::new(&clip);
     let rig = expanded.rig();
     // A digit and a comma or a space a value; four bytes a number in glTF; as text, a digit and a comma a byte.

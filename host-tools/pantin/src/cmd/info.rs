@@ -67,9 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("looped", json!(clip.looped())),
         ("joints", json!(rig.joints().filter(|joint| !joint.end_site).count())),
         ("end_sites", json!(rig.joints().filter(|joint| joint.end_site).count())),
-        ("channels", json!(rig.channels())),
         ("scalar_channels", json!(rig.channels() - rig.joint_channels())),
-        ("moving_channels", json!(clip.moving())),
         ("exponential_joints", json!((0..rig.joint_count()).filter(|&joint| clip.is_exponential(joint)).count())),
         ("events", json!(clip.event_count())),
         ("up", json!(up::text(rig.up()))),
@@ -87,15 +85,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         ("suggested_index_seconds", json!(spacing)),
         ("event_names_bytes", json!(clip.event_names_len())),
         ("per_frame_bytes", json!(clip.frames() as usize * rig.channels() * 2)),
-        ("player_channel_states", json!(memory.moving)),
-        ("player_pose_values", json!(memory.channels)),
-        ("player_bytes", json!(memory.player_bytes())),
-        ("figure_joints", json!(memory.figure_joints)),
-        ("figure_workspace", json!(memory.workspace)),
-        ("figure_workspace_bytes", json!(memory.workspace_bytes())),
     ];
+    let fields = fields.into_iter().chain(memory_fields(&memory));
     let (built_in, by_update) = boards(&clip, &memory, file);
-    let fields = fields.into_iter().chain([("boards", json!(built_in)), ("boards_by_update", json!(by_update))]);
+    let fields = fields.chain([("boards", json!(built_in)), ("boards_by_update", json!(by_update))]);
     let fields: Vec<(&str, Value)> = fields.collect();
     let compared = arguments.against.as_deref().map(|motion| against::errors(&clip, motion)).transpose()?;
     let channels = facts::channels(&clip)?;
@@ -156,6 +149,13 @@ fn boards(clip: &Clip, memory: &MemoryNeeds, file: usize) -> (Vec<&'static str>,
     let keeps = |region: &&Region| plays(region) && clip.rig_len() > 0 && file + BLOCK_BYTES <= region.slot as usize;
     let names = |fits: &dyn Fn(&&Region) -> bool| REGIONS.iter().filter(fits).map(|region| region.board).collect();
     (names(&plays), names(&keeps))
+}
+
+/// What a program lends to play and draw: each number under the name that it has in source text, in lower case.
+pub(super) fn memory_fields(memory: &MemoryNeeds) -> Vec<(&'static str, Value)> {
+    let sizes = memory.sizes().into_iter().map(|size| (size.field, json!(size.value)));
+    let bytes = [("player_bytes", json!(memory.player_bytes())), ("workspace_bytes", json!(memory.workspace_bytes()))];
+    sizes.chain(bytes).collect()
 }
 
 /// Joints and scalars with how they are coded; `channels` are the pose's.

@@ -92,6 +92,32 @@ fn clips_of_a_bank_play_as_their_files_and_come_out_as_they_went_in() {
 }
 
 #[test]
+fn a_bank_becomes_source_text_with_the_sizes_that_info_prints() {
+    let cuts = cuts();
+    let folder = cuts.path();
+    succeeds(folder, &["pack", "begin.ptn", "middle.ptn", "end.ptn", "-o", "moves.ptb"]);
+    let json: serde_json::Value = serde_json::from_str(&succeeds(folder, &["info", "moves.ptb", "--json"])).unwrap();
+    let [moving, channels, joints, workspace] =
+        ["moving", "channels", "figure_joints", "workspace"].map(|name| json[name].as_u64().expect(name));
+    assert!(succeeds(folder, &["info", "moves.ptb"]).contains(&format!("moving {moving}, ")));
+    succeeds(folder, &["expand", "moves.ptb", "-o", "moves.rs"]);
+    let text = std::fs::read_to_string(folder.join("moves.rs")).unwrap();
+    for wanted in [
+        format!("pub const MOVES_MOVING: usize = {moving};"),
+        format!("pub const MOVES_CHANNELS: usize = {channels};"),
+        format!("pub const MOVES_FIGURE_JOINTS: usize = {joints};"),
+        format!("pub const MOVES_WORKSPACE: usize = {workspace};"),
+        "pub type MovesRoom = pantin::Room<MOVES_MOVING, MOVES_CHANNELS>;".into(),
+    ] {
+        assert!(text.contains(&wanted), "{wanted}");
+    }
+    succeeds(folder, &["expand", "moves.ptb", "--format", "h"]);
+    let header = std::fs::read_to_string(folder.join("moves.h")).unwrap();
+    assert!(header.contains(&format!("#define BANK_MOVES_MOVING {moving}")), "{header:.600}");
+    assert!(refusal(folder, &["expand", "moves.ptb"]).contains("becomes .h or .rs alone"));
+}
+
+#[test]
 fn packing_refuses_what_is_no_bank_and_leaves_the_files_alone() {
     let cuts = cuts();
     let folder = cuts.path();

@@ -44,14 +44,9 @@ fn joints_are_named_with_how_they_are_coded() {
 #[test]
 fn figures_are_told_apart_from_rigs_and_seconds_from_frames() {
     let json = info_json("motions/walk.ptn");
-    assert_eq!(
-        [&json["joints"], &json["end_sites"], &json["figure_workspace"]].map(|value| value.as_u64().unwrap()),
-        [22, 7, 29]
-    );
+    assert_eq!([&json["joints"], &json["end_sites"], &json["workspace"]].map(|value| value.as_u64().unwrap()), [22, 7, 29]);
     assert_eq!(json["seconds"].as_f64().unwrap(), 1.333);
-    assert_eq!(json["player_channel_states"], json["moving_channels"]);
-    assert_eq!(json["player_pose_values"], json["channels"]);
-    let bytes = 20 * json["moving_channels"].as_u64().unwrap() + 4 * json["channels"].as_u64().unwrap();
+    let bytes = 20 * json["moving"].as_u64().unwrap() + 4 * json["channels"].as_u64().unwrap();
     assert_eq!(json["player_bytes"], bytes);
 }
 
@@ -88,7 +83,7 @@ fn channels_that_follow_others_are_reported_and_a_clip_without_joints_has_no_fig
     let text = info("tests/vectors/followers.ptn", &[]);
     assert!(text.contains(&format!("follows channel {}", follower["leader"])), "{text}");
     let face = info_json("motions/face/joy.ptn");
-    assert_eq!((&face["figure_joints"], &face["figure_workspace"]), (&Value::from(0), &Value::from(0)));
+    assert_eq!((&face["figure_joints"], &face["workspace"]), (&Value::from(0), &Value::from(0)));
     assert_eq!(face["rig"]["scalars"].as_array().unwrap().len() as u64, face["scalar_channels"].as_u64().unwrap());
 }
 

@@ -99,7 +99,7 @@ impl Tool {
         Ok(Info {
             frames: number("frames")?,
             fps: number("fps")?,
-            moving: number("moving_channels")?,
+            moving: number("moving")?,
             motion_bytes: number("motion_bytes")?,
             file_bytes: clip.metadata().with_context(|| clip.display().to_string())?.len() as f64,
         })
