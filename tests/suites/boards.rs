@@ -1,4 +1,4 @@
-//! What `cargo xtask test --boards` runs: the core of the Pico 2, a Cortex-M33, shows in QEMU what the host shows, and so does the Nucleo's image in
+//! Boards and images that `cargo xtask test --boards` alone runs: the core of the Pico 2, a Cortex-M33, shows in QEMU what the host shows, and so does the Nucleo's image in
 //! Unicorn; the ESP32-C3 maps its flash as it must; a face speaks a sentence on an OLED and on a round display; an image that `cargo xtask images`
 //! gives away has the same bytes each time.
 

@@ -26,7 +26,7 @@ const LIST: [(&str, Place, &str); 28] = [
     (
         "test",
         Place::Here(test::run),
-        "Runs every check and test; --host-only leaves out QEMU and Chromium, --bindings runs those of other languages",
+        "Runs what belongs before a commit; --boards, --bindings, --web, --packages run other groups, --all everything",
     ),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("bindings", COMMANDS, "Tests the decoder in C with compilers and emulators; `test --bindings` is the same"),

@@ -1,7 +1,7 @@
 //! The packages of the firmware workspace: those for a board name their targets, the others run on the host too.
 //!
-//! A board's `Cargo.toml` says `[package.metadata.firmware]` and `targets = ["thumbv7m-none-eabi"]`; with `apart = true`, `cargo xtask test`
-//! leaves it to `cargo xtask test --boards`.
+//! A board's `Cargo.toml` says `[package.metadata.firmware]` and `targets = ["thumbv7m-none-eabi"]`; with `daily = true` it is the board of
+//! its architecture that `cargo xtask test` builds and emulates; all others are for `cargo xtask test --boards`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -20,8 +20,8 @@ pub struct Package {
     pub name: String,
     /// The targets it is built for; none for a library that its tests run on the host.
     pub targets: Vec<String>,
-    /// Whether a CI job of its own builds it: the tests have no time for it.
-    pub apart: bool,
+    /// Whether `cargo xtask test` without options builds it.
+    pub daily: bool,
     /// Its programs.
     pub programs: Vec<String>,
     /// Those of its features that make another image.
@@ -90,7 +90,7 @@ fn package(package: &Value) -> Package {
     Package {
         name: text("name"),
         targets: strings(&package["metadata"]["firmware"]["targets"]).map(String::from).collect(),
-        apart: package["metadata"]["firmware"]["apart"].as_bool().unwrap_or_default(),
+        daily: package["metadata"]["firmware"]["daily"].as_bool().unwrap_or_default(),
         programs: programs.filter_map(|target| target["name"].as_str()).map(String::from).collect(),
         features: MEANT.iter().filter(|feature| has(feature)).map(|feature| (*feature).to_owned()).collect(),
         folder: manifest.parent().map(PathBuf::from).unwrap_or_default(),

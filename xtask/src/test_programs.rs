@@ -11,7 +11,19 @@ use crate::paths;
 /// The variable that names the host tool for the tests: by itself it would be compiled again, with its own packages' features only.
 pub const HOST_TOOL: &str = "PANTIN_TOOL";
 
+/// What one build of the workspace's tests makes.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// The test programs.
+    pub programs: Vec<TestProgram>,
+    /// The host tool.
+    pub host_tool: Option<PathBuf>,
+    /// The program of most commands of `cargo xtask`.
+    commands: Option<PathBuf>,
+}
+
 /// A test program.
+#[derive(Clone, Debug)]
 pub struct TestProgram {
     /// Its package.
     pub package: String,
@@ -21,12 +33,27 @@ pub struct TestProgram {
     pub file: PathBuf,
     /// Its package's folder, in which it runs.
     pub folder: PathBuf,
-    /// The host tool, which is built with the tests.
-    pub host_tool: Option<PathBuf>,
+}
+
+impl Built {
+    /// A test program by its package and name.
+    pub fn program(&self, package: &str, name: &str) -> Option<&TestProgram> {
+        self.programs.iter().find(|program| program.package == package && program.name == name)
+    }
+
+    /// Runs a command of `cargo xtask` with the program that was built with the tests: `cargo xtask` would compile it again, with its own packages'
+    /// features only.
+    pub fn xtask(&self, command: &str) -> Result<()> {
+        let program = self.commands.as_ref().context("xtask-commands was not built with the tests")?;
+        let mut process = Command::new(program);
+        process.arg(command).current_dir(paths::root()).envs(self.host_tool.iter().map(|tool| (HOST_TOOL, tool)));
+        ensure!(process.status().with_context(|| format!("cannot start {command}"))?.success(), "{command}");
+        Ok(())
+    }
 }
 
 /// Builds all of them, with the features of all packages together: what they share is compiled once.
-pub fn build() -> Result<Vec<TestProgram>> {
+pub fn build() -> Result<Built> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     cargo.args(["test", "--workspace", "--no-run", "--message-format=json-render-diagnostics"]);
     let output = cargo.current_dir(paths::root()).stderr(Stdio::inherit()).output().context("cannot start cargo")?;
@@ -34,15 +61,23 @@ pub fn build() -> Result<Vec<TestProgram>> {
     let messages = String::from_utf8_lossy(&output.stdout);
     let messages = messages.lines().map(serde_json::from_str).collect::<Result<Vec<Value>, _>>();
     let messages = messages.context("cargo's messages are not JSON")?;
-    let tool = messages.iter().find(|message| {
-        message["target"]["name"] == "pantin" && message["target"]["kind"][0] == "bin" && message["profile"]["test"] == false
-    });
-    let tool = tool.and_then(|message| message["executable"].as_str()).map(PathBuf::from);
-    let programs = messages.iter().map(|message| program(message, &tool)).collect::<Result<Vec<_>>>()?;
-    Ok(programs.into_iter().flatten().collect())
+    let programs = messages.iter().map(test_program).collect::<Result<Vec<_>>>()?;
+    Ok(Built {
+        programs: programs.into_iter().flatten().collect(),
+        host_tool: program(&messages, "pantin"),
+        commands: program(&messages, "xtask-commands"),
+    })
 }
 
-fn program(message: &Value, host_tool: &Option<PathBuf>) -> Result<Option<TestProgram>> {
+/// A program that integration tests run.
+fn program(messages: &[Value], name: &str) -> Option<PathBuf> {
+    let is_it = |message: &&Value| {
+        message["target"]["name"] == name && message["target"]["kind"][0] == "bin" && message["profile"]["test"] == false
+    };
+    messages.iter().find(is_it)?["executable"].as_str().map(PathBuf::from)
+}
+
+fn test_program(message: &Value) -> Result<Option<TestProgram>> {
     let (Some(file), Some(true)) = (message["executable"].as_str(), message["profile"]["test"].as_bool()) else {
         return Ok(None);
     };
@@ -53,5 +88,5 @@ fn program(message: &Value, host_tool: &Option<PathBuf>) -> Result<Option<TestPr
     let (place, rest) = package.rsplit_once('#').unwrap_or(("", package));
     let package = rest.split_once('@').map_or_else(|| place.rsplit('/').next().unwrap_or(rest), |(name, _)| name);
     let name = message["target"]["name"].as_str().context("cargo names no target")?;
-    Ok(Some(TestProgram { package: package.into(), name: name.into(), file: file.into(), folder, host_tool: host_tool.clone() }))
+    Ok(Some(TestProgram { package: package.into(), name: name.into(), file: file.into(), folder }))
 }

@@ -81,7 +81,7 @@ mod tests {
             targets: strings(&["thumbv6m-none-eabi", "riscv32imac"]),
             programs: strings(&["pico", "servo"]),
             features: strings(&["face"]),
-            apart: false,
+            daily: false,
             folder: "firmware/boards/pico".into(),
             version: "0.1.0".into(),
             rust_version: "1.90".into(),

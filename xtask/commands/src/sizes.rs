@@ -1,4 +1,4 @@
-//! `cargo xtask sizes [--boards] [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps, which documents say too.
+//! `cargo xtask sizes [BOARD...] [--update]`: flash, RAM and stack of every image, against those that `tests/sizes.txt` keeps, which documents say too.
 //!
 //! ```text
 //! $ cargo xtask sizes
@@ -28,12 +28,11 @@ use xtask::steps::say;
 /// each other recursively count once. This is an upper limit of what a run uses, except that recursion and interrupts are not included.
 #[derive(Args)]
 pub struct Sizing {
+    /// Only these boards, by their packages' names; default: all
+    boards: Vec<String>,
     /// Writes tests/sizes.txt and the documents' tables; commit them with the change that made the images grow
     #[arg(long)]
     update: bool,
-    /// Measures the boards that `cargo xtask test --boards` checks instead
-    #[arg(long)]
-    boards: bool,
     /// Prints the calls that make each stack
     #[arg(long)]
     calls: bool,
@@ -42,11 +41,12 @@ pub struct Sizing {
 impl Sizing {
     /// Measures, and compares or writes.
     pub fn run(self) -> Result<()> {
-        let (these, others): (Vec<_>, Vec<_>) = images::boards(&[])?.into_iter().partition(|board| board.apart == self.boards);
+        let these = images::boards(&self.boards)?;
+        let others = images::boards(&[])?.into_iter().filter(|board| these.iter().all(|one| one.name != board.name));
         let mut sizes = measured(&these, self.calls)?;
         say(&sizes.table());
         // What the file says of the other boards stays.
-        let others: HashSet<String> = others.iter().flat_map(images::of).map(|image| image.name).collect();
+        let others: HashSet<String> = others.flat_map(|board| images::of(&board)).map(|image| image.name).collect();
         let kept = kept()?;
         let stay = kept.images.iter().filter(|(name, _)| others.contains(*name));
         sizes.images.extend(stay.map(|(name, size)| (name.clone(), *size)));

@@ -84,7 +84,7 @@ fn clips_of_a_bank_play_as_their_files_and_come_out_as_they_went_in() {
     assert_eq!(std::fs::read_dir(folder.join("one")).unwrap().count(), 1);
     for listed in [succeeds(folder, &["list", "moves.ptb"]), succeeds(folder, &["info", "moves.ptb"])] {
         let lines: Vec<&str> = listed.lines().collect();
-        assert_eq!(lines.len(), 5, "{listed}");
+        assert_eq!(lines.len(), 6, "{listed}");
         assert!(lines[1].starts_with("begin ") && lines[3].starts_with("end "), "{listed}");
     }
     let json: serde_json::Value = serde_json::from_str(&succeeds(folder, &["list", "moves.ptb", "--json"])).unwrap();

@@ -20,7 +20,6 @@ const RUNS: [&[&str]; 25] = [
     &["unpack", "moves.ptb", "-o", "unpacked", "--replace"],
     &["list", "moves.ptb"],
     &["info", "moves.ptb"],
-    &["train", "in/light.csv", "--bounds", "1", "--note", "A test.", "-o", "tables.rs"],
     &["expand", "a.ptn", "-o", "a.bvh"],
     &["info", "a.ptn"],
     &["render", "a.ptn", "-o", "a.png", "--frame", "0"],
@@ -350,9 +349,7 @@ fn options_that_do_not_apply_are_refused() {
         assert!(said.contains("expected a weight"), "{said}");
     }
     for wrong in [
-        &["train", "run.keys", "-o", "a.rs", "--note", "a", "--strides", "0"][..],
-        &["train", "run.keys", "-o", "a.rs", "--note", "a", "--bounds", "nan"],
-        &["convert", "--list", "run.keys", "-o", "b.ptn"],
+        &["convert", "--list", "run.keys", "-o", "b.ptn"][..],
         &["stream", "a.ptn", "--to", "tcp:127.0.0.1:1", "--max-scalar-error", "1"],
     ] {
         assert_eq!(folder.run(wrong).status.code(), Some(2), "{wrong:?}");

@@ -160,7 +160,6 @@ fn a_gltfs_own_buffer_is_no_output_of_any_command() {
         ("plain", &["render", "a.gltf", "--format", "gif", "-o", "./plain"]),
         ("plain", &["face", "model", "a.gltf", "-o", "plain"]),
         ("names", &["face", "model", "a.gltf", "-o", "a.model", "--names", "names"]),
-        ("tables.rs", &["train", "a.gltf", "-o", "tables.rs", "--note", "a"]),
     ] {
         folder.put("a.gltf", gltf(name));
         folder.put(name, &bytes);
