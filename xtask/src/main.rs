@@ -2,6 +2,7 @@
 //! are asked for.
 
 mod demo;
+mod public_items;
 mod publish;
 mod test;
 
@@ -48,7 +49,7 @@ const LIST: [(&str, Place, &str); 28] = [
     ("mutation", COMMANDS, "Mutates the decoder and lists what its tests do not notice; needs cargo-mutants"),
     ("msrv", Place::Here(publish::msrv), "Checks the published crates with the oldest Rust that they state"),
     ("package", Place::Here(publish::package), "Packs the published crates; --verify compiles each from its package"),
-    ("semver", Place::Here(publish::semver), "Compares the public items of the published crates with the last tag's"),
+    ("semver", Place::Here(public_items::run), "Compares the public items of the published libraries with the list that is kept"),
     ("shape", Place::Here(shape), "Counts equal lines among the boards, and circles of imports"),
     ("sizes", COMMANDS, "Measures flash, RAM and stack of every image, and compares them with tests/sizes.txt"),
     ("soak", COMMANDS, "Plays 24 hours of a clip over a simulated line with damage, restarts and drift"),

@@ -1,4 +1,4 @@
-//! `cargo xtask package`, `docs`, `msrv` and `semver`: what a release and its users rely on, each by the tool that checks it.
+//! `cargo xtask package`, `docs` and `msrv`: what a release and its users rely on, each by the tool that checks it.
 
 use std::process::{Command, Stdio};
 
@@ -83,34 +83,6 @@ pub fn msrv(arguments: &[String]) -> Result<()> {
     run(cargo, &format!("cargo +{version} check"))?;
     say(&format!("all {} published crates compile with Rust {version}", packages.len()));
     Ok(())
-}
-
-/// Compares the public items of every published library with those of the last tag.
-pub fn semver(arguments: &[String]) -> Result<()> {
-    ensure!(arguments.is_empty(), "Usage: cargo xtask semver");
-    let tag = Command::new("git").args(["describe", "--tags", "--abbrev=0"]).current_dir(paths::root()).output();
-    let tag = tag.context("cannot start git")?;
-    if !tag.status.success() {
-        say("SKIPPED: no tag to compare with; the first release will have one (git tag v0.1.0)");
-        return Ok(());
-    }
-    let tag = String::from_utf8_lossy(&tag.stdout).trim().to_owned();
-    let checks = Command::new(program()).args(["semver-checks", "--version"]).output();
-    if !checks.is_ok_and(|checks| checks.status.success()) {
-        say("SKIPPED: cargo-semver-checks is missing; install it with: cargo install cargo-semver-checks --locked");
-        return Ok(());
-    }
-    let packages = packages::published()?;
-    // A crate that the tag does not have is new: nothing of it can break.
-    let (old, new): (Vec<_>, Vec<_>) = packages.into_iter().partition(|package| {
-        let manifest = package.folder.join("Cargo.toml");
-        let manifest = manifest.strip_prefix(paths::root()).unwrap_or(&manifest).display().to_string();
-        let mut git = Command::new("git");
-        git.args(["cat-file", "-e", &format!("{tag}:{manifest}")]).current_dir(paths::root());
-        git.stderr(Stdio::null()).status().is_ok_and(|status| status.success())
-    });
-    new.iter().for_each(|package| say(&format!("{}: new since {tag}", package.name)));
-    run(cargo(&["semver-checks", "--baseline-rev", &tag], &old), "cargo semver-checks")
 }
 
 fn program() -> std::ffi::OsString {

@@ -26,7 +26,7 @@ use xtask::setup;
 use xtask::steps::Steps;
 use xtask::test_programs::{self, Built, HOST_TOOL, TestProgram};
 
-use crate::publish;
+use crate::{public_items, publish};
 use cargo::{Workspace, finish, finish_quietly};
 use group::Group;
 
@@ -162,8 +162,7 @@ impl Plan {
         }
         if self.has(Group::Packages) {
             steps.run("documentation tests", || Workspace::Host.shown("test --workspace --doc"));
-            steps.run("documentation", || publish::docs(&[]));
-            steps.run("public items", || publish::semver(&[]));
+            steps.run("documentation and public items", || public_items::run(&[]));
             steps.run("packages", || publish::package(&[]));
             steps.run("oldest Rust", || publish::msrv(&[]));
         }
