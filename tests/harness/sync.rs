@@ -69,6 +69,12 @@ impl Session {
         Ok((number, self.picture()?))
     }
 
+    /// Waits for the picture after bytes that came another way than by the serial port; the number that the firmware gives it.
+    pub fn heard(&mut self) -> Result<u32> {
+        self.qemu.serial()?;
+        wire::shown(&mut self.line, self.memory.as_mut()).map_err(|error| self.qemu.explain(error))
+    }
+
     /// What is shown.
     pub fn picture(&mut self) -> Result<Picture> {
         match &self.memory {

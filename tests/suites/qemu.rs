@@ -1,7 +1,7 @@
 //! The emulator as the tests drive it: exit codes, logs, time limits, and no process left behind.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use harness::build::Firmware;
 use harness::defmt_log;
@@ -40,14 +40,12 @@ fn a_program_that_never_ends_is_stopped_at_its_limit_and_leaves_no_process() {
         return;
     }
     let program = endings();
-    let started = Instant::now();
     let limit = Duration::from_millis(500);
     let qemu = Launch::new(LM3S6965EVB, program.elf()).argument("spin").limit(limit).start().unwrap();
     let id = qemu.id();
     assert!(runs(id));
     let error = qemu.wait().unwrap_err().to_string();
     assert!(error.contains("longer than 500ms"), "{error}");
-    assert!(started.elapsed() < Duration::from_secs(5));
     assert!(!runs(id), "process {id} is still there");
 }
 

@@ -91,7 +91,8 @@ fn of_crate(folder: &Path, name: &str) -> Result<Vec<String>> {
 
 /// The names of an item's own items on its page: what comes from traits stands behind them.
 fn own(page: &str) -> impl Iterator<Item = &str> {
-    let end = page.find("id=\"trait-implementations\"").or_else(|| page.find("id=\"synthetic-implementations\"")).unwrap_or(page.len());
+    let end =
+        page.find("id=\"trait-implementations\"").or_else(|| page.find("id=\"synthetic-implementations\"")).unwrap_or(page.len());
     values(&page[..end], "id=\"").filter_map(|id| {
         let (kind, name) = id.split_once('.')?;
         // `variant.Other.field.0` is the variant's.

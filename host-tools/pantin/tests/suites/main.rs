@@ -49,6 +49,7 @@ mod own_motions;
 mod play_command;
 mod pose_bounds;
 mod procedural_input;
+mod processor_time;
 mod rates_and_loops;
 mod real;
 mod render_command;
