@@ -11,7 +11,7 @@ use pantin::Clip;
 /// A channel's greatest error.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Worst {
-    /// In the motion's units, of accelerations in those a frame^2.
+    /// In degrees, in the motion's units of length, or in the scalar's units; of accelerations in those a frame^2.
     pub error: f64,
     /// The same as a part of the channel's bound.
     pub part: f64,
@@ -26,30 +26,60 @@ pub struct Worst {
 pub struct Report {
     /// The worst of what the bounds are for, against its bound.
     pub worst: Worst,
-    /// The greatest error of a position, rotation or scalar as a part of the same number: how far a channel drifts under a
-    /// bound for accelerations.
-    pub drift: Worst,
+    /// The greatest error of each channel that has one, of its value at a frame: how far it drifts under a bound of accelerations. The worst
+    /// first, as parts of the channels' bounds.
+    pub drift: Vec<Worst>,
 }
 
 /// Compares two motions of the same figure, channel by channel; rotations by whole turns alike are the same.
 pub fn compare(original: &Motion, other: &Motion, bounds: &Bounds) -> Result<Report> {
     ensure!(original.frames == other.frames, "{} frames became {}", original.frames, other.frames);
     let mut report = Report::default();
+    let mut drift = vec![Worst::default(); original.rig.channels()];
     for (channel, (_, kind)) in original.rig.channel_kinds().into_iter().enumerate() {
         let wrap = |off: f64| if kind.is_rotation() { off - 360.0 * (off / 360.0).round() } else { off };
         let off = |frame: usize| wrap(other.values[channel][frame] - original.values[channel][frame]);
         let bend = |frame: usize| wrap(off(frame) + off(frame - 2) - 2.0 * off(frame - 1));
         for frame in 0..original.frames {
-            report.drift.take(off(frame), bounds.greatest[channel], channel, frame);
+            drift[channel].take(off(frame), bounds.greatest[channel], channel, frame);
             // The first two frames have no second difference: there the value counts.
             let held = if bounds.constraint == Constraint::Positions || frame < 2 { off(frame) } else { bend(frame) };
             report.worst.take(held, bounds.greatest[channel], channel, frame);
         }
     }
-    Ok(report)
+    drift.retain(|worst| worst.part > 0.0);
+    drift.sort_by(|one, other| other.part.total_cmp(&one.part).then(one.channel.cmp(&other.channel)));
+    Ok(Report { drift, ..report })
+}
+
+/// Channels that the sentence of a drift names.
+const NAMED: usize = 6;
+
+impl Report {
+    /// `hips.Xposition 6.566 cm at frame 159, chest.Yrotation 3.125 degrees at frame 50 and 12 more`: the worst channels.
+    pub fn drift_sentence(&self, motion: &Motion) -> String {
+        let named: Vec<String> = self.drift.iter().take(NAMED).map(|worst| worst.of_channel(motion)).collect();
+        match self.drift.len() {
+            0 => "none".into(),
+            count if count > NAMED => format!("{} and {} more", named.join(", "), count - NAMED),
+            _ => named.join(", "),
+        }
+    }
 }
 
 impl Worst {
+    /// The error in the unit that people know, and the unit: cm of positions, degrees of rotations; none of scalars and of a quaternion's components.
+    pub fn in_unit(&self, motion: &Motion) -> (f64, &'static str) {
+        let kind = motion.rig.channel_kinds()[self.channel].1;
+        if kind.is_position() { (self.error * motion.rig.cm_per_unit, "cm") } else { (self.error, unit(kind).trim_start()) }
+    }
+
+    fn of_channel(&self, motion: &Motion) -> String {
+        let (error, unit) = self.in_unit(motion);
+        let space = if unit.is_empty() { "" } else { " " };
+        format!("{} {error:.3}{space}{unit} at frame {}", motion.rig.channel_name(self.channel), self.frame)
+    }
+
     fn take(&mut self, error: f64, bound: f64, channel: usize, frame: usize) {
         let part = if error == 0.0 { 0.0 } else { error.abs() / bound };
         if part > self.part {
@@ -62,8 +92,9 @@ impl Worst {
         if motion.rig.channels() == 0 {
             return "0 (no channels)".into();
         }
-        let unit = unit(motion.rig.channel_kinds()[self.channel].1);
-        format!("{:.5}{unit} ({} at frame {})", self.error, motion.rig.channel_name(self.channel), self.frame)
+        let (error, unit) = self.in_unit(motion);
+        let space = if unit.is_empty() { "" } else { " " };
+        format!("{error:.5}{space}{unit} ({} at frame {})", motion.rig.channel_name(self.channel), self.frame)
     }
 }
 

@@ -2,11 +2,11 @@
 
 use crate::sources::{self, Chosen, Given};
 use pantin::Clip;
-use pantin_convert::export::source::c_header;
 use pantin_convert::Level;
-use pantin_convert::raw;
+use pantin_convert::export::source::c_header;
 use pantin_convert::import::list;
 use pantin_convert::motion::Motion;
+use pantin_convert::raw;
 use pantin_convert::{Converted, Error, Length, Note, Options, Progress, Recipe, Setting};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

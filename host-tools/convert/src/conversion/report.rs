@@ -76,8 +76,8 @@ impl Report {
             Errors::Joints(report) => errors::to_text(report, motion),
             Errors::Channels(report, Constraint::Positions) => format!("error max {}", report.worst.sentence(motion)),
             Errors::Channels(report, Constraint::Accelerations) => {
-                let (worst, drift) = (report.worst.sentence(motion), report.drift.sentence(motion));
-                format!("error max {worst}, a frame^2; drift max {drift}")
+                let (worst, drift) = (report.worst.sentence(motion), report.drift_sentence(motion));
+                format!("error max {worst}, a frame^2\ndrift, worst first: {drift}")
             }
         }
     }
@@ -93,13 +93,16 @@ impl Report {
 
 fn channels_to_json(report: &channel_error::Report, motion: &Motion) -> Map<String, Value> {
     let worst = &report.worst;
+    let drift = |worst: &channel_error::Worst| {
+        let (error, unit) = worst.in_unit(motion);
+        json!({"channel": motion.rig.channel_name(worst.channel), "frame": worst.frame, "error": error, "unit": unit})
+    };
     let fields = json!({
         "max_error": worst.error,
         "part_of_bound": worst.part,
         "worst_channel": motion.rig.channel_name(worst.channel),
         "worst_frame": worst.frame,
-        "max_drift": report.drift.error,
-        "drifting_channel": motion.rig.channel_name(report.drift.channel),
+        "drift": report.drift.iter().map(drift).collect::<Vec<_>>(),
     });
     fields.as_object().cloned().unwrap_or_default()
 }

@@ -89,7 +89,11 @@ fn epsilon_holds_for_second_differences_and_positions_drift() {
     let bounds = Bounds::of(&motion, Constraint::Accelerations, 0.1);
     let (bytes, report) = coded(&motion, &bounds);
     println!("epsilon 0.1: {bytes} bytes, {:?}, drift {:?}", report.worst, report.drift);
-    assert!(report.drift.part > 1.0);
+    assert!(report.drift[0].part > 1.0 && report.drift.is_sorted_by(|one, other| one.part >= other.part));
+    let moved = report.drift.iter().find(|worst| motion.rig.channel_name(worst.channel) == "hips.Xposition").unwrap();
+    assert_eq!(moved.in_unit(&motion), (moved.error * motion.rig.cm_per_unit, "cm"));
+    let sentence = report.drift_sentence(&motion);
+    assert!(sentence.contains(" degrees at frame ") && sentence.contains(" cm at frame "), "{sentence}");
     assert!(bytes < coded(&motion, &Bounds::of(&motion, Constraint::Accelerations, 0.01)).0);
 }
 

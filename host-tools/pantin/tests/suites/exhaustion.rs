@@ -142,7 +142,7 @@ fn a_device_without_end_is_refused() {
         ),
     );
     let line = "tcp:127.0.0.1:1";
-    let runs: [&[&str]; 19] = [
+    let runs: [&[&str]; 18] = [
         &["info", "/dev/zero"],
         &["info", "zero.gltf"],
         &["convert", "zero.keys", "-o", "a.ptn"],

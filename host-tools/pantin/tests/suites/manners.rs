@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::process::Output;
 
 /// Every command, with arguments that succeed in a folder of [`prepared`]; `serve`, `stream` and `update` need a partner.
-const RUNS: [&[&str]; 25] = [
+const RUNS: [&[&str]; 24] = [
     &["completions", "bash"],
     &["man", "convert"],
     &["convert", "run.keys", "-o", "b.ptn", "--effort", "fast"],
