@@ -1,53 +1,17 @@
 //! Builds programs with cargo: firmware for a target, the host tool, the plugin.
 
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::Mutex;
 
-use anyhow::{Context, Result, ensure};
-use serde_json::Value;
+use anyhow::{Context, Result};
 use tempfile::TempDir;
 
+pub use xtask::build::{Build, cargo, host_tool};
 use xtask::core_library::Core;
-use xtask::test_programs::HOST_TOOL;
 
 use crate::{paths, setup};
-
-/// One call of `cargo build`.
-pub struct Build {
-    /// The folder to run in: each workspace finds its own configuration there.
-    pub workspace: PathBuf,
-    /// What to build.
-    pub arguments: Vec<OsString>,
-    /// Environment variables of the build.
-    pub environment: Vec<(OsString, OsString)>,
-    /// Name of the cargo target whose file is returned.
-    pub product: String,
-}
-
-/// Builds, with cargo's own messages on stderr, and returns the product's file.
-pub fn cargo(build: &Build) -> Result<PathBuf> {
-    let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
-    let mut command = Command::new(cargo);
-    command.args(["build", "--message-format=json-render-diagnostics"]).args(&build.arguments);
-    if !std::io::stderr().is_terminal() {
-        command.arg("--quiet");
-    }
-    command.envs(build.environment.iter().cloned()).current_dir(&build.workspace).stdout(Stdio::piped());
-    let mut child = command.spawn().context("cannot start cargo")?;
-    let mut product = None;
-    for line in child.stdout.take().into_iter().flat_map(|stdout| BufReader::new(stdout).lines()) {
-        let message: Value = serde_json::from_str(&line?).context("cargo's messages are not JSON")?;
-        if message["reason"] == "compiler-artifact" && message["target"]["name"] == build.product.as_str() {
-            let file = message["executable"].as_str().or_else(|| message["filenames"][0].as_str());
-            product = file.map(PathBuf::from).or(product);
-        }
-    }
-    ensure!(child.wait()?.success(), "cargo could not build {}", build.product);
-    product.with_context(|| format!("cargo built no {}", build.product))
-}
 
 /// A firmware program, as a copy of its ELF file that a later build of the same program does not change.
 pub struct Firmware {
@@ -138,18 +102,4 @@ fn rust_sources() -> Result<(PathBuf, String)> {
     let commit = version.lines().find_map(|line| line.strip_prefix("commit-hash: ")).context("rustc does not name its commit")?;
     let folder = Path::new(printed(&["--print", "sysroot"])?.trim()).join("lib/rustlib/src/rust");
     Ok((folder, format!("/rustc/{commit}")))
-}
-
-/// Builds the host tool and returns its path. It uses the tests' profile, which is optimized, so that a fresh clone
-/// compiles the tool once.
-pub fn host_tool() -> Result<PathBuf> {
-    if let Some(tool) = std::env::var_os(HOST_TOOL) {
-        return Ok(tool.into());
-    }
-    cargo(&Build {
-        workspace: paths::root(),
-        arguments: ["--package", "pantin-tools", "--bin", "pantin"].map(OsString::from).into(),
-        environment: vec![],
-        product: "pantin".into(),
-    })
 }

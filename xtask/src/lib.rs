@@ -1,6 +1,7 @@
 //! What the commands and the tests share, without dependencies that take long to compile: paths, tools, packages, steps.
 
 pub mod browser;
+pub mod build;
 pub mod clip;
 pub mod core_library;
 pub mod crates;

@@ -17,6 +17,8 @@ enum Place {
     Here(fn(&[String]) -> Result<()>),
     /// In the program of this package.
     Package(&'static str),
+    /// In the program of this package, which is optimized little: people wait for its compilation.
+    Quick(&'static str),
 }
 
 const COMMANDS: Place = Place::Package("xtask-commands");
@@ -57,7 +59,7 @@ const LIST: [(&str, Place, &str); 28] = [
     ("train", COMMANDS, "Computes the format's tables from motions, for a new version of the format"),
     ("uf2", COMMANDS, "Makes a file to drag onto a board's drive"),
     ("vectors", COMMANDS, "Makes the golden vectors again"),
-    ("web", COMMANDS, "Builds the web page with its player and our clips"),
+    ("web", Place::Quick("xtask-web"), "Builds the web page with its player and our clips"),
     ("wheels", COMMANDS, "Builds the Python package and the program pantin for Linux, Windows and macOS"),
 ];
 
@@ -86,7 +88,8 @@ fn run(arguments: &[String]) -> Result<ExitCode> {
     };
     match place {
         Place::Here(run) => run(rest).map(|()| ExitCode::SUCCESS),
-        Place::Package(package) => program(package, arguments),
+        Place::Package(package) => program(&["--package", package], arguments),
+        Place::Quick(package) => program(&["--profile", "demo", "--package", package], rest),
     }
 }
 
@@ -96,8 +99,8 @@ fn help() -> String {
 }
 
 /// Builds the program of a package and runs it; returns its exit code.
-fn program(package: &str, arguments: &[String]) -> Result<ExitCode> {
-    let status = cargo_run(&["--package", package]).args(arguments).status().context("cannot start cargo")?;
+fn program(which: &[&str], arguments: &[String]) -> Result<ExitCode> {
+    let status = cargo_run(which).args(arguments).status().context("cannot start cargo")?;
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }
 

@@ -1,96 +1,18 @@
-//! The web page's files: modules built for WebAssembly, the page itself, and our own clips.
+//! The page, served to browsers of tests.
 
-mod inline;
-pub mod npm;
-mod pack;
-mod script;
 pub mod slow;
-pub mod tools;
 
-use std::ffi::OsString;
 use std::net::TcpListener;
-use std::path::{Path, PathBuf};
 use std::thread;
 
-pub use xtask::browser;
-
-use anyhow::{Context, Result, ensure};
-use pantin_convert::Level;
-use pantin_convert::encode::{clip, rig};
-use pantin_convert::export;
-use pantin_convert::fit::fit;
-use pantin_convert::import::{self, ImportOptions};
-use pantin_convert::pose_bound::PoseBound;
-use pantin_pictures::machine;
+use anyhow::{Context, Result};
 use pantin_tools::serve::{Site, serve};
-use serde_json::json;
 
-use crate::build::{self, Build};
-use crate::{paths, setup, steered};
+pub use xtask::browser;
+pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, PLAYER, Size, build, sizes};
+pub use xtask_web::tools;
 
-/// What the modules are compiled for.
-pub const TARGET: &str = "wasm32-unknown-unknown";
-
-/// For the smallest player: functions of a few instructions more are put in line, and addresses are not stepped on from one turn of a loop to the next.
-const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
-
-/// Largest error of scalars, as a fraction of their full scale: the host tool's default.
-const SCALAR_PART: f64 = 0.02;
-
-/// The modules' packages and features, the profiles that they are built in, and their names in the site.
-pub const MODULES: [(&str, &str, &str, &str); 4] = [
-    ("pantin-web-player", "", "release", PLAYER[1]),
-    ("pantin-web-player", "character,poses", "release", CHARACTER[0]),
-    ("pantin-web-face", "", "release", FACE[0]),
-    ("pantin-web-converter", "", "converter", CONVERTER[1]),
-];
-
-/// A file of the player, or of the converter, and its bytes.
-pub struct Size {
-    /// Its name in the site.
-    pub name: &'static str,
-    /// As it is served without compression.
-    pub bytes: usize,
-}
-
-/// What a page that plays clips loads.
-pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
-/// What it loads too once a picture or a recording is saved.
-pub const EXPORT: [&str; 1] = ["pantin-export.js"];
-/// What it loads too once a clip may drive a face.
-pub const FACE: [&str; 1] = ["pantin-face.wasm"];
-/// What it loads too for a bank with a state machine, or for a table of poses.
-pub const CHARACTER: [&str; 2] = ["pantin-character.wasm", "pantin-character.js"];
-/// What is loaded beside it once a motion is dropped.
-pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
-
-/// Builds the site into a folder, in place of what of it was there, and a page in one file for each of the `inlined` clips.
-pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
-    let make = |folder: &Path| std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()));
-    make(&out.join("clips"))?;
-    setup::rust_target(TARGET)?;
-    for (package, features, profile, name) in MODULES {
-        write(&out.join(name), &module(package, features, profile)?)?;
-    }
-    let page = listed(&paths::root().join("web/page"))?;
-    let player = [PLAYER[0], EXPORT[0], CHARACTER[1]].map(|script| paths::root().join("web/packages/player").join(script));
-    for entry in page.into_iter().chain(player) {
-        let name = entry.file_name().unwrap_or_default();
-        let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
-        let scripted = entry.extension().is_some_and(|extension| extension == "js");
-        write(&out.join(name), &if scripted { tools::minified(script::shortened(&bytes)?)? } else { bytes })?;
-    }
-    clips(out)?;
-    character(out)?;
-    for clip in inlined {
-        let bytes = std::fs::read(clip).with_context(|| clip.display().to_string())?;
-        let name = clip.file_stem().unwrap_or_default();
-        ensure!(name != "index", "{}: its page would be in place of the site's", clip.display());
-        let page = inline::page(out, &bytes, &name.to_string_lossy()).with_context(|| clip.display().to_string())?;
-        write(&out.join(name).with_extension("html"), page.as_bytes())?;
-    }
-    tools::compress(out)
-}
+use crate::paths;
 
 /// Builds the site into `target/web`, with our walk as a page in one file, and serves it, with some more files by their paths, as long as this program runs; returns the page's
 /// address.
@@ -105,95 +27,4 @@ pub fn served(extras: Vec<(String, Vec<u8>)>) -> Result<String> {
     let address = format!("http://{}/", listener.local_addr()?);
     thread::spawn(move || serve(&listener, site));
     Ok(address)
-}
-
-/// Bytes of the site's files, of those that are there.
-pub fn sizes(out: &Path, names: &[&'static str]) -> Vec<Size> {
-    let bytes = |name| std::fs::metadata(out.join(name)).ok().map(|file| file.len() as usize);
-    names.iter().filter_map(|name| Some(Size { name, bytes: bytes(name)? })).collect()
-}
-
-/// A package of the web workspace as a module.
-fn module(package: &str, features: &str, profile: &str) -> Result<Vec<u8>> {
-    let arguments = ["--profile", profile, "--package", package, "--features", features, "--target", TARGET];
-    let environment = (profile == "release").then(|| ("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS".into(), SMALL.into()));
-    let product = build::cargo(&Build {
-        workspace: paths::root().join("web"),
-        arguments: arguments.map(OsString::from).into(),
-        environment: environment.into_iter().collect(),
-        product: package.replace('-', "_"),
-    })?;
-    let bytes = std::fs::read(&product).with_context(|| product.display().to_string())?;
-    // The converter works for seconds, and the optimizer would take minutes for it.
-    let bytes = if profile == "release" { tools::optimized(bytes)? } else { bytes };
-    pack::pack(&bytes).with_context(|| product.display().to_string())
-}
-
-/// Motions of our library, which share a rig: one after the other, they are a clip that takes a while to arrive over a slow line.
-const MEDLEY: [&str; 8] = ["idle", "wave", "bow", "dance", "jump", "sit_down", "stand_up", "turn_left"];
-/// The error of that clip.
-const MEDLEY_CM: f64 = 0.05;
-
-/// Our own clips, the list of them that the page reads, and a motion file for who has none.
-fn clips(out: &Path) -> Result<()> {
-    let mut list = vec![];
-    for folder in ["motions", "motions/face"] {
-        for clip in listed(&paths::root().join(folder))? {
-            if clip.extension().is_some_and(|extension| extension == "ptn") {
-                let bytes = std::fs::read(&clip).with_context(|| clip.display().to_string())?;
-                let name = clip.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                write(&out.join("clips").join(&name).with_extension("ptn"), &bytes)?;
-                list.push(json!({ "name": name, "file": format!("clips/{name}.ptn"), "bytes": bytes.len() }));
-            }
-        }
-    }
-    let medley = medley()?;
-    write(&out.join("clips/medley.ptn"), &medley)?;
-    list.push(json!({ "name": "medley", "file": "clips/medley.ptn", "bytes": medley.len() }));
-    let walk = import::load(&paths::root().join("motions/walk.keys"), &ImportOptions::new())?.motion;
-    let mut bvh = vec![];
-    export::bvh::write(&walk, export::bvh::Columns::ThreeRotations, &mut bvh)?;
-    write(&out.join("clips/walk.bvh"), &bvh)?;
-    write(&out.join("clips.json"), json!(list).to_string().as_bytes())
-}
-
-/// Our character, with the picture of its state machine.
-fn character(out: &Path) -> Result<()> {
-    write(&out.join("clips/character.ptb"), &std::fs::read(steered::bank())?)?;
-    let path = paths::root().join("motions/character.toml");
-    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-    let source = machine::Source::parse(&machine::Text { name: "character.toml", text: &text })?;
-    write(&out.join("clips/character.svg"), machine::graph::svg(&source).as_bytes())
-}
-
-/// Several motions in turn, within [`MEDLEY_CM`].
-fn medley() -> Result<Vec<u8>> {
-    let load = |name: &&str| {
-        let path = paths::root().join("motions/library").join(name).with_extension("keys");
-        anyhow::Ok(import::load(&path, &ImportOptions::new())?.motion)
-    };
-    let motions = MEDLEY.iter().map(load).collect::<Result<Vec<_>>>()?;
-    let [first, others @ ..] = &motions[..] else { return Ok(vec![]) };
-    let mut whole = first.clone();
-    for motion in others {
-        ensure!(motion.rig == whole.rig && motion.frame_time == whole.frame_time, "motions of the library have different rigs");
-        whole.frames += motion.frames;
-        whole.values.iter_mut().zip(&motion.values).for_each(|(values, more)| values.extend(more));
-    }
-    (whole.looped, whole.events) = (false, vec![]);
-    whole.keys.fill(None);
-    let rig = rig::encode(&whole.rig)?;
-    let coded = fit(&whole, Level::Fast.plan(PoseBound::places(MEDLEY_CM)), SCALAR_PART, &mut |_| {})?;
-    clip::encode(&coded, &rig, false)
-}
-
-fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
-    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| path.is_file()).collect();
-    files.sort();
-    Ok(files)
-}
-
-fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    pantin_tools::output::write_whole(path, bytes)
 }

@@ -17,7 +17,6 @@ mod strips;
 mod train;
 mod uf2;
 mod vectors;
-mod web;
 mod wheels;
 
 use std::process::ExitCode;
@@ -49,7 +48,6 @@ enum Command {
     Train(train::Train),
     Uf2(uf2::Uf2),
     Vectors(vectors::Vectors),
-    Web(web::Web),
     Wheels(wheels::Wheels),
 }
 
@@ -75,7 +73,6 @@ fn main() -> ExitCode {
         Command::Train(train) => train.run(),
         Command::Uf2(uf2) => uf2.run(),
         Command::Vectors(vectors) => vectors.run(),
-        Command::Web(web) => web.run(),
         Command::Wheels(wheels) => wheels.run(),
     };
     match result {

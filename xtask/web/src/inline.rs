@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use pantin::Clip;
 
-use super::{FACE, PLAYER};
+use crate::site::{FACE, PLAYER};
 
 /// Writes the page of a clip, from a site that was built. A clip with scalars gets the face's module, too. What is loaded later, such as the script that
 /// saves pictures, is looked for beside the page.

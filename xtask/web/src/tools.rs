@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use anyhow::{Context, Result, ensure};
 use xtask::npm;
 
-use crate::{paths, setup};
+use xtask::{paths, setup};
 
 /// Features that Rust's own target uses.
 const FEATURES: [&str; 6] =

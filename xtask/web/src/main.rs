@@ -1,20 +1,22 @@
 //! `cargo xtask web [-o target/web] [--inline CLIP] [--npm]`: the static site, ready for any server, and for `pantin serve`; and the npm packages.
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use anyhow::Result;
-use clap::Args;
-use harness::build::{self, Build};
-use harness::paths;
-use harness::web::{self, Size, npm};
-
+use clap::Parser;
 use pantin_tools::output::write_whole;
 use pantin_tools::serve::Site;
+use xtask::build::{self, Build};
+use xtask::paths;
 use xtask::steps::say;
+use xtask_web::npm;
+use xtask_web::site::{self, Size};
 
 /// Builds the web page with its player and our clips, as static files for any web server or `pantin serve`.
-#[derive(Args)]
-pub struct Web {
+#[derive(Parser)]
+#[command(name = "cargo xtask web", bin_name = "cargo xtask web")]
+struct Web {
     /// The output folder
     #[arg(short, long, default_value = "target/web")]
     out: PathBuf,
@@ -29,12 +31,22 @@ pub struct Web {
     npm: bool,
 }
 
+fn main() -> ExitCode {
+    match Web::parse().run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 impl Web {
     /// Builds it and prints its sizes.
-    pub fn run(self) -> Result<()> {
-        web::build(&self.out, &self.inline)?;
-        for names in [&web::PLAYER[..], &web::EXPORT, &web::FACE, &web::CHARACTER, &web::CONVERTER] {
-            let sizes = web::sizes(&self.out, names);
+    fn run(self) -> Result<()> {
+        site::build(&self.out, &self.inline)?;
+        for names in [&site::PLAYER[..], &site::EXPORT, &site::FACE, &site::CHARACTER, &site::CONVERTER] {
+            let sizes = site::sizes(&self.out, names);
             sizes.iter().for_each(|Size { name, bytes }| say(&format!("{name:<24} {bytes:>9} bytes")));
         }
         let out = self.out.display();

@@ -9,8 +9,9 @@ use serde_json::Value;
 use xtask::browser::Browser;
 use xtask::npm;
 
-use super::{CHARACTER, EXPORT, FACE, PLAYER, tools};
-use crate::{build, paths, setup};
+use crate::site::{CHARACTER, EXPORT, FACE, PLAYER};
+use crate::tools;
+use xtask::{build, paths, setup};
 
 /// The packages, those that others need first.
 pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
@@ -65,7 +66,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
                 }
                 name => read(&source.join(name))?,
             };
-            super::write(&folder.join(name), &bytes)?;
+            crate::site::write(&folder.join(name), &bytes)?;
         }
         let told = npm::run(&folder, &["pack", "--json", "--pack-destination", ".."])?;
         let told: Value = serde_json::from_str(&told).context("npm pack")?;
@@ -97,7 +98,7 @@ pub fn check(packed: &[Packed], site: &Path, folder: &Path) -> Result<Checked> {
     let source = paths::root().join("web/packages/check");
     npm::install(&source, folder)?;
     for name in CHECK {
-        super::write(&folder.join(name), &read(&source.join(name))?)?;
+        crate::site::write(&folder.join(name), &read(&source.join(name))?)?;
     }
     let files: Vec<String> = packed.iter().map(|package| package.file.display().to_string()).collect();
     let mut arguments = vec!["install", "--no-save", "--no-audit", "--no-fund"];

@@ -1,0 +1,8 @@
+//! The web page: its modules, its files and our clips, and the npm packages.
+
+mod inline;
+pub mod npm;
+mod pack;
+mod script;
+pub mod site;
+pub mod tools;
