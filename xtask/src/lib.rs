@@ -7,6 +7,7 @@ pub mod core_library;
 pub mod crates;
 pub mod npm;
 pub mod packages;
+pub mod pages;
 pub mod paths;
 pub mod setup;
 pub mod shape;

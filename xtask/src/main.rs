@@ -127,4 +127,14 @@ mod tests {
             assert!(reference.contains(&format!("| `cargo xtask {name}")), "docs/CLI.md has no row for cargo xtask {name}");
         }
     }
+
+    #[test]
+    fn pages_name_commands_that_exist() {
+        let pages = xtask::pages::all().unwrap().unwrap_or_default();
+        let unknown = |word: &&str| !LIST.iter().any(|(name, ..)| name == word);
+        let pages = pages.iter().filter(|page| page.path != "CHANGELOG.md");
+        let found: Vec<(&str, &str)> =
+            pages.flat_map(|page| page.commands().filter(unknown).map(|word| (page.path.as_str(), word))).collect();
+        assert_eq!(found, [], "no command of cargo xtask has this name");
+    }
 }
