@@ -119,7 +119,7 @@ fn read(package: &Value) -> Result<Crate> {
         dependencies.filter(|dependency| dependency["kind"].is_null()).filter_map(|dependency| dependency["path"].as_str());
     Ok(Crate {
         name: package["name"].as_str().unwrap_or_default().into(),
-        folder: from_root(folder.as_ref()),
+        folder: from_root(folder),
         needs: needed.map(|path| from_root(path.as_ref())).collect(),
     })
 }
