@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use crate::{paths, tree};
 
 /// Folders of the root whose files pages name by path.
-const FOLDERS: [&str; 12] = [
+const FOLDERS: [&str; 13] = [
     ".ci/",
     ".github/",
     "bindings/",
@@ -20,6 +20,7 @@ const FOLDERS: [&str; 12] = [
     "motions/",
     "tests/",
     "web/",
+    "xtask/",
 ];
 
 /// A Markdown file.
