@@ -134,10 +134,11 @@ impl Plan {
                 });
             }
         }
-        if self.has(Group::Boards) && !self.host_only {
-            if let Some(boards) = built.program("harness", "boards") {
-                steps.run("emulators and pictures: further boards", || finish_quietly(self.command(boards, built), "boards"));
-            }
+        if self.has(Group::Boards)
+            && !self.host_only
+            && let Some(boards) = built.program("harness", "boards")
+        {
+            steps.run("emulators and pictures: further boards", || finish_quietly(self.command(boards, built), "boards"));
         }
     }
 
