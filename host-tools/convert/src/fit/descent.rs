@@ -379,12 +379,20 @@ impl<'m> Descent<'m> {
                 });
             }
         }
+        let most = self.range(channel);
         for frame in 0..frames {
             let (middle, now) = (target[frame] + now[frame], now[frame]);
-            tube.lo[frame] = middle + shrink * (tube.lo[frame] - now);
-            tube.hi[frame] = middle + shrink * (tube.hi[frame] - now);
+            tube.lo[frame] = (middle + shrink * (tube.lo[frame] - now)).max((-most).min(target[frame]));
+            tube.hi[frame] = (middle + shrink * (tube.hi[frame] - now)).min(most.max(target[frame]));
         }
         tube
+    }
+
+    /// The largest raw value that the decoder does not wrap into another rotation. Components of a quaternion, whose length is free, and of an
+    /// exponential map near half a turn would reach it; Euler angles may wrap, and positions use half of their range.
+    fn range(&self, channel: usize) -> f64 {
+        let (_, kind, _) = self.figure.channels[channel];
+        if kind.is_quaternion() || kind.is_exponential() { f64::from(i32::MAX) } else { f64::MAX }
     }
 
     /// By how many raw units a channel may change while its levers are taken as constant. One of a joint that is not bounded may rest.

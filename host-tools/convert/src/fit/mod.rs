@@ -126,3 +126,34 @@ fn time(motion: &Motion) -> Result<u32> {
     require!((1.0..=f64::from(u32::MAX)).contains(&ns), wrong().remedy(Remedy::ChangeFrameRate));
     Ok(ns as u32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::descent::Level;
+    use super::parametrize::Rotations;
+    use crate::import::{ImportOptions, InMemory, import};
+    use crate::{Length, Options, convert};
+    use std::f64::consts::TAU;
+
+    /// Near half a turn a single component of a quaternion is left, whose size turns nothing: nothing but the decoder's range limits it.
+    #[test]
+    fn components_of_quaternions_stay_within_the_decoders_range() {
+        let row = |frame: u32| {
+            let (time, wave) = (f64::from(frame), 0.5 - 0.5 * (TAU * f64::from(frame) / 11.932245064526796).cos());
+            let (a, b) = (0.18694448145106435 * (0.7 * time).sin(), 0.18694448145106435 * (0.45 * time).sin());
+            format!("{a:.2} {:.2} {b:.2}\n", 180.0 - 87.87138149142265 * wave.powi(4))
+        };
+        let rows: String = (0..111).map(row).collect();
+        let knee = format!(
+            "HIERARCHY ROOT knee {{ OFFSET 0 0 0 CHANNELS 3 Zrotation Xrotation Yrotation End Site {{ OFFSET 0 10 0 }} }} \
+             MOTION Frames: 111 Frame Time: 0.033333\n{rows}"
+        );
+        let files = InMemory::new().with("knee.bvh", knee.as_bytes());
+        let knee = import(&files, "knee.bvh".as_ref(), &ImportOptions::new().cm_per_unit(1.0)).unwrap().motion;
+        for max_cm in [0.5, 1.0] {
+            let options = Options::new().max_error(Length::cm(max_cm)).rotations(Rotations::Quaternion).effort(Level::Fast);
+            let made = convert(&knee, &options, &mut |_| ());
+            assert!(made.is_ok(), "{max_cm} cm: {:?}", made.map(|_| ()));
+        }
+    }
+}
