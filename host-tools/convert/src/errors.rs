@@ -1,6 +1,5 @@
 //! How a conversion's errors are printed: in cm, in percent of the figure's height and in degrees, in words and as JSON.
 
-use crate::import::units::figure_height_cm;
 use crate::motion::Motion;
 use crate::number::Number;
 use crate::verify::{Report, Worst};
@@ -16,7 +15,7 @@ pub fn to_json(report: &Report, motion: &Motion) -> Map<String, Value> {
         fields.insert("shell_radius_cm".into(), json!(report.shell_radius_cm));
         put(&mut fields, &report.shell_cm, ["max_shell_cm", "worst_shell_joint", "worst_shell_frame"]);
         fields.insert("mean_shell_cm".into(), json!(report.mean_shell_cm));
-        if let Some(height) = figure_height_cm(motion) {
+        if let Some(height) = report.figure_height_cm {
             fields.insert("figure_height_cm".into(), json!(height));
             fields.insert("max_error_percent_of_height".into(), json!(100.0 * report.place_cm.error / height));
             fields.insert("mean_error_percent_of_height".into(), json!(100.0 * report.mean_cm / height));
@@ -48,7 +47,7 @@ fn put(fields: &mut Map<String, Value>, worst: &Worst, [error, joint, frame]: [&
 pub fn to_text(report: &Report, motion: &Motion) -> String {
     let mut lines = Vec::new();
     if !motion.rig.joints.is_empty() {
-        lines.extend(joint_lines(report, motion));
+        lines.extend(joint_lines(report));
     }
     if !motion.rig.scalars.is_empty() || motion.rig.joints.is_empty() {
         let (scalar, frame) = (&report.worst_scalar, report.worst_scalar_frame);
@@ -58,8 +57,8 @@ pub fn to_text(report: &Report, motion: &Motion) -> String {
     lines.join("\n  ")
 }
 
-fn joint_lines(report: &Report, motion: &Motion) -> [String; 3] {
-    let height = figure_height_cm(motion);
+fn joint_lines(report: &Report) -> [String; 3] {
+    let height = report.figure_height_cm;
     let length = |cm: f64| match height {
         Some(height) => format!("{cm:.4} cm, {:.3} % of the figure's height", 100.0 * cm / height),
         None => format!("{cm:.4} cm"),
@@ -95,7 +94,7 @@ pub fn to_cell(report: &Report, motion: &Motion) -> String {
     let mut parts = Vec::new();
     if !motion.rig.joints.is_empty() {
         let cm = report.shell_cm.error;
-        let percent = figure_height_cm(motion).map(|height| format!(" ({:.2} %)", 100.0 * cm / height));
+        let percent = report.figure_height_cm.map(|height| format!(" ({:.2} %)", 100.0 * cm / height));
         parts.push(format!("{cm:.3} cm{}, {:.1} degrees", percent.unwrap_or_default(), report.rotation_deg.error));
     }
     if !motion.rig.scalars.is_empty() {

@@ -28,6 +28,8 @@ pub struct Report {
     pub mean_cm: f64,
     /// Mean distance of the joints' places, End Sites left out, in cm.
     pub mean_joint_cm: f64,
+    /// The figure's height in cm in the original, in percent of which errors are shown; `None` where it has none.
+    pub figure_height_cm: Option<f64>,
     /// The distance in cm of the shell's points from their joint.
     pub shell_radius_cm: f64,
     /// Greatest shell error in cm: of a joint's place and the three points along its axes, or of an End Site's place.
@@ -119,6 +121,7 @@ fn compare_joints(original: &Motion, other: &Motion, shell_cm: f64) -> Report {
         place_cm: place.named(original),
         mean_cm: mean(sum, all),
         mean_joint_cm: mean(sum_of_joints, turning),
+        figure_height_cm: figure_height_cm(original),
         shell_radius_cm: shell_cm,
         shell_cm: shell.named(original),
         mean_shell_cm: mean(sum_of_shells, turning),

@@ -106,3 +106,27 @@ fn channels_to_json(report: &channel_error::Report, motion: &Motion) -> Map<Stri
     });
     fields.as_object().cloned().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::import::units::figure_height_cm;
+    use crate::import::{ImportOptions, InMemory, import};
+    use crate::pose_bound::default_shell_cm;
+    use crate::{Length, Options, convert};
+
+    /// A leg of 30 cm whose last frame is turned by 4 degrees against its first one: closing the seam turns frame 0 by half of that.
+    const LEG: &str = "HIERARCHY ROOT hips { OFFSET 0 0 0 CHANNELS 3 Xrotation Yrotation Zrotation End Site { OFFSET 0 30 0 } } \
+        MOTION Frames: 4 Frame Time: 0.04  20 0 0  22 0 0  23 0 0  24 0 0";
+
+    #[test]
+    fn the_height_of_a_loop_is_that_of_its_source() {
+        let files = InMemory::new().with("leg.bvh", LEG.as_bytes());
+        let leg = import(&files, "leg.bvh".as_ref(), &ImportOptions::new().cm_per_unit(1.0)).unwrap().motion;
+        let height = figure_height_cm(&leg).unwrap();
+        let looped = convert(&leg, &Options::new().max_error(Length::cm(3.0)).looped(true), &mut |_| ()).unwrap();
+        let told = looped.report.to_json(&looped.motion);
+        assert_eq!(told["figure_height_cm"], height, "{told:?}");
+        assert_eq!(told["shell_radius_cm"], default_shell_cm(Some(height)), "{told:?}");
+        assert_ne!(figure_height_cm(&looped.motion), Some(height), "closing the seam changes nothing");
+    }
+}
