@@ -21,6 +21,8 @@ pub mod icount;
 #[cfg(feature = "full")]
 pub mod image;
 #[cfg(feature = "full")]
+pub mod independent;
+#[cfg(feature = "full")]
 pub mod lossy;
 #[cfg(feature = "full")]
 pub mod panel;

@@ -10,6 +10,7 @@ mod gba;
 mod hostile;
 mod icount;
 mod image;
+mod independent;
 mod laws;
 mod link;
 mod memory;

@@ -24,7 +24,7 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 28] = [
+const LIST: [(&str, Place, &str); 29] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
@@ -46,6 +46,7 @@ const LIST: [(&str, Place, &str); 28] = [
     ("gallery", COMMANDS, "Converts every captured clip and draws one contact sheet of all"),
     ("gba", COMMANDS, "Makes a cartridge image for the Game Boy Advance, with all our motions"),
     ("images", COMMANDS, "Makes a folder of images to flash, with a page that shows each one's wires"),
+    ("independent", COMMANDS, "Evaluates clips of captured and random motions with no code of the tool; needs Node.js"),
     ("miri", COMMANDS, "Runs the decoder's tests in Miri; needs a nightly Rust"),
     ("mutants-differential", COMMANDS, "Plays damaged clips in two decoders and compares them; needs Node.js"),
     ("mutation", COMMANDS, "Mutates the decoder and lists what its tests do not notice; needs cargo-mutants"),

@@ -11,6 +11,7 @@ mod fuzz;
 mod gallery;
 mod gba;
 mod images;
+mod independent;
 mod log;
 mod sizes;
 mod strips;
@@ -37,6 +38,7 @@ enum Command {
     Gallery(gallery::Gallery),
     Gba(gba::Gba),
     Images(downloads::Images),
+    Independent(independent::Independent),
     #[command(hide = true)]
     Log(log::Log),
     Miri(campaign::Miri),
@@ -63,6 +65,7 @@ fn main() -> ExitCode {
         Command::Gallery(gallery) => gallery.run(),
         Command::Gba(gba) => gba.run(),
         Command::Images(images) => images.run(),
+        Command::Independent(independent) => independent.run(),
         Command::Log(log) => log.run(),
         Command::Miri(miri) => miri.run(),
         Command::MutantsDifferential(differential) => differential.run(),
