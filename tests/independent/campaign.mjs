@@ -55,7 +55,8 @@ function run(motion, options, effort) {
   const command = [basename(motion.path), ...motion.options, options].join(" ");
   for (const fault of result.faults) console.log(`FAULT: ${command}: ${fault}`);
   faults += result.faults.length;
-  if (values.verbose || (result.refused && !motion.mayBeRefused)) console.log(`${command}: ${result.refused ?? (result.jointless ? "no joints" : KINDS.map((kind) => `${kind} ${result[kind]?.error.toFixed(4)}`).join(", "))}`);
+  const errors = () => KINDS.map((kind) => `${kind} ${result[kind]?.error.toFixed(4)}`).join(", ");
+  if (values.verbose || (result.refused && !motion.mayBeRefused)) console.log(`${command}: ${result.refused ?? (result.jointless ? "no joints" : errors())}`);
 }
 
 /** Counts, the greatest error of each kind as a part of its bound, and the greatest difference from what was printed. */
