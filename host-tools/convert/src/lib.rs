@@ -12,7 +12,7 @@ pub mod encode;
 #[allow(dead_code, reason = "tests and benches measure single steps")]
 mod encode;
 mod error;
-pub mod errors;
+pub mod error_text;
 mod euler;
 pub mod events;
 pub mod expand;
@@ -46,8 +46,8 @@ pub use conversion::{
 pub use encode::{bank, rans};
 pub use error::{Error, Problem, Setting};
 pub use fit::descent::Level;
-pub use fit::parametrize::{Coding, Rotations};
 pub use fit::raw;
+pub use fit::rotation_coding::{Coding, Rotations};
 pub use length::Length;
 pub use memory::{Memory, parse as parse_size, size as size_text};
 pub use moment::Moment;

@@ -1,7 +1,7 @@
 //! What a user asks of a clip.
 
 use crate::fit::descent::Level;
-use crate::fit::parametrize::Rotations;
+use crate::fit::rotation_coding::Rotations;
 use crate::length::Length;
 use crate::memory::Memory;
 

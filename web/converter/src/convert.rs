@@ -4,7 +4,7 @@ use crate::sources::{self, Chosen, Given};
 use pantin::Clip;
 use pantin_convert::Level;
 use pantin_convert::export::source::c_header;
-use pantin_convert::import::list;
+use pantin_convert::import::animations;
 use pantin_convert::motion::Motion;
 use pantin_convert::raw;
 use pantin_convert::{Converted, Error, Length, Note, Options, Progress, Recipe, Setting};
@@ -48,7 +48,7 @@ impl Asked {
         recipe.import.fps = options["fps"].as_f64();
         recipe.import.cm_per_unit = options["cm_per_unit"].as_f64();
         // The page has one field for all files.
-        recipe.import.animation = options["animation"].as_str().filter(|_| list::chooses(path)).map(str::to_owned);
+        recipe.import.animation = options["animation"].as_str().filter(|_| animations::chooses(path)).map(str::to_owned);
         recipe.edits.fps = recipe.import.fps;
         Ok(recipe)
     }

@@ -15,7 +15,7 @@ use crate::encode::same_rig::difference;
 use crate::error::{Error, Setting, require};
 use crate::fit::bounds::Bounds;
 use crate::fit::descent::Level;
-use crate::fit::parametrize::{Coding, Rotations, has_choice, quaternions};
+use crate::fit::rotation_coding::{Coding, Rotations, has_choice, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import::up;
 use crate::motion::{Motion, Up};

@@ -1,6 +1,6 @@
 //! How far a clip is from its source: numbers for programs, and the same in words and as JSON.
 
-use crate::errors;
+use crate::error_text;
 use crate::fit::chain::Constraint;
 use crate::motion::Motion;
 use crate::{channel_error, verify};
@@ -53,7 +53,7 @@ impl Report {
     /// The fields of a report, for a clip of `motion`.
     pub fn to_json(&self, motion: &Motion) -> Map<String, Value> {
         let mut fields = match &self.errors {
-            Errors::Joints(report) => errors::to_json(report, motion),
+            Errors::Joints(report) => error_text::to_json(report, motion),
             Errors::Channels(report, _) => channels_to_json(report, motion),
         };
         if let Some(cm) = motion.origin.retarget_max_cm {
@@ -73,7 +73,7 @@ impl Report {
     /// The errors for a person, a line for each kind.
     pub fn to_text(&self, motion: &Motion) -> String {
         match &self.errors {
-            Errors::Joints(report) => errors::to_text(report, motion),
+            Errors::Joints(report) => error_text::to_text(report, motion),
             Errors::Channels(report, Constraint::Positions) => format!("error max {}", report.worst.sentence(motion)),
             Errors::Channels(report, Constraint::Accelerations) => {
                 let (worst, drift) = (report.worst.sentence(motion), report.drift_sentence(motion));
@@ -85,7 +85,7 @@ impl Report {
     /// The errors in short, for a table's column.
     pub fn to_cell(&self, motion: &Motion) -> String {
         match &self.errors {
-            Errors::Joints(report) => errors::to_cell(report, motion),
+            Errors::Joints(report) => error_text::to_cell(report, motion),
             Errors::Channels(report, _) => report.worst.sentence(motion),
         }
     }

@@ -3,8 +3,8 @@
 
 use super::figure::{Figure, Poses};
 use super::measure::{self, Measure};
-use super::parametrize::Rotations;
 use super::refusal::refusal;
+use super::rotation_coding::Rotations;
 use super::search::{Effort, Fitted, Tube, search};
 use super::start_cost::{StartCosts, step_of};
 use crate::encode::clip::Start;

@@ -8,9 +8,9 @@ pub mod cost;
 pub mod descent;
 pub mod figure;
 mod measure;
-pub mod parametrize;
 pub mod raw;
 pub mod refusal;
+pub mod rotation_coding;
 pub mod scalars;
 pub mod search;
 mod segment_price;
@@ -27,7 +27,7 @@ use anyhow::{Result, anyhow};
 use descent::{Descent, Plan};
 use figure::Figure;
 use pantin::codec::layout::MAX_FRAMES;
-use parametrize::Coding;
+use rotation_coding::Coding;
 use scalars::Aim;
 
 /// Parts of the bound that first codes may fill, until all channels find one: those that come late need room.
@@ -130,7 +130,7 @@ fn time(motion: &Motion) -> Result<u32> {
 #[cfg(test)]
 mod tests {
     use super::descent::Level;
-    use super::parametrize::Rotations;
+    use super::rotation_coding::Rotations;
     use crate::import::{ImportOptions, InMemory, import};
     use crate::{Length, Options, convert};
     use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! What stands for the FBX importer where it is not built in.
 
-use super::list::Entry;
+use super::animations::Entry;
 use super::{Request, Source};
 use anyhow::{Result, bail};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! The table of formats: one entry each has every fact about a format that the rest of the program asks for.
 
-use super::list::{self, Entry};
+use super::animations::{self, Entry};
 use super::request::Request;
 use super::{Source, amc, bvh, fap, fbx, gltf, keyframes, livelink, procedural, table, vrml, zip};
 use anyhow::Result;
@@ -42,7 +42,7 @@ const PLAIN: Format = Format {
     has_rows: false,
     begins: |_| false,
     read: |_, _| unreachable!("every format has a reader"),
-    list: list::only_one,
+    list: animations::only_one,
     companions: |_, _| Ok(Vec::new()),
 };
 

@@ -3,6 +3,7 @@
 mod acclaim;
 mod amc;
 mod angles;
+pub mod animations;
 pub mod arrays;
 mod asf;
 mod bvh;
@@ -26,7 +27,6 @@ mod gltf;
 mod grid;
 mod helpers;
 mod keyframes;
-pub mod list;
 mod livelink;
 mod options;
 mod procedural;
@@ -111,7 +111,7 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Imported, Error> {
 
 /// The animations of the file `name`: of a glTF or FBX file, the time sensors of a VRML world, or the motions of an archive with several. Other
 /// formats hold one motion without a name.
-pub fn list(files: &dyn Files, name: &Path, options: &ImportOptions) -> Result<Vec<list::Entry>, Error> {
+pub fn list(files: &dyn Files, name: &Path, options: &ImportOptions) -> Result<Vec<animations::Entry>, Error> {
     let request = Request::new(files, options);
     format_of(name, &request).and_then(|format| (format.list)(name, &request)).map_err(|error| Error::of(&error, Error::source))
 }

@@ -3,8 +3,8 @@
 //! An archive is a folder in memory: the importer of the motion inside finds its skeleton or buffers there. Files are unpacked when they are
 //! read, one at a time, and nothing is written.
 
+use super::animations::{Entry, choose};
 use super::files::Files;
-use super::list::{Entry, choose};
 use super::{FORMATS, Format, ImportOptions, Imported, Request, Source, format_of, imported, one_line};
 use crate::error::{Error, Setting};
 use crate::memory::Memory;

@@ -1,6 +1,6 @@
 //! Stands in for the importer of ZIP archives where it is not built in.
 
-use super::list::Entry;
+use super::animations::Entry;
 use super::{Request, Source};
 use anyhow::{Result, bail};
 use std::path::Path;

@@ -2,7 +2,7 @@
 //! have, so that nothing adds up.
 
 use super::pack::pack;
-use super::plan::ScheduledMessage;
+use super::refresh::ScheduledMessage;
 use super::schedule::{ByteCounts, LineSettings, Schedule, TimedPacket};
 use super::source::Source;
 use pantin::Form;

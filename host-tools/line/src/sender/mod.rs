@@ -3,7 +3,7 @@
 mod announce;
 mod live;
 mod pack;
-mod plan;
+mod refresh;
 mod schedule;
 mod source;
 #[cfg(test)]

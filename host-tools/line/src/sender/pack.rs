@@ -1,6 +1,6 @@
 //! Messages put into packets, as many as fit.
 
-use super::plan::{ScheduledMessage, fields, pass};
+use super::refresh::{ScheduledMessage, fields, pass};
 use super::writer::Writer;
 use pantin_link::Head;
 use pantin_link::MAX_PAYLOAD;

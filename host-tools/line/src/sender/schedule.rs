@@ -2,7 +2,7 @@
 
 use super::announce::{write_head, write_starts};
 use super::pack::{MotionPacket, pack};
-use super::plan::round;
+use super::refresh::round;
 use super::source::Source;
 use pantin_link::packet::{self, TagKey, kind};
 use pantin_link::{Head, LineEvent};

@@ -114,7 +114,7 @@ impl Source {
 
     /// Returns the states that every synchronized receiver has for a line of this cycle: for each transmitted channel its place in the pose, and p, v, w, k by frame.
     pub fn expected_states(&self, cycle: u32) -> Vec<(u16, Vec<[i32; 4]>)> {
-        super::plan::expected_states(self, cycle)
+        super::refresh::expected_states(self, cycle)
     }
 
     /// The greatest distance of what is played from the file's, in parts of the channel's step, and of which channel of the pose.

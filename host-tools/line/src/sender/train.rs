@@ -1,6 +1,6 @@
 //! Makes `tables.rs`.
 
-use super::plan::{ScheduledMessage, round};
+use super::refresh::{ScheduledMessage, round};
 use super::source::Source;
 use pantin::Clip;
 use pantin_link::Message;

@@ -172,7 +172,7 @@ fn animation_label(number: &str, name: &str) -> String {
 }
 
 /// The animations of a file that move something, by number and name. Fails if a name is another one's number, which would choose it.
-pub(super) fn chosen_animations(input: &Path, entries: &[import::list::Entry]) -> Result<Vec<(String, String)>> {
+pub(super) fn chosen_animations(input: &Path, entries: &[import::animations::Entry]) -> Result<Vec<(String, String)>> {
     let mut chosen = Vec::new();
     for (number, entry) in entries.iter().enumerate() {
         let (number, name) = (number.to_string(), entry.name.clone().unwrap_or_default());

@@ -6,10 +6,10 @@ use crate::open::is_bank;
 use crate::output::{self, clean, note, outln};
 use anyhow::{Context, Result, ensure};
 use pantin::{Clip, Joint};
-use pantin_convert::errors;
+use pantin_convert::error_text;
 use pantin_convert::events;
 use pantin_convert::facts::{self, Channel, MemoryNeeds, Status};
-use pantin_convert::import::{self, ImportOptions, list, up};
+use pantin_convert::import::{self, ImportOptions, animations, up};
 use pantin_convert::motion::Event;
 use pantin_store::BLOCK_BYTES;
 use pantin_store::region::{REGIONS, Region};
@@ -36,7 +36,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    if list::chooses(&arguments.input) {
+    if animations::chooses(&arguments.input) {
         ensure!(arguments.rig.is_none(), "{}: --rig is for clips, and this is a motion", arguments.input.display());
         ensure!(arguments.against.is_none(), "{}: --against is for clips, and this is a motion", arguments.input.display());
         return animations(&arguments.input);
@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         object.insert("event_markers".into(), events.iter().map(event).collect());
         object.insert("rig".into(), rig_json(&clip, &channels));
         if let Some((report, motion)) = &compared {
-            object.insert("errors".into(), Value::Object(errors::to_json(report, motion)));
+            object.insert("errors".into(), Value::Object(error_text::to_json(report, motion)));
         }
         output::report(Value::Object(object));
     } else {
@@ -113,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             outln!("{:22} {value}", name.replace('_', " "))?;
         }
         if let Some((report, motion)) = &compared {
-            errors::to_text(report, motion).lines().try_for_each(|line| outln!("{}", line.trim_start()))?;
+            error_text::to_text(report, motion).lines().try_for_each(|line| outln!("{}", line.trim_start()))?;
         }
         table(&clip, &channels).iter().try_for_each(|line| outln!("{line}"))?;
         if let Some(seconds) = spacing {
@@ -246,7 +246,7 @@ fn tracks(channels: &[Channel]) -> String {
 pub fn animations(path: &Path) -> Result<()> {
     let entries = import::list(&memory::disk(), path, &ImportOptions::new().memory(memory::limit()))?;
     if output::is_json() {
-        let object = |entry: &list::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
+        let object = |entry: &animations::Entry| json!({"name": entry.name, "frames": entry.frames, "fps": entry.fps, "seconds": entry.seconds(), "tracks": entry.tracks});
         output::report(json!({"animations": entries.iter().map(object).collect::<Vec<_>>()}));
         return Ok(());
     }

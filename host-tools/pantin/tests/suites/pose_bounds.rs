@@ -8,7 +8,7 @@ use pantin_convert::encode::{clip, rig};
 use pantin_convert::expand::expand;
 use pantin_convert::fit::descent::{Level, Plan};
 use pantin_convert::fit::fit;
-use pantin_convert::fit::parametrize::{Rotations, quaternions};
+use pantin_convert::fit::rotation_coding::{Rotations, quaternions};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Joint, Kind, Motion, Rig};
 use pantin_convert::pose_bound::PoseBound;

@@ -6,9 +6,9 @@
 mod layers;
 mod nodes;
 
+use super::animations::{self, Entry};
 use super::from_transforms::{self, Affine, Figure, Node};
 use super::grid::{self, Grid};
-use super::list::{self, Entry};
 use super::{Request, Source, one_line};
 use crate::error::{Error, require};
 use crate::memory::Memory;
@@ -105,7 +105,7 @@ fn chosen<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s AnimStack> {
             .map(|stack| &**stack)
             .context("no curve changes a node's place or a blend shape's weight, so nothing moves");
     };
-    let chosen = list::choose(wanted, stacks.iter().map(|stack| Some(&*stack.element.name)));
+    let chosen = animations::choose(wanted, stacks.iter().map(|stack| Some(&*stack.element.name)));
     chosen.map(|number| &stacks[number]).ok_or_else(|| {
         let names = stacks.iter().enumerate().map(|(number, stack)| format!("{number} ({})", &*stack.element.name));
         anyhow!("no animation `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))

@@ -93,7 +93,7 @@ fn chosen(file: &File, path: &Path, options: &Request) -> Result<usize> {
     }
     let Some(wanted) = &options.animation else { return Ok(0) };
     let called = animations.iter().map(|animation| animation.name.as_deref());
-    super::list::choose(wanted, called).ok_or_else(|| {
+    super::animations::choose(wanted, called).ok_or_else(|| {
         let names: Vec<String> =
             animations.iter().enumerate().map(|(number, animation)| named(number, &animation.name)).collect();
         anyhow!("{}: no animation `{wanted}`; there are {}", path.display(), one_line(&names.join(", ")))

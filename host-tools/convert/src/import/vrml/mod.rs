@@ -9,9 +9,9 @@ mod parse;
 mod time_sensor;
 mod world;
 
+use super::animations::{self, Entry};
 use super::from_transforms::{self, Figure, Node};
 use super::grid::{self, Grid};
-use super::list::{self, Entry};
 use super::{Request, Source, one_line};
 use crate::memory::Memory;
 use crate::motion::Scalar;
@@ -95,7 +95,7 @@ fn chosen<'c>(world: &World, clocks: &'c [TimeSensor], wanted: Option<&str>) -> 
         bail!("no TimeSensor moves anything through an interpolator");
     }
     let Some(wanted) = wanted else { return Ok(clocks.iter().filter(|clock| clock.seconds == longest).collect()) };
-    let chosen = list::choose(wanted, clocks.iter().map(|clock| world.nodes[clock.node].def.as_deref()));
+    let chosen = animations::choose(wanted, clocks.iter().map(|clock| world.nodes[clock.node].def.as_deref()));
     chosen.map(|number| vec![&clocks[number]]).ok_or_else(|| {
         let names = clocks.iter().enumerate().map(|(number, clock)| format!("{number} ({})", world.name(clock.node)));
         anyhow!("no time sensor `{wanted}`; there are {}", one_line(&names.collect::<Vec<_>>().join(", ")))

@@ -1,13 +1,12 @@
 //! `pantin render`
 
-mod options;
 mod output;
+mod values;
 
 use super::{Files, check_read, default_output, format_of, up_axis};
 use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
 use anyhow::{Context, Result, bail, ensure};
-pub use options::{Moment, Side, Size};
 use output::{Kind, Output};
 use pantin::Up;
 use pantin_convert::expand::expand_within;
@@ -20,6 +19,7 @@ use pantin_pictures::render::chart;
 use pantin_pictures::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+pub use values::{Moment, Side, Size};
 
 /// Pixels on the shorter side from which lines are smooth by default.
 const SMOOTH_FROM: usize = 240;
