@@ -91,6 +91,9 @@ impl Arguments {
     }
 }
 
+/// Source text of a bank and its bytes, with names made of a stem.
+type WriteBank = fn(&Bank, &[u8], &str) -> Result<String>;
+
 /// Writes a bank as source text: other files hold one motion.
 fn bank(arguments: &Arguments, bytes: &[u8]) -> Result<()> {
     let place = || arguments.input.display().to_string();
@@ -99,7 +102,7 @@ fn bank(arguments: &Arguments, bytes: &[u8]) -> Result<()> {
         (Some(output), format) => format_of(output, format)?,
         (None, format) => format,
     };
-    let (extension, write): (&str, fn(&Bank, &[u8], &str) -> Result<String>) = match format {
+    let (extension, write): (&str, WriteBank) = match format {
         Some(Format::H) => ("h", export::source::c_header_of_bank),
         Some(Format::Rs) => ("rs", export::source::rust_module_of_bank),
         _ => bail!(
