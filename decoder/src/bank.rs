@@ -20,8 +20,8 @@ use crate::rig::Rig;
 #[derive(Clone, Copy, Debug)]
 pub struct Bank<'a> {
     rig: Rig<'a>,
-    /// The rig with its CRC.
-    rig_bytes: &'a [u8],
+    /// All sections: those that this page names and others.
+    sections: &'a [u8],
     /// Names and lengths, without their CRC.
     contents: &'a [u8],
     clips: &'a [u8],
@@ -58,10 +58,9 @@ impl<'a> Bank<'a> {
         if version != VERSION {
             return Err(OpenError::UnsupportedVersion(version));
         }
+        let sections = reader.rest();
         let mut parts = [None; section::KNOWN];
-        while !reader.rest().is_empty() {
-            let kind = reader.byte();
-            let body = reader.name();
+        while let Some((kind, body)) = next_section(&mut reader) {
             // What is before the end ends there: this does not go on for ever.
             reader.check()?;
             let known = usize::from(kind).checked_sub(1).and_then(|at| parts.get_mut(at));
@@ -85,7 +84,7 @@ impl<'a> Bank<'a> {
         if !rest.rest().is_empty() || !named {
             return Err(OpenError::Malformed);
         }
-        Ok(Bank { rig: Rig::new_checked(rig_bytes)?, rig_bytes, contents, clips })
+        Ok(Bank { rig: Rig::new_checked(rig_bytes)?, sections, contents, clips })
     }
 
     /// The figure of all clips.
@@ -93,9 +92,22 @@ impl<'a> Bank<'a> {
         self.rig
     }
 
-    /// The rig's bytes, as a clip that is kept apart from its rig needs them.
+    /// The rig's bytes with their CRC, as a clip that is kept apart from its rig needs them.
     pub fn rig_bytes(&self) -> &'a [u8] {
-        self.rig_bytes
+        self.sections().find(|(kind, _)| *kind == section::RIG).map_or(&[], |(_, body)| body)
+    }
+
+    /// The types and bodies of all sections in their order: those of the format and those of applications, whose bodies are not checked.
+    pub fn sections(&self) -> impl Iterator<Item = (u8, &'a [u8])> + use<'a> {
+        let mut reader = Reader::new(self.sections);
+        core::iter::from_fn(move || next_section(&mut reader))
+    }
+
+    /// The body of the only section of a type; `None` if there is none, [`OpenError::Malformed`] if there are several.
+    pub fn section(&self, kind: u8) -> Result<Option<&'a [u8]>, OpenError> {
+        let mut bodies = self.sections().filter_map(|(own, body)| (own == kind).then_some(body));
+        let body = bodies.next();
+        if bodies.next().is_some() { Err(OpenError::Malformed) } else { Ok(body) }
     }
 
     /// Number of clips, at least 1.
@@ -130,4 +142,13 @@ impl<'a> Bank<'a> {
     pub fn clip(&self, name: &str) -> Result<Clip<'a>, OpenError> {
         self.open(&self.find(name).ok_or(OpenError::NoSuchClip)?)
     }
+}
+
+/// The type and the body of the next section; `None` at the end. [`Reader::check`] reports a section that ends too early.
+fn next_section<'a>(reader: &mut Reader<'a>) -> Option<(u8, &'a [u8])> {
+    if reader.rest().is_empty() {
+        return None;
+    }
+    let kind = reader.byte();
+    Some((kind, reader.name()))
 }

@@ -2,6 +2,7 @@
 
 use crate::OpenError;
 use crate::blocks::{Input, behind_crc};
+use crate::codec::varint::Varint;
 use crate::entropy::STATE_BYTES;
 
 /// Reads fields one after the other. It cannot fail: past the end it reads zeros, and [`Reader::check`] reports that and fields out of
@@ -48,23 +49,13 @@ impl<'a> Reader<'a> {
         (0..STATE_BYTES).fold(0, |state, _| state << 8 | u32::from(self.byte()))
     }
 
-    /// LEB128: seven bits a byte, the least significant first, at most five bytes. A number that does not fit 32 bits is malformed,
-    /// and loses its highest bits.
+    /// A number of at most five bytes. One that does not fit 32 bits is malformed, and loses its highest bits.
     #[inline(never)]
     pub(crate) fn varint(&mut self) -> u32 {
-        let (mut value, mut shift) = (0, 0);
-        loop {
-            let byte = self.byte();
-            value |= u32::from(byte & 0x7f) << shift;
-            if shift == 28 {
-                self.malformed |= byte > 0xf;
-                return value;
-            }
-            if byte & 0x80 == 0 {
-                return value;
-            }
-            shift += 7;
-        }
+        let mut varint = Varint::default();
+        while !varint.push(self.byte()) {}
+        self.malformed |= varint.too_large;
+        varint.value
     }
 
     /// A varint that holds a signed number as 0, -1, 1, -2, ...
@@ -117,31 +108,6 @@ impl<'a> Reader<'a> {
 /// 0, 1, 2, 3, ... as 0, -1, 1, -2, ...
 pub(crate) const fn unzigzag(n: u32) -> i32 {
     (n >> 1) as i32 ^ -((n & 1) as i32)
-}
-
-/// A number that arrives byte by byte, as [`Reader::varint`] reads it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Varint {
-    pub(crate) value: u32,
-    shift: u8,
-    too_large: bool,
-}
-
-impl Varint {
-    /// Takes the next byte, and returns whether it was the last.
-    #[inline(always)]
-    pub fn push(&mut self, byte: u8) -> bool {
-        // The fifth byte is the last, with four bits.
-        self.too_large = self.shift == 28 && byte > 0xf;
-        self.value |= u32::from(byte & 0x7f) << self.shift;
-        self.shift += 7;
-        byte & 0x80 == 0 || self.shift > 28
-    }
-
-    /// The number, if it fits 32 bits.
-    pub fn checked(&self) -> Result<u32, OpenError> {
-        if self.too_large { Err(OpenError::Malformed) } else { Ok(self.value) }
-    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::blocks::Input;
 use crate::bytes::Reader;
 use crate::channel::ChannelState;
+use crate::codec::varint::{self, put_zigzag};
 use crate::entropy::{Cursor, STATE_BYTES};
 use crate::layout::{START_MODE, segment_type};
 use crate::play_state::{Channels, PlayState};
@@ -56,34 +57,22 @@ pub(crate) fn restore(input: &Input<'_>, entry: Entry, position: &mut PlayState,
 
 /// Writes what [`restore`] reads.
 pub(crate) fn write(position: &PlayState, states: &[ChannelState], pose: &[i32], put: &mut dyn FnMut(u8)) {
-    varint(position.cursor.position, put);
+    varint::put(position.cursor.position, put);
     let state = position.cursor.state();
     (0..STATE_BYTES).rev().for_each(|byte| put((state >> (8 * byte)) as u8));
     for state in states {
         put(state.mode | ((state.prev_sign + 1) as u8) << 6);
         put(state.due.wrapping_sub(position.frame as u8));
         let p = pose.get(usize::from(state.slot)).copied().unwrap_or(0);
-        [p, state.v, state.w].into_iter().for_each(|value| zigzag(value, put));
+        [p, state.v, state.w].into_iter().for_each(|value| put_zigzag(value, put));
         if has_slope(state.mode) {
-            zigzag(state.k, put);
+            put_zigzag(state.k, put);
         }
     }
 }
 
 fn has_slope(mode: u8) -> bool {
     mode >> 4 != segment_type::W
-}
-
-fn varint(mut value: u32, put: &mut dyn FnMut(u8)) {
-    while value >= 0x80 {
-        put(value as u8 | 0x80);
-        value >>= 7;
-    }
-    put(value as u8);
-}
-
-fn zigzag(value: i32, put: &mut dyn FnMut(u8)) {
-    varint((value << 1 ^ value >> 31) as u32, put);
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The first fields of a file that arrives in pieces, byte by byte: magic, version, flags, the rig and the motion's length.
 
-use crate::bytes::Varint;
 use crate::clip::check_fixed;
+use crate::codec::varint::Varint;
 use crate::layout::*;
 use crate::rig::Id;
 use crate::{OpenError, crc};

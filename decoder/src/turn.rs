@@ -430,11 +430,8 @@ mod tests {
     const ORDERS: [EulerOrder; 6] = EulerOrder::ALL;
 
     fn random() -> impl FnMut() -> i32 {
-        let mut state = 1u64;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 32) as i32
-        }
+        let mut random = fastrand::Rng::with_seed(1);
+        move || random.i32(..)
     }
 
     fn of_fixed(matrix: super::Matrix) -> Matrix {

@@ -6,6 +6,8 @@ use std::process::Command;
 use std::sync::LazyLock;
 use std::time::Duration;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use harness::display::{GREYS, Picture};
 use harness::web::browser::{Browser, skipped};
 use harness::web::{self, slow};
@@ -260,14 +262,7 @@ impl Dropped {
 }
 
 fn decoded(base64: &str) -> Vec<u8> {
-    let value =
-        |letter: u8| b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/".iter().position(|&one| one == letter);
-    let bits: Vec<usize> = base64.bytes().filter_map(value).collect();
-    let group = |group: &[usize]| {
-        let all = group.iter().chain(&[0; 3]).take(4).fold(0, |all, bits| all << 6 | bits) as u32;
-        all.to_be_bytes()[1..][..group.len() - 1].to_vec()
-    };
-    bits.chunks(4).flat_map(group).collect()
+    STANDARD.decode(base64).unwrap()
 }
 
 fn shots() -> PathBuf {

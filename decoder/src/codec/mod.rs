@@ -5,6 +5,7 @@ pub mod entropy;
 pub mod layout;
 pub mod segment;
 pub mod tables;
+pub mod varint;
 
 pub use crate::channel::{segment_frames, step_size};
 pub use crate::clip::index_seed;

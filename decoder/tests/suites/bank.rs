@@ -62,6 +62,20 @@ fn clips_are_found_by_name_and_play_with_the_banks_rig() {
 }
 
 #[test]
+fn a_section_of_an_application_is_found_and_a_second_one_of_its_type_is_refused() {
+    let Some([clip, rig, _]) = vectors() else { return };
+    let list = contents(&[(b"walk", clip.len())]);
+    let bytes = bank(&[(4, b"one"), (RIG, &rig), (CONTENTS, &list), (CLIPS, &clip), (200, b""), (5, b"x"), (5, b"y")]);
+    let bank = Bank::new_checked(&bytes).unwrap();
+    assert_eq!(bank.section(4), Ok(Some(&b"one"[..])));
+    assert_eq!(bank.section(200), Ok(Some(&b""[..])));
+    assert_eq!(bank.section(6), Ok(None));
+    assert_eq!(bank.section(5), Err(OpenError::Malformed));
+    assert_eq!((bank.section(RIG), bank.rig_bytes()), (Ok(Some(&rig[..])), &rig[..]));
+    assert!(bank.sections().map(|(kind, _)| kind).eq([4, RIG, CONTENTS, CLIPS, 200, 5, 5]));
+}
+
+#[test]
 fn each_rule_of_a_bank_is_checked() {
     let Some([clip, rig, with_rig]) = vectors() else { return };
     let list = contents(&[(b"walk", clip.len())]);

@@ -58,7 +58,7 @@ impl<'a, 'm> Character<'a, 'm> {
     /// before [`Character::lend_layer`]. The figure is carried by the first joint with positions that moves in one of the states' clips.
     pub fn new(bytes: &'a [u8], memory: Memory<'m>) -> Result<Self, Error> {
         let bank = Bank::new_checked(bytes)?;
-        let machine = Machine::new(Table::of_bank(bytes)?);
+        let machine = Machine::new(Table::of_checked(&bank).map_err(Error::Machine)?);
         let carrier = carrier(&bank, machine.table(), memory.states, memory.values)?;
         let mut animator = Animator::carried_by(carrier, machine.first_clip(&bank)?, memory)?;
         machine.start(&mut animator);
@@ -189,7 +189,8 @@ impl<'a> Layer<'a, '_> {
 
 /// The clip that the state machine of a bank begins with; its rig is that of all clips.
 pub fn first_clip(bytes: &[u8]) -> Result<Clip<'_>, Error> {
-    Machine::new(Table::of_bank(bytes)?).first_clip(&Bank::new_checked(bytes)?)
+    let bank = Bank::new_checked(bytes)?;
+    Machine::new(Table::of_checked(&bank).map_err(Error::Machine)?).first_clip(&bank)
 }
 
 /// The clips of all states.
@@ -214,7 +215,7 @@ pub fn visit_poses<'a>(
     visit: &mut dyn FnMut(&Clip<'a>, &[i32]),
 ) -> Result<(), Error> {
     let bank = Bank::new_checked(bytes)?;
-    let table = Table::of_bank(bytes)?;
+    let table = Table::of_checked(&bank).map_err(Error::Machine)?;
     let carrier = carrier(&bank, &table, states, values)?;
     for clip in clips(&bank, &table) {
         let clip = clip?;

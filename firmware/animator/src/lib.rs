@@ -89,6 +89,7 @@ mod root;
 mod scene;
 pub mod session;
 mod sync;
+mod table;
 mod track;
 mod two_bone;
 

@@ -117,11 +117,8 @@ mod tests {
 
     #[test]
     fn it_ends_exactly_at_zero_and_starts_with_its_velocity() {
-        let mut state = 1u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 32) as i32
-        };
+        let mut random = fastrand::Rng::with_seed(1);
+        let mut next = || random.i32(..);
         for frames in 1..=255u8 {
             for shift in [2, 4, 12, 27] {
                 let (d, v) = (next() >> shift, (next() >> (shift + 3)) / (i32::from(frames) / 8 + 1));

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{Random, run, walk};
+use common::{run, walk};
+use fastrand::Rng;
 use pantin::{Clip, Pose};
 use pantin_animator::{Animator, FootLock, Limb, Limits, Look, Share, Workspace};
 use pantin_math::JointChain;
@@ -30,7 +31,7 @@ fn per_cm(clip: &Clip<'_>) -> f64 {
 
 #[test]
 fn a_leg_reaches_its_target_and_keeps_the_foots_rotation() {
-    let mut random = Random(5);
+    let mut random = Rng::with_seed(5);
     for clip in [walk(), run()] {
         let mut room = Room::new();
         let mut animator = Animator::new(clip, room.lend()).unwrap();
@@ -38,9 +39,9 @@ fn a_leg_reaches_its_target_and_keeps_the_foots_rotation() {
         let scale = per_cm(&clip);
         let (mut worst, mut reached) = (0.0f64, 0);
         for round in 0..2_000 {
-            animator.seek(random.below(clip.frames()));
+            animator.seek(random.u32(..clip.frames()));
             let start = at(&clip, "left-foot", animator.pose().values);
-            let mut offset = || f64::from(random.below(2001)) / 100.0 - 10.0;
+            let mut offset = || f64::from(random.u32(..2001)) / 100.0 - 10.0;
             let by = [0.0, offset(), offset()];
             let goal: [f64; 3] = core::array::from_fn(|axis| start[axis] + by[axis]);
             let before = turned(&clip, "left-foot", animator.pose().values);
@@ -69,7 +70,7 @@ fn a_leg_reaches_its_target_and_keeps_the_foots_rotation() {
 #[test]
 fn a_look_faces_its_target() {
     let clip = walk();
-    let mut random = Random(6);
+    let mut random = Rng::with_seed(6);
     let mut room = Room::new();
     let mut animator = Animator::new(clip, room.lend()).unwrap();
     let most = pantin::Angle::from_bits(1 << 29);
@@ -79,9 +80,9 @@ fn a_look_faces_its_target() {
     let scale = per_cm(&clip);
     let (mut sum, mut worst) = (0.0, 0.0f64);
     for round in 0..500 {
-        animator.seek(random.below(clip.frames()));
+        animator.seek(random.u32(..clip.frames()));
         let head = at(&clip, "head", animator.pose().values);
-        let mut offset = |by: u32| f64::from(random.below(2 * by + 1)) - f64::from(by);
+        let mut offset = |by: u32| f64::from(random.u32(..2 * by + 1)) - f64::from(by);
         let goal = [head[0] + offset(40), head[1] + offset(30), head[2] + 150.0];
         let before = facing(&clip, animator.pose().values, goal);
         let near = look.at(animator.pose_mut(), goal.map(|cm| (cm * scale) as i32));

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{Random, events, run, walk};
+use common::{events, run, walk};
+use fastrand::Rng;
 use fixed::types::I16F16;
 use pantin::{ChannelState, Clip, Player};
 use pantin_animator::{Animator, Placement, Transition, Workspace};
@@ -35,15 +36,15 @@ fn own_pose(clip: Clip<'_>, frame: u32, like: &[i32]) -> Vec<i32> {
 
 #[test]
 fn a_transition_starts_on_the_old_pose_and_ends_exactly_on_the_clip() {
-    let mut random = Random(1);
+    let mut random = Rng::with_seed(1);
     let clips = clips();
     for round in 0..400u32 {
         let mut room = Room::new();
-        let [from, to] = [random.below(2), random.below(2)].map(|at| clips[at as usize]);
+        let [from, to] = [random.u32(..2), random.u32(..2)].map(|at| clips[at as usize]);
         let mut animator = Animator::new(from, room.lend()).unwrap();
-        animator.seek(random.below(from.frames()));
-        let frames = random.below(60) as u8;
-        let frame = random.below(to.frames());
+        animator.seek(random.u32(..from.frames()));
+        let frames = random.u32(..60) as u8;
+        let frame = random.u32(..to.frames());
         let before = animator.pose().values.to_vec();
         let placement = animator.placement();
         animator.switch(to, frame, speed(1.0), Transition::Inertialized(frames)).unwrap();
@@ -67,18 +68,18 @@ fn a_transition_starts_on_the_old_pose_and_ends_exactly_on_the_clip() {
 
 #[test]
 fn switching_in_the_middle_of_a_transition_keeps_the_pose() {
-    let mut random = Random(2);
+    let mut random = Rng::with_seed(2);
     let mut room = Room::new();
     let mut animator = Animator::new(walk(), room.lend()).unwrap();
     for round in 0..500 {
-        for _ in 0..random.below(9) {
-            animator.update(random.below(40_000)).ok();
+        for _ in 0..random.u32(..9) {
+            animator.update(random.u32(..40_000)).ok();
         }
-        let clip = clips()[random.below(2) as usize];
+        let clip = clips()[random.u32(..2) as usize];
         let (before, place) = (animator.pose().values.to_vec(), animator.placement());
         let form = animator.form();
-        let rate = speed(f64::from(random.below(8)) - 4.0);
-        animator.switch(clip, random.below(clip.frames()), rate, Transition::Inertialized(20)).unwrap();
+        let rate = speed(f64::from(random.u32(..8)) - 4.0);
+        animator.switch(clip, random.u32(..clip.frames()), rate, Transition::Inertialized(20)).unwrap();
         assert_eq!(animator.placement().place, place.place);
         let turned = animator.placement().heading - place.heading;
         if form == animator.form() && turned == pantin::Angle::ZERO {
@@ -91,7 +92,7 @@ fn switching_in_the_middle_of_a_transition_keeps_the_pose() {
 
 #[test]
 fn root_motion_over_any_path_is_the_direct_difference() {
-    let mut random = Random(3);
+    let mut random = Rng::with_seed(3);
     for clip in [walk(), run()] {
         assert!(clip.looped());
         let mut room = Room::new();
@@ -107,16 +108,16 @@ fn root_motion_over_any_path_is_the_direct_difference() {
         let mut laps = 0i64;
         let mut seen = std::collections::HashMap::new();
         for round in 0..1_000_000 {
-            match random.below(16) {
-                0 => animator.seek(random.below(clip.frames())),
+            match random.u32(..16) {
+                0 => animator.seek(random.u32(..clip.frames())),
                 1 => {
-                    animator.set_speed(speed(f64::from(random.below(9)) - 4.0));
+                    animator.set_speed(speed(f64::from(random.u32(..9)) - 4.0));
                     continue;
                 }
                 _ => {
                     let before = animator.track().frame();
                     let rate = animator.track().speed();
-                    animator.update(frame_us / 3 * random.below(12)).ok();
+                    animator.update(frame_us / 3 * random.u32(..12)).ok();
                     let after = animator.track().frame();
                     if rate > 0 && after < before {
                         laps += 1;
@@ -143,7 +144,7 @@ fn root_motion_over_any_path_is_the_direct_difference() {
 
 #[test]
 fn every_event_fires_once_a_pass_in_order() {
-    let mut random = Random(4);
+    let mut random = Rng::with_seed(4);
     let clip = events();
     let frames = i64::from(clip.frames());
     let markers: Vec<u32> = clip.events().map(|event| event.frame).collect();
@@ -155,12 +156,12 @@ fn every_event_fires_once_a_pass_in_order() {
     let mut last_time: i64 = 0;
     let mut lap = 0i64;
     for round in 0..20_000 {
-        if random.below(12) == 0 {
-            animator.set_speed(speed(f64::from(random.below(5)) - 2.0));
+        if random.u32(..12) == 0 {
+            animator.set_speed(speed(f64::from(random.u32(..5)) - 2.0));
         }
         let before = animator.track().frame();
         let rate = animator.track().speed();
-        animator.update(random.below(100_000)).unwrap();
+        animator.update(random.u32(..100_000)).unwrap();
         let after = animator.track().frame();
         let time = |frame: u32, part: fixed::types::U0F16, lap: i64| {
             ((lap * frames + i64::from(frame)) << 16) + i64::from(part.to_bits())

@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{Random, walk};
+use common::walk;
+use fastrand::Rng;
 use fixed::types::I16F16;
 use pantin::{ChannelState, Pose};
 use pantin_animator::layer::{Weight, add, blend};
@@ -13,7 +14,7 @@ use pantin_animator::{Animator, Error, Group, Mask, Track, Workspace};
 #[test]
 fn a_mask_and_its_complement_are_the_whole() {
     let clip = walk();
-    let mut random = Random(7);
+    let mut random = Rng::with_seed(7);
     let mut groups = [Group::NONE; 64];
     let used = Group::of_clip(&clip, &mut groups).unwrap();
     let groups = &groups[..used];
@@ -23,20 +24,20 @@ fn a_mask_and_its_complement_are_the_whole() {
     let mut all = Mask::new(&clip.rig(), &mut all_words).unwrap();
     all.invert();
     for _ in 0..500 {
-        track.seek(random.below(clip.frames()));
+        track.seek(random.u32(..clip.frames()));
         let mut base = vec![0; clip.rig().channels()];
         track.sample(&mut base);
-        track.seek(random.below(clip.frames()));
+        track.seek(random.u32(..clip.frames()));
         let layer = track.pose();
         let (mut mask, mut rest) =
             (Mask::new(&clip.rig(), &mut words).unwrap(), Mask::new(&clip.rig(), &mut other_words).unwrap());
         for joint in 0..clip.rig().joint_count() {
-            let on = random.below(2) == 1;
+            let on = random.u32(..2) == 1;
             mask.put(joint, on);
             rest.put(joint, on);
         }
         rest.invert();
-        let weight = Weight::from_bits([0, 1 << 15, random.below(1 << 15) as u16][random.below(3) as usize]);
+        let weight = Weight::from_bits([0, 1 << 15, random.u32(..1 << 15) as u16][random.u32(..3) as usize]);
         let (mut halves, mut whole) = (base.clone(), base.clone());
         blend(&mut halves, groups, clip.form_ref(), layer, &mask, weight).unwrap();
         blend(&mut halves, groups, clip.form_ref(), layer, &rest, weight).unwrap();
@@ -164,7 +165,7 @@ fn walk_and_run() -> Made {
 
 #[test]
 fn a_machine_goes_from_state_to_state() {
-    let bytes = common::bank(&walk_and_run().bytes());
+    let bytes = common::bank(&[&walk_and_run().bytes()]);
     let bank = pantin::Bank::new_checked(&bytes).unwrap();
     let table = Table::of_bank(&bytes).unwrap();
     assert_eq!((table.states(), table.state_name(0), table.state_name(1)), (2, "walk", "run"));
@@ -221,11 +222,12 @@ fn a_table_is_checked() {
     let bytes = walk_and_run().bytes();
     assert_eq!(Table::new(&bytes[..bytes.len() - 1], 2).err(), Some(TableError::BadCrc));
     assert_eq!(Table::new(&[], 2).err(), Some(TableError::Truncated));
-    // A bank without a table, and one that is cut short.
-    let whole = common::bank(&bytes);
-    let without = &whole[..whole.len() - bytes.len() - 3];
-    assert_eq!(Table::of_bank(without).err(), Some(Error::Machine(TableError::Missing)));
+    // A bank without a table, one that is cut short, and one with two.
+    assert_eq!(Table::of_bank(common::BANK).err(), Some(Error::Machine(TableError::Missing)));
+    let whole = common::bank(&[&bytes]);
     assert!(Table::of_bank(&whole[..whole.len() - 1]).is_err());
+    let twice = common::bank(&[&bytes, &bytes]);
+    assert_eq!(Table::of_bank(&twice).err(), Some(Error::Machine(TableError::Several)));
 }
 
 #[test]

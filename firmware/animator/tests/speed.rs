@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{Random, run, walk};
+use common::{run, walk};
+use fastrand::Rng;
 use fixed::types::I16F16;
 use pantin::Clip;
 use pantin_animator::{Animator, Transition, Workspace};
@@ -52,15 +53,15 @@ fn no_joint_is_faster_than_twice_the_clips_and_the_way() {
     // In centimetres a second.
     let rate = |clip: &Clip<'_>| 1e9 / f64::from(clip.frame_time_ns());
     let own = clips.map(|clip| own_speed(clip, &chains) * rate(&clip));
-    let mut random = Random(8);
+    let mut random = Rng::with_seed(8);
     let (mut worst, mut over) = (0.0f64, 0);
     for _ in 0..10_000 {
-        let [from, to] = [0; 2].map(|_| random.below(2) as usize);
+        let [from, to] = [0; 2].map(|_| random.u32(..2) as usize);
         let mut memory = Workspace::<64, 64>::new();
         let mut animator = Animator::new(clips[from], memory.lend()).unwrap();
-        animator.seek(random.below(clips[from].frames()));
-        let start = random.below(clips[to].frames());
-        let frames = 4 + random.below(16) as u8;
+        animator.seek(random.u32(..clips[from].frames()));
+        let start = random.u32(..clips[to].frames());
+        let frames = 4 + random.u32(..16) as u8;
         let mut before = places(&animator, &chains);
         animator.switch(clips[to], start, I16F16::ONE, Transition::Inertialized(frames)).unwrap();
         // How far the poses are apart at the switch, with the figure at its place.

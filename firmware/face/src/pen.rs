@@ -159,11 +159,8 @@ mod tests {
 
     #[test]
     fn a_pen_sets_what_strokes_do_and_marks_what_it_sets() {
-        let mut state = 7u64;
-        let mut next = |least: i16, most: i16| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            least + ((state >> 33) % (most - least + 1) as u64) as i16
-        };
+        let mut random = fastrand::Rng::with_seed(7);
+        let mut next = |least: i16, most: i16| random.i16(least..=most);
         for round in 0..20_000 {
             let (mut by_pen, mut by_strokes) = (Small::new(), Small::new());
             by_pen.send().count();

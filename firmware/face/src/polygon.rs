@@ -133,11 +133,8 @@ mod tests {
     where
         L::Cell: PartialEq,
     {
-        let mut state = seed;
-        let mut next = |least: i32, most: i32| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (i64::from(least) + (state >> 33) as i64 % (i64::from(most) - i64::from(least) + 1)) as i16
-        };
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut next = |least: i32, most: i32| random.i32(least..=most) as i16;
         for series in 0..120 {
             let (mut by_rows, mut by_lines) = (Framebuffer::<L>::new(), Framebuffer::<L>::new());
             let [width, height] = [L::WIDTH, L::HEIGHT].map(|pixels| (pixels << PIXEL_BITS) as i32);

@@ -142,11 +142,8 @@ mod tests {
 
     #[test]
     fn every_turn_is_that_of_the_fixed_point_rotation_within_what_the_approximations_leave() {
-        let mut state = 3u64;
-        let mut next = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 32) as i32
-        };
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut next = || random.i32(..);
         let mut most = [0f32; 3];
         for _ in 0..100_000 {
             let values = [next(), next(), next(), next()];

@@ -332,11 +332,8 @@ mod tests {
 
     /// Numbers in -1 .. 1 from a fixed sequence.
     fn sequence() -> impl FnMut() -> f64 {
-        let mut state = 1u64;
-        move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
-        }
+        let mut random = fastrand::Rng::with_seed(1);
+        move || random.f64() * 2.0 - 1.0
     }
 
     fn unit_vector(next: &mut impl FnMut() -> f64) -> [f64; 3] {

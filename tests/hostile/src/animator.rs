@@ -46,12 +46,7 @@ pub fn animator(bytes: &[u8]) -> bool {
 fn character(table: &[u8], seed: &[u8]) -> bool {
     let mut bytes = BANK.to_vec();
     bytes.push(SECTION);
-    // A length in three digits of seven bits.
-    let len = table.len() as u32;
-    if len >= 1 << 21 {
-        return false;
-    }
-    bytes.extend([len as u8 | 0x80, (len >> 7) as u8 | 0x80, (len >> 14) as u8]);
+    pantin::codec::varint::put(table.len() as u32, &mut |byte| bytes.push(byte));
     bytes.extend(table);
     let mut memory = Workspace::<512, 512>::new();
     let mut rooms = [(); LAYERS].map(|()| ([pantin::ChannelState::NEW; 512], [0; 512], [0; 512], [0; 32]));

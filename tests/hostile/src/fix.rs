@@ -1,9 +1,9 @@
 //! Repairs what the first checks would refuse, and nothing else.
 
-use pantin::codec::crc;
 use pantin::codec::layout::{
     BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, HAS_SECTIONS, KNOWN_FLAGS, MAGIC, VERSION, section,
 };
+use pantin::codec::{crc, varint};
 
 /// Makes the CRC of a rig or of event names right, if they are long enough to have one.
 pub fn rig(bytes: &mut [u8]) {
@@ -84,20 +84,9 @@ fn put_part(out: &mut Vec<u8>, blocks: &[u8], mut seed: u16) -> u16 {
 
 /// A length and how many bytes it takes.
 fn varint(bytes: &[u8]) -> Option<(usize, usize)> {
-    let mut value = 0;
-    for (digit, byte) in bytes.iter().enumerate().take(4) {
-        value |= usize::from(byte & 0x7f) << (7 * digit);
-        if byte & 0x80 == 0 {
-            return Some((value, digit + 1));
-        }
-    }
-    None
+    varint::get(bytes).map(|(len, digits)| (len as usize, digits))
 }
 
-fn put_varint(out: &mut Vec<u8>, mut value: usize) {
-    while value >= 0x80 {
-        out.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    out.push(value as u8);
+fn put_varint(out: &mut Vec<u8>, value: usize) {
+    varint::put(value as u32, &mut |byte| out.push(byte));
 }

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use pantin::Clip;
 
 use crate::site::{FACE, PLAYER};
@@ -28,7 +30,7 @@ pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
          <link rel=\"icon\" href=\"data:,\">\n<pantin-player src=\"data:;base64,{}\" autoplay loop></pantin-player>\n\
          <script type=\"module\">const pantinUrl=text=>URL.createObjectURL(new Blob([Uint8Array.from(text,letter=>letter.charCodeAt())]));\
          {modules}{script}</script>\n</html>\n",
-        base64(clip)
+        STANDARD.encode(clip)
     ))
 }
 
@@ -42,23 +44,12 @@ fn text(bytes: &[u8]) -> String {
     bytes.iter().map(letter).collect()
 }
 
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut out = String::new();
-    for group in bytes.chunks(3) {
-        let bits = group.iter().chain(&[0; 2]).take(3).fold(0, |bits, byte| bits << 8 | usize::from(*byte));
-        (0..4).for_each(|place| out.push(if place > group.len() { '=' } else { LETTERS[bits >> (18 - 6 * place) & 63].into() }));
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{base64, text};
+    use super::text;
 
     #[test]
     fn bytes_come_back() {
-        assert_eq!(["", "f", "fo", "foo", "foob"].map(|text| base64(text.as_bytes())), ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]);
         let bytes: Vec<u8> = (0..=255).collect();
         let text = text(&bytes);
         assert_eq!(text.chars().map(|letter| letter as u32 as u8).collect::<Vec<_>>(), bytes);

@@ -1,4 +1,4 @@
-//! What the tests share: our own motions, and random numbers.
+//! What the tests share: our own motions.
 #![allow(dead_code)]
 
 use pantin::Clip;
@@ -25,27 +25,16 @@ pub fn events() -> Clip<'static> {
         .expect("a vector opens")
 }
 
-/// The same numbers each time.
-pub struct Random(pub u64);
+/// The vectors' bank.
+pub const BANK: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/vectors/bank.ptb"));
 
-impl Random {
-    pub fn next(&mut self) -> u32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) as u32
+/// The vectors' bank, with these tables behind it, each in a section of its own.
+pub fn bank(tables: &[&[u8]]) -> Vec<u8> {
+    let mut bytes = BANK.to_vec();
+    for table in tables {
+        bytes.push(pantin_animator::machine::SECTION);
+        pantin::codec::varint::put(table.len() as u32, &mut |byte| bytes.push(byte));
+        bytes.extend(*table);
     }
-
-    pub fn below(&mut self, end: u32) -> u32 {
-        self.next() % end
-    }
-}
-
-/// The vectors' bank, with the section of a state machine behind it.
-pub fn bank(table: &[u8]) -> Vec<u8> {
-    let mut bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/vectors/bank.ptb")).to_vec();
-    let len = table.len();
-    assert!(len < 1 << 14);
-    bytes.push(4);
-    bytes.extend([len as u8 | 0x80, (len >> 7) as u8]);
-    bytes.extend(table);
     bytes
 }

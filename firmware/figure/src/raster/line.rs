@@ -211,11 +211,8 @@ mod tests {
 
     /// Numbers from a fixed sequence.
     fn sequence() -> impl FnMut(i32, i32) -> i32 {
-        let mut state = 5u64;
-        move |least, most| {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            least + ((state >> 33) % (most - least + 1) as u64) as i32
-        }
+        let mut random = fastrand::Rng::with_seed(5);
+        move |least, most| random.i32(least..=most)
     }
 
     #[test]

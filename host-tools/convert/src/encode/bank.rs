@@ -72,9 +72,7 @@ pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
     contents.extend(crc::of(&contents).to_le_bytes());
     let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], VERSION];
     for (kind, body) in [(section::RIG, &first.rig[..]), (section::CONTENTS, &contents), (section::CLIPS, &bodies)] {
-        out.push(kind);
-        varint::put(&mut out, u32::try_from(body.len()).context("a section of 4 GiB or more")?);
-        out.extend_from_slice(body);
+        put_section(&mut out, kind, body)?;
     }
     let bank = Bank::new_checked(&out).context("the bank that was just made does not open")?;
     ensure!(bank.len() == clips.len(), "the bank that was just made has {} clips, not {}", bank.len(), clips.len());
@@ -88,23 +86,20 @@ pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
 
 /// A bank with a section of a type that only some programs read, in place of another of that type.
 pub fn with_section(bank: &[u8], kind: u8, body: &[u8]) -> Result<Vec<u8>> {
-    Bank::new_checked(bank)?;
-    let mut out = bank[..3].to_vec();
-    let mut rest = &bank[3..];
-    while !rest.is_empty() {
-        let whole = rest;
-        let (own, after) = rest.split_first().context("a section without a type")?;
-        let (len, digits) = varint::get(after).context("a section without a length")?;
-        rest = after.get(digits + len as usize..).context("a section that ends early")?;
-        if *own != kind {
-            out.extend_from_slice(&whole[..whole.len() - rest.len()]);
-        }
+    let sections = Bank::new_checked(bank)?.sections().filter(|(own, _)| *own != kind).chain([(kind, body)]);
+    let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], VERSION];
+    for (kind, body) in sections {
+        put_section(&mut out, kind, body)?;
     }
-    out.push(kind);
-    varint::put(&mut out, u32::try_from(body.len()).context("a section of 4 GiB or more")?);
-    out.extend_from_slice(body);
     Bank::new_checked(&out).context("the bank that was just made does not open")?;
     Ok(out)
+}
+
+fn put_section(out: &mut Vec<u8>, kind: u8, body: &[u8]) -> Result<()> {
+    out.push(kind);
+    varint::put(out, u32::try_from(body.len()).context("a section of 4 GiB or more")?);
+    out.extend_from_slice(body);
+    Ok(())
 }
 
 /// The first difference between two rigs; `None` if they are the same.

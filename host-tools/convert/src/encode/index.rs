@@ -89,17 +89,11 @@ mod tests {
 
     /// The first byte of each snapshot, as a decoder finds it.
     fn found(index: &[u8]) -> Vec<usize> {
-        let mut bytes = index.iter();
+        let mut rest = index;
         let mut number = || {
-            let mut value = 0;
-            for digit in 0.. {
-                let byte = *bytes.next().unwrap();
-                value |= usize::from(byte & 0x7f) << (7 * digit);
-                if byte < 0x80 {
-                    break;
-                }
-            }
-            value
+            let (value, len) = varint::get(rest).unwrap();
+            rest = &rest[len..];
+            value as usize
         };
         let (_, count) = (number(), number());
         let mut at = 0;

@@ -1,29 +1,16 @@
-//! Variable-length integers, as `pantin`'s byte cursor reads them.
+//! The fields of files that hold numbers and names.
 
-/// LEB128: seven bits a byte, least significant first.
-pub fn put(out: &mut Vec<u8>, mut value: u32) {
-    while value >= 0x80 {
-        out.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    out.push(value as u8);
-}
+use pantin::codec::varint;
+pub use pantin::codec::varint::get;
 
-/// A number and how many bytes it takes, at most 5; bits beyond 32 are left out. `None` if it is cut short.
-pub fn get(bytes: &[u8]) -> Option<(u32, usize)> {
-    let mut value = 0;
-    for (digit, &byte) in bytes.iter().enumerate().take(5) {
-        value |= u32::from(byte & 0x7f) << (7 * digit);
-        if byte & 0x80 == 0 || digit == 4 {
-            return Some((value, digit + 1));
-        }
-    }
-    None
+/// A number.
+pub fn put(out: &mut Vec<u8>, value: u32) {
+    varint::put(value, &mut |byte| out.push(byte));
 }
 
 /// A signed number as 0, -1, 1, -2, ...
 pub fn put_zigzag(out: &mut Vec<u8>, value: i32) {
-    put(out, ((value << 1) ^ (value >> 31)) as u32);
+    varint::put_zigzag(value, &mut |byte| out.push(byte));
 }
 
 /// A length, then UTF-8.

@@ -1,6 +1,6 @@
 //! Computes where every joint is at every frame, and how a channel moves the joints below it.
 
-use crate::fk::{IDENTITY, Matrix, about, apply, local, product};
+use crate::fk::{IDENTITY, Matrix, about, apply, local, product, quaternion};
 use crate::motion::{Kind, Rig};
 
 /// Where every joint is, in cm: `[joint][frame]`.
@@ -171,30 +171,12 @@ pub fn exponential_near(turn: &Matrix, before: [f64; 3]) -> [f64; 3] {
 
 fn exponential(m: &Matrix) -> [f64; 3] {
     // By the quaternion, whose largest component is never small: exact near no turn and near half a turn.
-    let trace = m[0][0] + m[1][1] + m[2][2];
-    let squares = [trace, 2.0 * m[0][0] - trace, 2.0 * m[1][1] - trace, 2.0 * m[2][2] - trace];
-    let largest = (0..4).max_by(|&a, &b| squares[a].total_cmp(&squares[b])).unwrap_or(0);
-    let double = (1.0 + squares[largest]).max(0.0).sqrt();
-    let part = 0.5 / double;
-    let mut q = [0.0; 4];
-    q[largest] = 0.5 * double;
-    let anti = [m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]];
-    if largest == 0 {
-        (0..3).for_each(|i| q[i + 1] = anti[i] * part);
-    } else {
-        let i = largest - 1;
-        q[0] = anti[i] * part;
-        for j in (0..3).filter(|&j| j != i) {
-            q[j + 1] = (m[i][j] + m[j][i]) * part;
-        }
-    }
-    if q[0] < 0.0 {
-        q = q.map(|x| -x);
-    }
-    let sine = (q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
-    let angle = 2.0 * sine.atan2(q[0]).to_degrees();
+    let q = quaternion(m);
+    let [x, y, z, w] = if q[3] < 0.0 { q.map(|x| -x) } else { q };
+    let sine = (x * x + y * y + z * z).sqrt();
+    let angle = 2.0 * sine.atan2(w).to_degrees();
     let scale = if sine > 1e-12 { angle / sine } else { 2f64.to_degrees() };
-    [q[1] * scale, q[2] * scale, q[3] * scale]
+    [x, y, z].map(|x| x * scale)
 }
 
 #[cfg(test)]
