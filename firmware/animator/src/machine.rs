@@ -157,7 +157,7 @@ impl<'a> Machine<'a> {
     fn enter<'b>(&mut self, bank: &Bank<'b>, animator: &mut Animator<'b, '_>) -> Result<Option<u8>, Error> {
         let Some(now) = self.table.state(self.state) else { return Ok(None) };
         let own = usize::from(now.transitions.0)..usize::from(now.transitions.0) + usize::from(now.transitions.1);
-        let any = 0..self.table.from_any();
+        let any = 0..self.table.any_transitions();
         let state = self.state;
         let mut rows = any.map(|index| (index, true)).chain(own.map(|index| (index, false)));
         let wanted = rows.find_map(|(index, any)| {

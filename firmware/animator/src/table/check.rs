@@ -23,7 +23,7 @@ impl<'a> Table<'a> {
             }
         }
         table.check_layers(clips)?;
-        table.check_transitions(NONE, (0, table.from_any() as u8))?;
+        table.check_transitions(NONE, (0, table.any_transitions() as u8))?;
         for state in 0..table.states() as u8 {
             table.check_state(state, clips)?;
         }
@@ -108,7 +108,7 @@ impl<'a> Table<'a> {
             rows.fold(0u64, |states, row| states | 1 << (usize::from(row.to) % STATES))
         };
         let is_in = |states: u64, state: usize| states >> state & 1 != 0;
-        let mut reached = 1u64 << (usize::from(self.first()) % STATES) | led_to(0, self.from_any());
+        let mut reached = 1u64 << (usize::from(self.first()) % STATES) | led_to(0, self.any_transitions());
         loop {
             let before = reached;
             for state in (0..self.states()).filter(|state| is_in(before, *state)) {

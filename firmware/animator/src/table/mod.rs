@@ -86,7 +86,7 @@ impl<'a> Table<'a> {
     }
 
     /// Number of transitions that lead from any state.
-    pub(crate) fn from_any(&self) -> usize {
+    pub(crate) fn any_transitions(&self) -> usize {
         self.number(6)
     }
 
