@@ -1,9 +1,10 @@
 //! A state machine with all that it plays with: the animator, the second clip of a blend, and layers.
 
-use crate::animator::{Animator, Memory};
+use crate::animator::Animator;
 use crate::layer::{Ramp, Weight};
 use crate::machine::{LAYERS, LayerRow, Machine, Table, Updated, clip};
 use crate::mask::Mask;
+use crate::memory::Memory;
 use crate::root::{self, Placement, Root};
 use crate::track::Track;
 use crate::{Error, machine::TableError};

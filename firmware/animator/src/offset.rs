@@ -20,6 +20,12 @@ impl Offset {
         self.d | self.v == 0
     }
 
+    /// Puts the difference where the velocity leads to zero in a number of frames without turning back: it dies out as v (1 - t / n)^2, which
+    /// is the cubic with k = 2 v / n^2, and goes n v / 3.
+    pub(crate) fn coast(&mut self, frames: u8) {
+        self.d = -(i64::from(self.v) * i64::from(frames) / 3) as i32;
+    }
+
     /// One frame on.
     #[inline(always)]
     pub(crate) fn step(&mut self) {

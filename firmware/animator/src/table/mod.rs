@@ -5,7 +5,7 @@ mod error;
 mod rows;
 
 use crate::Error;
-use crate::animator::Transition;
+use crate::switch::Transition;
 pub use error::TableError;
 use fixed::types::I16F16;
 use pantin::Bank;

@@ -1,0 +1,225 @@
+//! Going over to another clip: what is kept of the old motion, and the difference to the new one, which dies out.
+
+use crate::Error;
+use crate::animator::Animator;
+use crate::groups::{self, Group, Shape, nearest};
+use crate::math;
+use crate::offset::{Cubic, Offset};
+use crate::root::{Heading, Placement, Root, Travel};
+use fixed::types::I16F16;
+use pantin::{Angle, Clip, FormRef, Joint, WrongForm};
+
+/// How one clip follows another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Transition {
+    /// At once. The pose jumps; place and heading do not.
+    Cut,
+    /// The difference of the poses and of their velocities dies out as a cubic in this many frames of the new clip, after which the pose is
+    /// exactly the clip's. 0 frames are a cut; 1 frame keeps the old pose for the first instant alone.
+    Inertialized(u8),
+    /// The difference of the poses alone dies out: the old motion stops at once. For comparison.
+    Faded(u8),
+}
+
+impl Transition {
+    fn frames(self) -> u8 {
+        match self {
+            Transition::Cut => 0,
+            Transition::Inertialized(frames) | Transition::Faded(frames) => frames,
+        }
+    }
+}
+
+impl<'a> Animator<'a, '_> {
+    /// Goes over to a clip of the same rig, from a frame (from the last one if there are fewer) and at a speed of -4 to 4 (others are cut off).
+    /// It may come in the middle of another transition. The figure keeps its place and its heading. Events at the first frame fire.
+    ///
+    /// On an error the old clip plays on, and a transition that ran has ended.
+    ///
+    /// A clip of another form costs a conversion of the joints that it codes in another way, at this instant alone; its pose has its own form.
+    #[inline(never)]
+    pub fn switch(&mut self, clip: Clip<'a>, frame: u32, speed: I16F16, transition: Transition) -> Result<(), Error> {
+        let (old_form, new_form) = (self.form(), clip.form_ref());
+        if old_form.rig_id() != new_form.rig_id() {
+            return Err(WrongForm::Rig.into());
+        }
+        let mut placement = self.placement();
+        let yaw_before = self.root.yaw_of(&self.pose());
+        self.take_motion(&clip);
+        if let Err(error) = self.track.start(clip, frame, speed) {
+            self.left = 0;
+            self.compose();
+            return Err(error);
+        }
+        self.before = placement;
+        if old_form != new_form {
+            self.convert(old_form, new_form)?;
+            let shift = i32::from(old_form.length_exponent()) - i32::from(new_form.length_exponent());
+            let shifted =
+                |x: i64| if shift >= 0 { x.wrapping_shl(shift.min(63) as u32) } else { x >> shift.unsigned_abs().min(63) };
+            placement.place = placement.place.map(shifted);
+            self.before = placement;
+        }
+        // The new clip's heading stands where the old one's stood.
+        let turned = yaw_before - self.root.yaw_of(&self.track.pose());
+        self.turn_motion(-turned);
+        self.difference(transition);
+        self.start_transition(transition.frames());
+        self.events.at(self.track.clip(), self.track.frame());
+        self.compose();
+        let now = Placement { heading: placement.heading + turned, ..placement };
+        self.travel = Travel::new(now, self.place.map(i64::from));
+        self.locate();
+        Ok(())
+    }
+
+    /// Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset.
+    fn take_motion(&mut self, clip: &Clip<'a>) {
+        // How much of a frame of the old clip passes in one of the new, in 2^-16.
+        let (old, new) = (self.track.clip().frame_time_ns(), clip.frame_time_ns());
+        let ratio = (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64;
+        let running = self.left > 0;
+        for (offset, value) in self.offsets.iter_mut().zip(self.pose.iter()) {
+            let own = if running { scaled(offset.v, ratio) } else { 0 };
+            (offset.d, offset.v) = (*value, value.wrapping_add(own));
+        }
+        let speed = (i64::from(self.track.speed().to_bits()) * ratio) >> 16;
+        for (slot, v) in self.track.velocities() {
+            if let Some(offset) = self.offsets.get_mut(slot) {
+                offset.v = offset.v.wrapping_add(scaled(v, speed));
+            }
+        }
+    }
+
+    /// Turns the root in the kept poses, and its horizontal velocity.
+    fn turn_motion(&mut self, by: Angle) {
+        let first = usize::from(self.root.turns.first);
+        let channels = first..first + usize::from(self.root.turns.len);
+        let root = &self.root;
+        change(self.offsets.get_mut(channels).unwrap_or_default(), |here, next| {
+            root.turn_by(by, here);
+            root.turn_by(by, next);
+        });
+        let [Some(a), Some(b)] = self.root.place.map(|channel| channel.map(usize::from)) else { return };
+        let of = |offsets: &[Offset], at: usize| offsets.get(at).map_or(0, |offset| offset.v.wrapping_sub(offset.d));
+        let velocity = Heading::new(by).rotate([of(self.offsets, a), of(self.offsets, b)]);
+        for (at, v) in [a, b].into_iter().zip(velocity) {
+            if let Some(offset) = self.offsets.get_mut(at) {
+                offset.v = offset.d.wrapping_add(v as i32);
+            }
+        }
+    }
+
+    /// Makes the kept pose and the pose a frame later the difference to the new clip's pose, and its velocity.
+    fn difference(&mut self, transition: Transition) {
+        let values = self.track.values();
+        let groups = self.groups.get(..self.used_groups).unwrap_or_default();
+        for group in groups.iter().filter(|group| group.shape != Shape::Free) {
+            let (Some(own), Some(to)) = (self.offsets.get_mut(group.range()), values.get(group.range())) else { continue };
+            change(own, |here, next| {
+                nearest(group.shape, here, to);
+                nearest(group.shape, next, here);
+            });
+        }
+        let still = matches!(transition, Transition::Faded(_));
+        for (offset, value) in self.offsets.iter_mut().zip(values) {
+            let velocity = if still { 0 } else { offset.v.wrapping_sub(offset.d) };
+            (offset.d, offset.v) = (offset.d.wrapping_sub(*value), velocity);
+        }
+        if !still {
+            let speed = i64::from(self.track.speed().to_bits());
+            for (slot, v) in self.track.velocities() {
+                if let Some(offset) = self.offsets.get_mut(slot) {
+                    offset.v = offset.v.wrapping_sub(scaled(v, speed));
+                }
+            }
+        }
+    }
+
+    /// Lets the differences die out in a number of frames of the new clip.
+    fn start_transition(&mut self, frames: u8) {
+        (self.left, self.rest_ns) = (frames, 0);
+        // The figure keeps its place: only the root's velocity dies out, and where it carries the root is added to the way.
+        for channel in self.root.place.into_iter().flatten() {
+            if let Some(offset) = self.offsets.get_mut(usize::from(channel)) {
+                offset.coast(frames);
+            }
+        }
+        let cubic = Cubic::new(frames);
+        self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
+    }
+
+    /// Brings the kept poses from one form to another.
+    #[inline(never)]
+    fn convert(&mut self, from: FormRef<'_>, to: FormRef<'_>) -> Result<(), Error> {
+        let rig = self.track.clip().rig();
+        let shift = i32::from(from.length_exponent()) - i32::from(to.length_exponent());
+        self.used_groups = groups::set_up(&rig, to, self.groups)?;
+        let groups = self.groups.get(..self.used_groups).unwrap_or_default();
+        let from_form = from.to_form();
+        for (joint, index) in rig.joints().zip(0u16..) {
+            for (kind, channel) in joint.kinds.zip(usize::from(joint.first_channel)..) {
+                if kind.is_position()
+                    && let Some(offset) = self.offsets.get_mut(channel)
+                {
+                    (offset.d, offset.v) = (shifted(offset.d, shift), shifted(offset.v, shift));
+                }
+            }
+            if { joint.kinds }.any(|kind| kind.is_rotation())
+                && let Some(group) = groups.iter().find(|group| group.bit == index && is_three(group))
+            {
+                let was = if from_form.is_exponential(&rig, index.into()) { Shape::Map } else { Shape::Euler };
+                convert_group(was, group, &joint, self.offsets);
+            }
+        }
+        self.root = Root::of(&rig, groups, self.carrier).ok_or(Error::NoSuchJoint)?;
+        Ok(())
+    }
+}
+
+/// Whether a group is a rotation of three channels, which one clip codes as Euler angles and another as a map.
+fn is_three(group: &Group) -> bool {
+    matches!(group.shape, Shape::Euler | Shape::Map)
+}
+
+/// Brings the kept poses of a joint from the shape that it had to that of its group.
+fn convert_group(was: Shape, group: &Group, joint: &Joint<'_>, offsets: &mut [Offset]) {
+    if was == group.shape {
+        return;
+    }
+    let convert = |values: &mut [i32]| {
+        if let Some(turn) = math::turn_of(was, joint.kinds, values) {
+            math::write(group.shape, joint.kinds, turn.quaternion(), values);
+        }
+    };
+    change(offsets.get_mut(group.range()).unwrap_or_default(), |here, next| {
+        convert(here);
+        convert(next);
+    });
+}
+
+/// Changes the kept pose of at most 4 channels, of this instant and of a frame later: they are in the offsets' `d` and `v`.
+fn change(offsets: &mut [Offset], with: impl FnOnce(&mut [i32], &mut [i32])) {
+    let (mut here, mut next) = ([0; 4], [0; 4]);
+    for ((here, next), own) in here.iter_mut().zip(&mut next).zip(offsets.iter()) {
+        (*here, *next) = (own.d, own.v);
+    }
+    let len = offsets.len().min(4);
+    with(here.get_mut(..len).unwrap_or_default(), next.get_mut(..len).unwrap_or_default());
+    for ((here, next), own) in here.iter().zip(&next).zip(offsets) {
+        (own.d, own.v) = (*here, *next);
+    }
+}
+
+/// A velocity times a factor in 2^-16.
+fn scaled(v: i32, factor: i64) -> i32 {
+    if factor == 1 << 16 { v } else { ((i64::from(v) * factor) >> 16) as i32 }
+}
+
+/// A length in another unit: times 2^`shift`, rounded down; cut off at the range of a channel.
+fn shifted(x: i32, shift: i32) -> i32 {
+    let wide = i64::from(x);
+    let wide = if shift >= 0 { wide << shift.min(31) } else { wide >> shift.unsigned_abs().min(31) };
+    wide.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32
+}
