@@ -1,10 +1,13 @@
 //! Prints the left knee's Euler angles at every frame, in hundredths of a degree: `cargo run --release` in `examples/knee`.
-//! For servos convert with `--max-joint-error 1`, which bounds each joint's angle, and limit angles to what the servo reaches.
+//! For servos convert with `--max-joint-error 1`, which bounds each joint's angle.
 #![no_std]
 #![no_main]
 use cortex_m_semihosting::{debug, hprintln};
 use panic_semihosting as _;
 use pantin::{Clip, EulerOrder, Room};
+
+/// What a servo reaches, in hundredths of a degree to either side: angles beyond it are limited.
+const REACH: i32 = 9_000;
 
 static CLIP: &[u8] = include_bytes!("../../../motions/kneebend.ptn");
 
@@ -22,7 +25,7 @@ fn print_angles(joint: &str) -> Result<(), &str> {
     let mut player = room.player(clip).map_err(|_| "the clip has too many channels")?;
     for frame in 0..clip.frames() {
         let turn = player.turn(&knee).map_err(|_| "the joint is of another rig")?;
-        let [z, y, x] = turn.euler(EulerOrder::ZYX).map(|angle| angle.centidegrees());
+        let [z, y, x] = turn.euler(EulerOrder::ZYX).map(|angle| angle.centidegrees().clamp(-REACH, REACH));
         hprintln!("{}: {} {} {}", frame, z, y, x);
         player.step();
     }

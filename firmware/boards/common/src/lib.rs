@@ -36,7 +36,7 @@ pub use embedded_storage::nor_flash;
 pub use exit::{Code, exit};
 pub use flash::{Flash, NoFlash};
 #[cfg(not(feature = "emulated"))]
-pub use panic_screen::{PanicBoard, panic_screen};
+pub use panic_screen::{PanicBoard, panic_screen, refusal_screen};
 pub use register::Register;
 #[cfg(feature = "emulated")]
 pub use run_emulated::run_emulated;

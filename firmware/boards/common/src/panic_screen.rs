@@ -1,7 +1,7 @@
-//! The screen that shows a panic.
+//! The screen that shows a panic, or why a program cannot do its work.
 
 use board_drivers::Display;
-use core::fmt::Write;
+use core::fmt::{self, Write};
 use core::panic::PanicInfo;
 use embedded_hal::delay::DelayNs;
 use pantin_app::TextScreen;
@@ -54,19 +54,39 @@ pub fn panic_screen<L: Layout, B: PanicBoard<L>>(info: &PanicInfo, set_up: impl 
         return;
     }
     PANICKED.store(true, Ordering::Relaxed);
-    #[cfg(feature = "defmt")]
-    defmt::error!("{}", defmt::Display2Format(info));
-    let mut framebuffer = Framebuffer::new();
-    // Writing on a text screen cannot fail.
-    let _ = write!(TextScreen::new(&mut framebuffer), "{info}");
-    let mut board = set_up();
-    board.show(&mut framebuffer);
-    #[cfg(not(feature = "defmt"))]
-    let _ = write!(SerialText(|text: &str| board.send(text.as_bytes())), "\r\n{info}\r\n");
+    let mut board = message_screen(info, set_up);
     for _ in 0..PANIC_SHOW_MS / FEED_MS {
         board.feed();
         delay.delay_ms(FEED_MS);
     }
+}
+
+/// Shows without end why a program cannot do its work, on the display of a board, which `set_up` sets up, and logs it as [`panic_screen`]
+/// does. The watchdog is fed: a reset would not help.
+pub fn refusal_screen<L: Layout, B: PanicBoard<L>>(
+    words: impl fmt::Display,
+    set_up: impl FnOnce() -> B,
+    mut delay: impl DelayNs,
+) -> ! {
+    let mut board = message_screen(words, set_up);
+    loop {
+        board.feed();
+        delay.delay_ms(FEED_MS);
+    }
+}
+
+/// Logs words and shows them. The framebuffer is on the stack before the board is set up.
+fn message_screen<L: Layout, B: PanicBoard<L>>(words: impl fmt::Display, set_up: impl FnOnce() -> B) -> B {
+    #[cfg(feature = "defmt")]
+    defmt::error!("{}", defmt::Display2Format(&words));
+    let mut framebuffer = Framebuffer::new();
+    // Writing on a text screen cannot fail.
+    let _ = write!(TextScreen::new(&mut framebuffer), "{words}");
+    let mut board = set_up();
+    board.show(&mut framebuffer);
+    #[cfg(not(feature = "defmt"))]
+    let _ = write!(SerialText(|text: &str| board.send(text.as_bytes())), "\r\n{words}\r\n");
+    board
 }
 
 /// Text that is sent over a serial line.

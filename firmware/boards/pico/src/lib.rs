@@ -15,6 +15,7 @@ mod uart_rx;
 #[cfg(feature = "usb")]
 mod usb;
 
+pub use panic::refuse;
 use rp2040_hal as rp_hal;
 
 /// The clock of the processor and the peripherals.

@@ -1,13 +1,15 @@
 //! The first clip moves a puppet: the angles of joints become pulses for four servos on GP6 to GP9, within each servo's limits. For servos convert with
-//! `--max-joint-error 1`, which bounds the angle of each joint.
+//! `--max-joint-error 1`, which bounds the angle of each joint. If the clip lacks a joint, no servo gets pulses, and the display and the serial
+//! line say which joints are missing.
 #![no_std]
 #![no_main]
 
 use board_common::cortex_m::SysTick;
 use board_common::{Capacity, TickSource};
 use board_drivers::servo::{JointAngle, Law, Servo, SoftStart, slew};
+use core::fmt::{self, Display, Formatter};
 use embedded_hal::pwm::SetDutyCycle;
-use pantin::{Axis, Clip, Player};
+use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::Capacity as _;
 use pico::clocks::{self, CPU_HZ};
 use rp2040_hal::fugit::ExtU32;
@@ -31,6 +33,13 @@ fn main() -> ! {
     let mut resets = parts.RESETS;
     let mut watchdog = Watchdog::new(parts.WATCHDOG);
     clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
+    let mut states = Capacity::states();
+    let mut pose = Capacity::pose();
+    let player = open(&mut states, &mut pose).unwrap_or_else(|why| pico::refuse(why));
+    let angles = match angles(player.clip()) {
+        Ok(angles) => angles,
+        Err(missing) => pico::refuse(missing),
+    };
     let pins = rp2040_hal::gpio::Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
     let slices = Slices::new(parts.PWM, &mut resets);
     let (mut legs, mut arms) = (pulses(slices.pwm3), pulses(slices.pwm4));
@@ -40,7 +49,7 @@ fn main() -> ! {
     arms.channel_b.output_to(pins.gpio9);
     watchdog.pause_on_debug(true);
     watchdog.start(8.secs());
-    play(|widths| {
+    play(player, angles, |widths| {
         watchdog.feed();
         // A width is less than the period: no call fails.
         let _ = legs.channel_a.set_duty_cycle(widths[0]);
@@ -59,18 +68,39 @@ fn pulses<S: SliceId>(mut slice: Slice<S, FreeRunning>) -> Slice<S, FreeRunning>
     slice
 }
 
-/// Plays the clip forever, and passes the servos' pulse widths to `set` with each frame.
-fn play(mut set: impl FnMut([u16; 4])) -> ! {
-    let clip = CLIPS.first().map(|entry| Clip::with_rig(entry.bytes, entry.rig));
-    let Some(Ok(clip)) = clip else { panic!("there is no clip, or it cannot be opened") };
-    let mut states = Capacity::states();
-    let mut pose = Capacity::pose();
-    let Ok(mut player) = Player::new(clip, &mut states, &mut pose) else { panic!("the clip is too big for this board") };
+/// Opens the program's first clip.
+fn open<'m>(states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Player<'static, 'm>, &'static str> {
+    let entry = CLIPS.first().ok_or("there is no clip")?;
+    let clip = Clip::with_rig(entry.bytes, entry.rig).map_err(|_| "the clip cannot be opened")?;
+    Player::new(clip, states, pose).map_err(|_| "the clip is too big for this board")
+}
+
+/// Finds the joints that move the servos.
+fn angles<'a>(clip: &Clip<'a>) -> Result<[JointAngle<'a>; 4], Missing> {
+    let found = JOINTS.map(|joint| JointAngle::find(clip, joint, Axis::X));
+    match found {
+        [Some(a), Some(b), Some(c), Some(d)] => Ok([a, b, c, d]),
+        _ => Err(Missing(found.map(|angle| angle.is_none()))),
+    }
+}
+
+/// The joints that a clip lacks.
+struct Missing([bool; 4]);
+
+impl Display for Missing {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str("the clip lacks joints:")?;
+        let missing = JOINTS.iter().zip(self.0).filter(|(_, missing)| *missing);
+        missing.into_iter().try_for_each(|(joint, _)| write!(f, "\n{joint}"))
+    }
+}
+
+/// Plays the clip forever, and passes the servos' pulse widths to `set` with each frame. [`Law::limits`] bound each width, whatever the angle.
+fn play(mut player: Player, angles: [JointAngle; 4], mut set: impl FnMut([u16; 4])) -> ! {
+    let clip = *player.clip();
     let law = Law { centre: 1500, turn: 4000, limits: [1000, 2000], slew: slew(SLEW_US_PER_S, clip.frame_time_ns()) };
     // The servos of the right side are mounted mirrored.
     let mut servos = [1, -1, 1, -1].map(|side| Servo::new(Law { turn: side * law.turn, ..law }));
-    let angle = |joint| JointAngle::find(&clip, joint, Axis::X).unwrap_or_else(|| panic!("the clip has no joint {joint}"));
-    let angles = JOINTS.map(angle);
     let mut timer = SysTick::<CPU_HZ>::new();
     timer.start(clip.frame_time_ns());
     let mut start = SoftStart::new(JOINTS.len() as u32);
