@@ -1,13 +1,12 @@
 //! Two lines of text over the picture: the clip's name, and the state of its source.
 
 use crate::board::Board;
-use crate::source::Status;
+use crate::source::{Line, Status};
 use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii::FONT_4X6, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
-use heapless::String;
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::surface::{Framebuffer, Layout};
 
@@ -16,11 +15,8 @@ const LARGE_ROWS: usize = 160;
 /// Brightness of the letters.
 pub(crate) const SHADE: u8 = 200;
 
-/// A line of text. What is longer than the line is cut off.
-type Line = String<32>;
-
-/// Shows the name at the top, and at the bottom frame and speed of a clip, or packets and exact channels of a link: on the board's overlay,
-/// or drawn on the framebuffer.
+/// Shows the name at the top, and at the bottom frame and speed of a clip, packets and exact channels of a link, or the state of a state
+/// machine: on the board's overlay, or drawn on the framebuffer.
 #[inline(never)]
 pub(crate) fn show<B: Board>(
     view_state: &ViewState,
@@ -36,6 +32,8 @@ pub(crate) fn show<B: Board>(
             let _ = top.push_str(name);
             clip(&mut bottom, view_state, *frame, *frames);
         }
+        #[cfg(feature = "steer")]
+        Status::State(name) => return lines(["", name], target, board),
         #[cfg(feature = "link")]
         Status::Link(status) => link(&mut top, &mut bottom, name, status),
     }

@@ -64,9 +64,9 @@
 //!
 //! # Modules
 //!
-//! A frame passes through them in this order: a *source* (clip or link) gives a pose, a *content* (body, face or both) draws it on the
-//! framebuffer, and the board presents that. [`run`](run()) holds the only loop over frames. Modules import only modules that stand
-//! before them here: `commands`, `capacity`, `events`, `board`, `options`, `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
+//! A frame passes through them in this order: a *source* (clip, link or state machine) gives a pose, a *content* (body, face or both) draws it on the
+//! framebuffer, and the board presents that. `run` holds the only loop over frames. Modules import only modules that stand
+//! before them here: `commands`, `keys`, `capacity`, `events`, `board`, `options`, `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
 //! `multi`, `stored`, `steer`.
 //!
 //! A function that needs a large workspace or buffer keeps it in a stack frame of its own and is marked `#[inline(never)]`: the stack then
@@ -82,6 +82,8 @@ mod content;
 mod events;
 pub mod frame_stream;
 mod hud;
+#[cfg(feature = "steer")]
+mod keys;
 mod log;
 mod multi;
 mod options;
@@ -101,14 +103,16 @@ pub use capacity::{Capacity, MaxClip, RIG, Renderer};
 pub use commands::Command;
 #[cfg(feature = "events")]
 pub use events::HeardEvent;
+#[cfg(feature = "steer")]
+pub use keys::{CHARACTER_KEYS, SteerKey};
 pub use multi::{FIGURES, FigureBuffers, multi};
 #[cfg(feature = "key")]
 pub use options::Key;
-pub use options::{Mode, Options};
-pub use run::{NEXT, QUIT, SHOWN, run};
+pub use options::{Mode, NEXT, Options, QUIT, SHOWN};
+pub use run::run;
 pub use session::Entry;
 #[cfg(feature = "steer")]
-pub use steer::{CHARACTER_KEYS, SteerKey, steer};
+pub use steer::steer;
 #[cfg(feature = "update")]
 pub use stored::run_stored;
 pub use text_screen::TextScreen;

@@ -14,6 +14,13 @@ macro_rules! error {
         #[cfg(feature = "defmt")]
         defmt::error!($text);
     }};
+    // An error that is no `defmt::Format`.
+    ($text:literal, defmt::Display2Format(&$error:ident)) => {{
+        #[cfg(feature = "defmt")]
+        defmt::error!($text, defmt::Display2Format(&$error));
+        #[cfg(not(feature = "defmt"))]
+        let _ = &$error;
+    }};
     ($text:literal, $error:expr) => {{
         #[cfg(feature = "defmt")]
         defmt::error!($text, $error);

@@ -11,6 +11,13 @@ pub enum Mode {
     Sync,
 }
 
+/// In [`Mode::Sync`]: asks for the next picture. Letters of commands may come before it.
+pub const NEXT: u8 = b'\n';
+/// In [`Mode::Sync`]: ends the program.
+pub const QUIT: u8 = b'q';
+/// In [`Mode::Sync`]: reports that a picture is on the display. The number of its frame follows in 4 bytes, the least significant first.
+pub const SHOWN: u8 = b'F';
+
 /// How the program runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {

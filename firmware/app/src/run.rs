@@ -7,7 +7,7 @@ use crate::content::build::build;
 use crate::content::{AnyContent, Content};
 use crate::hud;
 use crate::log::{error, info};
-use crate::options::{Mode, Options};
+use crate::options::{Mode, NEXT, Options, QUIT, SHOWN};
 use crate::session::{Entry, Outcome, PlayContext};
 use crate::source::Source;
 use crate::update::Listener;
@@ -15,13 +15,6 @@ use crate::view_state::{Effect, ViewState};
 use heapless::Deque;
 use pantin::{Clip, Player};
 use pantin_figure::surface::Framebuffer;
-
-/// In [`Mode::Sync`]: asks for the next picture. Letters of commands may come before it.
-pub const NEXT: u8 = b'\n';
-/// In [`Mode::Sync`]: ends the program.
-pub const QUIT: u8 = b'q';
-/// In [`Mode::Sync`]: reports that a picture is on the display. The number of its frame follows in 4 bytes, the least significant first.
-pub const SHOWN: u8 = b'F';
 
 /// Effects of commands that were received since the last picture. A user who gives more between two pictures loses them.
 type Effects = Deque<Effect, 8>;
@@ -139,6 +132,9 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         #[cfg(feature = "events")]
         let before = actors.first().map_or(0, |first| first.source.frame());
         advance(actors, frames, board);
+        if let Some(exit) = actors.first().and_then(|first| first.source.ended()) {
+            return Outcome::Exit(exit);
+        }
         set_poses(actors, board);
         draw(actors, view_state, framebuffer, board);
         let Some(first) = actors.first_mut() else { break };
@@ -245,7 +241,9 @@ fn wait_for_tick<B: Board, S: Source>(
     if S::LIVE && silent {
         queue(source.receive_nothing().and_then(Command::from_letter), view_state, effects);
     }
-    while let Some(command) = board.button() {
+    while S::COMMANDS
+        && let Some(command) = board.button()
+    {
         queue(Some(command), view_state, effects);
     }
     ticks
@@ -277,6 +275,10 @@ fn help<B: Board>(board: &mut B) {
 
 #[inline(never)]
 fn advance<B: Board, S: Source>(actors: &mut [Actor<B, S>], frames: i32, board: &mut B) {
+    #[cfg(feature = "steer")]
+    for actor in &mut *actors {
+        actor.source.hold(board.held());
+    }
     board.mark_start();
     for actor in actors {
         actor.source.advance(frames);
@@ -288,6 +290,11 @@ fn advance<B: Board, S: Source>(actors: &mut [Actor<B, S>], frames: i32, board: 
 fn set_poses<B: Board, S: Source>(actors: &mut [Actor<B, S>], board: &mut B) {
     board.mark_start();
     for Actor { source, content, .. } in actors {
+        #[cfg(feature = "steer")]
+        if let Some(stand) = source.stand() {
+            Content::<B::Layout>::set_pose_at(*content, source.pose(), stand);
+            continue;
+        }
         Content::<B::Layout>::set_pose(*content, source.pose());
     }
     board.mark_stop();

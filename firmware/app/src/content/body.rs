@@ -15,6 +15,12 @@ impl<L: Layout, R: Renderer> Content<L> for R {
         Renderer::set_pose(self, pose);
     }
 
+    #[cfg(feature = "steer")]
+    #[inline(always)]
+    fn set_pose_at(&mut self, pose: Pose<'_>, stand: pantin_figure::Stand) {
+        Renderer::set_pose_at(self, pose, stand);
+    }
+
     #[inline(always)]
     fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle) {
         Renderer::draw(self, framebuffer, style);

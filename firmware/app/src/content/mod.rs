@@ -19,6 +19,12 @@ pub(crate) trait Content<L: Layout> {
     /// Takes the pose to draw.
     fn set_pose(&mut self, pose: Pose<'_>);
 
+    /// Takes the pose to draw of a body that stands somewhere in the world. No other content does.
+    #[cfg(feature = "steer")]
+    fn set_pose_at(&mut self, pose: Pose<'_>, _stand: pantin_figure::Stand) {
+        self.set_pose(pose);
+    }
+
     /// Draws it on a clear framebuffer.
     fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle);
 

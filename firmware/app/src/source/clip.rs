@@ -42,7 +42,7 @@ impl Source for Player<'_, '_> {
     }
 
     #[inline(always)]
-    fn with_player<T>(&mut self, then: impl FnOnce(&mut Player) -> T) -> T {
+    fn with_player(&mut self, then: impl FnOnce(&mut Player)) {
         then(self)
     }
 }

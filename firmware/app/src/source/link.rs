@@ -138,7 +138,7 @@ impl Source for LinkSource<'_, '_, '_, '_> {
         Status::Link(self.link_status())
     }
 
-    fn with_player<T>(&mut self, then: impl FnOnce(&mut Player) -> T) -> T {
+    fn with_player(&mut self, then: impl FnOnce(&mut Player)) {
         then(self.player)
     }
 
