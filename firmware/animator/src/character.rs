@@ -27,18 +27,18 @@ pub struct LayerMemory<'m> {
 
 /// A layer of the machine's table.
 #[derive(Debug)]
-struct Layer<'a, 'm> {
-    row: LayerRow<'a>,
-    track: Track<'a, 'm>,
-    sampled: &'m mut [i32],
-    mask: Mask<'m>,
-    ramp: Ramp,
-    state: LayerState,
+pub(crate) struct Layer<'a, 'm> {
+    pub(crate) row: LayerRow<'a>,
+    pub(crate) track: Track<'a, 'm>,
+    pub(crate) sampled: &'m mut [i32],
+    pub(crate) mask: Mask<'m>,
+    pub(crate) ramp: Ramp,
+    pub(crate) state: LayerState,
 }
 
 /// What a layer does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum LayerState {
+pub(crate) enum LayerState {
     Rests,
     Plays,
     Fades,
@@ -47,11 +47,11 @@ enum LayerState {
 /// A figure that a state machine moves. The caller lends the memory of each part.
 #[derive(Debug)]
 pub struct Character<'a, 'm> {
-    bank: Bank<'a>,
-    machine: Machine<'a>,
-    animator: Animator<'a, 'm>,
-    second: Option<Track<'a, 'm>>,
-    layers: Vec<Layer<'a, 'm>, LAYERS>,
+    pub(crate) bank: Bank<'a>,
+    pub(crate) machine: Machine<'a>,
+    pub(crate) animator: Animator<'a, 'm>,
+    pub(crate) second: Option<Track<'a, 'm>>,
+    pub(crate) layers: Vec<Layer<'a, 'm>, LAYERS>,
 }
 
 impl<'a, 'm> Character<'a, 'm> {

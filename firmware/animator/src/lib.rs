@@ -74,6 +74,7 @@
 mod animator;
 mod chain;
 mod character;
+mod detached;
 mod error;
 mod events;
 mod foot;
@@ -97,6 +98,7 @@ mod two_bone;
 
 pub use animator::{Animator, RootMotion};
 pub use character::{Character, LayerMemory, first_clip, visit_poses};
+pub use detached::{DetachedAnimator, DetachedCharacter};
 pub use error::Error;
 pub use events::{EVENTS, EventQueue, EventsLost, Fired};
 pub use foot::FootLock;

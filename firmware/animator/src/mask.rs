@@ -18,6 +18,16 @@ impl<'m> Mask<'m> {
         Ok(Mask { words })
     }
 
+    /// A mask without memory.
+    pub(crate) fn empty() -> Mask<'static> {
+        Mask { words: &mut [] }
+    }
+
+    /// A mask of a rig that these words hold.
+    pub(crate) fn of_words(rig: &Rig<'_>, words: &'m mut [u32]) -> Option<Mask<'m>> {
+        Some(Mask { words: words.get_mut(..Mask::words(rig))? })
+    }
+
     /// The elements that a mask of a rig needs.
     pub fn words(rig: &Rig<'_>) -> usize {
         (rig.joint_count() + rig.channels().saturating_sub(rig.joint_channels())).div_ceil(32)

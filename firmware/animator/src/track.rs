@@ -46,6 +46,17 @@ impl<'a, 'm> Track<'a, 'm> {
         Ok(Track { player, states, pose, rest: 0, speed: I16F16::ONE, ended: false, seam: None })
     }
 
+    /// This clip at this instant, in other memory.
+    pub(crate) fn in_memory<'n>(self, states: &'n mut [ChannelState], pose: &'n mut [i32]) -> Track<'a, 'n> {
+        let Track { player, rest, speed, ended, seam, .. } = self;
+        Track { player, states, pose, rest, speed, ended, seam }
+    }
+
+    /// Moving channels and channels of the clip: the least memory.
+    pub(crate) fn needed(&self) -> [usize; 2] {
+        [self.player.moving(), self.clip().rig().channels()]
+    }
+
     /// Plays another clip of any rig that the memory holds, from a frame (from the last one if there are fewer) and at a speed of -4 to 4
     /// (others are cut off). On an error the old clip plays on.
     pub fn start(&mut self, clip: Clip<'a>, frame: u32, speed: I16F16) -> Result<(), Error> {

@@ -38,33 +38,13 @@ pub struct Stand {
     pub heading: Angle,
 }
 
-/// Where the poses stand with which a camera is set up: at the origin, or anywhere. A program pays for what it uses.
-trait Standing: Copy {
-    fn place_in_world<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>);
-    fn place_in_view<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>);
-}
-
-/// At the origin.
-impl Standing for () {
-    fn place_in_world<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
-        renderer.joints.set_pose(&renderer.skeleton, values);
-    }
-
-    fn place_in_view<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
-        renderer.set_values(values);
-    }
-}
-
-impl Standing for Stand {
-    fn place_in_world<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
-        let (turned, [x, y, z]) = renderer.stand(self);
-        let origin = renderer.back(self, [-x, -y, -z]);
-        renderer.joints.place_in(&renderer.skeleton, values, &turned, origin, renderer.skeleton.bones.len());
-    }
-
-    fn place_in_view<const N: usize, R: RotationBackend>(self, values: &[i32], renderer: &mut FigureRenderer<N, R>) {
-        renderer.set_values_at(values, self);
-    }
+/// Where joints are placed while a camera is set up.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Space {
+    /// In the world, for the bounds.
+    World,
+    /// Before the camera, for the scale.
+    View,
 }
 
 /// Scale at which a clip is looked at before the final scale is known: 2^14 sixteenths of a pixel a size.
@@ -118,14 +98,15 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     pub fn aim(&mut self, player: &mut Player, view: View) {
         let (now, frames) = (player.frame(), player.clip().frames());
         let stride = frames.div_ceil(SAMPLES).max(1);
-        self.frame(view, |visit| {
+        let poses = |visit: &mut dyn FnMut(&[i32], ())| {
             let mut frame = 0;
             while frame < frames {
                 player.seek(frame);
                 visit(player.pose().values, ());
                 frame += stride;
             }
-        });
+        };
+        self.frame(view, poses, Self::place);
         player.seek(now);
     }
 
@@ -141,20 +122,45 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     pub fn look_at(&mut self, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
         self.canvas = canvas;
         self.choose();
-        self.frame(view, |visit| poses(&mut |values| visit(values, ())));
+        self.frame(view, |visit| poses(&mut |values| visit(values, ())), Self::place);
     }
 
     /// [`FigureRenderer::look_at`] for poses that stand somewhere in the world.
     pub fn look_at_stands(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32], Stand))) {
         self.canvas = canvas;
         self.choose();
-        self.frame(view, poses);
+        self.frame(view, poses, Self::place_at);
     }
 
-    fn frame<S: Standing>(&mut self, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32], S))) {
+    /// Places the joints of a pose at the origin.
+    fn place(&mut self, values: &[i32], _: (), space: Space) {
+        match space {
+            Space::World => self.joints.set_pose(&self.skeleton, values),
+            Space::View => self.set_values(values),
+        }
+    }
+
+    /// Places the joints of a pose that stands somewhere.
+    fn place_at(&mut self, values: &[i32], stand: Stand, space: Space) {
+        if space == Space::View {
+            return self.set_values_at(values, stand);
+        }
+        let (turned, [x, y, z]) = self.stand(stand);
+        let origin = self.back(stand, [-x, -y, -z]);
+        self.joints.place_in(&self.skeleton, values, &turned, origin, self.skeleton.bones.len());
+    }
+
+    /// Sets the camera up for poses, with what `place` needs to know of each: a program that places all at the origin does not hold the code
+    /// for stands.
+    fn frame<S>(
+        &mut self,
+        view: View,
+        mut poses: impl FnMut(&mut dyn FnMut(&[i32], S)),
+        place: impl Fn(&mut Self, &[i32], S, Space),
+    ) {
         let mut bounds = Bounds::new();
         poses(&mut |values, stand| {
-            stand.place_in_world(values, self);
+            place(self, values, stand, Space::World);
             bounds.include(&self.skeleton, &self.joints);
         });
         let orientation = bounds.orientation(view.up.unwrap_or(self.skeleton.up));
@@ -170,7 +176,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         set_camera(self, TRIAL_SCALE);
         let mut frame = Extent::default();
         poses(&mut |values, stand| {
-            stand.place_in_view(values, self);
+            place(self, values, stand, Space::View);
             frame.include(self);
         });
         let scale = frame.scale(self.canvas);
