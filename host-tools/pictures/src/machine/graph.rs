@@ -5,10 +5,11 @@ use crate::render::svg::escaped;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
-/// Width of a letter, height of a line and of a state, and space around, in units of the picture.
+/// Width of a letter, height of a line, a state and a layer's line, and space around, in units of the picture.
 const LETTER: f64 = 7.6;
 const LINE: f64 = 15.0;
 const STATE: f64 = 44.0;
+const LAYER: f64 = LINE * 1.5;
 const MARGIN: f64 = 90.0;
 /// How far an arrow bends to its right, as a part of its length: there and back are two arrows.
 const BEND: f64 = 0.16;
@@ -23,35 +24,73 @@ struct Node {
     half: Point,
 }
 
+/// A line from a state to another, for all transitions between them.
+struct Arrow {
+    /// Indices of states; one more than the last is any state.
+    from: usize,
+    to: usize,
+    causes: Vec<String>,
+}
+
 /// The picture of a machine.
 pub fn svg(source: &Source) -> String {
     let mut nodes = nodes(source);
-    let index = |name: &str| source.states.iter().position(|state| state.name.get_ref() == name);
-    // Arrows by their two ends, each with all its causes.
-    let mut arrows: Vec<(usize, usize, Vec<String>)> = Vec::new();
-    let mut add = |from: usize, row: &Transition| {
-        let Some(to) = index(&row.to) else { return };
-        match arrows.iter_mut().find(|arrow| (arrow.0, arrow.1) == (from, to)) {
-            Some(arrow) => arrow.2.push(cause(row)),
-            None => arrows.push((from, to, vec![cause(row)])),
-        }
-    };
-    for (from, state) in source.states.iter().enumerate() {
-        state.transitions.iter().for_each(|row| add(from, row.get_ref()));
-    }
     if !source.any.is_empty() {
-        let from = nodes.len();
         nodes.push(Node { name: "any state".into(), clip: String::new(), at: [0.0; 2], half: [44.0, 15.0] });
-        source.any.iter().for_each(|row| add(from, row.get_ref()));
     }
-    let far = |axis: usize| nodes.iter().map(|node| node.at[axis].abs() + node.half[axis]).fold(0.0, f64::max) + MARGIN;
     let layers: Vec<String> = source.layers.iter().map(|layer| layer_text(layer.get_ref())).collect();
+    let half = half_size(&nodes, &layers);
+    let mut out = head(half, LAYER * layers.len() as f64);
+    let mut labels = String::new();
+    for Arrow { from, to, causes } in &arrows(source) {
+        arrow(&mut out, &mut labels, &nodes[*from], &nodes[*to], causes);
+    }
+    let start = source.start.as_ref().map_or(Some(0), |start| index(source, start.get_ref()));
+    for (number, node) in nodes.iter().enumerate() {
+        let role = match number {
+            _ if number == source.states.len() => Role::Any,
+            _ if Some(number) == start => Role::Start,
+            _ => Role::State,
+        };
+        draw(&mut out, node, role);
+    }
+    out.push_str(&labels);
+    for (line, text) in layers.iter().enumerate() {
+        let y = half[1] + LAYER * line as f64;
+        let _ = writeln!(out, r##"<text x="0" y="{y:.1}" fill="#567">{}</text>"##, escaped(text));
+    }
+    out.push_str("</svg>\n");
+    out
+}
+
+fn index(source: &Source, name: &str) -> Option<usize> {
+    source.states.iter().position(|state| state.name.get_ref() == name)
+}
+
+/// The arrows, each with the causes of all its transitions; those from any state come last.
+fn arrows(source: &Source) -> Vec<Arrow> {
+    let mut arrows: Vec<Arrow> = Vec::new();
+    let lists = source.states.iter().map(|state| &state.transitions).chain([&source.any]);
+    for (from, row) in lists.enumerate().flat_map(|(from, rows)| rows.iter().map(move |row| (from, row.get_ref()))) {
+        let Some(to) = index(source, &row.to) else { continue };
+        match arrows.iter_mut().find(|arrow| (arrow.from, arrow.to) == (from, to)) {
+            Some(arrow) => arrow.causes.push(cause(row)),
+            None => arrows.push(Arrow { from, to, causes: vec![cause(row)] }),
+        }
+    }
+    arrows
+}
+
+/// Half the width and the height of the picture above the layers' lines.
+fn half_size(nodes: &[Node], layers: &[String]) -> Point {
+    let far = |axis: usize| nodes.iter().map(|node| node.at[axis].abs() + node.half[axis]).fold(0.0, f64::max) + MARGIN;
     let longest = layers.iter().map(|text| text.chars().count() as f64 * LETTER).fold(0.0, f64::max);
-    let (wide, high) = (far(0).max(longest / 2.0 + LINE), far(1));
-    let below = LINE * 1.5 * layers.len() as f64;
-    let mut out = String::new();
-    let _ = write!(
-        out,
+    [far(0).max(longest / 2.0 + LINE), far(1)]
+}
+
+/// The element `svg` of a picture with its middle at 0, 0 and `below` units of lines below it.
+fn head([wide, high]: Point, below: f64) -> String {
+    format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="{:.0} {:.0} {:.0} {:.0}" width="{:.0}" height="{:.0}" font-family="sans-serif" font-size="13" text-anchor="middle">
 <defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" markerHeight="8" orient="auto"><path d="M0 0L10 5L0 10z" fill="#345"/></marker></defs>
 <rect x="{:.0}" y="{:.0}" width="100%" height="100%" fill="#fff"/>
@@ -64,49 +103,40 @@ pub fn svg(source: &Source) -> String {
         2.0 * high + below,
         -wide,
         -high
+    )
+}
+
+/// What a node stands for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    State,
+    Start,
+    Any,
+}
+
+fn draw(out: &mut String, node: &Node, role: Role) {
+    let ([x, y], [w, h]) = (node.at, node.half);
+    let (stroke, width, dash) = match role {
+        Role::State => ("#345", 1, ""),
+        Role::Start => ("#c40", 3, ""),
+        Role::Any => ("#789", 1, r#" stroke-dasharray="4 3""#),
+    };
+    // A page lights the state that plays.
+    let state = if role == Role::Any { String::new() } else { format!(r#" data-state="{}""#, escaped(&node.name)) };
+    let _ = writeln!(
+        out,
+        r##"<rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="9" fill="#f4f7fb" stroke="{stroke}" stroke-width="{width}"{dash}{state}/>"##,
+        x - w,
+        y - h,
+        2.0 * w,
+        2.0 * h
     );
-    let start = source.start.as_ref().map_or(Some(0), |start| index(start.get_ref()));
-    let mut labels = String::new();
-    for (from, to, causes) in &arrows {
-        arrow(&mut out, &mut labels, &nodes[*from], &nodes[*to], causes);
+    let up = if node.clip.is_empty() { 4.5 } else { -2.5 };
+    let _ = writeln!(out, r#"<text x="{x:.1}" y="{:.1}" font-weight="bold">{}</text>"#, y + up, escaped(&node.name));
+    if !node.clip.is_empty() {
+        let _ =
+            writeln!(out, r##"<text x="{x:.1}" y="{:.1}" font-size="11" fill="#567">{}</text>"##, y + 13.0, escaped(&node.clip));
     }
-    for (number, node) in nodes.iter().enumerate() {
-        let ([x, y], [w, h]) = (node.at, node.half);
-        let (stroke, dash) = match number {
-            _ if number == source.states.len() => ("#789", r#" stroke-dasharray="4 3""#),
-            _ if Some(number) == start => ("#c40", ""),
-            _ => ("#345", ""),
-        };
-        // A page lights the state that plays.
-        let state =
-            if number < source.states.len() { format!(r#" data-state="{}""#, escaped(&node.name)) } else { String::new() };
-        let wider = if Some(number) == start { 3 } else { 1 };
-        let _ = writeln!(
-            out,
-            r##"<rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="9" fill="#f4f7fb" stroke="{stroke}" stroke-width="{wider}"{dash}{state}/>"##,
-            x - w,
-            y - h,
-            2.0 * w,
-            2.0 * h
-        );
-        let up = if node.clip.is_empty() { 4.5 } else { -2.5 };
-        let _ = writeln!(out, r#"<text x="{x:.1}" y="{:.1}" font-weight="bold">{}</text>"#, y + up, escaped(&node.name));
-        if !node.clip.is_empty() {
-            let _ = writeln!(
-                out,
-                r##"<text x="{x:.1}" y="{:.1}" font-size="11" fill="#567">{}</text>"##,
-                y + 13.0,
-                escaped(&node.clip)
-            );
-        }
-    }
-    out.push_str(&labels);
-    for (line, text) in layers.iter().enumerate() {
-        let y = high + LINE * 1.5 * line as f64;
-        let _ = writeln!(out, r##"<text x="0" y="{y:.1}" fill="#567">{}</text>"##, escaped(text));
-    }
-    out.push_str("</svg>\n");
-    out
 }
 
 fn nodes(source: &Source) -> Vec<Node> {

@@ -1,0 +1,52 @@
+//! Faces of filled shapes from a small text: parts of Pantin's head, enlarged and moved, with the same units, and props such as glasses, which have units of
+//! their own.
+
+mod points;
+mod props;
+mod table;
+mod units;
+mod zoom;
+
+use super::blueprint::{Blueprint, Curve};
+use super::head::Head;
+use super::small;
+use anyhow::Result;
+use points::Kept;
+use table::Table;
+use zoom::Enlarged;
+
+/// Pantin's own cartoon face.
+pub const TABLE: &str = include_str!("../cartoon.txt");
+
+/// How far before the head the points are that belong to no part of it, in mm.
+const FRONT: f64 = 70.0;
+
+/// Builds a face from a table, given the head and its face. Fails with the line that cannot be read.
+pub fn build(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
+    Ok(small::reduced(&whole(head, face, table)?))
+}
+
+/// Builds a face with all that is in the eyes and the mouth, whether it is drawn or not. Otherwise like [`build`].
+pub fn whole(head: &Head, face: &Blueprint, table: &str) -> Result<Blueprint> {
+    let table = Table::read(table, head, face)?;
+    let kept = Kept::of(head, face, &table);
+    let enlarged = Enlarged { head, zooms: &table.zooms };
+    let (points, corners) = kept.places(&enlarged, &table);
+    let renumbered = table.curves.iter().map(|curve| Curve { points: kept.all_renumbered(&curve.points), ..curve.clone() });
+    let curves = renumbered.chain(props::curves(&table.hidden, &corners)).collect();
+    let mut shapes = units::shapes(face, &kept, &enlarged, table.jaw);
+    let mut names = face.names.clone();
+    props::add(&table, &corners, &mut shapes, &mut names);
+    Ok(Blueprint {
+        middles: kept.middles,
+        pairs: kept.pairs,
+        fraction_bits: face.fraction_bits,
+        normals: vec![[0.0, 0.0, 1.0]; kept.middles + kept.pairs],
+        points,
+        curves,
+        openings: face.openings.iter().map(|opening| units::opening(opening, &kept)).collect(),
+        shapes,
+        names,
+        ..Blueprint::default()
+    })
+}

@@ -1,0 +1,155 @@
+//! The text of a cartoon face, one statement a line.
+
+use super::zoom::{Part, Zoom};
+use crate::face::blueprint::{Blueprint, Curve};
+use crate::face::head::Head;
+use anyhow::{Context, Result, bail, ensure};
+use std::collections::BTreeSet;
+
+/// A filled shape on both sides whose corners all lie in one place, so that it is invisible until a unit opens it.
+pub(super) struct Hidden {
+    /// Brightness, 0 to 255.
+    pub shade: u8,
+    /// The place of all corners on the left, in mm: aside, up.
+    pub place: [f64; 2],
+    /// Number of corners, 3 to 32.
+    pub corners: usize,
+}
+
+/// A unit that moves the corners of a hidden shape to places on the left. Several may open one shape.
+pub(super) struct Prop {
+    /// The unit's name.
+    pub name: String,
+    /// Index of the hidden shape.
+    pub hidden: usize,
+    /// The place of each corner, in mm: aside, up.
+    pub places: Vec<[f64; 2]>,
+}
+
+/// The content of the text.
+#[derive(Default)]
+pub(super) struct Table {
+    /// Statements that have been read and may stand once.
+    read: BTreeSet<&'static str>,
+    /// Half the width, the top and the bottom of the picture, in mm.
+    pub view: [f64; 3],
+    /// The part of the jaw's angle, 0 to 1.
+    pub jaw: f64,
+    /// The enlarged parts, each once.
+    pub zooms: Vec<Zoom>,
+    /// Areas and lines, through points of the head.
+    pub curves: Vec<Curve>,
+    /// The hidden shapes, each opened by a prop.
+    pub hidden: Vec<Hidden>,
+    /// The units that open hidden shapes.
+    pub props: Vec<Prop>,
+}
+
+impl Table {
+    /// Reads the text. Points are found in `head`; units of `face` cannot be props. Errors name the line.
+    pub fn read(text: &str, head: &Head, face: &Blueprint) -> Result<Table> {
+        let mut table = Table { jaw: 1.0, ..Table::default() };
+        for (number, line) in text.lines().enumerate() {
+            let words: Vec<&str> = line.split('#').next().unwrap_or("").split_whitespace().collect();
+            table.statement(&words, head, face).with_context(|| format!("line {}", number + 1))?;
+        }
+        table.complete()
+    }
+
+    /// Reads the words of one line.
+    fn statement(&mut self, words: &[&str], head: &Head, face: &Blueprint) -> Result<()> {
+        match *words {
+            [] => Ok(()),
+            ["view", width, top, bottom] => self.view([width, top, bottom]),
+            ["jaw", part] => self.jaw(part),
+            ["zoom", name, factor, aside, up] => self.zoom(name, [factor, aside, up]),
+            ["hidden", shade, place, corners] => self.hidden(shade, place, corners),
+            ["prop", name, number, ref places @ ..] => self.prop(name, number, places, face),
+            ["fill", shade, options, ref points @ ..] => self.curve(true, shade, options, points, head),
+            ["line", shade, options, ref points @ ..] => self.curve(false, shade, options, points, head),
+            _ => bail!("expected view, jaw, zoom, fill, line, hidden or prop"),
+        }
+    }
+
+    fn view(&mut self, words: [&str; 3]) -> Result<()> {
+        ensure!(self.read.insert("view"), "a second view");
+        self.view = numbers(words)?;
+        Ok(())
+    }
+
+    fn jaw(&mut self, part: &str) -> Result<()> {
+        ensure!(self.read.insert("jaw"), "a second jaw");
+        [self.jaw] = numbers([part])?;
+        ensure!((0.0..=1.0).contains(&self.jaw), "expected a part from 0 to 1");
+        Ok(())
+    }
+
+    fn zoom(&mut self, name: &str, words: [&str; 3]) -> Result<()> {
+        let part = match name {
+            "eye" => Part::Eye,
+            "brow" => Part::Brow,
+            "mouth" => Part::Mouth,
+            _ => bail!("expected eye, brow or mouth, not {name}"),
+        };
+        ensure!(self.zooms.iter().all(|zoom| zoom.part != part), "a second zoom {name}");
+        let [factor, aside, up] = numbers(words)?;
+        ensure!((0.1..=10.0).contains(&factor), "expected a factor from 0.1 to 10");
+        self.zooms.push(Zoom { part, factor, to: [aside, up] });
+        Ok(())
+    }
+
+    fn hidden(&mut self, shade: &str, place: &str, corners: &str) -> Result<()> {
+        let (shade, corners) = (shade.parse()?, corners.parse()?);
+        ensure!((3..=32).contains(&corners), "expected 3 to 32 corners");
+        self.hidden.push(Hidden { shade, place: pair(place)?, corners });
+        Ok(())
+    }
+
+    fn prop(&mut self, name: &str, number: &str, places: &[&str], face: &Blueprint) -> Result<()> {
+        let number: usize = number.parse()?;
+        let shape = number.checked_sub(1).and_then(|index| self.hidden.get(index));
+        let corners = shape.with_context(|| format!("no hidden shape {number} before it"))?.corners;
+        ensure!(places.len() == corners, "hidden shape {number} has {corners} corners, not {}", places.len());
+        ensure!(face.names.iter().all(|drive| drive.name != name), "the face has a unit {name} already");
+        let places = places.iter().map(|word| pair(word)).collect::<Result<_>>()?;
+        self.props.push(Prop { name: name.into(), hidden: number - 1, places });
+        Ok(())
+    }
+
+    /// An area if it is `filled`, or a line.
+    fn curve(&mut self, filled: bool, shade: &str, options: &str, points: &[&str], head: &Head) -> Result<()> {
+        ensure!(["-", "paired"].contains(&options), "expected paired or -, found {options}");
+        let points = points.iter().map(|name| head.find(name)).collect::<Result<Vec<_>>>()?;
+        ensure!(points.len() >= if filled { 3 } else { 2 }, "too few points");
+        let (shade, paired) = (shade.parse()?, options == "paired");
+        self.curves.push(Curve { detail: 0, shade, paired, closed: filled, straight: false, small: false, filled, points });
+        Ok(())
+    }
+
+    /// The table after its last line. Fails without a view, without curves, and for hidden shapes without a prop.
+    fn complete(self) -> Result<Table> {
+        ensure!(self.read.contains("view"), "no line `view`");
+        let [width, top, bottom] = self.view;
+        ensure!(width > 0.0 && top > bottom, "view: expected a width above 0, and a top above the bottom");
+        ensure!(!self.curves.is_empty(), "nothing is drawn");
+        let unopened = (0..self.hidden.len()).find(|index| self.props.iter().all(|prop| prop.hidden != *index));
+        ensure!(unopened.is_none(), "no prop opens hidden shape {}", unopened.unwrap_or_default() + 1);
+        Ok(self)
+    }
+}
+
+/// A place in the picture: `aside,up`.
+fn pair(word: &str) -> Result<[f64; 2]> {
+    let (aside, up) = word.split_once(',').with_context(|| format!("{word}: expected aside,up"))?;
+    numbers([aside, up])
+}
+
+fn numbers<const N: usize>(words: [&str; N]) -> Result<[f64; N]> {
+    let mut out = [0.0; N];
+    for (slot, word) in out.iter_mut().zip(words) {
+        let number: f64 = word.parse().with_context(|| format!("{word} is no number"))?;
+        ensure!(number.is_finite() && number.abs() < 200.0, "{word} is beyond 200 mm");
+        *slot = number;
+    }
+    Ok(out)
+}

@@ -1,0 +1,69 @@
+//! What is odd about a state machine.
+
+use super::Maker;
+use crate::machine::source::{Source, State, Text};
+use anyhow::Result;
+use pantin_convert::Remedy;
+use pantin_convert::import::text::quoted;
+
+/// What is odd about a state machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// A sentence without a full stop.
+    pub text: String,
+    /// What would help.
+    pub remedy: Option<Remedy>,
+}
+
+impl Warning {
+    pub(super) fn new(text: String, remedy: Option<Remedy>) -> Warning {
+        Warning { text, remedy }
+    }
+}
+
+/// Why clips do not play together, with what helps.
+pub(super) fn other_form(text: String) -> anyhow::Error {
+    pantin_convert::Error::source(text).remedy(Remedy::ShareForm).into()
+}
+
+impl Maker<'_, '_> {
+    /// Warns if the clips' forms differ: transitions between them take more instructions, and a picture is drawn of poses of one form.
+    pub(super) fn warn_of_forms(&mut self, source: &Source) -> Result<()> {
+        let Some(first) = source.states.first() else { return Ok(()) };
+        let (name, clip) = self.played(first)?;
+        for state in &source.states[1..] {
+            let (other, its) = self.played(state)?;
+            if clip.form().check(its.form_ref()).is_err() {
+                let [name, other] = [quoted(name), quoted(other)];
+                let text = format!("the clips {name} and {other} have different forms, which no picture draws together");
+                self.warnings.push(Warning::new(text, Some(Remedy::ShareForm)));
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Warns of a state at whose end the figure stands still.
+    pub(super) fn warn_of_end(&mut self, state: &State, source: &Source, file: &Text) -> Result<()> {
+        let (name, clip) = self.played(state)?;
+        if !clip.looped() && state.transitions.is_empty() && source.any.is_empty() {
+            let text = format!(
+                "line {}: state {}: the clip {} is no loop, and no transition leads away: the figure stays in its last frame",
+                file.line(state.name.span()),
+                quoted(state.name.get_ref()),
+                quoted(name)
+            );
+            self.warnings.push(Warning::new(text, None));
+        }
+        Ok(())
+    }
+
+    /// Warns of parameters that nothing names.
+    pub(super) fn warn_of_unused(&mut self, source: &Source, file: &Text) {
+        for (parameter, _) in source.parameters.iter().zip(&self.used).filter(|(_, used)| !used.get()) {
+            let place = file.at(parameter.name.span());
+            let text = format!("{place}: parameter {}: no blend and no transition uses it", quoted(parameter.name.get_ref()));
+            self.warnings.push(Warning::new(text, None));
+        }
+    }
+}
