@@ -13,6 +13,7 @@ pub mod expand;
 pub mod face;
 pub mod flash_image;
 pub mod info;
+mod live_mapping;
 pub mod machine;
 pub mod play;
 pub mod render;
