@@ -42,6 +42,7 @@ mod mean_error;
 mod motions_library;
 mod odd;
 mod optimum;
+mod options_refused;
 mod outputs;
 mod own_clips;
 mod own_motions;

@@ -1,6 +1,5 @@
 //! What all commands have in common: options, errors, exit codes, the report of `--json`, and names of outputs.
 
-use super::interchange::WORLD;
 use super::outputs::{Folder, err};
 use serde_json::Value;
 use std::process::Output;
@@ -33,7 +32,8 @@ const RUNS: [&[&str]; 24] = [
     &["face", "fit", "face.obj"],
 ];
 
-fn prepared() -> Folder {
+/// A folder with the inputs of [`RUNS`].
+pub fn prepared() -> Folder {
     let folder = Folder::new();
     let motions = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions");
     std::fs::copy(motions.join("walk.keys"), folder.path("walk.keys")).unwrap();
@@ -268,97 +268,6 @@ fn a_boards_name_for_a_clip_is_not_cut() {
     folder.put(&file, folder.get("a.ptn"));
     let said = err(&folder.done(&["flash-image", &file, "--board", "pico", "-o", "b.bin"]));
     assert!(said.contains(&format!("shows it as `{longest}`")), "{said}");
-}
-
-#[test]
-fn options_that_do_not_apply_are_refused() {
-    let folder = prepared();
-    let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--animation", "Walk"]);
-    assert!(said.contains("--animation Walk") && said.contains("one motion"), "{said}");
-    let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--animation", "all"]);
-    assert!(said.contains("--animation all") && said.contains("one motion"), "{said}");
-    let said = folder.refused(&["convert", "run.keys", "-o", "b.ptn", "--skeleton", "walk.keys"]);
-    assert!(said.contains("--skeleton walk.keys") && said.contains(".amc"), "{said}");
-    for inputs in [&["in"][..], &["run.keys", "in/light.csv"]] {
-        let said = folder.refused(&[&["convert"], inputs, &["-o", "out", "--animation", "0"]].concat());
-        assert!(said.contains("none of these files"), "{said}");
-        let said = folder.refused(&[&["convert"], inputs, &["-o", "out", "--skeleton", "walk.keys"]].concat());
-        assert!(said.contains("none of these files"), "{said}");
-    }
-    assert!(!folder.path("b.ptn").exists() && !folder.path("out").exists());
-    // A chart is drawn as it is.
-    folder.done(&["convert", "in/light.csv", "-o", "light.ptn"]);
-    let of_figures: [&[&str]; 13] = [
-        &["--size", "99x99"],
-        &["--scale", "2"],
-        &["--palette", "dusk"],
-        &["--pixels"],
-        &["--smooth"],
-        &["--view", "side"],
-        &["--tilt", "5"],
-        &["--up", "x"],
-        &["--fixed"],
-        &["--from", "1"],
-        &["--to", "1"],
-        &["--frame", "1"],
-        &["--strip", "2"],
-    ];
-    for option in of_figures {
-        let said = folder.refused(&[&["render", "light.ptn", "-o", "light.png"], option].concat());
-        assert!(said.contains(option[0]) && said.contains("chart"), "{said}");
-    }
-    // A bound that bounds nothing is named.
-    for option in ["--max-error", "--mean-error", "--max-rotation-error", "--max-joint-error", "--cm-per-unit"] {
-        let said = err(&folder.done(&["convert", "in/light.csv", "-o", "light.ptn", option, "1"]));
-        assert!(said.contains(&format!("{option} has no effect: the motion has no joints")), "{said}");
-    }
-    let said = err(&folder.done(&["convert", "run.keys", "-o", "run.ptn", "--max-scalar-error", "1", "--effort", "fast"]));
-    assert!(said.contains("--max-scalar-error has no effect: the motion has no scalars"), "{said}");
-    // No joint of this figure has three angles.
-    let arguments = ["convert", "run.keys", "-o", "run.ptn", "--effort", "fast"];
-    for option in [&["--rotations", "quaternion"][..], &["--rotations", "exponential"]] {
-        let said = err(&folder.done(&[&arguments, option].concat()));
-        assert!(said.contains(&format!("{} has no effect: the motion has no joint", option[0])), "{said}");
-    }
-    // Options of pictures, of figures and of colours.
-    for option in [&["--size", "200x200"][..], &["--scale", "3"]] {
-        let said = folder.refused(&[&["face", "export", "-o", "joy.obj"], option].concat());
-        assert!(said.contains(option[0]) && said.contains(".png"), "{said}");
-    }
-    for option in [&["--fixed"][..], &["--view", "side"]] {
-        let said = folder.refused(&[&["play", "light.ptn", "--plain", "--once"], option].concat());
-        assert!(said.contains(&format!("{} has no effect", option[0])), "{said}");
-    }
-    for option in ["--palette=amber", "--colours=none"] {
-        let output = folder.run(&["play", "a.ptn", "--plain", "--once", option]);
-        assert!(output.status.code() == Some(2) && err(&output).contains("--plain"), "{option}: {}", err(&output));
-    }
-    let angles = ["face", "compare", "--angle", "smile=60", "--angle", "smile=61"];
-    assert!(folder.refused(&angles).contains("smile comes twice"));
-    // A rig that nothing needs.
-    folder.done(&["convert", "run.keys", "-o", "apart.ptn", "--rig-out", "run.rig", "--effort", "fast"]);
-    for arguments in [&["info", "a.ptn"][..], &["expand", "a.ptn", "-o", "a.bvh"], &["render", "a.ptn", "-o", "a.gif"]] {
-        let said = folder.refused(&[arguments, &["--rig", "run.rig"]].concat());
-        assert!(said.contains("the clip has its own rig"), "{said}");
-    }
-    folder.done(&["info", "apart.ptn", "--rig", "run.rig"]);
-    assert!(folder.refused(&["face", "fit", "face.obj", "--frame", "3"]).contains("--frame is for clips"));
-    // Numbers that mean nothing.
-    for weight in ["nan", "1e300", "-101"] {
-        let said = folder.refused(&["face", "export", "-o", "joy.obj", "--pose", &format!("joy={weight}")]);
-        assert!(said.contains("expected a weight"), "{said}");
-    }
-    for wrong in [
-        &["convert", "--list", "run.keys", "-o", "b.ptn"][..],
-        &["stream", "a.ptn", "--to", "tcp:127.0.0.1:1", "--max-scalar-error", "1"],
-    ] {
-        assert_eq!(folder.run(wrong).status.code(), Some(2), "{wrong:?}");
-    }
-    // Among several motions, they are for those that take them.
-    folder.put("in/world.wrl", WORLD);
-    folder.done(&["convert", "in", "-o", "out", "--animation", "smile"]);
-    folder.done(&["convert", "in/world.wrl", "-o", "smile.ptn", "--animation", "Smile"]);
-    assert!(folder.get("out/world.ptn") == folder.get("smile.ptn") && folder.path("out/light.ptn").exists());
 }
 
 #[test]
