@@ -5,6 +5,7 @@ pub mod build;
 pub mod clip;
 pub mod core_library;
 pub mod crates;
+pub mod functions;
 pub mod npm;
 pub mod packages;
 pub mod pages;

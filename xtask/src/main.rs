@@ -53,7 +53,7 @@ const LIST: [(&str, Place, &str); 29] = [
     ("msrv", Place::Here(publish::msrv), "Checks the published crates with the oldest Rust that they state"),
     ("package", Place::Here(publish::package), "Packs the published crates; --verify compiles each from its package"),
     ("semver", Place::Here(public_items::run), "Compares the public items of the published libraries with the list that is kept"),
-    ("shape", Place::Here(shape), "Counts equal lines among the boards, and circles of imports"),
+    ("shape", Place::Here(shape), "Counts equal lines among the boards, circles of imports, and functions of more than 80 lines"),
     ("sizes", COMMANDS, "Measures flash, RAM and stack of every image, and compares them with tests/sizes.txt"),
     ("soak", COMMANDS, "Plays 24 hours of a clip over a simulated line with damage, restarts and drift"),
     ("strips", COMMANDS, "Plays motions on every emulated board and draws a contact sheet of each"),

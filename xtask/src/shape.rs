@@ -1,4 +1,4 @@
-//! `cargo xtask shape`: the crates and what they need, lines that boards repeat, and circles of imports.
+//! `cargo xtask shape`: the crates and what they need, lines that boards repeat, circles of imports, and long functions.
 //!
 //! ```text
 //! $ cargo xtask shape
@@ -9,6 +9,8 @@
 //!   9 lines: blackpill/src/board.rs:12 and esp32c3/src/board.rs:20
 //!   ...
 //! import circles in firmware/app/src: none
+//! ...
+//! functions of more than 80 lines: none
 //! ```
 //!
 //! A line counts where it holds code: comments, attributes and imports are left out before lines are compared. A module imports
@@ -20,7 +22,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-use crate::{crates, paths};
+use crate::functions::{self, Function};
+use crate::{crates, paths, tree};
 
 /// Equal lines of code that make a repetition.
 pub const LINES: usize = 6;
@@ -37,7 +40,7 @@ pub struct Repetition {
     pub lines: usize,
 }
 
-/// Prints the crates, repetitions and circles.
+/// Prints the crates, repetitions, circles and long functions.
 pub fn print() -> Result<()> {
     let crates = crates::all()?;
     print!("{}", crates::drawn(&crates));
@@ -54,7 +57,18 @@ pub fn print() -> Result<()> {
         println!("import circles in {folder}: {}", if found.is_empty() { "none".into() } else { found.len().to_string() });
         found.iter().for_each(|circle| println!("  {}", circle.join(", ")));
     }
+    if let Some(files) = tree::files()? {
+        print_long(&functions::long(&files)?);
+    }
     Ok(())
+}
+
+fn print_long(found: &[Function]) {
+    let count = if found.is_empty() { "none".into() } else { found.len().to_string() };
+    println!("functions of more than {} lines: {count}", functions::MOST_LINES);
+    for Function { file, line, name, lines } in found {
+        println!("  {lines} lines: {file}:{line} {name}");
+    }
 }
 
 /// Repetitions in `firmware/boards/*/src`.

@@ -1,8 +1,8 @@
-//! The shape of the repository: crates need each other in one direction, modules import downwards, boards repeat nothing, and no file
-//! is large, forgotten or there twice. `cargo xtask shape` lists what breaks these rules.
+//! The shape of the repository: crates need each other in one direction, modules import downwards, boards repeat nothing, no function is
+//! long, and no file is large, forgotten or there twice. `cargo xtask shape` lists what breaks these rules.
 
 use xtask::shape::{self, LINES};
-use xtask::{crates, paths, tree};
+use xtask::{crates, functions, paths, tree};
 
 /// What stands around the crates' graph in ARCHITECTURE.md.
 const GRAPH: [&str; 2] = ["<!-- crates begin: written by xtask/tests/shape.rs -->\n```text\n", "```\n<!-- crates end -->\n"];
@@ -68,4 +68,11 @@ fn the_tree_holds_what_it_should() {
     assert_eq!(tree::strangers(&files), Vec::<&str>::new(), "entries of the root that xtask/src/tree.rs does not list");
     assert_eq!(tree::large(&files).unwrap(), [], "files of more than {} bytes", tree::MOST_BYTES);
     assert_eq!(tree::twice(&files).unwrap(), Vec::<Vec<&str>>::new(), "files of equal bytes");
+}
+
+#[test]
+fn no_function_is_long() {
+    let Some(files) = tree::files().unwrap() else { return eprintln!("SKIPPED: no checkout of git") };
+    let found = functions::long(&files).unwrap();
+    assert!(found.is_empty(), "functions of more than {} lines: {found:#?}", functions::MOST_LINES);
 }
