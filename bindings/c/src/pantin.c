@@ -612,14 +612,13 @@ static void refill(pantin_reader *r) {
 }
 
 static uint8_t symbol(pantin_reader *r, const uint16_t *sizes) {
-    uint32_t low = r->x & 4095;
-    uint16_t size;
+    unsigned low = (unsigned)(r->x & 4095), size;
     uint8_t s = 0;
     while (low >= (size = PANTIN_U16(sizes + s))) {
         low -= size;
         s++;
     }
-    r->x = size * (r->x >> 12) + low;
+    r->x = size * (r->x >> 8 >> 4) + low;
     refill(r);
     return s;
 }

@@ -8,39 +8,40 @@
 
 /* The upper half of a product. */
 #if defined(__AVR__) && defined(__AVR_HAVE_MUL__)
-/* Column by column of the bytes' products. 110 cycles, half of what the compiler's own product takes. */
-#define PANTIN_PRODUCT(a, b, low, middle, top) "mul " a ", " b "\n\tadd " low ", r0\n\tadc " middle ", r1\n\tadc " top ", %[z]\n\t"
+/* Column by column of the bytes' products, each added to three bytes. The registers are those of the arguments and such as a function need not keep: 97
+ * cycles with the call, a third of what the compiler's own product takes. */
+#define PANTIN_PRODUCT(a, b, low, middle, top) "mul " a ", " b "\n\tadd " low ", r0\n\tadc " middle ", r1\n\tadc " top ", r31\n\t"
 static uint32_t high(uint32_t a, uint32_t b) __attribute__((noinline));
 static uint32_t high(uint32_t a, uint32_t b) {
-    uint32_t upper;
-    uint8_t t0, t1, t2, z;
+    register uint32_t x __asm__("r22") = a;
+    register uint32_t y __asm__("r18") = b;
     __asm__(
-        "clr %[z]\n\tmul %A[a], %A[b]\n\tmov %[t1], r1\n\tclr %[t2]\n\t"
-        "clr %[t0]\n\t"
-        PANTIN_PRODUCT("%A[a]", "%B[b]", "%[t1]", "%[t2]", "%[t0]")
-        PANTIN_PRODUCT("%B[a]", "%A[b]", "%[t1]", "%[t2]", "%[t0]")
-        "clr %A0\n\t"
-        PANTIN_PRODUCT("%A[a]", "%C[b]", "%[t2]", "%[t0]", "%A0")
-        PANTIN_PRODUCT("%B[a]", "%B[b]", "%[t2]", "%[t0]", "%A0")
-        PANTIN_PRODUCT("%C[a]", "%A[b]", "%[t2]", "%[t0]", "%A0")
-        "clr %B0\n\t"
-        PANTIN_PRODUCT("%A[a]", "%D[b]", "%[t0]", "%A0", "%B0")
-        PANTIN_PRODUCT("%B[a]", "%C[b]", "%[t0]", "%A0", "%B0")
-        PANTIN_PRODUCT("%C[a]", "%B[b]", "%[t0]", "%A0", "%B0")
-        PANTIN_PRODUCT("%D[a]", "%A[b]", "%[t0]", "%A0", "%B0")
-        "clr %C0\n\t"
-        PANTIN_PRODUCT("%B[a]", "%D[b]", "%A0", "%B0", "%C0")
-        PANTIN_PRODUCT("%C[a]", "%C[b]", "%A0", "%B0", "%C0")
-        PANTIN_PRODUCT("%D[a]", "%B[b]", "%A0", "%B0", "%C0")
-        "clr %D0\n\t"
-        PANTIN_PRODUCT("%C[a]", "%D[b]", "%B0", "%C0", "%D0")
-        PANTIN_PRODUCT("%D[a]", "%C[b]", "%B0", "%C0", "%D0")
-        "mul %D[a], %D[b]\n\tadd %C0, r0\n\tadc %D0, r1\n\t"
-        "clr r1"
-        : "=&r"(upper), [t0] "=&r"(t0), [t1] "=&r"(t1), [t2] "=&r"(t2), [z] "=&r"(z)
-        : [a] "r"(a), [b] "r"(b)
-        : "r0");
-    return upper;
+        "clr r31\n\tmul r22, r18\n\tmov r26, r1\n\tclr r27\n\tclr r30\n\t"
+        PANTIN_PRODUCT("r22", "r19", "r26", "r27", "r30")
+        PANTIN_PRODUCT("r23", "r18", "r26", "r27", "r30")
+        "clr r26\n\t"
+        PANTIN_PRODUCT("r22", "r20", "r27", "r30", "r26")
+        PANTIN_PRODUCT("r23", "r19", "r27", "r30", "r26")
+        PANTIN_PRODUCT("r24", "r18", "r27", "r30", "r26")
+        "clr r27\n\t"
+        PANTIN_PRODUCT("r22", "r21", "r30", "r26", "r27")
+        PANTIN_PRODUCT("r23", "r20", "r30", "r26", "r27")
+        PANTIN_PRODUCT("r24", "r19", "r30", "r26", "r27")
+        PANTIN_PRODUCT("r25", "r18", "r30", "r26", "r27")
+        /* The result begins here; r22 and r18 are used up. */
+        "clr r30\n\t"
+        PANTIN_PRODUCT("r23", "r21", "r26", "r27", "r30")
+        PANTIN_PRODUCT("r24", "r20", "r26", "r27", "r30")
+        PANTIN_PRODUCT("r25", "r19", "r26", "r27", "r30")
+        "mov r22, r26\n\tclr r26\n\t"
+        PANTIN_PRODUCT("r24", "r21", "r27", "r30", "r26")
+        PANTIN_PRODUCT("r25", "r20", "r27", "r30", "r26")
+        "mul r25, r21\n\tadd r30, r0\n\tadc r26, r1\n\t"
+        "mov r23, r27\n\tmov r24, r30\n\tmov r25, r26\n\tclr r1"
+        : "+r"(x), "+r"(y)
+        :
+        : "r0", "r26", "r27", "r30", "r31");
+    return x;
 }
 #undef PANTIN_PRODUCT
 #else
@@ -72,24 +73,60 @@ static uint32_t shifted(uint32_t x, uint8_t up) {
     return x;
 }
 
-/* The sum of `count` products, exact, from Q60 to Q30 with `up` (2), or to twice that (3). In two words of 32 bits, which an 8-bit processor adds faster
- * than one of 64. */
+/* Adds the product of `a` and `*b` to a number of 64 bits, given as its halves. */
+#if defined(__AVR__) && defined(__AVR_HAVE_MUL__)
+/* Row by row, 115 cycles: each byte of b by the four of a, which are two numbers of 32 bits, the second a byte higher. The factors count as numbers without
+ * signs; then a negative one takes the other off the upper half. */
+#define PANTIN_EVEN "ld %[byte], %a[b]+\n\tmul %A[a], %[byte]\n\tmovw %A[t], r0\n\tmul %C[a], %[byte]\n\tmovw %C[t], r0\n\t"
+#define PANTIN_ODD "mul %B[a], %[byte]\n\tmovw %A[t], r0\n\tmul %D[a], %[byte]\n\tmovw %C[t], r0\n\t"
+#define PANTIN_ADD(p, q, r, s) "add " p ", %A[t]\n\tadc " q ", %B[t]\n\tadc " r ", %C[t]\n\tadc " s ", %D[t]\n\t"
+#define PANTIN_CARRY(p) "adc " p ", %[z]\n\t"
+#define PANTIN_TAKE(p, q, r, s) "sub %A[u], " p "\n\tsbc %B[u], " q "\n\tsbc %C[u], " r "\n\tsbc %D[u], " s "\n"
+#define PANTIN_ADD_PRODUCT(upper, lower, a_, b_) \
+    do { \
+        uint32_t pantin_t; \
+        uint8_t pantin_byte, pantin_z; \
+        __asm__( \
+            "clr %[z]\n\t" \
+            PANTIN_EVEN PANTIN_ADD("%A[l]", "%B[l]", "%C[l]", "%D[l]") PANTIN_CARRY("%A[u]") PANTIN_CARRY("%B[u]") PANTIN_CARRY("%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_ODD PANTIN_ADD("%B[l]", "%C[l]", "%D[l]", "%A[u]") PANTIN_CARRY("%B[u]") PANTIN_CARRY("%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_EVEN PANTIN_ADD("%B[l]", "%C[l]", "%D[l]", "%A[u]") PANTIN_CARRY("%B[u]") PANTIN_CARRY("%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_ODD PANTIN_ADD("%C[l]", "%D[l]", "%A[u]", "%B[u]") PANTIN_CARRY("%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_EVEN PANTIN_ADD("%C[l]", "%D[l]", "%A[u]", "%B[u]") PANTIN_CARRY("%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_ODD PANTIN_ADD("%D[l]", "%A[u]", "%B[u]", "%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_EVEN PANTIN_ADD("%D[l]", "%A[u]", "%B[u]", "%C[u]") PANTIN_CARRY("%D[u]") \
+            PANTIN_ODD PANTIN_ADD("%A[u]", "%B[u]", "%C[u]", "%D[u]") \
+            "clr r1\n\tsbrs %[byte], 7\n\trjmp 1f\n\t" \
+            PANTIN_TAKE("%A[a]", "%B[a]", "%C[a]", "%D[a]") \
+            "1:\tsbrs %D[a], 7\n\trjmp 2f\n\t" \
+            "ld %D[t], -%a[b]\n\tld %C[t], -%a[b]\n\tld %B[t], -%a[b]\n\tld %A[t], -%a[b]\n\tadiw %A[b], 4\n\t" \
+            PANTIN_TAKE("%A[t]", "%B[t]", "%C[t]", "%D[t]") \
+            "2:" \
+            : [u] "+r"(upper), [l] "+r"(lower), [b] "+e"(b_), [t] "=&r"(pantin_t), [byte] "=&r"(pantin_byte), [z] "=&r"(pantin_z) \
+            : [a] "r"(a_), "m"(*(b_)) \
+            : "r0"); \
+    } while (0)
+
+/* The sum of `count` products, exact, from Q60 to Q30 with `up` (2), or to twice that (3). */
 static int32_t dot(const int32_t *a, const int32_t *b, uint8_t count, uint8_t up) {
     uint32_t upper = 0, lower = up == 2 ? 0x20000000UL : 0x10000000UL;
-    for (; count > 0; count--, a++, b++) {
-        uint32_t x = magnitude(*a), y = magnitude(*b), product;
-        if (x == 0 || y == 0) continue;
-        product = x * y;
-        if ((*a < 0) == (*b < 0)) {
-            lower += product;
-            upper += high(x, y) + (lower < product);
+    for (; count > 0; count--, a++) {
+        uint32_t x = (uint32_t)*a;
+        if (x == 0) {
+            b++;
         } else {
-            upper -= high(x, y) + (lower < product);
-            lower -= product;
+            PANTIN_ADD_PRODUCT(upper, lower, x, b);
         }
     }
     return (int32_t)(up == 2 ? upper << 2 | (uint8_t)(lower >> 24) >> 6 : upper << 3 | (uint8_t)(lower >> 24) >> 5);
 }
+#else
+static int32_t dot(const int32_t *a, const int32_t *b, uint8_t count, uint8_t up) {
+    uint64_t sum = up == 2 ? 0x20000000UL : 0x10000000UL;
+    for (; count > 0; count--, a++, b++) sum += (uint64_t)((int64_t)*a * *b);
+    return (int32_t)(uint32_t)(sum >> (32 - up));
+}
+#endif
 
 static int32_t scaled(int32_t a, int32_t q30) { return dot(&a, &q30, 1, 2); }
 
@@ -191,10 +228,18 @@ static uint32_t direction(int32_t *q) {
     return down < 3 ? root << (3 - down) : root >> (down - 3);
 }
 
+static int is_no_rotation(const int32_t *q) { return q[0] == ONE && !(q[1] | q[2] | q[3]); }
+
 /* a becomes the rotation by a, then by b about the axes that a has turned. */
 static void multiply(int32_t *a, const int32_t *b) {
     int32_t column[4], product[4];
     uint8_t i, j;
+    /* Products with 1 are exact. */
+    if (is_no_rotation(b)) return;
+    if (is_no_rotation(a)) {
+        memcpy(a, b, sizeof product);
+        return;
+    }
     for (i = 0; i < 4; i++) {
         /* Row i of b: the component i ^ j, whose sign is that of the product of two units. */
         for (j = 0; j < 4; j++) {
@@ -216,6 +261,11 @@ static void turn_about(int32_t *q, uint8_t axis, int32_t angle) {
     sin_cos((int32_t)(((uint32_t)angle >> 1) | ((uint32_t)angle & 0x80000000UL)), &sin, &factors[0]);
     factors[1] = -sin;
     axis = (uint8_t)(axis + 1);
+    if (is_no_rotation(q)) {
+        q[0] = factors[0];
+        q[axis] = sin;
+        return;
+    }
     a[0] = q[0];
     a[1] = q[axis];
     product[0] = dot(a, factors, 2, 2);
@@ -240,9 +290,13 @@ static void no_rotation(int32_t *q) {
 /* q[1] to q[3] hold an exponential map. */
 static void of_exponential(int32_t *q) {
     int32_t sin;
+    uint32_t angle;
     uint8_t i;
     q[0] = 0;
-    sin_cos((int32_t)(direction(q) >> 1), &sin, &q[0]);
+    angle = direction(q);
+    /* No rotation: the products are exact. */
+    if (angle == 0) return;
+    sin_cos((int32_t)(angle >> 1), &sin, &q[0]);
     for (i = 1; i < 4; i++) q[i] = scaled(q[i], sin);
 }
 
