@@ -24,13 +24,14 @@ enum Place {
 const COMMANDS: Place = Place::Package("xtask-commands");
 
 /// Every command, where it is and what it does.
-const LIST: [(&str, Place, &str); 29] = [
+const LIST: [(&str, Place, &str); 30] = [
     ("demo", Place::Here(demo::run), "Plays a motion on the display of an emulated board, and prints what it costs"),
     (
         "test",
         Place::Here(test::run),
         "Runs what belongs before a commit; --boards, --bindings, --web, --packages run other groups, --all everything",
     ),
+    ("arduino", COMMANDS, "Writes the Arduino library (also for PlatformIO and ESP-IDF) to a folder"),
     ("bench", COMMANDS, "Measures size, speed and memory, and compares them with the goals"),
     ("bindings", COMMANDS, "Tests the decoder in C with compilers and emulators; `test --bindings` is the same"),
     ("blender", COMMANDS, "Imports exports of our clips into Blender (bpy), and validates the glTF files"),

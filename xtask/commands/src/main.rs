@@ -1,5 +1,6 @@
 //! The commands of `cargo xtask` that need the harness or the host tool.
 
+mod arduino;
 mod bench;
 mod bindings;
 mod blender;
@@ -28,6 +29,7 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 enum Command {
+    Arduino(arduino::Arduino),
     Conformance(conformance::Conformance),
     Bench(bench::command::Bench),
     Bindings(bindings::Bindings),
@@ -55,6 +57,7 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Command::parse() {
+        Command::Arduino(arduino) => arduino.run(),
         Command::Conformance(conformance) => conformance.run(),
         Command::Bench(bench) => bench.run(),
         Command::Bindings(bindings) => bindings.run(),

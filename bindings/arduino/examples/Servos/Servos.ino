@@ -23,6 +23,7 @@ void turn(uint8_t servo, int16_t centidegrees) {
 void setup() {
   Serial.begin(115200);
   servos.begin();
+  Wire.setClock(400000); // At 100 kHz, four servos would take 4 ms a frame.
   servos.setPWMFreq(50);
   if (!player.begin(CLIP_WALK, CLIP_WALK_LEN)) Serial.println("the clip is damaged or has too many channels");
   for (uint8_t i = 0; i < SERVOS; i++) {
