@@ -161,6 +161,8 @@ fn apt_get(arguments: &[&str]) -> Result<()> {
 fn debian(name: &str) -> &str {
     match name {
         "node" => "nodejs",
+        // Its sanitizers are a package apart.
+        "clang" => "clang libclang-rt-dev",
         "qemu-system-riscv32" => "qemu-system-misc",
         "arm-none-eabi-gcc" => "gcc-arm-none-eabi libnewlib-arm-none-eabi",
         "avr-gcc" => "gcc-avr avr-libc",

@@ -1,4 +1,5 @@
-/* Prints the rotation of each joint at each frame of a clip, one line each, as turns.txt of the test vectors has them.
+/* Prints the rotation of each joint at each frame of a clip, one line each, as turns.txt of the test vectors has them, and behind it the two checksums of
+ * turn-sums.txt.
  *
  *     turns CLIP.ptn [RIG.rig]
  *
@@ -104,25 +105,33 @@ int main(int argc, char **argv) {
         pantin_joint at;
         pantin_first_joint(&at, &clip.rig);
         for (i = 0; i < clip.rig.joints; i++) {
-            int32_t numbers[9], angles[6][3];
+            int32_t matrix[9], quaternion[4], angle, angles[6 * 3];
             char name[64];
             check(pantin_next_joint(&at) == 1, "joint");
             pantin_copy_name(&at.name, name, sizeof name);
-            crc = 0xffff;
-            check(pantin_matrix(&player, &joints[i], numbers) == PANTIN_OK, "matrix");
-            note(numbers, 9);
-            check(pantin_angle(&player, &joints[i], numbers) == PANTIN_OK, "angle");
-            note(numbers, 1);
+            check(pantin_matrix(&player, &joints[i], matrix) == PANTIN_OK, "matrix");
+            check(pantin_angle(&player, &joints[i], &angle) == PANTIN_OK, "angle");
+            check(pantin_quaternion(&player, &joints[i], quaternion) == PANTIN_OK, "quaternion");
             for (order = PANTIN_XYZ; order <= PANTIN_ZYX; order++) {
-                check(pantin_euler(&player, &joints[i], (pantin_order)order, angles[order]) == PANTIN_OK, "angles");
-                note(angles[order], 3);
+                check(pantin_euler(&player, &joints[i], (pantin_order)order, angles + 3 * order) == PANTIN_OK, "angles");
             }
-            check(pantin_quaternion(&player, &joints[i], numbers) == PANTIN_OK, "quaternion");
             printf("%s %lu", name, (unsigned long)player.frame);
-            print(angles[PANTIN_XYZ], 3);
-            print(angles[PANTIN_ZXY], 3);
-            print(numbers, 4);
-            printf(" %04x\n", crc);
+            print(angles + 3 * PANTIN_XYZ, 3);
+            print(angles + 3 * PANTIN_ZXY, 3);
+            print(quaternion, 4);
+            crc = 0xffff;
+            note(matrix, 9);
+            note(&angle, 1);
+            note(angles, 18);
+            printf(" %04x", crc);
+            crc = 0xffff;
+            note(angles, 18);
+            printf(" %04x", crc);
+            crc = 0xffff;
+            note(quaternion, 4);
+            note(matrix, 9);
+            note(&angle, 1);
+            printf("%04x\n", crc);
         }
     } while (pantin_step(&player) == PANTIN_OK);
     free(joints);

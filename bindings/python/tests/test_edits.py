@@ -158,7 +158,7 @@ def test_edits_are_those_of_the_program(bvh, tmp_path):
     if not tool:
         pytest.skip("PANTIN_TOOL names the program pantin")
     made = tmp_path / "walk.ptn"
-    options = ["--effort", "fast", "--fps", "60", "--from", "10", "--to", "50", "--mirror", "--event", "clap=20", "--index", "0.2", "-q"]
+    options = ["--effort", "fast", "--fps", "60", "--from", "10", "--to", "50", "--mirror", "--event", "clap@20", "--index", "0.2", "-q"]
     subprocess.run([tool, "convert", bvh, "-o", made, *options], check=True)
     clip = pantin.convert(bvh, effort="fast", fps=60, first=10, last=50, mirror=True, events=[(20, "clap")], index=0.2)
     assert bytes(clip) == made.read_bytes()

@@ -6,6 +6,7 @@ pub mod c_header;
 pub mod constants;
 pub mod coverage;
 mod json;
+pub mod orders;
 pub mod own;
 pub mod record;
 pub mod sums;

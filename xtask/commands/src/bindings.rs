@@ -4,8 +4,11 @@
 mod arduino;
 mod blender;
 mod figure;
+mod licences;
 mod micropython;
 mod python;
+mod turns;
+mod uno;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -110,9 +113,6 @@ struct Board {
     machine: &'static [&'static str],
 }
 
-/// RAM of an ATmega328P, in bytes.
-const UNO_RAM: u32 = 2048;
-
 struct Target {
     compiler: &'static str,
     options: &'static [&'static str],
@@ -170,7 +170,8 @@ impl Bindings {
         for compiler in ["gcc", "clang"] {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
         }
-        steps.run("rotations against the crate's", || turns(&folder));
+        steps.run("rotations against the crate's", || turns::vectors(&folder));
+        steps.run("rotations of captures against the crate's", || turns::captures(&folder));
         steps.run("a damaged clip hides no other", || {
             let mut command = Command::new(host_program(&folder, "gcc", "errors")?);
             command.args(["bank.ptb", "scalars.ptn"].map(|name| vectors::folder().join(name)));
@@ -193,19 +194,23 @@ impl Bindings {
         }
         for board in &BOARDS {
             steps.run(&format!("test vectors on {}", board.name), || board.test_vectors(&folder));
+            steps.run(&format!("rotations on {}", board.name), || turns::on_board(&folder, board));
         }
-        steps.run("a clip on an Arduino Uno in simavr", || uno(&folder));
+        steps.run("a clip on an Arduino Uno in simavr", || uno::walk(&folder));
+        steps.run("rotations on an Arduino Uno in simavr, and what they cost", || uno::turns(&folder));
         steps.run("compiler of the ESP8266", || {
             let mut command = Command::new("xtensa-lx106-elf-gcc");
             command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include", "-r", "-nostdlib"]);
             compile(command, &SOURCES, &folder.path().join("esp8266.elf")).map(drop)
         });
-        steps.run("copies in the Arduino library", arduino::copies);
         steps.run("examples of the Arduino library", || arduino::examples(&folder));
         steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
+        steps.run("four servos on an Arduino Uno in simavr", || arduino::servos(&folder));
         steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
         steps.run("MicroPython", || micropython::run(&folder));
+        steps.run("JavaScript", || turns::javascript(&folder));
         steps.run("wheel of the Python package", || python::run(&folder));
+        steps.run("licences", || licences::run(&folder));
         steps.run("Blender add-on", || blender::run(&folder, &self.bpy));
         steps.steps.finish()
     }
@@ -308,31 +313,6 @@ fn agrees(file: &Path, printed: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Compares the rotations of all joints at every frame with those of the Rust decoder.
-fn turns(folder: &TempDir) -> Result<()> {
-    let expected = std::fs::read_to_string(vectors::folder().join(vectors::turns::NAME))?;
-    let program = host_program(folder, "gcc", "turns")?;
-    let mut compared = 0;
-    for (file, rig) in files()?.iter().filter(|(file, _)| file.extension().is_some_and(|extension| extension == "ptn")) {
-        let mut command = Command::new(&program);
-        command.arg(file).args(rig);
-        let printed = String::from_utf8(output(command).with_context(|| file.display().to_string())?.stdout)?;
-        let name = file.file_stem().unwrap_or_default().to_string_lossy();
-        let wanted: Vec<&str> = expected.lines().filter_map(|line| line.strip_prefix(name.as_ref())?.strip_prefix(' ')).collect();
-        if wanted.is_empty() {
-            continue;
-        }
-        ensure!(printed.lines().count() == wanted.len(), "{name}: {} rotations", wanted.len());
-        for (actual, wanted) in printed.lines().zip(&wanted) {
-            ensure!(actual == *wanted, "{name}: {actual}, not {wanted}");
-        }
-        compared += wanted.len();
-    }
-    ensure!(compared > 600, "{compared} rotations");
-    println!("   {compared} rotations");
-    Ok(())
-}
-
 fn damage(folder: &TempDir) -> Result<()> {
     let program = host_program(folder, "gcc", "damage")?;
     for (file, rig) in files()? {
@@ -344,7 +324,7 @@ fn damage(folder: &TempDir) -> Result<()> {
 }
 
 impl Target {
-    /// Bytes of code of all functions, and of those of the slice decoder; then those of figures.
+    /// Bytes of code of all functions, and of those of the slice decoder; then those of figures, and of rotations.
     fn size(&self, folder: &TempDir) -> Result<()> {
         let decoder = self.functions(folder, "src/pantin.c", &[])?;
         let all: u64 = decoder.iter().map(|(_, bytes)| bytes).sum();
@@ -363,6 +343,8 @@ impl Target {
         });
         let (figure, euler) = (figure?, euler?);
         println!("   {figure} bytes of code for figures, {euler} with Euler angles alone");
+        let turns: u64 = self.functions(folder, "src/pantin_turn.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {turns} bytes of code for rotations of joints");
         if let Some(limit) = self.figures {
             ensure!(figure > 1000 && figure <= limit, "figures may take {limit} bytes");
         }
@@ -391,47 +373,29 @@ impl Target {
 impl Board {
     /// Compares what the board prints of the vectors that need no second file with their records.
     fn test_vectors(&self, folder: &TempDir) -> Result<()> {
-        let mut command = Command::new(self.compiler);
-        command.args(["-std=c99", "-Os", "-DCLIP_FILE=\"clip.ptn\""]).args(self.options);
-        let program = compile(command, &["src/pantin.c", "tests/frames.c"], &folder.path().join("frames.elf"))?;
+        let program = self.program(folder, "frames")?;
         for (file, _) in files()?.iter().filter(|(_, rig)| rig.is_none()) {
-            std::fs::copy(file, folder.path().join("clip.ptn"))?;
-            let mut qemu = Command::new(setup::emulator(self.emulator)?);
-            qemu.current_dir(folder.path()).args(self.machine).args(["-nographic", "-monitor", "none", "-serial", "none"]);
-            qemu.args(["-semihosting-config", "enable=on,target=native"]).arg("-kernel").arg(&program);
-            let printed = output(qemu).with_context(|| file.display().to_string())?;
-            // Some C libraries print through the emulator's console, which is its standard error.
-            let printed = if printed.stdout.is_empty() { printed.stderr } else { printed.stdout };
-            agrees(file, &printed).with_context(|| file.display().to_string())?;
+            agrees(file, &self.play(folder, &program, file)?).with_context(|| file.display().to_string())?;
         }
         Ok(())
     }
-}
 
-/// Plays our walk in the RAM of an Arduino Uno, from flash and through a page buffer of 128 bytes.
-fn uno(folder: &TempDir) -> Result<()> {
-    let clip = std::fs::read(vectors::folder().join("walk.ptn"))?;
-    let bytes: String = clip.iter().map(|byte| format!("{byte},")).collect();
-    std::fs::write(folder.path().join("clip.h"), format!("static const uint8_t clip_bytes[] PROGMEM = {{{bytes}}};\n"))?;
-    let mut command = Command::new("avr-gcc");
-    command
-        .args(["-mmcu=atmega328p", "-std=c99", "-mcall-prologues", "-Wl,--gc-sections", "-I"])
-        .arg(folder.path())
-        .args(SECTIONS);
-    let program = compile(command, &["src/pantin.c", "tests/uno.c"], &folder.path().join("uno.elf"))?;
-    let mut simavr = Command::new(setup::emulator("simavr")?);
-    simavr.args(["-m", "atmega328p", "-f", "16000000"]).arg(program);
-    let output = output(simavr)?;
-    let log = [output.stdout, output.stderr].concat();
-    // The emulator prints what comes over the serial port in colours, with a point for each line's end.
-    let log = String::from_utf8_lossy(&log).replace("\x1b[32m", "").replace("\x1b[0m", "");
-    let words: Vec<&str> = log.lines().filter_map(|line| line.strip_suffix('.')).collect();
-    let crcs: Vec<&str> = words.iter().copied().filter(|word| word.len() == 4).collect();
-    let record: Value = serde_json::from_str(&std::fs::read_to_string(vectors::folder().join("walk.json"))?)?;
-    ensure!(Value::from(crcs) == record["crcs"], "the frames differ: {log}");
-    let used = words.iter().find_map(|word| word.strip_prefix('=')).context("no use of RAM in the output")?;
-    let used = u32::from_str_radix(used, 16)?;
-    println!("   {used} bytes of RAM, stack included");
-    ensure!(used < UNO_RAM, "the Uno has {UNO_RAM} bytes");
-    Ok(())
+    /// Builds a test program that reads the file `clip.ptn`.
+    fn program(&self, folder: &TempDir, name: &str) -> Result<PathBuf> {
+        let mut command = Command::new(self.compiler);
+        command.args(["-std=c99", "-Os", "-DCLIP_FILE=\"clip.ptn\""]).args(self.options);
+        let test = format!("tests/{name}.c");
+        compile(command, &["src/pantin.c", "src/pantin_turn.c", &test], &folder.path().join(format!("{name}.elf")))
+    }
+
+    /// What a test program prints of a clip.
+    fn play(&self, folder: &TempDir, program: &Path, clip: &Path) -> Result<Vec<u8>> {
+        std::fs::copy(clip, folder.path().join("clip.ptn"))?;
+        let mut qemu = Command::new(setup::emulator(self.emulator)?);
+        qemu.current_dir(folder.path()).args(self.machine).args(["-nographic", "-monitor", "none", "-serial", "none"]);
+        qemu.args(["-semihosting-config", "enable=on,target=native"]).arg("-kernel").arg(program);
+        let printed = output(qemu).with_context(|| clip.display().to_string())?;
+        // Some C libraries print through the emulator's console, which is its standard error.
+        Ok(if printed.stdout.is_empty() { printed.stderr } else { printed.stdout })
+    }
 }

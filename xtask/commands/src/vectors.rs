@@ -54,6 +54,7 @@ impl Vectors {
         write_whole(&c_header::path(), c_header::text().as_bytes())?;
         write_whole(&c_figure::path(), c_figure::text().as_bytes())?;
         write_whole(&folder.join(turns::NAME), turns::text(&folder)?.as_bytes())?;
+        write_whole(&folder.join(turns::SUMS), turns::sums_text(&folder)?.as_bytes())?;
         write_whole(&folder.join(sums::NAME), sums::text(&folder)?.as_bytes())?;
         println!("{} files as they were, {added} new", files.len() - added);
         Ok(())

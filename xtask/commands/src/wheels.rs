@@ -124,6 +124,13 @@ impl Tools {
         Ok(copy)
     }
 
+    /// Packs the source into the folder `output`.
+    pub fn sdist(&self, output: &Path) -> Result<()> {
+        let mut maturin = self.command("maturin");
+        maturin.args(["sdist", "-o"]).arg(output).arg("-m").arg(home().join("Cargo.toml"));
+        run(maturin)
+    }
+
     /// Builds the program `pantin` and copies it to the folder `output`, under a name with its system.
     fn program(&self, system: System, output: &Path) -> Result<PathBuf> {
         let target_name = system.target();

@@ -1,68 +1,37 @@
-//! The Arduino library (`bindings/arduino`): copies, examples, and what package managers read.
+//! The Arduino library that `cargo xtask arduino` writes: its examples, and what package managers read.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, ensure};
-use harness::paths;
+use anyhow::{Context, Result, bail, ensure};
+use harness::vectors::own;
+use harness::{build, paths};
 use pantin_convert::export::source::c_header;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::output;
-
-/// Files of the decoder in C that the library contains.
-const COPIES: [&str; 8] = [
-    "pantin.c",
-    "pantin.h",
-    "pantin_tables.h",
-    "pantin_turn.c",
-    "pantin_turn.h",
-    "pantin_figure.c",
-    "pantin_figure.h",
-    "pantin_figure_tables.h",
-];
-
-/// Our motions, and the examples that contain their headers.
-const HEADERS: [(&str, &[&str]); 2] =
-    [("walk.ptn", &["OledAdafruit", "OledU8g2", "TftESPI", "Servos"]), ("face/hello.ptn", &["Face"])];
+use super::{output, uno};
+use crate::arduino;
 
 /// Examples that fit the memory of an Arduino Uno with their libraries; the others are compiled for a Mega.
 const UNO: [&str; 1] = ["Servos"];
 
+/// Lines that the README's sketch prints before it is stopped.
+const LINES: usize = 400;
+
+/// The least frames that four servos show in a second of a clip of 120: when a clip starts again, one may be left out.
+const FRAMES: u32 = 118;
+
 /// Where Debian puts the Arduino core for AVR.
 const CORE: &str = "/usr/share/arduino/hardware/arduino/avr";
 
-/// The folder of the library.
-fn home() -> PathBuf {
-    paths::root().join("bindings/arduino")
-}
-
-/// Compares a file with what it should contain, or writes it if PANTIN_UPDATE is set.
-fn equals(path: &Path, expected: &[u8]) -> Result<()> {
-    if std::env::var_os("PANTIN_UPDATE").is_some() {
-        std::fs::write(path, expected)?;
+/// The library's folder, which is written here for these tests.
+fn home(folder: &TempDir) -> Result<PathBuf> {
+    let home = folder.path().join("Pantin");
+    if !home.exists() {
+        arduino::write(&home)?;
     }
-    let committed = std::fs::read(path).with_context(|| path.display().to_string())?;
-    ensure!(committed == expected, "{} differs from its source: PANTIN_UPDATE=1 writes it", path.display());
-    Ok(())
-}
-
-/// Sources are those of `bindings/c`, headers of clips those that `pantin expand` writes.
-pub fn copies() -> Result<()> {
-    for name in COPIES {
-        equals(&home().join("src").join(name), &std::fs::read(super::home().join("src").join(name))?)?;
-    }
-    for (motion, examples) in HEADERS {
-        let path = paths::root().join("motions").join(motion);
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let bytes = std::fs::read(&path)?;
-        let header = c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, &stem)?;
-        for example in examples {
-            equals(&home().join("examples").join(example).join(format!("{stem}.h")), header.as_bytes())?;
-        }
-    }
-    Ok(())
+    Ok(home)
 }
 
 /// Compiles the examples and the README's sketch for AVR, with the Arduino core and declared display libraries.
@@ -75,16 +44,11 @@ pub fn examples(folder: &TempDir) -> Result<()> {
             return Ok(());
         }
     }
-    let readme = std::fs::read_to_string(home().join("README.md"))?;
-    let sketch = readme.split("```cpp\n").nth(1).and_then(|rest| rest.split("```").next()).context("the README has a sketch")?;
-    ensure!(readme.lines().take(10).any(|line| line == "```"), "the sketch ends within ten lines");
-    std::fs::copy(home().join("examples/Servos/walk.h"), folder.path().join("walk.h"))?;
-    let written = folder.path().join("readme.ino");
-    std::fs::write(&written, sketch)?;
-    let mut sketches = vec![written];
-    for entry in std::fs::read_dir(home().join("examples"))? {
+    let home = home(folder)?;
+    let mut sketches = vec![readme_sketch(folder)?];
+    for entry in std::fs::read_dir(home.join("examples"))? {
         let name = entry?.file_name();
-        sketches.push(home().join("examples").join(&name).join(&name).with_extension("ino"));
+        sketches.push(home.join("examples").join(&name).join(&name).with_extension("ino"));
     }
     for sketch in &sketches {
         let name = sketch.file_stem().unwrap_or_default().to_string_lossy();
@@ -96,7 +60,7 @@ pub fn examples(folder: &TempDir) -> Result<()> {
         for include in ["cores/arduino", &format!("variants/{variant}"), "libraries/Wire/src", "libraries/SPI/src"] {
             compiler.arg("-I").arg(Path::new(CORE).join(include));
         }
-        compiler.arg("-I").arg(home().join("src")).arg("-I").arg(home().join("tests/include"));
+        compiler.arg("-I").arg(home.join("src")).arg("-I").arg(arduino::home().join("tests/include"));
         compiler.args(["-x", "c++", "-include", "Arduino.h", "-c"]).arg(sketch).arg("-o").arg(folder.path().join("sketch.o"));
         output(compiler).with_context(|| name.into_owned())?;
     }
@@ -104,8 +68,20 @@ pub fn examples(folder: &TempDir) -> Result<()> {
     Ok(())
 }
 
+/// Writes the README's sketch beside the header that it includes.
+fn readme_sketch(folder: &TempDir) -> Result<PathBuf> {
+    let home = home(folder)?;
+    let readme = std::fs::read_to_string(home.join("README.md"))?;
+    let sketch = readme.split("```cpp\n").nth(1).and_then(|rest| rest.split("```").next()).context("the README has a sketch")?;
+    ensure!(readme.lines().take(10).any(|line| line == "```"), "the sketch ends within ten lines");
+    let written = folder.path().join("readme.ino");
+    std::fs::copy(home.join("examples/Servos/walk.h"), folder.path().join("walk.h"))?;
+    std::fs::write(&written, sketch)?;
+    Ok(written)
+}
+
 /// Sources of the Arduino core that a sketch with a serial port needs.
-const CORE_SOURCES: [&str; 9] = [
+const CORE_SOURCES: [&str; 10] = [
     "main.cpp",
     "HardwareSerial.cpp",
     "HardwareSerial0.cpp",
@@ -114,33 +90,34 @@ const CORE_SOURCES: [&str; 9] = [
     "abi.cpp",
     "new.cpp",
     "wiring.c",
+    "wiring_digital.c",
     "hooks.c",
 ];
 
-/// Runs the README's sketch on an emulated Arduino Uno: the angles that it prints are those of the clip's frames.
-pub fn uno(folder: &TempDir) -> Result<()> {
-    let place = folder.path();
-    if !Path::new(CORE).is_dir() || !place.join("readme.ino").is_file() {
-        println!("   skipped: the README's sketch was not compiled");
-        return Ok(());
-    }
+/// Builds a sketch for an Arduino Uno, with the library, the core and further sources.
+fn build(folder: &TempDir, sketch: &Path, further: &[PathBuf]) -> Result<PathBuf> {
+    let (place, home) = (folder.path(), home(folder)?);
     let core = Path::new(CORE).join("cores/arduino");
     let sources = CORE_SOURCES.map(|name| core.join(name));
-    let library = ["pantin.c", "pantin_turn.c", "pantin_figure.c"].map(|name| home().join("src").join(name));
+    let library = ["pantin.c", "pantin_turn.c", "pantin_figure.c"].map(|name| home.join("src").join(name));
     let mut objects = vec![];
-    for source in sources.into_iter().chain(library).chain([place.join("readme.ino")]) {
+    for source in sources.iter().chain(&library).chain(further).map(PathBuf::as_path).chain([sketch]) {
         let c = source.extension().is_some_and(|extension| extension == "c");
         let mut compiler = Command::new(if c { "avr-gcc" } else { "avr-g++" });
         compiler.args(["-Os", "-w", "-ffunction-sections", "-fdata-sections", "-mcall-prologues", "-mmcu=atmega328p"]);
         compiler.args(["-DF_CPU=16000000UL", "-DARDUINO=10819", "-DARDUINO_ARCH_AVR"]);
-        compiler.arg("-I").arg(&core).arg("-I").arg(Path::new(CORE).join("variants/standard")).arg("-I").arg(home().join("src"));
+        for include in ["cores/arduino", "variants/standard", "libraries/Wire/src", "libraries/Wire/src/utility"] {
+            compiler.arg("-I").arg(Path::new(CORE).join(include));
+        }
+        // A header of a clip that a test wrote hides the example's.
+        compiler.arg("-I").arg(place).arg("-I").arg(home.join("src")).arg("-I").arg(arduino::home().join("tests/include"));
         if c {
             compiler.arg("-std=gnu11");
         } else {
             compiler.args(["-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics", "-x", "c++", "-include", "Arduino.h"]);
         }
         let object = place.join(format!("uno{}.o", objects.len()));
-        compiler.arg("-c").arg(&source).arg("-o").arg(&object);
+        compiler.arg("-c").arg(source).arg("-o").arg(&object);
         output(compiler).with_context(|| source.display().to_string())?;
         objects.push(object);
     }
@@ -148,33 +125,71 @@ pub fn uno(folder: &TempDir) -> Result<()> {
     let mut link = Command::new("avr-gcc");
     link.args(["-Os", "-mmcu=atmega328p", "-Wl,--gc-sections"]).args(&objects).arg("-lm").arg("-o").arg(&program);
     output(link)?;
+    Ok(program)
+}
+
+/// Bytes of flash, and of RAM before the stack. An error if they do not fit an Uno.
+fn sizes(program: &Path) -> Result<(u32, u32)> {
     let mut size = Command::new("avr-size");
-    size.arg(&program);
+    size.arg(program);
     let sizes = String::from_utf8(output(size)?.stdout)?;
     let sizes: Vec<u32> =
         sizes.lines().nth(1).unwrap_or_default().split_whitespace().filter_map(|number| number.parse().ok()).collect();
-    ensure!(sizes.len() > 2 && sizes[0] + sizes[1] < 32_256 && sizes[1] + sizes[2] < 1_600, "flash and RAM: {sizes:?}");
-    let angles = angles()?;
-    // A sketch never ends.
-    let mut simavr = Command::new("timeout");
-    simavr.arg("10").arg(xtask::setup::emulator("simavr")?).args(["-m", "atmega328p", "-f", "16000000"]).arg(&program);
-    let printed = simavr.output()?;
-    let printed =
-        String::from_utf8_lossy(&[printed.stdout, printed.stderr].concat()).replace("\x1b[32m", "").replace("\x1b[0m", "");
-    // The emulator prints a point for each end of a line; the last line may be cut.
-    let lines: Vec<&str> =
-        printed.lines().map(|line| line.trim_end_matches('.')).filter(|line| line.parse::<f64>().is_ok()).collect();
-    let lines = lines.get(..lines.len().saturating_sub(1)).unwrap_or_default();
-    ensure!(lines.len() > 20, "the sketch prints {printed}");
-    for line in lines {
-        ensure!(angles.iter().any(|angle| angle == line), "{line} is no angle of the clip");
+    let [text, data, bss, ..] = sizes[..] else { bail!("avr-size prints {sizes:?}") };
+    ensure!(text + data < 32_256 && data + bss < 1_600, "flash and RAM: {sizes:?}");
+    Ok((text + data, data + bss))
+}
+
+/// Runs the README's sketch on an emulated Arduino Uno: the angles that it prints are those of the clip's frames.
+pub fn uno(folder: &TempDir) -> Result<()> {
+    if !Path::new(CORE).is_dir() {
+        println!("   skipped: the Arduino core for AVR is not installed");
+        return Ok(());
     }
-    println!(
-        "   {} bytes of flash, {} of RAM before the stack, {} angles",
-        sizes[0] + sizes[1],
-        sizes[1] + sizes[2],
-        lines.len()
-    );
+    let sketch = readme_sketch(folder)?;
+    let program = build(folder, &sketch, &[])?;
+    let (flash, ram) = sizes(&program)?;
+    let angles = angles()?;
+    let printed = uno::first_lines(LINES, &program)?;
+    let lines: Vec<&String> = printed.iter().filter(|line| line.parse::<f64>().is_ok()).collect();
+    ensure!(lines.len() > LINES / 2, "the sketch prints {printed:?}");
+    for line in &lines {
+        ensure!(angles.contains(line), "{line} is no angle of the clip");
+    }
+    println!("   {flash} bytes of flash, {ram} of RAM before the stack, {} angles", lines.len());
+    Ok(())
+}
+
+/// Runs the example `Servos` on an emulated Arduino Uno, with a driver that takes as long as one by I2C at 400 kHz: with our walk, whose joints have Euler
+/// angles, and with our dance, whose four joints have exponential maps.
+pub fn servos(folder: &TempDir) -> Result<()> {
+    if !Path::new(CORE).is_dir() {
+        println!("   skipped: the Arduino core for AVR is not installed");
+        return Ok(());
+    }
+    let place = folder.path();
+    let dance = place.join("dance.ptn");
+    // As many joints as fit the RAM.
+    let drop = "neck,head,*shoulder,*forearm,*hand,*shin,*foot,*toes";
+    let options =
+        [&["--rotations", "exponential", "--max-joint-error", "1", "--fps", "120", "--to", "127"], &["--drop", drop][..]];
+    let motions = paths::root().join("motions");
+    own::convert(&build::host_tool()?, &motions.join("library/dance.keys"), &dance, &options.concat())?;
+    let wire = Path::new(CORE).join("libraries/Wire/src");
+    let further = [arduino::home().join("tests/servos.cpp"), wire.join("Wire.cpp"), wire.join("utility/twi.c")];
+    for clip in [motions.join("walk.ptn"), dance] {
+        let bytes = std::fs::read(&clip)?;
+        // Beside the sketch the example's own header would be found first.
+        let sketch = place.join("servos.ino");
+        std::fs::copy(home(folder)?.join("examples/Servos/Servos.ino"), &sketch)?;
+        std::fs::write(place.join("walk.h"), c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, "walk")?)?;
+        let program = self::build(folder, &sketch, &further)?;
+        sizes(&program)?;
+        let printed = uno::all_lines(&program)?;
+        let frames: Vec<u32> = printed.iter().filter_map(|line| line.parse().ok()).collect();
+        println!("   {}: {frames:?} frames in the seconds", clip.file_stem().unwrap_or_default().display());
+        ensure!(frames.len() >= 4 && frames.iter().all(|&frames| frames >= FRAMES), "at least {FRAMES}: {printed:?}");
+    }
     Ok(())
 }
 
@@ -196,7 +211,8 @@ fn angles() -> Result<Vec<String>> {
 
 /// What the Arduino IDE, PlatformIO and ESP-IDF read: the fields that they demand, and paths that exist.
 pub fn metadata(folder: &TempDir) -> Result<()> {
-    let read = |name: &str| std::fs::read_to_string(home().join(name)).with_context(|| name.to_owned());
+    let home = home(folder)?;
+    let read = |name: &str| std::fs::read_to_string(home.join(name)).with_context(|| name.to_owned());
     let properties = read("library.properties")?;
     let property = |key: &str| properties.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
     for key in
@@ -204,17 +220,17 @@ pub fn metadata(folder: &TempDir) -> Result<()> {
     {
         ensure!(property(key).is_some_and(|value| !value.is_empty()), "library.properties lacks {key}");
     }
-    ensure!(home().join("src").join(property("includes").unwrap_or_default()).is_file(), "the header of library.properties");
+    ensure!(home.join("src").join(property("includes").unwrap_or_default()).is_file(), "the header of library.properties");
     ensure!(read("keywords.txt")?.lines().all(|line| line.split('\t').count() == 2), "keywords.txt has two columns");
     let library: Value = serde_json::from_str(&read("library.json")?)?;
     for key in ["name", "version"] {
         ensure!(library[key].as_str() == property(key), "{key} of library.json");
     }
-    ensure!(home().join("src").join(library["headers"].as_str().unwrap_or_default()).is_file(), "the header of library.json");
+    ensure!(home.join("src").join(library["headers"].as_str().unwrap_or_default()).is_file(), "the header of library.json");
     let version = format!("version: \"{}\"", property("version").unwrap_or_default());
     ensure!(read("idf_component.yml")?.lines().any(|line| line == version), "the version of idf_component.yml");
     let sources: Vec<String> = read("CMakeLists.txt")?.split('"').skip(1).step_by(2).map(str::to_owned).collect();
-    ensure!(sources.len() == 4 && sources.iter().all(|path| home().join(path).exists()), "the paths of CMakeLists.txt");
+    ensure!(sources.len() == 4 && sources.iter().all(|path| home.join(path).exists()), "the paths of CMakeLists.txt");
     let Some(pio) = xtask::paths::program("pio") else {
         println!("   `pio pkg pack` skipped: PlatformIO is not installed (pip install platformio)");
         return Ok(());
@@ -222,7 +238,7 @@ pub fn metadata(folder: &TempDir) -> Result<()> {
     // PlatformIO downloads the list of licences that it checks the field against: the copy has none.
     let (copy, packed, place) = (folder.path().join("copy"), folder.path().join("Pantin.tar.gz"), folder.path().join("Pantin"));
     let mut cp = Command::new("cp");
-    cp.arg("-r").arg(home()).arg(&copy);
+    cp.arg("-r").arg(&home).arg(&copy);
     output(cp)?;
     let mut library = library.as_object().context("library.json is an object")?.clone();
     library.remove("license");
@@ -234,11 +250,10 @@ pub fn metadata(folder: &TempDir) -> Result<()> {
     let mut tar = Command::new("tar");
     tar.arg("xzf").arg(packed).arg("-C").arg(&place);
     output(tar)?;
-    for name in COPIES.into_iter().chain(["PantinPlayer.h"]) {
-        ensure!(
-            std::fs::read(place.join("src").join(name))? == std::fs::read(home().join("src").join(name))?,
-            "{name} in the package"
-        );
+    for entry in std::fs::read_dir(home.join("src"))? {
+        let name = entry?.file_name();
+        let same = std::fs::read(place.join("src").join(&name))? == std::fs::read(home.join("src").join(&name))?;
+        ensure!(same, "{} in the package", name.display());
     }
     ensure!(!place.join("tests").exists(), "tests are not in the package");
     Ok(())

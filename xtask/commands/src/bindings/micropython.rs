@@ -8,7 +8,7 @@ use harness::{paths, vectors};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::output;
+use super::{output, turns};
 
 fn home() -> PathBuf {
     paths::root().join("bindings/micropython")
@@ -55,6 +55,11 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let mut vectors_run = script(&home().join("tests/vectors.py"));
     vectors_run.arg(vectors::folder());
     print!("   {}", String::from_utf8_lossy(&output(vectors_run)?.stdout));
+    for folder in [Some(vectors::folder()), turns::captured(folder)?].into_iter().flatten() {
+        let mut sums = script(&home().join("tests/turn_sums.py"));
+        sums.arg(folder);
+        print!("   {}", String::from_utf8_lossy(&output(sums)?.stdout));
+    }
     let readme = std::fs::read_to_string(home().join("README.md"))?;
     let code =
         readme.split("```python\n").nth(1).and_then(|rest| rest.split("```").next()).context("the README has a program")?;

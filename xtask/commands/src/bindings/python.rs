@@ -1,13 +1,13 @@
 //! The Python package (`bindings/python`): its wheel in a clean environment.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use harness::{build, paths};
 use tempfile::TempDir;
 
-use super::output;
+use super::{licences, output, turns};
 use crate::wheels::{self, System, Tools, home};
 
 /// Versions of Python in which the README's program runs too, if they are installed.
@@ -21,6 +21,8 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let place = folder.path().join("wheel");
     let wheel = Tools::install()?.wheel(System::Linux, &place)?;
     println!("   {} bytes: {}", std::fs::metadata(&wheel)?.len(), wheel.file_name().unwrap_or_default().display());
+    licences::contains(&wheel, &licences::NAMES)?;
+    licences::contains(&sdist(folder)?, &licences::NAMES)?;
     let environment = folder.path().join("clean");
     wheels::environment("python3", &environment)?;
     wheels::pip(&environment, &[&wheel.to_string_lossy()])?;
@@ -32,7 +34,7 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let mut copy = Command::new("cp");
     copy.arg("-r").arg(home().join("tests")).arg(&tests);
     output(copy)?;
-    pytest(&environment, &tests, &[])?;
+    pytest(&environment, &tests, &[], turns::captured(folder)?.as_deref())?;
     let mut mypy = Command::new(environment.join("bin/python"));
     mypy.args(["-m", "mypy", "--strict", "-p", "pantin"]).current_dir(folder.path());
     output(mypy).context("types")?;
@@ -43,11 +45,20 @@ pub fn run(folder: &TempDir) -> Result<()> {
     Ok(())
 }
 
+/// The package's source as an archive.
+fn sdist(folder: &TempDir) -> Result<PathBuf> {
+    let place = folder.path().join("sdist");
+    Tools::install()?.sdist(&place)?;
+    let archive = std::fs::read_dir(&place)?.next().context("maturin has packed nothing")??;
+    Ok(archive.path())
+}
+
 /// Runs tests in an environment, and prints how many passed.
-fn pytest(environment: &Path, tests: &Path, arguments: &[&str]) -> Result<()> {
+fn pytest(environment: &Path, tests: &Path, arguments: &[&str], captures: Option<&Path>) -> Result<()> {
     let mut pytest = Command::new(environment.join("bin/python"));
     pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).args(arguments).current_dir(tests);
     pytest.env("PANTIN_ROOT", paths::root()).env("PANTIN_TOOL", build::host_tool()?);
+    pytest.envs(captures.map(|folder| ("PANTIN_TURNS", folder)));
     let printed = output(pytest)?.stdout;
     println!("   {}", String::from_utf8_lossy(&printed).trim_end().lines().last().unwrap_or_default());
     Ok(())
@@ -58,7 +69,7 @@ fn cluster(environment: &Path, wheel: &Path, tests: &Path) -> Result<()> {
     let package = format!("{}[ray]", wheel.display());
     let packages: Vec<&str> = std::iter::once(package.as_str()).chain(CLUSTER).collect();
     match wheels::pip(environment, &packages) {
-        Ok(()) => pytest(environment, tests, &["test_cluster.py"]).context("a cluster"),
+        Ok(()) => pytest(environment, tests, &["test_cluster.py"], None).context("a cluster"),
         Err(error) => {
             println!("   cluster skipped: Ray cannot be installed: {error}");
             Ok(())
