@@ -1,6 +1,6 @@
 //! The notes of odd files, which all front ends must report alike: `tests/odd/notes.json` lists their kinds.
 
-use pantin_convert::fit::descent::Level;
+use pantin_convert::Level;
 use pantin_convert::import::{self, Disk};
 use pantin_convert::{Length, Note, Options, Recipe};
 use serde_json::{Value, json};
