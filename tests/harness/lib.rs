@@ -64,8 +64,3 @@ pub mod web;
 pub mod wire;
 
 pub use xtask::{paths, setup};
-
-/// The README's examples, compiled with the documentation tests.
-#[cfg(all(doctest, feature = "full"))]
-#[doc = include_str!("../../README.md")]
-pub struct Readme;

@@ -85,6 +85,35 @@ fn a_newcomers_program_prints_a_knees_angles_right_to_a_tenth_of_a_degree() {
     compare(&output(&example), &paths::root().join("motions/kneebend.ptn"), "left-shin");
 }
 
+/// The manifest of a program that uses the README's crates.
+fn manifest() -> String {
+    let path = |folder: &str| paths::root().join(folder).display().to_string();
+    let (decoder, figure) = (path("decoder"), path("firmware/figure"));
+    format!(
+        "[package]\nname = \"pantin-readme\"\nedition = \"2024\"\n[lib]\n[dependencies]\nembedded-graphics = \"0.8\"\n\
+         pantin = {{ path = {decoder:?} }}\npantin-figure = {{ path = {figure:?} }}\n[workspace]\n"
+    )
+}
+
+#[test]
+fn the_readmes_program_compiles_with_the_sizes_that_expand_writes() {
+    let readme = std::fs::read_to_string(paths::root().join("README.md")).unwrap();
+    let (_, program) = readme.split_once("```rust\n").unwrap();
+    let (program, _) = program.split_once("```").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let src = folder.path().join("src");
+    std::fs::create_dir(&src).unwrap();
+    std::fs::write(folder.path().join("Cargo.toml"), manifest()).unwrap();
+    std::fs::write(src.join("lib.rs"), format!("#![allow(dead_code)]\n{program}")).unwrap();
+    let mut expand = Command::new(harness::build::host_tool().unwrap());
+    expand.arg("expand").arg(paths::root().join("motions/walk.ptn")).arg("-o").arg(src.join("walk.rs"));
+    assert!(expand.status().unwrap().success());
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["check", "--quiet"]).current_dir(folder.path()).env("CARGO_TARGET_DIR", paths::root().join("examples/target"));
+    let done = cargo.output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
 #[test]
 fn a_newcomers_program_reads_a_captured_knee_outside_of_the_repository() {
     if setup::host_only("a newcomer's program with a captured clip") {
