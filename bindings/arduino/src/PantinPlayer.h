@@ -101,14 +101,14 @@ template <uint16_t CHANNELS> class PantinPlayer {
         return ready && pantin_raw_value(&player, &joint, channel, &value) == PANTIN_OK;
     }
 
-    /* The value of a scalar channel, for example a unit of a face from 0 to 1. 0 if there is none. */
-    float scalar(const char *name) {
+    /* Gives the value of a scalar channel, for example a unit of a face from 0 to 1. Returns false, and leaves `value`, if the clip has no such scalar. */
+    bool scalar(const char *name, float &value) {
         pantin_scalar found;
-        if (!ready || !pantin_find_scalar(&clip.rig, name, &found)) return 0;
-        float value = static_cast<float>(pose[found.channel]);
+        if (!ready || !pantin_find_scalar(&clip.rig, name, &found)) return false;
+        value = static_cast<float>(pose[found.channel]);
         for (int exponent = found.exponent - 31; exponent < 0; exponent++) value /= 2;
         for (int exponent = found.exponent - 31; exponent > 0; exponent--) value *= 2;
-        return value;
+        return true;
     }
 
     uint32_t frame() const { return player.frame; }

@@ -68,7 +68,7 @@ export interface Clip {
   readonly looped: boolean;
   /** The index of the joint with this name, of several the first. Throws an Error that names it if there is none. */
   joint(name: string): number;
-  /** The index of the scalar with this name, or -1. */
+  /** The index of the scalar with this name. Throws an Error if there is none. */
   scalar(name: string): number;
   /** Returns a player at frame 0. Any number of players may play one clip. */
   play(): Player;
@@ -97,7 +97,7 @@ export interface Player {
   translation<T extends { [index: number]: number } = number[]>(joint: number, out?: T, at?: number): T;
   /** Returns the world positions of all joints, x, y, z each. `turns` receives their world rotations, x, y, z, w each. */
   world(out?: Float64Array, turns?: Float64Array): Float64Array;
-  /** Returns the value of a scalar by its index or its name; NaN if the clip has no such scalar. */
+  /** Returns the value of a scalar by its index or its name. Throws an Error if the clip has no such scalar. */
   scalar(which: number | string): number;
 }
 

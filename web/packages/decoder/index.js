@@ -186,7 +186,11 @@ export const openClip = (data, rig) => {
       check(index >= 0, "no joint " + name);
       return index;
     },
-    scalar: (name) => scalars.findIndex((scalar) => scalar.name === name),
+    scalar: (name) => {
+      const index = scalars.findIndex((scalar) => scalar.name === name);
+      check(index >= 0, "no scalar " + name);
+      return index;
+    },
     play: () => play(clip, payload, at()),
   };
   return clip;
@@ -450,7 +454,8 @@ const play = (clip, payload, at) => {
     },
     scalar: (which) => {
       const index = which.at ? clip.scalar(which) : which;
-      return raw[rig.channels - clip.scalars.length + index] * clip.scalars[index]?.scale;
+      check(clip.scalars[index], "no scalar " + which);
+      return raw[rig.channels - clip.scalars.length + index] * clip.scalars[index].scale;
     },
   };
   return player;

@@ -205,6 +205,7 @@ impl Bindings {
         });
         steps.run("examples of the Arduino library", || arduino::examples(&folder));
         steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
+        steps.run("names that a clip lacks, on an Uno in simavr", || arduino::missing(&folder));
         steps.run("four servos on an Arduino Uno in simavr", || arduino::servos(&folder));
         steps.run("metadata of the Arduino library", || arduino::metadata(&folder));
         steps.run("MicroPython", || micropython::run(&folder));

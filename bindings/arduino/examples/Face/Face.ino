@@ -10,13 +10,24 @@ Adafruit_SSD1306 display(128, 64, &Wire, -1);
 PantinPlayer<CLIP_HELLO_CHANNELS> player;
 
 void setup() {
+  Serial.begin(115200);
   display.begin(SSD1306_SWITCHCAPVCC, 0x3C);
   player.begin(CLIP_HELLO, CLIP_HELLO_LEN);
 }
 
+// The value of a scalar: a clip that lacks it leaves that part of the mouth at rest, and says so.
+float value(const char *name) {
+  float value = 0;
+  if (!player.scalar(name, value)) {
+    Serial.print("the clip has no scalar ");
+    Serial.println(name);
+  }
+  return value;
+}
+
 void loop() {
   if (!player.update(millis())) return;
-  float wide = player.scalar("viseme_e"), round = player.scalar("viseme_o"), open = player.scalar("viseme_nn") / 3;
+  float wide = value("viseme_e"), round = value("viseme_o"), open = value("viseme_nn") / 3;
   if (round > open) open = round;
   if (wide / 2 > open) open = wide / 2;
   int16_t width = (int16_t)(24 + 16 * wide - 10 * round), height = (int16_t)(2 + 18 * open);

@@ -129,6 +129,10 @@ for (const file of readdirSync(folder).filter((name) => /\.pt[nb]$/.test(name)))
     assert.equal(player.scalar(index), expected.poses[0][expected.channels - clip.scalars.length + index] * scale);
     if (name) assert.equal(player.scalar(name), player.scalar(clip.scalar(name)));
   });
+  assert.throws(() => clip.scalar("nothing"), /no scalar nothing/);
+  assert.throws(() => player.scalar("nothing"), /no scalar nothing/);
+  assert.throws(() => player.scalar(""), /no scalar/);
+  assert.throws(() => player.scalar(clip.scalars.length), /no scalar/);
   const walk = openClip(Uint8Array.from(read("walk.ptn")).buffer);
   const seconds = walk.frameTimeNs / 1e9;
   const later = walk.play();

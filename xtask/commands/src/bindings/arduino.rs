@@ -160,6 +160,19 @@ pub fn uno(folder: &TempDir) -> Result<()> {
     Ok(())
 }
 
+/// Asks for joints and scalars that a clip lacks on an emulated Arduino Uno: each is an error, and nothing is changed.
+pub fn missing(folder: &TempDir) -> Result<()> {
+    if !Path::new(CORE).is_dir() {
+        println!("   skipped: the Arduino core for AVR is not installed");
+        return Ok(());
+    }
+    std::fs::copy(home(folder)?.join("examples/Face/hello.h"), folder.path().join("hello.h"))?;
+    let printed = uno::all_lines(&build(folder, &arduino::home().join("tests/missing.ino"), &[])?)?;
+    ensure!(printed.iter().any(|line| line == "done"), "{printed:?}");
+    ensure!(!printed.iter().any(|line| line.starts_with("wrong")), "{printed:?}");
+    Ok(())
+}
+
 /// Runs the example `Servos` on an emulated Arduino Uno, with a driver that takes as long as one by I2C at 400 kHz: with our walk, whose joints have Euler
 /// angles, and with our dance, whose four joints have exponential maps.
 pub fn servos(folder: &TempDir) -> Result<()> {
