@@ -6,9 +6,9 @@ use crate::groups::{self, Group};
 use crate::layer::{Weight, blend, mix_group};
 use crate::mask::Mask;
 use crate::memory::Memory;
-use crate::offset::{AGAIN, Cubic, Offset};
 use crate::root::{self, Placement, Root, Travel};
 use crate::track::{Passage, Track};
+use crate::transition::{AGAIN, Cubic, Offset};
 use fixed::types::{I16F16, U0F16};
 use pantin::{Clip, FormRef, Pose, WrongForm};
 

@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::groups::Group;
-use crate::offset::{AGAIN, Cubic, Offset};
 use crate::root::Placement;
+use crate::transition::{AGAIN, Cubic, Offset};
 use crate::two_bone::{Limb, Limits, Reach};
 use pantin::{Clip, Rig};
 

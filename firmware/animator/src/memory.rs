@@ -1,7 +1,7 @@
 //! The memory that the caller lends to an animator.
 
 use crate::groups::Group;
-use crate::offset::Offset;
+use crate::transition::Offset;
 use pantin::ChannelState;
 
 /// Memory for an [`crate::Animator`]: 20 bytes for each moving channel, 24 for each channel (its value, its offset, the pose that comes out), and 6

@@ -4,8 +4,8 @@ use crate::Error;
 use crate::animator::Animator;
 use crate::groups::{self, Group, Shape, nearest};
 use crate::math;
-use crate::offset::{Cubic, Offset};
 use crate::root::{Heading, Placement, Root, Travel};
+use crate::transition::{Cubic, Offset};
 use fixed::types::I16F16;
 use pantin::{Angle, Clip, FormRef, Joint, WrongForm};
 

@@ -1,7 +1,7 @@
 //! Two lines of text over the picture: the clip's name, and the state of its source.
 
 use crate::board::Board;
-use crate::source::{Line, Status};
+use crate::source::{Status, TextLine};
 use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
@@ -25,7 +25,7 @@ pub(crate) fn show<B: Board>(
     target: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) {
-    let (mut top, mut bottom) = (Line::new(), Line::new());
+    let (mut top, mut bottom) = (TextLine::new(), TextLine::new());
     let name = name.get(..24).unwrap_or(name);
     match status {
         Status::Clip { frame, frames } => {
@@ -61,7 +61,7 @@ fn draw<L: Layout>([top, bottom]: [&str; 2], target: &mut Framebuffer<L>) {
 }
 
 /// Writes the frame, counted from 1, the speed and the direction.
-fn clip(line: &mut Line, view_state: &ViewState, frame: u32, frames: u32) {
+fn clip(line: &mut TextLine, view_state: &ViewState, frame: u32, frames: u32) {
     number(line, frame + 1);
     let _ = line.push('/');
     number(line, frames);
@@ -79,7 +79,7 @@ fn clip(line: &mut Line, view_state: &ViewState, frame: u32, frames: u32) {
 
 /// Writes the name, or why the clip cannot be played; then packets, those lost or damaged, and how many channels are exact.
 #[cfg(feature = "link")]
-fn link(top: &mut Line, bottom: &mut Line, name: &str, status: &crate::source::LinkStatus) {
+fn link(top: &mut TextLine, bottom: &mut TextLine, name: &str, status: &crate::source::LinkStatus) {
     let _ = top.push_str(match status.refusal {
         Some(pantin_link::ClipMismatch::Rig) => "another rig",
         Some(pantin_link::ClipMismatch::Form) => "another coding",
@@ -95,7 +95,7 @@ fn link(top: &mut Line, bottom: &mut Line, name: &str, status: &crate::source::L
 }
 
 /// Writes a number's digits. The formatting of the standard library is larger than all of this file.
-fn number(line: &mut Line, value: u32) {
+fn number(line: &mut TextLine, value: u32) {
     if value >= 10 {
         number(line, value / 10);
     }

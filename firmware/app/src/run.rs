@@ -95,7 +95,7 @@ fn start<B: Board>(
     }
     #[cfg(feature = "link")]
     if context.view_state.link {
-        let line = crate::source::link::Line {
+        let line = crate::source::link::LineSettings {
             parity: context.view_state.fec,
             #[cfg(feature = "key")]
             key: context.view_state.key,

@@ -2,7 +2,7 @@
 
 use crate::commands::Command;
 use crate::options::Options;
-use pantin_figure::{DrawStyle, Track, View};
+use pantin_figure::{CameraTarget, DrawStyle, View};
 
 /// What commands change.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +104,8 @@ impl ViewState {
                 return Effect::Aim;
             }
             Command::Track => {
-                self.view.track = if self.view.track == Track::Follow { Track::Fixed } else { Track::Follow };
+                self.view.track =
+                    if self.view.track == CameraTarget::Follow { CameraTarget::Fixed } else { CameraTarget::Follow };
                 return Effect::Aim;
             }
             Command::Ground => self.style.ground = !self.style.ground,

@@ -45,7 +45,7 @@ impl Canvas {
 
 /// What the camera looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Track {
+pub enum CameraTarget {
     /// The hips, wherever they go; vertically it stands still as long as the clip stays within twice the figure.
     Follow,
     /// The middle of all that the clip covers.
@@ -60,7 +60,7 @@ pub struct View {
     /// Degrees above the horizon.
     pub tilt: i16,
     /// What it looks at.
-    pub track: Track,
+    pub track: CameraTarget,
     /// The direction that is vertical, in place of the one that the rig states.
     pub up: Option<Up>,
 }
@@ -78,7 +78,7 @@ impl View {
 
 impl Default for View {
     fn default() -> Self {
-        View { orbit: -50, tilt: 12, track: Track::Follow, up: None }
+        View { orbit: -50, tilt: 12, track: CameraTarget::Follow, up: None }
     }
 }
 
@@ -148,12 +148,12 @@ impl Camera {
         let middle = bounds.middle();
         let climbs = bounds.half_extent(orientation.axis) > size;
         let fixed = core::array::from_fn(|axis| match view.track {
-            Track::Fixed => Some(middle[axis]),
-            Track::Follow => (axis == orientation.axis && !climbs).then_some(middle[axis]),
+            CameraTarget::Fixed => Some(middle[axis]),
+            CameraTarget::Follow => (axis == orientation.axis && !climbs).then_some(middle[axis]),
         });
         let size = match view.track {
-            Track::Follow => size,
-            Track::Fixed => (0..3).fold(size, |size, axis| size.max(bounds.half_extent(axis))),
+            CameraTarget::Follow => size,
+            CameraTarget::Fixed => (0..3).fold(size, |size, axis| size.max(bounds.half_extent(axis))),
         };
         // The factor is scale / size * 2^fine; in Q15, with the size cut to its highest bits, a shift is all there is to choose.
         let cut = (32 - size.leading_zeros()).saturating_sub(SIZE_BITS);

@@ -58,7 +58,7 @@ pub mod rotation_float;
 pub mod skeleton;
 pub mod surface;
 
-pub use camera::{Canvas, Track, View};
+pub use camera::{CameraTarget, Canvas, View};
 pub use draw::{DrawError, DrawStyle};
 pub use ink::Ink;
 pub use joint_info::JointInfo;

@@ -1,6 +1,6 @@
 //! HEAD and STARTS packets, which describe a clip and its channels.
 
-use crate::symbols::{Coder, Reader};
+use crate::symbols::{Coder, SymbolReader};
 use pantin::Form;
 use pantin::codec::crc;
 use pantin::codec::layout::MAX_STEP;
@@ -73,7 +73,7 @@ impl Head {
 
     /// Reads the payload of a HEAD packet: the description, and the sender's line frame. Returns `None` if it is damaged or describes no valid clip.
     pub fn read(payload: &[u8]) -> Option<(Head, u32)> {
-        let mut reader = Reader::new(payload);
+        let mut reader = SymbolReader::new(payload);
         let read = Head::default().code(&mut reader, 0);
         let sound = read.0.frames > 0 && read.0.frame_time_ns > 0;
         (sound && reader.ends_with(HEAD_CHECK)).then_some(read)
@@ -168,7 +168,7 @@ pub const COUNT_BITS: u32 = 8;
 /// Returns false, and calls `show` for none, if the payload is damaged.
 pub fn read_starts(payload: &[u8], identity: u16, mut show: impl FnMut(u16, ChannelKind)) -> bool {
     let go = |show: &mut dyn FnMut(u16, ChannelKind)| {
-        let mut reader = Reader::new(payload);
+        let mut reader = SymbolReader::new(payload);
         let first = reader.bits(FIRST_BITS, 0) as u16;
         for more in 0..reader.bits(COUNT_BITS, 0) as u16 {
             show(first + more, ChannelKind::Constant(0).code(&mut reader));

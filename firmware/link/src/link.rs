@@ -52,7 +52,7 @@ pub struct Link<'m, const Q: usize> {
     /// An announced clip and the sender's line frame: the receiver switches to it with the first other packet of that clip.
     next: Option<(Head, u32)>,
     queue: Vec<QueuedPacket, Q>,
-    clock: Option<Clock>,
+    clock: Option<SenderClock>,
     /// The sender's line frame in the last HEAD.
     heard: u32,
     sequence: Option<u8>,
@@ -61,7 +61,7 @@ pub struct Link<'m, const Q: usize> {
 
 /// The clock of the line, in line frames.
 #[derive(Clone, Copy, Debug)]
-struct Clock {
+struct SenderClock {
     /// The frame that is shown.
     now: u32,
     /// Where the sender is.
@@ -80,7 +80,7 @@ const MAX_LEAD: i32 = 32;
 /// Votes that replace the clock: believed packets take votes back, so it takes a majority.
 const VOTES: u8 = 4;
 
-impl Clock {
+impl SenderClock {
     /// Counts a packet's time as a vote for another clock; returns whether that clock now has [`VOTES`].
     fn vote(&mut self, sender_frame: u32) -> bool {
         let apart = sender_frame.wrapping_sub(self.rival_frame) as i32;
@@ -216,7 +216,8 @@ impl<'m, const Q: usize> Link<'m, Q> {
     /// late, and its time is believed.
     fn set_clock(&mut self, base: u32, ahead: u8, last: u32) -> bool {
         let sender_frame = base.wrapping_sub(u32::from(ahead));
-        let fresh = Clock { now: sender_frame, sender_frame, received_until: base, rival_frame: sender_frame, rival_votes: 0 };
+        let fresh =
+            SenderClock { now: sender_frame, sender_frame, received_until: base, rival_frame: sender_frame, rival_votes: 0 };
         let clock = self.clock.get_or_insert(fresh);
         let lead = sender_frame.wrapping_sub(clock.sender_frame) as i32;
         if lead > MAX_LEAD || before(last, clock.now) {

@@ -1,6 +1,6 @@
 //! Messages of a MOTION packet: a segment that starts at a frame, with or without a refresh of the state.
 
-use crate::symbols::{Coder, Reader};
+use crate::symbols::{Coder, SymbolReader};
 use crate::tables;
 use pantin::codec::layout::{DIRECT, GROUPS, LENGTH_CLASSES, MAX_STEP, START_MODE, group, segment_type};
 use pantin::codec::{segment, segment_frames, step_size};
@@ -149,7 +149,7 @@ pub const END: u32 = 32;
 /// Iterates over the messages of a packet.
 #[derive(Clone, Copy, Debug)]
 pub struct Messages<'a> {
-    reader: Reader<'a>,
+    reader: SymbolReader<'a>,
     /// The low 16 bits of the first frame.
     base: u16,
     ahead: u8,
@@ -161,7 +161,7 @@ pub struct Messages<'a> {
 impl<'a> Messages<'a> {
     /// Reads the payload of a MOTION packet.
     pub fn new(payload: &'a [u8]) -> Self {
-        let mut reader = Reader::new(payload);
+        let mut reader = SymbolReader::new(payload);
         let base = reader.bits(FRAME_BITS, 0) as u16;
         let ahead = reader.bits(AHEAD_BITS, 0) as u8;
         Messages { reader, base, ahead, frame: base, channel: 0, ended: false }

@@ -42,16 +42,16 @@ pub trait Coder {
 
 /// Reads the fields of a payload.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reader<'a> {
+pub(crate) struct SymbolReader<'a> {
     bytes: &'a [u8],
     state: u32,
     /// Whether more was read than the payload has.
     past: bool,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> SymbolReader<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        let mut reader = Reader { bytes, state: 0, past: false };
+        let mut reader = SymbolReader { bytes, state: 0, past: false };
         for _ in 0..3 {
             reader.shift();
         }
@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-impl Coder for Reader<'_> {
+impl Coder for SymbolReader<'_> {
     fn symbol(&mut self, table: &Table, _: u32) -> u32 {
         let mut low = self.state & ((1 << SCALE_BITS) - 1);
         let mut symbol = 0;

@@ -25,16 +25,16 @@ pub(crate) enum Input<'a> {
 
 /// The board's end of the line.
 #[derive(Debug)]
-pub(crate) struct Line {
+pub(crate) struct MessageLine {
     receiver: Receiver<MAX_REQUEST>,
     state: State,
     /// Frames shown since the last byte.
     silent_frames: u16,
 }
 
-impl Line {
-    pub(crate) const fn new() -> Line {
-        Line { receiver: Receiver::new(), state: State::Keys, silent_frames: 0 }
+impl MessageLine {
+    pub(crate) const fn new() -> MessageLine {
+        MessageLine { receiver: Receiver::new(), state: State::Keys, silent_frames: 0 }
     }
 
     /// Takes one byte and returns the key or the packet that it completes.

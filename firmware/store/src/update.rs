@@ -3,7 +3,7 @@
 use crate::BLOCK_BYTES;
 use crate::header::ClipInfo;
 use crate::inactive_slot::InactiveSlot;
-use crate::line::{Input, Line};
+use crate::line::{Input, MessageLine};
 use crate::message::{IDLE_FRAMES, MAX_RESPONSE, MAX_STARTS, Refusal, Request, Response};
 use crate::slot::Slot;
 use crate::store::{Store, StoredClip};
@@ -12,7 +12,7 @@ use pantin_link::packet;
 /// Receives a clip while another plays.
 #[derive(Debug)]
 pub struct Update<'a, S> {
-    line: Line,
+    line: MessageLine,
     sequence: u8,
     transfer: Transfer<'a, S>,
 }
@@ -41,7 +41,7 @@ impl<'a, S: Slot> Update<'a, S> {
         let (stored, inactive) = store.open();
         let current = stored.map(|stored| stored.info);
         let transfer = Transfer { inactive, current, incoming: None, next: 0, complete: false, idle: 0, starts: 0 };
-        (stored, Update { line: Line::new(), sequence: 0, transfer })
+        (stored, Update { line: MessageLine::new(), sequence: 0, transfer })
     }
 
     /// Takes a byte from the line, and passes the answer to `send` if the byte completes a message. Returns the byte if it is a key and not part of a packet.

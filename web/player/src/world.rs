@@ -8,7 +8,7 @@ use crate::memory::Buffers;
 use crate::picture::Picture;
 use crate::source::Source;
 use pantin::Up;
-use pantin_figure::camera::Track;
+use pantin_figure::camera::CameraTarget;
 use pantin_figure::{Canvas, View};
 
 /// The whole state of a player.
@@ -142,7 +142,7 @@ impl World {
 
     pub fn aim(&mut self, width: u16, height: u16, orbit: i16, tilt: i16, how: u32) -> Result<(), Trouble> {
         self.canvas = Canvas { width: width.min(2047), height: height.clamp(1, 2047) };
-        let track = if how & 1 == 0 { Track::Follow } else { Track::Fixed };
+        let track = if how & 1 == 0 { CameraTarget::Follow } else { CameraTarget::Fixed };
         let up = (how >> 1).checked_sub(1).and_then(|axis| Up::new(axis as usize, false));
         self.view = Some(View { orbit, tilt, track, up });
         self.look()

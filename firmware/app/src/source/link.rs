@@ -19,7 +19,7 @@ use pantin_link::{ClipMismatch, Link, MAX_PACKET, QUEUE_PACKETS, fits};
 use pantin_link::{EventQueue, Head, LineEvent};
 
 /// What the packets of a line have.
-pub(crate) struct Line {
+pub(crate) struct LineSettings {
     pub parity: bool,
     #[cfg(feature = "key")]
     pub key: Key,
@@ -43,7 +43,7 @@ pub(crate) struct LinkSource<'m, 'p, 'c, 'b> {
 
 /// Opens a link and hands it to `then`. The buffers are here, so that only a program that plays a link has them on its stack.
 #[inline(never)]
-pub(crate) fn open<B: Board>(player: &mut Player, line: Line, then: impl FnOnce(&mut LinkSource) -> Outcome) -> Outcome {
+pub(crate) fn open<B: Board>(player: &mut Player, line: LineSettings, then: impl FnOnce(&mut LinkSource) -> Outcome) -> Outcome {
     let mut channels = B::Capacity::link_channels();
     let mut pose = B::Capacity::pose();
     let form = player.clip().form();

@@ -68,7 +68,7 @@ pub(crate) trait Source {
 }
 
 /// A line of text on the display. What is longer than the line is cut off.
-pub(crate) type Line = heapless::String<32>;
+pub(crate) type TextLine = heapless::String<32>;
 
 /// What the display reports of a source.
 pub(crate) enum Status {
@@ -76,7 +76,7 @@ pub(crate) enum Status {
     Clip { frame: u32, frames: u32 },
     /// A state machine: the state that plays.
     #[cfg(feature = "steer")]
-    State(Line),
+    State(TextLine),
     /// The serial line.
     #[cfg(feature = "link")]
     Link(LinkStatus),

@@ -1,6 +1,6 @@
 //! Poses of a state machine, which buttons and letters steer.
 
-use super::{Line, Source, Status};
+use super::{Source, Status, TextLine};
 use crate::board::Exit;
 use crate::keys::SteerKey;
 use crate::log::error;
@@ -115,7 +115,7 @@ impl Source for SteeredSource<'_, '_, '_> {
     }
 
     fn status(&self) -> Status {
-        let mut line = Line::new();
+        let mut line = TextLine::new();
         // What is longer than the line is cut off.
         let _ = self.character.table().state_name(self.character.state()).chars().try_for_each(|letter| line.push(letter));
         Status::State(line)

@@ -25,7 +25,7 @@ const CAPACITY: usize = 256;
 /// The time after which a PC counts as one that does not read.
 const MAX_WAIT_US: u32 = 50_000;
 
-struct Line {
+struct UsbLine {
     device: UsbDevice<'static, UsbBus>,
     port: usbd_serial::SerialPort<'static, UsbBus>,
     unsent: Deque<u8, CAPACITY>,
@@ -33,7 +33,7 @@ struct Line {
     is_stuck: bool,
 }
 
-static LINE: Mutex<RefCell<Option<Line>>> = Mutex::new(RefCell::new(None));
+static LINE: Mutex<RefCell<Option<UsbLine>>> = Mutex::new(RefCell::new(None));
 /// The receive buffer was full, and the interrupt is masked: the port would demand it without pause.
 static IS_FULL: AtomicBool = AtomicBool::new(false);
 
@@ -52,7 +52,7 @@ pub fn start<S: SerialPort>(other: S, clock: UsbClock, resets: &mut RESETS) -> B
         if let Ok(builder) = builder.strings(&[strings])
             && let Ok(builder) = builder.max_packet_size_0(64)
         {
-            let line = Line { device: builder.build(), port, unsent: Deque::new(), is_stuck: false };
+            let line = UsbLine { device: builder.build(), port, unsent: Deque::new(), is_stuck: false };
             critical_section::with(|section| LINE.borrow(section).replace(Some(line)));
             // Safety: no critical section relies on this interrupt's mask.
             unsafe { NVIC::unmask(Interrupt::USBCTRL_IRQ) };
@@ -78,14 +78,14 @@ fn micros() -> u32 {
 
 #[interrupt]
 fn USBCTRL_IRQ() {
-    with_line(Line::serve);
+    with_line(UsbLine::serve);
 }
 
-fn with_line<T>(use_line: impl FnOnce(&mut Line) -> T) -> Option<T> {
+fn with_line<T>(use_line: impl FnOnce(&mut UsbLine) -> T) -> Option<T> {
     critical_section::with(|section| LINE.borrow(section).try_borrow_mut().ok()?.as_mut().map(use_line))
 }
 
-impl Line {
+impl UsbLine {
     /// Answers the PC, and moves bytes from it and to it.
     fn serve(&mut self) {
         self.device.poll(&mut [&mut self.port]);

@@ -20,7 +20,7 @@ use anyhow::{Context, Result, bail, ensure};
 use pantin::Clip;
 use pantin::Up;
 use pantin_convert::expand::expand_within;
-use pantin_figure::{Track, View};
+use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 use pantin_pictures::face::cast::is_face;
 use pantin_pictures::machine::playback::{Room as SteeringRoom, has_machine};
@@ -154,7 +154,7 @@ fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Re
 
 impl Arguments {
     fn settings(&self) -> Settings {
-        let track = if self.fixed { Track::Fixed } else { Track::Follow };
+        let track = if self.fixed { CameraTarget::Fixed } else { CameraTarget::Follow };
         let variable = |name: &str| std::env::var(name).ok();
         let colours = self.colours.unwrap_or_else(|| Colours::of_environment(variable));
         let dots = match self.dots {

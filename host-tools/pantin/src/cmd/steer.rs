@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin_animator::Character;
 use pantin_animator::machine::Table;
 use pantin_animator::session::Replay;
-use pantin_figure::{Track, View};
+use pantin_figure::{CameraTarget, View};
 use pantin_images::animation::Animation;
 use pantin_images::apng::{self, Apng};
 use pantin_images::gif::{self, Gif};
@@ -157,7 +157,7 @@ impl<'a> Shown<'a> {
     }
 
     fn stage(&self) -> Result<Stage> {
-        let track = if self.arguments.fixed { Track::Fixed } else { Track::Follow };
+        let track = if self.arguments.fixed { CameraTarget::Fixed } else { CameraTarget::Follow };
         let view = View { orbit: self.arguments.orbit(), track, ..View::default() };
         Stage::new(self.bytes, self.arguments.size(), view, Some(&self.replay))
     }

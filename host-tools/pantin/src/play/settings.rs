@@ -3,7 +3,7 @@
 use super::cells::Dots;
 use super::colours::Colours;
 use super::keys::Action;
-use pantin_figure::{Track, View};
+use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 
 /// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
@@ -51,7 +51,8 @@ impl Settings {
                 self.view.orbit = self.view.next_orbit();
             }
             Action::Follow => {
-                self.view.track = if self.view.track == Track::Follow { Track::Fixed } else { Track::Follow };
+                self.view.track =
+                    if self.view.track == CameraTarget::Follow { CameraTarget::Fixed } else { CameraTarget::Follow };
             }
             Action::Ground => self.ground = !self.ground,
             Action::Dots => self.dots = Some(if self.dots(rows) == Dots::Half { Dots::Braille } else { Dots::Half }),
@@ -63,7 +64,7 @@ impl Settings {
 
     /// In a few words.
     pub fn view_words(&self) -> String {
-        let track = if self.view.track == Track::Follow { "follow" } else { "fixed" };
+        let track = if self.view.track == CameraTarget::Follow { "follow" } else { "fixed" };
         format!("orbit {} tilt {} {track}", self.view.orbit, self.view.tilt)
     }
 }

@@ -12,7 +12,7 @@ use pantin_convert::{encode, fk, import};
 use pantin_figure::camera::DISTANCE;
 use pantin_figure::kinematics::Kinematics;
 use pantin_figure::surface::OnTarget;
-use pantin_figure::{Canvas, Detail, DrawStyle, FigureRenderer, Skeleton, Track, View};
+use pantin_figure::{CameraTarget, Canvas, Detail, DrawStyle, FigureRenderer, Skeleton, View};
 use std::path::PathBuf;
 
 /// Room for any of the rigs.
@@ -248,7 +248,7 @@ fn euler_slots_that_hold_an_exponential_map_turn_as_one() {
 #[test]
 fn joints_appear_within_a_pixel_of_a_camera_in_real_numbers() {
     let case = Case::new(every_kind());
-    for (orbit, track) in [(0, Track::Follow), (-50, Track::Follow), (137, Track::Fixed)] {
+    for (orbit, track) in [(0, CameraTarget::Follow), (-50, CameraTarget::Follow), (137, CameraTarget::Fixed)] {
         let error = case.worst_pixel(View { orbit, track, ..View::default() }, 10);
         println!("orbit {orbit}, {track:?}: {error:.3} pixels");
         assert!(error < 1.0, "{error}");

@@ -8,7 +8,7 @@ use pantin_animator::machine::{LAYERS, Table, TableError};
 use pantin_animator::session::{Replay, Session};
 use pantin_animator::{Character, Error, Group, LayerMemory, Mask, Memory, Offset, Placement, first_clip, visit_poses};
 use pantin_convert::Remedy;
-use pantin_figure::{Canvas, Detail, FigureRenderer, JointInfo, RIG_JOINTS, Skeleton, Stand, Track, View};
+use pantin_figure::{CameraTarget, Canvas, Detail, FigureRenderer, JointInfo, RIG_JOINTS, Skeleton, Stand, View};
 use pantin_images::image::Image;
 use pantin_images::palette::Palette;
 use pantin_images::shades::Shades;
@@ -97,7 +97,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A camera for the clips of all states. With [`Track::Fixed`] it sees all that a session shows.
+    /// A camera for the clips of all states. With [`CameraTarget::Fixed`] it sees all that a session shows.
     pub fn new<'a>(bytes: &'a [u8], size: [usize; 2], view: View, session: Option<&Replay<'a>>) -> Result<Stage> {
         let factor = size[0].max(size[1]).div_ceil(crate::render::figure::MOST_PIXELS);
         let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
@@ -115,7 +115,7 @@ impl Stage {
         let mut renderer = Box::new(FigureRenderer::empty());
         *renderer.skeleton_mut() = skeleton;
         let mut failed = None;
-        match session.filter(|_| view.track == Track::Fixed) {
+        match session.filter(|_| view.track == CameraTarget::Fixed) {
             None => renderer.look_at(canvas, view, |visit| {
                 let Room { states, values, pose, .. } = &mut room;
                 let visited =

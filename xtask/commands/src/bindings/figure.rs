@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use harness::paths;
 use pantin::{Player, Pose};
-use pantin_figure::{Canvas, FigureRenderer, Track, View};
+use pantin_figure::{CameraTarget, Canvas, FigureRenderer, View};
 use tempfile::TempDir;
 
 use super::{files, host_program, output};
@@ -22,10 +22,10 @@ const CHAOS: u32 = 40;
 fn shots() -> [(Canvas, View); 4] {
     let shot = |width, height, orbit, tilt, track| (Canvas { width, height }, View { orbit, tilt, track, up: None });
     let mut shots = [
-        shot(128, 64, -50, 12, Track::Follow),
-        shot(128, 64, 0, 0, Track::Fixed),
-        shot(320, 240, -90, 35, Track::Follow),
-        shot(240, 240, 140, -20, Track::Fixed),
+        shot(128, 64, -50, 12, CameraTarget::Follow),
+        shot(128, 64, 0, 0, CameraTarget::Fixed),
+        shot(320, 240, -90, 35, CameraTarget::Follow),
+        shot(240, 240, 140, -20, CameraTarget::Fixed),
     ];
     shots[3].1.up = pantin::Up::new(2, true);
     shots

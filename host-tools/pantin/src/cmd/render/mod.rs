@@ -11,7 +11,7 @@ use output::{Kind, Output};
 use pantin::Up;
 use pantin_convert::expand::expand_within;
 use pantin_face::Model;
-use pantin_figure::{Track, View};
+use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 use pantin_pictures::face::cast::drives;
 use pantin_pictures::face::{Face, cartoon, compact};
@@ -310,7 +310,7 @@ impl Arguments {
     }
 
     fn views(&self, sides: &[Side], face: bool) -> Vec<View> {
-        let track = if self.fixed { Track::Fixed } else { Track::Follow };
+        let track = if self.fixed { CameraTarget::Fixed } else { CameraTarget::Follow };
         let tilt = self.tilt.unwrap_or(if face { 0 } else { View::default().tilt });
         sides.iter().map(|side| View { orbit: side.orbit, tilt, track, up: self.up }).collect()
     }
