@@ -59,7 +59,7 @@ pub fn run(arguments: &[String]) -> Result<()> {
 struct Plan {
     groups: Vec<Group>,
     host_only: bool,
-    /// Boards and other images of the groups.
+    /// Boards and other images of the groups. Their lints, which build for the target once more, are in the group of boards.
     boards: Vec<Package>,
     /// The firmware's libraries.
     libraries: Vec<Package>,
@@ -69,7 +69,7 @@ impl Plan {
     fn new(groups: Vec<Group>, host_only: bool) -> Result<Plan> {
         let (boards, libraries): (Vec<_>, Vec<_>) =
             packages::firmware()?.into_iter().partition(|package| !package.targets.is_empty());
-        let wanted = |board: &Package| groups.contains(if board.daily { &Group::Daily } else { &Group::Boards });
+        let wanted = |board: &Package| groups.contains(&Group::Boards) || board.daily && groups.contains(&Group::Daily);
         let boards = boards.into_iter().filter(wanted).collect();
         Ok(Plan { groups, host_only, boards, libraries })
     }
@@ -111,10 +111,10 @@ impl Plan {
 
     /// What runs beside the tests on the host: it mostly waits for one thread.
     fn firmware(&self, steps: &Steps) {
-        if self.has(Group::Daily) {
+        if self.has(Group::Boards) {
             lints::libraries(steps, &self.libraries);
+            lints::boards(steps, &self.boards);
         }
-        lints::boards(steps, &self.boards);
         if self.has(Group::Web) {
             match packages::web() {
                 Ok(modules) => lints::web(steps, &modules),
@@ -172,6 +172,10 @@ impl Plan {
     /// A test program as cargo would run it.
     fn command(&self, program: &TestProgram, built: &Built) -> Command {
         let mut command = Command::new(&program.file);
+        // Tests of the host tool wait for terminals and lines about as long as they work.
+        if program.package == "pantin-tools" {
+            command.arg("--test-threads=4");
+        }
         command.current_dir(&program.folder).envs(built.host_tool.iter().map(|tool| (HOST_TOOL, tool)));
         if self.host_only {
             command.env(setup::HOST_ONLY, "1");
