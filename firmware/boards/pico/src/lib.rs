@@ -8,6 +8,7 @@ pub mod flash;
 #[cfg(not(feature = "spi"))]
 mod i2c;
 mod panic;
+mod refusal;
 #[cfg(feature = "spi")]
 mod spi_display;
 #[cfg(feature = "buffered")]
@@ -15,7 +16,7 @@ mod uart_rx;
 #[cfg(feature = "usb")]
 mod usb;
 
-pub use panic::refuse;
+pub use refusal::refuse;
 use rp2040_hal as rp_hal;
 
 /// The clock of the processor and the peripherals.
