@@ -182,12 +182,18 @@ impl Listener {
 /// Frames that the board goes on by after each packet: `pantin stream` fills a line of 38,400 baud.
 const FRAMES_A_PACKET: usize = 3;
 
+/// Frames in which the board answers who has its address: it looks for the question whenever it waits for a letter.
+const FRAMES_TO_ANSWER: usize = 10;
+
 /// Passes on to the board's network what `pantin stream` sends by UDP; what the board then logs.
 fn by_ethernet(features: &str, words: &[&str], options: &[&str]) -> String {
     // The port is free again when QEMU listens there.
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let mut board = Listener::start(features, words, Some(port));
     let [socket, out] = [(); 2].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
+    // QEMU asks for the board's address at the first datagram, which may be lost meanwhile: a zero means nothing to the board.
+    out.send_to(&[0], ("127.0.0.1", port)).unwrap();
+    (0..FRAMES_TO_ANSWER).for_each(|_| drop(board.session.hear(&[]).unwrap()));
     let mut stream = Command::new(build::host_tool().unwrap());
     let to = format!("udp:{}@38400", socket.local_addr().unwrap());
     stream.args(["stream", "--ahead", "1", "--to", &to]).args(options).arg(&CLIP.1);
@@ -221,9 +227,17 @@ fn pantin_stream_plays_on_a_board_by_its_serial_line() {
     let words = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && words.contains("packets") && words.contains("refresh"), "{words}");
     let mut board = Listener::start("face,link", &[], None);
-    for bytes in bytes.chunks(BYTES_A_FRAME) {
-        board.session.hear(bytes).unwrap();
+    // A frame at a time, but no packet in two: the letter between them would end it.
+    let (mut waiting, mut sent, mut frames) = (Vec::new(), 0, 0);
+    for packet in bytes.split_inclusive(|&byte| byte == 0) {
+        waiting.extend_from_slice(packet);
+        sent += packet.len();
+        while sent > (frames + 1) * BYTES_A_FRAME {
+            board.session.hear(&std::mem::take(&mut waiting)).unwrap();
+            frames += 1;
+        }
     }
+    board.session.hear(&waiting).unwrap();
     is_whole(&board.end());
 }
 
