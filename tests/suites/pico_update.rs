@@ -69,7 +69,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
     let own = |name: &str| paths::root().join("motions").join(name);
     let new = match paths::data() {
         Some(data) => clips::convert(&data.join("bvh_bandai1_kick.bvh"), folder.path()).unwrap(),
-        None => own("greet.ptn"),
+        None => clips::convert(&own("library/dance.keys"), folder.path()).unwrap(),
     };
     let firmware = Firmware::featuring("update", "pico", "pico", rp2040::TARGET, &[&own("run.ptn")]).unwrap();
     let image = folder.path().join("pico.uf2");

@@ -399,7 +399,7 @@ fn one_connection_after_another_takes_a_transfer_up() {
     let mut qemu = bench.launch().serial().start().unwrap();
     let board = qemu.serial().unwrap();
     board.set_read_timeout(Some(Duration::from_millis(20))).unwrap();
-    let mut line = Breaking { line: board, left: 1000 };
+    let mut line = Breaking { line: board, left: 1000.min(bench.new.bytes.len() * 3 / 4) };
     let patience = RetryPolicy { answer: Duration::from_millis(300), tries: 2 };
     let mut told = vec![];
     let first = update::send(&mut line, &bench.new.bytes, &bench.new.info, patience, &mut |bytes| told.push(bytes));

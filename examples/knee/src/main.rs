@@ -1,13 +1,10 @@
 //! Prints the left knee's Euler angles at every frame, in hundredths of a degree: `cargo run --release` in `examples/knee`.
-//! For servos convert with `--max-joint-error 1`, which bounds each joint's angle.
+//! They are limited to the 90 degrees to either side that a servo reaches; `--max-joint-error 1` bounds each joint's angle in a conversion.
 #![no_std]
 #![no_main]
 use cortex_m_semihosting::{debug, hprintln};
 use panic_semihosting as _;
 use pantin::{Clip, EulerOrder, Room};
-
-/// What a servo reaches, in hundredths of a degree to either side: angles beyond it are limited.
-const REACH: i32 = 9_000;
 
 static CLIP: &[u8] = include_bytes!("../../../motions/kneebend.ptn");
 
@@ -25,7 +22,7 @@ fn print_angles(joint: &str) -> Result<(), &str> {
     let mut player = room.player(clip).map_err(|_| "the clip has too many channels")?;
     for frame in 0..clip.frames() {
         let turn = player.turn(&knee).map_err(|_| "the joint is of another rig")?;
-        let [z, y, x] = turn.euler(EulerOrder::ZYX).map(|angle| angle.centidegrees().clamp(-REACH, REACH));
+        let [z, y, x] = turn.euler(EulerOrder::ZYX).map(|angle| angle.centidegrees().clamp(-9_000, 9_000));
         hprintln!("{}: {} {} {}", frame, z, y, x);
         player.step();
     }
