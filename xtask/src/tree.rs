@@ -48,13 +48,13 @@ const LARGE: [&str; 2] = ["fuzz/", "docs/pictures/"];
 /// clips that the tests of a published package need.
 const TWICE: [&str; 5] = ["LICENSE-", "memory.x", "fuzz/", "tests/vectors/", "decoder/tests/"];
 
-/// The files of the repository from its root; `None` where this is no checkout of git.
+/// The files that git keeps, from the root; `None` where this is no checkout of git.
 pub fn files() -> Result<Option<Vec<String>>> {
     if !paths::root().join(".git").exists() {
         return Ok(None);
     }
     let mut git = Command::new("git");
-    git.args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]).current_dir(paths::root());
+    git.args(["ls-files", "-z"]).current_dir(paths::root());
     let output = git.output().context("cannot start git")?;
     ensure!(output.status.success(), "git ls-files: {}", String::from_utf8_lossy(&output.stderr).trim());
     let listed = String::from_utf8(output.stdout).context("a name that is not UTF-8")?;
