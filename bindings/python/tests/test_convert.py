@@ -102,6 +102,8 @@ def test_an_exception_of_the_callback_ends_the_conversion(bvh):
 
 
 def test_ctrl_c_ends_a_conversion(bvh):
+    # A shell starts programs in the background with the signal ignored, and Python leaves it so.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
     timer.start()
     with pytest.raises(KeyboardInterrupt):
