@@ -3,11 +3,11 @@
 //! An arrow points from a crate to one that it needs to run; what tests and build scripts need makes none.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::process::Command;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use serde_json::Value;
 
+use crate::packages::listed;
 use crate::paths;
 
 /// Workspaces whose crates are drawn; boards, examples and fuzz targets are programs on top.
@@ -44,7 +44,7 @@ pub struct Crate {
 pub fn all() -> Result<Vec<Crate>> {
     let mut found = BTreeMap::new();
     for workspace in WORKSPACES {
-        for package in packages(workspace)? {
+        for package in listed(&paths::root().join(workspace))? {
             let made = read(&package)?;
             found.insert(made.folder.clone(), made);
         }
@@ -100,15 +100,6 @@ pub fn circles(crates: &[Crate]) -> Vec<String> {
         false
     };
     crates.iter().filter(|one| reaches_itself(&one.folder)).map(|one| one.folder.clone()).collect()
-}
-
-fn packages(workspace: &str) -> Result<Vec<Value>> {
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
-    cargo.args(["metadata", "--no-deps", "--format-version=1"]).current_dir(paths::root().join(workspace));
-    let output = cargo.output().context("cannot start cargo")?;
-    ensure!(output.status.success(), "cargo metadata: {}", String::from_utf8_lossy(&output.stderr).trim());
-    let metadata: Value = serde_json::from_slice(&output.stdout).context("cargo metadata")?;
-    metadata["packages"].as_array().cloned().context("cargo metadata names no packages")
 }
 
 fn read(package: &Value) -> Result<Crate> {

@@ -72,7 +72,8 @@ fn of(workspace: &Path) -> Result<Vec<Package>> {
     Ok(listed(workspace)?.iter().map(package).collect())
 }
 
-fn listed(workspace: &Path) -> Result<Vec<Value>> {
+/// What cargo says of the packages of a workspace.
+pub(crate) fn listed(workspace: &Path) -> Result<Vec<Value>> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
     let output = cargo.args(["metadata", "--no-deps", "--format-version=1"]).current_dir(workspace).output();
     let output = output.context("cannot start cargo")?;

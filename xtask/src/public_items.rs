@@ -89,7 +89,7 @@ fn of_crate(folder: &Path, name: &str) -> Result<Vec<String>> {
     Ok(items)
 }
 
-/// The names of an item's own items on its page: what comes from traits stands behind them.
+/// The names of an item's own items on its page. Items that come from traits follow them there, and are left out.
 fn own(page: &str) -> impl Iterator<Item = &str> {
     let end =
         page.find("id=\"trait-implementations\"").or_else(|| page.find("id=\"synthetic-implementations\"")).unwrap_or(page.len());

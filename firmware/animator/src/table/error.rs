@@ -56,7 +56,9 @@ impl core::fmt::Display for TableError {
             TableError::NoSuchState(state) => write!(f, "there is no state {state}"),
             TableError::NoSuchInput(input) => write!(f, "there is no parameter or input {input}"),
             TableError::NoSuchTransition { state } => write!(f, "the transitions of state {state} are not in the table"),
-            TableError::BadValue => f.write_str("the table has a speed, a range, a kind or a cause that is none"),
+            TableError::BadValue => {
+                f.write_str("a speed, range, kind or cause of the table has a value that the format does not define")
+            }
             TableError::Ambiguous { state } => write!(f, "state {state} has two transitions with the same cause"),
             TableError::Unreachable(state) => write!(f, "no transition leads to state {state}"),
         }

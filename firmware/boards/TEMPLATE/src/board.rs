@@ -17,7 +17,7 @@ pub const CPU_HZ: u32 = 16_000_000;
 pub fn new() -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> + PanicBoard<Mono128x64> {
     // First of all, a watchdog that resets the board after 2 s: without it, `report_bus` would wait for ever for a bus that is held low.
     let feed_watchdog = || {};
-    // Any `embedded_hal::i2c::I2c` of at most 400 kHz whose `transaction` is no `todo!()`. Enable the pull-ups of both pins, if there are any.
+    // Any `embedded_hal::i2c::I2c` of at most 400 kHz whose `transaction` is implemented. Enable the pull-ups of both pins, if there are any.
     let mut i2c = placeholder::Bus;
     // 115,200 baud: any port of `embedded_hal_nb::serial` whose `write` returns `WouldBlock` in `NbSerial`, or two functions in `FnSerial`,
     // as for a port with the traits of `embedded-io`.

@@ -25,7 +25,8 @@ pub(super) struct Report<'c> {
 }
 
 impl<'c> Report<'c> {
-    /// Collects it for a clip in a file of so many bytes, compared with the motion file `against`. Fails if that is of another figure.
+    /// Collects the report of a clip whose file has `file_bytes` bytes, and compares the clip with the motion file `against`. Fails if the
+    /// motion is of another figure.
     pub fn of(clip: &'c Clip<'c>, file_bytes: usize, against: Option<&Path>) -> Result<Report<'c>> {
         let memory = MemoryNeeds::of(clip)?;
         let segments = SegmentCount::of(clip)?;
