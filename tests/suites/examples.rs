@@ -46,6 +46,11 @@ fn copied(folder: &Path, example: &str, words: &[(&str, &str)]) -> PathBuf {
     to
 }
 
+/// An angle in degrees as the program prints it: from half a turn back to half a turn ahead, limited to what a servo reaches.
+fn limited(angle: f64) -> f64 {
+    ((angle + 180.0).rem_euclid(360.0) - 180.0).clamp(-90.0, 90.0)
+}
+
 /// Compares printed angles of a joint with those of the decoded clip in double precision, to 0.1 degree.
 fn compare(printed: &str, clip: &Path, joint: &str) {
     let bytes = std::fs::read(clip).unwrap();
@@ -64,8 +69,8 @@ fn compare(printed: &str, clip: &Path, joint: &str) {
         assert_eq!(number.parse::<usize>().unwrap(), frame);
         let angles: Vec<f64> = angles.split(' ').map(|word| word.parse::<f64>().unwrap() / 100.0).collect();
         for (channel, got) in channels.iter().zip(&angles) {
-            let off = (got - truth.values[first + channel][frame]).rem_euclid(360.0);
-            assert!(off.min(360.0 - off) < 0.1, "frame {frame}: {angles:?}, off by {off} degrees");
+            let off = (got - limited(truth.values[first + channel][frame])).abs();
+            assert!(off < 0.1, "frame {frame}: {angles:?}, off by {off} degrees");
         }
         widest = [widest[0].min(angles[2]), widest[1].max(angles[2])];
         frames += 1;
