@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use crate::{paths, tree};
+use crate::{paths, repository_files};
 
 /// Folders of the root whose files pages name by path.
 const FOLDERS: [&str; 13] = [
@@ -34,7 +34,7 @@ pub struct Page {
 
 /// All pages of the repository but those of fuzzing's seeds; `None` where this is no checkout of git.
 pub fn all() -> Result<Option<Vec<Page>>> {
-    let Some(files) = tree::files()? else { return Ok(None) };
+    let Some(files) = repository_files::files()? else { return Ok(None) };
     let pages = files.into_iter().filter(|path| path.ends_with(".md") && !path.starts_with("fuzz/"));
     let read = |path: String| {
         let text = std::fs::read_to_string(paths::root().join(&path)).with_context(|| path.clone())?;

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 
 use crate::functions::{self, Function};
-use crate::{crates, paths, tree};
+use crate::{crates, paths, repository_files};
 
 /// Equal lines of code that make a repetition.
 pub const LINES: usize = 6;
@@ -57,7 +57,7 @@ pub fn print() -> Result<()> {
         println!("import circles in {folder}: {}", if found.is_empty() { "none".into() } else { found.len().to_string() });
         found.iter().for_each(|circle| println!("  {}", circle.join(", ")));
     }
-    if let Some(files) = tree::files()? {
+    if let Some(files) = repository_files::files()? {
         print_long(&functions::long(&files)?);
     }
     Ok(())

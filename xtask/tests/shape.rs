@@ -2,7 +2,7 @@
 //! long, and no file is large, forgotten or there twice. `cargo xtask shape` lists what breaks these rules.
 
 use xtask::shape::{self, LINES};
-use xtask::{crates, functions, paths, tree};
+use xtask::{crates, functions, paths, repository_files};
 
 /// What stands around the crates' graph in ARCHITECTURE.md.
 const GRAPH: [&str; 2] = ["<!-- crates begin: written by xtask/tests/shape.rs -->\n```text\n", "```\n<!-- crates end -->\n"];
@@ -64,15 +64,19 @@ fn the_pages_name_every_crate_and_every_board() {
 
 #[test]
 fn the_tree_holds_what_it_should() {
-    let Some(files) = tree::files().unwrap() else { return eprintln!("SKIPPED: no checkout of git") };
-    assert_eq!(tree::strangers(&files), Vec::<&str>::new(), "entries of the root that xtask/src/tree.rs does not list");
-    assert_eq!(tree::large(&files).unwrap(), [], "files of more than {} bytes", tree::MOST_BYTES);
-    assert_eq!(tree::twice(&files).unwrap(), Vec::<Vec<&str>>::new(), "files of equal bytes");
+    let Some(files) = repository_files::files().unwrap() else { return eprintln!("SKIPPED: no checkout of git") };
+    assert_eq!(
+        repository_files::strangers(&files),
+        Vec::<&str>::new(),
+        "entries of the root that xtask/src/repository_files.rs does not list"
+    );
+    assert_eq!(repository_files::large(&files).unwrap(), [], "files of more than {} bytes", repository_files::MOST_BYTES);
+    assert_eq!(repository_files::twice(&files).unwrap(), Vec::<Vec<&str>>::new(), "files of equal bytes");
 }
 
 #[test]
 fn no_function_is_long() {
-    let Some(files) = tree::files().unwrap() else { return eprintln!("SKIPPED: no checkout of git") };
+    let Some(files) = repository_files::files().unwrap() else { return eprintln!("SKIPPED: no checkout of git") };
     let found = functions::long(&files).unwrap();
     assert!(found.is_empty(), "functions of more than {} lines: {found:#?}", functions::MOST_LINES);
 }

@@ -84,6 +84,7 @@ fn link(top: &mut TextLine, bottom: &mut TextLine, name: &str, status: &crate::s
         Some(pantin_link::ClipMismatch::Rig) => "another rig",
         Some(pantin_link::ClipMismatch::Form) => "another coding",
         Some(pantin_link::ClipMismatch::Channels) => "too many channels",
+        Some(_) => "another clip",
         None => name,
     });
     let lost = status.counts.missing.wrapping_add(status.damaged);

@@ -45,6 +45,7 @@ impl Canvas {
 
 /// What the camera looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CameraTarget {
     /// The hips, wherever they go; vertically it stands still as long as the clip stays within twice the figure.
     Follow,

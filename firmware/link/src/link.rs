@@ -102,6 +102,7 @@ const FORGET_FRAMES: u32 = 256;
 /// The reason why this receiver cannot play a clip.
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ClipMismatch {
     /// The clip has another rig.
     Rig,

@@ -75,7 +75,7 @@ fn errors_say_what_where_and_what_to_do() {
         (clip(&nod).name("nod"), "\"nod\" is no name of a constant", "give `name` a name such as WALK"),
         (
             clip(&nod).recipe(recipe(Options::new().max_error(Length::cm(-1.0)))),
-            "largest error: expected a number above 0",
+            "largest error: expected a length above 0, at most 10 km",
             "largest error",
         ),
         (

@@ -4,7 +4,7 @@ use crate::import::units::figure_height_cm;
 use crate::motion::Motion;
 use anyhow::{Context, Result};
 
-/// A distance of joints: a length, or a part of the figure's height. Above 0.
+/// A distance of joints: a length, or a part of the figure's height. Above 0 and at most [`Length::GREATEST`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Length {
     /// Centimetres.
@@ -24,10 +24,13 @@ impl Length {
         Length::Percent(percent)
     }
 
-    /// Whether it is finite and above 0.
+    /// The greatest number of centimetres (10 km), or of percent: far from where double precision loses a figure.
+    pub const GREATEST: f64 = 1e6;
+
+    /// Whether it is above 0 and at most [`Length::GREATEST`].
     pub fn is_valid(self) -> bool {
         let (Length::Cm(number) | Length::Percent(number)) = self;
-        number.is_finite() && number > 0.0
+        number > 0.0 && number <= Length::GREATEST
     }
 
     /// The length in cm for `motion`; 1 for percent of a motion without joints, which bounds nothing.
@@ -56,8 +59,11 @@ impl std::str::FromStr for Length {
             .unwrap_or((text, 1.0));
         let number = number.trim().parse::<f64>().ok();
         let length = number.map(|number| if factor == 0.0 { Length::Percent(number) } else { Length::Cm(number * factor) });
-        let expected = || "expected a length above 0, like 0.5cm, or a part of the figure's height, like 0.5%".into();
-        length.filter(|length| length.is_valid()).ok_or_else(expected)
+        let length = length.filter(|length| length.is_valid());
+        length.ok_or_else(|| match number {
+            Some(number) if number > 0.0 => "expected at most 10 km, or 1000000 % of the figure's height".into(),
+            _ => "expected a length above 0, like 0.5cm, or a part of the figure's height, like 0.5%".into(),
+        })
     }
 }
 
@@ -71,5 +77,9 @@ mod tests {
         use Length::*;
         assert_eq!(read, [Cm(2.0), Cm(2.0), Cm(0.2), Cm(5.08), Cm(200.0), Percent(2.0), Percent(0.5)]);
         assert!(["", "0", "-1cm", "nan%", "2 miles"].iter().all(|text| text.parse::<Length>().is_err()));
+        for text in ["1e300cm", "inf", "10001m", "1000001%"] {
+            assert!(text.parse::<Length>().unwrap_err().starts_with("expected at most 10 km"), "{text}");
+        }
+        assert_eq!("10000m".parse(), Ok(Cm(Length::GREATEST)));
     }
 }

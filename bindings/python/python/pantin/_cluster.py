@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import importlib
+import inspect
 import json
 import os
 import posixpath
@@ -56,7 +57,7 @@ def ray_convert(
     `node` (Ray's id of the node) and `refused` (why there is no clip, or null).
 
     source, target: folders or URLs that fsspec opens, such as s3://bucket/captures. Every node of the cluster must reach them.
-    max_error_cm, options: as in `pantin.convert`, but those that name a file or a part of one: animation, skeleton, joint_map, with_file, rig_apart.
+    max_error_cm, options: as in `pantin.convert`, but jobs and those that name a file or a part of one: animation, skeleton, joint_map, with_file, rig_apart.
     report: the Parquet file of the report; default: report.parquet in `target`.
     storage_options: what fsspec needs to open both folders, such as the key, the secret and the endpoint_url of an object store.
     max_retries: how often Ray repeats a task whose worker died, or whose storage failed.
@@ -67,9 +68,11 @@ def ray_convert(
     ray, pyarrow, parquet = _needed("ray"), _needed("pyarrow"), _needed("pyarrow.parquet")
     url_to_fs = _needed("fsspec").core.url_to_fs
     storage = dict(storage_options or {})
-    refuse(options, NOT_HERE, "is no option for many motions")
+    refuse(options, (*NOT_HERE, "jobs"), "is no option for many motions")
     options["max_error_cm"] = max_error_cm
-    given = settings(**options)
+    arguments = inspect.signature(convert).bind(source, **options)
+    arguments.apply_defaults()
+    given = settings(arguments.arguments)
     _pantin.check_options(given)
     # Those of `convert` as they were read: an iterable may be read once. What is not set is left out, and so in the records.
     options = {name: value for name, value in given.items() if name not in NOT_HERE and value is not None}

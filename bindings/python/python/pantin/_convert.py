@@ -117,7 +117,7 @@ def convert(
     does not fit), SourceError (the motion is damaged or of an unknown format), ReadError (a file that the motion names), MemoryLimitError and BoundError.
     """
     arguments = dict(locals())
-    given = settings(**{name: value for name, value in arguments.items() if name not in ("motion", "jobs", "progress")})
+    given = settings(arguments)
     threads = 0 if jobs is None else max(1, int(jobs))
     path = None if isinstance(motion, Motion) else os.fspath(motion)
     if path is None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
-
-from ._files import StrPath
+from typing import Any, Callable, Dict, Iterable, Mapping, Sequence, Union
 
 Moment = Union[int, str]
 """A frame's number from 0, or seconds as in '1.5s'."""
@@ -17,88 +15,48 @@ ONLY_FILES = ("cm_per_unit", "up", "animation", "skeleton")
 """Arguments that say how a file is read."""
 
 
-def settings(
-    max_error_cm: Optional[float] = None,
-    *,
-    max_error_percent: Optional[float] = None,
-    mean_error_cm: Optional[float] = None,
-    mean_error_percent: Optional[float] = None,
-    max_scalar_error: Optional[float] = None,
-    max_rotation_error: Optional[float] = None,
-    max_joint_error: Optional[float] = None,
-    shell_cm: Optional[float] = None,
-    shell_percent: Optional[float] = None,
-    places_only: bool = False,
-    max_channel_error: Optional[float] = None,
-    max_accel_error: Optional[float] = None,
-    exact: bool = False,
-    effort: str = "default",
-    rotations: str = "by-cost",
-    index: Optional[float] = None,
-    rig_apart: bool = False,
-    loop: bool = False,
-    footsteps: bool = False,
-    memory: Union[int, str, None] = None,
-    source_rate: Optional[float] = None,
-    fps: Optional[float] = None,
-    events: Iterable[Tuple[Moment, str]] = (),
-    first: Optional[Moment] = None,
-    last: Optional[Moment] = None,
-    joints: Union[str, Iterable[str]] = (),
-    drop: Union[str, Iterable[str]] = (),
-    mirror: bool = False,
-    retarget: Optional[str] = None,
-    joint_map: Optional[StrPath] = None,
-    with_file: Optional[StrPath] = None,
-    close_loop: bool = False,
-    cm_per_unit: Optional[float] = None,
-    up: Optional[str] = None,
-    animation: Union[str, int, None] = None,
-    skeleton: Optional[StrPath] = None,
-) -> Dict[str, Any]:
-    """The arguments as the native half takes them; `pantin.convert` documents them."""
-    numbers = {
-        "max_error_cm": max_error_cm,
-        "max_error_percent": max_error_percent,
-        "mean_error_cm": mean_error_cm,
-        "mean_error_percent": mean_error_percent,
-        "max_scalar_error": max_scalar_error,
-        "max_rotation_error": max_rotation_error,
-        "max_joint_error": max_joint_error,
-        "shell_cm": shell_cm,
-        "shell_percent": shell_percent,
-        "max_channel_error": max_channel_error,
-        "max_accel_error": max_accel_error,
-        "index": index,
-        "source_rate": source_rate,
-        "fps": fps,
-        "cm_per_unit": cm_per_unit,
-    }
-    flags = {
-        "places_only": places_only,
-        "exact": exact,
-        "rig_apart": rig_apart,
-        "loop": loop,
-        "footsteps": footsteps,
-        "mirror": mirror,
-        "close_loop": close_loop,
-    }
-    paths = {"joint_map": joint_map, "with_file": with_file, "skeleton": skeleton}
+NUMBERS = (
+    "max_error_cm",
+    "max_error_percent",
+    "mean_error_cm",
+    "mean_error_percent",
+    "max_scalar_error",
+    "max_rotation_error",
+    "max_joint_error",
+    "shell_cm",
+    "shell_percent",
+    "max_channel_error",
+    "max_accel_error",
+    "index",
+    "source_rate",
+    "fps",
+    "cm_per_unit",
+)
+"""Arguments that are numbers, or None."""
+
+FLAGS = ("places_only", "exact", "rig_apart", "loop", "footsteps", "mirror", "close_loop")
+"""Arguments that are true or false."""
+
+WORDS = ("effort", "rotations", "retarget", "up")
+"""Arguments that are passed on as they are."""
+
+
+def settings(arguments: Mapping[str, Any]) -> Dict[str, Any]:
+    """The arguments of `pantin.convert` but for motion, jobs and progress, as the native half takes them."""
+
+    def given(names: Sequence[str], kind: Callable[[Any], Any]) -> Dict[str, Any]:
+        return {name: None if arguments[name] is None else kind(arguments[name]) for name in names}
+
     return {
-        **{name: None if value is None else float(value) for name, value in numbers.items()},
-        **{name: bool(value) for name, value in flags.items()},
-        **{name: None if value is None else os.fspath(value) for name, value in paths.items()},
-        "effort": effort,
-        "rotations": rotations,
-        "memory": None if memory is None else str(memory),
-        "events": [(_moment("events", at), str(name)) for at, name in events],
-        "first": None if first is None else _moment("first", first),
-        "last": None if last is None else _moment("last", last),
-        "joints": _globs(joints),
-        "drop": _globs(drop),
-        "retarget": retarget,
-        "up": up,
-        "animation": None if animation is None else str(animation),
+        **given(NUMBERS, float),
+        **given(FLAGS, bool),
+        **given(FILES, os.fspath),
+        **given(("memory", "animation"), str),
+        **{name: arguments[name] for name in WORDS},
+        **{name: None if arguments[name] is None else _moment(name, arguments[name]) for name in ("first", "last")},
+        "events": [(_moment("events", at), str(name)) for at, name in arguments["events"]],
+        "joints": _globs(arguments["joints"]),
+        "drop": _globs(arguments["drop"]),
     }
 
 

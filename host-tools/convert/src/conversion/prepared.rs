@@ -18,6 +18,7 @@ use crate::fit::descent::Level;
 use crate::fit::rotation_coding::{Coding, Rotations, has_choice, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import::up;
+use crate::length::Length;
 use crate::motion::{Motion, Up};
 use crate::note::{Note, NoteKind};
 use crate::number::Number;
@@ -108,7 +109,6 @@ impl Options {
 
 /// Refuses numbers that no setting takes.
 fn check_settings(options: &Options) -> Result<()> {
-    let length = |length: Option<crate::length::Length>| length.is_none_or(crate::length::Length::is_valid);
     let number = |number: Option<f64>| number.is_none_or(|number| number.is_finite() && number > 0.0);
     for (setting, degrees) in
         [(Setting::MaxRotationError, options.max_rotation_error), (Setting::MaxJointError, options.max_joint_error)]
@@ -123,15 +123,14 @@ fn check_settings(options: &Options) -> Result<()> {
         Some(ChannelBound::Acceleration(bound)) => (Setting::MaxAccelError, number(Some(bound))),
         _ => (Setting::Exact, true),
     };
-    let settings = [
-        (Setting::MaxError, length(options.max_error)),
-        (Setting::MeanError, length(options.mean_error)),
-        (Setting::MaxScalarError, number(options.max_scalar_error)),
-        (Setting::Shell, length(options.shell)),
-        channels,
-    ];
-    for (setting, valid) in settings {
+    for (setting, valid) in [(Setting::MaxScalarError, number(options.max_scalar_error)), channels] {
         require!(valid, Error::setting(setting, "expected a number above 0"));
+    }
+    let lengths =
+        [(Setting::MaxError, options.max_error), (Setting::MeanError, options.mean_error), (Setting::Shell, options.shell)];
+    for (setting, length) in lengths {
+        let wrong = || Error::setting(setting, "expected a length above 0, at most 10 km or 1000000 % of the figure's height");
+        require!(length.is_none_or(Length::is_valid), wrong());
     }
     let drifts = matches!(options.channels, Some(ChannelBound::Exact | ChannelBound::Acceleration(_)));
     require!(!(drifts && options.looped), Error::setting(Setting::Loop, "closing a seam needs a bound of positions"));
