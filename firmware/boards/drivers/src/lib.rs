@@ -2,7 +2,6 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
-pub mod color_panel;
 mod display;
 mod heartbeat;
 pub mod indexed;
@@ -11,9 +10,10 @@ pub mod nrf52;
 pub mod scan;
 pub mod servo;
 pub mod ssd1306;
+pub mod st7789;
 
-pub use color_panel::ColorPanel;
 pub use display::Display;
 pub use heartbeat::Heartbeat;
 pub use servo::Servo;
 pub use ssd1306::{Mono128x64, Ssd1306};
+pub use st7789::ColorPanel;

@@ -2,7 +2,7 @@
 #![no_std]
 #![no_main]
 
-include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/chip.rs"));
+include!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/pins.rs"));
 
 mod board;
 mod panic;

@@ -4,7 +4,7 @@ use pantin_face::shape::Interpolation;
 use pantin_pictures::face::compare::{jaw, under};
 use pantin_pictures::face::head::{Vector, dot, minus, plus};
 use pantin_pictures::face::subject::{Subject, cosine_law};
-use pantin_pictures::face::{Face, compare, exact, paper, pose};
+use pantin_pictures::face::{Face, action_units, compare, exact, pose};
 
 fn face() -> Face {
     Face::new().unwrap()
@@ -81,7 +81,7 @@ fn opening_brings_the_lower_lip_onto_the_line_from_the_jaws_axis_to_the_chin() {
     let chin = minus(face.head.at("2.1"), axis);
     let between = (dot(lip, chin) / (dot(lip, lip) * dot(chin, chin)).sqrt()).acos().to_degrees();
     assert!(between < 1e-5, "{between} degrees beside the line");
-    assert!(paper::opening_angle(&Subject::of_head(&face.head)) > 20.0);
+    assert!(action_units::opening_angle(&Subject::of_head(&face.head)) > 20.0);
 }
 
 #[test]
@@ -165,13 +165,13 @@ fn puffed_cheeks_are_a_fifth_farther_apart_fall_off_by_the_cosine_law_and_take_n
     let (left, right) = (face.head.find("5.1").unwrap(), face.head.find("5.2").unwrap());
     let growth = distance(places[left], places[right]) / distance(face.head.at("5.1"), face.head.at("5.2"));
     assert!((growth - 1.2).abs() < 1e-9, "{growth}");
-    let reach = paper::puff_reach(&subject);
+    let reach = action_units::puff_reach(&subject);
     let centre = plus(face.head.at("5.1"), minus(face.head.at("5.2"), face.head.at("5.1")), 0.5);
     let puffed = posed(&face, "puff_cheeks_left");
     let mut seen = 0;
     for index in (0..face.head.points.len()).filter(|&index| face.head.points[index][0] > 0.0) {
         let place = face.head.points[index];
-        let cheek = paper::is_cheek(&subject, index);
+        let cheek = action_units::is_cheek(&subject, index);
         let part = if cheek { cosine_law(distance(place, face.head.at("5.1")), reach) } else { 0.0 };
         let growth = distance(puffed[index], centre) / distance(place, centre) - 1.0;
         assert!((growth - 0.2 * part).abs() < 1e-9, "{}: {growth}, not {}", face.head.label(index), 0.2 * part);
@@ -179,7 +179,7 @@ fn puffed_cheeks_are_a_fifth_farther_apart_fall_off_by_the_cosine_law_and_take_n
     }
     assert!(seen >= 4, "{seen} points of a cheek");
     for point in ["8.3", "9.1", "3.3", "3.9", "2.4", "lid-lower-out", "wing-base"] {
-        assert!(!paper::is_cheek(&subject, face.head.find(point).unwrap()), "{point} is no cheek");
+        assert!(!action_units::is_cheek(&subject, face.head.find(point).unwrap()), "{point} is no cheek");
     }
 }
 
@@ -281,11 +281,11 @@ fn spherical_deltas_move_on_an_arc_about_their_centre() {
     let at =
         |weight: f64| minus(exact::places(&under, &pose::parse(&under, &format!("smile={weight}")).unwrap())[corner], arc.centre);
     let (start, end) = (at(0.0), at(1.0));
-    assert!((paper::angle(start, end) - arc.degrees).abs() < 0.01, "the angle is that of the corner");
+    assert!((action_units::angle(start, end) - arc.degrees).abs() < 0.01, "the angle is that of the corner");
     // In equal times equal angles, and never far inside the chord's ends.
     for step in 0..=10 {
         let weight = f64::from(step) / 10.0;
-        let angle = paper::angle(start, at(weight));
+        let angle = action_units::angle(start, at(weight));
         assert!((angle - weight * arc.degrees).abs() < 0.6, "{weight}: {angle} degrees");
     }
     // Without an arc it is refused.

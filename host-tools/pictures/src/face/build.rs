@@ -2,7 +2,7 @@
 
 use super::blueprint::{Blueprint, Curve, Opening};
 use super::head::Head;
-use super::{extra, faps, names, paper};
+use super::{action_units, extra, faps, names};
 use anyhow::Result;
 
 /// A step is 2^-7 mm: coordinates of the head fit 16 bits.
@@ -50,7 +50,7 @@ const TONGUE_DROP: f64 = 40.0;
 
 /// Returns Pantin's own face.
 pub fn face(head: &Head) -> Result<Blueprint> {
-    let mut shapes = paper::units(head);
+    let mut shapes = action_units::units(head);
     shapes.extend(extra::units(head));
     // Rotations apply after all deltas.
     shapes.sort_by_key(|shape| !shape.turns.is_empty());

@@ -1,8 +1,8 @@
 //! The units that the paper does not have: those of `units.txt`, and lids, gaze, jaw and head.
 
+use super::action_units::{follow, jaw_region, shape};
 use super::blueprint::{Shape, Turn};
 use super::head::{Head, Vector};
-use super::paper::{follow, jaw_region, shape};
 use super::subject::Subject;
 use anyhow::{Context, Result, bail};
 use pantin_face::shape::{Interpolation, ShapeKind};

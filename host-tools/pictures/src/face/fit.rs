@@ -1,11 +1,11 @@
 //! Decomposes a pose into units: the weights whose sum is closest to a target, by bounded least squares (docs/METHOD.md 3.2).
 
+use super::action_units::RULES;
 use super::blueprint::Blueprint;
 use super::exact;
 use super::head::{Head, Vector, dot, minus, plus};
 use super::names::goes_aside;
 use super::onmesh;
-use super::paper::RULES;
 use super::points::Points;
 use super::pose::Pairs;
 use anyhow::{Context, Result, ensure};

@@ -1,5 +1,6 @@
 //! The face: the head, its units after the paper's algorithms, and the model that devices play (docs/FACE.md).
 
+pub mod action_units;
 pub mod blueprint;
 pub mod build;
 pub mod cartoon;
@@ -17,7 +18,6 @@ pub mod head;
 pub mod names;
 pub mod onmesh;
 pub mod outside;
-pub mod paper;
 pub mod points;
 pub mod pose;
 pub mod sheet;

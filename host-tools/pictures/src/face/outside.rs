@@ -1,8 +1,8 @@
 //! Meshes of other programs: points of an .obj, and a glTF's morph targets as a model.
 
+use super::action_units::shape;
 use super::blueprint::{Blueprint, Drive, Shape};
 use super::head::{Vector, cross, minus, plus, unit};
-use super::paper::shape;
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
 use pantin_convert::import::mesh::{self, Mesh};
 use pantin_convert::import::text::{number_in, quoted};

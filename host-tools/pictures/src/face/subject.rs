@@ -91,7 +91,7 @@ impl Subject {
         self.index(name).map(|index| self.points[index])
     }
 
-    /// The position of a feature point. Panics if it is missing: [`missing`](super::paper::missing) finds out first.
+    /// The position of a feature point. Panics if it is missing: [`missing`](super::action_units::missing) finds out first.
     pub fn at(&self, name: &str) -> Vector {
         self.feature(name).unwrap_or_else(|| panic!("the mesh has no feature point {name}"))
     }

@@ -5,7 +5,7 @@ use crate::output::{check, is_json, outln, report, write_whole};
 use anyhow::{Context, Result};
 use pantin_pictures::face::compare::{Compared, Jaw, METHODS, TABLES, jaw, pictures, write};
 use pantin_pictures::face::subject::Subject;
-use pantin_pictures::face::{Face, paper};
+use pantin_pictures::face::{Face, action_units};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let jaws = METHODS.iter().map(|&(method, name)| Ok((name, jaw(&face, method)?))).collect::<Result<Vec<_>>>()?;
     let rows = TABLES.iter().flat_map(|table| table.actions.iter().map(move |action| (table, action)));
     let rows = rows.map(|(table, action)| Ok((table, action, pictures(&face, action)?.cells))).collect::<Result<Vec<_>>>()?;
-    let angle = paper::opening_angle(&Subject::of_head(&face.head));
+    let angle = action_units::opening_angle(&Subject::of_head(&face.head));
     if is_json() {
         let jaw = |(name, jaw): &(_, Jaw)| json!({"method": name, "shortest": jaw.shortest, "longest": jaw.longest});
         let cell = |cell: &Compared| {

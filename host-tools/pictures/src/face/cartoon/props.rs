@@ -1,8 +1,8 @@
 //! Hidden shapes, and the units that open them.
 
 use super::table::{Hidden, Prop, Table};
+use crate::face::action_units::shape;
 use crate::face::blueprint::{Curve, Drive, Shape};
-use crate::face::paper::shape;
 use pantin_face::shape::Interpolation;
 
 /// The model keeps 127ths of it: half a millimetre, so that places in whole ones are exact.

@@ -1,11 +1,11 @@
 //! The units of a mesh: those of the paper that its feature points allow, and its own shapes.
 
 use super::Missing;
+use crate::face::action_units::{Effect, RULES, Rule, arc, effect, missing, shape};
 use crate::face::blueprint::{Drive, Shape, Turn};
 use crate::face::head::Vector;
 use crate::face::names;
 use crate::face::outside::of_target;
-use crate::face::paper::{Effect, RULES, Rule, arc, effect, missing, shape};
 use crate::face::subject::Subject;
 use pantin_convert::import::mesh::Mesh;
 use pantin_face::shape::Interpolation;

@@ -1,4 +1,4 @@
-// What differs from the ESP32-C6.
+// The pins, and how clips are stored: what differs from the ESP32-C6.
 
 #[path = "flash.rs"]
 mod flash;

@@ -1,4 +1,4 @@
-// What differs from the ESP32-C3.
+// The pins, and how clips are stored: what differs from the ESP32-C3.
 
 /// No clips are stored.
 type Flash = board_common::NoFlash;
