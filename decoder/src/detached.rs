@@ -2,9 +2,9 @@
 
 use crate::channel::ChannelState;
 use crate::clip::Clip;
-use crate::form::Pose;
 use crate::play_state::{Channels, PlayState};
 use crate::player::Player;
+use crate::pose::Pose;
 
 /// A [`Player`] without its memory, which is lent call by call. A structure can hold it beside the memory, and give the memory to
 /// the player of another clip later.

@@ -81,7 +81,7 @@ impl<'a> JointRef<'a> {
     /// The order of its Euler angles in the rig; `None` for a joint whose rotation channels are not one to three Euler angles about
     /// different axes.
     pub fn euler_order(&self) -> Option<crate::EulerOrder> {
-        crate::form::order_of(self.kinds)
+        crate::pose::order_of(self.kinds)
     }
 
     /// The id of its rig: [`Rig::id`].
