@@ -1,6 +1,6 @@
 //! The keyword arguments of `pantin.convert`, and the recipe that they ask for.
 
-use pantin_convert::edit::{Body, Edits};
+use pantin_convert::edit::{Body, Edits, InPlace};
 use pantin_convert::Level;
 use pantin_convert::Rotations;
 use pantin_convert::import::{ImportOptions, up};
@@ -45,6 +45,16 @@ pub struct Settings {
     drop: Vec<String>,
     mirror: bool,
     retarget: Option<String>,
+    body: Option<PathBuf>,
+    speed: Option<f64>,
+    between: Option<(String, String)>,
+    rename: Vec<(String, String)>,
+    reverse: bool,
+    scale: Option<f64>,
+    smooth: Option<f64>,
+    in_place: Option<String>,
+    append: Vec<PathBuf>,
+    blend: Option<f64>,
     joint_map: Option<PathBuf>,
     with_file: Option<PathBuf>,
     close_loop: bool,
@@ -106,8 +116,25 @@ impl Settings {
             Some("display") => Some(Body::Display),
             Some(_) => return Err(Error::setting(Setting::Retarget, "expected 'display'")),
         };
+        if let Some(body) = &self.body {
+            if edits.retarget.is_some() {
+                return Err(Error::setting(Setting::Retarget, "expected retarget or body, not both"));
+            }
+            edits.retarget = Some(Body::Of(body.clone()));
+        }
+        (edits.speed, edits.scale, edits.smooth, edits.blend) = (self.speed, self.scale, self.smooth, self.blend);
+        edits.between.clone_from(&self.between);
+        edits.rename.clone_from(&self.rename);
+        edits.append.clone_from(&self.append);
+        edits.in_place = match self.in_place.as_deref() {
+            None => None,
+            Some("way") => Some(InPlace::Way),
+            Some("way-and-heading") => Some(InPlace::WayAndHeading),
+            Some(_) => return Err(Error::setting(Setting::InPlace, "expected 'way' or 'way-and-heading'")),
+        };
+        edits.reverse = self.reverse;
         if edits.map.is_some() && edits.retarget.is_none() {
-            return Err(Error::setting(Setting::Map, "it names joints for retarget='display', which is not set"));
+            return Err(Error::setting(Setting::Map, "it names joints for retarget='display' or body, which are not set"));
         }
         Ok(edits)
     }
@@ -221,6 +248,12 @@ impl Settings {
             Setting::Effort => text(Some(&self.effort)),
             Setting::Rotations => text(Some(&self.rotations)),
             Setting::Retarget => text(self.retarget.as_deref()),
+            Setting::InPlace => text(self.in_place.as_deref()),
+            Setting::Speed => number(self.speed),
+            Setting::Scale => number(self.scale),
+            Setting::Smooth => number(self.smooth),
+            Setting::Blend => number(self.blend),
+            Setting::Reverse => flag(self.reverse),
             Setting::From => moment(self.first.as_deref()),
             Setting::To => moment(self.last.as_deref()),
             Setting::Skeleton => text(path(&self.skeleton).as_deref()),

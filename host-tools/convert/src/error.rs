@@ -67,6 +67,24 @@ pub enum Setting {
     Map,
     /// Scalars of another file.
     With,
+    /// The factor of the speed.
+    Speed,
+    /// The stretch between two events.
+    Between,
+    /// Other names of joints.
+    Rename,
+    /// Play backwards.
+    Reverse,
+    /// The factor of the size.
+    Scale,
+    /// The frequency above which motion is smoothed away.
+    Smooth,
+    /// Take the way out.
+    InPlace,
+    /// Motions that follow.
+    Append,
+    /// The time from one motion to the next.
+    Blend,
     /// An event marker.
     Event,
     /// Events of footsteps.
@@ -123,6 +141,15 @@ impl Setting {
             Setting::Retarget => "retarget",
             Setting::Map => "joint map",
             Setting::With => "other file",
+            Setting::Speed => "speed",
+            Setting::Between => "between",
+            Setting::Rename => "rename",
+            Setting::Reverse => "reverse",
+            Setting::Scale => "scale",
+            Setting::Smooth => "smooth",
+            Setting::InPlace => "in place",
+            Setting::Append => "append",
+            Setting::Blend => "blend",
             Setting::Event => "event",
             Setting::Footsteps => "footsteps",
             Setting::Loop => "loop",

@@ -29,7 +29,7 @@ RECORDS = ".pantin"
 MEASURED = ("frames", "bytes", "max_error_cm", "max_scalar_error_percent", "seconds", "warnings")
 """Columns of the report that a record keeps."""
 
-NOT_HERE = (*FILES, "animation", "rig_apart")
+NOT_HERE = (*FILES, "append", "animation", "rig_apart")
 """Options of `pantin.convert` that name a file or a part of one."""
 
 Row = Dict[str, Any]
@@ -57,7 +57,7 @@ def ray_convert(
     `node` (Ray's id of the node) and `refused` (why there is no clip, or null).
 
     source, target: folders or URLs that fsspec opens, such as s3://bucket/captures. Every node of the cluster must reach them.
-    max_error_cm, options: as in `pantin.convert`, but jobs and those that name a file or a part of one: animation, skeleton, joint_map, with_file, rig_apart.
+    max_error_cm, options: as in `pantin.convert`, but jobs and those that name a file or a part of one: animation, skeleton, joint_map, with_file, body, append, rig_apart.
     report: the Parquet file of the report; default: report.parquet in `target`.
     storage_options: what fsspec needs to open both folders, such as the key, the secret and the endpoint_url of an object store.
     max_retries: how often Ray repeats a task whose worker died, or whose storage failed.

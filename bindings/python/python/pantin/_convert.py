@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Union
+from types import MappingProxyType
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -48,9 +49,19 @@ def convert(
     last: Optional[Moment] = None,
     joints: Union[str, Iterable[str]] = (),
     drop: Union[str, Iterable[str]] = (),
+    speed: Optional[float] = None,
+    between: Optional[Tuple[str, str]] = None,
+    rename: Mapping[str, str] = MappingProxyType({}),
     mirror: bool = False,
     retarget: Optional[str] = None,
+    body: Optional[StrPath] = None,
     joint_map: Optional[StrPath] = None,
+    reverse: bool = False,
+    scale: Optional[float] = None,
+    smooth: Optional[float] = None,
+    in_place: Optional[str] = None,
+    append: Iterable[StrPath] = (),
+    blend: Optional[float] = None,
     with_file: Optional[StrPath] = None,
     close_loop: bool = False,
     cm_per_unit: Optional[float] = None,
@@ -92,13 +103,23 @@ def convert(
     How the motion is changed first, in this order:
 
     source_rate: frames a second of the source's frames, whatever the source says. All frames stay; the motion gets slower or faster.
+    speed: how many times faster the motion goes; all frames stay.
     fps: frames a second of the clip; the motion is resampled.
     events: markers to add: pairs of a moment and a name. A moment is a frame's number from 0, or seconds as in '1.5s'.
     first, last: the first and the last frame to keep: moments, counted after `fps`.
+    between: names of two events: keep what is between the first event of the one and the next one of the other.
     joints, drop: names of joints and scalars to keep, and to drop: a glob such as 'Left*', or several; case-insensitive.
+    rename: other names of joints and scalars, by the old ones; one `*` in both stands for the same letters, as in {'mixamorig:*': '*'}.
     mirror: exchange left and right.
     retarget: 'display' puts the motion on a body of 15 joints.
-    joint_map: a file with the names of joints that `retarget` does not recognize.
+    body: a motion, a clip or a bank on whose figure the motion is put. Motions on one body can be in one bank.
+    joint_map: a file with the names of joints that `retarget` and `body` do not recognize.
+    reverse: play the motion backwards.
+    scale: how many times larger the figure becomes, with its way.
+    smooth: frequency in Hz above which motion is smoothed away: it keeps 0.707 of its size there, a quarter at twice the frequency.
+    in_place: 'way' takes the figure's horizontal way out, 'way-and-heading' its heading too.
+    append: motions that follow, each from where the figure then stands.
+    blend: seconds in which a motion goes over to the next one of `append`. Default: 0.25.
     with_file: another file whose scalars are added, such as a face that was recorded with the body.
     close_loop: take the motion as one cycle, whose first frame follows its last.
 
@@ -122,7 +143,7 @@ def convert(
     path = None if isinstance(motion, Motion) else os.fspath(motion)
     if path is None:
         refuse(given, ONLY_FILES, "is for files: a Motion has its own fields")
-    for needed in [path, *(given[name] for name in FILES)]:
+    for needed in [path, *(given[name] for name in FILES), *given["append"]]:
         if needed is not None:
             with open(needed, "rb"):
                 pass

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, Iterable, Mapping, Sequence, Union
 Moment = Union[int, str]
 """A frame's number from 0, or seconds as in '1.5s'."""
 
-FILES = ("skeleton", "joint_map", "with_file")
+FILES = ("skeleton", "joint_map", "with_file", "body")
 """Arguments that name files."""
 
 ONLY_FILES = ("cm_per_unit", "up", "animation", "skeleton")
@@ -31,13 +31,17 @@ NUMBERS = (
     "source_rate",
     "fps",
     "cm_per_unit",
+    "speed",
+    "scale",
+    "smooth",
+    "blend",
 )
 """Arguments that are numbers, or None."""
 
-FLAGS = ("places_only", "exact", "rig_apart", "loop", "footsteps", "mirror", "close_loop")
+FLAGS = ("places_only", "exact", "rig_apart", "loop", "footsteps", "mirror", "reverse", "close_loop")
 """Arguments that are true or false."""
 
-WORDS = ("effort", "rotations", "retarget", "up")
+WORDS = ("effort", "rotations", "retarget", "in_place", "up")
 """Arguments that are passed on as they are."""
 
 
@@ -57,6 +61,9 @@ def settings(arguments: Mapping[str, Any]) -> Dict[str, Any]:
         "events": [(_moment("events", at), str(name)) for at, name in arguments["events"]],
         "joints": _globs(arguments["joints"]),
         "drop": _globs(arguments["drop"]),
+        "between": None if arguments["between"] is None else tuple(map(str, arguments["between"])),
+        "rename": [(str(old), str(new)) for old, new in dict(arguments["rename"]).items()],
+        "append": [os.fspath(path) for path in arguments["append"]],
     }
 
 

@@ -90,7 +90,7 @@ pub(crate) fn body(motion: &Motion, sources: &[usize; 15]) -> Body {
 }
 
 /// Whether the head is beyond the chest, and the feet on the other side of the hips.
-fn stands(pose: &Pose, sources: &[usize; 15]) -> bool {
+pub(crate) fn stands(pose: &Pose, sources: &[usize; 15]) -> bool {
     let at = |index: usize| pose[sources[index]].1;
     let spine = subtract(at(1), at(0));
     let along = |a: usize, b: usize| dot(subtract(at(b), at(a)), spine);

@@ -3,9 +3,10 @@
 //! Each joint takes what its counterpart does: x of its places, and y and z of its turns, change their sign. That mirrors every
 //! pose in world space whatever the rest pose is, and gives a symmetric figure its own rig again.
 
+use super::scale::scaled;
 use super::sides::{Part, counterparts, parts};
 use crate::error::{Error, Setting, require};
-use crate::motion::{Joint, Keys, Kind, Motion, Piece, Rig, Scalar};
+use crate::motion::{Joint, Kind, Motion, Rig, Scalar};
 use anyhow::Result;
 use pantin::{LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 
@@ -48,23 +49,7 @@ pub fn mirror(motion: &Motion) -> Result<Motion> {
 fn take(motion: &Motion, out: &mut Motion, channel: usize, negated: bool) {
     let sign = if negated { -1.0 } else { 1.0 };
     out.values.push(motion.values[channel].iter().map(|value| value * sign).collect());
-    out.keys.push(motion.keys[channel].clone().map(|keys| signed(keys, sign)));
-}
-
-fn signed(keys: Keys, sign: f64) -> Keys {
-    let turned = |mut pieces: Vec<Piece>| {
-        for piece in &mut pieces {
-            [piece.p, piece.c, piece.w, piece.k] = [piece.p, piece.c, piece.w, piece.k].map(|x| x * sign);
-        }
-        pieces
-    };
-    match keys {
-        Keys::OnFrames { interpolation, mut keys, pieces } => {
-            keys.iter_mut().for_each(|(_, value)| *value *= sign);
-            Keys::OnFrames { interpolation, keys, pieces: turned(pieces) }
-        }
-        Keys::Pieces(pieces) => Keys::Pieces(turned(pieces)),
-    }
+    out.keys.push(motion.keys[channel].clone().map(|keys| scaled(keys, sign)));
 }
 
 /// Mirrored at x, places change along x, and turns about all other axes.

@@ -1,5 +1,9 @@
 //! Changes of a motion between import and fit: a `Motion` in, a `Motion` out.
 
+pub mod append;
+mod apply;
+pub mod between;
+pub mod body;
 pub mod curve;
 pub mod cut;
 pub mod display;
@@ -7,12 +11,19 @@ mod display_names;
 mod edits;
 pub mod find_loop;
 pub mod footsteps;
+pub mod in_place;
 pub mod join;
 pub mod loop_seam;
 pub mod mirror;
 pub mod pick;
+pub mod rename;
 pub mod resample;
 pub mod retarget;
+pub mod reverse;
+mod rotation;
+pub mod scale;
 pub mod sides;
+pub mod smooth;
 
 pub use edits::{Body, Edited, Edits};
+pub use in_place::InPlace;
