@@ -62,6 +62,11 @@ impl ChannelState {
         [self.v, self.w, self.k]
     }
 
+    /// Changes velocity, acceleration and slope, for a program that leads a channel elsewhere than its clip does.
+    pub fn set_rates(&mut self, [v, w, k]: [i32; 3]) {
+        (self.v, self.w, self.k) = (v, w, k);
+    }
+
     /// Mode of the running segment.
     pub fn mode(&self) -> u8 {
         self.mode

@@ -85,10 +85,10 @@ impl Clock {
         self.at_ns.checked_div(self.frame_time_ns.into()).unwrap_or(0) as u32
     }
 
-    /// How far time is on the way from that frame to the next one: what [`crate::Player::interpolate`] takes. 0 at the last frame,
-    /// which has no next one: a loop shows it for its time, then frame 0.
+    /// How far time is on the way from that frame to the next one: what [`crate::Player::interpolate`] takes. From the last frame
+    /// of a loop it is the way to frame 0; another clip's last frame has no next one, and the part is 0.
     pub fn part(&self) -> U0F16 {
-        if self.frame() + 1 >= self.frames {
+        if !self.looped && self.frame() + 1 >= self.frames {
             return U0F16::ZERO;
         }
         let within = self.at_ns.checked_rem(self.frame_time_ns.into()).unwrap_or(0);

@@ -5,6 +5,7 @@ use crate::clip::Clip;
 use crate::play_state::{Channels, PlayState};
 use crate::player::Player;
 use crate::pose::Pose;
+use crate::seam;
 
 /// A [`Player`] without its memory, which is lent call by call. A structure can hold it beside the memory, and give the memory to
 /// the player of another clip later.
@@ -64,6 +65,17 @@ impl<'a> DetachedPlayer<'a> {
         }
         let Some(states) = states.get_mut(..self.moving.into()) else { return };
         self.position.step(&mut Channels { states, pose: values }, &input, frames);
+    }
+
+    /// On the last frame of a loop: makes the velocities of `states` ([`ChannelState::rates`]) lead to frame 0, as [`Player::interpolate`] describes, until
+    /// the next step or seek. The accelerations become the channels' values at frame 0. It reads the channels' starts, as a step to frame 0 does.
+    /// Elsewhere it does nothing.
+    pub fn lead_to_start(&self, states: &mut [ChannelState], values: &[i32]) {
+        let states =
+            states.get_mut(..self.moving.into()).filter(|_| self.clip.looped() && self.position.frame + 1 >= self.clip.frames());
+        if let Some(states) = states {
+            seam::close(&self.clip, states, values);
+        }
     }
 
     /// Goes to `frame`, or to the last one if there are fewer: [`Player::seek`].

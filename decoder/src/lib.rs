@@ -84,6 +84,7 @@ mod rig;
 mod rig_collector;
 mod room;
 mod scalar;
+mod seam;
 mod snapshots;
 mod start;
 mod stream;

@@ -13,7 +13,7 @@ use crate::scalar::ScalarRef;
 use crate::snapshots::{SnapshotPos, Snapshots};
 use crate::turn::Turn;
 use crate::units::Fraction;
-use crate::{TooSmall, index};
+use crate::{TooSmall, index, seam};
 use fixed::types::U0F16;
 
 /// Plays a [`Clip`] in memory of the caller's: a [`ChannelState`] for each of the clip's moving channels, and one raw value for
@@ -165,9 +165,15 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Writes the pose between this frame and the next to `out`, which needs [`crate::Rig::channels`] elements: `part` of the way
     /// from one to the other, on a straight line a channel. 0 gives this frame's pose exactly.
     ///
-    /// The frame after the last one is not looked at: there the motion goes on as it did.
+    /// From the last frame of a loop the way leads to frame 0, for which the channels' starts are read again. A position that is more than 5 cm from its
+    /// start by then goes on as it did, and so does a rotation that is more than an eighth of a turn away: a figure that travels or turns jumps back at
+    /// frame 0. On the last frame of another clip, the motion goes on as it did.
     pub fn interpolate<'o>(&'o self, part: U0F16, out: &'o mut [i32]) -> Result<Pose<'o>, TooSmall> {
         let out = values(out, self.pose.len())?;
+        if self.ended() && self.clip.looped() && part != U0F16::ZERO {
+            seam::interpolate(&self.clip, self.states, self.pose, part.to_bits(), out);
+            return Ok(Pose { values: out, form: self.clip.form_ref() });
+        }
         for (out, value) in out.iter_mut().zip(self.pose.iter()) {
             *out = *value;
         }

@@ -2,7 +2,8 @@
 
 use crate::bytes::unzigzag;
 use crate::channel::{ChannelState, step_size};
-use crate::entropy::{Symbols, Table};
+use crate::clip::Clip;
+use crate::entropy::{Cursor, Symbols, Table};
 use crate::kind::Kind;
 use crate::layout::{FIRST_STEP, FOLLOW_BITS, MAX_STEP, STEP_BITS, STEP_CHANGES, status};
 use crate::play_state::{self, Channels};
@@ -133,6 +134,24 @@ impl<'a> ChannelStarts<'a> {
             self.slot += 1;
         }
         false
+    }
+}
+
+impl Clip<'_> {
+    /// The values at frame 0 of the moving channels, one after the other, by their numbers; those of channels that follow mean nothing.
+    #[inline(never)]
+    pub(crate) fn first_values(&self, each: &mut dyn FnMut(usize, i32)) {
+        let input = self.input();
+        let mut starts = ChannelStarts::new(&self.rig(), self.length_exponent());
+        let mut symbols = Symbols { at: Cursor::start(&input, self.symbols()), input };
+        let mut moving = 0;
+        while let Some((kind, rest)) = starts.slots.next() {
+            let (mut value, mut state) = (shifted(rest, starts.shift), ChannelState::NEW);
+            if starts.opening.read(&mut symbols, kind, &mut value, &mut state) {
+                each(moving, value);
+                moving += 1;
+            }
+        }
     }
 }
 

@@ -125,6 +125,39 @@ fn between_two_frames_a_pose_lies_on_the_straight_line() {
 }
 
 #[test]
+fn from_a_loops_last_frame_a_pose_leads_to_frame_0() {
+    for file in [WALK, RUN] {
+        let truth = frames(file);
+        let clip = Clip::new_checked(file).unwrap();
+        assert!(clip.looped());
+        let (mut room, mut out) = (Memories::new(), vec![0; clip.rig().channels()]);
+        let mut player = room.player(clip).unwrap();
+        let last = truth.len() - 1;
+        player.seek(last as u32);
+        let rates: Vec<_> = player.states().iter().map(|state| (state.slot(), state.rates()[0])).collect();
+        let mut travel = 0;
+        for part in [0.0, 0.25, 0.75] {
+            let pose = player.interpolate(U0F16::from_num(part), &mut out).unwrap();
+            for (channel, value) in pose.values.iter().enumerate() {
+                let way = f64::from(truth[0][channel].wrapping_sub(truth[last][channel]));
+                let gone = f64::from(value.wrapping_sub(truth[last][channel]));
+                if (gone - way * part).abs() > 1.0 {
+                    // The way of the walk goes on.
+                    let v = rates.iter().find(|(slot, _)| *slot == channel).map_or(0, |(_, v)| *v);
+                    assert!((gone - f64::from(v) * part).abs() <= 1.0, "channel {channel} at {part}: {gone} of {way}, {v}");
+                    travel += 1;
+                }
+            }
+        }
+        assert_eq!(travel, 2);
+    }
+    let mut clock = Clock::new(&Clip::new_checked(WALK).unwrap());
+    clock.seek(u32::MAX);
+    clock.advance(1_000);
+    assert!(clock.part() > U0F16::ZERO);
+}
+
+#[test]
 fn bytes_written_to_the_streams_own_space_play_as_fed_ones_do() {
     let truth = frames(WALK);
     let rig = Clip::new_checked(WALK).unwrap().rig();

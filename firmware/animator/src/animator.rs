@@ -316,6 +316,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             let (Some(own), Some(to)) = (self.pose.get_mut(range.clone()), pose.values.get(range)) else { continue };
             mix_group(group.shape, own, to, weight);
         }
+        other.add_part_of(weight, self.pose);
         self.root.leave_place(self.pose);
         Ok(())
     }

@@ -175,10 +175,6 @@ impl<'a> Root<'a> {
         }
     }
 
-    pub(crate) fn place_of(&self, values: &[i32]) -> [i32; 2] {
-        self.place.map(|channel| channel.and_then(|channel| values.get(usize::from(channel)).copied()).unwrap_or(0))
-    }
-
     pub(crate) fn yaw_of(&self, pose: &Pose<'_>) -> Angle {
         let [yaw, ..] = self.matrix(pose).euler(self.order);
         yaw
@@ -188,8 +184,10 @@ impl<'a> Root<'a> {
         pose.turn(&self.joint).map_or(Matrix::IDENTITY, Turn::matrix)
     }
 
-    pub(crate) fn sample(&self, pose: &Pose<'_>) -> RootSample {
-        RootSample { place: self.place_of(pose.values), yaw: self.yaw_of(pose) }
+    /// The yaw of values of the channels that turn it; `None` if they are fewer than a whole rotation.
+    pub(crate) fn yaw_of_turns(&self, own: &[i32]) -> Option<Angle> {
+        let [yaw, ..] = math::turn_of(self.turns.shape, self.joint.kinds(), own)?.matrix().euler(self.order);
+        Some(yaw)
     }
 
     /// Turns the root about the vertical axis, in its channels `own`; one that has up to two angles keeps them, but for one that turns about
@@ -210,35 +208,6 @@ impl<'a> Root<'a> {
         let about = Turn::Euler { order: self.order, angles: [angle, Angle::ZERO, Angle::ZERO] };
         let turned = math::product(about.quaternion(), turn.quaternion());
         math::write(self.turns.shape, self.joint.kinds(), turned, own);
-    }
-}
-
-impl RootSample {
-    /// A frame on, by the velocities of the channels.
-    pub(crate) fn advance<I: Iterator<Item = (usize, i32)>>(
-        &mut self,
-        root: &Root<'_>,
-        pose: &Pose<'_>,
-        velocities: impl Fn() -> I,
-    ) {
-        for (place, channel) in self.place.iter_mut().zip(root.place) {
-            let moved = velocities().find(|(slot, _)| Some(*slot) == channel.map(usize::from));
-            *place = place.wrapping_add(moved.map_or(0, |(_, v)| v));
-        }
-        let (first, mut own) = (usize::from(root.turns.first), [0i32; 4]);
-        let own = own.get_mut(..root.turns.len.into()).unwrap_or_default();
-        for (own, value) in own.iter_mut().zip(pose.values.get(first..).unwrap_or_default()) {
-            *own = *value;
-        }
-        for (slot, v) in velocities() {
-            if let Some(own) = slot.checked_sub(first).and_then(|at| own.get_mut(at)) {
-                *own = own.wrapping_add(v);
-            }
-        }
-        if let Some(turn) = math::turn_of(root.turns.shape, root.joint.kinds(), own) {
-            let [yaw, ..] = turn.matrix().euler(root.order);
-            self.yaw = yaw;
-        }
     }
 }
 

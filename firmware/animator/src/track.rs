@@ -1,10 +1,11 @@
 //! A clip that plays in lent memory by time: any display rate, speeds of -4 to 4, without drift.
 
 use crate::Error;
+use crate::groups::nearest;
 use crate::layer::Weight;
-use crate::root::{Root, Seam};
+use crate::root::{Root, RootSample, Seam};
 use fixed::types::{I16F16, U0F16};
-use pantin::{ChannelState, Clip, DetachedPlayer, Player, Pose};
+use pantin::{Angle, ChannelState, Clip, DetachedPlayer, Player, Pose};
 
 /// Laps of a loop in one update; time beyond them is dropped.
 const MOST_LAPS: i64 = 64;
@@ -36,6 +37,8 @@ pub struct Track<'a, 'm> {
     speed: I16F16,
     ended: bool,
     seam: Option<Seam>,
+    /// Whether the velocities lead from the last frame of a loop to frame 0.
+    closed: bool,
 }
 
 impl<'a, 'm> Track<'a, 'm> {
@@ -43,13 +46,13 @@ impl<'a, 'm> Track<'a, 'm> {
     /// `pose` needs one for each channel of the rig.
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, Error> {
         let player = Player::new(clip, states, pose)?.detach();
-        Ok(Track { player, states, pose, rest: 0, speed: I16F16::ONE, ended: false, seam: None })
+        Ok(Track { player, states, pose, rest: 0, speed: I16F16::ONE, ended: false, seam: None, closed: false })
     }
 
     /// This clip at this instant, in other memory.
     pub(crate) fn in_memory<'n>(self, states: &'n mut [ChannelState], pose: &'n mut [i32]) -> Track<'a, 'n> {
-        let Track { player, rest, speed, ended, seam, .. } = self;
-        Track { player, states, pose, rest, speed, ended, seam }
+        let Track { player, rest, speed, ended, seam, closed, .. } = self;
+        Track { player, states, pose, rest, speed, ended, seam, closed }
     }
 
     /// Moving channels and channels of the clip: the least memory.
@@ -73,7 +76,7 @@ impl<'a, 'm> Track<'a, 'm> {
         };
         player.go_to(frame);
         self.player = player.detach();
-        (self.rest, self.ended, self.seam) = (0, false, None);
+        (self.rest, self.ended, self.seam, self.closed) = (0, false, None, false);
         self.set_speed(speed);
         Ok(())
     }
@@ -123,6 +126,9 @@ impl<'a, 'm> Track<'a, 'm> {
     pub(crate) fn seek_part(&mut self, frame: u32, part: U0F16) {
         self.seek(frame);
         self.rest = i64::from(part.to_bits()) * i64::from(self.clip().frame_time_ns());
+        if self.rest != 0 {
+            self.close(None);
+        }
     }
 
     /// The pose of [`Track::frame`] itself.
@@ -142,10 +148,17 @@ impl<'a, 'm> Track<'a, 'm> {
 
     /// Adds what the channels move between the frame and this instant.
     pub(crate) fn add_part(&self, out: &mut [i32]) {
+        self.add_part_of(Weight::ONE, out);
+    }
+
+    /// Adds a weight of what the channels move between the frame and this instant.
+    pub(crate) fn add_part_of(&self, weight: Weight, out: &mut [i32]) {
         if self.rest == 0 {
             return;
         }
-        let part = Weight::from_bits(self.part().to_bits() >> 1);
+        // Below 2^30.
+        let part = u32::from(self.part().to_bits() >> 1) * u32::from(weight.to_bits());
+        let part = Weight::from_bits((part >> 15) as u16);
         for state in self.states.get(..self.player.moving()).unwrap_or_default() {
             if let Some(value) = out.get_mut(state.slot()) {
                 let [v, ..] = state.rates();
@@ -175,6 +188,7 @@ impl<'a, 'm> Track<'a, 'm> {
     fn go_to(&mut self, frame: u32) {
         let frame = frame.min(self.clip().frames().saturating_sub(1));
         let ahead = frame.wrapping_sub(self.player.frame());
+        self.closed &= ahead == 0;
         if ahead <= 8 {
             (0..ahead).for_each(|_| self.player.step(self.states, self.pose));
         } else {
@@ -193,12 +207,12 @@ impl<'a, 'm> Track<'a, 'm> {
         let mut passage = Passage { from, from_rest, to: from, to_rest: false, laps: 0, forward: true };
         self.rest = 0;
         if from + 1 < self.clip().frames() {
-            self.player.step(self.states, self.pose);
+            self.go_to(from + 1);
         } else if self.clip().looped() {
-            if let (None, Some(root)) = (self.seam, root) {
-                self.learn_seam(root);
+            if self.seam.is_none() && root.is_some() {
+                self.close(root);
             }
-            self.player.seek(0, self.states, self.pose);
+            self.go_to(0);
             passage.laps = 1;
         } else {
             self.ended = true;
@@ -246,25 +260,80 @@ impl<'a, 'm> Track<'a, 'm> {
             }
         }
         let to = to as u32;
-        if laps != 0
-            && self.seam.is_none()
-            && let Some(root) = root
-        {
-            self.learn_seam(root);
+        if laps != 0 && self.seam.is_none() && root.is_some() {
+            self.go_to(u32::MAX);
+            self.close(root);
         }
         self.go_to(to);
+        if self.rest != 0 {
+            self.close(root);
+        }
         Passage { from, from_rest, to, to_rest: self.rest != 0, laps: laps as i32, forward }
     }
 
-    /// Goes to the last frame and to the first, and compares them.
+    /// On the last frame of a loop, lets the velocities lead to frame 0: those of the root to where the next lap begins, which is learnt here.
     #[inline(never)]
-    fn learn_seam(&mut self, root: &Root<'_>) {
-        self.go_to(self.clip().frames() - 1);
-        let mut next = root.sample(&self.pose());
-        // The root moves on as it did: its channels and their velocities.
-        next.advance(root, &self.pose(), || self.velocities());
-        self.player.seek(0, self.states, self.pose);
-        let first = root.sample(&self.pose());
-        self.seam = Some(Seam::between(root, &first, &next, self.clip()));
+    fn close(&mut self, root: Option<&Root<'_>>) {
+        if self.closed || !self.clip().looped() || self.player.frame() + 1 < self.clip().frames() {
+            return;
+        }
+        // Without the lap to come, the root moves on as it did.
+        let next = root.filter(|_| self.seam.is_none()).map(|root| self.root_at(root, |p, [v, ..]| p.wrapping_add(v)));
+        self.player.lead_to_start(self.states, self.pose);
+        self.closed = true;
+        let Some(root) = root else { return };
+        let first = |_, [_, first, _]: [i32; 3]| first;
+        if let Some(next) = next {
+            let first = self.root_at(root, first);
+            self.seam = Some(Seam::between(root, &first, &next, self.player.clip()));
+        }
+        let Some(seam) = self.seam else { return };
+        let mut turns = self.root_turns(root, first);
+        let range = root.turns.range();
+        let own = turns.get_mut(..range.len()).unwrap_or_default();
+        if seam.yaw != Angle::ZERO {
+            root.turn_by(seam.yaw, own);
+            nearest(root.turns.shape, own, self.pose.get(range.clone()).unwrap_or_default());
+        }
+        for state in self.states.get_mut(..self.player.moving()).unwrap_or_default() {
+            let (slot, p) = (state.slot(), self.pose.get(state.slot()).copied().unwrap_or(0));
+            let [_, first, k] = state.rates();
+            let place = root.place.iter().zip(seam.place).find(|(channel, _)| channel.map(usize::from) == Some(slot));
+            let turn = slot.checked_sub(range.start).and_then(|at| own.get(at)).filter(|_| seam.yaw != Angle::ZERO);
+            let to = match (place, turn) {
+                (Some((_, way)), _) => first.wrapping_add(way as i32),
+                (_, Some(turn)) => *turn,
+                _ => continue,
+            };
+            state.set_rates([to.wrapping_sub(p), first, k]);
+        }
+    }
+
+    /// The channels that turn the root, with values made of their own and of their rates.
+    fn root_turns(&self, root: &Root<'_>, value: impl Fn(i32, [i32; 3]) -> i32) -> [i32; 4] {
+        let (range, mut turns) = (root.turns.range(), [0; 4]);
+        for (turn, p) in turns.iter_mut().zip(self.pose.get(range.clone()).unwrap_or_default()) {
+            *turn = *p;
+        }
+        for state in self.states.get(..self.player.moving()).unwrap_or_default() {
+            if let Some(turn) = state.slot().checked_sub(range.start).and_then(|at| turns.get_mut(at)) {
+                *turn = value(*turn, state.rates());
+            }
+        }
+        turns
+    }
+
+    /// The root with values made of those of its channels and of their rates.
+    fn root_at(&self, root: &Root<'_>, value: impl Fn(i32, [i32; 3]) -> i32) -> RootSample {
+        let place = root.place.map(|channel| {
+            let slot = usize::from(channel?);
+            let p = self.pose.get(slot).copied()?;
+            let state = self.states.get(..self.player.moving())?.iter().find(|state| state.slot() == slot);
+            Some(state.map_or(p, |state| value(p, state.rates())))
+        });
+        let turns = self.root_turns(root, &value);
+        let own = turns.get(..root.turns.range().len()).unwrap_or_default();
+        let yaw = root.yaw_of_turns(own).unwrap_or_else(|| root.yaw_of(&self.pose()));
+        RootSample { place: place.map(|place| place.unwrap_or(0)), yaw }
     }
 }

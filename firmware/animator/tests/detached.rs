@@ -6,7 +6,7 @@ use pantin_animator::{Animator, Character, LayerMemory, Transition, Workspace};
 
 mod common;
 
-const CHARACTER: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../motions/character.ptb"));
+use common::CHARACTER;
 
 fn play(animator: &mut Animator, picture: u32) {
     if picture == 20 {

@@ -38,3 +38,6 @@ pub fn bank(tables: &[&[u8]]) -> Vec<u8> {
     }
     bytes
 }
+
+/// Our character: a bank with a state machine.
+pub const CHARACTER: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../motions/character.ptb"));
