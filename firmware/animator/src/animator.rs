@@ -42,13 +42,13 @@ pub struct Animator<'a, 'm> {
     pub(crate) place: [i32; 2],
     pub(crate) motion: RootMotion,
     pub(crate) events: EventQueue,
-    /// Where the figure is now, and where it was before the last update.
+    /// Where the figure is now, and where it was when an increment was last taken.
     pub(crate) now: Placement,
     pub(crate) before: Placement,
 }
 
 impl<'a, 'm> Animator<'a, 'm> {
-    /// Starts a clip at frame 0, at the world's origin. A rig that has scalars alone is [`Error::NoSuchJoint`]: a [`Track`] plays it.
+    /// Starts a clip at frame 0, at the world's origin. A rig that has scalars alone is [`Error::NoCarrier`]: a [`Track`] plays it.
     ///
     /// The figure is carried by the rig's first joint with positions: its horizontal place and its turn about the vertical axis are the figure's.
     /// [`Animator::carried_by`] takes another joint.
@@ -66,7 +66,7 @@ impl<'a, 'm> Animator<'a, 'm> {
         check("values of the pose", pose.len())?;
         let (offsets, pose) = (offsets.get_mut(..needed).unwrap_or_default(), pose.get_mut(..needed).unwrap_or_default());
         let used_groups = groups::set_up(&clip.rig(), clip.form_ref(), groups)?;
-        let root = Root::of(&clip.rig(), groups, carrier).ok_or(Error::NoSuchJoint)?;
+        let root = Root::of(&clip.rig(), groups, carrier).ok_or(Error::NoCarrier)?;
         let track = Track::new(clip, states, values)?;
         let mut animator = Animator {
             track,
@@ -157,11 +157,12 @@ impl<'a, 'm> Animator<'a, 'm> {
         self.settle(placement);
     }
 
-    /// Makes the root's present place stand at a placement.
+    /// Makes the root's present place stand at a placement. What was not yet taken of the increments stays.
     fn settle(&mut self, placement: Placement) {
         self.travel = Travel::new(placement, self.place.map(i64::from));
+        let increment = self.now.since(&self.before);
         self.locate();
-        self.before = self.now;
+        self.before = self.now.since(&increment);
     }
 
     /// Where the figure is, and how it is turned.
@@ -177,12 +178,13 @@ impl<'a, 'm> Animator<'a, 'm> {
         };
     }
 
-    /// What the last [`Animator::update`], [`Animator::seek`] or [`Animator::switch`] changed the placement by: the sum of all increments is
-    /// the difference of the placements, exactly.
-    pub fn increment(&self) -> Placement {
-        let now = self.placement();
-        let ([x, y], [before_x, before_y]) = (now.place, self.before.place);
-        Placement { place: [x.wrapping_sub(before_x), y.wrapping_sub(before_y)], heading: now.heading - self.before.heading }
+    /// Takes what the placement has changed by since the last call, or since the start: through updates, seeks and switches, but not by
+    /// [`Animator::set_placement`]. The sum of all increments is the difference of the placements, exactly. A switch to a clip with another unit of length
+    /// brings what was not yet taken to that unit, too.
+    pub fn take_increment(&mut self) -> Placement {
+        let increment = self.now.since(&self.before);
+        self.before = self.now;
+        increment
     }
 
     fn transition_part(&self) -> U0F16 {
@@ -202,22 +204,34 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// Lets time pass, up to 71 minutes; more than 64 laps of a loop at once are cut off. The error says that events were lost; the rest is done.
     pub fn update(&mut self, elapsed_us: u32) -> Result<(), EventsLost> {
-        self.before = self.placement();
-        let passage = self.track.advance(elapsed_us, Some(&self.root));
+        let (left_ns, outcome) = self.play(u64::from(elapsed_us) * 1000);
+        self.hold(left_ns);
+        outcome
+    }
+
+    /// Lets time pass up to the end of a clip that is no loop, and returns the time in ns that is left.
+    pub(crate) fn play(&mut self, elapsed_ns: u64) -> (u64, Result<(), EventsLost>) {
+        let (passage, left_ns) = self.track.advance(elapsed_ns, Some(&self.root));
         let lost = self.events.lost();
         self.pass(&passage);
-        if self.left > 0 {
-            self.run_transition(elapsed_us);
-        }
+        self.run_transition(elapsed_ns.saturating_sub(left_ns));
         self.compose();
         self.locate();
-        self.events.check(lost)
+        (left_ns, self.events.check(lost))
+    }
+
+    /// Lets time pass after the end of the clip: a transition still runs.
+    pub(crate) fn hold(&mut self, elapsed_ns: u64) {
+        if self.left > 0 && elapsed_ns > 0 {
+            self.run_transition(elapsed_ns);
+            self.compose();
+            self.locate();
+        }
     }
 
     /// Goes on by exactly one frame of the clip, forwards and whatever its speed: for a program that shows one picture for each frame. Where this
     /// serves it is cheaper than [`Animator::update`]. A transition goes on by a frame too.
     pub fn step(&mut self) -> Result<(), EventsLost> {
-        self.before = self.placement();
         let passage = self.track.step(Some(&self.root));
         let lost = self.events.lost();
         self.pass(&passage);
@@ -235,7 +249,6 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// Goes to a frame of the clip, or to the last one if there are fewer, without events. The transition stays where it is.
     pub fn seek(&mut self, frame: u32) {
-        self.before = self.placement();
         self.track.seek(frame);
         self.compose();
         self.locate();
@@ -249,9 +262,9 @@ impl<'a, 'm> Animator<'a, 'm> {
         }
     }
 
-    fn run_transition(&mut self, elapsed_us: u32) {
+    fn run_transition(&mut self, elapsed_ns: u64) {
         let frame_time = u64::from(self.track.clip().frame_time_ns());
-        let mut rest = u64::from(self.rest_ns) + u64::from(elapsed_us) * 1000;
+        let mut rest = u64::from(self.rest_ns) + elapsed_ns;
         while rest >= frame_time && self.left > 0 {
             rest -= frame_time;
             self.left -= 1;

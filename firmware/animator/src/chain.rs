@@ -1,6 +1,6 @@
 //! The joints from a figure's root to one of its ends, for inverse kinematics: where they are in a pose, and how to turn them.
 
-use crate::Error;
+use crate::error::{Error, Name};
 use crate::groups::{Group, Shape};
 use crate::math;
 use heapless::Vec;
@@ -45,7 +45,7 @@ impl<'a, const N: usize> Chain<'a, N> {
     /// The chain to a joint by its name.
     pub(crate) fn to(clip: &Clip<'a>, groups: &[Group], name: &str) -> Result<Self, Error> {
         let rig = clip.rig();
-        let mut next = Some(rig.find(name).ok_or(Error::NoSuchJoint)?.index());
+        let mut next = Some(rig.find(name).ok_or_else(|| Error::NoSuchJoint(Name::new(name)))?.index());
         let largest = rig.joints().flat_map(|joint| joint.offset).fold(0, |largest, x| largest | x.unsigned_abs());
         let down = 18 - largest.leading_zeros() as i32;
         let shift = i32::from(rig.length_exponent()) + down - i32::from(clip.length_exponent());

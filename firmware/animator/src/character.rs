@@ -4,26 +4,13 @@ use crate::animator::Animator;
 use crate::layer::{Ramp, Weight};
 use crate::machine::{LAYERS, LayerRow, Machine, Table, Updated, clip};
 use crate::mask::Mask;
-use crate::memory::Memory;
+use crate::memory::{LayerMemory, Memory};
 use crate::root::{self, Placement, Root};
 use crate::track::Track;
 use crate::{Error, machine::TableError};
 use fixed::types::I16F16;
 use heapless::Vec;
 use pantin::{Bank, ChannelState, Clip, Player, Pose};
-
-/// Memory for a layer of a [`Character`].
-#[derive(Debug)]
-pub struct LayerMemory<'m> {
-    /// An element for each moving channel of the layer's clip.
-    pub states: &'m mut [ChannelState],
-    /// An element for each channel of the rig.
-    pub values: &'m mut [i32],
-    /// An element for each channel of the rig.
-    pub sampled: &'m mut [i32],
-    /// As [`Mask::new`] says.
-    pub words: &'m mut [u32],
-}
 
 /// A layer of the machine's table.
 #[derive(Debug)]

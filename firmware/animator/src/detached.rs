@@ -1,9 +1,9 @@
 //! Animators and characters apart from the memory that they play in, for programs that keep both in one structure.
 
 use crate::animator::Animator;
-use crate::character::{Character, Layer, LayerMemory};
+use crate::character::{Character, Layer};
 use crate::mask::Mask;
-use crate::memory::Memory;
+use crate::memory::{LayerMemory, Memory};
 use crate::track::Track;
 use heapless::Vec;
 use pantin::ChannelState;

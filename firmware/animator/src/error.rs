@@ -2,6 +2,34 @@
 
 use pantin::{OpenError, TooSmall, WrongForm};
 
+/// A joint's name or a pattern, for an error: its first 31 bytes, whole characters of UTF-8.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Name {
+    len: u8,
+    bytes: [u8; 31],
+}
+
+impl Name {
+    /// The name's beginning.
+    pub(crate) fn new(name: &str) -> Name {
+        let len = name.floor_char_boundary(31).min(31);
+        let mut bytes = [0; 31];
+        bytes.iter_mut().zip(name.as_bytes().iter().take(len)).for_each(|(own, byte)| *own = *byte);
+        Name { len: len as u8, bytes }
+    }
+
+    /// The name's beginning.
+    pub fn as_str(&self) -> &str {
+        self.bytes.get(..self.len.into()).and_then(|bytes| core::str::from_utf8(bytes).ok()).unwrap_or("")
+    }
+}
+
+impl core::fmt::Debug for Name {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        self.as_str().fmt(f)
+    }
+}
+
 /// Why a call was refused. The animator is as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -21,10 +49,16 @@ pub enum Error {
         /// Those that were given.
         given: usize,
     },
-    /// No joint and no scalar has a name that the pattern matches.
-    NothingMatches,
-    /// The rig has no joint of this name, or joints that do not hang on each other as they should.
-    NoSuchJoint,
+    /// No joint and no scalar has a name that this pattern matches.
+    NothingMatches(Name),
+    /// The rig has no joint of this name.
+    NoSuchJoint(Name),
+    /// The joint of this name has too few joints above it, or bones without length.
+    ChainTooShort(Name),
+    /// The direction in which a joint looks has no length.
+    NoDirection,
+    /// The rig has no joints, or not the one that is to carry the figure.
+    NoCarrier,
     /// The clip lacks footstep events, without which phases cannot be compared.
     NoFootsteps,
     /// The state machine's table is damaged or names what is not there.
@@ -56,8 +90,13 @@ impl core::fmt::Display for Error {
             Error::Form(error) => error.fmt(f),
             Error::Clip(error) => error.fmt(f),
             Error::TooSmall { what, needed, given } => write!(f, "{needed} {what} are needed; {given} were given"),
-            Error::NothingMatches => f.write_str("no joint and no scalar matches the pattern"),
-            Error::NoSuchJoint => f.write_str("the rig has no such joint, or not in this chain"),
+            Error::NothingMatches(pattern) => write!(f, "no joint and no scalar matches `{}`", pattern.as_str()),
+            Error::NoSuchJoint(name) => write!(f, "the rig has no joint `{}`", name.as_str()),
+            Error::ChainTooShort(name) => {
+                write!(f, "joint `{}` has too few joints above it, or bones without length", name.as_str())
+            }
+            Error::NoDirection => f.write_str("the direction of the look has no length"),
+            Error::NoCarrier => f.write_str("the rig has no joint that can carry the figure"),
             Error::NoFootsteps => f.write_str("the clip has no events left_foot_down and right_foot_down"),
             Error::Machine(error) => error.fmt(f),
         }

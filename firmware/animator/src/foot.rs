@@ -3,7 +3,6 @@
 use crate::Error;
 use crate::groups::Group;
 use crate::root::Placement;
-use crate::transition::{AGAIN, Cubic, Offset};
 use crate::two_bone::{Limb, Limits, Reach};
 use pantin::{Clip, Rig};
 
@@ -14,12 +13,38 @@ enum State {
     Free,
     /// It stays at a place of the world; the second number is the least height of the ankle since it came down.
     Locked([i64; 2], i32),
-    /// It goes back to the clip's motion in some updates.
-    Released(u8),
+    /// It goes back to the clip's motion, since this many us.
+    Released(u32),
 }
 
+/// How far a foot is from where the clip has it, along one of the horizontal axes, in raw units.
+#[derive(Clone, Copy, Debug, Default)]
+struct Distance {
+    /// While it is locked, the present distance; after that, the one at which it was let go.
+    d: i32,
+    /// The distance that it would go in the whole time of the release, at the velocity of the last locked update.
+    v: i32,
+}
+
+impl Distance {
+    /// The distance at a part of the release, in 2^-15: the cubic that begins with this distance and velocity and ends at zero with neither.
+    fn at(self, part: u32) -> i32 {
+        let t = i64::from(part.min(ONE));
+        let left = i64::from(ONE) - t;
+        let squared = (left * left) >> 15;
+        // Below 2^32 times 2^17.
+        let own = (i64::from(self.d) * ((squared * (i64::from(ONE) + 2 * t)) >> 15)) >> 15;
+        let moved = (i64::from(self.v) * ((squared * t) >> 15)) >> 15;
+        (own + moved).clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32
+    }
+}
+
+/// The whole release, in 2^-15.
+const ONE: u32 = 1 << 15;
+
 /// Keeps a foot in its place in the world from the moment at which it bears weight until the clip lifts it or carries it on. The ankle's height and
-/// its rotation stay the clip's.
+/// its rotation stay the clip's. A foot that is let go starts with its own velocity, and is back in the clip's motion after the time of the release, at
+/// any display rate.
 #[derive(Clone, Debug)]
 pub struct FootLock<'a> {
     limb: Limb<'a>,
@@ -27,17 +52,18 @@ pub struct FootLock<'a> {
     negative: bool,
     state: State,
     /// What is left of the lock after it ends, along the two horizontal axes.
-    offsets: [Offset; 2],
-    release: u8,
+    distances: [Distance; 2],
+    release_us: u32,
 }
 
 impl<'a> FootLock<'a> {
-    /// The lock of the foot whose ankle has this name. After a lock the foot goes back to the clip's motion in `release` updates.
-    pub fn new(clip: &Clip<'a>, groups: &[Group], ankle: &str, limits: Limits, release: u8) -> Result<FootLock<'a>, Error> {
+    /// The lock of the foot whose ankle has this name. After a lock the foot goes back to the clip's motion in `release_us` microseconds (200,000 suits a
+    /// walk).
+    pub fn new(clip: &Clip<'a>, groups: &[Group], ankle: &str, limits: Limits, release_us: u32) -> Result<FootLock<'a>, Error> {
         let limb = Limb::to(clip, groups, ankle, limits)?;
         let rig: Rig<'_> = clip.rig();
         let (up, negative) = (rig.up().axis(), rig.up().is_negative());
-        Ok(FootLock { limb, up, negative, state: State::Free, offsets: [Offset::ZERO; 2], release })
+        Ok(FootLock { limb, up, negative, state: State::Free, distances: [Distance::default(); 2], release_us })
     }
 
     /// Whether the foot is held.
@@ -48,13 +74,17 @@ impl<'a> FootLock<'a> {
     /// Lets the foot go, as when a transition begins.
     pub fn release(&mut self) {
         if self.is_locked() {
-            self.state = State::Released(self.release.max(1));
+            self.state = State::Released(0);
         }
     }
 
-    /// Corrects the pose of an update. `down` says that the foot's event (`left_foot_down`, `right_foot_down`) was passed in it. Call it once an
-    /// update, after layers. The limb's reach is returned; without a lock there is no error.
-    pub fn update(&mut self, pose: &mut [i32], placement: Placement, down: bool) -> Reach {
+    /// Corrects the pose of an update, `elapsed_us` after the last one. `down` says that the foot's event (`left_foot_down`, `right_foot_down`) was passed
+    /// in it. Call it once an update, after layers. The limb's reach is returned; without a lock there is no error.
+    pub fn update(&mut self, pose: &mut [i32], placement: Placement, down: bool, elapsed_us: u32) -> Reach {
+        if let State::Released(since) = self.state {
+            let since = since.saturating_add(elapsed_us);
+            self.state = if since < self.release_us { State::Released(since) } else { State::Free };
+        }
         let ankle = self.limb.end(pose);
         let of = |axis: usize| ankle.get(axis % 3).copied().unwrap_or(0);
         let (flat, height) = ([of(self.up + 1), of(self.up + 2)], if self.negative { -of(self.up) } else { of(self.up) });
@@ -62,39 +92,18 @@ impl<'a> FootLock<'a> {
             // Where the foot is now, with what is left of the last lock: nothing jumps.
             let [a, b] = flat;
             let [left_a, left_b] = self.left();
+            self.distances = [left_a, left_b].map(|d| Distance { d, v: 0 });
             self.state = State::Locked(placement.to_world([a.wrapping_add(left_a), b.wrapping_add(left_b)]), height);
         }
         if let State::Locked(anchor, least) = self.state {
-            let length = self.limb.length();
-            let wanted = placement.to_pose(anchor);
-            let [a, b] = [0, 1].map(|at: usize| {
-                let of = |v: [i32; 2]| v.get(at).copied().unwrap_or(0);
-                of(wanted).wrapping_sub(of(flat))
-            });
-            let least = least.min(height);
-            self.state = State::Locked(anchor, least);
-            for (offset, d) in self.offsets.iter_mut().zip([a, b]) {
-                *offset = Offset { d, ..Offset::ZERO };
-            }
+            self.hold(placement.to_pose(anchor), flat, elapsed_us);
+            let (length, least) = (self.limb.length(), least.min(height));
             // Lifted by a sixteenth of the limb, or carried on by an eighth: the step is over.
-            let far = |x: i32| x.unsigned_abs() > (length >> 3).unsigned_abs();
-            if height.wrapping_sub(least) > length >> 4 || far(a) || far(b) {
-                self.state = State::Released(self.release.max(1));
-                let cubic = Cubic::new(self.release.max(1));
-                // The difference grows because the clip moves on; that velocity is the clip's, and is not carried on.
-                self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
-            }
-        } else if let State::Released(left) = self.state {
-            let left = left.saturating_sub(1);
-            self.offsets.iter_mut().for_each(Offset::step);
-            if AGAIN.contains(&left) {
-                let cubic = Cubic::new(left);
-                self.offsets.iter_mut().for_each(|offset| cubic.solve(offset));
-            }
-            self.state = if left == 0 { State::Free } else { State::Released(left) };
+            let far = self.distances.iter().any(|own| own.d.unsigned_abs() > (length >> 3).unsigned_abs());
+            let over = height.wrapping_sub(least) > length >> 4 || far;
+            self.state = if over { State::Released(0) } else { State::Locked(anchor, least) };
         }
         if self.state == State::Free {
-            self.offsets = [Offset::ZERO; 2];
             return Reach { error: 0, within: true };
         }
         let [left_a, left_b] = self.left();
@@ -107,7 +116,25 @@ impl<'a> FootLock<'a> {
         self.limb.reach(pose, target, None)
     }
 
+    /// Keeps the foot at a place of the pose, and its distance's velocity.
+    fn hold(&mut self, wanted: [i32; 2], flat: [i32; 2], elapsed_us: u32) {
+        let release = i64::from(self.release_us);
+        for ((own, wanted), flat) in self.distances.iter_mut().zip(wanted).zip(flat) {
+            let d = wanted.wrapping_sub(flat);
+            let moved = i64::from(d.wrapping_sub(own.d)) * release;
+            let v = moved.checked_div(elapsed_us.into()).unwrap_or(0);
+            *own = Distance { d, v: v.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32 };
+        }
+    }
+
     fn left(&self) -> [i32; 2] {
-        if self.state == State::Free { [0; 2] } else { self.offsets.map(|offset| offset.d) }
+        let part = match self.state {
+            State::Free => return [0; 2],
+            State::Locked(..) => 0,
+            State::Released(since) => {
+                (u64::from(since) << 15).checked_div(self.release_us.into()).unwrap_or(u64::from(ONE)) as u32
+            }
+        };
+        self.distances.map(|own| own.at(part))
     }
 }

@@ -1,7 +1,7 @@
 //! A look: neck, head and eyes turn towards a point, each by its share.
 
-use crate::Error;
 use crate::chain::{Chain, Joint, shifted};
+use crate::error::{Error, Name};
 use crate::groups::Group;
 use crate::two_bone::Reach;
 use heapless::Vec;
@@ -38,9 +38,9 @@ impl<'a> Look<'a> {
     /// direction in the joint's own axes in which it faces, of any length.
     pub fn of(clip: &Clip<'a>, groups: &[Group], joint: &str, shares: &[Share], forward: [i32; 3]) -> Result<Look<'a>, Error> {
         let chain = Chain::to(clip, groups, joint)?;
-        let (forward, _) = direction(forward).ok_or(Error::NoSuchJoint)?;
+        let (forward, _) = direction(forward).ok_or(Error::NoDirection)?;
         if shares.len() > chain.bones.len() {
-            return Err(Error::NoSuchJoint);
+            return Err(Error::ChainTooShort(Name::new(joint)));
         }
         let mut own = Vec::new();
         for share in shares {

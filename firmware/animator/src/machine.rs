@@ -42,15 +42,27 @@ pub struct Machine<'a> {
     /// The inputs that the last update saw: fired or held.
     seen: u32,
     held: u32,
+    /// Those that were held at the end of the last update.
+    held_before: u32,
     state: u8,
     /// Whether the second track plays this state's second clip.
     blending: bool,
 }
 
+/// How often the state changes in one instant, and at how many instants in the middle of an update, at most.
+const CHANGES: usize = 4;
+
+/// Inputs that a transition looks at: those that were fired or are held, and those that are not held.
+#[derive(Clone, Copy, Debug)]
+struct Inputs {
+    down: u32,
+    up: u32,
+}
+
 /// What an update did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Updated {
-    /// The state that was entered, if one was.
+    /// The state that was entered last, if one was.
     pub entered: Option<u8>,
     /// Whether events found the queue full.
     pub lost: Option<EventsLost>,
@@ -70,7 +82,7 @@ impl<'a> Machine<'a> {
             let [_, _, initial] = table.parameter_row(index);
             *parameter = initial;
         }
-        Machine { table, parameters, fired: 0, seen: 0, held: 0, state: table.first(), blending: false }
+        Machine { table, parameters, fired: 0, seen: 0, held: 0, held_before: 0, state: table.first(), blending: false }
     }
 
     /// Starts an animator of [`Machine::first_clip`] as the state says: at its speed, from the frame at which it begins. [`crate::Character`] does so.
@@ -133,10 +145,11 @@ impl<'a> Machine<'a> {
         self.parameters.get(usize::from(parameter)).copied().unwrap_or(0)
     }
 
-    /// Lets time pass: updates the animator, then makes at most one transition, the first in the table whose cause is there (those from any state
-    /// come before the state's own, and do not lead to the state itself). A state that blends needs `second`, a track for any clip of
-    /// the bank, else it plays its first clip alone. An error is of a clip that cannot be opened, or for which there is too little memory:
-    /// the old state goes on.
+    /// Lets time pass: updates the animator, then makes the first transition in the table whose cause is there (those from any state come before the
+    /// state's own, and do not lead to the state itself), and then those of the state that it leads to, up to 4 in all. Where a clip that is no loop
+    /// ends, this happens in that instant, without inputs that came since the last update, and the rest of the time is the next state's: up to 4 times
+    /// in an update. So the way does not depend on the display rate. A state that blends needs `second`, a track for any clip of the bank, else it plays its first clip alone. An error is of a clip that cannot be opened,
+    /// or for which there is too little memory: the old state goes on.
     pub fn update<'b>(
         &mut self,
         elapsed_us: u32,
@@ -144,17 +157,72 @@ impl<'a> Machine<'a> {
         animator: &mut Animator<'b, '_>,
         second: Option<&mut Track<'b, '_>>,
     ) -> Result<Updated, Error> {
-        let lost = animator.update(elapsed_us).err();
-        let entered = self.enter(bank, animator);
-        (self.seen, self.fired) = (self.fired | self.held, 0);
-        let entered = entered?;
-        if let (Some(second), Some(row)) = (second, self.table.state(self.state)) {
-            self.blend(&row, entered.is_some(), bank, animator, second)?;
-        }
-        Ok(Updated { entered, lost })
+        let updated = self.run(u64::from(elapsed_us) * 1000, bank, animator, second);
+        (self.seen, self.fired, self.held_before) = (self.fired | self.held, 0, self.held);
+        updated
     }
 
-    fn enter<'b>(&mut self, bank: &Bank<'b>, animator: &mut Animator<'b, '_>) -> Result<Option<u8>, Error> {
+    fn run<'b>(
+        &mut self,
+        elapsed_ns: u64,
+        bank: &Bank<'b>,
+        animator: &mut Animator<'b, '_>,
+        mut second: Option<&mut Track<'b, '_>>,
+    ) -> Result<Updated, Error> {
+        let mut updated = Updated::default();
+        let (mut left_ns, mut heard) = (elapsed_ns, 0);
+        let before = Inputs { down: self.held & self.held_before, up: !(self.held | self.held_before) };
+        for _ in 0..CHANGES {
+            heard = animator.events().iter().count();
+            let (rest_ns, outcome) = animator.play(left_ns);
+            left_ns = rest_ns;
+            updated.lost = outcome.err().or(updated.lost);
+            if left_ns == 0 {
+                break;
+            }
+            let Some(state) = self.enter_all(before, before, heard, bank, animator)? else { break };
+            updated.entered = Some(state);
+            self.blend(bank, animator, second.as_deref_mut())?;
+        }
+        animator.hold(left_ns);
+        let (fired, held) = (self.fired, Inputs { down: self.held, up: !self.held });
+        let now = Inputs { down: fired | held.down, up: held.up };
+        updated.entered = self.enter_all(now, held, heard, bank, animator)?.or(updated.entered);
+        self.blend(bank, animator, second)?;
+        Ok(updated)
+    }
+
+    /// Makes a transition, then those of the states that are entered: all in one instant, so that the display rate does not matter. Inputs are
+    /// `first` for the first one and `then` for the others, of which none leads back. Returns the last state, if one was entered.
+    fn enter_all<'b>(
+        &mut self,
+        first: Inputs,
+        then: Inputs,
+        heard: usize,
+        bank: &Bank<'b>,
+        animator: &mut Animator<'b, '_>,
+    ) -> Result<Option<u8>, Error> {
+        let (mut inputs, mut heard, mut last) = (first, heard, None);
+        // Conditions that contradict each other change the state once.
+        let mut been = 0;
+        for _ in 0..CHANGES {
+            been |= state_bit(self.state);
+            let Some(state) = self.enter(inputs, heard, been, bank, animator)? else { break };
+            (inputs, heard, last) = (then, animator.events().iter().count(), Some(state));
+        }
+        Ok(last)
+    }
+
+    /// Makes the first transition whose cause is there and which does not lead to a state of `been`, where more than one state was. Of the events, those
+    /// after the first `heard` count.
+    fn enter<'b>(
+        &mut self,
+        inputs: Inputs,
+        heard: usize,
+        been: u64,
+        bank: &Bank<'b>,
+        animator: &mut Animator<'b, '_>,
+    ) -> Result<Option<u8>, Error> {
         let Some(now) = self.table.state(self.state) else { return Ok(None) };
         let own = usize::from(now.transitions.0)..usize::from(now.transitions.0) + usize::from(now.transitions.1);
         let any = 0..self.table.any_transitions();
@@ -162,7 +230,9 @@ impl<'a> Machine<'a> {
         let mut rows = any.map(|index| (index, true)).chain(own.map(|index| (index, false)));
         let wanted = rows.find_map(|(index, any)| {
             let row = self.table.transition(index).filter(|row| !any || row.to != state)?;
-            self.happens(row.cause, animator).then_some(row)
+            // In its first state, a machine may start the same state again.
+            let back = been != state_bit(state) && been & state_bit(row.to) != 0;
+            (!back && self.happens(row.cause, inputs, heard, animator)).then_some(row)
         });
         let Some(wanted) = wanted else { return Ok(None) };
         let Some(row) = self.table.state(wanted.to) else { return Ok(None) };
@@ -181,28 +251,27 @@ impl<'a> Machine<'a> {
         Ok(Some(wanted.to))
     }
 
-    fn happens(&self, cause: Cause, animator: &mut Animator<'_, '_>) -> bool {
+    fn happens(&self, cause: Cause, inputs: Inputs, heard: usize, animator: &mut Animator<'_, '_>) -> bool {
         match cause {
             Cause::End => animator.track().ended(),
-            Cause::Input(input) => (self.fired | self.held) & bit(input) != 0,
-            Cause::Released(input) => self.held & bit(input) == 0,
-            Cause::Event(id) => animator.events().iter().any(|fired| fired.id == u32::from(id)),
+            Cause::Input(input) => inputs.down & bit(input) != 0,
+            Cause::Released(input) => inputs.up & bit(input) != 0,
+            Cause::Event(id) => animator.events().iter().skip(heard).any(|fired| fired.id == u32::from(id)),
             Cause::Above(parameter, threshold) => self.get(parameter) > threshold,
             Cause::Below(parameter, threshold) => self.get(parameter) < threshold,
         }
     }
 
-    /// Mixes the second clip in, in step with the first, and lets the first play at a speed between the two.
+    /// Mixes the second clip of a state that blends in, in step with the first, and lets the first play at a speed between the two.
     fn blend<'b>(
         &mut self,
-        row: &StateRow,
-        entered: bool,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
-        second: &mut Track<'b, '_>,
+        second: Option<&mut Track<'b, '_>>,
     ) -> Result<(), Error> {
+        let (Some(second), Some(row)) = (second, self.table.state(self.state)) else { return Ok(()) };
         let Some((other, parameter)) = row.blend else { return Ok(()) };
-        if entered || !self.blending {
+        if !self.blending {
             second.start(clip(bank, other)?, 0, row.speed)?;
             self.blending = true;
         }
@@ -229,6 +298,11 @@ impl<'a> Machine<'a> {
 /// The bit of an input in a set of them; 0 for one that no table has.
 fn bit(input: u8) -> u32 {
     1u32.checked_shl(input.into()).unwrap_or(0)
+}
+
+/// The bit of a state in a set of them.
+fn state_bit(state: u8) -> u64 {
+    1 << (state % 64)
 }
 
 /// A clip of a bank.

@@ -1,6 +1,6 @@
 //! Which joints and scalars a layer moves: one bit each.
 
-use crate::Error;
+use crate::error::{Error, Name};
 use pantin::Rig;
 
 /// A bit for each joint of a rig, End Sites included, and then for each scalar, in memory of the caller's.
@@ -37,6 +37,7 @@ impl<'m> Mask<'m> {
     /// everything else for itself. The pattern is followed by ` +` if joints below those that match are meant too.
     /// [`Error::NothingMatches`] if no name does; the mask is then as it was.
     pub fn set(&mut self, rig: &Rig<'_>, pattern: &str, on: bool) -> Result<(), Error> {
+        let asked = pattern;
         let (pattern, below) = match pattern.strip_suffix(" +") {
             Some(pattern) => (pattern, true),
             None => (pattern, false),
@@ -55,7 +56,7 @@ impl<'m> Mask<'m> {
                 found = true;
             }
         }
-        if found { Ok(()) } else { Err(Error::NothingMatches) }
+        if found { Ok(()) } else { Err(Error::NothingMatches(Name::new(asked))) }
     }
 
     /// Whether a joint or one above it matches.

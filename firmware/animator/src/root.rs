@@ -6,6 +6,7 @@
 use crate::Error;
 use crate::groups::Group;
 use crate::math;
+use fixed::types::I48F16;
 use pantin::{Angle, ChannelState, Clip, EulerOrder, JointRef, Kind, Matrix, Player, Pose, Rig, Turn};
 
 /// Where a figure is in the world.
@@ -18,12 +19,49 @@ pub struct Placement {
     pub heading: Angle,
 }
 
+/// Where a figure is on the ground, seen from above: [`Placement::on_ground`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GroundPose {
+    /// The place in centimetres, on axes of which the second lies a quarter turn counterclockwise of the first.
+    pub place_cm: [I48F16; 2],
+    /// How far the figure is turned, counterclockwise.
+    pub heading: Angle,
+}
+
 impl Placement {
+    /// The place in centimetres, in steps of 2^-16 cm and rounded down, exact up to 1,000 km; the axes are those of [`Placement::place`]. `clip` is one whose placements these
+    /// are, such as that of [`crate::Animator::track`].
+    pub fn place_cm(&self, clip: &Clip<'_>) -> [I48F16; 2] {
+        let (unit_micro_cm, shift) = (i64::from(clip.rig().unit_micro_cm()), i32::from(clip.length_exponent()) + 16);
+        self.place.map(|raw| {
+            let fine = if shift > 0 { raw.wrapping_shl(shift as u32) } else { raw };
+            let (whole, part) = (fine.div_euclid(1_000_000), fine.rem_euclid(1_000_000));
+            let fine = whole.wrapping_mul(unit_micro_cm).wrapping_add((part * unit_micro_cm).div_euclid(1_000_000));
+            I48F16::from_bits(if shift < 0 { fine >> shift.unsigned_abs().min(63) } else { fine })
+        })
+    }
+
+    /// The figure on the ground, in centimetres and seen from above: for a map, or a robot's odometry.
+    pub fn on_ground(&self, clip: &Clip<'_>) -> GroundPose {
+        let [a, b] = self.place_cm(clip);
+        if clip.rig().up().is_negative() {
+            // The axes are seen from below.
+            return GroundPose { place_cm: [a, -b], heading: -self.heading };
+        }
+        GroundPose { place_cm: [a, b], heading: self.heading }
+    }
+
     /// A point of the pose, as a horizontal vector in the order of [`Placement::place`], in the world.
     pub fn to_world(&self, point: [i32; 2]) -> [i64; 2] {
         let [a, b] = Heading::new(self.heading).rotate(point);
         let [x, y] = self.place;
         [x.wrapping_add(a), y.wrapping_add(b)]
+    }
+
+    /// The difference to another placement.
+    pub(crate) fn since(&self, before: &Placement) -> Placement {
+        let ([x, y], [before_x, before_y]) = (self.place, before.place);
+        Placement { place: [x.wrapping_sub(before_x), y.wrapping_sub(before_y)], heading: self.heading - before.heading }
     }
 
     /// The reverse of [`Placement::to_world`], within a raw unit; cut off at the range of a channel.

@@ -52,14 +52,13 @@ impl<'a> Animator<'a, '_> {
             self.compose();
             return Err(error);
         }
-        self.before = placement;
         if old_form != new_form {
             self.convert(old_form, new_form)?;
             let shift = i32::from(old_form.length_exponent()) - i32::from(new_form.length_exponent());
             let shifted =
                 |x: i64| if shift >= 0 { x.wrapping_shl(shift.min(63) as u32) } else { x >> shift.unsigned_abs().min(63) };
             placement.place = placement.place.map(shifted);
-            self.before = placement;
+            self.before.place = self.before.place.map(shifted);
         }
         // The new clip's heading stands where the old one's stood.
         let turned = yaw_before - self.root.yaw_of(&self.track.pose());
@@ -173,7 +172,7 @@ impl<'a> Animator<'a, '_> {
                 convert_group(was, group, &joint, self.offsets);
             }
         }
-        self.root = Root::of(&rig, groups, self.carrier).ok_or(Error::NoSuchJoint)?;
+        self.root = Root::of(&rig, groups, self.carrier).ok_or(Error::NoCarrier)?;
         Ok(())
     }
 }

@@ -198,7 +198,7 @@ impl<'a, 'm> Track<'a, 'm> {
 
     /// Lets time pass, for a clip that plays as a layer: without events and root motion.
     pub fn update(&mut self, elapsed_us: u32) {
-        self.advance(elapsed_us, None);
+        self.advance(u64::from(elapsed_us) * 1000, None);
     }
 
     /// Goes on by one frame of the clip, whatever its speed; a loop goes on from its last frame to its first.
@@ -226,26 +226,17 @@ impl<'a, 'm> Track<'a, 'm> {
         self.step(None);
     }
 
-    /// Lets time pass. `root` is that of the figure that travels with this clip, if one does.
-    pub(crate) fn advance(&mut self, elapsed_us: u32, root: Option<&Root<'_>>) -> Passage {
+    /// Lets time pass, up to 2^42 ns. `root` is that of the figure that travels with this clip, if one does. Returns the time that is left after the end of
+    /// a clip that is no loop, too.
+    pub(crate) fn advance(&mut self, elapsed_ns: u64, root: Option<&Root<'_>>) -> (Passage, u64) {
         let (from, from_rest) = (self.player.frame(), self.rest != 0);
         let forward = self.speed >= 0;
         let frame_time = i64::from(self.clip().frame_time_ns()) << 16;
         // Below 2^42 times 2^18, and 2^48.
-        self.rest += i64::from(elapsed_us) * 1000 * i64::from(self.speed.to_bits());
-        let mut steps = 0i64;
-        while self.rest >= frame_time && steps < 4 {
-            (self.rest, steps) = (self.rest - frame_time, steps + 1);
-        }
-        while self.rest < 0 && steps > -4 {
-            (self.rest, steps) = (self.rest + frame_time, steps - 1);
-        }
-        if !(0..frame_time).contains(&self.rest) {
-            steps += self.rest.checked_div_euclid(frame_time).unwrap_or(0);
-            self.rest = self.rest.checked_rem_euclid(frame_time).unwrap_or(0);
-        }
+        self.rest += elapsed_ns as i64 * i64::from(self.speed.to_bits());
+        let steps = self.take_steps(frame_time);
         let frames = i64::from(self.clip().frames());
-        let (target, mut laps) = (i64::from(from) + steps, 0);
+        let (target, mut laps, mut left) = (i64::from(from) + steps, 0, 0);
         let mut to = target;
         if self.clip().looped() {
             if !(0..frames).contains(&target) {
@@ -254,9 +245,12 @@ impl<'a, 'm> Track<'a, 'm> {
             }
         } else {
             let last = frames - 1;
-            self.ended |= target > last || target < 0 || (target == last && self.rest > 0);
+            // Below 2^61: no more than the time that passed.
+            let over = if target < 0 { -(target * frame_time + self.rest) } else { (target - last) * frame_time + self.rest };
             if target >= last || target < 0 {
                 (to, self.rest) = (target.max(0).min(last), 0);
+                self.ended |= over > 0;
+                left = over.unsigned_abs().checked_div(self.speed.to_bits().unsigned_abs().into()).unwrap_or(0);
             }
         }
         let to = to as u32;
@@ -268,7 +262,23 @@ impl<'a, 'm> Track<'a, 'm> {
         if self.rest != 0 {
             self.close(root);
         }
-        Passage { from, from_rest, to, to_rest: self.rest != 0, laps: laps as i32, forward }
+        (Passage { from, from_rest, to, to_rest: self.rest != 0, laps: laps as i32, forward }, left)
+    }
+
+    /// Takes whole frames out of the time after the frame: as many as come back.
+    fn take_steps(&mut self, frame_time: i64) -> i64 {
+        let mut steps = 0i64;
+        while self.rest >= frame_time && steps < 4 {
+            (self.rest, steps) = (self.rest - frame_time, steps + 1);
+        }
+        while self.rest < 0 && steps > -4 {
+            (self.rest, steps) = (self.rest + frame_time, steps - 1);
+        }
+        if !(0..frame_time).contains(&self.rest) {
+            steps += self.rest.checked_div_euclid(frame_time).unwrap_or(0);
+            self.rest = self.rest.checked_rem_euclid(frame_time).unwrap_or(0);
+        }
+        steps
     }
 
     /// On the last frame of a loop, lets the velocities lead to frame 0: those of the root to where the next lap begins, which is learnt here.

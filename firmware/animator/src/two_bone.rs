@@ -1,7 +1,7 @@
 //! Two-bone inverse kinematics: a leg whose ankle, or an arm whose wrist, goes to a target.
 
-use crate::Error;
 use crate::chain::{Chain, Joint, shifted};
+use crate::error::{Error, Name};
 use crate::groups::Group;
 use pantin::{Angle, Clip};
 use pantin_math::rotation::Vector;
@@ -52,17 +52,17 @@ pub struct Limb<'a> {
 
 impl<'a> Limb<'a> {
     /// The limb that ends in a joint, by its name: its parent and its parent's parent bend. `groups` are those of the poses:
-    /// [`crate::Animator::groups`]. [`Error::NoSuchJoint`] for a joint with fewer than two above it, or for bones without length.
+    /// [`crate::Animator::groups`]. [`Error::ChainTooShort`] for a joint with fewer than two above it, or for bones without length.
     pub fn to(clip: &Clip<'a>, groups: &[Group], end: &str, limits: Limits) -> Result<Limb<'a>, Error> {
         let chain = Chain::to(clip, groups, end)?;
-        let count = chain.bones.len();
+        let (count, short) = (chain.bones.len(), Error::ChainTooShort(Name::new(end)));
         let length = |back: usize| {
-            let bone = chain.bones.get(count.wrapping_sub(back)).ok_or(Error::NoSuchJoint)?;
-            direction(bone.offset).map(|(_, length)| length).ok_or(Error::NoSuchJoint)
+            let bone = chain.bones.get(count.wrapping_sub(back)).ok_or(short)?;
+            direction(bone.offset).map(|(_, length)| length).ok_or(short)
         };
         let (upper, lower) = (length(2)?, length(1)?);
         if count < 3 {
-            return Err(Error::NoSuchJoint);
+            return Err(short);
         }
         let distance = |bend: Angle| {
             let (_, cos) = sin_cos(bend.to_bits());

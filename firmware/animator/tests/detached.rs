@@ -2,7 +2,7 @@
 
 use fixed::types::I16F16;
 use pantin::ChannelState;
-use pantin_animator::{Animator, Character, LayerMemory, Transition, Workspace};
+use pantin_animator::{Animator, Character, LayerWorkspace, Transition, Workspace};
 
 mod common;
 
@@ -25,18 +25,10 @@ fn an_animator_goes_on_in_the_middle_of_a_transition() {
         play(&mut whole, picture);
         play(&mut animator, picture);
         assert_eq!(whole.pose().values, animator.pose().values, "{picture}");
-        assert_eq!((whole.placement(), whole.increment()), (animator.placement(), animator.increment()), "{picture}");
+        assert_eq!((whole.placement(), whole.take_increment()), (animator.placement(), animator.take_increment()), "{picture}");
         detached = animator.detach();
     }
     assert!(detached.attach(Workspace::<8, 8>::new().lend()).is_none());
-}
-
-/// Memory of a layer.
-type LayerRoom = ([ChannelState; 64], [i32; 64], [i32; 64], [u32; 4]);
-
-fn layer(room: &mut LayerRoom) -> LayerMemory<'_> {
-    let (states, values, sampled, words) = room;
-    LayerMemory { states, values, sampled, words }
 }
 
 fn steer(character: &mut Character, picture: u32) {
@@ -52,21 +44,20 @@ fn steer(character: &mut Character, picture: u32) {
 
 #[test]
 fn a_character_goes_on_with_its_layer_and_its_second_track() {
-    let room =
-        || (Workspace::<64, 64>::new(), ([ChannelState::NEW; 64], [0; 64]), ([ChannelState::NEW; 64], [0; 64], [0; 64], [0; 4]));
+    let room = || (Workspace::<64, 64>::new(), ([ChannelState::NEW; 64], [0; 64]), LayerWorkspace::<64, 64>::new());
     let (mut one, mut other) = (room(), room());
     let (memory, second, layers) = &mut one;
     let mut whole = Character::new(CHARACTER, memory.lend()).unwrap();
     whole.lend_second(&mut second.0, &mut second.1).unwrap();
-    whole.lend_layer(layer(layers)).unwrap();
+    whole.lend_layer(layers.lend()).unwrap();
     let (memory, second, layers) = &mut other;
     let mut apart = Character::new(CHARACTER, memory.lend()).unwrap();
     apart.lend_second(&mut second.0, &mut second.1).unwrap();
-    apart.lend_layer(layer(layers)).unwrap();
+    apart.lend_layer(layers.lend()).unwrap();
     let mut detached = apart.detach();
     for picture in 0..120 {
         let second = Some((&mut other.1.0[..], &mut other.1.1[..]));
-        let mut character = detached.attach(other.0.lend(), second, [layer(&mut other.2)]).unwrap();
+        let mut character = detached.attach(other.0.lend(), second, [other.2.lend()]).unwrap();
         steer(&mut whole, picture);
         steer(&mut character, picture);
         assert_eq!(whole.pose().0.values, character.pose().0.values, "{picture}");

@@ -107,7 +107,8 @@ fn a_locked_foot_stays_and_is_let_go_without_a_jump() {
     let clip = walk();
     let mut room = Room::new();
     let mut animator = Animator::new(clip, room.lend()).unwrap();
-    let mut foot = FootLock::new(&clip, animator.groups(), "left-foot", Limits::default(), 10).unwrap();
+    let mut foot =
+        FootLock::new(&clip, animator.groups(), "left-foot", Limits::default(), 10 * clip.frame_time_ns() / 1000).unwrap();
     let scale = per_cm(&clip);
     // This walk has no events: a foot comes down where its ankle stops sinking.
     let mut heights = vec![];
@@ -126,7 +127,7 @@ fn a_locked_foot_stays_and_is_let_go_without_a_jump() {
         let placement = animator.placement();
         let own = at(&clip, "left-foot", animator.pose().values)[2] + placement.place[0] as f64 / scale;
         let down = heights[frame] < lowest + 1.0 && heights[(frame + heights.len() - 1) % heights.len()] >= lowest + 1.0;
-        let near = foot.update(animator.pose_mut(), placement, down);
+        let near = foot.update(animator.pose_mut(), placement, down, clip.frame_time_ns() / 1000);
         // This leg bends forwards and back alone: it cannot follow the hips' turn sideways.
         assert!(f64::from(near.error) / scale < 3.0 || !near.within, "{step}: {near:?}");
         let ankle = at(&clip, "left-foot", animator.pose().values)[2] + placement.place[0] as f64 / scale;
@@ -151,4 +152,70 @@ fn a_locked_foot_stays_and_is_let_go_without_a_jump() {
     assert!(locked_frames > 30);
     assert!(slide <= 1.0, "{slide}");
     assert!(fastest <= 2.0 * own_fastest, "{fastest} of {own_fastest}");
+}
+
+/// A foot that is let go in the middle of its step starts at rest, as it was held, and is back in the clip's motion after the same time at any rate.
+#[test]
+fn a_released_foot_goes_back_by_time_from_its_own_velocity() {
+    let clip = walk();
+    let scale = per_cm(&clip);
+    for rate in [24u32, 60, 240] {
+        let mut room = Room::new();
+        let mut animator = Animator::new(clip, room.lend()).unwrap();
+        let mut foot = FootLock::new(&clip, animator.groups(), "left-foot", Limits::default(), 300_000).unwrap();
+        let picture_us = 1_000_000 / rate;
+        // Where the foot is in the world, and where the clip has it.
+        let play = |animator: &mut Animator, foot: &mut FootLock, down: bool| {
+            animator.update(picture_us).unwrap();
+            let placement = animator.placement();
+            let at = |pose: &[i32]| at(&clip, "left-foot", pose)[2] + placement.place[0] as f64 / scale;
+            let own = at(animator.pose().values);
+            foot.update(animator.pose_mut(), placement, down, picture_us);
+            (at(animator.pose().values), own)
+        };
+        for _ in 0..rate / 6 {
+            play(&mut animator, &mut foot, false);
+        }
+        let mut held = play(&mut animator, &mut foot, true);
+        while (held.0 - held.1).abs() < 1.5 {
+            held = play(&mut animator, &mut foot, false);
+            assert!(foot.is_locked(), "{rate}");
+        }
+        foot.release();
+        let (mut ways, mut before) = (vec![], held);
+        let pictures = 300_000 / picture_us + 2;
+        for _ in 0..pictures {
+            let now = play(&mut animator, &mut foot, false);
+            ways.push((now.0 - before.0, now.1 - before.1, now.0 - now.1));
+            before = now;
+        }
+        let distance = (held.0 - held.1).abs();
+        // At rest before: it gains speed over the release and does not jump.
+        let fastest_own = ways.iter().map(|(_, own, _)| own.abs()).fold(0.0, f64::max);
+        let fastest = ways.iter().map(|(way, ..)| way.abs()).fold(0.0, f64::max);
+        let even = distance * f64::from(picture_us) / 300_000.0;
+        println!(
+            "{rate}: {distance:.2} cm; first {:.3}, fastest {fastest:.3}, the clip's {fastest_own:.3} cm a picture",
+            ways[0].0
+        );
+        assert!(ways[0].0.abs() < 0.5 * (even + fastest_own), "{rate}: it jumps by {} cm", ways[0].0);
+        assert!(fastest < fastest_own + 3.0 * even, "{rate}: {fastest} of {fastest_own} cm");
+        assert!(ways.last().unwrap().2.abs() < 0.1, "{rate}: {} cm are left", ways.last().unwrap().2);
+        // In the middle of the release it is on the way, at every rate.
+        let middle = ways[ways.len() / 2].2.abs() / distance;
+        assert!((0.2..1.0).contains(&middle), "{rate}: {middle} of the distance in the middle");
+    }
+}
+
+#[test]
+fn an_error_names_the_joint() {
+    let clip = walk();
+    let mut room = Room::new();
+    let animator = Animator::new(clip, room.lend()).unwrap();
+    let refused = |name: &str| Limb::to(&clip, animator.groups(), name, Limits::default()).unwrap_err().to_string();
+    assert_eq!(refused("left-hoof"), "the rig has no joint `left-hoof`");
+    let root = clip.rig().joint(0).unwrap().name();
+    assert_eq!(refused(root), format!("joint `{root}` has too few joints above it, or bones without length"));
+    // 31 bytes, and no character in parts.
+    assert_eq!(refused(&"é".repeat(40)), format!("the rig has no joint `{}`", "é".repeat(15)));
 }

@@ -99,8 +99,8 @@ fn root_motion_over_any_path_is_the_direct_difference() {
         let mut animator = Animator::new(clip, room.lend()).unwrap();
         let frame_us = clip.frame_time_ns().div_ceil(1000);
         let (mut sum, mut heading) = ([0i64; 2], pantin::Angle::ZERO);
-        let mut add = |animator: &Animator| {
-            let moved = animator.increment();
+        let mut add = |animator: &mut Animator| {
+            let moved = animator.take_increment();
             sum = [sum[0] + moved.place[0], sum[1] + moved.place[1]];
             heading = heading + moved.heading;
             (sum, heading)
@@ -125,7 +125,7 @@ fn root_motion_over_any_path_is_the_direct_difference() {
                     if rate < 0 && after > before {
                         laps -= 1;
                     }
-                    let (sum, heading) = add(&animator);
+                    let (sum, heading) = add(&mut animator);
                     let direct = animator.placement();
                     assert_eq!((direct.place, direct.heading), (sum, heading), "{round}");
                     if animator.track().part() == 0 && laps.abs() < 50 {
@@ -135,7 +135,7 @@ fn root_motion_over_any_path_is_the_direct_difference() {
                     continue;
                 }
             }
-            add(&animator);
+            add(&mut animator);
         }
         let direct: Placement = animator.placement();
         assert_eq!(direct.place, sum);

@@ -157,7 +157,7 @@ fn anything(seed: &[u8]) {
             }
         }
         assert!(animator.pose().values.len() == rig.channels());
-        let _ = (animator.placement(), animator.increment());
+        let _ = (animator.placement(), animator.take_increment());
     }
 }
 
@@ -182,9 +182,9 @@ fn reach(noise: &mut Noise, animator: &mut Animator<'_, '_>) {
         let near = limb.end(animator.pose().values);
         limb.reach(animator.pose_mut(), near.map(|x| x.wrapping_add(number(noise) >> 8)), pole);
     }
-    if let Ok(mut foot) = FootLock::new(&clip, &groups, name, limits, noise.below(256) as u8) {
+    if let Ok(mut foot) = FootLock::new(&clip, &groups, name, limits, noise.below(1 << 20) as u32) {
         for step in 0..4 {
-            foot.update(animator.pose_mut(), placement, step % 2 == 0);
+            foot.update(animator.pose_mut(), placement, step % 2 == 0, noise.below(1 << 24) as u32);
         }
     }
     let share = Share { part: noise.below(1 << 16) as u16, most: Angle::from_bits(number(noise)) };

@@ -35,7 +35,7 @@ fn play(bytes: &'static [u8]) -> Option<()> {
     ramp.go_to(Weight::ONE, 500_000);
     let mut breath = Breath::new(lent(), 4_000_000);
     let mut blink = Blink::new([clip.find_scalar(black_box("EyeBlinkLeft")), None], 1);
-    let mut foot = FootLock::new(&clip, animator.groups(), black_box("foot"), Limits::default(), 8).ok()?;
+    let mut foot = FootLock::new(&clip, animator.groups(), black_box("foot"), Limits::default(), 200_000).ok()?;
     let mut hand = Limb::to(&clip, animator.groups(), black_box("hand"), Limits::default()).ok()?;
     let look = Look::of(&clip, animator.groups(), black_box("head"), lent(), [0, 0, 1]).ok()?;
     loop {
@@ -53,8 +53,8 @@ fn play(bytes: &'static [u8]) -> Option<()> {
         blink.apply(pose);
         look.at(pose, black_box([0; 3]));
         hand.reach(pose, black_box([0; 3]), Some([0, 0, 1]));
-        foot.update(pose, placement, black_box(true));
-        black_box((animator.pose().values, animator.increment()));
+        foot.update(pose, placement, black_box(true), 16_667);
+        black_box((animator.pose().values, animator.take_increment()));
         if black_box(false) {
             animator.switch(clip, black_box(3), I16F16::ONE, Transition::Inertialized(black_box(9))).ok()?;
         }
