@@ -9,7 +9,7 @@ use crate::rig::Rig;
 ///
 /// An encoder chooses the unit and the maps clip by clip, so that two clips of one rig can differ in form. Values of one form mean
 /// nothing in another: what draws or mixes poses compares forms first ([`Form::check`]). `pantin convert --same-form` gives a set of
-/// clips one form. A [`Pose`] refers to its form by a [`FormRef`].
+/// clips one form. A [`crate::Pose`] refers to its form by a [`FormRef`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Form {
     /// [`Rig::id`].

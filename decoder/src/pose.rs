@@ -18,7 +18,7 @@ use crate::units::{Angle, Component, Fraction};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Pose<'p> {
-    /// One value a channel of the rig: angles in 2^-32 turns, positions in 2^[`Form::length_exponent`] units of the source,
+    /// One value a channel of the rig: angles in 2^-32 turns, positions in 2^[`crate::Form::length_exponent`] units of the source,
     /// quaternion components in 2^-30, scalars in 2^([`crate::Scalar::exponent`] - 31).
     pub values: &'p [i32],
     /// What the values mean.
@@ -90,7 +90,7 @@ impl Pose<'_> {
         Ok(Fraction::from_bits(self.values.get(scalar.channel()).copied().unwrap_or(0)))
     }
 
-    /// Where a joint stands in its parent: raw values in units of 2^[`Form::length_exponent`] of the source, `None` on axes where
+    /// Where a joint stands in its parent: raw values in units of 2^[`crate::Form::length_exponent`] of the source, `None` on axes where
     /// the rig's offset stands.
     pub fn position(&self, joint: &JointRef<'_>) -> Result<[Option<i32>; 3], WrongForm> {
         if joint.rig_id() != self.form.rig_id {
