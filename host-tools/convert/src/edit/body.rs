@@ -6,8 +6,8 @@
 //! share the turn from hips to chest; all others are carried by their parents.
 //!
 //! The length of the legs scales the way, and the hips' height over the ankles. Near the ground, two-bone inverse kinematics puts an ankle where the source's is
-//! from its thigh, in that scale, and to a height that is off by at most [`FREE_CM`] over the ground of the body, whose height is 0. In the air a leg points where
-//! the source's does. Within [`FREE_CM`] nothing is corrected, because a leg that is nearly straight would have to bend far for it.
+//! from its thigh, in that scale, and to a height that is off by at most 0.7 cm over the ground of the body, whose height is 0. In the air a leg points where
+//! the source's does. Within 0.7 cm nothing is corrected, because a leg that is nearly straight would have to bend far for it.
 
 use super::display::{Pose, add, aim, dot, pose, stands, subtract, transposed};
 use super::display_names::sources;
