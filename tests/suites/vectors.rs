@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use harness::vectors::{self, bank, c_figure, c_header, constants, coverage, record, sums, synthetic, turns};
+use harness::vectors::{self, bank, c_face, c_figure, c_header, constants, coverage, faces, record, sums, synthetic, turns};
 use pantin::Bank;
 
 /// Bytes that the folder may have.
@@ -49,6 +49,12 @@ fn the_rotations_are_those_of_the_decoder() {
 }
 
 #[test]
+fn the_pictures_of_faces_are_those_of_the_crate() {
+    let committed = fs::read_to_string(vectors::folder().join(faces::NAME)).unwrap();
+    assert_eq!(committed, faces::text().unwrap(), "`cargo xtask vectors` writes them");
+}
+
+#[test]
 fn no_vector_has_changed() {
     let committed = fs::read_to_string(vectors::folder().join(sums::NAME)).unwrap();
     assert_eq!(committed, sums::text(&vectors::folder()).unwrap(), "a vector never changes; `cargo xtask vectors` adds new ones");
@@ -56,7 +62,9 @@ fn no_vector_has_changed() {
 
 #[test]
 fn the_tables_in_c_are_those_of_the_crates() {
-    for (path, text) in [(c_header::path(), c_header::text()), (c_figure::path(), c_figure::text())] {
+    for (path, text) in
+        [(c_header::path(), c_header::text()), (c_figure::path(), c_figure::text()), (c_face::path(), c_face::text())]
+    {
         if std::env::var_os("PANTIN_UPDATE").is_some() {
             fs::write(&path, &text).unwrap();
         }

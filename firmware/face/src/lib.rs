@@ -50,6 +50,7 @@ mod camera;
 mod checked;
 mod crossing;
 pub mod curve;
+mod emotes;
 mod error;
 mod format;
 pub mod model;
@@ -70,6 +71,7 @@ mod weights;
 
 pub use binding::{BINDINGS, Binding};
 pub use camera::FaceView;
+pub use emotes::EMOTES;
 pub use error::{ModelError, UnknownName};
 pub use fixed;
 pub use model::{Model, NameEntry, SHAPES};

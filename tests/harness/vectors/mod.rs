@@ -1,10 +1,12 @@
 //! Golden vectors: clips, each with what a decoder must make of it, in `tests/vectors`.
 
 pub mod bank;
+pub mod c_face;
 pub mod c_figure;
 pub mod c_header;
 pub mod constants;
 pub mod coverage;
+pub mod faces;
 mod json;
 pub mod orders;
 pub mod own;

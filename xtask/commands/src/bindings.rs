@@ -3,6 +3,7 @@
 
 mod arduino;
 mod blender;
+mod face;
 mod figure;
 mod licences;
 mod micropython;
@@ -22,8 +23,8 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, rotations, and figures.
-const SOURCES: [&str; 3] = ["src/pantin.c", "src/pantin_turn.c", "src/pantin_figure.c"];
+/// The decoder, rotations, figures, and faces.
+const SOURCES: [&str; 4] = ["src/pantin.c", "src/pantin_turn.c", "src/pantin_figure.c", "src/pantin_face.c"];
 
 /// Every warning is an error.
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
@@ -187,6 +188,9 @@ impl Bindings {
             Ok(())
         });
         steps.run("lines of figures against the crate's", || figure::lines(&folder));
+        steps.run("faces against the crate's", || face::pictures(&folder));
+        steps.run("what faces promise", || face::rules(&folder));
+        steps.run("memory of faces", || face::memory(&folder));
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         for target in &TARGETS {
@@ -346,6 +350,13 @@ impl Target {
         println!("   {figure} bytes of code for figures, {euler} with Euler angles alone");
         let turns: u64 = self.functions(folder, "src/pantin_turn.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {turns} bytes of code for rotations of joints");
+        if self.limits.is_some() && self.compiler.starts_with("avr") {
+            // A face does not fit its RAM beside a display's library.
+            return Ok(());
+        }
+        let faces: u64 = self.functions(folder, "src/pantin_face.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {faces} bytes of code for faces");
+        ensure!(faces > 1000 && faces <= face::MOST_CODE, "faces may take {} bytes", face::MOST_CODE);
         if let Some(limit) = self.figures {
             ensure!(figure > 1000 && figure <= limit, "figures may take {limit} bytes");
         }

@@ -8,7 +8,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use harness::vectors::{self, Vector, bank, c_figure, c_header, constants, coverage, own, record, sums, synthetic, turns};
+use harness::vectors::{
+    self, Vector, bank, c_face, c_figure, c_header, constants, coverage, faces, own, record, sums, synthetic, turns,
+};
 use pantin::codec::layout::VERSION;
 use pantin_tools::output::write_whole;
 
@@ -53,6 +55,8 @@ impl Vectors {
         write_whole(&folder.join(constants::NAME), constants::text().as_bytes())?;
         write_whole(&c_header::path(), c_header::text().as_bytes())?;
         write_whole(&c_figure::path(), c_figure::text().as_bytes())?;
+        write_whole(&c_face::path(), c_face::text().as_bytes())?;
+        write_whole(&folder.join(faces::NAME), faces::text()?.as_bytes())?;
         write_whole(&folder.join(turns::NAME), turns::text(&folder)?.as_bytes())?;
         write_whole(&folder.join(turns::SUMS), turns::sums_text(&folder)?.as_bytes())?;
         write_whole(&folder.join(sums::NAME), sums::text(&folder)?.as_bytes())?;

@@ -1,0 +1,64 @@
+//! `pantin_face_data.h`: the cartoon model and the emotes of the crate pantin-face, for the face in C.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use pantin_face::{CARTOON, EMOTES};
+
+use crate::paths;
+
+const START: &str = "/* The cartoon model and the 23 emotes, for pantin_face.h. `cargo xtask vectors` writes this file.
+ * Include it in one source file. */
+#ifndef PANTIN_FACE_DATA_H
+#define PANTIN_FACE_DATA_H
+
+#include \"pantin_face.h\"
+
+#if defined(__AVR__)
+#include <avr/pgmspace.h>
+#define PANTIN_MODEL_FLASH PROGMEM
+#elif defined(ESP8266)
+#include <pgmspace.h>
+#define PANTIN_MODEL_FLASH PROGMEM
+#else
+#define PANTIN_MODEL_FLASH
+#endif
+";
+
+/// The longest line of numbers.
+const WIDTH: usize = 132;
+
+/// The committed file.
+pub fn path() -> PathBuf {
+    paths::root().join("bindings/c/src/pantin_face_data.h")
+}
+
+/// The file's text.
+pub fn text() -> String {
+    let mut text = START.to_owned();
+    array(&mut text, "pantin_cartoon", CARTOON, " PANTIN_MODEL_FLASH");
+    for (name, clip) in EMOTES {
+        array(&mut text, &format!("pantin_emote_{name}"), clip, "");
+    }
+    let _ =
+        write!(text, "\n#define PANTIN_EMOTES {}\n\nstatic const pantin_emote pantin_emotes[PANTIN_EMOTES] = {{\n", EMOTES.len());
+    for (name, _) in EMOTES {
+        let _ = writeln!(text, "    {{\"{name}\", pantin_emote_{name}, sizeof pantin_emote_{name}}},");
+    }
+    text + "};\n\n#endif\n"
+}
+
+fn array(text: &mut String, name: &str, bytes: &[u8], place: &str) {
+    let _ = write!(text, "\nstatic const uint8_t {name}[{}]{place} = {{\n   ", bytes.len());
+    let mut column = 3;
+    for byte in bytes {
+        let item = format!(" {byte},");
+        if column + item.len() > WIDTH {
+            text.push_str("\n   ");
+            column = 3;
+        }
+        column += item.len();
+        text.push_str(&item);
+    }
+    text.push_str("\n};\n");
+}
