@@ -104,7 +104,7 @@ pub fn mutants(model: &[u8], count: u32) -> Result<String> {
     let (mut text, mut x) = (String::new(), 1u32);
     let mut next = |below: usize| {
         x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (u64::from(x) * below as u64 >> 32) as usize
+        ((u64::from(x) * below as u64) >> 32) as usize
     };
     for _ in 0..count {
         let mut mutant = model.to_vec();
