@@ -25,7 +25,8 @@
  * Weights are numbers in Q15: PANTIN_FACE_FULL is 1, the whole effect of a unit. A function that is called for a face of zeroes, before
  * pantin_face_open succeeded, returns PANTIN_ERROR_HEAD and changes nothing.
  *
- * On AVR and ESP8266 a model is read from program memory: declare it with PROGMEM. Emotes are read from RAM.
+ * Faces are for 32-bit processors: on AVR, whose int has 16 bits, they are not tested. On an ESP8266 a model is read from program memory: declare it
+ * with PROGMEM. Emotes are read from RAM.
  */
 #ifndef PANTIN_FACE_H
 #define PANTIN_FACE_H
