@@ -145,7 +145,7 @@ impl Clip<'_> {
         let mut starts = ChannelStarts::new(&self.rig(), self.length_exponent());
         let mut symbols = Symbols { at: Cursor::start(&input, self.symbols()), input };
         let mut moving = 0;
-        while let Some((kind, rest)) = starts.slots.next() {
+        for (kind, rest) in starts.slots.by_ref() {
             let (mut value, mut state) = (shifted(rest, starts.shift), ChannelState::NEW);
             if starts.opening.read(&mut symbols, kind, &mut value, &mut state) {
                 each(moving, value);

@@ -12,7 +12,7 @@ pub struct Name {
 impl Name {
     /// The name's beginning.
     pub(crate) fn new(name: &str) -> Name {
-        let len = name.floor_char_boundary(31).min(31);
+        let len = (0..=name.len().min(31)).rev().find(|&len| name.is_char_boundary(len)).unwrap_or(0);
         let mut bytes = [0; 31];
         bytes.iter_mut().zip(name.as_bytes().iter().take(len)).for_each(|(own, byte)| *own = *byte);
         Name { len: len as u8, bytes }
