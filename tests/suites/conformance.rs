@@ -88,9 +88,11 @@ fn the_tables_of_the_decoder_for_the_web_are_those_of_the_format() {
         return;
     }
     let package = paths::root().join("web/packages/decoder");
-    let tables = std::fs::File::open(vectors::folder().join("tables.json")).unwrap();
-    let mut node = Command::new(setup::emulator("node").unwrap());
-    let output = node.arg(package.join("make-tables.mjs")).stdin(tables).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(output.stdout, std::fs::read(package.join("tables.js")).unwrap(), "make-tables.mjs writes them");
+    for (arguments, name) in [(&[][..], "tables.js"), (&["names"], "names.js")] {
+        let tables = std::fs::File::open(vectors::folder().join("tables.json")).unwrap();
+        let mut node = Command::new(setup::emulator("node").unwrap());
+        let output = node.arg(package.join("make-tables.mjs")).args(arguments).stdin(tables).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.stdout, std::fs::read(package.join(name)).unwrap(), "make-tables.mjs writes {name}");
+    }
 }

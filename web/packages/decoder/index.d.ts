@@ -64,6 +64,9 @@ export interface Clip {
   readonly duration: number;
   /** Raw positions are in units of 2^exponent. */
   readonly exponent: number;
+  /** Bytes of the rig in the file, and of the motion. */
+  readonly rigBytes: number;
+  readonly motionBytes: number;
   /** Whether frame 0 follows the last frame. */
   readonly looped: boolean;
   /** The index of the joint with this name, of several the first. Throws an Error that names it if there is none. */
@@ -74,9 +77,25 @@ export interface Clip {
   play(): Player;
 }
 
+/** What the raw values of a pose mean. */
+export interface Pose {
+  /** Writes a joint's rotation against its parent, the quaternion x, y, z, w, to `out` from `at` on, and returns `out`. */
+  rotation<T extends { [index: number]: number } = number[]>(joint: number, out?: T, at?: number): T;
+  /** Writes a joint's position in its parent, x, y, z in units of the source, to `out` from `at` on, and returns `out`. */
+  translation<T extends { [index: number]: number } = number[]>(joint: number, out?: T, at?: number): T;
+  /** Returns the world positions of all joints, x, y, z each. `turns` receives their world rotations, x, y, z, w each. */
+  world(out?: Float64Array, turns?: Float64Array): Float64Array;
+  /** Returns the value of a scalar by its index or its name. Throws an Error if the clip has no such scalar. */
+  scalar(which: number | string): number;
+}
+
 /** Shows the frames of a clip, one at a time. */
-export interface Player {
+export interface Player extends Pose {
   readonly clip: Clip;
+  /** The number of channels that move. */
+  readonly moving: number;
+  /** Of the beginning of a file: whether the frame that is shown takes bytes that are missing. */
+  readonly dry: boolean;
   /** The frame that is shown. */
   readonly frame: number;
   /**
@@ -91,14 +110,6 @@ export interface Player {
   seek(frame: number): Player;
   /** Shows the frame at a time in seconds. A looped clip repeats. */
   seekTime(seconds: number): Player;
-  /** Writes a joint's rotation against its parent, the quaternion x, y, z, w, to `out` from `at` on, and returns `out`. */
-  rotation<T extends { [index: number]: number } = number[]>(joint: number, out?: T, at?: number): T;
-  /** Writes a joint's position in its parent, x, y, z in units of the source, to `out` from `at` on, and returns `out`. */
-  translation<T extends { [index: number]: number } = number[]>(joint: number, out?: T, at?: number): T;
-  /** Returns the world positions of all joints, x, y, z each. `turns` receives their world rotations, x, y, z, w each. */
-  world(out?: Float64Array, turns?: Float64Array): Float64Array;
-  /** Returns the value of a scalar by its index or its name. Throws an Error if the clip has no such scalar. */
-  scalar(which: number | string): number;
 }
 
 /** The clips of one rig. */
@@ -109,8 +120,13 @@ export interface Bank {
   open(name?: string): Clip;
 }
 
-/** Opens a clip (.ptn). Throws an Error if the bytes are damaged or are no clip. `rig` is that of a clip whose file contains none. */
-export function openClip(data: Bytes, rig?: Rig): Clip;
+/**
+ * Opens a clip (.ptn). Throws an Error if the bytes are damaged or are no clip. `rig` is that of a clip whose file contains none. With `isPartial`, the bytes are the
+ * beginning of a file: step a player until it is `dry`, then seek back to the frame before, the last one that can be shown. Names of events are missing.
+ */
+export function openClip(data: Bytes, rig?: Rig, isPartial?: boolean): Clip;
+/** Reads raw values of a clip's form, such as a mixture of two poses. The functions read `raw` when they are called. */
+export function poseOf(clip: Clip, raw: Int32Array): Pose;
 /** Opens a bank of clips (.ptb). */
 export function openBank(data: Bytes): Bank;
 /** Opens a rig that is a file of its own. */

@@ -1,4 +1,4 @@
-// Writes tables.js from the format's tables: `node make-tables.mjs < ../../../tests/vectors/tables.json > tables.js`.
+// Writes tables.js from the format's tables, or names.js: `node make-tables.mjs [names] < ../../../tests/vectors/tables.json > tables.js`.
 import { readFileSync } from "node:fs";
 
 const ROWS = ["status", "mode", "number", "step_change", "position", "velocity", "far", "status_in", "mode_after", "number_in"];
@@ -28,7 +28,7 @@ for (let at = 14; at < list.length; at++) {
 }
 const short = WORDS.reduce((text, word, index) => text.replaceAll(word, index), names.join(" "));
 
-console.log(`// The tables of the format (decoder/FORMAT.md 6), written by make-tables.mjs: sizes of symbols, and the indices that choose among the tables.
+const TABLES = `// The tables of the format (decoder/FORMAT.md 6), written by make-tables.mjs: sizes of symbols, and the indices that choose among the tables.
 const TEXT = ${JSON.stringify(text)}.replace(/ (.)/g, (_, count) => "$".repeat(count.charCodeAt() - 35));
 
 let at = 0;
@@ -52,10 +52,12 @@ ${ROWS.map((name) => {
   const table = tables[name];
   const value = Array.isArray(table[0]) ? `rows(${table.length}, ${table[0].length})` : `${isIndex(name) ? "indices" : "sizes"}(${table.length})`;
   return `export const ${name.toUpperCase()} = ${value};`;
-}).join("\n")}
+}).join("\n")}`;
 
-// Names of scalars that rigs refer to by number: a digit stands for a word, and a star for Left in one name and Right in the next.
+const LIST = `// Names of scalars that rigs refer to by number, written by make-tables.mjs: a digit stands for a word, and a star for Left in one name and Right in the next.
 const WORDS = ${JSON.stringify(WORDS.join(" "))}.split(" ");
 const NAMES = "${short}".replace(/\\d/g, (digit) => WORDS[digit]).split(" ");
 const BOTH = (group) => ["Left", "Right"].flatMap((side) => group.replaceAll("*", side).split(","));
-export const LIVE_LINK = [...new Set(NAMES.flatMap(BOTH))];`);
+export const LIVE_LINK = [...new Set(NAMES.flatMap(BOTH))];`;
+
+console.log(process.argv[2] ? LIST : TABLES);
