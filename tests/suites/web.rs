@@ -26,6 +26,15 @@ static STAGE: LazyLock<(Browser, String)> = LazyLock::new(|| {
     (Browser::ready().unwrap(), web::served(extras).unwrap())
 });
 
+/// Captured figures of different makers.
+const CAPTURED: [&str; 5] = [
+    "bvh_bandai1_dance.bvh",
+    "bvh_cmu01_hops-and-turn.bvh",
+    "bvh_diema_anger.bvh",
+    "bvh_mixamo-beta_gangnam-dance.bvh",
+    "gltf_khronos_fox.glb",
+];
+
 /// Files that are no good, and a long one.
 fn extras() -> Vec<(&'static str, Vec<u8>)> {
     let long = std::fs::read(long()).unwrap();
@@ -135,11 +144,39 @@ fn the_modules_stand_whatever_bytes_they_get() {
     if skipped("the player's modules") {
         return;
     }
-    let modules = [web::PLAYER[1], web::FACE[0], web::CHARACTER[0]].map(|name| paths::root().join("target/web").join(name));
+    let modules = [web::CHARACTER[0], web::FACE[0], web::CHARACTER[0]].map(|name| paths::root().join("target/web").join(name));
     assert!(!STAGE.1.is_empty(), "they were built");
     let mut node = Command::new(setup::emulator("node").unwrap());
     node.arg(paths::root().join("tests/web/module.mjs")).args(modules).args(["walk.ptn", "greet.ptn", "face/hello.ptn"].map(own));
     let output = node.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+}
+
+/// The element's decoder and figure are JavaScript; the firmware's are in the character's module.
+#[test]
+fn the_element_draws_the_strokes_of_the_firmware() {
+    if skipped("the element's figure") {
+        return;
+    }
+    assert!(!STAGE.1.is_empty(), "the module was built");
+    let folder = tempfile::tempdir().unwrap();
+    let mut clips: Vec<PathBuf> = ["walk.ptn", "run.ptn", "greet.ptn", "kneebend.ptn"].map(own).into();
+    let vectors = std::fs::read_dir(paths::root().join("tests/vectors")).unwrap().map(|entry| entry.unwrap().path());
+    // A clip whose rig is apart is no clip of the module's.
+    clips.extend(vectors.filter(|path| path.extension().is_some_and(|end| end == "ptn") && !path.ends_with("rig-apart.ptn")));
+    for name in CAPTURED {
+        let Some(data) = paths::data() else { break };
+        let clip = folder.path().join(name).with_extension("ptn");
+        let mut tool = Command::new(build::host_tool().unwrap());
+        tool.arg("convert").arg(data.join(name)).arg("-o").arg(&clip).args(["--to", "60", "--effort", "fast", "--quiet"]);
+        assert!(tool.status().unwrap().success(), "{name}");
+        clips.push(clip);
+    }
+    clips.sort();
+    let mut node = Command::new(setup::emulator("node").unwrap());
+    node.arg(paths::root().join("tests/web/lines.mjs")).arg(paths::root().join("target/web").join(web::CHARACTER[0]));
+    let output = node.args(clips).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     println!("{}", String::from_utf8_lossy(&output.stdout));
 }
@@ -161,6 +198,7 @@ fn the_converter_reports_what_the_library_does() {
 fn everything_on_the_page_can_be_used() {
     if !skipped("the page's controls") {
         drive("controls", json!({ "clip": own("run.ptn"), "frames": 26 }));
+        drive("media", json!({ "events": paths::root().join("tests/vectors/event-names.ptn") }));
         drive("quiet", json!({}));
         drive("embed", json!({}));
         drive("crowd", json!({}));

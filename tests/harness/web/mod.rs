@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use pantin_tools::serve::{Site, serve};
 
 pub use xtask::browser;
-pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, PLAYER, Size, build, sizes};
+pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, Size, build, sizes};
 pub use xtask_web::tools;
 
 use crate::paths;

@@ -25,6 +25,10 @@ export async function use(bytes: ArrayBuffer, root: Object3D): Promise<number> {
   element.src = "walk.ptn";
   element.addEventListener("heard", ({ detail }) => console.log((detail satisfies Heard).name));
   element.addEventListener("ended", () => element.pause());
+  element.addEventListener("error", ({ detail }) => console.log(detail.toUpperCase(), element.error?.message));
+  element.addEventListener("click", ({ clientX }) => console.log(clientX));
+  element.playbackRate = element.readyState === 4 ? 2 : 1;
+  await element.play();
   await element.load(new URL("walk.ptn", location.href), "walk");
   // @ts-expect-error It can only be read.
   element.frame = 4;

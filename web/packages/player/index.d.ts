@@ -34,17 +34,40 @@ export interface Facts {
   readonly scalars: number;
 }
 
-export interface PantinPlayerEventMap extends HTMLElementEventMap {
-  play: CustomEvent<null>;
-  pause: CustomEvent<null>;
-  ended: CustomEvent<null>;
-  loop: CustomEvent<null>;
-  timeupdate: CustomEvent<null>;
-  frame: CustomEvent<null>;
-  ready: CustomEvent<null>;
+type Plain =
+  | "loadstart" | "durationchange" | "loadedmetadata" | "loadeddata" | "canplay" | "canplaythrough" | "emptied" | "progress" | "play" | "playing" | "pause" | "ended" | "loop"
+  | "timeupdate" | "seeked" | "ratechange" | "frame" | "change" | "ready";
+interface OwnEventMap extends Record<Plain, CustomEvent<null>> {
+  /** What is wrong with the clip; also the property `error`. */
+  error: CustomEvent<string>;
+  /** A marker of the clip that playing or stepping passed. */
   heard: CustomEvent<Heard>;
   /** A character's new state, by its name. */
   state: CustomEvent<string>;
+}
+
+/** The element's events; its own take the place of an element's of the same name. */
+export type PantinPlayerEventMap = Omit<HTMLElementEventMap, keyof OwnEventMap> & OwnEventMap;
+
+/** The attributes, as a template language writes them. */
+export interface PantinPlayerAttributes {
+  src?: string;
+  autoplay?: boolean | "";
+  loop?: boolean | "";
+  loading?: "lazy" | "eager";
+  poster?: string;
+  crossorigin?: "" | "anonymous" | "use-credentials";
+  look?: "lines" | "oled";
+  speed?: number | string;
+  from?: number | string;
+  to?: number | string;
+  /** The name of the marker with which the part that is played begins; it ends at the next marker. */
+  segment?: string;
+  fit?: "follow" | "whole";
+  align?: "left" | "center" | "right";
+  up?: "x" | "y" | "z" | "";
+  bare?: boolean | "";
+  "aria-label"?: string;
 }
 
 /** How a picture is saved. */
@@ -87,7 +110,17 @@ export declare class PantinPlayer extends HTMLElement {
   to: number;
   /** x, y or z; empty for the clip's own. */
   up: string;
+  /** The URL of `src`; empty without one. */
+  readonly currentSrc: string;
+  loading: "lazy" | "eager";
+  /** A picture until the first frame is there; an element in the slot `poster` does the same. */
+  poster: string;
+  crossOrigin: string | null;
+  /** The name of the marker with which the part that is played begins; empty for `from` and `to`. */
+  segment: string;
   /** A multiple of the clip's own speed. */
+  playbackRate: number;
+  /** @deprecated The name of `playbackRate` before it was a media element's. */
   speed: number;
   backwards: boolean;
   /** Degrees. */
@@ -102,6 +135,13 @@ export declare class PantinPlayer extends HTMLElement {
   /** Frames that can be shown already. */
   readonly playable: number;
   readonly paused: boolean;
+  readonly ended: boolean;
+  /** Whether a frame was asked for that has not arrived. */
+  readonly seeking: boolean;
+  /** 0 nothing, 1 the clip's numbers, 2 the present frame, 3 frames after it, 4 the whole clip. */
+  readonly readyState: 0 | 1 | 2 | 3 | 4;
+  /** What is wrong with the clip. */
+  readonly error: Error | null;
   /** Bytes. */
   readonly received: number;
   readonly total: number;
@@ -118,8 +158,9 @@ export declare class PantinPlayer extends HTMLElement {
    * Resolves when all of the clip has arrived. Rejects with what is wrong with it, or with an AbortError if it is given up for another one.
    * `clip` names one of a bank's clips.
    */
-  load(what: Source, clip?: string | null): Promise<void>;
-  play(): void;
+  load(what?: Source | null, clip?: string | null): Promise<void>;
+  /** Plays. Before a clip has arrived, it waits for it: the promise resolves once the figure moves, and rejects if the clip is no good or is paused before. */
+  play(): Promise<void>;
   pause(): void;
   /** Plays what lies between two times in seconds; all of the clip without them. */
   range(from?: number, to?: number): void;

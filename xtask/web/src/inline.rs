@@ -9,27 +9,36 @@ use pantin::Clip;
 
 use crate::site::{FACE, PLAYER};
 
-/// Writes the page of a clip, from a site that was built. A clip with scalars gets the face's module, too. What is loaded later, such as the script that
+/// Writes the page of a clip, from a site that was built. A clip with scalars gets what draws a face, too. What is loaded later, such as the script that
 /// saves pictures, is looked for beside the page.
 pub fn page(site: &Path, clip: &[u8], title: &str) -> Result<String> {
     let opened = Clip::new_checked(clip).map_err(|error| anyhow::anyhow!("{error}"))?;
     let has_scalars = opened.rig().channels() > opened.rig().joint_channels();
     let read = |name: &str| std::fs::read(site.join(name)).with_context(|| name.to_owned());
-    let mut script = String::from_utf8(read(PLAYER[0])?).context("a script that is not UTF-8")?;
-    let mut modules = String::new();
-    for (number, name) in [PLAYER[1], FACE[0]].into_iter().take(1 + usize::from(has_scalars)).enumerate() {
-        let url = format!("new URL(\"./{name}\",import.meta.url)");
-        ensure!(script.contains(&url), "{}: no {url} in it", PLAYER[0]);
-        script = script.replace(&url, &format!("pantinModule{number}"));
-        modules += &format!("const pantinModule{number}=pantinUrl(`{}`);", text(&read(name)?));
+    let script = |name: &str| String::from_utf8(read(name)?).context("a script that is not UTF-8");
+    let mut player = script(PLAYER[0])?;
+    let mut before = String::new();
+    if has_scalars {
+        let [module, face] = FACE;
+        let url = format!("new URL(\"./{module}\",import.meta.url)");
+        let import = format!("import(\"./{face}\")");
+        let face = script(face)?;
+        ensure!(face.contains(&url) && player.contains(&import), "no {url} or no {import}");
+        let face = face.replace(&url, "globalThis.pantinFaceModule");
+        before = format!(
+            "const pantinUrl=(text,type)=>URL.createObjectURL(new Blob([text],{{type}}));globalThis.pantinFaceModule=pantinUrl(Uint8Array.from(`{}`,letter=>letter.charCodeAt()));\
+             const pantinFace=pantinUrl(Uint8Array.from(`{}`,letter=>letter.charCodeAt()),\"text/javascript\");",
+            text(&read(module)?),
+            text(face.as_bytes())
+        );
+        player = player.replace(&import, "import(pantinFace)");
     }
-    ensure!(!script.contains("</"), "{}: a tag in the script ends it", PLAYER[0]);
+    ensure!(!player.contains("</"), "{}: a tag in the script ends it", PLAYER[0]);
     let title: String = title.chars().filter(|letter| !"<>&".contains(*letter)).collect();
     Ok(format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
          <link rel=\"icon\" href=\"data:,\">\n<pantin-player src=\"data:;base64,{}\" autoplay loop></pantin-player>\n\
-         <script type=\"module\">const pantinUrl=text=>URL.createObjectURL(new Blob([Uint8Array.from(text,letter=>letter.charCodeAt())]));\
-         {modules}{script}</script>\n</html>\n",
+         <script type=\"module\">{before}{player}</script>\n</html>\n",
         STANDARD.encode(clip)
     ))
 }

@@ -9,8 +9,8 @@ use serde_json::Value;
 use xtask::browser::Browser;
 use xtask::npm;
 
-use crate::site::{CHARACTER, EXPORT, FACE, PLAYER};
-use crate::tools;
+use crate::site::{CHARACTER, EXPORT, FACE, OTHERS, PLAYER};
+use crate::{bundle, tools};
 use xtask::{build, paths, setup};
 
 /// The packages, those that others need first.
@@ -59,9 +59,11 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
         for name in files.iter().filter_map(Value::as_str).chain(["package.json"]) {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
-                "decoder.min.js" => decoder(&source)?,
+                "decoder.min.js" => {
+                    tools::minified(bundle::bundle(&paths::root().join("web/packages"), &bundle::DECODER)?.into_bytes())?
+                }
                 "turns.min.js" => tools::minified(read(&source.join("turns.js"))?)?,
-                name if [&PLAYER[..], &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
+                name if [&PLAYER[..], &OTHERS, &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
                     read(&site.join(name))?
                 }
                 name => read(&source.join(name))?,
@@ -157,19 +159,6 @@ fn node(folder: &Path, program: &str, arguments: &[PathBuf]) -> Result<String> {
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     ensure!(output.status.success(), "{program}: {out}{err}");
     Ok(out)
-}
-
-/// The decoder and its tables as one script.
-fn decoder(source: &Path) -> Result<Vec<u8>> {
-    let [tables, index] = ["tables.js", "index.js"].map(|name| read(&source.join(name)));
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).context("a script that is not UTF-8");
-    let (tables, index) = (text(tables?)?, text(index?)?);
-    let (import, rest) = index.split_once("\";\n").context("index.js has no import")?;
-    let import = import.lines().last().unwrap_or_default();
-    ensure!(import.contains("./tables.js"), "index.js begins with another import: {import}");
-    let head = &index[..index.find(import).unwrap_or(0)];
-    let joined = format!("{head}{}{rest}", tables.replace("export const", "const"));
-    tools::minified(joined.into_bytes())
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {

@@ -13,7 +13,7 @@ use serde_json::json;
 use xtask::build::{self, Build};
 use xtask::{paths, setup};
 
-use crate::{inline, pack, script, tools};
+use crate::{bundle, inline, pack, script, tools};
 
 /// What the modules are compiled for.
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -22,8 +22,7 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 const SMALL: &str = "-Clink-arg=-zstack-size=65536 -Cllvm-args=-inline-threshold=25 -Cllvm-args=-disable-lsr";
 
 /// The modules' packages and features, the profiles that they are built in, and their names in the site.
-pub const MODULES: [(&str, &str, &str, &str); 4] = [
-    ("pantin-web-player", "", "release", PLAYER[1]),
+pub const MODULES: [(&str, &str, &str, &str); 3] = [
     ("pantin-web-player", "character,poses", "release", CHARACTER[0]),
     ("pantin-web-face", "", "release", FACE[0]),
     ("pantin-web-converter", "", "converter", CONVERTER[1]),
@@ -38,12 +37,14 @@ pub struct Size {
 }
 
 /// What a page that plays clips loads.
-pub const PLAYER: [&str; 2] = ["pantin-player.js", "pantin-player.wasm"];
+pub const PLAYER: [&str; 1] = ["pantin-player.js"];
+/// What it loads too: once a picture has the focus, for the display's look, for a table of poses, in other languages than English.
+pub const OTHERS: [&str; 4] = ["pantin-controls.js", "pantin-oled.js", "pantin-table.js", "pantin-words.js"];
 /// What it loads too once a picture or a recording is saved.
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
-pub const FACE: [&str; 1] = ["pantin-face.wasm"];
-/// What it loads too for a bank with a state machine, or for a table of poses.
+pub const FACE: [&str; 2] = ["pantin-face.wasm", "pantin-face.js"];
+/// What it loads too for a bank; the module for one with a state machine.
 pub const CHARACTER: [&str; 2] = ["pantin-character.wasm", "pantin-character.js"];
 /// What is loaded beside it once a motion is dropped.
 pub const CONVERTER: [&str; 2] = ["converter.js", "pantin-converter.wasm"];
@@ -57,8 +58,11 @@ pub fn build(out: &Path, inlined: &[PathBuf]) -> Result<()> {
         write(&out.join(name), &module(package, features, profile)?)?;
     }
     let page = listed(&paths::root().join("web/page"))?;
-    let player = [PLAYER[0], EXPORT[0], CHARACTER[1]].map(|script| paths::root().join("web/packages/player").join(script));
-    for entry in page.into_iter().chain(player) {
+    let packages = paths::root().join("web/packages");
+    for (name, modules) in bundle::SCRIPTS {
+        write(&out.join(name), &tools::minified(bundle::bundle(&packages, modules)?.into_bytes())?)?;
+    }
+    for entry in page {
         let name = entry.file_name().unwrap_or_default();
         let bytes = std::fs::read(&entry).with_context(|| entry.display().to_string())?;
         let scripted = entry.extension().is_some_and(|extension| extension == "js");

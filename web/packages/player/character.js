@@ -1,6 +1,11 @@
 // What <pantin-player> loads for a bank: its clips, and what steers its state machine.
+import { bytes, open, seat, strokes } from "./wasm.js";
 
-// The clips of a bank (decoder/FORMAT.md 16): its rig, and each clip's name and file.
+const FACTS = ["frames", "playable", "frame", "frameTime", "looped", "channels", "moving", "rigBytes", "motionBytes", "joints", "scalars"];
+// Where the facts have the event, or the name, that was asked for: its frame, id, address and length.
+const EVENT = 14;
+
+// The clips of a bank (decoder/FORMAT.md 16): their names, whether there is a state machine, and a clip's file with its rig.
 export function bankOf(file) {
   let at = 3;
   const number = () => {
@@ -20,8 +25,6 @@ export function bankOf(file) {
   while (at < file.length) sections[file[at++]] = take(number());
   const [rig, contents, clips] = [1, 2, 3].map((kind) => sections[kind]);
   if (!rig || !contents || !clips) throw new Error("the bank ends early");
-  // A fourth section is a state machine.
-  const machine = !!sections[4];
   const found = [];
   let next = 0;
   file = contents;
@@ -31,21 +34,38 @@ export function bankOf(file) {
     const length = number();
     found.push({ name, file: clips.subarray(next, (next += length)) });
   }
-  return { rig, clips: found, machine };
+  const names = found.map(({ name }) => name);
+  return {
+    names,
+    // A fourth section is a state machine.
+    machine: !!sections[4],
+    // The clip that was asked for, or the first.
+    clip(name) {
+      const clip = name === null ? found[0] : found.find((clip) => clip.name === name);
+      if (!clip) throw new Error(`the bank has no clip ${name}; it has ${names.join(", ")}`);
+      return [clip.file, rig];
+    },
+  };
 }
 
-// The clip that was asked for, or the first, behind the bank's rig.
-export function chosen({ rig, clips }, name) {
-  const clip = name === null ? clips[0] : clips.find((clip) => clip.name === name);
-  if (!clip) throw new Error(`the bank has no clip ${name}; it has ${clips.map((clip) => clip.name).join(", ")}`);
-  const both = new Uint8Array(rig.length + clip.file.length);
-  both.set(rig);
-  both.set(clip.file, rig.length);
-  return both;
-}
-
-// Steers the state machine in a slot of the module, for a player that gets its names. `event` reads the event, or the name, that the module was asked for.
-export function steer(player, wasm, at, event, shown, dispatch) {
+// Steers the state machine of a bank for a player, which gets its names.
+export async function steer(player, file, shown, dispatch) {
+  const wasm = await open(new URL("./pantin-character.wasm", import.meta.url));
+  const actor = {};
+  const { take, close } = seat(wasm, actor);
+  const at = take(wasm.slot());
+  const place = take(file.length);
+  wasm.start(at);
+  bytes(wasm, place, file.length).set(file);
+  if (wasm.machine(at, place, file.length)) {
+    close();
+    throw new Error("the bank contradicts itself");
+  }
+  const facts = () => new Uint32Array(wasm.memory.buffer, wasm.facts(at), EVENT + 4);
+  const event = () => {
+    const [frame, id, from, length] = facts().subarray(EVENT);
+    return { frame, id, name: new TextDecoder().decode(bytes(wasm, from, length)) };
+  };
   const names = (kind) => {
     const found = [];
     while (wasm.name(at, kind, found.length)) found.push(event().name);
@@ -54,7 +74,10 @@ export function steer(player, wasm, at, event, shown, dispatch) {
   const [states, inputs, parameters] = [0, 1, 2].map(names);
   Object.assign(player, { states, inputs });
   player.parameters = parameters.map((name, index) => ({ name, range: [0, 1].map((which) => wasm.range(at, index, which)), value: wasm.range(at, index, 2) }));
-  return {
+  return Object.defineProperties(Object.assign(actor, {
+    close,
+    aim: (width, height, orbit, tilt, isFollowing, axis) => wasm.aim(at, width, height, orbit, tilt, +!isFollowing + (axis === undefined ? 0 : 2 * axis + 2)),
+    each: (stroke) => strokes(wasm, wasm.picture(), wasm.strokes(at), stroke),
     // Lets time pass, in microseconds.
     pass(time) {
       const name = states[wasm.update(at, time) & 255];
@@ -66,8 +89,8 @@ export function steer(player, wasm, at, event, shown, dispatch) {
     },
     // Fires an input (2), holds it down (1) or lets it go (0).
     input(name, what) {
-      const index = player.inputs.indexOf(name);
-      if (index < 0) throw new RangeError(`the state machine has no input ${name}; it has ${player.inputs.join(", ") || "none"}`);
+      const index = inputs.indexOf(name);
+      if (index < 0) throw new RangeError(`the state machine has no input ${name}; it has ${inputs.join(", ") || "none"}`);
       wasm.input(at, index, what);
     },
     set(name, value) {
@@ -78,5 +101,5 @@ export function steer(player, wasm, at, event, shown, dispatch) {
       parameter.value = Math.max(least, Math.min(most, Math.round(value)));
       wasm.set(at, index, parameter.value);
     },
-  };
+  }), { facts: { get: () => Object.fromEntries(FACTS.map((name, index) => [name, facts()[index]])) } });
 }

@@ -1,0 +1,75 @@
+// The element's figure code beside the firmware's: `node lines.mjs MODULE.wasm CLIP...`. Over clips, frames and views, in pictures of several sizes, poses and
+// strokes are equal to the last bit.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { openClip, openRig } from "../../web/packages/decoder/index.js";
+import { figureOf, visitor } from "../../web/packages/player/figure.js";
+
+const SIZES = [[128, 64], [320, 160], [640, 320], [390, 700]];
+// Orbit, tilt, whether the camera follows the figure, and the axis that is up in place of the rig's.
+const VIEWS = [[-50, 12, true], [0, 0, true], [140, 40, true], [-90, -20, false], [37, 85, true], [-50, 12, false, 1], [10, 5, true, 2]];
+const STROKE = 12;
+const [CHANNELS, POSE] = [5, 13];
+
+const [, , module, ...clips] = process.argv;
+const wasm = new WebAssembly.Instance(new WebAssembly.Module(readFileSync(module))).exports;
+const slot = (wasm.base() + 15) & -16;
+const file = slot + ((wasm.slot() + 15) & -16);
+
+function opened(bytes) {
+  const missing = file + bytes.length - wasm.memory.buffer.byteLength;
+  if (missing > 0) wasm.memory.grow(Math.ceil(missing / 65536));
+  new Uint8Array(wasm.memory.buffer, file).set(bytes);
+  wasm.start(slot);
+  wasm.arrived(slot, file, bytes.length);
+  return wasm.finish(slot);
+}
+
+function expected() {
+  const count = wasm.strokes(slot);
+  const view = new DataView(wasm.memory.buffer, wasm.picture(), STROKE * count);
+  return Array.from({ length: count }, (_, index) => {
+    const [x, y, u, v] = [0, 2, 4, 6].map((offset) => view.getInt16(STROKE * index + offset, true));
+    const [shade, part, width] = [8, 9, 10].map((offset) => view.getUint8(STROKE * index + offset));
+    return [x, y, u, v, shade, part, width];
+  });
+}
+
+const summary = { clips: 0, pictures: 0, lines: 0, poses: 0 };
+for (const clip of clips) {
+  const bytes = readFileSync(clip);
+  assert.equal(opened(bytes), 0, clip);
+  const player = openClip(bytes).play();
+  if (!player.clip.joints.length) continue;
+  const { frames } = player.clip;
+  const figure = figureOf(player.clip, player.raw);
+  const chosen = [0, 1, 2, frames >> 2, frames >> 1, frames - 1].filter((frame) => frame < frames);
+  summary.clips++;
+  for (const frame of chosen) {
+    wasm.go(slot, frame);
+    player.seek(frame);
+    const facts = new Uint32Array(wasm.memory.buffer, wasm.facts(slot), 18);
+    assert.deepEqual([...new Int32Array(wasm.memory.buffer, facts[POSE], facts[CHANNELS])], [...player.raw], `${clip} frame ${frame}`);
+    summary.poses++;
+  }
+  for (const [width, height] of SIZES) {
+    for (const [orbit, tilt, isFollowing, axis] of VIEWS) {
+      assert.equal(wasm.aim(slot, width, height, orbit, tilt, +!isFollowing + 2 * (axis === undefined ? 0 : axis + 1)), 0);
+      figure.aim(width, height, orbit, tilt, isFollowing, axis, visitor(frames, (frame) => player.seek(frame).raw));
+      for (const frame of chosen) {
+        wasm.go(slot, frame);
+        player.seek(frame);
+        figure.place(player.raw);
+        const theirs = expected();
+        const own = [];
+        figure.each((x, y, u, v, shade, part, width) => own.push([x, y, u, v, shade, part, width]));
+        const what = `${clip} frame ${frame}, ${width}x${height}, view ${[orbit, tilt, isFollowing, axis]}`;
+        assert.equal(own.length, theirs.length, what);
+        summary.pictures++;
+        assert.deepEqual(own, theirs, what);
+        summary.lines += own.length;
+      }
+    }
+  }
+}
+console.log(JSON.stringify(summary));
