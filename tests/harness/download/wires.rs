@@ -102,10 +102,10 @@ const PICO_SERIAL: Wiring = Wiring {
     source: [PICO_SOURCE, "let (tx, rx) = (pins.{}.into_function(), pins.{}.into_function()"],
 };
 
-const ESP_I2C: [&str; 2] = ["src/chip.rs", "// SDA and SCL. ($parts.{}, $parts.{})"];
-const ESP_SERIAL: [&str; 2] = ["src/chip.rs", "// TX and RX. ($parts.{}, $parts.{})"];
+const ESP_I2C: [&str; 2] = ["src/pins.rs", "// SDA and SCL. ($parts.{}, $parts.{})"];
+const ESP_SERIAL: [&str; 2] = ["src/pins.rs", "// TX and RX. ($parts.{}, $parts.{})"];
 const ESP_BUTTONS: [&str; 2] =
-    ["src/chip.rs", "which is the board's own, BOOT. ($parts.{}, $parts.{}, $parts.{}, $parts.{}, $parts.{})"];
+    ["src/pins.rs", "which is the board's own, BOOT. ($parts.{}, $parts.{}, $parts.{}, $parts.{}, $parts.{})"];
 
 /// The boards that one can buy, and the Game Boy Advance.
 pub const BOARDS: [Board; 9] = [
