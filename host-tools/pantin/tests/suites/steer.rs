@@ -89,6 +89,25 @@ fn the_recorded_session_visits_what_it_names_and_stands_on_the_ground() {
     println!("{states:?}, lowest {lowest:.2} cm, fastest {fastest:.1} cm a picture");
 }
 
+/// The walk stops at any moment of a stride, not only at the one that the recorded session has.
+#[test]
+fn the_walk_stops_at_any_moment_without_toes_deep_in_the_ground() {
+    let table = Table::of_bank(&BANK).unwrap();
+    for pictures in 0..32 {
+        let released = 4.0 + f64::from(pictures) / f64::from(RATE);
+        let text = format!("1.0 hold go\n{released:.4} release go\n{:.4} end\n", released + 1.0);
+        let replay = Replay::new(Session::new_checked(&text, &table).unwrap(), RATE);
+        let (mut lowest, mut stops) = (f64::MAX, 0);
+        play(&BANK, replay, |character| {
+            stops += u32::from(table.state_name(character.state()) == "stop");
+            lowest = joints(character).iter().map(|[_, y, _]| *y).fold(lowest, f64::min);
+            Ok(())
+        })
+        .unwrap();
+        assert!(stops > 0 && lowest > -CM_IN_TRANSITIONS, "released at {released:.2} s: {lowest:.2} cm");
+    }
+}
+
 #[test]
 fn the_renderer_draws_a_figure_where_it_stands_as_it_draws_one_at_the_origin() {
     let text = session();
