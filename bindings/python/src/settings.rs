@@ -190,12 +190,7 @@ impl Settings {
     }
 
     fn effort(&self) -> Result<Level, Error> {
-        match &*self.effort {
-            "fast" => Ok(Level::Fast),
-            "default" => Ok(Level::Default),
-            "best" => Ok(Level::Best),
-            _ => Err(Error::setting(Setting::Effort, "expected 'fast', 'default' or 'best'")),
-        }
+        self.effort.parse().map_err(|expected| Error::setting(Setting::Effort, expected))
     }
 
     fn rotations(&self) -> Result<Rotations, Error> {

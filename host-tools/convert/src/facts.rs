@@ -282,8 +282,8 @@ mod tests {
     use super::*;
     use crate::encode::{clip, rig};
     use crate::expand;
-    use crate::fit::descent::Level;
     use crate::fit::fit;
+    use crate::fit::level::Level;
     use crate::pose_bound::PoseBound;
 
     #[test]
@@ -292,7 +292,7 @@ mod tests {
         let bytes = std::fs::read(path).unwrap();
         let motion = expand::expand(&Clip::new_checked(&bytes).unwrap()).unwrap();
         let motion = crate::motion::Motion { looped: false, ..motion };
-        let coded = fit(&motion, Level::Fast.plan(PoseBound::places(0.5)), 0.02, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Level::FAST.plan(PoseBound::places(0.5)), 0.02, &mut |_| ()).unwrap();
         let figure = rig::encode(&motion.rig).unwrap();
         let file = clip::encode(&coded, &figure, false).unwrap();
         let opened = Clip::new_checked(&file).unwrap();

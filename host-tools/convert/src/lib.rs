@@ -45,7 +45,7 @@ pub use conversion::{
 };
 pub use encode::{bank, rans};
 pub use error::{Error, Problem, Setting};
-pub use fit::descent::Level;
+pub use fit::level::Level;
 pub use fit::raw;
 pub use fit::rotation_coding::{Coding, Rotations};
 pub use length::Length;

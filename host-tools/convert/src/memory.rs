@@ -46,10 +46,10 @@ impl Memory {
         check_motion(frames, channels, (channels as u64).saturating_mul(BYTES_A_VALUE), self.0)
     }
 
-    /// Refuses a motion whose fit takes more memory than the limit. Each thread searches a channel and extends `beam` hypotheses from each
-    /// frame; the motion was read from `read` bytes of files.
+    /// Refuses a motion whose fit takes more memory than the limit. Each thread searches a channel, or takes up another while it waits for one, and
+    /// extends `beam` hypotheses from each frame; the motion was read from `read` bytes of files.
     pub fn check_fit(self, frames: usize, [joints, channels]: [usize; 2], beam: usize, read: u64) -> Result<()> {
-        let searches = channels.min(rayon::current_num_threads()) as u64;
+        let searches = channels.min(2 * rayon::current_num_threads()) as u64;
         let search = SEARCH_BYTES + SEARCH_BYTES_A_HYPOTHESIS * beam as u64;
         let most = match self.0 {
             DEFAULT_BYTES => DEFAULT_BYTES.max(read.saturating_mul(FIT_BYTES_A_BYTE_READ)),

@@ -1,6 +1,6 @@
 //! What a user asks of a clip.
 
-use crate::fit::descent::Level;
+use crate::fit::level::Level;
 use crate::fit::rotation_coding::Rotations;
 use crate::length::Length;
 use crate::memory::Memory;
@@ -41,7 +41,7 @@ pub struct Options {
     pub max_joint_error: Option<f64>,
     /// Bounds of each channel, in place of all bounds above.
     pub channels: Option<ChannelBound>,
-    /// The encoder's effort: speed against size.
+    /// The encoder's effort, 1 to 9: speed against size; 6 by default.
     pub effort: Level,
     /// How joints with three Euler angles are coded; by cost as the default.
     pub rotations: Rotations,
@@ -68,7 +68,7 @@ impl Default for Options {
             max_rotation_error: None,
             max_joint_error: None,
             channels: None,
-            effort: Level::Default,
+            effort: Level::DEFAULT,
             rotations: Rotations::ByCost,
             index: None,
             rig_apart: false,

@@ -12,7 +12,7 @@ fn root() -> PathBuf {
 
 /// The outcome of a file's conversion, with the options that `tests/odd/README.md` lists.
 fn outcome(file: &str, fps: Option<f64>) -> Value {
-    let mut recipe = Recipe::new().options(Options::new().max_error(Length::cm(0.5)).effort(Level::Fast));
+    let mut recipe = Recipe::new().options(Options::new().max_error(Length::cm(0.5)).effort(Level::FAST));
     (recipe.import.fps, recipe.edits.fps) = (fps, fps);
     let path = root().join("tests/odd").join(file);
     match recipe.convert(&Disk::default(), &path, &mut |_| ()) {

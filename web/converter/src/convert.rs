@@ -39,11 +39,7 @@ impl Asked {
         let Asked(options) = self;
         let cm = options["max_error_cm"].as_f64();
         let cm = cm.ok_or_else(|| Error::setting(Setting::MaxError, "expected a length above 0"))?;
-        let level = match options["effort"].as_str() {
-            Some("fast") => Level::Fast,
-            Some("best") => Level::Best,
-            _ => Level::Default,
-        };
+        let level = options["effort"].as_str().and_then(|text| text.parse().ok()).unwrap_or(Level::DEFAULT);
         let mut recipe = Recipe::new().options(Options::new().max_error(Length::cm(cm)).effort(level));
         recipe.import.fps = options["fps"].as_f64();
         recipe.import.cm_per_unit = options["cm_per_unit"].as_f64();

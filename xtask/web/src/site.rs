@@ -155,7 +155,7 @@ fn medley() -> Result<Vec<u8>> {
     }
     (whole.looped, whole.events) = (false, vec![]);
     whole.keys.fill(None);
-    let options = Options::new().max_error(Length::cm(MEDLEY_CM)).places_only(true).effort(Level::Fast);
+    let options = Options::new().max_error(Length::cm(MEDLEY_CM)).places_only(true).effort(Level::FAST);
     Ok(convert(&whole, &options, &mut |_| ())?.clip)
 }
 

@@ -36,7 +36,7 @@ def convert(
     max_channel_error: Optional[float] = None,
     max_accel_error: Optional[float] = None,
     exact: bool = False,
-    effort: str = "default",
+    effort: Union[int, str] = "default",
     rotations: str = "by-cost",
     index: Optional[float] = None,
     rig_apart: bool = False,
@@ -93,7 +93,7 @@ def convert(
     max_channel_error: largest error of each channel, in place of all bounds above: degrees for rotations, percent of the range for others.
     max_accel_error: largest error of each channel's second difference, in place of all bounds above: degrees or percent per frame squared.
     exact: code known curves as they are, in place of all bounds above.
-    effort: 'fast', 'default' or 'best': speed against size.
+    effort: 1 to 9, or 'fast' (1), 'default' (6) or 'best' (9): speed against size. Each level takes at most 1.8 times the time of the one below.
     rotations: how joints with three Euler angles are coded: 'by-cost', 'euler', 'exponential' or 'quaternion'.
     index: seconds between snapshots for seeking. Default: no snapshots.
     rig_apart: keep the rig out of the clip's file, to be shared by several; `Clip.save` takes a file for each.

@@ -41,7 +41,7 @@ NUMBERS = (
 FLAGS = ("places_only", "exact", "rig_apart", "loop", "footsteps", "mirror", "reverse", "close_loop")
 """Arguments that are true or false."""
 
-WORDS = ("effort", "rotations", "retarget", "in_place", "up")
+WORDS = ("rotations", "retarget", "in_place", "up")
 """Arguments that are passed on as they are."""
 
 
@@ -55,7 +55,7 @@ def settings(arguments: Mapping[str, Any]) -> Dict[str, Any]:
         **given(NUMBERS, float),
         **given(FLAGS, bool),
         **given(FILES, os.fspath),
-        **given(("memory", "animation"), str),
+        **given(("memory", "animation", "effort"), str),
         **{name: arguments[name] for name in WORDS},
         **{name: None if arguments[name] is None else _moment(name, arguments[name]) for name in ("first", "last")},
         "events": [(_moment("events", at), str(name)) for at, name in arguments["events"]],

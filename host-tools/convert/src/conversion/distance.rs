@@ -1,7 +1,7 @@
 //! The bounds of joints and scalars that a conversion keeps to.
 
 use crate::error::{Error, Setting, require};
-use crate::fit::descent::{Level, Plan};
+use crate::fit::{descent::Plan, level::Level};
 use crate::motion::Motion;
 use crate::options::Options;
 use crate::pose_bound::{PoseBound, Shell};

@@ -14,7 +14,7 @@ use crate::encode::rig;
 use crate::encode::same_rig::difference;
 use crate::error::{Error, Setting, require};
 use crate::fit::bounds::Bounds;
-use crate::fit::descent::Level;
+use crate::fit::level::Level;
 use crate::fit::rotation_coding::{Coding, Rotations, has_choice, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import::up;
@@ -156,7 +156,7 @@ fn without_effect(options: &Options, motion: &Motion) -> Vec<Note> {
         given.map(|(setting, _, what)| Note::no_effect(setting, format!("the motion has no {what}"))).collect();
     if options.channels.is_some() {
         let given = [
-            (Setting::Effort, options.effort != Level::Default),
+            (Setting::Effort, options.effort != Level::DEFAULT),
             (Setting::Rotations, options.rotations == Rotations::Exponential),
         ];
         let given = given.into_iter().filter(|(_, given)| *given);

@@ -67,8 +67,11 @@ const FORGET_AT: usize = 1 << 16;
 
 /// The hypotheses of one search.
 pub struct Beam<C> {
-    /// Hypotheses by the frame they stand at.
+    /// Hypotheses by the frame they stand at. A frame that is done lends its place to a later one, as in the other lists by frame.
     heap: Vec<Vec<Hypothesis<C>>>,
+    /// The frame whose hypotheses are next to be chosen from; those before are done.
+    now: usize,
+    last_frame: usize,
     /// Memory of frames that are done.
     spare: Vec<Vec<Hypothesis<C>>>,
     /// Those that were extended, to backtrack by.
@@ -76,7 +79,9 @@ pub struct Beam<C> {
     /// How many of them there may be before some are dropped.
     forget_at: usize,
     /// Least rank seen at each frame.
-    pub least: Vec<f64>,
+    least: Vec<f64>,
+    /// Least rank seen at each frame or at a later one, where such hypotheses are compared.
+    ahead: Option<Vec<f64>>,
     /// Hypotheses that a frame keeps once it has twice as many, the best ones; without it, all.
     kept: Option<usize>,
     /// The rank from which on each frame takes no more.
@@ -85,12 +90,31 @@ pub struct Beam<C> {
 }
 
 impl<C: Cost> Beam<C> {
-    /// No hypotheses yet, for a channel of this many frames. About `width` are extended at each.
-    pub fn new(frames: usize, width: usize) -> Self {
+    /// No hypotheses yet, for a channel of this many frames. About `width` are extended at each, by at most `reach` frames.
+    pub fn new(frames: usize, width: usize, reach: usize) -> Self {
         let extended = Vec::with_capacity((frames * width).min(FORGET_AT));
-        let ranks = || vec![f64::MAX; frames];
-        let (heap, spare, ranked) = (vec![Vec::new(); frames], Vec::new(), Vec::new());
-        Beam { heap, spare, extended, forget_at: FORGET_AT, least: ranks(), kept: None, full: ranks(), ranked }
+        // Lists of all frames of a long take would fall out of the cache.
+        let places = frames.min(reach + 1).next_power_of_two();
+        let ranks = || vec![f64::MAX; places];
+        Beam {
+            heap: vec![Vec::new(); places],
+            now: 0,
+            last_frame: frames - 1,
+            spare: Vec::new(),
+            extended,
+            forget_at: FORGET_AT,
+            least: ranks(),
+            ahead: None,
+            kept: None,
+            full: ranks(),
+            ranked: Vec::new(),
+        }
+    }
+
+    /// The same, where a hypothesis is also compared with the best of all later frames. That one has more frames behind it, so a hypothesis that
+    /// costs more will hardly lead to the best code.
+    pub fn looking_ahead(self) -> Self {
+        Beam { ahead: Some(self.least.clone()), ..self }
     }
 
     /// The same, where a frame keeps no more than the `kept` best hypotheses while others keep coming.
@@ -98,16 +122,47 @@ impl<C: Cost> Beam<C> {
         Beam { kept: Some(kept), ..self }
     }
 
+    /// Where the lists have a frame.
+    #[inline]
+    fn place(&self, frame: usize) -> usize {
+        frame & (self.least.len() - 1)
+    }
+
+    /// Least rank seen at a frame that is not done.
+    pub fn least(&self, frame: usize) -> f64 {
+        self.least[self.place(frame)]
+    }
+
     /// The greatest rank that [`Beam::offer`] takes at a frame.
     #[inline]
     pub fn limit(&self, frame: usize, margin: f64) -> f64 {
-        (self.least[frame] + margin).min(self.full[frame])
+        let place = self.place(frame);
+        let least = self.least[place];
+        let limit = self.ahead.as_ref().map_or(least + margin, |ahead| (ahead[place] + margin).max(least));
+        limit.min(self.full[place])
+    }
+
+    /// Notes a rank at a frame.
+    #[inline]
+    fn seen(&mut self, frame: usize, rank: f64) {
+        let (place, places) = (self.place(frame), self.least.len() - 1);
+        self.least[place] = self.least[place].min(rank);
+        if let Some(ahead) = &mut self.ahead {
+            for before in (self.now..=frame).rev() {
+                let least = &mut ahead[before & places];
+                if *least <= rank {
+                    break;
+                }
+                *least = rank;
+            }
+        }
     }
 
     /// Adds a hypothesis, whatever it costs and without an effect on [`Beam::least`].
     #[inline]
     pub fn insert(&mut self, hypothesis: Hypothesis<C>) {
-        let here = &mut self.heap[hypothesis.frame as usize];
+        let place = self.place(hypothesis.frame as usize);
+        let here = &mut self.heap[place];
         if here.capacity() == 0
             && let Some(spare) = self.spare.pop()
         {
@@ -121,12 +176,13 @@ impl<C: Cost> Beam<C> {
     pub fn offer(&mut self, hypothesis: Hypothesis<C>, margin: f64) {
         let (frame, rank) = (hypothesis.frame as usize, hypothesis.cost.rank());
         if rank <= self.limit(frame, margin) {
-            self.least[frame] = self.least[frame].min(rank);
+            self.seen(frame, rank);
             self.insert(hypothesis);
-            let here = &mut self.heap[frame];
+            let place = self.place(frame);
+            let here = &mut self.heap[place];
             if let Some(kept) = self.kept.filter(|kept| here.len() >= 2 * kept) {
                 let (_, last, _) = here.select_nth_unstable_by(kept - 1, |a, b| a.cost.rank().total_cmp(&b.cost.rank()));
-                self.full[frame] = last.cost.rank();
+                self.full[place] = last.cost.rank();
                 here.truncate(kept);
             }
         }
@@ -144,7 +200,11 @@ impl<C: Cost> Beam<C> {
         if self.extended.len() >= self.forget_at {
             self.forget();
         }
-        let mut here = std::mem::take(&mut self.heap[frame]);
+        let place = self.place(frame);
+        let mut here = std::mem::take(&mut self.heap[place]);
+        self.now = frame + 1;
+        (self.least[place], self.full[place]) = (f64::MAX, f64::MAX);
+        self.ahead.iter_mut().for_each(|ahead| ahead[place] = f64::MAX);
         let within = here.iter().enumerate().filter(|(_, hypothesis)| hypothesis.cost.rank() <= limit);
         self.ranked.clear();
         self.ranked.extend(within.map(|(index, hypothesis)| (hypothesis.cost.rank(), index)));
@@ -218,7 +278,7 @@ impl<C: Cost> Beam<C> {
     /// The code that ends cheapest at the last frame, and what it costs; `None` if no hypothesis reaches that frame. Its bits are
     /// for the caller to fill in.
     pub fn backtrack(self, step: u8) -> Option<(Fitted, C)> {
-        let end = self.heap.last()?.iter().min_by(|a, b| a.cost.total().total_cmp(&b.cost.total()))?;
+        let end = self.heap[self.place(self.last_frame)].iter().min_by(|a, b| a.cost.total().total_cmp(&b.cost.total()))?;
         let mut chain = vec![*end];
         while let Some(before) = self.extended.get(chain[chain.len() - 1].from as usize) {
             chain.push(*before);
@@ -249,7 +309,7 @@ mod tests {
 
     /// The cheapest of random chains, where hypotheses are dropped from `forget_at` on; and how many were held at the end.
     fn cheapest(forget_at: usize) -> (Vec<f64>, Vec<Segment>, usize) {
-        let mut beam: Beam<f64> = Beam { forget_at, ..Beam::new(FRAMES as usize, 3) };
+        let mut beam: Beam<f64> = Beam { forget_at, ..Beam::new(FRAMES as usize, 3, 9) };
         beam.insert(Hypothesis::start(0.0, 0.0, 0.0));
         let mut random = 1u32;
         for frame in 1..FRAMES - 1 {

@@ -31,7 +31,7 @@ const AROUND: i32 = 3;
 const EXACT_BEAM: usize = 40;
 const BEAM: usize = 10;
 /// The search in wide tubes, and for constants.
-const EFFORT: Effort = Effort { beam: 14, margin: 9.0, slopes: true, all_alike: false };
+const EFFORT: Effort = Effort { beam: 14, margin: 9.0, slopes: usize::MAX, all_alike: false };
 /// What a channel at rest costs, about.
 const REST_BITS: f64 = 0.4;
 

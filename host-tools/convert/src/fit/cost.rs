@@ -1,5 +1,6 @@
 //! What symbols cost: the format's tables, in bits, ready for the search.
 
+use super::extend::least_of_contexts;
 use crate::encode::entropy::{cost, magnitude_cost};
 use crate::encode::segment::{NumberCode, mode_symbol};
 use pantin::codec::layout::{GROUPS, group};
@@ -14,8 +15,8 @@ const AT_HAND: i32 = group(GROUPS + 1) as i32 - 1;
 pub struct Costs {
     modes: Vec<[f32; 64]>,
     numbers: Vec<[f32; 2 * AT_HAND as usize + 1]>,
-    /// The least cost of a number in each context.
-    least_number: Vec<f32>,
+    /// The least cost of a number in all contexts of each length: of accelerations, then of slopes.
+    least_number: [[f32; 16]; 2],
 }
 
 impl Costs {
@@ -34,8 +35,9 @@ impl Costs {
         let number = |context: u8, index: usize| number_cost(context, index as i32 - AT_HAND) as f32;
         let numbers: Vec<[f32; _]> =
             (0..CONTEXTS as u8).map(|context| std::array::from_fn(|index| number(context, index))).collect();
+        let least: Vec<f32> = numbers.iter().map(|costs| costs.iter().copied().fold(f32::MAX, f32::min)).collect();
         Costs {
-            least_number: numbers.iter().map(|costs| costs.iter().copied().fold(f32::MAX, f32::min)).collect(),
+            least_number: [false, true].map(|slope| std::array::from_fn(|index| least_of_contexts(slope, index, &least))),
             numbers,
             modes: (0..64).map(|after| std::array::from_fn(|m| mode(after, m as u8))).collect(),
         }
@@ -56,10 +58,10 @@ impl Costs {
         number_cost(context, number)
     }
 
-    /// What no number in this context costs less than: those beyond the ones at hand cost more.
+    /// What no number of a segment of length `index` costs less than: those beyond the ones at hand cost more.
     #[inline]
-    pub fn least_number(&self, context: u8) -> f64 {
-        f64::from(self.least_number[usize::from(context)])
+    pub fn least_number(&self, slope: bool, index: usize) -> f64 {
+        f64::from(self.least_number[usize::from(slope)][index])
     }
 
     /// A constant channel's position, in multiples of its grid.

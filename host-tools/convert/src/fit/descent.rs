@@ -12,6 +12,7 @@ use crate::motion::Kind;
 use crate::pose_bound::PoseBound;
 use anyhow::{Result, bail};
 use pantin::codec::layout::{FIRST_STEP, MAX_STEP};
+use rayon::prelude::*;
 
 /// The bound, and the encoder's effort.
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +23,10 @@ pub struct Plan {
     pub passes: usize,
     /// The price of an error, relative to a bit, in the first and the last pass.
     pub prices: (f64, f64),
-    /// Whether two steps are tried at a time, or one.
+    /// Whether two steps are tried at a time, in early passes every other time, or one.
     pub both_steps: bool,
+    /// Whether early passes try slopes and both steps as later ones do.
+    pub thorough: bool,
     /// The search for one channel.
     pub effort: Effort,
     /// How joints' rotations are coded.
@@ -35,50 +38,21 @@ impl Plan {
     pub fn with_time_for(self, values: usize) -> Plan {
         let more = (VALUES_OF_A_PLAN / values.max(1) as f64).sqrt().clamp(1.0, MOST_PASSES);
         let passes = if self.both_steps { (self.passes as f64 * more) as usize } else { self.passes };
-        Plan { passes, ..self }
+        // What early passes of a long clip leave out costs a short one several percent.
+        let thorough = self.both_steps && more > 1.0;
+        let slopes = if thorough { usize::MAX } else { self.effort.slopes };
+        Plan { passes, thorough, effort: Effort { slopes, ..self.effort }, ..self }
     }
 }
 
+/// Channels that are coded at one time, at most.
+const TOGETHER: usize = 4;
 /// Searches of fewer frames take less time than another thread takes to begin.
 const SHORT: usize = 16;
 /// Clips of fewer values have more passes, up to this many times more: a clip of 25 frames becomes 4 % smaller by four times as many.
 const VALUES_OF_A_PLAN: f64 = 40_000.0;
 const MOST_PASSES: f64 = 4.0;
 
-/// Encoder effort: speed against size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// For previews: many times faster than real time
-    Fast,
-    /// About real time
-    Default,
-    /// A few percent smaller than default, several times slower
-    Best,
-}
-
-impl Level {
-    /// The plan of this level for a bound.
-    pub fn plan(self, bound: PoseBound) -> Plan {
-        let plan = |passes, beam, margin, thorough| Plan {
-            bound,
-            passes,
-            prices: (FIRST_PRICE_AT_1_CM * bound.max_cm.powf(FIRST_PRICE_FALLS).clamp(0.5, 4.0), 0.2),
-            both_steps: thorough,
-            effort: Effort { beam, margin, slopes: thorough, all_alike: false },
-            rotations: Rotations::ByCost,
-        };
-
-        match self {
-            Level::Fast => plan(2, 3, 3.0, false),
-            Level::Default => plan(12, 14, 9.0, true),
-            Level::Best => plan(30, 30, 14.0, true),
-        }
-    }
-}
-
-/// The price of the first pass. A tight bound takes many bits a frame, and an error must cost as much: measured on ten clips at 0.1 to 3 cm.
-const FIRST_PRICE_AT_1_CM: f64 = 11.0;
-const FIRST_PRICE_FALLS: f64 = -0.45;
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
 /// Attempts at a channel, and at its first code; from the third on the tube shrinks toward where the channel is.
@@ -194,12 +168,63 @@ impl<'m> Descent<'m> {
     /// One pass. A channel that nothing helped lately is tried in every third pass only, unless `every` channel is.
     fn pass(&mut self, pass: usize, price: f64, every: bool, progress: &mut dyn FnMut(f64)) -> Result<()> {
         let channels = self.targets.len();
-        for i in 0..channels {
-            let channel = if pass.is_multiple_of(2) { i } else { channels - 1 - i };
-            if every || pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3) {
-                self.improve(channel, price, pass)?;
+        let order = (0..channels).map(|i| if pass.is_multiple_of(2) { i } else { channels - 1 - i });
+        let tried = |channel: usize| every || pass < self.improved[channel] + 3 || (pass + channel).is_multiple_of(3);
+        let groups = self.groups(order.filter(|&channel| tried(channel)).collect());
+        let (mut done, all) = (0, groups.iter().map(Vec::len).sum::<usize>().max(1));
+        for group in groups {
+            self.improve_all(&group, price, pass)?;
+            done += group.len();
+            progress(done as f64 / all as f64);
+        }
+        Ok(())
+    }
+
+    /// Channels that move no joint in common are coded at one time. The groups are the same however many threads there are, so the codes are too.
+    fn groups(&self, mut order: Vec<usize>) -> Vec<Vec<usize>> {
+        let joint = |channel: &usize| self.figure.channels[*channel].0;
+        let apart = |one: &usize, other: &usize| joint(one).zip(joint(other)).is_some_and(|(a, b)| self.figure.apart(a, b));
+        let mut groups = Vec::new();
+        while !order.is_empty() {
+            let mut group: Vec<usize> = Vec::with_capacity(TOGETHER);
+            order.retain(|channel| {
+                let joins = group.len() < TOGETHER && group.iter().all(|other| apart(channel, other));
+                if joins {
+                    group.push(*channel);
+                }
+                !joins
+            });
+            groups.push(group);
+        }
+        groups
+    }
+
+    /// Codes the channels of a group again, each if that is better.
+    fn improve_all(&mut self, group: &[usize], price: f64, pass: usize) -> Result<()> {
+        let mut poses = std::mem::take(&mut self.poses);
+        let joints = group.iter().map(|&channel| (channel, self.figure.channels[channel].0));
+        let found = if let [channel] = *group {
+            vec![(channel, self.improve(channel, &mut poses, price, pass))]
+        } else {
+            let parts: Vec<_> =
+                joints.map(|(channel, joint)| (channel, joint, joint.map(|joint| poses.take(self.figure, joint)))).collect();
+            let improve = |(channel, joint, mut part): (usize, Option<usize>, Option<Poses>)| {
+                let code = self.improve(channel, part.as_mut()?, price, pass);
+                Some((channel, joint?, part?, code))
+            };
+            let improved: Vec<_> = parts.into_par_iter().filter_map(improve).collect();
+            let put_back = |(channel, joint, mut part, code)| {
+                poses.exchange(&mut part, self.figure, joint);
+                (channel, code)
+            };
+            improved.into_iter().map(put_back).collect()
+        };
+        self.poses = poses;
+        for (channel, code) in found {
+            if let Some(code) = code? {
+                self.codes[channel] = Some(code);
+                self.improved[channel] = pass;
             }
-            progress((i + 1) as f64 / channels as f64);
         }
         Ok(())
     }
@@ -263,19 +288,19 @@ impl<'m> Descent<'m> {
         part * price / (2.0 * square.sqrt().max(mean_cm))
     }
 
-    /// Codes one channel again if that is better.
-    fn improve(&mut self, channel: usize, price: f64, pass: usize) -> Result<()> {
+    /// A better code of one channel, if one is found. `poses` have all that the channel moves, which becomes what the code makes of it.
+    fn improve(&self, channel: usize, poses: &mut Poses, price: f64, pass: usize) -> Result<Option<Code>> {
         let moved = self.measure.moved(self.figure, channel);
         let bound = self.measure.max_cm * USED;
         let coded = self.codes[channel].is_some();
         let mut bounds = vec![if coded { bound } else { bound * self.first_part }; self.figure.frames];
-        let axes = self.figure.axes(channel, |channel, frame| self.value(channel, frame), &self.poses);
-        let worst_now = self.worst(channel, &moved);
+        let axes = self.figure.axes(channel, |channel, frame| self.value(channel, frame), poses);
+        let worst_now = self.worst(channel, poses, &moved);
         let attempts = if coded { ATTEMPTS } else { FIRST_ATTEMPTS };
         for attempt in 0..attempts {
             let shrink = SHRINK.powi((attempt as i32 - 1).max(0));
-            let tube = self.tube(channel, price, &moved, &axes, &bounds, shrink);
-            let Some(best) = self.best(channel, &tube, pass + attempt) else {
+            let tube = self.tube(channel, price, poses, &moved, &axes, &bounds, shrink);
+            let Some(best) = self.best(channel, &tube, pass, attempt) else {
                 if coded || bounds[0] >= bound {
                     break;
                 }
@@ -285,14 +310,12 @@ impl<'m> Descent<'m> {
             if let Some(now) = &self.codes[channel]
                 && objective(&best, &tube) >= objective(now, &tube) - GAIN
             {
-                return Ok(());
+                return Ok(None);
             }
-            let before = self.codes[channel].replace(best);
-            self.refresh(channel);
-            let worst = self.worst(channel, &moved);
+            self.refresh(channel, &best.path, poses);
+            let worst = self.worst(channel, poses, &moved);
             if worst.iter().all(|&distance| distance <= bound) {
-                self.improved[channel] = pass;
-                return Ok(());
+                return Ok(Some(best));
             }
             // Levers change along the way: leave less room where they misled, but never less than there is.
             for ((limit, distance), now) in bounds.iter_mut().zip(worst).zip(&worst_now) {
@@ -300,13 +323,12 @@ impl<'m> Descent<'m> {
                     *limit = (*limit * (bound / distance).powi(2) * 0.98).max(0.5 * (now + bound));
                 }
             }
-            self.codes[channel] = before;
-            self.refresh(channel);
+            self.refresh(channel, self.path(channel), poses);
         }
-        if self.codes[channel].is_none() {
-            bail!(refusal(self.figure, &self.measure, &self.poses, self.original, channel, &moved));
+        if !coded {
+            bail!(refusal(self.figure, &self.measure, poses, self.original, channel, &moved));
         }
-        Ok(())
+        Ok(None)
     }
 
     fn path(&self, channel: usize) -> &[f64] {
@@ -318,31 +340,41 @@ impl<'m> Descent<'m> {
         self.path(channel)[frame] * self.scales[channel]
     }
 
-    fn refresh(&mut self, channel: usize) {
+    /// Poses with another path of a channel.
+    fn refresh(&self, channel: usize, path: &[f64], poses: &mut Poses) {
         if let (Some(joint), ..) = self.figure.channels[channel] {
-            let Descent { figure, targets, scales, codes, poses, .. } = self;
-            let first = figure.first[joint];
-            let paths: Vec<&[f64]> =
-                (first..first + figure.rig.joints[joint].kinds.len()).map(|channel| path(codes, targets, channel)).collect();
-            figure.update(joint, |channel, frame| paths[channel - first][frame] * scales[channel], poses);
+            let value = |other: usize, frame: usize| {
+                if other == channel { path[frame] * self.scales[channel] } else { self.value(other, frame) }
+            };
+            self.figure.update(joint, value, poses);
         }
     }
 
     /// The greatest error of these joints, which the channel moves, at each frame, in cm.
-    fn worst(&self, channel: usize, joints: &[usize]) -> Vec<f64> {
+    fn worst(&self, channel: usize, poses: &Poses, joints: &[usize]) -> Vec<f64> {
         let mover = self.figure.channels[channel].0;
         let mut worst = vec![0f64; self.figure.frames];
         for &joint in joints {
             let own = mover == Some(joint);
             for (frame, worst) in worst.iter_mut().enumerate() {
-                *worst = worst.max(self.measure.worst_square(self.figure, &self.poses, self.original, joint, frame, own));
+                *worst = worst.max(self.measure.worst_square(self.figure, poses, self.original, joint, frame, own));
             }
         }
         worst.iter().map(|square| square.sqrt()).collect()
     }
 
     /// The tube that the other channels' codes leave to this one.
-    fn tube(&self, channel: usize, price: f64, moved: &[usize], axes: &[[f64; 3]], bounds: &[f64], shrink: f64) -> Tube {
+    #[allow(clippy::too_many_arguments)]
+    fn tube(
+        &self,
+        channel: usize,
+        price: f64,
+        poses: &Poses,
+        moved: &[usize],
+        axes: &[[f64; 3]],
+        bounds: &[f64],
+        shrink: f64,
+    ) -> Tube {
         let frames = self.figure.frames;
         let target = &self.targets[channel];
         let scale = self.scales[channel];
@@ -366,16 +398,18 @@ impl<'m> Descent<'m> {
         for &joint in moved {
             for frame in 0..frames {
                 let now = now[frame];
-                let center = &self.poses.places[mover][frame];
+                let center = &poses.places[mover][frame];
                 let motion = measure::Motion { axis: axes[frame].map(|x| x * scale), translates, center, now };
                 let limit = bounds[frame] * bounds[frame];
-                self.measure.each(self.figure, &self.poses, self.original, [joint, mover], frame, &motion, |quantity| {
+                self.measure.each(self.figure, poses, self.original, [joint, mover], frame, &motion, |quantity| {
                     let weight = self.weight(joint, quantity.ee, price, share);
                     tube.a[frame] += weight * quantity.jj;
                     tube.b[frame] += weight * quantity.jr;
-                    let (lo, hi) = quantity.within(limit, now);
-                    tube.lo[frame] = tube.lo[frame].max(lo);
-                    tube.hi[frame] = tube.hi[frame].min(hi);
+                    if !quantity.holds(limit, tube.lo[frame], tube.hi[frame]) {
+                        let (lo, hi) = quantity.within(limit, now);
+                        tube.lo[frame] = tube.lo[frame].max(lo);
+                        tube.hi[frame] = tube.hi[frame].min(hi);
+                    }
                 });
             }
         }
@@ -419,7 +453,11 @@ impl<'m> Descent<'m> {
     }
 
     /// The best of what the search finds at a few steps.
-    fn best(&self, channel: usize, tube: &Tube, pass: usize) -> Option<Fitted> {
+    fn best(&self, channel: usize, tube: &Tube, pass: usize, attempt: usize) -> Option<Fitted> {
+        // What early passes find is soon replaced.
+        let early = pass < self.plan.passes / 2;
+        let both_steps = self.plan.both_steps && (!early || self.plan.thorough || (pass + channel).is_multiple_of(2));
+        let pass = pass + attempt;
         if let Some(rest) = self.at_rest(channel, tube) {
             return Some(rest);
         }
@@ -444,12 +482,12 @@ impl<'m> Descent<'m> {
             }
         };
         let mut effort = self.plan.effort;
-        if pass < self.plan.passes / 2 {
-            // What early passes find is soon replaced.
-            effort = Effort { beam: effort.beam.div_ceil(2), margin: 0.7 * effort.margin, ..effort };
+        if early {
+            let slopes = if self.plan.thorough { effort.slopes } else { 0 };
+            effort = Effort { beam: effort.beam.div_ceil(2), margin: 0.7 * effort.margin, slopes, ..effort };
         }
         let one = || search(tube, guess.min(MAX_STEP), effort);
-        let two = || if self.plan.both_steps { search(tube, other.min(MAX_STEP), effort) } else { None };
+        let two = || if both_steps { search(tube, other.min(MAX_STEP), effort) } else { None };
         let (one, two) = if tube.x.len() < SHORT { (one(), two()) } else { rayon::join(one, two) };
         let best = [one, two].into_iter().flatten().min_by(|a, b| objective(a, tube).total_cmp(&objective(b, tube)));
         if best.is_some() || self.codes[channel].is_some() {

@@ -7,12 +7,34 @@ use crate::motion::{Kind, Rig};
 pub type Places = Vec<Vec<[f64; 3]>>;
 
 /// Rotations and places of every joint at every frame, `[joint][frame]`; places in cm. End Sites have no rotations.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Poses {
     /// How every joint is turned in the world.
     pub(super) turns: Vec<Vec<Matrix>>,
     /// Where every joint is, in cm.
     pub places: Places,
+}
+
+impl Poses {
+    /// Takes what a joint's channels change, the joint and all below it, with a copy of what that depends on: its parent. The rest is empty.
+    pub fn take(&mut self, figure: &Figure, joint: usize) -> Poses {
+        let joints = figure.rig.joints.len();
+        let mut part = Poses { turns: vec![Vec::new(); joints], places: vec![Vec::new(); joints] };
+        if let Some(parent) = figure.rig.joints[joint].parent {
+            part.turns[parent].clone_from(&self.turns[parent]);
+            part.places[parent].clone_from(&self.places[parent]);
+        }
+        self.exchange(&mut part, figure, joint);
+        part
+    }
+
+    /// Exchanges a joint and all below it.
+    pub fn exchange(&mut self, other: &mut Poses, figure: &Figure, joint: usize) {
+        for joint in std::iter::once(joint).chain(figure.below[joint].iter().copied()) {
+            std::mem::swap(&mut self.turns[joint], &mut other.turns[joint]);
+            std::mem::swap(&mut self.places[joint], &mut other.places[joint]);
+        }
+    }
 }
 
 /// A rig, and what depends on what.
@@ -138,6 +160,11 @@ impl Figure {
             std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| more[i][k] * less[j][k]).sum::<f64>()));
         let scale = 0.25 / small;
         [(across[2][1] - across[1][2]) * scale, (across[0][2] - across[2][0]) * scale, (across[1][0] - across[0][1]) * scale]
+    }
+
+    /// Whether no joint moves with two joints at once.
+    pub fn apart(&self, one: usize, other: usize) -> bool {
+        one != other && !self.below[one].contains(&other) && !self.below[other].contains(&one)
     }
 
     /// Whether a channel translates.

@@ -47,6 +47,14 @@ impl Quadratic {
         Quadratic { ee: square(error), jj: dot(lever, lever), jr: dot(lever, &rest), rr: square(&rest) }
     }
 
+    /// Whether all changes from `least` to `most` keep the square of the error within `limit`: takes no root, unlike [`Self::within`].
+    #[inline(always)]
+    pub fn holds(&self, limit: f64, least: f64, most: f64) -> bool {
+        let square = |change: f64| self.rr + change * (2.0 * self.jr + change * self.jj);
+        // A parabola that opens upward is greatest at an end.
+        square(least) <= limit && square(most) <= limit
+    }
+
     /// The changes, `now` among them, that keep the square of the error within `limit`.
     #[inline(always)]
     pub fn within(&self, limit: f64, now: f64) -> (f64, f64) {

@@ -6,7 +6,9 @@ pub mod chain;
 pub mod channelwise;
 pub mod cost;
 pub mod descent;
+mod extend;
 pub mod figure;
+pub mod level;
 mod measure;
 pub mod raw;
 pub mod refusal;
@@ -23,7 +25,7 @@ use crate::events;
 use crate::motion::Motion;
 use crate::note::Remedy;
 use crate::number::Number;
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use descent::{Descent, Plan};
 use figure::Figure;
 use pantin::codec::layout::MAX_FRAMES;
@@ -73,29 +75,15 @@ pub fn fit_coding(
     };
     let aims: Vec<Aim> = (joint_channels..targets.len()).map(aim).collect();
     let targets = &targets[..joint_channels];
-    let mut failed = None;
-    let mut codes = None;
-    for first_part in FIRST_PARTS {
-        let descent = Descent::new(
-            &figure,
-            plan,
-            first_part,
-            targets,
-            &scales,
-            &rests,
-            &file_kinds[..joint_channels],
-            &original,
-            motion.frame_time,
-        );
-        match descent.run(progress) {
-            Ok(found) => {
-                codes = Some(found);
-                break;
-            }
-            Err(error) => failed = Some(error),
-        }
+    let mut attempt = |part: f64| {
+        let kinds = &file_kinds[..joint_channels];
+        Descent::new(&figure, plan, part, targets, &scales, &rests, kinds, &original, motion.frame_time).run(progress)
+    };
+    let mut found = attempt(FIRST_PARTS[0]);
+    for part in &FIRST_PARTS[1..] {
+        found = found.or_else(|_| attempt(*part));
     }
-    let mut codes = codes.ok_or_else(|| failed.unwrap_or_else(|| anyhow!("no attempt was made")))?;
+    let mut codes = found?;
     codes.extend(scalars::fit(&motion.rig, &aims, plan.effort)?);
     let (events, event_names) = events::to_clip(&motion.events);
     Ok(Coded {
@@ -129,7 +117,7 @@ fn time(motion: &Motion) -> Result<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::descent::Level;
+    use super::level::Level;
     use super::rotation_coding::Rotations;
     use crate::import::{ImportOptions, InMemory, import};
     use crate::{Length, Options, convert};
@@ -151,7 +139,7 @@ mod tests {
         let files = InMemory::new().with("knee.bvh", knee.as_bytes());
         let knee = import(&files, "knee.bvh".as_ref(), &ImportOptions::new().cm_per_unit(1.0)).unwrap().motion;
         for max_cm in [0.5, 1.0] {
-            let options = Options::new().max_error(Length::cm(max_cm)).rotations(Rotations::Quaternion).effort(Level::Fast);
+            let options = Options::new().max_error(Length::cm(max_cm)).rotations(Rotations::Quaternion).effort(Level::FAST);
             let made = convert(&knee, &options, &mut |_| ());
             assert!(made.is_ok(), "{max_cm} cm: {:?}", made.map(|_| ()));
         }

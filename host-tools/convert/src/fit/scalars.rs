@@ -49,7 +49,9 @@ struct Group {
 /// Codes the scalars of `rig`, whose channels come after those of joints.
 pub fn fit(rig: &Rig, aims: &[Aim], effort: Effort) -> Result<Vec<Fitted>> {
     let first = rig.joint_channels();
-    let coder = Coder { effort };
+    // Scalars are searched once: slopes from all hypotheses take little time.
+    let slopes = if effort.slopes > 0 { usize::MAX } else { 0 };
+    let coder = Coder { effort: Effort { slopes, ..effort } };
     let alone = |(scalar, aim): (usize, &Aim)| {
         let tube = aim.tube();
         let code = if aim.rests() { Some(rest(aim.target.len())) } else { coder.code(&tube) };
@@ -172,7 +174,7 @@ fn steps(tube: &Tube) -> RangeInclusive<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::descent::Level;
+    use crate::fit::level::Level;
     use crate::motion::Scalar;
     use crate::pose_bound::PoseBound;
 
@@ -192,7 +194,7 @@ mod tests {
         let rig = Rig { joints: Vec::new(), scalars, cm_per_unit: 1.0, ..Rig::default() };
         let raw = |values: &Vec<f64>| values.iter().map(|x| x * RAW).collect();
         let aims: Vec<Aim> = values.iter().map(|values| Aim { target: raw(values), bound: BOUND * RAW }).collect();
-        let codes = fit(&rig, &aims, Level::Default.plan(PoseBound::places(1.0)).effort).unwrap();
+        let codes = fit(&rig, &aims, Level::DEFAULT.plan(PoseBound::places(1.0)).effort).unwrap();
         assert_eq!((codes[1].start, codes[3].start), (Start::Rest, Start::Follows { leader: 0 }));
         assert!([0, 2, 4].iter().all(|&alone| matches!(codes[alone].start, Start::Moving { .. })));
         for (code, aim) in codes.iter().zip(&aims) {

@@ -43,11 +43,17 @@ pub struct SegmentPrice<'t> {
     passed: usize,
 }
 
-/// What a segment costs for a number g, its w or k: s0 + 2 g s1 + g^2 s2.
+/// Hypotheses that are priced side by side.
+pub const LANES: usize = 4;
+
+/// One number of each hypothesis.
+pub type Lanes = [f64; LANES];
+
+/// What a segment costs each hypothesis for a number g, its w or k: s0 + 2 g s1 + g^2 s2.
 #[derive(Clone, Copy)]
-pub struct Quadratic {
-    pub s0: f64,
-    pub s1: f64,
+pub struct Quadratics {
+    pub s0: Lanes,
+    pub s1: Lanes,
     pub s2: f64,
 }
 
@@ -85,19 +91,24 @@ impl<'t> SegmentPrice<'t> {
         }
     }
 
-    /// The price of a segment of this length that begins at position p and velocity v: with a new w, or with a new k while w carries on.
+    /// The price of segments of this length that begin at positions p and velocities v: with a new w, or with a new k while w carries on.
     #[inline(always)]
-    pub fn of<const SLOPE: bool>(&mut self, index: usize, p: f64, v: f64, w: f64) -> Quadratic {
+    pub fn of<const SLOPE: bool>(&mut self, index: usize, [p, v, w]: [&Lanes; 3]) -> Quadratics {
         self.sum_to(index);
         let Sums { squares: [pp, pv, pw, pk, vv, vw, vk, ww, wk, kk], lines: [lp, lv, lw, lk], constant } = self.by_length[index];
-        let p = p - self.origin;
-        let s0 = p * (pp * p + 2.0 * (pv * v + lp)) + v * (vv * v + 2.0 * lv) + constant;
-        if SLOPE {
-            let s0 = s0 + w * (ww * w + 2.0 * (pw * p + vw * v + lw));
-            Quadratic { s0, s1: pk * p + vk * v + wk * w + lk, s2: kk }
-        } else {
-            Quadratic { s0, s1: pw * p + vw * v + lw, s2: ww }
+        let (mut s0, mut s1) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let (p, v, w) = (p[lane] - self.origin, v[lane], w[lane]);
+            let carried = p * (pp * p + 2.0 * (pv * v + lp)) + v * (vv * v + 2.0 * lv) + constant;
+            if SLOPE {
+                s0[lane] = carried + w * (ww * w + 2.0 * (pw * p + vw * v + lw));
+                s1[lane] = pk * p + vk * v + wk * w + lk;
+            } else {
+                s0[lane] = carried;
+                s1[lane] = pw * p + vw * v + lw;
+            }
         }
+        Quadratics { s0, s1, s2: if SLOPE { kk } else { ww } }
     }
 }
 
@@ -113,20 +124,18 @@ mod tests {
         for start in [0, 40, 120] {
             price.begin(start);
             let (p, v, w) = (tube.x[start] + 3e5, 4e7, -2e5);
+            let lanes = [&[0.0, p, 0.0, 0.0], &[0.0, v, 0.0, 0.0], &[0.0, w, 0.0, 0.0]];
             for (index, &length) in LENGTHS.iter().enumerate() {
                 for (slope, g) in [(false, 3e5), (true, -1e4)] {
-                    let (of, w, k) = if slope {
-                        (price.of::<true>(index, p, v, w), w, g)
-                    } else {
-                        (price.of::<false>(index, p, v, w), g, 0.0)
-                    };
+                    let (of, w, k) =
+                        if slope { (price.of::<true>(index, lanes), w, g) } else { (price.of::<false>(index, lanes), g, 0.0) };
                     let mut sum = 0.0;
                     let frames = usize::from(length).min(149 - start);
                     for (frame, [_, n, c2, c3]) in (start + 1..).zip(&WEIGHTS[1..=frames]) {
                         let e = p + n * v + c2 * w + c3 * k - tube.x[frame];
                         sum += e * (tube.a[frame] * e + 2.0 * tube.b[frame]);
                     }
-                    let priced = of.s0 + g * (2.0 * of.s1 + g * of.s2);
+                    let priced = of.s0[1] + g * (2.0 * of.s1[1] + g * of.s2);
                     assert!((priced - sum).abs() <= 1e-9 * (1.0 + sum.abs()), "{start}, {length} frames: {priced}, not {sum}");
                 }
             }

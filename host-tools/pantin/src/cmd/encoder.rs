@@ -1,28 +1,5 @@
 //! Options of the encoder as words of the command line.
 
-use pantin_convert::Level;
-
-/// Encoder effort: speed against size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Effort {
-    /// For previews: many times faster than real time
-    Fast,
-    /// About real time
-    Default,
-    /// A few percent smaller than default, several times slower
-    Best,
-}
-
-impl From<Effort> for Level {
-    fn from(effort: Effort) -> Level {
-        match effort {
-            Effort::Fast => Level::Fast,
-            Effort::Default => Level::Default,
-            Effort::Best => Level::Best,
-        }
-    }
-}
-
 /// How joints with three Euler angles about three axes are coded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Rotations {

@@ -111,7 +111,7 @@ impl Files {
         if files.is_motion() {
             let import = ImportOptions::new().memory(memory::limit());
             // Only to be shown: as lines between joints, so that places are enough.
-            let options = Options::new().effort(Level::Fast).places_only(true).memory(memory::limit());
+            let options = Options::new().effort(Level::FAST).places_only(true).memory(memory::limit());
             let prepared = Recipe::new().import(import).options(options).prepare(&from, clip)?;
             prepared.notes.iter().for_each(|note| note!("{}", words::line(note)));
             let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;

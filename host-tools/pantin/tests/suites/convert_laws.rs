@@ -1,7 +1,7 @@
 //! What a conversion promises: the bound as decoded, the same bytes on any number of threads, rigs that depend on the figure alone.
 
 use pantin_convert::encode::{clip, rig};
-use pantin_convert::fit::{descent::Level, fit};
+use pantin_convert::fit::{fit, level::Level};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Kind, Motion};
 use pantin_convert::pose_bound::PoseBound;
@@ -47,7 +47,7 @@ fn convert(motion: &Motion, bound_cm: f64, level: Level) -> Vec<u8> {
 fn own_motions_keep_every_bound_at_every_effort_and_cost_less_the_wider_it_is() {
     for name in ["walk.keys", "run.keys"] {
         let motion = own(name);
-        for level in [Level::Fast, Level::Default] {
+        for level in [Level::FAST, Level::DEFAULT] {
             let sizes: Vec<usize> = [0.1, 0.5, 3.0].iter().map(|&bound| convert(&motion, bound, level).len()).collect();
             assert!(sizes.windows(2).all(|pair| pair[1] < pair[0]), "{name} {level:?}: {sizes:?}");
         }
@@ -59,7 +59,7 @@ fn bytes_do_not_depend_on_the_number_of_threads() {
     let motion = own("walk.keys");
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| convert(&motion, 0.5, Level::Default))
+        pool.install(|| convert(&motion, 0.5, Level::DEFAULT))
     };
     let one = with(1);
     assert!(one == with(2) && one == with(5));
@@ -70,7 +70,7 @@ fn captured_clips_keep_every_bound() {
     for path in captured("bvh_") {
         let motion = load(&path);
         for bound in [0.5, 3.0] {
-            convert(&motion, bound, Level::Fast);
+            convert(&motion, bound, Level::FAST);
         }
     }
 }
@@ -99,7 +99,7 @@ fn angles_that_begin_turns_away_are_kept() {
         motion.keys[channel] = None;
     }
     for bound in [0.2, 0.3, 0.5, 0.7, 1.0] {
-        convert(&motion, bound, Level::Fast);
+        convert(&motion, bound, Level::FAST);
     }
 }
 
@@ -120,7 +120,7 @@ fn rotations_are_coded_as_asked() {
     motion.values.insert(channel, (0..motion.frames).map(|frame| 9.0 * (frame as f64 * 0.1).sin()).collect());
     motion.keys.insert(channel, None);
     let chosen = |rotations| {
-        let coded = fit(&motion, Plan { rotations, ..Level::Fast.plan(PoseBound::places(0.5)) }, 0.02, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Plan { rotations, ..Level::FAST.plan(PoseBound::places(0.5)) }, 0.02, &mut |_| ()).unwrap();
         let bytes = clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap();
         verify(&bytes, &rig::encode(&motion.rig).unwrap(), &motion, &PoseBound::places(0.5), 0.02)
             .unwrap_or_else(|error| panic!("{error:#}"));

@@ -2,7 +2,7 @@
 
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::export::source::{c_header, rust_module};
-use pantin_convert::fit::{descent::Level, fit};
+use pantin_convert::fit::{fit, level::Level};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::pose_bound::PoseBound;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ const CRATE: &str = "extern crate self as pantin;\npub struct Room<const MOVING:
 fn walk() -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/walk.keys");
     let motion = crate::told::load(&path, &ImportOptions::new()).unwrap().motion;
-    let coded = fit(&motion, Level::Fast.plan(PoseBound::places(1.0)), 0.02, &mut |_| ()).unwrap();
+    let coded = fit(&motion, Level::FAST.plan(PoseBound::places(1.0)), 0.02, &mut |_| ()).unwrap();
     clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
 }
 
@@ -141,7 +141,7 @@ fn hostile_clip() -> Vec<u8> {
         events: Vec::new(),
         origin: Default::default(),
     };
-    let coded = fit(&motion, Level::Fast.plan(PoseBound::places(1.0)), 0.02, &mut |_| ()).unwrap();
+    let coded = fit(&motion, Level::FAST.plan(PoseBound::places(1.0)), 0.02, &mut |_| ()).unwrap();
     clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap()
 }
 

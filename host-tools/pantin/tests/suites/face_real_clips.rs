@@ -4,7 +4,7 @@ use crate::real::files;
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::expand::expand;
 use pantin_convert::export;
-use pantin_convert::fit::{descent::Level, fit};
+use pantin_convert::fit::{fit, level::Level};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::pose_bound::PoseBound;
 use pantin_convert::verify::verify;
@@ -40,7 +40,7 @@ fn faces_come_back_within_the_bound() {
         let mut short = motion.clone();
         short.frames = motion.frames.min(200);
         short.values.iter_mut().for_each(|values| values.truncate(short.frames));
-        let coded = fit(&short, Level::Fast.plan(PoseBound::places(1.0)), BOUND, &mut |_| ()).unwrap();
+        let coded = fit(&short, Level::FAST.plan(PoseBound::places(1.0)), BOUND, &mut |_| ()).unwrap();
         let clip = clip::encode(&coded, &bytes, true).unwrap();
         let report = verify(&clip, &bytes, &short, &PoseBound::places(1.0), BOUND).unwrap();
         let rate = clip.len() as f64 / (short.frames as f64 * short.frame_time);

@@ -199,7 +199,7 @@ fn files_convert_expand_and_export_within_the_bound() {
         let height = units::posed_height_cm(&motion).max(motion.rig.cm_per_unit);
         let bound = BOUND * height;
         let rig = encode::rig::encode(&motion.rig).unwrap();
-        let coded = fit(&motion, Level::Fast.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
+        let coded = fit(&motion, Level::FAST.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
         let bytes = encode::clip::encode(&coded, &rig, false).unwrap();
         let report = verify::verify(&bytes, &[], &motion, &PoseBound::places(bound), SCALAR_BOUND).unwrap();
         println!("{} {animation}: {} bytes, {:.4} cm of {bound:.4}", path.display(), bytes.len(), report.place_cm.error);

@@ -2,8 +2,8 @@
 
 use crate::real::files;
 use pantin_convert::encode::{clip, rig};
-use pantin_convert::fit::descent::{Level, Plan};
 use pantin_convert::fit::fit;
+use pantin_convert::fit::{descent::Plan, level::Level};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
 use pantin_convert::pose_bound::PoseBound;
@@ -27,11 +27,11 @@ fn coded(motion: &Motion, plan: Plan) -> (usize, Report) {
 /// The mean is at least `least` of what was asked for.
 fn saved(path: &Path, mean_cm: f64, least: f64) -> f64 {
     let motion = crate::told::load(path, &ImportOptions::new()).unwrap().motion;
-    let plan = Level::Default.plan(PoseBound { mean_cm: Some(mean_cm), ..PoseBound::places(GUARD * mean_cm) });
+    let plan = Level::DEFAULT.plan(PoseBound { mean_cm: Some(mean_cm), ..PoseBound::places(GUARD * mean_cm) });
     let (bytes, report) = coded(&motion, plan);
     let (mean, max) = (report.mean_joint_cm, report.place_cm.error);
     assert!((least * mean_cm..=mean_cm).contains(&mean), "{}: {mean} cm in the mean; asked for {mean_cm}", path.display());
-    let filled = |bound_cm: f64| coded(&motion, Level::Default.plan(PoseBound::places(bound_cm)));
+    let filled = |bound_cm: f64| coded(&motion, Level::DEFAULT.plan(PoseBound::places(bound_cm)));
     // The bound that leads to this mean: two steps of a proportion.
     let first = plan.bound.filled_cm();
     let second = first * mean / filled(first).1.mean_joint_cm;

@@ -38,7 +38,7 @@ fn convert_reports_the_kinds_that_are_listed() {
 
 /// What a command that shows a motion must print: the notes of a fast conversion that bounds places.
 fn shown(file: &str) -> Vec<String> {
-    let recipe = Recipe::new().options(Options::new().effort(Level::Fast).places_only(true));
+    let recipe = Recipe::new().options(Options::new().effort(Level::FAST).places_only(true));
     let converted = recipe.convert(&Disk::default(), &odd().join(file), &mut |_| ()).unwrap();
     converted.notes.iter().map(|note: &Note| words::line(note)).collect()
 }

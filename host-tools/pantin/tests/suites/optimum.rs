@@ -147,7 +147,7 @@ fn objective(found: &Fitted, tube: &Tube) -> f64 {
 
 #[test]
 fn a_wide_search_finds_the_optimum() {
-    let wide = Effort { beam: 1 << 20, margin: 24.0, slopes: true, all_alike: true };
+    let wide = Effort { beam: 1 << 20, margin: 24.0, slopes: usize::MAX, all_alike: true };
     let mut moving = 0;
     for case in 0..CASES {
         let tube = tube(case, FRAMES);
@@ -167,7 +167,7 @@ fn a_wide_search_finds_the_optimum() {
 
 #[test]
 fn default_comes_near_best() {
-    let [default, best] = [Level::Default, Level::Best].map(|level| level.plan(PoseBound::places(1.0)).effort);
+    let [default, best] = [Level::DEFAULT, Level::BEST].map(|level| level.plan(PoseBound::places(1.0)).effort);
     for frames in [FRAMES, 120] {
         let (mut differ, mut default_bits, mut best_bits) = (0, 0.0, 0.0);
         for case in 0..CASES {

@@ -1,7 +1,7 @@
 //! Our own walk and run have the shape the paper's had (docs/METHOD.md 2.6), and they walk and run.
 
 use pantin_convert::encode::{clip, rig};
-use pantin_convert::fit::{descent::Level, fit};
+use pantin_convert::fit::{fit, level::Level};
 use pantin_convert::fk;
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Keys, Motion};
@@ -177,7 +177,7 @@ fn elbow(clip: &Clip, side: &str) -> Vec<f64> {
 /// At 0.5 cm it takes no more than `most` bytes, and `least` channels at least are coded as moving.
 fn costs(clip: &Clip, most: usize, least: usize) {
     let rig = rig::encode(&clip.motion.rig).unwrap();
-    let coded = fit(&clip.motion, Level::Default.plan(PoseBound::places(0.5)), 0.0, &mut |_| ()).unwrap();
+    let coded = fit(&clip.motion, Level::DEFAULT.plan(PoseBound::places(0.5)), 0.0, &mut |_| ()).unwrap();
     let bytes = clip::encode(&coded, &rig, false).unwrap();
     let opened = pantin::Clip::new_checked(&bytes).unwrap();
     let (size, moving) = (opened.motion_len(), opened.moving());

@@ -6,9 +6,9 @@ use super::outputs::{Folder, err};
 use crate::real::files;
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::expand::expand;
-use pantin_convert::fit::descent::{Level, Plan};
 use pantin_convert::fit::fit;
 use pantin_convert::fit::rotation_coding::{Rotations, quaternions};
+use pantin_convert::fit::{descent::Plan, level::Level};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::{Joint, Kind, Motion, Rig};
 use pantin_convert::pose_bound::PoseBound;
@@ -186,7 +186,7 @@ fn random_motion(seed: u64) -> Motion {
 /// What a device plays of `motion`, converted within `bound`.
 fn decoded(motion: &Motion, bound: PoseBound, rotations: Rotations) -> Motion {
     // The default effort, which takes longer, on some.
-    let level = if motion.rig.cm_per_unit == 0.5 { Level::Default } else { Level::Fast };
+    let level = if motion.rig.cm_per_unit == 0.5 { Level::DEFAULT } else { Level::FAST };
     let plan = Plan { rotations, ..level.plan(bound) };
     let coded = fit(motion, plan, 0.02, &mut |_| ()).unwrap_or_else(|error| panic!("{bound:?} {rotations:?}: {error:#}"));
     let bytes = clip::encode(&coded, &rig::encode(&motion.rig).unwrap(), false).unwrap();

@@ -12,7 +12,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use pantin_convert::edit::cut::cut;
 use pantin_convert::encode::{clip::Coded, rig};
-use pantin_convert::fit::{bounds::Bounds, chain::Constraint, channelwise, descent::Level, fit};
+use pantin_convert::fit::{bounds::Bounds, chain::Constraint, channelwise, fit, level::Level};
 use pantin_convert::import::{self, Disk};
 use pantin_convert::motion::{Interpolation, Keys, Kind, Motion};
 use pantin_convert::pose_bound::PoseBound;
@@ -49,7 +49,7 @@ fn above_zero(text: &str) -> Result<f64, String> {
 }
 
 /// Statistics are of what the search finds when it is not hurried.
-const TRAINING: Level = Level::Default;
+const TRAINING: Level = Level::DEFAULT;
 
 /// Every `stride`-th frame.
 fn decimated(motion: &Motion, stride: usize) -> Motion {

@@ -129,7 +129,7 @@ struct Known<'t> {
 pub fn known(tube: &Tube, keys: &[usize], starts: &[(f64, f64, f64)], step: u8) -> Option<Fitted> {
     let bound = 0.5 * (tube.hi[0] - tube.lo[0]);
     let spans = spans(tube, keys, bound);
-    let mut known = Known { tube, step, costs: Costs::get(), beam: Beam::new(tube.x.len(), WIDTH) };
+    let mut known = Known { tube, step, costs: Costs::get(), beam: Beam::new(tube.x.len(), WIDTH, tube.x.len()) };
     for &(p, v, bits) in starts {
         let bits = bits + OPENING_BITS;
         let start = Hypothesis::start(Cost { bits, price: 0.0, rank: bits }, p, v);
@@ -137,7 +137,7 @@ pub fn known(tube: &Tube, keys: &[usize], starts: &[(f64, f64, f64)], step: u8) 
     }
     for (place, span) in spans.iter().enumerate() {
         let next = spans.get(place + 1);
-        let least = known.beam.least[span.frame];
+        let least = known.beam.least(span.frame);
         let limit = if place == 0 { f64::MAX } else { least + MARGIN };
         let length = span.length as f64;
         let cell = |at: &Hypothesis| {

@@ -12,6 +12,7 @@ pub use numbers::Constraint;
 use super::beam::{self, Beam};
 use super::cost::Costs;
 use super::search::{Fitted, Tube};
+use super::segment_price::LONGEST;
 use crate::encode::segment::Segment;
 use numbers::{LARGEST, Range, Room, Sums};
 use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
@@ -80,13 +81,13 @@ struct Chains<'t> {
 pub fn chain(tube: &Tube, constraint: Constraint, starts: &[(f64, f64, f64)], step: u8, width: usize) -> Option<Fitted> {
     let frames = tube.x.len();
     let velocities = velocities(tube, constraint, starts);
-    let mut chains = Chains { tube, constraint, step, costs: Costs::get(), velocities, beam: Beam::new(frames, width) };
+    let mut chains = Chains { tube, constraint, step, costs: Costs::get(), velocities, beam: Beam::new(frames, width, LONGEST) };
     for &(p, v, bits) in starts {
         chains.begin(p, v, bits);
     }
     for frame in 1..frames - 1 {
         let half = chains.half_width(frame);
-        let limit = chains.beam.least[frame] + MARGIN;
+        let limit = chains.beam.least(frame) + MARGIN;
         for id in chains.beam.choose(frame, limit, width, |at| Some(cell(constraint, half, at))) {
             let hypothesis = chains.beam.extended(id);
             chains.extend(id, &hypothesis);

@@ -28,7 +28,7 @@ pub fn height(motion: &Motion) -> f64 {
 pub fn converts(name: &str, motion: &Motion) {
     let bound = BOUND * height(motion);
     let rig = encode::rig::encode(&motion.rig).unwrap();
-    let coded = fit(motion, Level::Fast.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
+    let coded = fit(motion, Level::FAST.plan(PoseBound::places(bound)), SCALAR_BOUND, &mut |_| ()).unwrap();
     let bytes = encode::clip::encode(&coded, &rig, false).unwrap();
     verify::verify(&bytes, &[], motion, &PoseBound::places(bound), SCALAR_BOUND).unwrap();
     let back = expand::expand(&pantin::Clip::new_checked(&bytes).unwrap()).unwrap();
