@@ -7,6 +7,7 @@ pub mod command;
 mod decimation;
 mod decode;
 mod document;
+mod effort;
 mod error;
 mod face;
 mod footprint;
@@ -41,6 +42,8 @@ use harness::paths;
 pub enum Part {
     /// Bytes against error of the reference clips, compared with other codecs
     Size,
+    /// Bytes against processor time at efforts 1 to 9, compared with other codecs
+    Effort,
     /// What a doubled frame rate costs in bytes
     Decimation,
     /// Our own versions of the paper's walk and run
@@ -91,6 +94,7 @@ impl Part {
     pub fn run(self, setting: &Setting) -> Result<Vec<Goal>> {
         match self {
             Self::Size => size::run(setting),
+            Self::Effort => effort::run(setting),
             Self::Decimation => decimation::run(setting),
             Self::Paper => paper::run(setting),
             Self::Decode => decode::run(setting),

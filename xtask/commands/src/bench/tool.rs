@@ -21,6 +21,8 @@ pub struct Converted {
     pub clip: PathBuf,
     /// Wall time that it took; `None` if the clip was there from an earlier run.
     pub seconds: Option<f64>,
+    /// Processor time that it took, in seconds to hundredths; `None` where the system does not report it.
+    pub processor: Option<f64>,
     /// The most memory that it had, in MB; `None` where the system does not say.
     pub peak_mb: Option<f64>,
     /// What `pantin info` says.
@@ -71,9 +73,9 @@ impl Tool {
         let start = Instant::now();
         let mut command = Command::new(&self.program);
         command.arg("convert").arg(motion).arg("-q").arg("-o").arg(&clip).args(options);
-        let peak_mb = self.run_watched(&mut command)?;
+        let Watched { peak_mb, processor } = self.run_watched(&mut command)?;
         let seconds = Some(start.elapsed().as_secs_f64());
-        Ok(Converted { info: self.info(&clip)?, clip, seconds, peak_mb })
+        Ok(Converted { info: self.info(&clip)?, clip, seconds, processor, peak_mb })
     }
 
     /// As [`Tool::convert`], but takes a clip that is newer than the program and the motion. The name must stand for the options.
@@ -82,7 +84,7 @@ impl Tool {
         let changed = |path: &Path| path.metadata().and_then(|data| data.modified());
         let newer = |path: &Path| matches!((changed(&clip), changed(path)), (Ok(made), Ok(source)) if made > source);
         if newer(&self.program) && newer(motion) {
-            return Ok(Converted { info: self.info(&clip)?, clip, seconds: None, peak_mb: None });
+            return Ok(Converted { info: self.info(&clip)?, clip, seconds: None, processor: None, peak_mb: None });
         }
         self.convert(motion, name, options)
     }
@@ -105,26 +107,28 @@ impl Tool {
         })
     }
 
-    /// Runs a command to its end and returns the most memory that it had, in MB, where the system says so.
-    fn run_watched(&self, command: &mut Command) -> Result<Option<f64>> {
+    /// Runs a command to its end and watches what it takes.
+    fn run_watched(&self, command: &mut Command) -> Result<Watched> {
         let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
         let child = child.with_context(|| format!("cannot start {}", self.program.display()))?;
-        let status = format!("/proc/{}/status", child.id());
+        let (status, stat) = (format!("/proc/{}/status", child.id()), format!("/proc/{}/stat", child.id()));
         let watch = std::thread::spawn(move || {
-            let mut peak = None;
+            let mut watched = Watched::default();
             // The file is empty of this line once the program has ended.
             while let Some(now) = std::fs::read_to_string(&status).ok().and_then(|text| peak_of(&text)) {
-                peak = Some(now);
+                watched.peak_mb = Some(now);
+                watched.processor =
+                    std::fs::read_to_string(&stat).ok().and_then(|text| processor_of(&text)).or(watched.processor);
                 std::thread::sleep(EVERY);
             }
-            peak
+            watched
         });
         let output = child.wait_with_output()?;
-        let peak = watch.join().ok().flatten();
+        let watched = watch.join().unwrap_or_default();
         if !output.status.success() {
             bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
         }
-        Ok(peak)
+        Ok(watched)
     }
 
     fn run(&self, command: &mut Command) -> Result<Vec<u8>> {
@@ -137,13 +141,32 @@ impl Tool {
     }
 }
 
-/// How often memory is looked at.
+/// What a program took, where the system reports it.
+#[derive(Default)]
+struct Watched {
+    peak_mb: Option<f64>,
+    processor: Option<f64>,
+}
+
+/// How often memory and processor time are looked at.
 const EVERY: std::time::Duration = std::time::Duration::from_millis(20);
 
 /// The peak in Linux's status of a program, in MB.
 fn peak_of(status: &str) -> Option<f64> {
     let kib = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().strip_suffix("kB")?.trim();
     Some(kib.parse::<f64>().ok()? * 1024e-6)
+}
+
+/// Linux counts processor time in this many ticks a second on every machine.
+const TICKS: f64 = 100.0;
+
+/// The processor time in Linux's statistics of a program: that of its threads, in user and system mode, in seconds.
+fn processor_of(stat: &str) -> Option<f64> {
+    // The program's name, in brackets, may hold anything.
+    let (_, fields) = stat.rsplit_once(')')?;
+    let mut fields = fields.split_whitespace().skip(11);
+    let [user, system] = [fields.next()?.parse::<f64>().ok()?, fields.next()?.parse::<f64>().ok()?];
+    Some((user + system) / TICKS)
 }
 
 /// The options of a conversion: the bound, and the unit where it is known.
@@ -183,6 +206,12 @@ mod tests {
     fn a_peak_is_read_in_megabytes() {
         assert_eq!(peak_of("VmPeak:\t  9 kB\nVmHWM:\t  125000 kB\n"), Some(128.0));
         assert_eq!(peak_of("State:\tZ (zombie)\n"), None);
+    }
+
+    #[test]
+    fn processor_time_is_read_in_seconds() {
+        assert_eq!(processor_of("7 (a ) b) R 1 7 7 0 -1 0 0 0 0 0 250 50 9 9 20 0"), Some(3.0));
+        assert_eq!(processor_of("7 (pantin) R 1"), None);
     }
 
     #[test]
