@@ -493,7 +493,7 @@ class Clip:
 
     def draw(self, fb, width, height, color=1, orbit=-50, scale=None):
         """Draws the figure into a framebuf.FrameBuffer, seen from `orbit` degrees about the vertical; the hips are in the middle.
-        `scale` is pixels for each unit of the source; by default 30 times the longest bone fit the height."""
+        `scale` is pixels for each unit of the source; by default five of the longest bone fit the height."""
         up = self.rig.up & 3
         sin, cos = math.sin(math.radians(orbit)), math.cos(math.radians(orbit))
         placed = _place(self)

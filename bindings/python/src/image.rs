@@ -14,13 +14,15 @@ const HEIGHT: usize = 64;
 
 /// The figure at a frame: a byte for each pixel, row by row, 1 where it is lit.
 #[pyfunction]
-pub fn image(py: Python<'_>, clip: &[u8], frame: u32) -> PyResult<Vec<u8>> {
+pub fn image(py: Python<'_>, clip: &[u8], frame: i64) -> PyResult<Vec<u8>> {
     py.detach(|| pixels(clip, frame)).map_err(|error| exception(py, &error, None))
 }
 
-fn pixels(bytes: &[u8], frame: u32) -> Result<Vec<u8>> {
+fn pixels(bytes: &[u8], frame: i64) -> Result<Vec<u8>> {
     let clip = open(bytes)?;
-    ensure!(frame < clip.frames(), "frame {frame}; the last one is {}", clip.frames() - 1);
+    let last = clip.frames() - 1;
+    let found = u32::try_from(frame).ok().filter(|frame| *frame <= last);
+    let frame = found.with_context(|| format!("frame {frame}; the clip has frames 0 to {last}"))?;
     ensure!(clip.rig().joint_count() > 0, "the clip has no joints, so there is no figure to draw");
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];

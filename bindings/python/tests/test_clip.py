@@ -135,8 +135,9 @@ def test_a_picture_is_that_of_the_display(walk):
     image = walk.image(0)
     assert image.shape == (64, 128) and image.dtype == np.bool_ and 100 < image.sum() < 2000
     assert (image != walk.image(40)).any()
-    with pytest.raises(pantin.PantinError, match="frame 160"):
-        walk.image(160)
+    for frame in (160, -1):
+        with pytest.raises(pantin.PantinError, match=f"frame {frame}; the clip has frames 0 to 159"):
+            walk.image(frame)
 
 
 def test_files_are_saved_whole(walk, tmp_path):

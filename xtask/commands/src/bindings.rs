@@ -8,6 +8,7 @@ mod figure;
 mod licences;
 mod micropython;
 mod python;
+mod readme;
 mod turns;
 mod uno;
 
@@ -171,6 +172,7 @@ impl Bindings {
         for compiler in ["gcc", "clang"] {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
         }
+        steps.run("the README's program in C", || readme::run(&folder));
         steps.run("rotations against the crate's", || turns::vectors(&folder));
         steps.run("rotations of captures against the crate's", || turns::captures(&folder));
         steps.run("a damaged clip hides no other", || {

@@ -66,10 +66,10 @@ impl RustText {
         &self.name
     }
 
-    /// The text of a module of its own.
+    /// The text of a module of its own. None of its items has to be used.
     pub fn module(&self, described: &Described) -> String {
         let mut out: String = described.comments().map(|line| format!("//! {line}\n")).collect();
-        out.push('\n');
+        out.push_str("#![allow(dead_code)]\n\n");
         self.write(&mut out, described, None, "");
         out
     }

@@ -1,0 +1,50 @@
+//! The program of the README of the decoder in C, as written.
+
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+use harness::{build, paths};
+use pantin::{Clip, EulerOrder, Room};
+use tempfile::TempDir;
+
+use super::{home, output};
+
+/// Compiles the program with the README's own command, beside the header that `pantin expand` writes, and compares the angles that it prints.
+pub fn run(folder: &TempDir) -> Result<()> {
+    let place = folder.path().join("readme");
+    std::fs::create_dir_all(&place)?;
+    let readme = std::fs::read_to_string(home().join("README.md"))?;
+    let program = readme.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).context("the README has no program")?;
+    let compile = readme.lines().find(|line| line.starts_with("cc ")).context("the README does not compile its program")?;
+    std::fs::write(place.join("play.c"), program)?;
+    let clip = paths::root().join("motions/walk.ptn");
+    let mut expand = Command::new(build::host_tool()?);
+    expand.arg("expand").arg(&clip).arg("-o").arg(place.join("walk.h"));
+    output(expand)?;
+    // The command names the sources from the folder of the decoder.
+    let mut copy = Command::new("cp");
+    copy.arg("-r").arg(home().join("src")).arg(&place);
+    output(copy)?;
+    let mut shell = Command::new("sh");
+    shell.current_dir(&place).args(["-c", compile]);
+    let printed = String::from_utf8(output(shell)?.stdout)?;
+    let expected = angles(&std::fs::read(clip)?)?;
+    ensure!(printed == expected, "the program prints\n{printed}");
+    println!("   {} frames", expected.lines().count());
+    Ok(())
+}
+
+/// What the program prints: each frame, and an angle of the left shin.
+fn angles(clip: &[u8]) -> Result<String> {
+    let clip = Clip::new_checked(clip)?;
+    let shin = clip.find("left-shin").context("the joint")?;
+    let mut memory = Room::<64, 64>::new();
+    let mut player = memory.player(clip)?;
+    let mut printed = String::new();
+    for frame in 0..player.clip().frames() {
+        player.seek(frame);
+        let [x, _, _] = player.turn(&shin)?.euler(EulerOrder::XYZ);
+        printed += &format!("frame {frame}: {}\n", x.centidegrees());
+    }
+    Ok(printed)
+}
