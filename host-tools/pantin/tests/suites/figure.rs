@@ -1,5 +1,6 @@
 //! The figure's integers against the same in floating point: where joints are, and where they appear.
 
+use crate::noise::Noise;
 use embedded_graphics::draw_target::{DrawTarget, DrawTargetExt};
 use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::mock_display::MockDisplay;
@@ -170,15 +171,6 @@ fn motion(rig: Rig, values: Vec<Vec<f64>>) -> Motion {
     }
 }
 
-/// Numbers in -1 .. 1 from a fixed sequence.
-fn sequence() -> impl FnMut() -> f64 {
-    let mut state = 7u64;
-    move || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
-    }
-}
-
 /// Chains of joints driven in every way: Euler angles in all orders, exponential maps, quaternions, moving offsets.
 fn every_kind() -> Motion {
     use Kind::*;
@@ -194,7 +186,8 @@ fn every_kind() -> Motion {
         &[Yrotation, Xrotation, Zrotation, Xrotation],
         &[Xrotation, Zrotation, Yrotation],
     ];
-    let mut next = sequence();
+    let mut noise = Noise(7);
+    let mut next = || noise.signed();
     let mut rig = Rig { cm_per_unit: 2.54, ..Rig::default() };
     for index in 0..40 {
         let parent = if index % 10 == 0 && index > 0 { 0 } else { index.max(1) - 1 };

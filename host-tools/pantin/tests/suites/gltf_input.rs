@@ -1,5 +1,6 @@
 //! Small glTF files of our own: curves that convert exactly, scales, accessors, several animations, and what is refused.
 
+use crate::noise::Noise;
 use crate::told::Told;
 use base64::Engine as _;
 use pantin_convert::fit::bounds::Bounds;
@@ -477,11 +478,8 @@ fn a_track_of_one_key_is_one_frame() {
 fn damaged_binaries_never_panic() {
     let bytes = export::gltf::write(&spline().load("damage").motion).unwrap();
     let path: PathBuf = std::env::temp_dir().join(format!("pantin-gltf-damaged-{}.glb", std::process::id()));
-    let mut noise = 1u64;
-    let mut below = |count: usize| {
-        noise = noise.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((noise >> 33) as usize) % count
-    };
+    let mut noise = Noise(1);
+    let mut below = |count| noise.below(count);
     for round in 0..600 {
         let mut damaged = bytes.clone();
         match round % 3 {

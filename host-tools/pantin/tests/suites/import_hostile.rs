@@ -1,17 +1,8 @@
 //! Damaged text of every importer gives an error or a motion that holds together, never a panic.
 
+use crate::noise::Noise;
 use pantin_convert::import::ImportOptions;
 use std::path::Path;
-
-/// A small generator of repeatable noise (Knuth's MMIX constants).
-struct Noise(u64);
-
-impl Noise {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((self.0 >> 33) as usize) % count
-    }
-}
 
 const PIECES: [&[u8]; 12] =
     [b"{", b"}", b"\n", b"-", b"1e9", b"nan", b"ROOT", b"End Site", b"\xff", b"0", b" 99999999999999999999 ", b"loop\n"];

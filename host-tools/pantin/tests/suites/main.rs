@@ -40,6 +40,7 @@ mod machine;
 mod manners;
 mod mean_error;
 mod motions_library;
+mod noise;
 mod odd;
 mod optimum;
 mod options_refused;

@@ -1,5 +1,6 @@
 //! The search against brute force: on tubes of 12 frames, every segmentation into W and K segments with every number that matters.
 
+use crate::noise::Noise;
 use pantin::codec::layout::{LENGTHS, START_MODE, segment_type};
 use pantin_convert::Level;
 use pantin_convert::encode::clip::{Start, position_grid, velocity_grid};
@@ -30,25 +31,19 @@ impl Sink for Bits {
     }
 }
 
-/// A small generator of repeatable noise (Knuth's MMIX constants), -1 to 1.
-fn noise(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-    (*state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
-}
-
 /// A curve whose acceleration wanders, and a tube around it about as wide as a channel step; errors are free or cost up to a bit.
 fn tube(case: u64, frames: usize) -> Tube {
-    let mut state = case.wrapping_mul(977) + 1;
+    let mut noise = Noise(case.wrapping_mul(977) + 1);
     let size = f64::from(pantin::codec::step_size(STEP));
-    let (mut p, mut v, mut w) = (20.0 * noise(&mut state), 2.0 * noise(&mut state), 0.5 * noise(&mut state));
+    let (mut p, mut v, mut w) = (20.0 * noise.signed(), 2.0 * noise.signed(), 0.5 * noise.signed());
     let mut x = Vec::new();
     for _ in 0..frames {
         x.push(p * size);
         p += v;
         v += w;
-        w = 0.8 * w + 0.4 * noise(&mut state);
+        w = 0.8 * w + 0.4 * noise.signed();
     }
-    let half = size * (0.55 + 0.25 * noise(&mut state));
+    let half = size * (0.55 + 0.25 * noise.signed());
     let price = [0.0, 0.1, 0.3, 1.0][case as usize % 4];
     let lo = x.iter().map(|x| x - half).collect();
     let hi = x.iter().map(|x| x + half).collect();

@@ -3,6 +3,7 @@
 //! Errors are measured by forward kinematics of this file alone: by quaternions, not by the matrices of the library.
 
 use super::outputs::{Folder, err};
+use crate::noise::Noise;
 use crate::real::files;
 use pantin_convert::encode::{clip, rig};
 use pantin_convert::expand::expand;
@@ -132,19 +133,9 @@ fn errors(source: &Motion, decoded: &Motion, shell_cm: f64) -> Errors {
     worst
 }
 
-/// Numbers from -1 to 1, the same on every machine.
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) as f64 / f64::from(1u32 << 30) - 1.0
-    }
-}
-
 /// A figure of chains with joints of one to three rotations, leaves with and without End Sites, and joints at their parent's place.
 fn random_motion(seed: u64) -> Motion {
-    let mut chance = Chance(seed);
+    let mut noise = Noise(seed);
     let orders = [
         vec![Kind::Zrotation, Kind::Xrotation, Kind::Yrotation],
         vec![Kind::Xrotation, Kind::Yrotation, Kind::Zrotation],
@@ -153,13 +144,13 @@ fn random_motion(seed: u64) -> Motion {
     ];
     let mut rig = Rig { cm_per_unit: 0.5 + (seed % 3) as f64, ..Rig::default() };
     for index in 0..7usize {
-        let parent = index.checked_sub(1 + (chance.next() > 0.3 && index > 1) as usize);
+        let parent = index.checked_sub(1 + (noise.signed() > 0.3 && index > 1) as usize);
         let length = if index == 3 { 0.0 } else { 20.0 };
         let mut kinds = orders[(seed as usize + index) % orders.len()].clone();
         if parent.is_none() {
             kinds.splice(0..0, [Kind::Xposition, Kind::Yposition, Kind::Zposition]);
         }
-        let offset = [chance.next() * length, chance.next() * length, chance.next() * length];
+        let offset = [noise.signed() * length, noise.signed() * length, noise.signed() * length];
         rig.joints.push(Joint { name: format!("j{index}"), parent, offset, kinds, end_site: false, helper: false });
     }
     for (parent, offset) in [(6, [0.0, 9.0, 0.0]), (5, [0.0; 3])] {
@@ -175,7 +166,7 @@ fn random_motion(seed: u64) -> Motion {
     let frames = 24;
     let mut wave = |kind: Kind| {
         let size = if kind.is_position() { 30.0 } else { 70.0 };
-        let [a, b, c, d] = [(); 4].map(|()| chance.next());
+        let [a, b, c, d] = [(); 4].map(|()| noise.signed());
         (0..frames).map(|t| size * ((0.3 * a * t as f64 + 3.0 * b).sin() + 0.3 * (0.9 * t as f64 + c).sin() * d)).collect()
     };
     let values: Vec<Vec<f64>> = rig.channel_kinds().into_iter().map(|(_, kind)| wave(kind)).collect();

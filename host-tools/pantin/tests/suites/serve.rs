@@ -1,5 +1,6 @@
 //! The server against hostile clients: it answers, or drops them, and goes on serving others.
 
+use crate::noise::Noise;
 use pantin_tools::serve::{ANSWER_TIME, MOST_CONNECTIONS, MOST_HEAD, PATIENCE, SLOWEST, Site, serve};
 use std::fs;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
@@ -266,13 +267,8 @@ fn other_methods_are_refused() {
 #[test]
 fn malformed_requests_get_an_answer_and_harm_nobody() {
     let place = server();
-    let mut state = 1u64;
-    let noise: Vec<u8> = std::iter::repeat_with(|| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 56) as u8
-    })
-    .take(3000)
-    .collect();
+    let mut noise = Noise(1);
+    let noise: Vec<u8> = std::iter::repeat_with(|| noise.below(256) as u8).take(3000).collect();
     let requests: [&[u8]; 9] = [
         b"nonsense\r\n\r\n",
         b"GET\r\n\r\n",
