@@ -21,6 +21,8 @@ pub struct Plan {
     pub bound: PoseBound,
     /// Passes over all channels.
     pub passes: usize,
+    /// Further rounds, each of [`ROUND_PART`] of the passes, in which the price is raised to the middle and falls again. The best code of all rounds is taken.
+    pub rounds: usize,
     /// The price of an error, relative to a bit, in the first and the last pass.
     pub prices: (f64, f64),
     /// Whether two steps are tried at a time, in early passes every other time, or one.
@@ -52,6 +54,11 @@ const SHORT: usize = 16;
 /// Clips of fewer values have more passes, up to this many times more: a clip of 25 frames becomes 4 % smaller by four times as many.
 const VALUES_OF_A_PLAN: f64 = 40_000.0;
 const MOST_PASSES: f64 = 4.0;
+
+/// The passes of a further round, as a part of those of the first.
+pub const ROUND_PART: f64 = 0.4;
+/// Where a further round begins between the first price and the last: lower prices change too little, higher ones undo too much.
+const ROUND_FROM: f64 = 0.5;
 
 /// Part of the bound that the fit uses: the rest covers rounding in files.
 const USED: f64 = 0.9995;
@@ -156,13 +163,43 @@ impl<'m> Descent<'m> {
             return self.run_to_mean(mean_cm, progress);
         }
         let passes = self.plan.passes;
-        for pass in 0..passes {
-            let (first, last) = self.plan.prices;
-            let part = pass as f64 / (passes.max(2) - 1) as f64;
-            let price = self.seconds_a_frame * 30.0 * first * (last / first).powf(part);
-            self.pass(pass, price, pass + 1 == passes, &mut |done| progress((pass as f64 + done) / passes as f64))?;
+        let round_passes = self.round_passes();
+        let all = (passes + self.plan.rounds * round_passes) as f64;
+        let mut kept: Option<(f64, Vec<Option<Code>>)> = None;
+        let mut pass = 0;
+        for round in 0..=self.plan.rounds {
+            let (from, count) = if round == 0 { (0.0, passes) } else { (ROUND_FROM, round_passes) };
+            for of_round in 0..count {
+                let price = self.price(from + (1.0 - from) * of_round as f64 / (count.max(2) - 1) as f64);
+                self.pass(pass, price, of_round + 1 == count, &mut |done| progress((pass as f64 + done) / all))?;
+                pass += 1;
+            }
+            let bits = self.bits();
+            match &kept {
+                Some((least, codes)) if *least <= bits => {
+                    self.codes.clone_from(codes);
+                    self.poses = self.figure.poses(|channel, frame| self.value(channel, frame));
+                }
+                _ => kept = Some((bits, self.codes.clone())),
+            }
         }
         Ok(self.codes.into_iter().flatten().collect())
+    }
+
+    /// Passes of a round after the first.
+    fn round_passes(&self) -> usize {
+        (ROUND_PART * self.plan.passes as f64) as usize
+    }
+
+    /// The price of an error for a frame, where `part` of the way from the first price to the last is done.
+    fn price(&self, part: f64) -> f64 {
+        let (first, last) = self.plan.prices;
+        self.seconds_a_frame * 30.0 * first * (last / first).powf(part)
+    }
+
+    /// Bits of all codes.
+    fn bits(&self) -> f64 {
+        self.codes.iter().flatten().map(|code| code.bits).sum()
     }
 
     /// One pass. A channel that nothing helped lately is tried in every third pass only, unless `every` channel is.
@@ -232,14 +269,15 @@ impl<'m> Descent<'m> {
     /// Passes whose price for a centimetre falls until the mean is reached. A higher price would not undo what a lower one did, so a
     /// pass that goes too far is taken back and the price falls less from there.
     fn run_to_mean(mut self, mean_cm: f64, progress: &mut dyn FnMut(f64)) -> Result<Vec<Code>> {
-        let (passes, mut fall) = (MEAN_PASSES * self.plan.passes, FALL);
+        let passes = MEAN_PASSES * (self.plan.passes + self.plan.rounds * self.round_passes());
+        let mut fall = FALL;
         let mut price = FIRST_PRICE * self.seconds_a_frame / mean_cm;
         let mut kept: Option<Kept> = None;
         for pass in 0..passes {
             self.pass(pass, price, false, &mut |done| progress((pass as f64 + done) / passes as f64))?;
             let part = self.mean() / mean_cm;
             if part <= 1.0 {
-                let bits = self.codes.iter().flatten().map(|code| code.bits).sum();
+                let bits = self.bits();
                 let saved = kept.as_ref().is_none_or(|kept| bits < 0.999 * kept.bits);
                 kept = Some(Kept { price, bits, codes: self.codes.clone() });
                 if part > NEAR_MEAN && !saved {

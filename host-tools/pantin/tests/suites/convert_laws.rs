@@ -54,6 +54,18 @@ fn own_motions_keep_every_bound_at_every_effort_and_cost_less_the_wider_it_is() 
     }
 }
 
+/// The best round of several is taken. The default may have found it already, as with the walk.
+#[test]
+fn further_rounds_take_no_more_bytes_and_find_a_smaller_run() {
+    let sizes = ["walk.keys", "run.keys"].map(|name| {
+        let motion = own(name);
+        [Level::DEFAULT, Level::BEST].map(|level| convert(&motion, 0.5, level).len())
+    });
+    assert!(sizes.iter().all(|[default, best]| best <= default), "{sizes:?}");
+    let [_, [default, best]] = sizes;
+    assert!(best < default, "{sizes:?}");
+}
+
 #[test]
 fn bytes_do_not_depend_on_the_number_of_threads() {
     let motion = own("walk.keys");
