@@ -1,9 +1,13 @@
 //! The largest clip that a program can play, and the buffers that follow from it.
 
 use pantin::{ChannelState, Player, Pose};
+#[cfg(not(feature = "solid"))]
+use pantin_figure::FigureRenderer as Figure;
 use pantin_figure::rotation::RotationBackend;
+#[cfg(feature = "solid")]
+use pantin_figure::solid::SolidFigure as Figure;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{Canvas, DrawStyle, FigureRenderer, JointInfo, View};
+use pantin_figure::{Canvas, DrawStyle, JointInfo, View};
 
 /// Most joints of a rig, fingers and toes included: the workspace for setting a figure up. Boards with the feature `large` have room for
 /// large rigs.
@@ -48,7 +52,7 @@ impl<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Capacity f
 
     type States = [ChannelState; MOVING];
     type Pose = [i32; CHANNELS];
-    type Renderer<R: RotationBackend> = FigureRenderer<JOINTS, R>;
+    type Renderer<R: RotationBackend> = Figure<JOINTS, R>;
     #[cfg(feature = "link")]
     type LinkChannels = [pantin_link::Channel; CHANNELS];
 
@@ -69,7 +73,17 @@ impl<const CHANNELS: usize, const MOVING: usize, const JOINTS: usize> Capacity f
     }
 }
 
-/// A [`FigureRenderer`] for any number of joints.
+/// How a figure is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Style {
+    /// How lines are drawn, and whether there is a floor.
+    pub lines: DrawStyle,
+    /// A body with volume.
+    #[cfg(feature = "solid")]
+    pub solid: bool,
+}
+
+/// A renderer of figures for any number of joints.
 pub trait Renderer {
     /// Makes one that is not set up.
     fn empty() -> Self;
@@ -98,56 +112,64 @@ pub trait Renderer {
     fn set_pose(&mut self, pose: Pose<'_>);
 
     /// Draws the figure on a framebuffer.
-    fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle);
+    fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: Style);
 
     /// Returns the number of bones that are drawn.
     fn bones(&self) -> usize;
 }
 
-impl<const N: usize, R: RotationBackend> Renderer for FigureRenderer<N, R> {
+impl<const N: usize, R: RotationBackend> Renderer for Figure<N, R> {
     #[inline(always)]
     fn empty() -> Self {
-        FigureRenderer::empty()
+        Figure::empty()
     }
 
     // Not inlined: the workspace is on the stack only while a figure is set up.
     #[inline(never)]
     fn set_up(&mut self, player: &mut Player, canvas: Canvas) -> Result<(), pantin_figure::Error> {
-        FigureRenderer::set_up(self, player, canvas, &mut [JointInfo::default(); RIG])
+        Figure::set_up(self, player, canvas, &mut [JointInfo::default(); RIG])
     }
 
     #[inline(always)]
     fn aim(&mut self, player: &mut Player, view: View) {
-        FigureRenderer::aim(self, player, view);
+        Figure::aim(self, player, view);
     }
 
     #[cfg(feature = "steer")]
     #[inline(always)]
     fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
-        FigureRenderer::look_at(self, canvas, view, poses);
+        Figure::look_at(self, canvas, view, poses);
     }
 
     #[cfg(feature = "steer")]
     #[inline(always)]
     fn set_pose_at(&mut self, pose: Pose<'_>, stand: pantin_figure::Stand) {
         // The pose is of the rig that the renderer was set up for.
-        let _ = FigureRenderer::set_pose_at(self, pose, stand);
+        let _ = Figure::set_pose_at(self, pose, stand);
     }
 
     #[inline(always)]
     fn shift(&mut self, columns: i16, rows: i16) {
-        FigureRenderer::shift(self, columns, rows);
+        Figure::shift(self, columns, rows);
     }
 
     #[inline(always)]
     fn set_pose(&mut self, pose: Pose<'_>) {
         // The pose is of the clip that the renderer was set up for.
-        let _ = FigureRenderer::set_pose(self, pose);
+        let _ = Figure::set_pose(self, pose);
     }
 
     #[inline(always)]
-    fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle) {
-        self.draw_on(framebuffer, style);
+    fn draw<L: Layout>(&mut self, framebuffer: &mut Framebuffer<L>, style: Style) {
+        #[cfg(feature = "solid")]
+        if style.solid {
+            return self.draw_on(framebuffer, style.lines.ground);
+        }
+        #[cfg(feature = "solid")]
+        let figure = self.lines();
+        #[cfg(not(feature = "solid"))]
+        let figure = self;
+        figure.draw_on(framebuffer, style.lines);
     }
 
     #[inline(always)]

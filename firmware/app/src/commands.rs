@@ -36,6 +36,9 @@ pub enum Command {
     Ground,
     /// Draw lines with smooth edges, or faster ones without.
     Smooth,
+    /// Draw a body with volume, or lines.
+    #[cfg(feature = "solid")]
+    Style,
     /// Show name, frame and speed, or hide them.
     Hud,
     /// Send the list of letters over the serial line.
@@ -43,7 +46,7 @@ pub enum Command {
 }
 
 /// The letters of the commands, each with a short description.
-pub const LETTERS: [(u8, Command, &str); 18] = [
+pub const LETTERS: [(u8, Command, &str); if cfg!(feature = "solid") { 19 } else { 18 }] = [
     (b' ', Command::Pause, "pause"),
     (b'.', Command::Step, "step"),
     (b',', Command::Back, "step back"),
@@ -60,6 +63,8 @@ pub const LETTERS: [(u8, Command, &str); 18] = [
     (b'f', Command::Track, "follow or fixed"),
     (b'g', Command::Ground, "ground"),
     (b'l', Command::Smooth, "smooth lines"),
+    #[cfg(feature = "solid")]
+    (b'o', Command::Style, "solid or lines"),
     (b'i', Command::Hud, "info"),
     (b'?', Command::Help, "this list"),
 ];

@@ -99,7 +99,7 @@ mod update;
 mod view_state;
 
 pub use board::{Board, Exit};
-pub use capacity::{Capacity, MaxClip, RIG, Renderer};
+pub use capacity::{Capacity, MaxClip, RIG, Renderer, Style};
 pub use commands::Command;
 #[cfg(feature = "events")]
 pub use events::HeardEvent;

@@ -27,6 +27,9 @@ pub struct Options {
     pub orbit: Option<i16>,
     /// Whether lines have smooth edges at first.
     pub smooth: bool,
+    /// Whether figures have volume at first.
+    #[cfg(feature = "solid")]
+    pub solid: bool,
     /// Whether name, frame and speed are shown at first.
     pub hud: bool,
     /// Number of figures side by side.
@@ -55,13 +58,15 @@ pub enum Key {
 }
 
 impl Options {
-    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`, and with the feature `link` also `link` and
+    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`, with the feature `solid` also `solid`, with the feature `link` also `link` and
     /// `fec`, with the feature `key` also `key=HEX`. Other words are ignored: an emulator without arguments passes the program's path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
         let mut options = Options {
             mode: Mode::Play,
             orbit: None,
             smooth: false,
+            #[cfg(feature = "solid")]
+            solid: false,
             hud: false,
             figures: 1,
             #[cfg(feature = "link")]
@@ -74,6 +79,8 @@ impl Options {
         for word in words {
             match word.split_once('=') {
                 None if word == "sync" => options.mode = Mode::Sync,
+                #[cfg(feature = "solid")]
+                None if word == "solid" => options.solid = true,
                 None if word == "smooth" => options.smooth = true,
                 #[cfg(feature = "link")]
                 None if word == "link" => options.link = true,

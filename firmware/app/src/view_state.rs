@@ -1,5 +1,6 @@
 //! What commands change, and what outlives a clip: view, drawing style and speed.
 
+use crate::capacity::Style;
 use crate::commands::Command;
 use crate::options::Options;
 use pantin_figure::{CameraTarget, DrawStyle, View};
@@ -12,7 +13,7 @@ pub(crate) struct ViewState {
     /// [`Options::orbit`] it is 0 degrees, so that those degrees are about the face.
     #[cfg(feature = "face")]
     pub ahead: View,
-    pub style: DrawStyle,
+    pub style: Style,
     pub paused: bool,
     /// Frames run backwards.
     pub backwards: bool,
@@ -54,7 +55,11 @@ const RATES_LOG2: core::ops::RangeInclusive<i8> = -3..=3;
 impl ViewState {
     pub fn new(options: &Options) -> ViewState {
         let view = View { orbit: options.orbit.unwrap_or(View::default().orbit), ..View::default() };
-        let style = DrawStyle { smooth: options.smooth, ..DrawStyle::default() };
+        let style = Style {
+            lines: DrawStyle { smooth: options.smooth, ..DrawStyle::default() },
+            #[cfg(feature = "solid")]
+            solid: options.solid,
+        };
         ViewState {
             view,
             #[cfg(feature = "face")]
@@ -108,8 +113,10 @@ impl ViewState {
                     if self.view.track == CameraTarget::Follow { CameraTarget::Fixed } else { CameraTarget::Follow };
                 return Effect::Aim;
             }
-            Command::Ground => self.style.ground = !self.style.ground,
-            Command::Smooth => self.style.smooth = !self.style.smooth,
+            Command::Ground => self.style.lines.ground = !self.style.lines.ground,
+            Command::Smooth => self.style.lines.smooth = !self.style.lines.smooth,
+            #[cfg(feature = "solid")]
+            Command::Style => self.style.solid = !self.style.solid,
             Command::Hud => self.hud = !self.hud,
             Command::Help => return Effect::Help,
         }

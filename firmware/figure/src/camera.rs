@@ -1,6 +1,7 @@
 //! A perspective camera in integers: no division a point, no product wider than 32 bits.
 
 use crate::bounds::{Bounds, Orientation, cross};
+use crate::root::direction;
 use crate::rotation::{Rotation, Vector};
 use crate::trig::{FRACTION_BITS, HALF, ONE, WORKED_OUT, sin_cos, table};
 use pantin::Up;
@@ -216,6 +217,27 @@ impl Camera {
         // Within 2^15, magnified at most twice: products stay within 2^30.
         let (x, y) = ((x * magnification) >> self.spare, (y * magnification) >> self.spare);
         Projected { x: x + self.centre[0], y: y + self.centre[1], depth, magnification }
+    }
+
+    /// A vector in the camera's axes as it is seen at the target's distance: right, down and away, in sixteenths of a pixel.
+    pub(crate) fn vector(&self, [x, y, away]: Vector) -> Vector {
+        let spare = self.spare as i32 - MAGNIFICATION_BITS;
+        let seen = |part: i32| {
+            let part = sixteen_bits(part >> self.shift);
+            if spare >= 0 { part >> spare } else { part << -spare }
+        };
+        [seen(x), seen(y), seen(away)]
+    }
+
+    /// A place in the camera's axes, moved along `upright`, a vector in them, to the level of `level`.
+    pub(crate) fn moved_to_level(&self, place: Vector, upright: Vector, level: Vector) -> Projected {
+        let cut = |v: Vector| v.map(|part| sixteen_bits(part >> self.shift));
+        let (place, level) = (cut(place), cut(level));
+        // 2^14 long: sums of three products stay below 2^31.
+        let upright = direction(upright).map_or([0; 3], |v| v.map(|part| part >> 1));
+        let height = |v: Vector| (0..3).map(|axis| (v[axis] * upright[axis]) >> 2).sum::<i32>() >> 12;
+        let by = height(level) - height(place);
+        self.project(core::array::from_fn(|axis| (place[axis] + ((upright[axis] * by) >> 14)) << self.shift))
     }
 
     /// Sixteenths of a pixel that a limb at the target's distance is across: a 64th of the figure.

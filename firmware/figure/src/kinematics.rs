@@ -4,6 +4,9 @@ use crate::rotation::{Rotation, RotationBackend, Vector, shift_right};
 use crate::skeleton::{Act, Bone, Drive, Part, SLOTS, Skeleton};
 use heapless::Vec;
 
+/// Most joints one below the other whose rotation [`Kinematics::turned`] finds.
+const DEEPEST: usize = 40;
+
 /// The joints of one frame, in figure units of the world or of a camera. Positions in the world are within 0.05 % of the figure's height of what real numbers give.
 #[derive(Clone, Debug)]
 pub struct Kinematics<const N: usize, R: RotationBackend = Rotation> {
@@ -78,6 +81,28 @@ impl<const N: usize, R: RotationBackend> Kinematics<N, R> {
                 self.position(joint)
             }
         }
+    }
+
+    /// How one joint is turned: `view` after the rotations of the joints from the root down to it, at most [`DEEPEST`].
+    pub(crate) fn turned<V: RotationBackend>(&self, skeleton: &Skeleton<N>, pose: &[i32], view: &V, joint: u8) -> V {
+        let mut way: Vec<u8, DEEPEST> = Vec::new();
+        let mut next = Some(joint);
+        while let Some(joint) = next {
+            if way.push(joint).is_err() {
+                break;
+            }
+            next = skeleton.bones.get(usize::from(joint)).and_then(|bone| bone.parent);
+        }
+        let (mut turned, mut at) = (*view, 0);
+        for (index, bone) in skeleton.bones.iter().enumerate() {
+            let own = skeleton.drives().get(at..at + usize::from(bone.drives)).unwrap_or_default();
+            at += own.len();
+            if way.last() == Some(&(index as u8)) {
+                way.pop();
+                rotate(&mut turned, own, pose);
+            }
+        }
+        turned
     }
 
     /// Where the joints are, in the skeleton's order.

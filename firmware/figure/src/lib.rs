@@ -1,5 +1,5 @@
-//! Draws a pose as a wireframe figure: fixed-point forward kinematics, a perspective camera, lines with depth, and their
-//! drawing into any `embedded-graphics` target. No heap, no float; no product is wider than 32 bits in a frame.
+//! Draws a pose as a figure of lines or as a body with volume: fixed-point forward kinematics, a perspective camera, and drawing into any
+//! `embedded-graphics` target. No heap, no float; no product is wider than 32 bits in a frame.
 //!
 //! Firmware, host tool and browser call the same code and get the same pixels.
 //!
@@ -31,6 +31,7 @@
 //! |---|---|
 //! | draw a clip into a display driver | [`FigureRenderer::of_clip`], then [`FigureRenderer::draw`] for each frame |
 //! | do so with little stack | [`FigureRenderer::empty`], [`FigureRenderer::set_up`] and [`FigureRenderer::aim`] |
+//! | draw a body with volume instead of lines | [`solid::SolidFigure`] |
 //! | draw several figures side by side | a renderer each, [`FigureRenderer::shift`] and [`FigureRenderer::draw_over`] |
 //! | draw a figure that stands somewhere in the world | [`FigureRenderer::set_pose_at`] |
 //! | look from elsewhere | [`View`] with [`FigureRenderer::aim`] |
@@ -56,6 +57,7 @@ mod root;
 #[cfg(feature = "micromath")]
 pub mod rotation_float;
 pub mod skeleton;
+pub mod solid;
 pub mod surface;
 
 pub use camera::{CameraTarget, Canvas, View};

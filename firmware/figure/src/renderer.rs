@@ -246,6 +246,44 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         back.rotate_any(v)
     }
 
+    /// Where the camera sees a joint.
+    #[inline(always)]
+    pub(crate) fn visible(&self, joint: u8) -> Option<Visible> {
+        self.visible.get(usize::from(joint)).copied()
+    }
+
+    /// How a joint is turned, in the camera's axes, of a figure that is turned by `heading`.
+    pub(crate) fn turned(&self, pose: &[i32], heading: i32, joint: u8) -> R {
+        let mut view = self.view;
+        if heading != 0 {
+            view.turn(self.skeleton.up.axis() % 3, heading);
+        }
+        self.joints.turned(&self.skeleton, pose, &view, joint)
+    }
+
+    /// Places the joints of a pose in the world.
+    pub(crate) fn place_in_world(&mut self, pose: &[i32]) {
+        self.joints.set_pose(&self.skeleton, pose);
+    }
+
+    /// The place on the ground below a joint, in sixteenths of a pixel, and its depth.
+    pub(crate) fn below(&self, joint: u8) -> [i32; 3] {
+        let axis = self.ground.axis % 3;
+        let mut upright = [0; 3];
+        upright[axis] = 1 << 13;
+        let mut level = [0; 3];
+        level[axis] = self.ground.height.wrapping_sub(self.target[axis]);
+        let [upright, level] = [self.view.rotate(upright), self.view.rotate_any(level)];
+        let place = self.camera.moved_to_level(self.joints.position(joint.into()), upright, level);
+        [place.x, place.y, place.depth]
+    }
+
+    /// Depth of a bone's middle.
+    #[inline(always)]
+    pub(crate) fn bone_depth(&self, index: u8) -> i32 {
+        self.ends(index).map_or(0, |(from, to)| (i32::from(from.depth) + i32::from(to.depth)) >> 1)
+    }
+
     /// Where the camera sees the joints that were placed.
     #[inline(always)]
     fn see(&mut self) {
@@ -356,6 +394,11 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         });
         lines.head = self.head();
         lines
+    }
+
+    /// The display's size.
+    pub(crate) fn canvas(&self) -> Canvas {
+        self.canvas
     }
 
     /// The ground.

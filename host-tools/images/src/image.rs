@@ -57,6 +57,27 @@ impl Image {
         Image { pixels: rows.collect(), width: self.width * scale }
     }
 
+    /// The same with the mean of each square of `side` pixels as one.
+    pub fn reduced(&self, side: usize) -> Image {
+        let (width, area) = (self.width / side, (side * side) as u32);
+        let bands = self.pixels.chunks_exact(self.width * side);
+        let pixels = bands.flat_map(|band| {
+            (0..width).map(move |column| {
+                let square = band.chunks_exact(self.width).flat_map(|row| &row[column * side..(column + 1) * side]);
+                let sum = square.fold([0u32; 3], |sum, pixel| std::array::from_fn(|part| sum[part] + u32::from(pixel[part])));
+                sum.map(|part| ((part + area / 2) / area) as u8)
+            })
+        });
+        Image { pixels: pixels.collect(), width }
+    }
+
+    /// The upper left part of it.
+    pub fn cropped(&self, width: usize, height: usize) -> Image {
+        let width = width.min(self.width);
+        let rows = self.pixels.chunks(self.width).take(height);
+        Image { pixels: rows.flat_map(|row| &row[..width]).copied().collect(), width }
+    }
+
     /// Paints what lies outside the largest circle in the middle.
     pub fn keep_circle(&mut self, colour: Rgb) {
         let [width, height] = [self.width, self.height()];

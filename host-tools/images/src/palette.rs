@@ -1,9 +1,11 @@
 //! What brightness looks like: from the paper over the farthest limbs' colour to the nearest ones'.
 
+use crate::shades::{Depth, Mark};
 use anyhow::{Context, Result, ensure};
 use embedded_graphics::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use pantin_figure::Ink;
 use pantin_figure::ink::BodyPart;
+use pantin_figure::solid::Look;
 use std::str::FromStr;
 
 /// Red, green and blue, 0 to 255.
@@ -60,6 +62,38 @@ impl Palette {
             Scale::Hues => rgb(Rgb565::of(body_part, shade).into()),
             Scale::Ramp => self.ramp(body_part, shade),
         }
+    }
+
+    /// The colour of a pixel of [`Shades`](crate::shades::Shades).
+    pub fn mark(&self, mark: &Mark) -> Rgb {
+        mark.rgb.unwrap_or_else(|| self.pixel(mark.body_part, mark.shade))
+    }
+
+    /// The display on which solid figures are drawn.
+    pub fn depth(&self) -> Depth {
+        match self.scale {
+            Scale::Mono => Depth::Bits,
+            Scale::Hues => Depth::Hues,
+            Scale::Grey | Scale::Ramp => Depth::Greys,
+        }
+    }
+
+    /// At most 256 colours that represent a picture of a solid figure: of each material every 16th brightness, lit and shaded; on displays of
+    /// greys the greys, and four steps from each to the next.
+    pub fn solid_colours(&self, look: &Look) -> Vec<Rgb> {
+        let mut colours = vec![self.paper, self.margin(), self.letters()];
+        if self.scale == Scale::Hues {
+            let lights = (143..=256).step_by(16).chain((88..=160).step_by(16)).chain([256]);
+            let of = |light: u16| look.tints.iter().map(move |tint| rgb(Rgb565::tint(tint, light).into()));
+            lights.flat_map(of).for_each(|colour| {
+                if !colours.contains(&colour) && colours.len() < 256 {
+                    colours.push(colour);
+                }
+            });
+        } else {
+            colours.extend((0..=60).map(|step| self.ramp(BodyPart::Middle, (step * 17 / 4) as u8)));
+        }
+        colours
     }
 
     /// The colour of a brightness, without steps.

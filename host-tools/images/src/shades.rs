@@ -1,16 +1,17 @@
 //! A display of any size, drawn on by the firmware's own code: what each pixel is of, and how bright.
 
 use crate::image::Image;
-use crate::palette::Palette;
+use crate::palette::{Palette, Rgb};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
-use embedded_graphics::pixelcolor::{BinaryColor, PixelColor};
+use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, PixelColor, Rgb565, Rgb888, RgbColor};
 use pantin::Pose;
 use pantin_figure::FigureRenderer;
 use pantin_figure::draw::stroke;
 use pantin_figure::ink::{BodyPart, Ink};
 use pantin_figure::lines::Line;
+use pantin_figure::solid::SolidFigure;
 use pantin_figure::surface::OnTarget;
 use std::convert::Infallible;
 
@@ -21,6 +22,8 @@ pub struct Mark {
     pub body_part: BodyPart,
     /// How bright; 0 is dark, and of nothing.
     pub shade: u8,
+    /// The colour itself, of solid figures on displays of hues.
+    pub rgb: Option<Rgb>,
 }
 
 impl PixelColor for Mark {
@@ -28,10 +31,10 @@ impl PixelColor for Mark {
 }
 
 impl Ink for Mark {
-    const DARK: Mark = Mark { body_part: BodyPart::Ground, shade: 0 };
+    const DARK: Mark = Mark { body_part: BodyPart::Ground, shade: 0, rgb: None };
 
     fn of(body_part: BodyPart, shade: u8) -> Mark {
-        Mark { body_part, shade }
+        Mark { body_part, shade, rgb: None }
     }
 }
 
@@ -75,6 +78,17 @@ impl Shades {
         }
     }
 
+    /// Draws a pose of a solid figure as the firmware does: on a display of two colours, of 16 greys, or of hues, as the palette has them.
+    pub fn draw_solid<const N: usize>(&mut self, figure: &mut SolidFigure<N>, pose: Pose<'_>, floor: bool, depth: Depth) {
+        figure.set_pose(pose).expect("the figure was set up for this clip");
+        self.marks.fill(Mark::DARK);
+        match depth {
+            Depth::Bits => figure.draw_on(&mut OnTarget::new(&mut Bits(self)), floor),
+            Depth::Greys => figure.draw_on(&mut OnTarget::new(&mut Greys(self)), floor),
+            Depth::Hues => figure.draw_on(&mut OnTarget::new(&mut Hues(self)), floor),
+        }
+    }
+
     /// Draws lines in their order, as the firmware does, over what is there.
     pub fn draw_lines(&mut self, lines: &[Line], mono: bool) {
         if mono {
@@ -89,7 +103,7 @@ impl Shades {
 
     /// What it looks like.
     pub fn image(&self, palette: &Palette) -> Image {
-        Image::of(self.width, self.marks.iter().map(|mark| palette.pixel(mark.body_part, mark.shade)).collect())
+        Image::of(self.width, self.marks.iter().map(|mark| palette.mark(mark)).collect())
     }
 }
 
@@ -115,23 +129,56 @@ impl DrawTarget for Shades {
     }
 }
 
-/// The same as a display of two colours.
-struct Bits<'a>(&'a mut Shades);
-
-impl OriginDimensions for Bits<'_> {
-    fn size(&self) -> Size {
-        self.0.size()
-    }
+/// The colours of a display for solid figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// Two.
+    Bits,
+    /// 16 greys.
+    Greys,
+    /// 65,536 colours.
+    Hues,
 }
 
-impl DrawTarget for Bits<'_> {
-    type Color = BinaryColor;
-    type Error = Infallible;
+/// A display of another kind whose pixels become marks.
+macro_rules! display {
+    ($(#[$doc:meta])* $name:ident, $colour:ty, $mark:expr) => {
+        $(#[$doc])*
+        struct $name<'a>(&'a mut Shades);
 
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> Result<(), Infallible> {
-        let mark = |Pixel(place, bit): Pixel<BinaryColor>| {
-            Pixel(place, if bit.is_on() { Mark { body_part: BodyPart::Middle, shade: 255 } } else { Mark::DARK })
-        };
-        self.0.draw_iter(pixels.into_iter().map(mark))
+        impl OriginDimensions for $name<'_> {
+            fn size(&self) -> Size {
+                self.0.size()
+            }
+        }
+
+        impl DrawTarget for $name<'_> {
+            type Color = $colour;
+            type Error = Infallible;
+
+            fn draw_iter<I: IntoIterator<Item = Pixel<$colour>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+                let mark: fn($colour) -> Mark = $mark;
+                self.0.draw_iter(pixels.into_iter().map(|Pixel(place, colour)| Pixel(place, mark(colour))))
+            }
+        }
+    };
+}
+
+display! {
+    /// The same as a display of two colours.
+    Bits, BinaryColor, |bit| if bit.is_on() { Mark { body_part: BodyPart::Middle, shade: 255, rgb: None } } else { Mark::DARK }
+}
+
+display! {
+    /// The same as a display of 16 greys.
+    Greys, Gray4, |grey| Mark { body_part: BodyPart::Middle, shade: grey.luma() * 17, rgb: None }
+}
+
+display! {
+    /// The same as a display of hues.
+    Hues, Rgb565, |colour| {
+        let colour: Rgb888 = colour.into();
+        let rgb = [colour.r(), colour.g(), colour.b()];
+        Mark { body_part: BodyPart::Middle, shade: rgb.into_iter().max().unwrap_or(0), rgb: Some(rgb) }
     }
 }

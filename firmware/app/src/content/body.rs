@@ -2,12 +2,12 @@
 
 use super::{AnyContent, Content, whole_display};
 use crate::board::{Board, BoardRenderer, Exit};
-use crate::capacity::Renderer;
+use crate::capacity::{Renderer, Style};
 use crate::log::{error, info};
 use crate::session::{Outcome, PlayContext};
 use pantin::{Player, Pose};
+use pantin_figure::View;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{DrawStyle, View};
 
 impl<L: Layout, R: Renderer> Content<L> for R {
     #[inline(always)]
@@ -22,7 +22,7 @@ impl<L: Layout, R: Renderer> Content<L> for R {
     }
 
     #[inline(always)]
-    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle) {
+    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: Style) {
         Renderer::draw(self, framebuffer, style);
     }
 

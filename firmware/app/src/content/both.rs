@@ -3,13 +3,13 @@
 use super::face::{self, Face};
 use super::{AnyContent, Content, whole_display};
 use crate::board::{Board, BoardRenderer, Exit};
-use crate::capacity::Renderer;
+use crate::capacity::{Renderer, Style};
 use crate::log::{error, info};
 use crate::session::{Outcome, PlayContext};
 use pantin::{Player, Pose};
+use pantin_figure::View;
 use pantin_figure::camera::Areas;
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{DrawStyle, View};
 
 /// A body and its face.
 struct Both<'a, R, const N: usize> {
@@ -23,7 +23,7 @@ impl<L: Layout, R: Renderer, const N: usize> Content<L> for Both<'_, R, N> {
         self.face.set_pose(pose);
     }
 
-    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle) {
+    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: Style) {
         Renderer::draw(self.renderer, framebuffer, style);
         self.face.draw(framebuffer);
     }

@@ -2,12 +2,13 @@
 
 use super::{AnyContent, Content, whole_display};
 use crate::board::{Board, Exit};
+use crate::capacity::Style;
 use crate::log::{error, info};
 use crate::session::{Outcome, PlayContext};
 use pantin::{Clip, Player, Pose, Rig};
 use pantin_face::{Binding, FaceRenderer, Model, Morph, Weights};
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{Canvas, DrawStyle, View};
+use pantin_figure::{Canvas, View};
 
 /// The face of large displays.
 #[cfg(not(feature = "cartoon"))]
@@ -113,7 +114,7 @@ impl<L: Layout, const N: usize> Content<L> for Face<'_, N> {
         Face::set_pose(self, pose);
     }
 
-    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, _style: DrawStyle) {
+    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, _style: Style) {
         Face::draw(self, framebuffer);
     }
 

@@ -10,9 +10,10 @@ pub(crate) mod build;
 #[cfg(feature = "face")]
 mod face;
 
+use crate::capacity::Style;
 use pantin::{Player, Pose};
 use pantin_figure::surface::{Framebuffer, Layout};
-use pantin_figure::{Canvas, DrawStyle, View};
+use pantin_figure::{Canvas, View};
 
 /// What is drawn.
 pub(crate) trait Content<L: Layout> {
@@ -26,7 +27,7 @@ pub(crate) trait Content<L: Layout> {
     }
 
     /// Draws it on a clear framebuffer.
-    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: DrawStyle);
+    fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: Style);
 
     /// Sets the camera up for a view. The player stays at its frame.
     fn aim(&mut self, player: &mut Player, view: View);

@@ -1,6 +1,6 @@
 //! `pantin play`
 
-use super::render::{Side, Size};
+use super::render::{Side, Size, StyleName};
 use super::up_axis;
 use super::{Files, rig_is_needed};
 use crate::open::is_bank;
@@ -35,11 +35,12 @@ use std::time::Duration;
 /// A bank with a state machine is steered by keys: arrows and letters make its inputs, ? lists them, and the last row shows the state, the inputs that are held and the parameters.
 ///
 /// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
-/// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, b braille or half blocks, ? help, q quit.
+/// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, o lines or solid, b braille or half blocks, ? help, q quit.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin play walk.ptn
   pantin play walk.ptn run.ptn --palette amber --dots half
+  pantin play walk.ptn --style solid
   pantin play character.ptb
   pantin play walk.ptn --plain --once --frames 10 --size 60x20 > frames.txt
 
@@ -68,6 +69,9 @@ pub struct Arguments {
     /// The direction that is vertical, instead of the one that the clip states: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", value_parser = up_axis, allow_hyphen_values = true)]
     up: Option<Up>,
+    /// What a body is drawn as at first
+    #[arg(long, value_enum, default_value = "lines")]
+    style: StyleName,
     /// Start with a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
@@ -169,7 +173,15 @@ impl Arguments {
             up: self.up,
             ..View::default()
         };
-        Settings { view, ground: true, dots, colours, palette: self.palette.clone(), help: false }
+        Settings {
+            view,
+            ground: true,
+            solid: self.style == StyleName::Solid,
+            dots,
+            colours,
+            palette: self.palette.clone(),
+            help: false,
+        }
     }
 
     /// Plays a bank's state machine.

@@ -96,7 +96,7 @@ fn half(shades: &Shades, column: usize, row: usize, palette: &Palette, coloured:
         [true, true] if !coloured => '█',
         [_, true] => '▀',
     };
-    let [ink, paper] = marks.map(|mark| palette.pixel(mark.body_part, mark.shade));
+    let [ink, paper] = marks.map(|mark| palette.mark(&mark));
     match coloured && letter != ' ' {
         true => Cell { letter, ink, paper },
         false => Cell { letter, ink: palette.letters(), paper: palette.paper() },
@@ -116,7 +116,7 @@ fn braille(shades: &Shades, column: usize, row: usize, palette: &Palette) -> Cel
     let shows = |mark: Mark| mark.shade > 0 && (mark.body_part == BodyPart::Ground) <= (brightest.body_part == BodyPart::Ground);
     let bits: u32 = dots().filter(|&(_, mark)| shows(mark)).map(|(bit, _)| bit).sum();
     let letter = if bits == 0 { ' ' } else { char::from_u32(NO_DOTS + bits).unwrap_or(' ') };
-    let ink = if bits == 0 { palette.letters() } else { palette.pixel(brightest.body_part, brightest.shade) };
+    let ink = if bits == 0 { palette.letters() } else { palette.mark(&brightest) };
     Cell { letter, ink, paper: palette.paper() }
 }
 
@@ -132,7 +132,7 @@ mod tests {
 
     fn shades(width: usize, height: usize, lit: &[(i32, i32, BodyPart, u8)]) -> Shades {
         let mut shades = Shades::new(width, height);
-        let pixels = lit.iter().map(|&(x, y, body_part, shade)| Pixel(Point::new(x, y), Mark { body_part, shade }));
+        let pixels = lit.iter().map(|&(x, y, body_part, shade)| Pixel(Point::new(x, y), Mark { body_part, shade, rgb: None }));
         let Ok(()) = shades.draw_iter(pixels);
         shades
     }

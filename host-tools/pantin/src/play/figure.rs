@@ -6,7 +6,9 @@ use super::playback::Playback;
 use super::settings::Settings;
 use anyhow::{Context, Result};
 use pantin::Player;
-use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
+use pantin_figure::solid::{Look, SolidFigure};
+use pantin_figure::{Canvas, RIG_JOINTS, View};
+use pantin_images::shades::Depth;
 use pantin_images::shades::Shades;
 use pantin_pictures::face::cast::Cast;
 use pantin_pictures::render::figure::MOST_PIXELS;
@@ -25,7 +27,7 @@ pub struct Figure<'a, 'm> {
 struct Shown {
     canvas: Canvas,
     view: View,
-    body: Option<FigureRenderer<RIG_JOINTS>>,
+    body: Option<SolidFigure<RIG_JOINTS>>,
     face: Option<Cast<'static>>,
 }
 
@@ -42,7 +44,10 @@ impl<'a, 'm> Figure<'a, 'm> {
             let area = if face.is_some() { canvas.with_face().body } else { canvas };
             let body = match self.scout.clip().rig().joint_count() {
                 0 => None,
-                _ => Some(FigureRenderer::of_clip(&mut self.scout, area, view).context("this figure cannot be drawn")?),
+                _ => {
+                    let solid = SolidFigure::of_clip(&mut self.scout, area, view, Look::DEFAULT);
+                    Some(solid.context("this figure cannot be drawn")?)
+                }
             };
             self.shown = Some(Shown { canvas, view, body, face });
         }
@@ -65,8 +70,13 @@ impl Show for Figure<'_, '_> {
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
         if let Some(Shown { body, face, .. }) = &mut self.shown {
-            if let Some(renderer) = body {
-                shades.draw(renderer, pose, settings.ground, settings.in_bits());
+            match body {
+                Some(body) if settings.solid => {
+                    let depth = if settings.in_bits() { Depth::Bits } else { settings.palette.depth() };
+                    shades.draw_solid(body, pose, settings.ground, depth);
+                }
+                Some(body) => shades.draw(body.lines(), pose, settings.ground, settings.in_bits()),
+                None => {}
             }
             if let Some(cast) = face {
                 shades.draw_lines(&cast.lines(pose.values, 0), settings.in_bits());

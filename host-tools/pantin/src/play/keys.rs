@@ -25,6 +25,8 @@ pub enum Action {
     Follow,
     /// Show the ground, or not.
     Ground,
+    /// Lines, or a body with volume.
+    Style,
     /// Braille or half blocks.
     Dots,
     /// Show the keys, or not.
@@ -38,7 +40,7 @@ const ORBIT: i16 = 15;
 const TILT: i16 = 5;
 
 /// What the help line says.
-pub const HELP: &str = "space pause  , . step  r reverse  + - speed  n p clip  arrows orbit, tilt  v view  f follow  g ground  b dots  ? help  q quit";
+pub const HELP: &str = "space pause  , . step  r reverse  + - speed  n p clip  arrows orbit, tilt  v view  f follow  g ground  o solid  b dots  ? help  q quit";
 
 /// What a key asks for.
 pub fn action(key: KeyEvent) -> Option<Action> {
@@ -64,6 +66,7 @@ pub fn action(key: KeyEvent) -> Option<Action> {
         KeyCode::Char('v' | 'V') => Action::View,
         KeyCode::Char('f' | 'F') => Action::Follow,
         KeyCode::Char('g' | 'G') => Action::Ground,
+        KeyCode::Char('o' | 'O') => Action::Style,
         KeyCode::Char('b' | 'B') => Action::Dots,
         KeyCode::Char('?' | 'h' | 'H') => Action::Help,
         KeyCode::Char('q' | 'Q') | KeyCode::Esc => Action::Quit,

@@ -16,6 +16,8 @@ pub struct Settings {
     pub view: View,
     /// Whether the ground shows.
     pub ground: bool,
+    /// Whether the body has volume.
+    pub solid: bool,
     /// How pixels become letters; none for what the terminal's size asks for.
     pub dots: Option<Dots>,
     /// The terminal's colours.
@@ -54,6 +56,7 @@ impl Settings {
                 self.view.track =
                     if self.view.track == CameraTarget::Follow { CameraTarget::Fixed } else { CameraTarget::Follow };
             }
+            Action::Style => self.solid = !self.solid,
             Action::Ground => self.ground = !self.ground,
             Action::Dots => self.dots = Some(if self.dots(rows) == Dots::Half { Dots::Braille } else { Dots::Half }),
             Action::Help => self.help = !self.help,
@@ -78,6 +81,7 @@ mod tests {
         let mut settings = Settings {
             view: View::default(),
             ground: true,
+            solid: false,
             dots: None,
             colours: Colours::All,
             palette: Palette::default(),

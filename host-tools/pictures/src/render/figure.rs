@@ -6,7 +6,8 @@ use crate::face::cast::Cast;
 use anyhow::{Context, Result};
 use pantin::{ChannelState, Clip, Player};
 use pantin_face::Model;
-use pantin_figure::{Canvas, FigureRenderer, RIG_JOINTS, View};
+use pantin_figure::solid::{Build, Look, SolidFigure};
+use pantin_figure::{Canvas, RIG_JOINTS, View};
 use pantin_images::image::Image;
 use pantin_images::palette::Palette;
 use pantin_images::shades::Shades;
@@ -22,6 +23,20 @@ pub enum LineStyle {
     /// Smooth, thicker the nearer.
     Smooth,
 }
+
+/// What a body is drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// A line for each bone.
+    Lines,
+    /// A body with volume.
+    Solid(Look),
+}
+
+/// Pixels of a side of the larger picture that is reduced to a smooth one.
+const REDUCED_FROM: usize = 1024;
+/// Most pixels of a side that become one.
+const MOST_REDUCED: usize = 4;
 
 /// The memory of a player.
 pub struct PlayerBuffers {
@@ -45,17 +60,31 @@ impl PlayerBuffers {
 pub struct Figure<'a, 'm> {
     player: Player<'a, 'm>,
     /// One for each view; none if the clip has no body.
-    bodies: Vec<FigureRenderer<RIG_JOINTS>>,
+    bodies: Vec<SolidFigure<RIG_JOINTS>>,
     face: Option<Box<Cast<'a>>>,
     size: [usize; 2],
     factor: usize,
+    style: Style,
+    /// Pixels that solid figures are drawn with for a pixel of the picture.
+    finer: usize,
 }
 
 impl<'a, 'm> Figure<'a, 'm> {
     /// Sets up the cameras for pictures of `size` (columns, rows). `model` is the face that the clip drives.
-    pub fn new(mut player: Player<'a, 'm>, size: [usize; 2], views: &[View], model: Model<'a>) -> Result<Figure<'a, 'm>> {
-        let factor = size[0].max(size[1]).div_ceil(MOST_PIXELS);
-        let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
+    pub fn new(
+        mut player: Player<'a, 'm>,
+        size: [usize; 2],
+        views: &[View],
+        model: Model<'a>,
+        (style, lines): (Style, LineStyle),
+    ) -> Result<Figure<'a, 'm>> {
+        let longest = size[0].max(size[1]);
+        let factor = longest.div_ceil(MOST_PIXELS);
+        let finer = match (style, lines) {
+            (Style::Solid(_), LineStyle::Smooth) => (REDUCED_FROM / longest).clamp(1, MOST_REDUCED),
+            _ => 1,
+        };
+        let [width, height] = size.map(|pixels| (pixels * finer).div_ceil(factor) as u16);
         let canvas = Canvas { width, height };
         let has_body = player.clip().rig().joint_count() > 0;
         // From where a body is seen by default, its face looks straight ahead, as in the firmware.
@@ -64,9 +93,18 @@ impl<'a, 'm> Figure<'a, 'm> {
         let face_views: Vec<View> = views.iter().map(face_view).collect();
         let face = Cast::of_model(model, player.clip(), canvas, &face_views)?.map(Box::new);
         let area = if face.is_some() { canvas.with_face().body } else { canvas };
-        let renderer = |view: &View| FigureRenderer::of_clip(&mut player, area, *view).context("this figure cannot be drawn");
+        let look = match style {
+            Style::Solid(look) => look,
+            Style::Lines => Look::DEFAULT,
+        };
+        let renderer = |view: &View| SolidFigure::of_clip(&mut player, area, *view, look).context("this figure cannot be drawn");
         let bodies = if has_body { views.iter().map(renderer).collect::<Result<_>>()? } else { Vec::new() };
-        Ok(Figure { player, bodies, face, size, factor })
+        Ok(Figure { player, bodies, face, size, factor, style, finer })
+    }
+
+    /// What a solid figure is drawn as; none of a clip without joints.
+    pub fn build(&self) -> Option<Build> {
+        self.bodies.first().map(SolidFigure::build)
     }
 
     /// Goes to a frame.
@@ -77,7 +115,7 @@ impl<'a, 'm> Figure<'a, 'm> {
     /// The frame as a view's camera sees it.
     pub fn scene(&mut self, view: usize) -> Scene {
         let (factor, pose) = (self.factor as f32, self.player.pose());
-        let mut scene = self.bodies.get_mut(view).map_or_else(Scene::default, |body| Scene::of(body, pose, factor));
+        let mut scene = self.bodies.get_mut(view).map_or_else(Scene::default, |body| Scene::of(body.lines(), pose, factor));
         if let Some(cast) = &mut self.face {
             // The canvas is rounded up to whole pixels of the display.
             let [width, height] = self.size.map(|pixels| pixels as f32);
@@ -90,18 +128,39 @@ impl<'a, 'm> Figure<'a, 'm> {
     /// The same as a picture. Pixels are at most [`MOST_PIXELS`] a side.
     pub fn image(&mut self, view: usize, look: LineStyle, palette: &Palette) -> Image {
         let [width, height] = self.size;
+        if self.style != Style::Lines {
+            return self.solid_image(view, look, palette);
+        }
         match look {
             LineStyle::Smooth => smooth::draw(&self.scene(view), width, height, palette),
             LineStyle::Pixels => {
                 let mut shades = Shades::new(width, height);
                 if let Some(body) = self.bodies.get_mut(view) {
-                    shades.draw(body, self.player.pose(), true, palette.is_mono());
+                    shades.draw(body.lines(), self.player.pose(), true, palette.is_mono());
                 }
                 if let Some(cast) = &mut self.face {
                     shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
                 }
                 shades.image(palette)
             }
+        }
+    }
+    /// A picture of the solid figure: a smooth one is drawn larger and reduced.
+    fn solid_image(&mut self, view: usize, look: LineStyle, palette: &Palette) -> Image {
+        let [width, height] = self.size;
+        let [columns, rows] = self.size.map(|pixels| (pixels * self.finer).div_ceil(self.factor));
+        let mut shades = Shades::new(columns, rows);
+        if let Some(body) = self.bodies.get_mut(view) {
+            shades.draw_solid(body, self.player.pose(), true, palette.depth());
+        }
+        if let Some(cast) = &mut self.face {
+            shades.draw_lines(&cast.lines(self.player.pose().values, view), palette.is_mono());
+        }
+        let image = shades.image(palette);
+        match look {
+            LineStyle::Smooth if self.finer > 1 => image.reduced(self.finer),
+            _ if self.factor > 1 => image.enlarged(self.factor).cropped(width, height),
+            _ => image,
         }
     }
 }

@@ -11,12 +11,13 @@ use output::{Kind, Output};
 use pantin::Up;
 use pantin_convert::expand::expand_within;
 use pantin_face::Model;
+use pantin_figure::solid::{Build, Look};
 use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 use pantin_pictures::face::cast::drives;
 use pantin_pictures::face::{Face, cartoon, compact};
 use pantin_pictures::render::chart;
-use pantin_pictures::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers};
+use pantin_pictures::render::figure::{Figure, LineStyle, MOST_PIXELS, PlayerBuffers, Style};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 pub use values::{Moment, Side, Size};
@@ -45,6 +46,7 @@ const PALETTE: &str = "grey";
   pantin render walk.ptn --format png -o - > walk.png
   pantin render walk.ptn -o walk.png --view front,side,quarter
   pantin render walk.ptn -o walk.gif --size 480x480 --palette dusk --fps 25
+  pantin render walk.ptn -o walk.gif --style solid --palette phone --size 240x240
   pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
   pantin render walk.ptn -o poster.png --frame 0.5s --size 1200x1600 --palette blueprint
   pantin render face.ptn -o face.png
@@ -74,6 +76,9 @@ pub struct Arguments {
     /// Colours: a name, or paper and ink [see below]
     #[arg(long, default_value = PALETTE)]
     palette: Palette,
+    /// What a body is drawn as
+    #[arg(long, value_enum, default_value = "lines")]
+    style: StyleName,
     /// Draw lines of whole pixels, as the firmware does [default below 240 pixels]
     #[arg(long, conflicts_with = "smooth")]
     pixels: bool,
@@ -120,6 +125,15 @@ pub struct Arguments {
     /// Write the .png as an animation
     #[arg(long, conflicts_with_all = ["strip", "frame"])]
     animate: bool,
+}
+
+/// What a body is drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum StyleName {
+    /// A line for each bone
+    Lines,
+    /// A body with volume
+    Solid,
 }
 
 /// What the file is, by its extension.
@@ -182,7 +196,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let look = arguments.look(kind)?;
         let mut memory = PlayerBuffers::of(&clip);
         let sides = arguments.sides(face);
-        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &arguments.views(&sides, face), model)?;
+        let style = match arguments.style {
+            StyleName::Lines => Style::Lines,
+            StyleName::Solid => Style::Solid(Look::DEFAULT),
+        };
+        let views = arguments.views(&sides, face);
+        let figure = Figure::new(memory.player(clip)?, arguments.size.0, &views, model, (style, look))?;
+        if let (Style::Solid(_), Some(build)) = (style, figure.build()) {
+            warn_of(build);
+        }
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
         Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.write(&mut file)?;
     }
@@ -192,6 +214,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         note!("{}: written", output.display());
     }
     Ok(())
+}
+
+/// Notes that a solid figure is not a person's.
+pub(super) fn warn_of(build: Build) {
+    match build {
+        Build::Person => {}
+        Build::Bones => note!("the joints' names are not those of a person: each bone is drawn as a capsule"),
+        Build::Lines => note!("warning: the rig has too many bones, or none, for a solid figure: lines are drawn"),
+    }
 }
 
 /// Whether lines of pictures of this size are smooth by default.
@@ -258,6 +289,7 @@ impl Arguments {
         let given = [
             ("--size", SIZE.parse().is_ok_and(|size: Size| self.size != size)),
             ("--scale", self.scale.is_some()),
+            ("--style", self.style != StyleName::Lines),
             ("--palette", PALETTE.parse().is_ok_and(|palette: Palette| self.palette != palette)),
             ("--pixels", self.pixels),
             ("--smooth", self.smooth),
@@ -290,6 +322,7 @@ impl Arguments {
         ensure!(kind != Kind::Svg || !self.animate, "{name}: an .svg does not move; .gif and .apng do");
         ensure!(kind != Kind::Svg || self.scale.is_none(), "{name}: an .svg has no pixels to scale; --size says how big it is");
         ensure!(kind != Kind::Svg || !self.round, "{name}: --round is for pictures of pixels");
+        ensure!(kind != Kind::Svg || self.style == StyleName::Lines, "{name}: an .svg has lines; solid figures are pixels");
         ensure!(kind != Kind::Svg || !self.pixels, "{name}: an .svg has lines, no pixels");
         Ok(kind)
     }

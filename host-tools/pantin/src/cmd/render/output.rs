@@ -1,8 +1,9 @@
 //! What is shown of the clip, and in which file format.
 
-use super::{Arguments, EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, easy_scale};
+use super::{Arguments, EASY_TO_SEE, EASY_TO_SEE_IN_A_SHEET, Side, StyleName, easy_scale};
 use crate::output::{note, progress};
 use anyhow::{Result, ensure};
+use pantin_figure::solid::Look;
 use pantin_images::animation::{Animation, Timing};
 use pantin_images::apng::{self, Apng};
 use pantin_images::gif::{self, Gif};
@@ -107,6 +108,9 @@ impl Output<'_, '_> {
         ensure_size(whole)?;
         let palette = &self.arguments.palette;
         let mut animation: Box<dyn Animation + '_> = match (self.kind, self.look) {
+            (Kind::Gif, _) if self.arguments.style == StyleName::Solid => {
+                Box::new(Gif::new(&mut out, &palette.solid_colours(&Look::DEFAULT), timing.seconds))
+            }
             (Kind::Gif, LineStyle::Pixels) => Box::new(Gif::new(&mut out, &palette.pixel_colours(), timing.seconds)),
             (Kind::Gif, LineStyle::Smooth) => Box::new(Gif::new(&mut out, &palette.smooth_colours(), timing.seconds)),
             _ => Box::new(Apng::new(&mut out, timing.frames.len() as u32, timing.seconds)),

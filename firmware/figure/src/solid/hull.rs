@@ -1,0 +1,271 @@
+//! The convex hull of up to four circles as a span in each row of pixels, by integers: a table of a circle's half widths, and the outer
+//! tangents of every two circles.
+
+use super::MARGIN;
+
+/// A circle in sixteenths of a pixel: centre and radius.
+pub(super) type Circle = [i32; 3];
+
+/// Rows that are drawn at a time, and those above and below them that are known too.
+pub(super) const WINDOW: usize = 64;
+const ROWS: usize = WINDOW + 2 * MARGIN as usize;
+
+/// First and last pixel of a row; the first is greater where there is none.
+pub(super) type Span = [i16; 2];
+pub(super) const EMPTY: Span = [i16::MAX, i16::MIN];
+
+/// Half the width of a circle of radius 255 at 64 heights: the middle of each.
+static HALF_WIDTHS: [u8; 64] = {
+    let mut table = [0; 64];
+    let mut index = 0;
+    while index < 64 {
+        // sqrt(1 - ((index + 0.5) / 64)^2) * 255, rounded: the greatest integer whose square is not greater.
+        let square = (128 * 128 - (2 * index + 1) * (2 * index + 1)) as u32 * 255 * 255;
+        let mut width = 0u32;
+        while (2 * width + 1) * (2 * width + 1) * 128 * 128 / 4 <= square {
+            width += 1;
+        }
+        table[index] = width as u8;
+        index += 1;
+    }
+    table
+};
+
+/// The rows of a hull from `first` on, of a window of a picture.
+pub(super) struct Rows {
+    spans: [Span; ROWS],
+    /// The row of the picture that the first span is of.
+    base: i32,
+    /// The hull's first and last row in the window with its margins; the first is greater where there is none.
+    pub first: i32,
+    pub last: i32,
+}
+
+impl Rows {
+    /// No hull.
+    pub(super) const fn new() -> Rows {
+        Rows { spans: [EMPTY; ROWS], base: 0, first: 0, last: -1 }
+    }
+
+    /// The span of a row of the picture.
+    #[inline(always)]
+    pub(super) fn span(&self, row: i32) -> Span {
+        if row < self.first || row > self.last {
+            return EMPTY;
+        }
+        self.spans.get((row - self.base) as usize).copied().unwrap_or(EMPTY)
+    }
+
+    /// Computes the rows of the hull of `circles` in the window from row `top` on. With `flat`, heights are multiplied by 4: circles become
+    /// ellipses, as discs on the floor are seen.
+    #[inline(never)]
+    pub(super) fn compute(&mut self, circles: &[Circle], top: i32, flat: bool) {
+        let (pitch, shift) = if flat { (64, 6) } else { (16, 4) };
+        self.base = top - MARGIN;
+        let (mut low, mut high) = (i32::MAX, i32::MIN);
+        for [_, y, r] in circles.iter().filter(|circle| circle[2] > 0) {
+            low = low.min(y - r);
+            high = high.max(y + r);
+        }
+        self.first = ((low.saturating_add(pitch / 2 - 1)) >> shift).max(self.base);
+        self.last = (high.saturating_sub(pitch / 2) >> shift).min(self.base + ROWS as i32 - 1);
+        if self.first > self.last {
+            (self.first, self.last) = (0, -1);
+            return;
+        }
+        let used = (self.first - self.base) as usize..=(self.last - self.base) as usize;
+        self.spans.get_mut(used.clone()).into_iter().flatten().for_each(|span| *span = EMPTY);
+        for (index, circle) in circles.iter().enumerate() {
+            self.circle(circle, pitch, shift);
+            for other in circles.get(index + 1..).unwrap_or(&[]) {
+                self.tangents(circle, other, pitch, shift);
+            }
+        }
+        for span in self.spans.get_mut(used).into_iter().flatten() {
+            *span = pixels(*span);
+        }
+    }
+
+    /// Cuts what lies outside another hull off.
+    pub(super) fn clip(&mut self, to: &Rows) {
+        for row in self.first..=self.last {
+            let [low, high] = to.span(row);
+            if let Some(span) = self.spans.get_mut((row - self.base) as usize) {
+                *span = if low > high { EMPTY } else { [span[0].max(low), span[1].min(high)] };
+            }
+        }
+    }
+
+    /// Widens the spans, in sixteenths, from row `from` to row `to` by places that begin at `x` and move by `slope`, both with 12 more bits.
+    #[inline(always)]
+    fn edge(&mut self, from: i32, to: i32, mut x: i32, slope: i32) {
+        let used = (from - self.base) as usize..((to - self.base) as usize).wrapping_add(1);
+        for [low, high] in self.spans.get_mut(used).into_iter().flatten() {
+            let place = (x >> 12) as i16;
+            *low = (*low).min(place);
+            *high = (*high).max(place);
+            x = x.wrapping_add(slope);
+        }
+    }
+
+    #[inline(always)]
+    fn circle(&mut self, &[x, y, r]: &Circle, pitch: i32, shift: u32) {
+        if r <= 0 {
+            return;
+        }
+        let reciprocal = (64 << 16) / r;
+        let first = ((y - r + pitch / 2 - 1) >> shift).max(self.first);
+        let last = ((y + r - pitch / 2) >> shift).min(self.last);
+        if first > last {
+            return;
+        }
+        let used = (first - self.base) as usize..(last - self.base) as usize + 1;
+        let mut height = first * pitch + pitch / 2 - y;
+        for [low, high] in self.spans.get_mut(used).into_iter().flatten() {
+            let index = (height.abs() * reciprocal) >> 16;
+            let half = i32::from(HALF_WIDTHS.get(index as usize).copied().unwrap_or(0));
+            let half = (r * half + 128) >> 8;
+            *low = (*low).min((x - half) as i16);
+            *high = (*high).max((x + half) as i16);
+            height += pitch;
+        }
+    }
+
+    /// The two outer tangents of two circles; none if one lies within the other.
+    #[inline(never)]
+    fn tangents(&mut self, &[x0, y0, r0]: &Circle, &[x1, y1, r1]: &Circle, pitch: i32, shift: u32) {
+        let (dx, dy, k) = (x1 - x0, y1 - y0, r0 - r1);
+        if r0 <= 0 || r1 <= 0 || dx.abs() >= FARTHEST || dy.abs() >= FARTHEST {
+            return;
+        }
+        let square = (dx * dx + dy * dy) as u32;
+        if square <= (k * k) as u32 {
+            return;
+        }
+        let along = root(square - (k * k) as u32) as i32;
+        // Directions have 12 bits: both parts of the division lose what 18 bits have no room for.
+        let cut = 14u32.saturating_sub(square.leading_zeros());
+        let divisor = (square >> cut) as i32;
+        for sign in [1, -1] {
+            let normal = [k * dx - sign * along * dy, k * dy + sign * along * dx].map(|part| ((part >> cut) << 12) / divisor);
+            let touch = |x: i32, y: i32, r: i32| [x + ((r * normal[0]) >> 12), y + ((r * normal[1]) >> 12)];
+            let (mut from, mut to) = (touch(x0, y0, r0), touch(x1, y1, r1));
+            if from[1] > to[1] {
+                (from, to) = (to, from);
+            }
+            let first = ((from[1] + pitch / 2 - 1) >> shift).max(self.first);
+            let last = ((to[1] - pitch / 2) >> shift).min(self.last);
+            if first > last || to[1] <= from[1] {
+                continue;
+            }
+            let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]);
+            let start = (from[0] << 12).wrapping_add(slope.wrapping_mul(first * pitch + pitch / 2 - from[1]));
+            self.edge(first, last, start, slope.wrapping_mul(pitch));
+        }
+    }
+}
+
+/// Circles farther apart, in sixteenths of a pixel, have no tangents: squares stay below 2^31.
+const FARTHEST: i32 = 1 << 15;
+
+/// The pixels whose middles are between two places in sixteenths; a narrow span has the pixel in its middle.
+#[inline(always)]
+fn pixels([low, high]: Span) -> Span {
+    if low > high {
+        return EMPTY;
+    }
+    let (low, high) = (i32::from(low), i32::from(high));
+    let (first, last) = ((low + 7) >> 4, (high - 8) >> 4);
+    if first <= last {
+        return [first as i16, last as i16];
+    }
+    if high - low < NARROW {
+        return EMPTY;
+    }
+    let middle = ((low + high) >> 5) as i16;
+    [middle, middle]
+}
+
+/// A span of at least so many sixteenths of a pixel shows one.
+const NARROW: i32 = 10;
+
+/// The root of a square below 2^31, rounded down: Newton's, from a first value that is not smaller.
+pub(super) fn root(square: u32) -> u32 {
+    if square < 2 {
+        return square;
+    }
+    let mut root = 1 << (33 - square.leading_zeros()).div_ceil(2);
+    loop {
+        let next = (root + square / root) >> 1;
+        if next >= root {
+            return root;
+        }
+        root = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roots_are_rounded_down() {
+        for square in (0..70_000).chain([(1 << 31) - 1, 1 << 30, (1 << 30) - 1, 46_340 * 46_340]) {
+            let found = u64::from(root(square));
+            assert!(found * found <= u64::from(square) && (found + 1) * (found + 1) > u64::from(square), "{square}: {found}");
+        }
+    }
+
+    #[test]
+    fn half_widths_are_those_of_a_circle() {
+        for (index, &width) in HALF_WIDTHS.iter().enumerate() {
+            let height = (index as f64 + 0.5) / 64.0;
+            assert_eq!(f64::from(width), ((1.0 - height * height).sqrt() * 255.0).round(), "{index}");
+        }
+    }
+
+    /// Distance of a point to the hull of circles, less than 0 inside: the least over tapered segments between every two circles.
+    fn distance(circles: &[Circle], x: f64, y: f64) -> f64 {
+        let at = |a: &Circle, b: &Circle, u: f64| {
+            let mix = |i: usize| f64::from(a[i]) * (1.0 - u) + f64::from(b[i]) * u;
+            (x - mix(0)).hypot(y - mix(1)) - mix(2)
+        };
+        let steps = (0..=200).map(|step| f64::from(step) / 200.0);
+        let pairs = circles.iter().flat_map(|a| circles.iter().map(move |b| (a, b)));
+        pairs.flat_map(|(a, b)| steps.clone().map(move |u| at(a, b, u))).fold(f64::MAX, f64::min)
+    }
+
+    #[test]
+    fn the_pixels_of_a_capsule_are_those_inside_it_within_a_sixth_of_a_pixel() {
+        let mut random = fastrand::Rng::with_seed(7);
+        for _ in 0..30 {
+            let mut circle = || [random.i32(0..2000), random.i32(0..900), random.i32(9..150)];
+            let circles = [circle(), circle()];
+            let mut rows = Rows::new();
+            rows.compute(&circles, 0, false);
+            for row in 0..56 {
+                let [first, last] = rows.span(row);
+                for column in 0..125i16 {
+                    let apart = distance(&circles, f64::from(column) * 16.0 + 8.0, f64::from(row) * 16.0 + 8.0);
+                    let drawn = (first..=last).contains(&column);
+                    // A thin part shows a pixel where none has its middle inside.
+                    let thin = drawn && first == last;
+                    assert!(thin || drawn == (apart < 0.0) || apart.abs() < 3.0, "{circles:?} {column} {row}: {apart}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn windows_of_a_picture_continue_each_other() {
+        let circles = [[300, 100, 90], [900, 3000, 200], [200, 2500, 60]];
+        let (mut one, mut other) = (Rows::new(), Rows::new());
+        one.compute(&circles, 0, false);
+        other.compute(&circles, WINDOW as i32, false);
+        for row in WINDOW as i32 - MARGIN..WINDOW as i32 + MARGIN {
+            assert_eq!(one.span(row), other.span(row), "{row}");
+            assert_ne!(one.span(row), EMPTY, "{row}");
+        }
+        assert_eq!((one.span(-1), other.span(300)), (EMPTY, EMPTY));
+    }
+}

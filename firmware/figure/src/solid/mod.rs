@@ -1,0 +1,445 @@
+//! The solid figure: a body with volume, made of tapered capsules with an outline, a head that looks somewhere, and a shadow.
+//!
+//! [`SolidFigure`] stands beside [`FigureRenderer`], and has one: camera, poses and floor are the same, so that a program can change from one
+//! style to the other in any frame. A program that does not use it does not link it.
+//!
+//! # How it is drawn
+//!
+//! - **Parts.** A person has 16: chest, pelvis, neck and head, and on each side upper arm, forearm, hand, thigh, shin and foot. Their joints are
+//!   found by words in the joints' names (`joints.rs`), in rigs of CMU, Bandai, Mixamo, Xia, VRM, Rigify and ours; fingers are one hand, the
+//!   joints of the spine one waist. If a rig is no person's, each bone is a capsule ([`Build::Bones`]); if it has more than [`MOST_PARTS`], only
+//!   lines can be drawn ([`Build::Lines`]).
+//! - **Sizes.** All radii are thousandths of the figure's height, which is 2.04 times thigh and shin: [`Look`].
+//! - **Rows.** A part is the convex hull of one to four circles (`hull.rs`). Each row of it is one span, which `paint.rs` fills with the surface's
+//!   own [`Surface::span`]. The outline is what the rows reach with a pixel more on each side; it is open where a part that was drawn before
+//!   goes on, so that no seam shows at joints.
+//! - **Order.** Parts are drawn from far to near. Two parts change places only if their depths differ by more than [`PASSING`] of the figure's
+//!   height against the order of the frame before: nothing flickers. Therefore a picture can depend on the frame before.
+//! - **Materials.** Displays of two colours have left limbs bright and right ones checkered, displays of greys have sides of different
+//!   brightness, displays of hues have clothes, hands and feet in their side's hue, and a lit and a shaded side: [`Ink::tint`].
+//!
+//! # When lines are better
+//!
+//! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
+//! figures take four to five times as many.
+
+mod floor;
+mod head;
+mod hull;
+mod joints;
+mod look;
+mod paint;
+mod parts;
+mod sizes;
+mod tint;
+
+use crate::camera::{Canvas, MAGNIFICATION_BITS, View, magnification};
+use crate::ink::Ink;
+use crate::renderer::{FigureRenderer, Stand};
+use crate::rotation::{Rotation, RotationBackend, Vector};
+use crate::skeleton::{Part as Role, Skeleton};
+use crate::surface::{OnTarget, Surface};
+use crate::{DrawError, Error, JointInfo, RIG_JOINTS};
+use embedded_graphics::draw_target::DrawTarget;
+use head::Head;
+use heapless::Vec;
+use joints::Joints;
+pub use look::{Look, MATERIALS, Material, RADII, Radius};
+use paint::{Cut, Fill, Outline, Painter};
+use pantin::{Player, Pose, WrongForm};
+use pantin_math::vector::{cross, direction, dot, sub};
+use parts::{Body, HEAD, HUMAN_PARTS};
+use sizes::Sizes;
+pub use tint::{Light, Pattern, Tint};
+
+/// Rows beyond a window that outlines and shaded sides may look at.
+const MARGIN: i32 = 16;
+
+/// Most parts of a figure.
+pub const MOST_PARTS: usize = 48;
+
+/// Two parts change places if their depths differ by more than this many thousandths of the figure's height.
+pub const PASSING: i32 = 12;
+
+/// What a rig is drawn as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Build {
+    /// A person of 16 parts.
+    Person,
+    /// A capsule for each bone: the rig's names are not those of a person.
+    Bones,
+    /// Lines: the rig has no bones, or more than [`MOST_PARTS`].
+    Lines,
+}
+
+/// What is drawn, with the joints that it needs.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Person(Joints),
+    Bones,
+    Lines,
+}
+
+/// A figure before its camera that can be drawn with volume.
+#[derive(Clone, Debug)]
+pub struct SolidFigure<const N: usize, R: RotationBackend = Rotation> {
+    figure: FigureRenderer<N, R>,
+    kind: Kind,
+    look: Look,
+    sizes: Sizes,
+    /// Up, ahead and left in the head's own axes, 2^13 long.
+    head_axes: [[i16; 3]; 3],
+    head: Head,
+    /// Parts, the farthest of the last picture first.
+    order: Vec<u8, MOST_PARTS>,
+    /// Whether there was a picture since the camera was set up.
+    sorted: bool,
+}
+
+/// Length of the vectors in the head's axes.
+const AXIS: i32 = 1 << 13;
+/// A clip is looked at in about this many places before it plays.
+const SAMPLES: u32 = 48;
+
+impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
+    /// No figure yet.
+    pub const fn empty() -> Self {
+        SolidFigure {
+            figure: FigureRenderer::empty(),
+            kind: Kind::Lines,
+            look: Look::DEFAULT,
+            sizes: Sizes::NOTHING,
+            head_axes: [[0; 3]; 3],
+            head: Head { skull: [0; 3], up: [0; 3], face: [0; 3], left: [0; 3] },
+            order: Vec::new(),
+            sorted: false,
+        }
+    }
+
+    /// A figure and a camera for a clip of up to 192 joints; leaves the player at frame 0. See [`FigureRenderer::of_clip`].
+    pub fn of_clip(player: &mut Player, canvas: Canvas, view: View, look: Look) -> Result<Self, Error> {
+        let mut solid = Self::empty();
+        solid.look = look;
+        solid.set_up(player, canvas, &mut [JointInfo::default(); RIG_JOINTS])?;
+        solid.aim(player, view);
+        Ok(solid)
+    }
+
+    /// The first half of [`SolidFigure::of_clip`] in place: see [`FigureRenderer::set_up`].
+    #[inline(never)]
+    pub fn set_up(&mut self, player: &mut Player, canvas: Canvas, scratch: &mut [JointInfo]) -> Result<(), Error> {
+        self.figure.set_up(player, canvas, scratch)?;
+        self.know(player);
+        Ok(())
+    }
+
+    /// Finds the parts.
+    #[inline(never)]
+    fn know(&mut self, player: &mut Player) {
+        self.kind = match Joints::find(&player.clip().rig(), self.figure.skeleton()) {
+            Some(joints) => Kind::Person(joints),
+            None => Kind::Bones,
+        };
+        self.order.clear();
+        let mut fits = true;
+        if let Kind::Person(joints) = self.kind {
+            (0..HUMAN_PARTS as u8).for_each(|part| fits &= self.order.push(part).is_ok());
+            self.learn_head(player, &joints);
+        } else {
+            for (index, bone) in self.figure.skeleton().bones.iter().enumerate() {
+                if bone.parent.is_some() && matches!(bone.part, Role::Bone | Role::Crown) {
+                    fits &= self.order.push(index as u8).is_ok();
+                }
+            }
+        }
+        if !fits || self.order.is_empty() {
+            self.kind = Kind::Lines;
+        }
+    }
+
+    /// Finds out what is ahead of the head in its own axes: the mean over poses of the clip of where the shoulders face, as rest poses of some
+    /// captures do not say it.
+    #[inline(never)]
+    fn learn_head(&mut self, player: &mut Player, joints: &Joints) {
+        let (now, frames) = (player.frame(), player.clip().frames());
+        let stride = frames.div_ceil(SAMPLES).max(1);
+        let (mut up, mut ahead) = ([0i32; 3], [0i32; 3]);
+        let mut frame = 0;
+        while frame < frames {
+            player.seek(frame);
+            let values = player.pose().values;
+            self.figure.place_in_world(values);
+            let place = |joint: u8| self.figure.joints().position(joint.into());
+            let turned = self.figure.joints().turned(self.figure.skeleton(), values, &Rotation::IDENTITY, joints.head);
+            let shoulders = direction(sub(place(joints.arms[0][0]), place(joints.arms[1][0])));
+            let spine = direction(sub(place(joints.neck), place(joints.hips)));
+            let neck = direction(sub(place(joints.head), place(joints.neck)));
+            if let (Some((left, _)), Some((spine, _))) = (shoulders, spine) {
+                let facing = cross(left, spine);
+                let own = |v: Vector| turned.0.map(|column| dot(column, v));
+                // Sums of at most 2 SAMPLES directions.
+                let add = |sum: &mut Vector, v: Vector| (0..3).for_each(|axis| sum[axis] += v[axis] >> 2);
+                add(&mut ahead, own(facing));
+                add(&mut up, own(neck.map_or(spine, |(neck, _)| neck)));
+            }
+            frame += stride;
+        }
+        player.seek(now);
+        let ahead = direction(ahead).map_or([0, 0, 1 << 15], |(v, _)| v);
+        let risen = dot(up_of(up), ahead);
+        let upright: Vector = core::array::from_fn(|axis| up_of(up)[axis] - ((ahead[axis] * risen) >> 15));
+        let up = up_of(upright);
+        let left = cross(up, ahead);
+        self.head_axes = [up, ahead, left].map(|v| v.map(|x| (x >> 2).clamp(-AXIS, AXIS) as i16));
+    }
+
+    /// Sets the camera up for another view of the clip; leaves the player where it is.
+    #[inline(never)]
+    pub fn aim(&mut self, player: &mut Player, view: View) {
+        self.figure.aim(player, view);
+        self.measure();
+    }
+
+    /// Works out sizes for the camera.
+    fn measure(&mut self) {
+        let joints = match &self.kind {
+            Kind::Person(joints) => Some(joints),
+            _ => None,
+        };
+        self.sizes = Sizes::new(&self.figure, joints, &self.look);
+        self.sorted = false;
+    }
+
+    /// Changes the character.
+    pub fn set_look(&mut self, look: Look) {
+        self.look = look;
+        self.measure();
+    }
+
+    /// What the rig is drawn as.
+    pub fn build(&self) -> Build {
+        match self.kind {
+            Kind::Person(_) => Build::Person,
+            Kind::Bones => Build::Bones,
+            Kind::Lines => Build::Lines,
+        }
+    }
+
+    /// The figure as lines: its camera and its joints.
+    pub fn lines(&mut self) -> &mut FigureRenderer<N, R> {
+        &mut self.figure
+    }
+
+    /// The figure's joints.
+    pub fn skeleton(&self) -> &Skeleton<N> {
+        self.figure.skeleton()
+    }
+
+    /// Moves the picture by whole pixels: see [`FigureRenderer::shift`].
+    pub fn shift(&mut self, x: i16, y: i16) {
+        self.figure.shift(x, y);
+    }
+
+    /// Sets the camera up for poses: see [`FigureRenderer::look_at`].
+    pub fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+        self.figure.look_at(canvas, view, poses);
+        self.measure();
+    }
+
+    /// Takes a pose: see [`FigureRenderer::set_pose`].
+    pub fn set_pose(&mut self, pose: Pose<'_>) -> Result<(), WrongForm> {
+        self.figure.set_pose(pose)?;
+        self.turn_head(pose.values, 0);
+        Ok(())
+    }
+
+    /// Takes a pose of a figure that stands somewhere in the world: see [`FigureRenderer::set_pose_at`].
+    pub fn set_pose_at(&mut self, pose: Pose<'_>, stand: Stand) -> Result<(), WrongForm> {
+        self.figure.set_pose_at(pose, stand)?;
+        self.turn_head(pose.values, stand.heading.to_bits());
+        Ok(())
+    }
+
+    /// Where the head looks.
+    #[inline(never)]
+    fn turn_head(&mut self, values: &[i32], heading: i32) {
+        let Kind::Person(joints) = &self.kind else { return };
+        let turned = self.figure.turned(values, heading, joints.head);
+        let Some(visible) = self.figure.visible(joints.head) else { return };
+        let magnification = magnification(visible.depth.into());
+        let radius = (i32::from(self.sizes.radii[Radius::Skull as usize]) * magnification) >> MAGNIFICATION_BITS;
+        // A vector of 2^13 figure units on the display, and how much shorter or longer the skull's radius is.
+        let unit = self.figure.camera().length(AXIS).max(1);
+        let [up, face, left] = self.head_axes.map(|axis| {
+            let seen = self.figure.camera().vector(turned.rotate(axis.map(i32::from)));
+            seen.map(|part| part * radius / unit)
+        });
+        let [above, before] = self.sizes.skull;
+        let [x, y] = visible.place.map(i32::from);
+        let place = |axis: usize| (up[axis] * above + face[axis] * before) >> 8;
+        self.head = Head { skull: [x + place(0), y + place(1), radius], up, face, left };
+    }
+
+    /// Draws the pose that was taken last on a clear surface: the floor, if it is wanted, and the parts from far to near.
+    ///
+    /// A rig of [`Build::Lines`] is drawn as lines.
+    #[inline(never)]
+    pub fn draw_on<S: Surface>(&mut self, surface: &mut S, floor: bool) {
+        if let Kind::Lines = self.kind {
+            return self.figure.draw_on(surface, crate::DrawStyle { ground: floor, smooth: false });
+        }
+        self.sort();
+        let Self { figure, kind, look, sizes, head, order, .. } = self;
+        let body = Body { figure, kind, sizes, look, head };
+        let mut painter = Painter::on(surface);
+        if floor {
+            body.draw_floor(&mut painter, joints_of(kind));
+        }
+        let mut drawn = 0;
+        for &part in order.iter() {
+            body.draw(&mut painter, part, &mut drawn);
+        }
+    }
+
+    /// Clears the target and draws the figure in a pose, with the floor.
+    pub fn draw<D>(&mut self, pose: Pose<'_>, target: &mut D) -> Result<(), DrawError<D::Error>>
+    where
+        D: DrawTarget,
+        D::Color: Ink,
+    {
+        target.clear(D::Color::DARK).map_err(DrawError::Target)?;
+        self.set_pose(pose).map_err(DrawError::WrongForm)?;
+        let mut surface = OnTarget::new(target);
+        self.draw_on(&mut surface, true);
+        surface.outcome().map_err(DrawError::Target)
+    }
+
+    /// Puts the farthest part first. The first picture is sorted exactly, later ones from the order of the one before.
+    #[inline(never)]
+    fn sort(&mut self) {
+        let mut keys = [0i16; MOST_PARTS];
+        let body = Body { figure: &self.figure, kind: &self.kind, sizes: &self.sizes, look: &self.look, head: &self.head };
+        let person = match &self.kind {
+            Kind::Person(joints) => {
+                body.human_keys(joints, &mut keys);
+                true
+            }
+            _ => false,
+        };
+        let key = |part: u8| -> i32 {
+            if person { keys.get(usize::from(part)).map_or(0, |key| i32::from(*key)) } else { body.figure.bone_depth(part) }
+        };
+        let passing = if self.sorted { self.sizes.depth * PASSING / 1000 } else { 0 };
+        for place in 1..self.order.len() {
+            let Some(&moving) = self.order.get(place) else { return };
+            let (own, mut place) = (key(moving), place);
+            while let Some(&before) = self.order.get(place.wrapping_sub(1))
+                && key(before) + passing < own
+            {
+                if let Some(here) = self.order.get_mut(place) {
+                    *here = before;
+                }
+                place -= 1;
+            }
+            if let Some(here) = self.order.get_mut(place) {
+                *here = moving;
+            }
+        }
+        self.sorted = true;
+    }
+}
+
+/// The joints of a person.
+fn joints_of(kind: &Kind) -> Option<&Joints> {
+    match kind {
+        Kind::Person(joints) => Some(joints),
+        _ => None,
+    }
+}
+
+/// A direction; up along y for none.
+fn up_of(v: Vector) -> Vector {
+    direction(v).map_or([0, 1 << 15, 0], |(v, _)| v)
+}
+
+impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
+    /// Draws a part. `drawn` has the joints of those that were drawn before.
+    #[inline(never)]
+    fn draw<S: Surface>(&self, painter: &mut Painter<S>, part: u8, drawn: &mut u64) {
+        let joints = joints_of(self.kind);
+        if joints.is_some() && part == HEAD {
+            self.head.draw(painter, self.look, 256, self.sizes.outline);
+            *drawn |= 4;
+            return;
+        }
+        let key = self.depth_of(part);
+        let part = match joints {
+            Some(joints) => self.human(joints, part),
+            None => self.bone(part),
+        };
+        let light = self.light(key, part.right);
+        let lit = S::Ink::tint(&part.tint, light);
+        let edge = S::Ink::tint(self.look.tint(Material::Edge), 256);
+        let mut outline = Outline { ink: edge, width: self.sizes.outline, cuts: [Cut::None; 2] };
+        for (cut, (circle, joint)) in outline.cuts.iter_mut().zip(part.ends) {
+            if joint & *drawn != 0 {
+                *cut = open_at(&part.circles, circle.into());
+            }
+        }
+        let shaded = S::Ink::SHADED && !self.sizes.small;
+        let fill = if !S::Ink::TONES {
+            match part.tint.pattern {
+                Pattern::Checkered => Fill::Checkered(lit, edge),
+                _ => Fill::Plain(lit),
+            }
+        } else if shaded {
+            // 0.42 of the mean radius towards the lower right.
+            let sum: i32 = part.circles.iter().map(|circle| circle[2]).sum();
+            let mean = sum / (part.circles.len() as i32).max(1);
+            let shift = |parts: i32| ((mean * parts) >> 12).clamp(1, MARGIN - 2);
+            let shade = ((u32::from(light) * tint::SHADE) >> 8) as Light;
+            Fill::Shaded(lit, S::Ink::tint(&part.tint, shade), [shift(62), shift(87)])
+        } else {
+            Fill::Plain(lit)
+        };
+        painter.hull(&part.circles, false, &outline, &fill);
+        *drawn |= part.covers;
+    }
+
+    /// Depth of a part, as far as its light depends on it.
+    fn depth_of(&self, part: u8) -> i32 {
+        match joints_of(self.kind) {
+            Some(joints) => match self.human_joint(joints, part) {
+                Some(joint) => self.joint(joint)[2],
+                None => 0,
+            },
+            None => self.figure.bone_depth(part),
+        }
+    }
+
+    /// The joint at the far end of a part of a person.
+    fn human_joint(&self, joints: &Joints, part: u8) -> Option<u8> {
+        let limb = part.checked_sub(4)?;
+        let side = usize::from(limb >= 6);
+        let index = usize::from(limb % 6);
+        let [arm, leg] = [joints.arms.get(side)?, joints.legs.get(side)?];
+        if index < 3 { arm.get((index + 1).min(2)).copied() } else { leg.get((index - 2).min(2)).copied() }
+    }
+
+    /// 0.94 at the target's distance, more before it and less behind it, from 0.62 to 1; 0.9 of that on the right.
+    fn light(&self, depth: i32, right: bool) -> Light {
+        let light = (241 - depth * 230 / self.sizes.depth).clamp(159, 256);
+        (if right { light * 9 / 10 } else { light }) as Light
+    }
+}
+
+/// The cut at a circle of a part, away from the others' middle.
+fn open_at(circles: &[hull::Circle], index: usize) -> Cut {
+    let Some(own) = circles.get(index) else { return Cut::None };
+    let others = (circles.len() as i32 - 1).max(1);
+    let inwards = [0, 1].map(|axis| {
+        let sum: i32 = circles.iter().map(|circle| circle[axis]).sum();
+        (sum - own[axis]) / others - own[axis]
+    });
+    Cut::at(own, inwards)
+}

@@ -1,0 +1,172 @@
+//! The solid figure: the same pixels on every surface, lines that stay what they are, and a head that looks somewhere.
+
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{OriginDimensions, Size};
+use embedded_graphics::pixelcolor::{BinaryColor, Gray4, PixelColor, Rgb565};
+use pantin::{Clip, Form, Player, Pose, Room};
+use pantin_figure::ink::Ink;
+use pantin_figure::solid::{Build, Look, Material, SolidFigure};
+use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
+use pantin_figure::{Canvas, DrawStyle, FigureRenderer, View};
+
+const CLIPS: [&[u8]; 2] = [include_bytes!("../../../motions/walk.ptn"), include_bytes!("../../../motions/run.ptn")];
+const JOINTS: usize = 36;
+
+/// A display of any size.
+#[derive(Clone, Debug, PartialEq)]
+struct Target<C> {
+    width: usize,
+    pixels: Vec<C>,
+}
+
+impl<C: Ink> Target<C> {
+    fn new([width, height]: [usize; 2]) -> Self {
+        Target { width, pixels: vec![C::DARK; width * height] }
+    }
+}
+
+impl<C> OriginDimensions for Target<C> {
+    fn size(&self) -> Size {
+        Size::new(self.width as u32, (self.pixels.len() / self.width) as u32)
+    }
+}
+
+impl<C: PixelColor> DrawTarget for Target<C> {
+    type Color = C;
+    type Error = core::convert::Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Self::Error> {
+        for Pixel(place, colour) in pixels {
+            let index = place.y as usize * self.width + place.x as usize;
+            // Nothing is drawn outside: the index would be too great, or in another row.
+            assert!((0..self.width as i32).contains(&place.x), "{place:?}");
+            self.pixels[index] = colour;
+        }
+        Ok(())
+    }
+}
+
+fn with_player(clip: &'static [u8], test: impl FnOnce(&mut Player)) {
+    let mut room = Room::<144, 144>::new();
+    test(&mut room.player(Clip::new_checked(clip).unwrap()).unwrap());
+}
+
+fn figure(player: &mut Player, [width, height]: [usize; 2], orbit: i16) -> SolidFigure<JOINTS> {
+    let canvas = Canvas { width: width as u16, height: height as u16 };
+    let view = View { orbit, ..View::default() };
+    SolidFigure::of_clip(player, canvas, view, Look::DEFAULT).unwrap()
+}
+
+/// Draws every 16th frame on a framebuffer of a layout and on a target, and compares them.
+fn same_on_both<L: Layout<Ink: PartialEq + core::fmt::Debug>>(player: &mut Player) {
+    let size = [L::WIDTH, L::HEIGHT];
+    let (mut one, mut other) = (figure(player, size, -50), figure(player, size, -50));
+    assert_eq!(one.build(), Build::Person);
+    let mut framebuffer = Framebuffer::<L>::new();
+    for frame in (0..player.clip().frames()).step_by(16) {
+        player.seek(frame);
+        framebuffer.clear();
+        one.set_pose(player.pose()).unwrap();
+        one.draw_on(&mut framebuffer, true);
+        let mut target = Target::<L::Ink>::new(size);
+        other.draw(player.pose(), &mut target).unwrap();
+        let bright = target.pixels.iter().filter(|pixel| **pixel != L::Ink::DARK).count();
+        assert!(bright * 100 > target.pixels.len() * 3, "{bright} pixels of frame {frame}");
+        for (index, pixel) in target.pixels.iter().enumerate() {
+            assert_eq!(framebuffer.pixel(index % size[0], index / size[0]), *pixel, "pixel {index} of frame {frame}");
+        }
+    }
+}
+
+#[test]
+fn a_framebuffer_shows_what_a_target_shows() {
+    for clip in CLIPS {
+        with_player(clip, same_on_both::<MonoPages<128, 64, 1024>>);
+        with_player(clip, same_on_both::<Gray4Rows<128, 64, 1024>>);
+        with_player(clip, same_on_both::<Rgb565Rows<176, 220, { 176 * 110 }>>);
+    }
+}
+
+#[test]
+fn lines_are_those_of_the_figure_without_volume() {
+    for clip in CLIPS {
+        with_player(clip, |player| {
+            let mut solid = figure(player, [128, 64], -50);
+            let canvas = Canvas { width: 128, height: 64 };
+            let mut lines = FigureRenderer::<JOINTS>::of_clip(player, canvas, View::default()).unwrap();
+            for frame in (0..player.clip().frames()).step_by(10) {
+                player.seek(frame);
+                let mut pictures = [(); 2].map(|()| Framebuffer::<Gray4Rows<128, 64, 1024>>::new());
+                solid.set_pose(player.pose()).unwrap();
+                solid.draw_on(&mut pictures[0], true);
+                pictures[0].clear();
+                solid.lines().draw_on(&mut pictures[0], DrawStyle::default());
+                lines.set_pose(player.pose()).unwrap();
+                lines.draw_on(&mut pictures[1], DrawStyle::default());
+                assert_eq!(pictures[0].cells(), pictures[1].cells(), "frame {frame}");
+            }
+        });
+    }
+}
+
+#[test]
+fn the_face_is_seen_from_the_front_alone() {
+    let face = Rgb565::tint(Look::DEFAULT.tint(Material::Face), 256);
+    for clip in CLIPS {
+        with_player(clip, |player| {
+            let seen = [0, 90, -90, 180].map(|orbit| {
+                let mut figure = figure(player, [176, 220], orbit);
+                player.seek(7);
+                let mut target = Target::<Rgb565>::new([176, 220]);
+                figure.draw(player.pose(), &mut target).unwrap();
+                target.pixels.iter().filter(|pixel| **pixel == face).count()
+            });
+            assert!(seen[0] > 200 && seen[3] == 0, "{seen:?}");
+            assert!(seen[1] * 4 > seen[0] && seen[2] * 4 > seen[0] && seen[1].max(seen[2]) < seen[0], "{seen:?}");
+        });
+    }
+}
+
+#[test]
+fn both_sides_are_told_apart_in_two_colours() {
+    // From behind, what is left of the figure's middle is the left side.
+    with_player(CLIPS[0], |player| {
+        let mut figure = figure(player, [128, 64], 180);
+        player.seek(0);
+        let mut target = Target::<BinaryColor>::new([128, 64]);
+        figure.set_pose(player.pose()).unwrap();
+        figure.draw_on(&mut pantin_figure::surface::OnTarget::new(&mut target), false);
+        // Rows of the legs: bright pixels without a bright neighbour to the left are many where they are checkered.
+        let alone = |columns: core::ops::Range<usize>| {
+            let lit = |row: usize, column: usize| target.pixels[row * 128 + column].is_on();
+            let places = (36..54).flat_map(|row| columns.clone().map(move |column| (row, column)));
+            let (alone, all) = places.fold((0, 0), |(alone, all), (row, column)| {
+                let on = lit(row, column);
+                (alone + usize::from(on && !lit(row, column - 1) && !lit(row, column + 1)), all + usize::from(on))
+            });
+            (alone, all)
+        };
+        let ((left_alone, left), (right_alone, right)) = (alone(40..64), alone(64..90));
+        assert!(left > 20 && left_alone * 8 < left, "left: {left_alone} of {left}");
+        assert!(right > 20 && right_alone * 4 > right * 3, "right: {right_alone} of {right}");
+    });
+}
+
+#[test]
+fn no_pose_draws_outside_or_fails() {
+    let mut random = fastrand::Rng::with_seed(42);
+    with_player(CLIPS[0], |player| {
+        let form: Form = player.pose().form.to_form();
+        for round in 0..60 {
+            let size = [[64, 32], [128, 64], [176, 220], [320, 240]][round % 4];
+            let mut figure = figure(player, size, random.i16(-180..180));
+            for _ in 0..4 {
+                let most = 1 << random.u32(8..31);
+                let values: Vec<i32> = (0..player.pose().values.len()).map(|_| random.i32(-most..most)).collect();
+                let mut target = Target::<Gray4>::new(size);
+                figure.draw(Pose { values: &values, form: (&form).into() }, &mut target).unwrap();
+            }
+        }
+    });
+}
