@@ -1,4 +1,4 @@
-//! Time on this machine: a pose and a seek, and encoding at each effort.
+//! Time on this machine: a pose and a seek, and encoding at each effort. Encoding is measured by processor time, which other programs change little.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,14 +7,18 @@ use anyhow::{Context, Result, ensure};
 use harness::build::{self, Build};
 use harness::paths;
 
+use super::tool::Converted;
 use super::{Goal, Setting, reference, table, tool};
 
 const BOUND_CM: f64 = 1.0;
 /// A figure with fingers, and the bound at which the search takes longest.
 const MANY_JOINTS: &str = "bvh_mixamo-mia_gesture";
 const LOOSE_CM: f64 = 3.0;
-/// What a take of 10 minutes is made of, and its frames.
+/// What the default effort is measured with, and what a take of 10 minutes is made of.
 const LONG: &str = "bvh_cmu01_hops-and-turn";
+/// The greatest processor time of the default effort, in seconds for a second of motion, with the shell bounded.
+const MOST_PROCESSOR: f64 = 0.58;
+/// Frames of a take of 10 minutes.
 const LONG_FRAMES: usize = 72_000;
 
 /// ACL's time for a pose of 31 joints, AVX2: seek and decompress, in order, warm.
@@ -30,10 +34,26 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let mut goals = play(setting, &name, &path, unit)?;
     goals.extend(encode(setting, &name, &path, unit)?);
     if !setting.quick {
+        goals.extend(encode_default(setting)?);
         goals.extend(encode_many_joints(setting)?);
         goals.extend(encode_long(setting)?);
     }
     Ok(goals)
+}
+
+/// Seconds of processor time that a conversion took.
+fn processor(made: &Converted) -> Result<f64> {
+    made.processor.context("this system does not report the processor time of a program")
+}
+
+/// Processor time of the default effort for a lively clip of 31 joints at 120 fps.
+fn encode_default(setting: &Setting) -> Result<Vec<Goal>> {
+    let Some(clip) = reference::named(LONG)? else { return Ok(vec![]) };
+    let options = tool::shell_options(BOUND_CM, clip.cm_per_unit());
+    let made = setting.tool.convert(&clip.path, &format!("{LONG}-{BOUND_CM}cm-time"), &options)?;
+    let (taken, what) =
+        (processor(&made)? / made.info.seconds(), "processor time to encode a second of 31 joints at 120 fps, shell bounded");
+    Ok(vec![Goal::at_most(format!("{what}, default effort"), taken, MOST_PROCESSOR, 2, "s")])
 }
 
 /// Speed for a figure with fingers at a loose bound.
@@ -41,7 +61,7 @@ fn encode_many_joints(setting: &Setting) -> Result<Vec<Goal>> {
     let Some(clip) = reference::named(MANY_JOINTS)? else { return Ok(vec![]) };
     let name = format!("{MANY_JOINTS}-{LOOSE_CM}cm-time");
     let made = setting.tool.convert(&clip.path, &name, &tool::options(LOOSE_CM, clip.cm_per_unit()))?;
-    let speed = made.info.seconds() / made.seconds.unwrap_or(f64::INFINITY);
+    let speed = made.info.seconds() / processor(&made)?;
     Ok(vec![speed_at_least(&format!("encoding 75 joints at 30 fps within {LOOSE_CM} cm, default effort"), speed, 2.0)])
 }
 
@@ -54,7 +74,7 @@ fn encode_long(setting: &Setting) -> Result<Vec<Goal>> {
         let mut options = tool::options(BOUND_CM, clip.cm_per_unit());
         options.extend(["--effort".to_owned(), effort.to_owned()]);
         let made = setting.tool.convert(&path, &format!("long-{frames}-{effort}"), &options)?;
-        let taken = made.seconds.unwrap_or_default();
+        let taken = processor(&made)?;
         rows.push(vec![
             format!("{frames} frames, {effort}"),
             format!("{}", made.info.motion_bytes),
@@ -68,9 +88,9 @@ fn encode_long(setting: &Setting) -> Result<Vec<Goal>> {
             goals.push(Goal::at_most(what, peak, 600.0, 0, "MB"));
         }
     }
-    table::print(&["a take, 1 cm", "bytes", "encode s", "x real time", "MB"], &rows);
+    table::print(&["a take, 1 cm", "bytes", "processor s", "x real time on one core", "MB"], &rows);
     let growth = seconds[1] / seconds[0];
-    goals.push(Goal::at_most("time to encode twice the frames, effort fast", growth, 2.2, 2, "times"));
+    goals.push(Goal::at_most("processor time to encode twice the frames, effort fast", growth, 2.2, 2, "times"));
     Ok(goals)
 }
 
@@ -93,7 +113,12 @@ fn repeated(setting: &Setting, source: &Path, frames: usize) -> Result<PathBuf> 
 }
 
 fn speed_at_least(what: &str, value: f64, least: f64) -> Goal {
-    Goal { what: what.into(), value: format!("{value:.1} x real time"), goal: format!("at least {least}"), met: value >= least }
+    Goal {
+        what: what.into(),
+        value: format!("{value:.1} x real time on one core"),
+        goal: format!("at least {least}"),
+        met: value >= least,
+    }
 }
 
 fn play(setting: &Setting, name: &str, path: &Path, unit: Option<f64>) -> Result<Vec<Goal>> {
@@ -133,18 +158,17 @@ fn encode(setting: &Setting, name: &str, path: &Path, unit: Option<f64>) -> Resu
         let mut options = tool::options(BOUND_CM, unit);
         options.extend(["--effort".to_owned(), effort.to_owned()]);
         let made = setting.tool.convert(path, &format!("{name}-{BOUND_CM}cm-{effort}"), &options)?;
-        let speed = made.info.seconds() / made.seconds.unwrap_or(f64::INFINITY);
+        let speed = made.info.seconds() / processor(&made)?;
         let numbers =
             [format!("{}", made.info.motion_bytes), format!("{:.2}", made.info.seconds() / speed), format!("{speed:.1}")];
         rows.push([vec![effort.to_owned()], numbers.to_vec()].concat());
         results.push((made.info.motion_bytes, speed));
     }
-    table::print(&[&format!("{name}, {BOUND_CM} cm: effort"), "bytes", "encode s", "x real time"], &rows);
-    let [(fast_bytes, fast), (bytes, speed), (best_bytes, best)] = results[..] else { return Ok(vec![]) };
+    table::print(&[&format!("{name}, {BOUND_CM} cm: effort"), "bytes", "processor s", "x real time on one core"], &rows);
+    let [(fast_bytes, fast), (bytes, _), (best_bytes, best)] = results[..] else { return Ok(vec![]) };
     Ok(vec![
-        speed_at_least("encoding 31 joints at 120 fps, default effort", speed, 3.0),
         speed_at_least("encoding 31 joints at 120 fps, fast", fast, 25.0),
         Goal::at_most("bytes, fast relative to default", fast_bytes / bytes, 2.0, 2, ""),
-        Goal::told("bytes, best relative to default", format!("{:.3} ({best:.1} x real time)", best_bytes / bytes)),
+        Goal::told("bytes, best relative to default", format!("{:.3} ({best:.1} x real time on one core)", best_bytes / bytes)),
     ])
 }
