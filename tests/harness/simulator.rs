@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use board_drivers::indexed::{Indexed, IndexedRows};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, GrayColor, Rgb565};
-use pantin_app::{Board, CHARACTER_KEYS, Entry, Exit, Mode, Options, SteerKey};
+use pantin_app::{Board, CHARACTER_KEYS, Entry, Exit, Options, SteerKey};
 use pantin_figure::rotation::{Rotation, RotationBackend};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 
@@ -86,7 +86,8 @@ pub struct Reading {
 }
 
 /// The pictures of the Game Boy Advance's display while `keys` steer the character of a bank: one for each reading.
-pub fn steer(bank: &[u8], keys: &[SteerKey], readings: &[Reading]) -> Result<Vec<Picture>> {
+/// `words` are those of the firmware's command line.
+pub fn steer(bank: &[u8], keys: &[SteerKey], words: &[&str], readings: &[Reading]) -> Result<Vec<Picture>> {
     /// In place of the buttons that leave.
     const LEAVE: u16 = 1 << 15;
     let mut pictures = vec![];
@@ -94,7 +95,14 @@ pub fn steer(bank: &[u8], keys: &[SteerKey], readings: &[Reading]) -> Result<Vec
         |framebuffer: &mut Framebuffer<IndexedRows<240, 160, 19200>>| pictures.push(picture(crate::gba::LCD, framebuffer));
     let readings = readings.iter().copied().chain([Reading { ticks: 1, held: LEAVE }]).collect();
     let mut simulator = Simulator::<Rotation, _, _> { readings, ..Simulator::new(present) };
-    let exit = pantin_app::steer::<_, 64>(bank, keys, LEAVE, Mode::Play, &mut Framebuffer::new(), &mut simulator);
+    let exit = pantin_app::steer::<_, 64>(
+        bank,
+        keys,
+        LEAVE,
+        Options::parse(words.iter().copied()),
+        &mut Framebuffer::new(),
+        &mut simulator,
+    );
     ensure!(exit == Exit::Done, "the character cannot be played");
     Ok(pictures)
 }
@@ -114,7 +122,8 @@ fn steered<L: Layout<Ink: Value>>(display: Display, letters: &[Vec<u8>]) -> Resu
     let wishes = letters.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     let mut simulator = Simulator::<Rotation, L, _> { wishes, ..Simulator::new(present) };
     let mut frame = Box::new(Framebuffer::<L>::new());
-    let exit = pantin_app::steer::<_, 64>(&bank, &CHARACTER_KEYS, 0, Mode::Sync, &mut frame, &mut simulator);
+    let exit =
+        pantin_app::steer::<_, 64>(&bank, &CHARACTER_KEYS, 0, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "the character cannot be played");
     Ok(pictures)
 }

@@ -95,11 +95,11 @@ pub trait Renderer {
     fn set_up(&mut self, player: &mut Player, canvas: Canvas) -> Result<(), pantin_figure::Error>;
 
     /// Sets the camera up for a view. The player stays at its frame.
-    fn aim(&mut self, player: &mut Player, view: View);
+    fn aim(&mut self, player: &mut Player, view: View, style: Style);
 
     /// Sets the camera up for poses that `poses` passes to its argument: it is called twice and must pass the same ones.
     #[cfg(feature = "steer")]
-    fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32])));
+    fn look_at(&mut self, canvas: Canvas, view: View, style: Style, poses: impl FnMut(&mut dyn FnMut(&[i32])));
 
     /// Takes the pose to draw of a figure that stands somewhere in the world.
     #[cfg(feature = "steer")]
@@ -118,6 +118,15 @@ pub trait Renderer {
     fn bones(&self) -> usize;
 }
 
+/// Lets a camera that is set up next make room for what a style draws.
+#[inline(always)]
+fn make_room<const N: usize, R: RotationBackend>(figure: &mut Figure<N, R>, style: Style) {
+    #[cfg(feature = "solid")]
+    figure.make_room(style.solid);
+    #[cfg(not(feature = "solid"))]
+    let _ = (figure, style);
+}
+
 impl<const N: usize, R: RotationBackend> Renderer for Figure<N, R> {
     #[inline(always)]
     fn empty() -> Self {
@@ -131,13 +140,15 @@ impl<const N: usize, R: RotationBackend> Renderer for Figure<N, R> {
     }
 
     #[inline(always)]
-    fn aim(&mut self, player: &mut Player, view: View) {
+    fn aim(&mut self, player: &mut Player, view: View, style: Style) {
+        make_room(self, style);
         Figure::aim(self, player, view);
     }
 
     #[cfg(feature = "steer")]
     #[inline(always)]
-    fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+    fn look_at(&mut self, canvas: Canvas, view: View, style: Style, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+        make_room(self, style);
         Figure::look_at(self, canvas, view, poses);
     }
 

@@ -109,7 +109,7 @@ fn set_up<B: Board>(
     let share = B::Layout::WIDTH / count;
     let canvas = Canvas { width: (share * 3 / 2) as u16, height: B::Layout::HEIGHT as u16 };
     renderer.set_up(player, canvas)?;
-    Renderer::aim(renderer, player, view_state.view);
+    Renderer::aim(renderer, player, view_state.view, view_state.style);
     renderer.shift((share * index + share / 2) as i16 - (canvas.width / 2) as i16, 0);
     Ok(())
 }

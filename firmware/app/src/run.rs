@@ -257,7 +257,7 @@ fn queue(command: Option<Command>, view_state: &mut ViewState, effects: &mut Eff
 
 fn aim<B: Board, S: Source>(actors: &mut [Actor<B, S>], view_state: &ViewState) {
     for Actor { source, content, .. } in actors {
-        source.with_player(|player| Content::<B::Layout>::aim(*content, player, view_state.view));
+        source.with_player(|player| Content::<B::Layout>::aim(*content, player, view_state.view, view_state.style));
     }
 }
 

@@ -1,10 +1,10 @@
 //! A character that the user steers: the board's buttons, and letters over its serial line, are the inputs of its state machine.
 
 use crate::board::{Board, BoardRenderer, Exit};
-use crate::capacity::Renderer;
+use crate::capacity::{Renderer, Style};
 use crate::keys::SteerKey;
 use crate::log::error;
-use crate::options::{Mode, Options};
+use crate::options::Options;
 use crate::run::{Actor, play};
 use crate::session::{Outcome, PlayContext};
 use crate::source::steered::SteeredSource;
@@ -45,7 +45,7 @@ impl From<pantin::TooSmall> for Refusal {
 }
 
 /// Plays the state machine of a bank until a button in `leave` is pressed, the letter `q` comes, or the mode ends. The rig has at most `CHANNELS`
-/// channels. The machine's first layer plays; further layers, and the second clips of blends, do not.
+/// channels. The machine's first layer plays; further layers, and the second clips of blends, do not. Name, frame and speed are always shown.
 ///
 /// Returns [`Exit::BadClip`] for a bank without a state machine, one that is damaged, or a rig that is too large; the log has the reason.
 #[inline(never)]
@@ -53,11 +53,12 @@ pub fn steer<B: Board, const CHANNELS: usize>(
     bank: &[u8],
     keys: &[SteerKey],
     leave: u16,
-    mode: Mode,
+    options: Options,
     framebuffer: &mut Framebuffer<B::Layout>,
     board: &mut B,
 ) -> Exit {
-    let mut view_state = ViewState::new(&Options { mode, hud: true, ..Options::parse([]) });
+    let mode = options.mode;
+    let mut view_state = ViewState::new(&Options { hud: true, ..options });
     let listener = Listener::default();
     let mut context = PlayContext { mode, view_state: &mut view_state, framebuffer, board, listener };
     match set_up::<B, CHANNELS>(bank, keys, leave, &mut context) {
@@ -85,7 +86,7 @@ fn set_up<B: Board, const CHANNELS: usize>(
     let (mut states, mut values, mut sampled) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS], [0; CHANNELS]);
     let mut words = [0; MASK_WORDS];
     let mut renderer = BoardRenderer::<B>::empty();
-    aim::<B>(bank, &mut renderer, &mut states, &mut values, &mut sampled)?;
+    aim::<B>(bank, context.view_state.style, &mut renderer, &mut states, &mut values, &mut sampled)?;
     let mut character = Character::new(bank, memory.lend())?;
     if character.table().layer(0).is_some() {
         let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
@@ -99,6 +100,7 @@ fn set_up<B: Board, const CHANNELS: usize>(
 #[inline(never)]
 fn aim<B: Board>(
     bytes: &[u8],
+    style: Style,
     renderer: &mut BoardRenderer<B>,
     states: &mut [ChannelState],
     values: &mut [i32],
@@ -108,7 +110,7 @@ fn aim<B: Board>(
     let mut player = Player::new(first_clip(bytes)?, states, values)?;
     renderer.set_up(&mut player, canvas)?;
     let mut visited = Ok(());
-    renderer.look_at(canvas, View::default(), |visit| {
+    renderer.look_at(canvas, View::default(), style, |visit| {
         visited = visited.and(visit_poses(bytes, states, values, sampled, &mut |_, values| visit(values)));
     });
     Ok(visited?)

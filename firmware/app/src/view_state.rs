@@ -116,7 +116,10 @@ impl ViewState {
             Command::Ground => self.style.lines.ground = !self.style.lines.ground,
             Command::Smooth => self.style.lines.smooth = !self.style.lines.smooth,
             #[cfg(feature = "solid")]
-            Command::Style => self.style.solid = !self.style.solid,
+            Command::Style => {
+                self.style.solid = !self.style.solid;
+                return Effect::Aim;
+            }
             Command::Hud => self.hud = !self.hud,
             Command::Help => return Effect::Help,
         }

@@ -98,7 +98,7 @@ impl<'w> JointTable<'w> {
         let mut has_head = false;
         for ((index, joint), info) in rig.joints().enumerate().zip(table.iter_mut()) {
             let bone = if index <= hips { [0; 3] } else { units.bone(&joint, pose) };
-            let head = !has_head && contains(joint.name_bytes(), b"head");
+            let head = !has_head && [&b"head"[..], b"kopf"].iter().any(|word| contains(joint.name_bytes(), word));
             has_head |= head;
             let parent = joint.parent.map_or(NO_PARENT, |parent| parent as u8);
             *info =

@@ -96,6 +96,12 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     /// Sets the camera up for another view of the clip; leaves the player where it is.
     #[inline(never)]
     pub fn aim(&mut self, player: &mut Player, view: View) {
+        self.aim_for(player, view, Extent::include);
+    }
+
+    /// [`FigureRenderer::aim`] for what `cover` says that a pose covers of the display.
+    #[inline(always)]
+    pub(crate) fn aim_for(&mut self, player: &mut Player, view: View, cover: impl Fn(&mut Extent, &Self)) {
         let (now, frames) = (player.frame(), player.clip().frames());
         let stride = frames.div_ceil(SAMPLES).max(1);
         let poses = |visit: &mut dyn FnMut(&[i32], ())| {
@@ -106,7 +112,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
                 frame += stride;
             }
         };
-        self.frame(view, poses, Self::place);
+        self.frame(view, poses, Self::place, cover);
         player.seek(now);
     }
 
@@ -119,17 +125,29 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     }
 
     /// [`FigureRenderer::new`] in place, for the skeleton that it has.
-    pub fn look_at(&mut self, canvas: Canvas, view: View, mut poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+    pub fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
+        self.look_for(canvas, view, poses, Extent::include);
+    }
+
+    /// [`FigureRenderer::look_at`] for what `cover` says that a pose covers of the display.
+    #[inline(always)]
+    pub(crate) fn look_for(
+        &mut self,
+        canvas: Canvas,
+        view: View,
+        mut poses: impl FnMut(&mut dyn FnMut(&[i32])),
+        cover: impl Fn(&mut Extent, &Self),
+    ) {
         self.canvas = canvas;
         self.choose();
-        self.frame(view, |visit| poses(&mut |values| visit(values, ())), Self::place);
+        self.frame(view, |visit| poses(&mut |values| visit(values, ())), Self::place, cover);
     }
 
     /// [`FigureRenderer::look_at`] for poses that stand somewhere in the world.
     pub fn look_at_stands(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32], Stand))) {
         self.canvas = canvas;
         self.choose();
-        self.frame(view, poses, Self::place_at);
+        self.frame(view, poses, Self::place_at, Extent::include);
     }
 
     /// Places the joints of a pose at the origin.
@@ -157,6 +175,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         view: View,
         mut poses: impl FnMut(&mut dyn FnMut(&[i32], S)),
         place: impl Fn(&mut Self, &[i32], S, Space),
+        cover: impl Fn(&mut Extent, &Self),
     ) {
         let mut bounds = Bounds::new();
         poses(&mut |values, stand| {
@@ -177,7 +196,7 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         let mut frame = Extent::default();
         poses(&mut |values, stand| {
             place(self, values, stand, Space::View);
-            frame.include(self);
+            cover(&mut frame, self);
         });
         let scale = frame.scale(self.canvas);
         set_camera(self, scale);
@@ -445,24 +464,31 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
 
 /// What the figure covers of the display over a clip, in sixteenths of a pixel from the target.
 #[derive(Default)]
-struct Extent {
+pub(crate) struct Extent {
     top: i32,
     bottom: i32,
     side: i32,
 }
 
 impl Extent {
-    fn include<const N: usize, R: RotationBackend>(&mut self, renderer: &FigureRenderer<N, R>) {
-        renderer.each_bone(|Line { from, to, .. }| {
-            self.widen(from, 0);
-            self.widen(to, 0);
-        });
+    /// Takes in a figure of lines.
+    pub(crate) fn include<const N: usize, R: RotationBackend>(&mut self, renderer: &FigureRenderer<N, R>) {
+        self.include_bones(renderer);
         if let Some(head) = renderer.head() {
             self.widen(head.centre, head.radius);
         }
     }
 
-    fn widen(&mut self, [x, y]: [i16; 2], radius: i16) {
+    /// Takes in the bones.
+    pub(crate) fn include_bones<const N: usize, R: RotationBackend>(&mut self, renderer: &FigureRenderer<N, R>) {
+        renderer.each_bone(|Line { from, to, .. }| {
+            self.widen(from, 0);
+            self.widen(to, 0);
+        });
+    }
+
+    /// Takes in a circle, in sixteenths of a pixel.
+    pub(crate) fn widen(&mut self, [x, y]: [i16; 2], radius: i16) {
         let (x, y, radius) = (i32::from(x), i32::from(y), i32::from(radius));
         self.side = self.side.max(x.abs() + radius);
         self.top = self.top.min(y - radius);

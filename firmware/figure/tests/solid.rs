@@ -93,6 +93,8 @@ fn lines_are_those_of_the_figure_without_volume() {
     for clip in CLIPS {
         with_player(clip, |player| {
             let mut solid = figure(player, [128, 64], -50);
+            solid.make_room(false);
+            solid.aim(player, View::default());
             let canvas = Canvas { width: 128, height: 64 };
             let mut lines = FigureRenderer::<JOINTS>::of_clip(player, canvas, View::default()).unwrap();
             for frame in (0..player.clip().frames()).step_by(10) {
@@ -124,6 +126,25 @@ fn the_face_is_seen_from_the_front_alone() {
             });
             assert!(seen[0] > 200 && seen[3] == 0, "{seen:?}");
             assert!(seen[1] * 4 > seen[0] && seen[2] * 4 > seen[0] && seen[1].max(seen[2]) < seen[0], "{seen:?}");
+        });
+    }
+}
+
+#[test]
+fn the_whole_figure_is_on_the_display() {
+    for clip in CLIPS {
+        with_player(clip, |player| {
+            for orbit in [0, -50, -90, 140] {
+                let mut figure = figure(player, [176, 220], orbit);
+                for frame in (0..player.clip().frames()).step_by(4) {
+                    player.seek(frame);
+                    let mut target = Target::<BinaryColor>::new([176, 220]);
+                    figure.set_pose(player.pose()).unwrap();
+                    figure.draw_on(&mut pantin_figure::surface::OnTarget::new(&mut target), false);
+                    let (top, bottom) = (&target.pixels[..176 * 2], &target.pixels[176 * 218..]);
+                    assert!(top.iter().chain(bottom).all(|pixel| pixel.is_off()), "frame {frame} from {orbit} degrees");
+                }
+            }
         });
     }
 }

@@ -24,15 +24,22 @@ pub struct Play {
     pub counts: Option<Vec<Stats>>,
 }
 
-/// Plays the first `frames` frames of a clip.
-pub fn play(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
+/// Plays the first `frames` frames of a clip, as lines or as a body with volume.
+pub fn play(machine: Machine, clip: &Path, frames: usize, solid: bool) -> Result<Play> {
     say("building the firmware");
     let clip: &Path = &firmware_copy(clip)?;
-    let firmware = Firmware::featuring(&clips::features(machine, &[clip])?, machine.name, machine.name, machine.target, &[clip])?;
+    let mut features = clips::features(machine, &[clip])?;
+    if solid {
+        features.push_str(",solid");
+    }
+    let firmware = Firmware::featuring(&features, machine.name, machine.name, machine.target, &[clip])?;
     let folder = tempfile::tempdir()?;
     let counts = folder.path().join("counts");
     let mut launch = Launch::new(machine, firmware.elf()).limit(LIMIT);
     let counting = setup::takes_plugins(machine.emulator);
+    if solid {
+        launch = launch.argument("solid");
+    }
     if counting {
         launch = launch.counting(&icount::plugin(machine.emulator)?, &counts);
     } else {
@@ -56,10 +63,15 @@ pub fn play(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
 
 /// The same by the board's program on this machine.
 #[cfg(feature = "simulator")]
-pub fn simulate(machine: Machine, clip: &Path, frames: usize) -> Result<Play> {
+pub fn simulate(machine: Machine, clip: &Path, frames: usize, solid: bool) -> Result<Play> {
     let display = anyhow::Context::context(machine.display, "this machine shows no pictures")?;
-    let shown =
-        harness::simulator::play::<pantin_figure::rotation::Rotation>(display, &[clip.into()], &[], &vec![&b""[..]; frames - 1])?;
+    let words: &[&str] = if solid { &["solid"] } else { &[] };
+    let shown = harness::simulator::play::<pantin_figure::rotation::Rotation>(
+        display,
+        &[clip.into()],
+        words,
+        &vec![&b""[..]; frames - 1],
+    )?;
     Ok(Play { pictures: shown.into_iter().map(|(_, picture)| picture).collect(), counts: None })
 }
 

@@ -35,6 +35,7 @@ Options:
       --max-error <LENGTH>            Largest error at any joint, as in 0.5cm
       --max-scalar-error <PERCENT>    Largest error of channels that move no joint, such as a face's, in percent of full scale
       --cm-per-unit <CM_PER_UNIT>     Length of the file's unit in cm, if the guess is wrong
+      --style <STYLE>                 What a body is drawn as: lines (default) or solid
       --frames <FRAMES>               Frames to show (default: 600)
       --steer                         Play a recorded session of our character's state machine instead, on this machine;
                                       with --board (lm3s6965evb or sx1), steer it yourself in the emulator's window
@@ -68,6 +69,8 @@ struct Demo {
     out: PathBuf,
     bounds: Bounds,
     frames: usize,
+    /// Whether a body has volume.
+    solid: bool,
     steer: bool,
     /// Whether `board` was given.
     on_board: bool,
@@ -82,6 +85,7 @@ impl Demo {
             out: "demo".into(),
             bounds: Bounds::default(),
             frames: 600,
+            solid: false,
             steer: false,
             on_board: false,
         };
@@ -94,6 +98,13 @@ impl Demo {
                 Arg::Long("max-scalar-error") => demo.bounds.scalar_percent = Some(parser.value()?.parse()?),
                 Arg::Long("cm-per-unit") => demo.bounds.cm_per_unit = Some(parser.value()?.parse()?),
                 Arg::Long("frames") => demo.frames = parser.value()?.parse()?,
+                Arg::Long("style") => {
+                    demo.solid = match parser.value()?.string()?.as_str() {
+                        "lines" => false,
+                        "solid" => true,
+                        other => bail!("--style {other}: expected lines or solid"),
+                    }
+                }
                 Arg::Long("steer") => demo.steer = true,
                 Arg::Short('h') | Arg::Long("help") => {
                     println!("{USAGE}");
@@ -126,11 +137,11 @@ impl Demo {
             say(&format!("showing the first {frames} of {} frames (--frames sets how many)", clip.frames));
         }
         let play = match setup::install_emulator(machine.emulator) {
-            Ok(_) => board::play(machine, &clip.path, frames)?,
+            Ok(_) => board::play(machine, &clip.path, frames, self.solid)?,
             #[cfg(feature = "simulator")]
             Err(missing) => {
                 say(&format!("{missing:#}\nplaying the board's program on this machine instead"));
-                board::simulate(machine, &clip.path, frames)?
+                board::simulate(machine, &clip.path, frames, self.solid)?
             }
             #[cfg(not(feature = "simulator"))]
             Err(_) => return simulating(arguments),

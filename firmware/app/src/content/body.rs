@@ -27,8 +27,8 @@ impl<L: Layout, R: Renderer> Content<L> for R {
     }
 
     #[inline(always)]
-    fn aim(&mut self, player: &mut Player, view: View) {
-        Renderer::aim(self, player, view);
+    fn aim(&mut self, player: &mut Player, view: View, style: Style) {
+        Renderer::aim(self, player, view, style);
     }
 }
 
@@ -44,7 +44,7 @@ pub(super) fn build<B: Board>(
         error!("the rig is too big: {}", error);
         return Outcome::Exit(Exit::BadClip);
     }
-    Renderer::aim(&mut renderer, player, context.view_state.view);
+    Renderer::aim(&mut renderer, player, context.view_state.view, context.view_state.style);
     info!("{} joints drawn", renderer.bones());
     then(player, &mut renderer, context)
 }

@@ -28,8 +28,8 @@ impl<L: Layout, R: Renderer, const N: usize> Content<L> for Both<'_, R, N> {
         self.face.draw(framebuffer);
     }
 
-    fn aim(&mut self, player: &mut Player, view: View) {
-        Renderer::aim(self.renderer, player, view);
+    fn aim(&mut self, player: &mut Player, view: View, style: Style) {
+        Renderer::aim(self.renderer, player, view, style);
         self.face.aim(view);
     }
 }
@@ -47,7 +47,7 @@ pub(super) fn build<B: Board>(
         error!("the rig is too big: {}", error);
         return Outcome::Exit(Exit::BadClip);
     }
-    Renderer::aim(&mut renderer, player, context.view_state.view);
+    Renderer::aim(&mut renderer, player, context.view_state.view, context.view_state.style);
     info!("{} joints drawn", renderer.bones());
     if face::is_small::<B::Layout>() {
         add_face::<B, { face::small::VERTICES }>(face::small::MODEL, player, &mut renderer, areas, context, then)

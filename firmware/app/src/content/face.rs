@@ -118,7 +118,7 @@ impl<L: Layout, const N: usize> Content<L> for Face<'_, N> {
         Face::draw(self, framebuffer);
     }
 
-    fn aim(&mut self, _player: &mut Player, view: View) {
+    fn aim(&mut self, _player: &mut Player, view: View, _style: Style) {
         Face::aim(self, view);
     }
 }

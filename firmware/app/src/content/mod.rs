@@ -29,8 +29,8 @@ pub(crate) trait Content<L: Layout> {
     /// Draws it on a clear framebuffer.
     fn draw(&mut self, framebuffer: &mut Framebuffer<L>, style: Style);
 
-    /// Sets the camera up for a view. The player stays at its frame.
-    fn aim(&mut self, player: &mut Player, view: View);
+    /// Sets the camera up for a view and a style. The player stays at its frame.
+    fn aim(&mut self, player: &mut Player, view: View, style: Style);
 }
 
 /// The content of any clip: with the feature `face` a trait object, so that the loop is compiled once; else always a body.

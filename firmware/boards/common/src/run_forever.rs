@@ -40,6 +40,8 @@ fn options<B: Board>(board: &mut B) -> Options {
     let mode = if board.poll() == Some(IN_STEP) { Mode::Sync } else { Mode::Play };
     Options {
         mode,
+        #[cfg(feature = "solid")]
+        solid: true,
         #[cfg(feature = "link")]
         link: true,
         ..Options::parse([])

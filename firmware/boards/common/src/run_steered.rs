@@ -13,5 +13,5 @@ const CHANNELS: usize = 64;
 /// Plays the character as the command line says, and ends the emulator.
 pub fn run_steered<B: Board>(mut board: B) -> ! {
     let mut framebuffer = Framebuffer::new();
-    exit(steer::<B, CHANNELS>(CHARACTER, &CHARACTER_KEYS, 0, options().mode, &mut framebuffer, &mut board).into())
+    exit(steer::<B, CHANNELS>(CHARACTER, &CHARACTER_KEYS, 0, options(), &mut framebuffer, &mut board).into())
 }

@@ -3,20 +3,30 @@
 use embedded_graphics::pixelcolor::PixelColor;
 use embedded_graphics::pixelcolor::raw::RawU8;
 use pantin_figure::ink::{BodyPart, Ink};
+use pantin_figure::solid::{Light, Look, Tint};
 use pantin_figure::surface::{Cell, Cursor, Layout};
 
-/// A palette index: the body part in the upper two bits, its brightness in the lower six. Brightness 0 of every part is the background.
+/// A palette index. Of the lower half, which lines take: the body part in two bits above five of brightness; brightness 0 of every part is the
+/// background. Of the upper half, which solid figures take: [`Look::DEFAULT`]'s materials, each in [`LIGHTS`] brightnesses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Indexed(pub u8);
 
 /// Bits of the brightness.
-const SHADE_BITS: u32 = 6;
+const SHADE_BITS: u32 = 5;
 const MAX_SHADE: u8 = (1 << SHADE_BITS) - 1;
+/// The first index of solid figures.
+const SOLID: u8 = 128;
+/// Brightnesses of a material, [`LIGHT_STEP`] apart; the last one is its own colour.
+const LIGHTS: u8 = 9;
+const LIGHT_STEP: u16 = 20;
 
 impl Indexed {
     /// Returns red, green and blue of this index, 0 to 255: from the background to the part's own colour.
     pub const fn rgb(self) -> [u8; 3] {
-        let full = match self.0 >> SHADE_BITS {
+        if self.0 >= SOLID {
+            return self.material_rgb();
+        }
+        let full = match self.0 >> SHADE_BITS & 3 {
             // The ground, whose lines are dim.
             0 => [170, 255, 230],
             1 => [255, 240, 214],
@@ -34,9 +44,26 @@ impl Indexed {
         rgb
     }
 
-    /// Returns the brightness, 0 to 63.
+    /// Returns the colour of a material in a brightness.
+    const fn material_rgb(self) -> [u8; 3] {
+        let (material, step) = ((self.0 - SOLID) / LIGHTS, (self.0 - SOLID) % LIGHTS);
+        // The last two indices are of no material.
+        if material as usize >= Look::DEFAULT.tints.len() {
+            return [0; 3];
+        }
+        let light = 256 - (LIGHTS - 1 - step) as u16 * LIGHT_STEP;
+        let mut rgb = Look::DEFAULT.tints[material as usize].rgb;
+        let mut channel = 0;
+        while channel < 3 {
+            rgb[channel] = ((rgb[channel] as u16 * light) >> 8) as u8;
+            channel += 1;
+        }
+        rgb
+    }
+
+    /// Returns the brightness, 0 to 31; of a solid figure's colour the greatest.
     const fn shade(self) -> u8 {
-        self.0 & MAX_SHADE
+        if self.0 >= SOLID { MAX_SHADE } else { self.0 & MAX_SHADE }
     }
 }
 
@@ -49,6 +76,7 @@ impl PixelColor for Indexed {
 
 impl Ink for Indexed {
     const DARK: Self = Indexed(0);
+    const HUES: bool = true;
 
     #[inline]
     fn of(body_part: BodyPart, shade: u8) -> Self {
@@ -59,6 +87,16 @@ impl Ink for Indexed {
             BodyPart::Right => 3,
         };
         Indexed(part << SHADE_BITS | shade >> (8 - SHADE_BITS))
+    }
+
+    /// The colour of the default character's material that is nearest; the brightness below.
+    #[inline(never)]
+    fn tint(tint: &Tint, light: Light) -> Self {
+        let apart = |own: &Tint| own.rgb.iter().zip(tint.rgb).map(|(own, other)| u32::from(own.abs_diff(other))).sum::<u32>();
+        let nearest = Look::DEFAULT.tints.iter().enumerate().min_by_key(|(_, own)| apart(own));
+        let material = nearest.map_or(0, |(index, _)| index as u8);
+        let darker = (256 - light.min(256)).div_ceil(LIGHT_STEP).min(u16::from(LIGHTS) - 1) as u8;
+        Indexed(SOLID + material * LIGHTS + LIGHTS - 1 - darker)
     }
 }
 
@@ -133,6 +171,24 @@ impl<const WIDTH: usize, const HEIGHT: usize, const PAIRS: usize> Layout for Ind
         }
     }
 
+    /// Whole pairs, and halves of the first and the last one.
+    #[inline(always)]
+    fn span(cells: &mut [Pair], y: usize, [from, to]: [usize; 2], ink: Indexed) {
+        let (first, last) = ((y * WIDTH + from) / 2, (y * WIDTH + to) / 2);
+        let head = if from % 2 == 0 { !0 } else { RIGHT };
+        let tail = if to % 2 == 0 { LEFT } else { !0 };
+        let both = u16::from(ink.0) * 0x0101;
+        match cells.get_mut(first..last.wrapping_add(1)).unwrap_or_default() {
+            [] => {}
+            [Pair(only)] => *only ^= (*only ^ both) & head & tail,
+            [Pair(left), middle @ .., Pair(right)] => {
+                *left ^= (*left ^ both) & head;
+                middle.iter_mut().for_each(|pair| *pair = Pair(both));
+                *right ^= (*right ^ both) & tail;
+            }
+        }
+    }
+
     /// Of two colours the brighter one stays.
     #[inline(always)]
     fn blend(cells: &mut [Pair], cursor: Half<WIDTH>, ink: Indexed, cover: u32) {
@@ -166,6 +222,28 @@ mod tests {
         assert_eq!(bytes, (0..128).collect::<Vec<u8>>());
         assert!((0..128).all(|index| Small::get(&cells, Small::cursor(index % 16, index / 16)) == Indexed(index as u8)));
         assert_eq!(Framebuffer::<Small>::new().pixel(15, 7), Indexed::DARK);
+    }
+
+    #[test]
+    fn a_span_is_its_pixels() {
+        for (from, to) in (0..16).flat_map(|from| (from..16).map(move |to| (from, to))) {
+            let (mut spans, mut pixels) = (Small::DARK, Small::DARK);
+            Small::span(&mut spans, 3, [from, to], Indexed(77));
+            (from..=to).for_each(|x| Small::put(&mut pixels, Small::cursor(x, 3), Indexed(77)));
+            assert_eq!(spans, pixels, "{from} {to}");
+        }
+    }
+
+    #[test]
+    fn every_material_of_a_solid_figure_has_its_colour() {
+        for tint in &Look::DEFAULT.tints {
+            assert_eq!(Indexed::tint(tint, 256).rgb(), tint.rgb);
+            for light in 96..=256 {
+                let [found, exact] =
+                    [Indexed::tint(tint, light).rgb(), tint.rgb.map(|part| (u16::from(part) * light >> 8) as u8)];
+                assert!((0..3).all(|channel| found[channel].abs_diff(exact[channel]) <= 20), "{tint:?} {light}: {found:?}");
+            }
+        }
     }
 
     #[test]

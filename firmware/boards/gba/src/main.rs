@@ -37,25 +37,27 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        pantin_app::steer::<_, CHANNELS>(
-            CHARACTER,
-            &keys::STEER,
-            keys::SELECT,
-            pantin_app::Mode::Play,
-            &mut framebuffer,
-            &mut board,
-        );
+        pantin_app::steer::<_, CHANNELS>(CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
         board.overlay([""; 2]);
     }
     loop {
-        let options = Options { hud: true, ..Options::parse([]) };
-        run(CLIPS, options, &mut framebuffer, &mut board);
+        run(CLIPS, options(), &mut framebuffer, &mut board);
         // It returns only for a clip that cannot be played.
         board.overlay([""; 2]);
         show("A clip cannot be played.", &mut framebuffer, &mut board);
         while keys::held() == 0 {
             start::sleep();
         }
+    }
+}
+
+/// Text at first, and with the feature `solid` a body with volume.
+fn options() -> Options {
+    Options {
+        hud: true,
+        #[cfg(feature = "solid")]
+        solid: true,
+        ..Options::parse([])
     }
 }
 

@@ -94,6 +94,10 @@ impl Joints {
             None => last_of_neck(bones, chest)?,
         };
         joints.neck = below(bones, joints.head, chest)?;
+        if joints.neck == joints.head {
+            // The arms hang on the neck.
+            joints.neck = chest;
+        }
         joints.hips = skeleton.hips as u8;
         joints.waist = waist(bones, joints.hips, joints.neck);
         for side in 0..2 {

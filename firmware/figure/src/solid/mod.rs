@@ -35,7 +35,7 @@ mod tint;
 
 use crate::camera::{Canvas, MAGNIFICATION_BITS, View, magnification};
 use crate::ink::Ink;
-use crate::renderer::{FigureRenderer, Stand};
+use crate::renderer::{Extent, FigureRenderer, Stand};
 use crate::rotation::{Rotation, RotationBackend, Vector};
 use crate::skeleton::{Part as Role, Skeleton};
 use crate::surface::{OnTarget, Surface};
@@ -94,8 +94,14 @@ pub struct SolidFigure<const N: usize, R: RotationBackend = Rotation> {
     order: Vec<u8, MOST_PARTS>,
     /// Whether there was a picture since the camera was set up.
     sorted: bool,
+    /// Whether cameras make room for the head's volume.
+    roomy: bool,
 }
 
+/// Thousandths of the height that a head reaches from its joint: its middle is 62 above it, and the outline is part of the margin.
+const HEAD_REACH: i32 = 140;
+/// Those that a hand reaches from the wrist.
+const HAND_REACH: i32 = 70;
 /// Length of the vectors in the head's axes.
 const AXIS: i32 = 1 << 13;
 /// A clip is looked at in about this many places before it plays.
@@ -113,6 +119,7 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             head: Head { skull: [0; 3], up: [0; 3], face: [0; 3], left: [0; 3] },
             order: Vec::new(),
             sorted: false,
+            roomy: true,
         }
     }
 
@@ -196,8 +203,24 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
     /// Sets the camera up for another view of the clip; leaves the player where it is.
     #[inline(never)]
     pub fn aim(&mut self, player: &mut Player, view: View) {
-        self.figure.aim(player, view);
+        let ends = self.ends();
+        self.figure.aim_for(player, view, |extent, figure| cover(extent, figure, ends));
         self.measure();
+    }
+
+    /// Whether cameras that are set up from now on make room for head and hands, which are larger than those of lines: they do at first. Without
+    /// it the camera is that of a [`FigureRenderer`].
+    pub fn make_room(&mut self, room: bool) {
+        self.roomy = room;
+    }
+
+    /// The joints of head and hands and how far these reach from them in figure units, of a person for whose volume there is room.
+    fn ends(&self) -> Option<[(u8, i32); 3]> {
+        let Kind::Person(joints) = self.kind else { return None };
+        let eighth = sizes::height(&self.figure.skeleton().bones, &joints) >> 3;
+        let reach = |thousandths: i32| eighth * thousandths / 125;
+        let [left, right] = joints.arms.map(|[.., wrist]| (wrist, reach(HAND_REACH)));
+        self.roomy.then_some([(joints.head, reach(HEAD_REACH)), left, right])
     }
 
     /// Works out sizes for the camera.
@@ -242,7 +265,8 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
 
     /// Sets the camera up for poses: see [`FigureRenderer::look_at`].
     pub fn look_at(&mut self, canvas: Canvas, view: View, poses: impl FnMut(&mut dyn FnMut(&[i32]))) {
-        self.figure.look_at(canvas, view, poses);
+        let ends = self.ends();
+        self.figure.look_for(canvas, view, poses, |extent, figure| cover(extent, figure, ends));
         self.measure();
     }
 
@@ -346,6 +370,18 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             }
         }
         self.sorted = true;
+    }
+}
+
+/// Takes in what a pose covers: the bones, and circles about joints, given with their radii in figure units.
+fn cover<const N: usize, R: RotationBackend>(extent: &mut Extent, figure: &FigureRenderer<N, R>, ends: Option<[(u8, i32); 3]>) {
+    let Some(ends) = ends else { return extent.include(figure) };
+    extent.include_bones(figure);
+    for (joint, reach) in ends {
+        if let Some(seen) = figure.visible(joint) {
+            let radius = (figure.camera().length(reach) * magnification(seen.depth.into())) >> MAGNIFICATION_BITS;
+            extent.widen(seen.place, radius.min(i16::MAX.into()) as i16);
+        }
     }
 }
 

@@ -105,6 +105,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     /// they lie over it or under it as a whole.
     pub(super) fn human_keys(&self, joints: &Joints, keys: &mut [i16]) {
         let depth = |joint: u8| self.joint(joint)[2];
+        let mix = |a: i32, b: i32, part: i32| a + (((b - a) * part) >> 8);
         let height = self.sizes.depth;
         let ends = |limbs: &[Limb; 2]| depth(limbs[0][0]) + depth(limbs[1][0]);
         let trunk = (ends(&joints.arms) + 2 * self.waist(joints)[2] + ends(&joints.legs)) / 6;
@@ -114,13 +115,15 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
                 *place = key.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
             }
         };
-        set(PELVIS, trunk + height / 1000);
+        // Under both thighs, so that trousers are one garment, but not behind an arm behind the back.
+        let thighs = joints.legs.map(|[hip, knee, _]| mix(depth(hip), depth(knee), 179));
+        let pelvis = thighs[0].max(thighs[1]).clamp(trunk, trunk + height * 8 / 100);
+        set(PELVIS, pelvis + height / 200);
         set(CHEST, trunk);
         set(NECK, skull - height * 24 / 1000);
         set(HEAD, skull - height * 30 / 1000);
         for side in 0..2 {
             let first = LIMBS + SIDE * side as u8;
-            let mix = |a: i32, b: i32, part: i32| a + (((b - a) * part) >> 8);
             let [shoulder, elbow, wrist] = joints.arms[side].map(depth);
             let [hip, knee, ankle] = joints.legs[side].map(depth);
             set(first, mix(shoulder, elbow, 192));

@@ -63,9 +63,7 @@ impl Sizes {
         let bones = &figure.skeleton().bones;
         let mut sizes = Sizes { height: figure.skeleton().size, ..Sizes::NOTHING };
         if let Some(joints) = joints {
-            let legs = joints.legs.iter().flat_map(|[hip, knee, ankle]| [way(bones, *hip, *knee), way(bones, *knee, *ankle)]);
-            // 2.04 times the mean of both sides.
-            sizes.height = ((legs.sum::<i32>() * 261) >> 8).max(1);
+            sizes.height = height(bones, joints);
             sizes.extremities(bones, joints);
         }
         sizes.pixels = figure.camera().length(sizes.height).max(1);
@@ -107,6 +105,13 @@ impl Sizes {
             self.heels[side] = [part(18, way(bones, knee, ankle)), if toes == NONE { 40 } else { part(12, foot) }];
         }
     }
+}
+
+/// The height of a person in figure units.
+pub(super) fn height(bones: &[Bone], joints: &Joints) -> i32 {
+    let legs = joints.legs.iter().flat_map(|[hip, knee, ankle]| [way(bones, *hip, *knee), way(bones, *knee, *ankle)]);
+    // 2.04 times the mean of both sides.
+    ((legs.sum::<i32>() * 261) >> 8).max(1)
 }
 
 /// The length of the bones from a joint down to another one.

@@ -27,6 +27,7 @@ pub struct Figure<'a, 'm> {
 struct Shown {
     canvas: Canvas,
     view: View,
+    solid: bool,
     body: Option<SolidFigure<RIG_JOINTS>>,
     face: Option<Cast<'static>>,
 }
@@ -37,19 +38,24 @@ impl<'a, 'm> Figure<'a, 'm> {
         Figure { playback, scout, shown: None, ahead }
     }
 
-    fn set_up(&mut self, canvas: Canvas, view: View) -> Result<()> {
-        if self.shown.as_ref().is_none_or(|shown| (shown.canvas, shown.view) != (canvas, view)) {
+    fn set_up(&mut self, canvas: Canvas, view: View, solid: bool) -> Result<()> {
+        if self.shown.as_ref().is_none_or(|shown| (shown.canvas, shown.view, shown.solid) != (canvas, view, solid)) {
             let from = View { orbit: view.orbit - self.ahead.orbit, tilt: view.tilt - self.ahead.tilt, ..view };
             let face = Cast::of_clip(self.scout.clip(), canvas, &[from])?;
             let area = if face.is_some() { canvas.with_face().body } else { canvas };
             let body = match self.scout.clip().rig().joint_count() {
                 0 => None,
                 _ => {
-                    let solid = SolidFigure::of_clip(&mut self.scout, area, view, Look::DEFAULT);
-                    Some(solid.context("this figure cannot be drawn")?)
+                    let body = SolidFigure::of_clip(&mut self.scout, area, view, Look::DEFAULT);
+                    let mut body = body.context("this figure cannot be drawn")?;
+                    if !solid {
+                        body.make_room(false);
+                        body.aim(&mut self.scout, view);
+                    }
+                    Some(body)
                 }
             };
-            self.shown = Some(Shown { canvas, view, body, face });
+            self.shown = Some(Shown { canvas, view, solid, body, face });
         }
         Ok(())
     }
@@ -66,7 +72,7 @@ fn canvas(settings: &Settings, grid: &Grid, rows: usize) -> (Dots, Canvas) {
 impl Show for Figure<'_, '_> {
     fn draw(&mut self, frame: u32, settings: &Settings, grid: &mut Grid, rows: usize) -> Result<()> {
         let (dots, canvas) = canvas(settings, grid, rows);
-        self.set_up(canvas, settings.view)?;
+        self.set_up(canvas, settings.view, settings.solid)?;
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
         if let Some(Shown { body, face, .. }) = &mut self.shown {

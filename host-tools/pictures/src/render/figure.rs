@@ -97,7 +97,14 @@ impl<'a, 'm> Figure<'a, 'm> {
             Style::Solid(look) => look,
             Style::Lines => Look::DEFAULT,
         };
-        let renderer = |view: &View| SolidFigure::of_clip(&mut player, area, *view, look).context("this figure cannot be drawn");
+        let renderer = |view: &View| {
+            let mut body = SolidFigure::of_clip(&mut player, area, *view, look).context("this figure cannot be drawn")?;
+            if style == Style::Lines {
+                body.make_room(false);
+                body.aim(&mut player, *view);
+            }
+            anyhow::Ok(body)
+        };
         let bodies = if has_body { views.iter().map(renderer).collect::<Result<_>>()? } else { Vec::new() };
         Ok(Figure { player, bodies, face, size, factor, style, finer })
     }

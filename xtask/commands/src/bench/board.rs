@@ -47,9 +47,10 @@ pub fn played(machine: Machine, features: &str, clips: &[(&Path, usize)], words:
 }
 
 /// The reference board's RAM beside its framebuffer after playing a clip.
-pub fn memory(features: &str, clip: &Path) -> Result<usize> {
+pub fn memory(features: &str, clip: &Path, words: &[String]) -> Result<usize> {
     let firmware = Firmware::featuring(features, LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, &[clip])?;
-    let mut session = Session::start(Launch::new(LM3S6965EVB, firmware.elf()))?;
+    let launch = words.iter().fold(Launch::new(LM3S6965EVB, firmware.elf()), |launch, word| launch.argument(word.clone()));
+    let mut session = Session::start(launch)?;
     for _ in 0..PICTURES {
         session.step(&[])?;
     }

@@ -32,7 +32,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     goals.push(own(setting, &mut played)?);
     for style in &STYLES {
         goals.extend(frames(&played, style)?);
-        let memory = board::memory(style.feature, &played[0].1)?;
+        let memory = board::memory(style.feature, &played[0].1, &[])?;
         goals.push(Goal::at_most(
             format!("RAM without the framebuffer, {} on Cortex-M3{}", played[0].0, style.label),
             memory as f64,

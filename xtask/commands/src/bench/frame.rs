@@ -33,6 +33,20 @@ const COLUMNS: [Column; 5] = [
     Column { name: "M4F, the same with micromath", machine: MPS2_AN386, features: "micromath", most: None },
 ];
 
+/// A column of the solid figure's table.
+struct SolidColumn {
+    name: &'static str,
+    machine: Machine,
+    /// Most instructions to clear and draw.
+    most: f64,
+}
+
+const SOLID: [SolidColumn; 3] = [
+    SolidColumn { name: "M3, 128x64, 4 bits", machine: LM3S6965EVB, most: 70e3 },
+    SolidColumn { name: "M0, 128x64, 1 bit", machine: MICROBIT, most: 150e3 },
+    SolidColumn { name: "ARMv4T, 176x220, RGB565", machine: SX1, most: 230e3 },
+];
+
 /// Measures all of it.
 pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     let clips = clips(setting)?;
@@ -40,6 +54,10 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     for column in &COLUMNS {
         goals.extend(frames(column, &clips)?);
     }
+    for column in &SOLID {
+        goals.push(solid(column, &clips[0])?);
+    }
+    goals.extend(solid_image(&clips[0].1)?);
     goals.extend(reference_image(&clips[0].1)?);
     goals.extend(figures(&clips[1].1)?);
     Ok(goals)
@@ -96,11 +114,40 @@ fn frames(column: &Column, clips: &[(String, PathBuf); 2]) -> Result<Vec<Goal>> 
         .collect())
 }
 
+/// A solid figure on a machine, beside the same image's lines.
+fn solid(column: &SolidColumn, (clip, path): &(String, PathBuf)) -> Result<Goal> {
+    let SolidColumn { name, machine, most } = column;
+    say(&format!("   instructions per frame of a solid figure, {name} ({}), mean of {} pictures", machine.name, PICTURES - 1));
+    let volume = alone(*machine, "solid", path, &["solid".into()])?;
+    let lines = alone(*machine, "solid", path, &[])?;
+    let row = |what: &str, stats: &[Stats]| {
+        let means = stats[..3].iter().map(|kind| format!("{:.0}", kind.mean()));
+        [format!("{clip}, {what}")].into_iter().chain(means).chain([stats[3].least.to_string()]).collect::<Vec<_>>()
+    };
+    let rows = [row("solid", &volume), row("lines", &lines)];
+    table::print(&["clip", "decode", "kinematics and camera", "clear and draw", "flush, least"], &rows);
+    Ok(Goal::at_most(format!("instructions per frame, {name}: clear and draw a solid figure"), volume[2].mean(), *most, 0, ""))
+}
+
+/// What the solid figure adds to an image, and to the memory that it touches.
+fn solid_image(clip: &Path) -> Result<Vec<Goal>> {
+    let flash = |features: &str| -> Result<f64> {
+        let firmware = Firmware::featuring(features, MICROBIT.name, MICROBIT.name, MICROBIT.target, &[])?;
+        Ok(image::loaded(firmware.elf())? as f64)
+    };
+    let bytes = flash("solid")? - flash("")?;
+    let memory = board::memory("solid", clip, &["solid".into()])? as f64 - board::memory("", clip, &[])? as f64;
+    Ok(vec![
+        Goal::at_most("flash that the solid figure adds, Cortex-M0", bytes, 7.0 * 1024.0, 0, "bytes"),
+        Goal::at_most("RAM that the solid figure adds, 128x64", memory, 1.2 * 1024.0, 0, "bytes"),
+    ])
+}
+
 /// The reference board's image with our two clips, and the memory that it has touched after playing the captured one.
 fn reference_image(clip: &Path) -> Result<Vec<Goal>> {
     let firmware = Firmware::build(LM3S6965EVB.name, LM3S6965EVB.name, LM3S6965EVB.target, &[])?;
     let size = image::loaded(firmware.elf())?;
-    let used = board::memory("", clip)?;
+    let used = board::memory("", clip, &[])?;
     Ok(vec![
         Goal::at_most("flash of the reference board's whole image, two clips in it", size as f64, 48.0 * 1024.0, 0, "bytes"),
         Goal::at_most("its RAM without the framebuffer, playing 31 joints", used as f64, 8.0 * 1024.0, 0, "bytes"),
