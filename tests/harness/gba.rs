@@ -57,7 +57,8 @@ pub fn motions(folder: &Path) -> Result<Vec<PathBuf>> {
 
 fn convert(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
     let mut command = Command::new(build::host_tool()?);
-    command.arg("convert").args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
+    // The figures are drawn as lines between joints.
+    command.args(["convert", "--places-only"]).args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
     let output = command.output().context("cannot start the host tool")?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(())
@@ -66,7 +67,7 @@ fn convert(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
 /// Builds the program with these clips and returns the cartridge's image.
 pub fn image(clips: &[&Path]) -> Result<Vec<u8>> {
     of_elf(
-        &std::fs::read(Firmware::featuring("face,solid,steer", "gba", "gba", TARGET, clips)?.elf())
+        &std::fs::read(Firmware::featuring("face,steer", "gba", "gba", TARGET, clips)?.elf())
             .context("the program cannot be read")?,
     )
 }

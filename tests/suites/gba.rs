@@ -80,7 +80,7 @@ fn drops_no_frame(name: &str) {
     // Twice through the clip: what follows repeats.
     let period = frames(&clip);
     let keys = vec![&b""[..]; 2 * period - 1];
-    let expected = simulator::play::<Rotation>(LCD, &[clip], &["info", "solid"], &keys).unwrap();
+    let expected = simulator::play::<Rotation>(LCD, &[clip], &["info"], &keys).unwrap();
     let expected: Vec<Vec<u8>> = expected.iter().map(|(_, picture)| gba::pixels(picture)).collect();
     // A button ends the start screen.
     let console = Console::new(&image).unwrap().hold(30, SELECT).hold(32, 0);
@@ -185,7 +185,7 @@ fn the_buttons_steer_the_character() {
     let mut readings = vec![Reading { ticks: 0, held: 0 }, Reading { ticks: 1, held: 0 }];
     readings.extend(blanks.windows(2).map(|pair| Reading { ticks: pair[1] - pair[0], held: held(pair[1]) }));
     let bank = std::fs::read(harness::steered::bank()).unwrap();
-    let expected = simulator::steer(&bank, &STEER, &["solid"], &readings).unwrap();
+    let expected = simulator::steer(&bank, &STEER, &[], &readings).unwrap();
     let expected: Vec<Vec<u8>> = expected.iter().map(gba::pixels).collect();
     let mut next = 0;
     let mut shown = 0;

@@ -19,6 +19,7 @@ mod pico;
 mod pico_update;
 mod qemu;
 mod soak;
+mod solid;
 mod stack;
 mod steered;
 mod stm32;

@@ -229,15 +229,24 @@ impl Camera {
         [seen(x), seen(y), seen(away)]
     }
 
-    /// A place in the camera's axes, moved along `upright`, a vector in them, to the level of `level`.
-    pub(crate) fn moved_to_level(&self, place: Vector, upright: Vector, level: Vector) -> Projected {
-        let cut = |v: Vector| v.map(|part| sixteen_bits(part >> self.shift));
-        let (place, level) = (cut(place), cut(level));
+    /// The level of `place` above `upright`, a vector; both are in the camera's axes.
+    pub(crate) fn level(&self, upright: Vector, place: Vector) -> Level {
         // 2^14 long: sums of three products stay below 2^31.
         let upright = direction(upright).map_or([0; 3], |v| v.map(|part| part >> 1));
-        let height = |v: Vector| (0..3).map(|axis| (v[axis] * upright[axis]) >> 2).sum::<i32>() >> 12;
-        let by = height(level) - height(place);
-        self.project(core::array::from_fn(|axis| (place[axis] + ((upright[axis] * by) >> 14)) << self.shift))
+        Level { upright, height: Level { upright, height: 0 }.height_of(self.cut(place)) }
+    }
+
+    /// A place in the camera's axes, moved up or down to a level.
+    #[inline(never)]
+    pub(crate) fn moved_to(&self, level: &Level, place: Vector) -> Projected {
+        let place = self.cut(place);
+        let by = level.height - level.height_of(place);
+        self.project(core::array::from_fn(|axis| (place[axis] + ((level.upright[axis] * by) >> 14)) << self.shift))
+    }
+
+    /// Without the bits that have no room in products.
+    fn cut(&self, place: Vector) -> Vector {
+        place.map(|part| sixteen_bits(part >> self.shift))
     }
 
     /// Sixteenths of a pixel that a limb at the target's distance is across: a 64th of the figure.
@@ -251,6 +260,20 @@ impl Camera {
             let cut = (32 - self.size.leading_zeros()).saturating_sub(SIZE_BITS);
             (length >> cut).min(i32::from(i16::MAX)) * self.scale / (self.size >> cut).max(1)
         }
+    }
+}
+
+/// A horizontal plane in the camera's axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level {
+    /// 2^14 long.
+    upright: Vector,
+    height: i32,
+}
+
+impl Level {
+    fn height_of(&self, place: Vector) -> i32 {
+        (0..3).map(|axis| (place[axis] * self.upright[axis]) >> 2).sum::<i32>() >> 12
     }
 }
 

@@ -1,7 +1,7 @@
 //! The whole way from a pose to a picture. What is drawn depends on the clip and the pose alone, never on frames before.
 
 use crate::bounds::{Bounds, Orientation};
-use crate::camera::{Camera, Canvas, PIXEL_BITS, View};
+use crate::camera::{Camera, Canvas, Level, PIXEL_BITS, View};
 use crate::joint_info::JointInfo;
 use crate::kinematics::Kinematics;
 use crate::lines::{Dot, Ground, Head, Line, Lines, Visible};
@@ -285,15 +285,20 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         self.joints.set_pose(&self.skeleton, pose);
     }
 
-    /// The place on the ground below a joint, in sixteenths of a pixel, and its depth.
-    pub(crate) fn below(&self, joint: u8) -> [i32; 3] {
+    /// The ground, as the camera sees it.
+    pub(crate) fn ground_level(&self) -> Level {
         let axis = self.ground.axis % 3;
         let mut upright = [0; 3];
         upright[axis] = 1 << 13;
         let mut level = [0; 3];
         level[axis] = self.ground.height.wrapping_sub(self.target[axis]);
         let [upright, level] = [self.view.rotate(upright), self.view.rotate_any(level)];
-        let place = self.camera.moved_to_level(self.joints.position(joint.into()), upright, level);
+        self.camera.level(upright, level)
+    }
+
+    /// The place on a level below a joint, in sixteenths of a pixel, and its depth.
+    pub(crate) fn below(&self, joint: u8, level: &Level) -> [i32; 3] {
+        let place = self.camera.moved_to(level, self.joints.position(joint.into()));
         [place.x, place.y, place.depth]
     }
 

@@ -73,17 +73,25 @@ impl Rows {
             (self.first, self.last) = (0, -1);
             return;
         }
-        let used = (self.first - self.base) as usize..=(self.last - self.base) as usize;
-        self.spans.get_mut(used.clone()).into_iter().flatten().for_each(|span| *span = EMPTY);
+        let (from, to) = ((self.first - self.base) as usize, (self.last - self.base) as usize);
+        // With what outlines look at.
+        let around = from.saturating_sub(MARGIN as usize)..(to + 1 + MARGIN as usize).min(ROWS);
+        self.spans.get_mut(around).into_iter().flatten().for_each(|span| *span = EMPTY);
         for (index, circle) in circles.iter().enumerate() {
             self.circle(circle, pitch, shift);
             for other in circles.get(index + 1..).unwrap_or(&[]) {
                 self.tangents(circle, other, pitch, shift);
             }
         }
-        for span in self.spans.get_mut(used).into_iter().flatten() {
+        for span in self.spans.get_mut(from..=to).into_iter().flatten() {
             *span = pixels(*span);
         }
+    }
+
+    /// The spans from a row to another one; both are in the window with its margins, and within [`MARGIN`] of the hull.
+    #[inline(always)]
+    pub(super) fn stretch(&self, first: i32, last: i32) -> &[Span] {
+        self.spans.get((first - self.base) as usize..((last - self.base) as usize).wrapping_add(1)).unwrap_or_default()
     }
 
     /// Cuts what lies outside another hull off.

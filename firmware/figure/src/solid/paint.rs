@@ -1,7 +1,6 @@
 //! Draws the rows of a hull: its outline, its fill, and the shaded side of it.
 
-use super::MARGIN;
-use super::hull::{Circle, EMPTY, Rows, Span, WINDOW};
+use super::hull::{Circle, Rows, WINDOW};
 use crate::ink::Ink;
 use crate::surface::{Cursor, Surface};
 
@@ -55,24 +54,27 @@ impl Cut {
         let at = ((x + aside - 8) << 8) + ((slope * (8 - y)) >> 4);
         Cut::Columns { from_left: dx > 0, at, slope }
     }
+}
 
-    /// What is left of a span.
+/// Where an outline begins or ends in a row, walked down row by row: a column with 12 more bits.
+#[derive(Clone, Copy)]
+struct Edge {
+    at: i32,
+    slope: i32,
+    from_left: bool,
+}
+
+impl Edge {
+    /// Takes what is cut off from a row's span, and goes a row down.
     #[inline(always)]
-    fn apply(&self, row: i32, [low, high]: Span) -> Span {
-        match *self {
-            Cut::None => [low, high],
-            Cut::Columns { from_left, at, slope } => {
-                let place = ((at + slope * row) >> 12).clamp(-1, i32::from(i16::MAX) - 1) as i16;
-                if from_left { [low.max(place), high] } else { [low, high.min(place)] }
-            }
-            Cut::Rows { above, row: limit } => {
-                if (row < limit) == above && row != limit {
-                    EMPTY
-                } else {
-                    [low, high]
-                }
-            }
+    fn cut(&mut self, low: &mut i32, high: &mut i32) {
+        let place = self.at >> 12;
+        if self.from_left {
+            *low = (*low).max(place);
+        } else {
+            *high = (*high).min(place);
         }
+        self.at = self.at.wrapping_add(self.slope);
     }
 }
 
@@ -83,6 +85,41 @@ pub(super) struct Outline<I> {
     /// Pixels across; 0 for none.
     pub width: i32,
     pub cuts: [Cut; 2],
+}
+
+/// Widest outline: two of them are within [`MARGIN`](super::MARGIN).
+const WIDEST: usize = 8;
+
+impl<I> Outline<I> {
+    /// Edges from a row on, and the rows that are not cut off as a whole.
+    fn edges(&self, row: i32) -> ([Edge; 2], [i32; 2]) {
+        let mut rows = [i32::MIN, i32::MAX];
+        let edges = self.cuts.map(|cut| match cut {
+            Cut::Columns { from_left, at, slope } => Edge { at: at.wrapping_add(slope.wrapping_mul(row)), slope, from_left },
+            _ => Edge { at: i32::MIN, slope: 0, from_left: true },
+        });
+        for cut in &self.cuts {
+            match *cut {
+                Cut::Rows { above: true, row } => rows[0] = rows[0].max(row),
+                Cut::Rows { above: false, row } => rows[1] = rows[1].min(row),
+                _ => {}
+            }
+        }
+        (edges, rows)
+    }
+
+    /// Pixels that the outline reaches to the side of a row that is 1, 2, ... rows away.
+    fn reaches(&self) -> [i32; WIDEST] {
+        let mut reach = self.width;
+        let mut away = 0;
+        [(); WIDEST].map(|()| {
+            away += 1;
+            while reach > 0 && reach * reach + away * away > self.width * self.width + self.width / 2 {
+                reach -= 1;
+            }
+            reach
+        })
+    }
 }
 
 /// Draws hulls on a surface, one after the other.
@@ -110,13 +147,18 @@ impl<'a, S: Surface> Painter<'a, S> {
         }
     }
 
-    /// Fills what of a circle lies within the hull of others.
+    /// Fills what of a circle lies within the hull that was drawn last, which is `hull`.
     #[inline(never)]
     pub(super) fn clipped(&mut self, circle: Circle, hull: &[Circle], fill: &Fill<S::Ink>) {
         let [first, last] = rows_of(&[circle], false, 0, self.surface.size()[1]);
         let (mut top, mut own) = (first, Rows::new());
+        // Most heads are within one window, whose rows are known.
+        let known = rows_of(hull, false, 0, i32::MAX);
+        let known = (self.rows.first <= known[0] + 1 && self.rows.last >= known[1] - 1) || first > last;
         while top <= last {
-            self.rows.compute(hull, top, false);
+            if !known {
+                self.rows.compute(hull, top, false);
+            }
             own.compute(&[circle], top, false);
             own.clip(&self.rows);
             paint(self.surface, &own, top, &Outline { ink: S::Ink::DARK, width: 0, cuts: [Cut::None; 2] }, fill);
@@ -141,88 +183,83 @@ fn rows_of(circles: &[Circle], flat: bool, outline: i32, height: i32) -> [i32; 2
 #[inline(never)]
 fn paint<S: Surface>(surface: &mut S, rows: &Rows, top: i32, outline: &Outline<S::Ink>, fill: &Fill<S::Ink>) {
     let [width, height] = surface.size();
-    let (first, last) =
-        ((rows.first - outline.width).max(top), (rows.last + outline.width).min(top + WINDOW as i32 - 1).min(height - 1));
+    let wide = outline.width.clamp(0, WIDEST as i32);
+    let (first, last) = ((rows.first - wide).max(top), (rows.last + wide).min(top + WINDOW as i32 - 1).min(height - 1));
     if rows.first > rows.last || first > last {
         return;
     }
-    let most = (width - 1) as i16;
-    let inside = |[low, high]: Span| [low.max(0), high.min(most)];
-    let (mut left, mut right) = (i16::MAX, -1);
-    for row in first..=last {
-        let own = rows.span(row);
-        let inner = inside(own);
-        if outline.width > 0 {
-            let mut outer = inside(grown(rows, row, own, outline.width));
-            for cut in &outline.cuts {
-                outer = cut.apply(row, outer);
-            }
-            let [low, high] = outer;
-            if low <= high {
-                (left, right) = (left.min(low), right.max(high));
-                if own[0] > own[1] {
-                    span(surface, row, outer, outline.ink);
-                } else {
-                    span(surface, row, [low, high.min(own[0].saturating_sub(1))], outline.ink);
-                    span(surface, row, [low.max(own[1].saturating_add(1)), high], outline.ink);
+    let most = width - 1;
+    let (mut edges, [from, to]) = outline.edges(first);
+    let cut = edges.iter().any(|edge| edge.at != i32::MIN);
+    let reaches = outline.reaches();
+    let (mut left, mut right) = (most, 0);
+    for (window, row) in rows.stretch(first - wide, last + wide).windows(2 * wide as usize + 1).zip(first..) {
+        let own;
+        if wide > 0 {
+            let (mut low, mut high);
+            if let [above, middle, below] = window {
+                own = middle.map(i32::from);
+                low = (own[0] - 1).min(above[0].min(below[0]).into());
+                high = (own[1] + 1).max(above[1].max(below[1]).into());
+            } else {
+                let Some((above, [middle, below @ ..])) = window.split_at_checked(wide as usize) else { continue };
+                own = middle.map(i32::from);
+                (low, high) = (own[0] - wide, own[1] + wide);
+                for ((above, below), reach) in above.iter().rev().zip(below).zip(&reaches) {
+                    low = low.min(i32::from(above[0].min(below[0])) - reach);
+                    high = high.max(i32::from(above[1].max(below[1])) + reach);
                 }
             }
+            if cut {
+                edges.iter_mut().for_each(|edge| edge.cut(&mut low, &mut high));
+            }
+            (low, high) = (low.max(0), high.min(most));
+            if low <= high && (from..=to).contains(&row) {
+                (left, right) = (left.min(low), right.max(high));
+                surface.span(row, [low, high], outline.ink);
+            }
+        } else {
+            let [only] = window else { continue };
+            own = only.map(i32::from);
         }
+        let inner = [own[0].max(0), own[1].min(most)];
         if inner[0] <= inner[1] {
             (left, right) = (left.min(inner[0]), right.max(inner[1]));
             fill_row(surface, rows, row, inner, fill);
         }
     }
     if left <= right {
-        surface.mark([left.into(), first], [right.into(), last]);
+        surface.mark([left, first], [right, last]);
     }
 }
 
-/// The rows' span with everything that is within `width` pixels of the hull.
 #[inline(always)]
-fn grown(rows: &Rows, row: i32, [low, high]: Span, width: i32) -> Span {
-    let mut grown = if low <= high { [low - width as i16, high + width as i16] } else { EMPTY };
-    let mut reach = width;
-    for away in 1..=width.min(MARGIN) {
-        while reach * reach + away * away > width * width + width / 2 {
-            reach -= 1;
-        }
-        for other in [rows.span(row - away), rows.span(row + away)] {
-            if other[0] <= other[1] {
-                grown = [grown[0].min(other[0] - reach as i16), grown[1].max(other[1] + reach as i16)];
-            }
-        }
-    }
-    grown
-}
-
-#[inline(always)]
-fn fill_row<S: Surface>(surface: &mut S, rows: &Rows, row: i32, inner: Span, fill: &Fill<S::Ink>) {
+fn fill_row<S: Surface>(surface: &mut S, rows: &Rows, row: i32, inner: [i32; 2], fill: &Fill<S::Ink>) {
     match *fill {
-        Fill::Plain(ink) => span(surface, row, inner, ink),
+        Fill::Plain(ink) => surface.span(row, inner, ink),
         Fill::Checkered(ink, other) => {
-            span(surface, row, inner, other);
+            surface.span(row, inner, other);
             every_other(surface, row, inner, row & 1, ink);
         }
         Fill::Dotted(ink, other) => {
-            span(surface, row, inner, other);
+            surface.span(row, inner, other);
             if row & 1 == 0 {
                 every_other(surface, row, inner, 0, ink);
             }
         }
         Fill::Shaded(lit, shaded, [across, down]) => {
-            let [low, high] = rows.span(row + down);
-            let [low, high] = [low.saturating_sub(across as i16).max(inner[0]), high.saturating_sub(across as i16).min(inner[1])];
+            let [low, high] = rows.span(row + down).map(i32::from);
+            let [low, high] = [(low - across).max(inner[0]), (high - across).min(inner[1])];
             if low > high {
-                return span(surface, row, inner, shaded);
+                return surface.span(row, inner, shaded);
             }
             span(surface, row, [inner[0], low - 1], shaded);
-            span(surface, row, [low, high], lit);
+            surface.span(row, [low, high], lit);
             span(surface, row, [high + 1, inner[1]], shaded);
         }
         Fill::Rimmed(rim, ink) => {
-            let ([low, high], above, below) = (rows.span(row), rows.span(row - 1), rows.span(row + 1));
-            span(surface, row, inner, rim);
+            let [[low, high], above, below] = [0, -1, 1].map(|away| rows.span(row + away).map(i32::from));
+            surface.span(row, inner, rim);
             let low = (low + 1).max(above[0]).max(below[0]).max(inner[0]);
             let high = (high - 1).min(above[1]).min(below[1]).min(inner[1]);
             span(surface, row, [low, high], ink);
@@ -232,16 +269,15 @@ fn fill_row<S: Surface>(surface: &mut S, rows: &Rows, row: i32, inner: Span, fil
 
 /// The pixels of a row, where there are any.
 #[inline(always)]
-pub(super) fn span<S: Surface>(surface: &mut S, row: i32, [low, high]: Span, ink: S::Ink) {
+fn span<S: Surface>(surface: &mut S, row: i32, [low, high]: [i32; 2], ink: S::Ink) {
     if low <= high {
-        surface.span(row, [low.into(), high.into()], ink);
+        surface.span(row, [low, high], ink);
     }
 }
 
 /// The even pixels of a row, or the odd ones.
 #[inline(always)]
-fn every_other<S: Surface>(surface: &mut S, row: i32, [low, high]: Span, odd: i32, ink: S::Ink) {
-    let (low, high) = (i32::from(low), i32::from(high));
+fn every_other<S: Surface>(surface: &mut S, row: i32, [low, high]: [i32; 2], odd: i32, ink: S::Ink) {
     let mut column = low + ((low ^ odd) & 1);
     let mut cursor = surface.cursor(column.min(high), row);
     while column <= high {
