@@ -13,6 +13,7 @@ use crate::surface::Surface;
 
 impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     /// A disc on the floor, in the hull's heights of 4.
+    #[inline(never)]
     fn disc(&self, [x, y, depth]: Place, thousandths: i32) -> [i32; 3] {
         [x, y * 4, (self.sizes.pixels * thousandths / 1000 * magnification(depth)) >> MAGNIFICATION_BITS]
     }

@@ -22,7 +22,7 @@ const DETAILED: i32 = 7 << 4;
 
 impl Head {
     /// A place in 256ths of the skull's radius along face, up and left, from its middle.
-    #[inline(always)]
+    #[inline(never)]
     fn place(&self, [face, up, left]: [i32; 3]) -> [i32; 3] {
         let [x, y, _] = self.skull;
         let along = |axis: usize| (self.face[axis] * face + self.up[axis] * up + self.left[axis] * left) >> 8;
@@ -30,7 +30,7 @@ impl Head {
     }
 
     /// A circle about such a place.
-    #[inline(always)]
+    #[inline(never)]
     fn circle(&self, place: [i32; 3], radius: i32) -> Circle {
         let [x, y, _] = self.place(place);
         [x, y, radius]

@@ -21,7 +21,7 @@
 //! # When lines are better
 //!
 //! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
-//! figures take four to five times as many.
+//! figures take seven times as many or more.
 
 mod floor;
 mod head;

@@ -41,7 +41,7 @@ pub(super) struct Part {
 pub(super) type Place = [i32; 3];
 
 /// Between two places: `part` of 256 from the first to the second, or beyond.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn between(a: Place, b: Place, part: i32) -> Place {
     core::array::from_fn(|axis| a[axis] + (((b[axis] - a[axis]) * part) >> 8))
 }
@@ -57,7 +57,7 @@ pub(super) struct Body<'a, const N: usize, R: RotationBackend> {
 
 impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     /// Where a joint is.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn joint(&self, joint: u8) -> Place {
         let Some(visible) = self.figure.visible(joint) else { return [0; 3] };
         [visible.place[0].into(), visible.place[1].into(), visible.depth.into()]
@@ -68,7 +68,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         self.round(place, self.sizes.radii[radius as usize % RADII].into())
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn round(&self, [x, y, depth]: Place, radius: i32) -> Circle {
         [x, y, (radius * magnification(depth)) >> MAGNIFICATION_BITS]
     }
