@@ -55,7 +55,7 @@ impl<'a> Bank<'a> {
         if magic != BANK_MAGIC {
             return Err(OpenError::BadMagic);
         }
-        if version != VERSION {
+        if !is_known(version) {
             return Err(OpenError::UnsupportedVersion(version));
         }
         let sections = reader.rest();
@@ -142,6 +142,15 @@ impl<'a> Bank<'a> {
     pub fn clip(&self, name: &str) -> Result<Clip<'a>, OpenError> {
         self.open(&self.find(name).ok_or(OpenError::NoSuchClip)?)
     }
+}
+
+/// Whether a bank of this version can be opened.
+fn is_known(version: u8) -> bool {
+    #[cfg(feature = "keys")]
+    if version == crate::keys::layout::KEY_VERSION {
+        return true;
+    }
+    version == VERSION
 }
 
 /// The type and the body of the next section; `None` at the end. [`Reader::check`] reports a section that ends too early.

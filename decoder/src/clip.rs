@@ -6,6 +6,8 @@ use crate::channel::ChannelState;
 use crate::entropy::{Cursor, Symbols};
 use crate::form::{CodedKinds, Form, FormRef};
 use crate::joint::{JointRef, has_choice};
+#[cfg(feature = "keys")]
+use crate::keys::layout::{KEY_FLAGS, KEY_VERSION, KEYS, MAX_KEY_FRAMES, MAX_STATES};
 use crate::layout::*;
 use crate::rig::Rig;
 use crate::scalar::ScalarRef;
@@ -41,6 +43,9 @@ pub(crate) struct Head {
     pub(crate) frames: u32,
     pub(crate) frame_time_ns: u32,
     pub(crate) event_count: u32,
+    /// States that a key clip needs.
+    #[cfg(feature = "keys")]
+    states: u16,
 }
 
 /// The fields of a file in front of the motion.
@@ -65,8 +70,7 @@ impl<'a> Parts<'a> {
     pub(crate) fn read(&mut self) -> Result<(), OpenError> {
         let fixed = self.reader.u32().to_le_bytes();
         self.reader.check()?;
-        check_fixed(fixed)?;
-        self.flags = fixed[3];
+        self.flags = check_fixed(fixed)?;
         if self.flags & HAS_RIG != 0 {
             self.rig = self.reader.name();
             self.rig_len = self.reader.position as usize - fixed.len();
@@ -110,8 +114,12 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Checks the magic, the version and the flags.
-pub(crate) fn check_fixed([magic0, magic1, version, flags]: [u8; 4]) -> Result<(), OpenError> {
+/// Checks the magic, the version and the flags, which it returns; those of a key clip with [`KEYS`](crate::keys::layout::KEYS).
+pub(crate) fn check_fixed([magic0, magic1, version, flags]: [u8; 4]) -> Result<u8, OpenError> {
+    #[cfg(feature = "keys")]
+    if ([magic0, magic1], version) == (MAGIC, KEY_VERSION) {
+        return if flags & !KEY_FLAGS == 0 { Ok(flags | KEYS) } else { Err(OpenError::Malformed) };
+    }
     if [magic0, magic1] != MAGIC {
         Err(if [magic0, magic1] == BANK_MAGIC { OpenError::IsBank } else { OpenError::BadMagic })
     } else if version != VERSION {
@@ -119,7 +127,7 @@ pub(crate) fn check_fixed([magic0, magic1, version, flags]: [u8; 4]) -> Result<(
     } else if flags & !KNOWN_FLAGS != 0 {
         Err(OpenError::Malformed)
     } else {
-        Ok(())
+        Ok(flags)
     }
 }
 
@@ -138,6 +146,8 @@ impl Head {
         frames: 0,
         frame_time_ns: 0,
         event_count: 0,
+        #[cfg(feature = "keys")]
+        states: 0,
     };
 
     /// Reads the head of a motion that was made for `rig`, up to its events.
@@ -167,6 +177,14 @@ impl Head {
             }
             self.exponential_bytes = choices.div_ceil(8) as u8;
             reader.position += u32::from(self.exponential_bytes);
+        }
+        #[cfg(feature = "keys")]
+        if self.flags & KEYS != 0 {
+            let states = reader.varint();
+            if self.frames > MAX_KEY_FRAMES || states > MAX_STATES {
+                return Err(OpenError::Malformed);
+            }
+            self.states = states as u16;
         }
         if self.flags & HAS_EVENTS != 0 {
             self.event_count = reader.varint();
@@ -242,7 +260,7 @@ impl<'a> Clip<'a> {
     /// Checks what follows the rig: the motion, whose blocks it returns, the index and the names of events.
     #[inline(always)]
     fn check_rest(&mut self, parts: &mut Parts<'a>) -> Result<&'a [u8], OpenError> {
-        let motion = parts.blocks(crc::of(&[MAGIC[0], MAGIC[1], VERSION, parts.flags]))?;
+        let motion = parts.blocks(crc::of_front(parts.flags))?;
         [self.index, self.names] = parts.tail(motion)?;
         Ok(motion)
     }
@@ -447,7 +465,17 @@ impl<'a> Clip<'a> {
     /// Number of [`crate::ChannelState`]s that a player of this clip needs.
     #[inline(never)]
     pub fn moving(&self) -> usize {
+        #[cfg(feature = "keys")]
+        if self.has_keys() {
+            return self.head.states.into();
+        }
         self.starts(u32::MAX, &mut [], &mut []).1
+    }
+
+    /// Whether it is a key clip, which has no segments but keys: FORMAT.md, version 2.
+    #[cfg(feature = "keys")]
+    pub fn has_keys(&self) -> bool {
+        self.head.flags & KEYS != 0
     }
 
     /// Reads how the channels start, up to the last position at which a start is sure to be whole: where the segments begin, and how many

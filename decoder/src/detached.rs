@@ -43,8 +43,17 @@ impl<'a> DetachedPlayer<'a> {
         self.position.frame
     }
 
-    /// Number of moving channels: the states in use.
+    /// Number of states in use: [`Clip::moving`].
     pub fn moving(&self) -> usize {
+        self.moving.into()
+    }
+
+    /// Number of moving channels, whose states are the first ones. The states behind them hold the keys of a key clip.
+    pub fn moving_channels(&self) -> usize {
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return self.position.next.into();
+        }
         self.moving.into()
     }
 
@@ -64,6 +73,11 @@ impl<'a> DetachedPlayer<'a> {
             return self.seek(0, states, values);
         }
         let Some(states) = states.get_mut(..self.moving.into()) else { return };
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            let looped = self.clip.looped();
+            return crate::keys::step(&mut self.position, &mut Channels { states, pose: values }, looped);
+        }
         self.position.step(&mut Channels { states, pose: values }, &input, frames);
     }
 
@@ -74,7 +88,7 @@ impl<'a> DetachedPlayer<'a> {
         let states =
             states.get_mut(..self.moving.into()).filter(|_| self.clip.looped() && self.position.frame + 1 >= self.clip.frames());
         if let Some(states) = states {
-            seam::close(&self.clip, states, values);
+            seam::close(&self.clip, states, self.moving_channels(), values);
         }
     }
 

@@ -71,6 +71,8 @@ pub mod format {}
 mod history;
 mod index;
 mod joint;
+#[cfg(feature = "keys")]
+mod keys;
 mod kind;
 #[cfg(feature = "mint")]
 mod mint_types;
@@ -106,6 +108,8 @@ pub use error::{Memory, OpenError, TooSmall};
 pub use form::{CodedKinds, Form, FormRef, WrongForm};
 pub use history::Undo;
 pub use joint::{Joint, JointRef, Joints};
+#[cfg(feature = "keys")]
+pub use keys::{ChannelKeys, Interpolation};
 pub use kind::{Kind, Kinds};
 pub use partial::{PartialClip, PausedClip};
 pub use player::{Player, SeekCache};

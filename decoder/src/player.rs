@@ -7,6 +7,8 @@ use crate::error::Memory;
 use crate::form::WrongForm;
 use crate::history::{History, Undo};
 use crate::joint::JointRef;
+#[cfg(feature = "keys")]
+use crate::keys;
 use crate::play_state::{Channels, PlayState};
 use crate::pose::Pose;
 use crate::scalar::ScalarRef;
@@ -78,6 +80,13 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Starts at frame 0. `states` needs [`Clip::moving`] elements, `pose` needs [`crate::Rig::channels`].
     pub fn new(clip: Clip<'a>, states: &'m mut [ChannelState], pose: &'m mut [i32]) -> Result<Self, TooSmall> {
         let pose = values(pose, clip.rig().channels())?;
+        #[cfg(feature = "keys")]
+        if clip.has_keys() {
+            let (needed, given) = (clip.moving(), states.len());
+            let states = states.get_mut(..needed).ok_or(TooSmall { memory: Memory::States, needed, given })?;
+            let position = keys::open(&clip, states, pose);
+            return Ok(Player { clip, states, pose, position });
+        }
         let (cursor, moving) = clip.starts(u32::MAX, states, pose);
         let given = states.len();
         let states = states.get_mut(..moving).ok_or(TooSmall { memory: Memory::States, needed: moving, given })?;
@@ -94,6 +103,11 @@ impl<'a, 'm> Player<'a, 'm> {
     ) -> Result<Option<Self>, TooSmall> {
         let needed = clip.rig().channels();
         let pose = values(pose, needed)?;
+        #[cfg(feature = "keys")]
+        if clip.has_keys() {
+            // All keys come before the first frame.
+            return if dry_at == u32::MAX { Player::new(clip, states, pose).map(Some) } else { Ok(None) };
+        }
         let given = states.len();
         let states = states.get_mut(..needed).ok_or(TooSmall { memory: Memory::States, needed, given })?;
         let (cursor, moving) = clip.starts(dry_at, states, pose);
@@ -121,6 +135,14 @@ impl<'a, 'm> Player<'a, 'm> {
     /// Goes on by one frame if its segments are there: those that begin at `dry_at` at the latest.
     pub(crate) fn step_partial(&mut self, clip: &Clip<'a>, dry_at: u32) -> bool {
         self.clip.motion = clip.motion;
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            let ended = self.ended();
+            if !ended {
+                self.step();
+            }
+            return !ended;
+        }
         let (input, frames) = (self.clip.input(), self.clip.frames());
         let (position, mut channels) = self.parts();
         position.try_step(&mut channels, &input, frames, dry_at, None)
@@ -171,13 +193,13 @@ impl<'a, 'm> Player<'a, 'm> {
     pub fn interpolate<'o>(&'o self, part: U0F16, out: &'o mut [i32]) -> Result<Pose<'o>, TooSmall> {
         let out = values(out, self.pose.len())?;
         if self.ended() && self.clip.looped() && part != U0F16::ZERO {
-            seam::interpolate(&self.clip, self.states, self.pose, part.to_bits(), out);
+            seam::interpolate(&self.clip, self.states, self.states().len(), self.pose, part.to_bits(), out);
             return Ok(Pose { values: out, form: self.clip.form_ref() });
         }
         for (out, value) in out.iter_mut().zip(self.pose.iter()) {
             *out = *value;
         }
-        for state in self.states.iter() {
+        for state in self.states() {
             // A segment that begins at this frame changes the velocity from the next one on: p + v is the next frame's p.
             if let Some(value) = out.get_mut(usize::from(state.slot)) {
                 *value = value.wrapping_add(((i64::from(state.v) * i64::from(part.to_bits())) >> 16) as i32);
@@ -206,7 +228,27 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// The moving channels, in the order of the pose; before the segments that begin at this frame are read.
     pub fn states(&self) -> &[ChannelState] {
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return self.states.get(..self.position.next.into()).unwrap_or(&[]);
+        }
         self.states
+    }
+
+    /// The keys of a moving channel of a key clip, by its index in [`Player::states`]; `None` for another clip.
+    #[cfg(feature = "keys")]
+    pub fn channel_keys(&self, index: usize) -> Option<keys::ChannelKeys<'_>> {
+        if !self.clip.has_keys() {
+            return None;
+        }
+        let (moving, words) = self.states.split_at_checked(self.position.next.into())?;
+        Some(keys::ChannelKeys::new(words, moving.get(index)?))
+    }
+
+    /// Whether the symbols of a key clip break a rule of FORMAT.md: its encoder is at fault, and the rig rests at all frames.
+    #[cfg(feature = "keys")]
+    pub fn is_malformed(&self) -> bool {
+        self.clip.has_keys() && keys::is_malformed(&self.position)
     }
 
     /// The ids of the event markers at this frame.
@@ -224,6 +266,12 @@ impl<'a, 'm> Player<'a, 'm> {
         if self.ended() {
             return self.rewind();
         }
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            let looped = self.clip.looped();
+            let (position, mut channels) = self.parts();
+            return keys::step(position, &mut channels, looped);
+        }
         let (input, frames) = (self.clip.input(), self.clip.frames());
         let (position, mut channels) = self.parts();
         position.step(&mut channels, &input, frames);
@@ -231,9 +279,21 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// Goes back to frame 0.
     pub fn rewind(&mut self) {
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return self.seek_keys(0);
+        }
         // The memory sufficed when the player was made.
         let (cursor, _) = self.clip.starts(u32::MAX, self.states, self.pose);
         self.position = PlayState { cursor, frame: 0, next: 0 };
+    }
+
+    /// Goes to a frame of a key clip, which takes as long for every frame.
+    #[cfg(feature = "keys")]
+    fn seek_keys(&mut self, frame: u32) {
+        let looped = self.clip.looped();
+        let (position, mut channels) = self.parts();
+        keys::seek(position, &mut channels, frame, looped);
     }
 
     /// Goes to `frame`, or to the last one if there are fewer. It starts from this frame or, if that is later, from frame 0, or from the file's
@@ -245,6 +305,10 @@ impl<'a, 'm> Player<'a, 'm> {
 
     /// [`Player::step`], and keeps what going back needs.
     pub fn step_with(&mut self, memory: &mut SeekCache<'_>) {
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return self.step();
+        }
         if self.ended() {
             return self.rewind();
         }
@@ -265,6 +329,10 @@ impl<'a, 'm> Player<'a, 'm> {
     fn go<const STORED: bool>(&mut self, frame: u32, mut snapshots: Option<&mut Snapshots<'_>>) {
         let (input, frames, index) = (self.clip.input(), self.clip.frames(), self.clip.index().filter(|_| STORED));
         let target = frame.min(frames - 1);
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return self.seek_keys(target);
+        }
         let now = self.position.frame;
         let mut from = if now <= target { now } else { 0 };
         let stored = index.and_then(|index| index::nearest(&index, target)).filter(|entry| entry.frame > from);
@@ -293,6 +361,10 @@ impl<'a, 'm> Player<'a, 'm> {
     /// does not reach, it replays some earlier frames.
     pub fn step_back(&mut self, memory: &mut SeekCache<'_>) {
         let Some(target) = self.position.frame.checked_sub(1) else { return self.seek_with(u32::MAX, memory) };
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return self.seek_keys(target);
+        }
         let (position, mut channels) = self.parts();
         if memory.history.step_back(position, &mut channels) {
             return;

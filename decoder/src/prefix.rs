@@ -41,7 +41,7 @@ impl Prefix {
                 }
                 self.len += 1;
                 if usize::from(self.len) == self.fixed.len() {
-                    check_fixed(self.fixed)?;
+                    self.fixed[3] = check_fixed(self.fixed)?;
                     self.field = if self.flags() & HAS_RIG != 0 { Field::RigLen } else { Field::MotionLen };
                 }
             }

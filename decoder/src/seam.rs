@@ -98,17 +98,28 @@ impl Last for Between<'_> {
     }
 }
 
-/// Writes to `out`, as long as the pose of a loop's last frame, the pose `part` (in 2^-16) of the way to frame 0.
-pub(crate) fn interpolate(clip: &Clip<'_>, states: &[ChannelState], pose: &[i32], part: u16, out: &mut [i32]) {
+/// Writes to `out`, as long as the pose of a loop's last frame, the pose `part` (in 2^-16) of the way to frame 0. Behind the states of the channels are
+/// those that hold a key clip's keys.
+pub(crate) fn interpolate(clip: &Clip<'_>, states: &[ChannelState], moving: usize, pose: &[i32], part: u16, out: &mut [i32]) {
+    #[cfg_attr(not(feature = "keys"), expect(unused_variables))]
+    let Some((states, words)) = states.split_at_checked(moving) else { return };
     for (out, value) in out.iter_mut().zip(pose) {
         *out = *value;
     }
     let between = Between { states, pose, out: Cell::from_mut(out).as_slice_of_cells(), part };
+    let put = |index: usize, value| {
+        if let Some((out, _)) = between.of(index) {
+            out.set(value);
+        }
+    };
+    #[cfg(feature = "keys")]
+    if clip.has_keys() {
+        states.iter().enumerate().for_each(|(index, state)| put(index, crate::keys::first_value(state, words)));
+        return each_way(clip, pose, &between);
+    }
     clip.first_values(&mut |index, value| {
         let leader = states.get(index).and_then(ChannelState::follows).map(|back| between.first(index.wrapping_sub(back)));
-        if let Some((out, _)) = between.of(index) {
-            out.set(leader.unwrap_or(value));
-        }
+        put(index, leader.unwrap_or(value));
     });
     each_way(clip, pose, &between);
 }
@@ -133,8 +144,18 @@ impl Last for InPlace<'_> {
 }
 
 /// Makes the velocities on a loop's last frame those that lead to frame 0. The accelerations become the values there.
-pub(crate) fn close(clip: &Clip<'_>, states: &mut [ChannelState], pose: &[i32]) {
+pub(crate) fn close(clip: &Clip<'_>, states: &mut [ChannelState], moving: usize, pose: &[i32]) {
+    #[cfg_attr(not(feature = "keys"), expect(unused_variables))]
+    let Some((states, words)) = states.split_at_mut_checked(moving) else { return };
     let states = InPlace(Cell::from_mut(states).as_slice_of_cells());
+    #[cfg(feature = "keys")]
+    if clip.has_keys() {
+        for cell in states.0 {
+            let state = cell.get();
+            cell.set(ChannelState { w: crate::keys::first_value(&state, words), k: 0, ..state });
+        }
+        return each_way(clip, pose, &states);
+    }
     clip.first_values(&mut |index, value| {
         let Some(state) = states.state(index) else { return };
         let leader = state.follows().map(|back| states.first(index.wrapping_sub(back)));

@@ -156,6 +156,6 @@ impl Clip<'_> {
 }
 
 /// A rest offset in the clip's unit, rounded down.
-fn shifted(rest: i32, shift: i32) -> i32 {
+pub(crate) fn shifted(rest: i32, shift: i32) -> i32 {
     if shift >= 0 { rest.wrapping_shl(shift as u32) } else { rest >> shift.unsigned_abs().min(31) }
 }

@@ -219,6 +219,11 @@ impl<'a, 'm> Stream<'a, 'm> {
             taken += 1;
             match prefix.push(byte, Some(self.rig.id())) {
                 Ok(false) => {}
+                #[cfg(feature = "keys")]
+                Ok(true) if prefix.flags() & crate::codec::keys::KEYS != 0 => {
+                    let version = crate::codec::keys::KEY_VERSION;
+                    self.phase = Phase::Failed(Progress::Damaged(OpenError::UnsupportedVersion(version)));
+                }
                 Ok(true) => {
                     (self.window.left, self.window.seed) = (prefix.motion_len(), prefix.seed());
                     self.head.flags = prefix.flags();

@@ -43,9 +43,19 @@ pub fn of(bytes: &[u8]) -> u16 {
     update(INITIAL, bytes)
 }
 
-/// What a motion's first block goes on from: the CRC of the file's first four bytes and the motion's length.
+/// The CRC of a file's first four bytes. Bit 7 of `flags`, which no file has, stands for the version of key clips.
+pub(crate) fn of_front(flags: u8) -> u16 {
+    #[cfg(feature = "keys")]
+    let [version, flags] = [VERSION + (flags >> 7), flags & 0x7f];
+    #[cfg(not(feature = "keys"))]
+    let version = VERSION;
+    of(&[MAGIC[0], MAGIC[1], version, flags])
+}
+
+/// What a motion's first block goes on from: the CRC of the file's first four bytes and the motion's length. Bit 7 of `flags`, which no file has,
+/// stands for the version of key clips.
 pub fn of_prefix(flags: u8, motion_len: u32) -> u16 {
-    update(of(&[MAGIC[0], MAGIC[1], VERSION, flags]), &motion_len.to_le_bytes())
+    update(of_front(flags), &motion_len.to_le_bytes())
 }
 
 #[cfg(test)]

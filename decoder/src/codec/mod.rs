@@ -2,6 +2,8 @@
 
 pub mod crc;
 pub mod entropy;
+#[cfg(feature = "keys")]
+pub use crate::keys::layout as keys;
 pub mod layout;
 pub mod segment;
 pub mod tables;

@@ -6,6 +6,8 @@ mod detached;
 mod fields;
 mod forms;
 mod golden;
+#[cfg(feature = "keys")]
+mod keys;
 mod matrices;
 mod playing;
 mod poses;

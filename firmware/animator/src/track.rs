@@ -55,7 +55,7 @@ impl<'a, 'm> Track<'a, 'm> {
         Track { player, states, pose, rest, speed, ended, seam, closed }
     }
 
-    /// Moving channels and channels of the clip: the least memory.
+    /// States of the player and channels of the clip: the least memory.
     pub(crate) fn needed(&self) -> [usize; 2] {
         [self.player.moving(), self.clip().rig().channels()]
     }
@@ -159,7 +159,7 @@ impl<'a, 'm> Track<'a, 'm> {
         // Below 2^30.
         let part = u32::from(self.part().to_bits() >> 1) * u32::from(weight.to_bits());
         let part = Weight::from_bits((part >> 15) as u16);
-        for state in self.states.get(..self.player.moving()).unwrap_or_default() {
+        for state in self.states.get(..self.player.moving_channels()).unwrap_or_default() {
             if let Some(value) = out.get_mut(state.slot()) {
                 let [v, ..] = state.rates();
                 *value = value.wrapping_add(part.of(v));
@@ -178,7 +178,7 @@ impl<'a, 'm> Track<'a, 'm> {
     /// Slot and change of each moving channel from this frame to the next; nothing moves in a clip that has ended or is held.
     pub(crate) fn velocities(&self) -> impl Iterator<Item = (usize, i32)> + '_ {
         let last = self.player.frame() + 1 >= self.clip().frames() && !self.clip().looped();
-        let moving = if last || self.ended { 0 } else { self.player.moving() };
+        let moving = if last || self.ended { 0 } else { self.player.moving_channels() };
         self.states.get(..moving).unwrap_or_default().iter().map(|state| {
             let [v, ..] = state.rates();
             (state.slot(), v)
@@ -305,7 +305,7 @@ impl<'a, 'm> Track<'a, 'm> {
             root.turn_by(seam.yaw, own);
             nearest(root.turns.shape, own, self.pose.get(range.clone()).unwrap_or_default());
         }
-        for state in self.states.get_mut(..self.player.moving()).unwrap_or_default() {
+        for state in self.states.get_mut(..self.player.moving_channels()).unwrap_or_default() {
             let (slot, p) = (state.slot(), self.pose.get(state.slot()).copied().unwrap_or(0));
             let [_, first, k] = state.rates();
             let place = root.place.iter().zip(seam.place).find(|(channel, _)| channel.map(usize::from) == Some(slot));
@@ -325,7 +325,7 @@ impl<'a, 'm> Track<'a, 'm> {
         for (turn, p) in turns.iter_mut().zip(self.pose.get(range.clone()).unwrap_or_default()) {
             *turn = *p;
         }
-        for state in self.states.get(..self.player.moving()).unwrap_or_default() {
+        for state in self.states.get(..self.player.moving_channels()).unwrap_or_default() {
             if let Some(turn) = state.slot().checked_sub(range.start).and_then(|at| turns.get_mut(at)) {
                 *turn = value(*turn, state.rates());
             }
@@ -338,7 +338,7 @@ impl<'a, 'm> Track<'a, 'm> {
         let place = root.place.map(|channel| {
             let slot = usize::from(channel?);
             let p = self.pose.get(slot).copied()?;
-            let state = self.states.get(..self.player.moving())?.iter().find(|state| state.slot() == slot);
+            let state = self.states.get(..self.player.moving_channels())?.iter().find(|state| state.slot() == slot);
             Some(state.map_or(p, |state| value(p, state.rates())))
         });
         let turns = self.root_turns(root, &value);

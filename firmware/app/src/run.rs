@@ -73,7 +73,7 @@ pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: &mut PlayContex
         player.clip().frames(),
         player.clip().frame_time_ns(),
         player.clip().rig().channels(),
-        player.clip().moving()
+        player.states().len()
     );
     build(&mut player, context, |player, content, context| match task {
         Task::Play { from } => start(entry.name, player, from, content, context),
