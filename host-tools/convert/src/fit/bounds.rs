@@ -2,12 +2,13 @@
 
 use super::chain::Constraint;
 use super::raw;
+use crate::import::units::figure_height_cm;
 use crate::motion::{Kind, Motion};
 use anyhow::{Result, ensure};
 
 /// Largest error of a rotation that is coded exactly, in degrees: rounding to 16 bits a turn is off by half of it.
 pub const EXACT_DEGREES: f64 = 0.006;
-/// The same for other channels, as a part of their [`range`].
+/// The same for other channels, as a part of their [`range`], or of the figure's height if that is more: places.
 pub const EXACT_PART: f64 = 1.0 / 65536.0;
 
 /// The bounds of all channels.
@@ -40,7 +41,14 @@ impl Bounds {
                 motion.rig.channel_name(channel)
             );
         }
-        Ok(Bounds::at_least(motion, Constraint::Positions, true, EXACT_DEGREES, EXACT_PART))
+        let mut bounds = Bounds::at_least(motion, Constraint::Positions, true, EXACT_DEGREES, EXACT_PART);
+        let height = figure_height_cm(motion).map_or(0.0, |cm| cm / motion.rig.cm_per_unit);
+        let kinds = motion.rig.channel_kinds();
+        for channel in (0..kinds.len()).filter(|&channel| kinds[channel].1.is_position()) {
+            bounds.asked[channel] = bounds.asked[channel].max(EXACT_PART * height);
+            bounds.greatest[channel] = bounds.greatest[channel].max(bounds.asked[channel]);
+        }
+        Ok(bounds)
     }
 
     fn at_least(motion: &Motion, constraint: Constraint, exact: bool, degrees: f64, part: f64) -> Bounds {

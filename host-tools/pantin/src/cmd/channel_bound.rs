@@ -14,7 +14,8 @@ pub struct ChannelBound {
     #[arg(long, value_name = "ERROR", group = "bound", value_parser = above_zero)]
     max_accel_error: Option<f64>,
     /// Instead of --max-error: code channels with keys (.keys; glTF's translations and weights, and its CUBICSPLINE rotations as quaternions) exactly except for
-    /// rounding: at most 0.006 degrees, or 2^-16 of the range that --max-channel-error refers to
+    /// rounding: at most 0.006 degrees, for positions 2^-16 of the figure's height, or 2^-16 of the range
+    /// that --max-channel-error refers to
     #[arg(long, group = "bound")]
     exact: bool,
 }
