@@ -123,12 +123,27 @@ pub struct Segments {
 /// Most values of moving channels that are played to count segments: about half a second.
 const MOST_COUNTED: u64 = 1 << 26;
 
-/// Counts the segments of a clip: in all of its frames, or in as many as take half a second.
+/// Keys of all channels of a key clip; `None` for another clip.
+pub fn keys(clip: &Clip<'_>) -> Result<Option<usize>> {
+    if !clip.has_keys() {
+        return Ok(None);
+    }
+    let mut states = vec![ChannelState::default(); clip.moving()];
+    let mut pose = vec![0; clip.rig().channels()];
+    let player = Player::new(*clip, &mut states, &mut pose)?;
+    let keys = (0..player.states().len()).filter_map(|index| player.channel_keys(index));
+    Ok(Some(keys.map(|keys| keys.iter().count()).sum()))
+}
+
+/// Counts the segments of a clip, of which a key clip has none: in all of its frames, or in as many as take half a second.
 pub fn segments(clip: &Clip<'_>) -> Result<Segments> {
     segments_within(clip, MOST_COUNTED)
 }
 
 fn segments_within(clip: &Clip<'_>, most: u64) -> Result<Segments> {
+    if clip.has_keys() {
+        return Ok(Segments { count: 0, frames: clip.frames() });
+    }
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(*clip, &mut states, &mut pose)?;
@@ -163,6 +178,9 @@ impl Sink for Bits {
 /// Bits that the segments of each channel of the pose take in the clip's file, by the probabilities of their symbols; 0 for a channel that has none of its
 /// own. How channels begin is not in it, nor are the head and the CRCs.
 pub fn segment_bits(clip: &Clip<'_>) -> Result<Vec<f64>> {
+    if clip.has_keys() {
+        return Ok(vec![0.0; clip.rig().channels()]);
+    }
     let mut states = vec![ChannelState::default(); clip.moving()];
     let mut pose = vec![0; clip.rig().channels()];
     let mut player = Player::new(*clip, &mut states, &mut pose)?;
@@ -244,7 +262,7 @@ pub fn channels(clip: &Clip<'_>) -> Result<Vec<Channel>> {
     let mut channels: Vec<Channel> = kinds.map(|kind| Channel { kind, status: Status::Constant }).collect();
     let states = player.states();
     for (index, state) in states.iter().enumerate() {
-        let leader = state.follows().and_then(|back| states.get(index.checked_sub(back)?));
+        let leader = state.follows().filter(|_| !clip.has_keys()).and_then(|back| states.get(index.checked_sub(back)?));
         if let Some(channel) = channels.get_mut(state.slot()) {
             channel.status = leader.map_or(Status::Moving, |leader| Status::Follows(leader.slot()));
         }

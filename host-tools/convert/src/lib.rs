@@ -16,6 +16,7 @@ pub mod error_text;
 mod euler;
 pub mod events;
 pub mod expand;
+pub mod expand_keys;
 pub mod export;
 pub mod facts;
 mod fields;
@@ -39,6 +40,9 @@ mod options;
 pub mod pose_bound;
 pub mod verify;
 
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub use conversion::key_clip;
 pub use conversion::{
     Converted, Errors, Made, Prepared, Progress, Recipe, Report, SeamReport, agree_on_up, convert, of_one_rig, prepare,
     shared_coding,

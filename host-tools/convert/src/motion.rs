@@ -75,6 +75,26 @@ impl Rig {
         of_joints.chain(self.scalars.iter().map(|_| (None, Kind::Scalar))).collect()
     }
 
+    /// What a channel without keys stays at: 0, a position its offset, the first component of a quaternion 1.
+    pub fn rest(&self, (joint, kind): (Option<usize>, Kind)) -> f64 {
+        match (joint, kind.axis()) {
+            (Some(joint), Some(axis)) if kind.is_position() => self.joints[joint].offset[axis],
+            _ if kind == Kind::Wquaternion => 1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// The channels that have keys at the same times as `first`, the first one of them: a joint's components of a quaternion or an exponential map, or
+    /// that channel alone.
+    pub fn key_group(&self, first: usize) -> std::ops::Range<usize> {
+        let kinds = self.channel_kinds();
+        let same = |kind: Kind| [kind.is_quaternion(), kind.is_exponential()];
+        let Some(&(joint, kind)) = kinds.get(first).filter(|(_, kind)| same(*kind) != [false; 2]) else {
+            return first..first + 1;
+        };
+        first..first + kinds[first..].iter().take_while(|(own, other)| *own == joint && same(*other) == same(kind)).count()
+    }
+
     /// What a person would call a channel: `hip.Xrotation`, or the scalar's name.
     pub fn channel_name(&self, channel: usize) -> String {
         match self.channel_kinds().get(channel) {

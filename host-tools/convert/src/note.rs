@@ -59,11 +59,13 @@ pub enum NoteKind {
     Index,
     /// Which files became one clip, or were not used.
     Sources,
+    /// Whether the clip holds keys or segments, and what the other one takes.
+    Keys,
 }
 
 impl NoteKind {
     /// All kinds.
-    pub const ALL: [NoteKind; 21] = [
+    pub const ALL: [NoteKind; 22] = [
         NoteKind::Unit,
         NoteKind::FrameRate,
         NoteKind::Up,
@@ -85,6 +87,7 @@ impl NoteKind {
         NoteKind::Unbounded,
         NoteKind::Index,
         NoteKind::Sources,
+        NoteKind::Keys,
     ];
 
     /// The name in reports: lower case, with hyphens.
@@ -111,6 +114,7 @@ impl NoteKind {
             NoteKind::Unbounded => "unbounded",
             NoteKind::Index => "index",
             NoteKind::Sources => "sources",
+            NoteKind::Keys => "keys",
         }
     }
 }

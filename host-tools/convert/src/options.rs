@@ -47,6 +47,9 @@ pub struct Options {
     pub rotations: Rotations,
     /// Seconds between snapshots for seeking; none by default.
     pub index: Option<f64>,
+    /// Whether the clip holds the motion's keys where it is smaller so than by segments within its bound: a key clip, which only players with feature
+    /// `keys` play. `false` by default.
+    pub keys: bool,
     /// Whether the rig stays out of the clip, to be shared by several; `false` by default.
     pub rig_apart: bool,
     /// Whether the seam between the last frame and the first is closed, which makes the clip a loop. What that moves is part of the bound.
@@ -71,6 +74,7 @@ impl Default for Options {
             effort: Level::DEFAULT,
             rotations: Rotations::ByCost,
             index: None,
+            keys: false,
             rig_apart: false,
             looped: false,
             footsteps: false,
@@ -148,6 +152,11 @@ impl Options {
     /// Stores a snapshot every `seconds`.
     pub fn index(self, seconds: impl Into<Option<f64>>) -> Options {
         Options { index: seconds.into(), ..self }
+    }
+
+    /// Makes a key clip where that is smaller.
+    pub fn keys(self, keys: bool) -> Options {
+        Options { keys, ..self }
     }
 
     /// Keeps the rig out of the clip.

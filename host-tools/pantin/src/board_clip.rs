@@ -3,13 +3,16 @@
 use crate::memory;
 use crate::open::no_clip;
 use crate::output::{clean, is_hostile, note};
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
 use pantin::codec::layout::BANK_MAGIC;
 use pantin::{Bank, Clip, OpenError};
 use pantin_pictures::machine::playback::has_machine;
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
+
+/// Why a board gets no key clip.
+const NO_KEYS: &str = "the boards' images play clips of segments, which `pantin convert` writes without --keys";
 
 /// Reads a name for a clip on a board: what fits its header, and what a screen can show.
 pub fn board_name(text: &str) -> Result<String, String> {
@@ -28,17 +31,19 @@ pub fn read(path: &Path, name: Option<&str>) -> Result<(Vec<u8>, ClipInfo)> {
     if clip.starts_with(&BANK_MAGIC) {
         let bank = Bank::new_checked(&clip).with_context(place)?;
         for entry in bank.entries() {
-            bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
+            let opened = bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
+            ensure!(!opened.has_keys(), "{}: `{}` is a key clip; {NO_KEYS}", place(), clean(entry.name()));
         }
         note!("{}: a bank of {} clips, for firmware that is built with feature `bank`", place(), bank.len());
         if has_machine(&clip) {
             note!("warning: {}: the boards' firmware plays the clips one after the other, not the state machine", place());
         }
     } else {
-        Clip::new_checked(&clip).map_err(|error| match error {
+        let opened = Clip::new_checked(&clip).map_err(|error| match error {
             OpenError::WrongRig => anyhow!("{}: a clip without its rig (--rig-out), which a board cannot open", place()),
             error => no_clip(path, &clip, error).context(format!("{}: a board cannot open it", place())),
         })?;
+        ensure!(!opened.has_keys(), "{}: a key clip; {NO_KEYS}", place());
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let shown: String = stem.chars().map(|c| if is_hostile(c) { '_' } else { c }).collect();

@@ -5,6 +5,7 @@
 
 mod bound;
 mod distance;
+mod keyed;
 mod left_out;
 mod prepared;
 mod recipe;
@@ -14,6 +15,9 @@ use crate::error::Error;
 use crate::motion::Motion;
 use crate::note::Note;
 use crate::options::Options;
+#[cfg(feature = "internals")]
+#[doc(hidden)]
+pub use keyed::key_clip;
 pub use prepared::{Made, Prepared, agree_on_up, of_one_rig, prepare, shared_coding};
 pub use recipe::Recipe;
 pub use report::{Errors, Report, SeamReport};

@@ -3,6 +3,7 @@
 use super::Progress;
 use super::bound::{Bound, closed_notes};
 use super::distance::Distance;
+use super::keyed::key_clip;
 use super::left_out::left_out;
 use super::report::{Errors, Report, SeamReport};
 use crate::channel_error;
@@ -215,12 +216,16 @@ impl Prepared {
         let Prepared { motion, rig, options, .. } = self;
         let (plan, part) = (distance.plan(options.effort), distance.scalar_part);
         let coded = fit_coding(motion, coding, plan, part, progress)?;
-        let bytes = self.file(&coded, notes)?;
+        let by_segments = self.file(&coded, notes)?;
         // Errors are those against the source, whatever closing a loop moved.
         let (source, whole) = match &self.seam {
             Some(Seam { source, bound: Bound::Distance(whole), .. }) => (source, whole),
             _ => (motion, distance),
         };
+        let within = |bytes: &[u8]| verify(bytes, rig, source, &whole.pose, whole.scalar_part).map(drop);
+        let keyed = self.smaller_by_keys(&coded, &by_segments, &within, notes);
+        let has_keys = keyed.is_some();
+        let bytes = keyed.unwrap_or(by_segments);
         let report = verify(&bytes, rig, source, &whole.pose, whole.scalar_part)?;
         if let Some(mean_cm) = whole.pose.mean_cm {
             let mean = report.bounded_mean_cm(&whole.pose);
@@ -228,7 +233,9 @@ impl Prepared {
                 || Error::bound(format!("joints are {mean:.5} cm off in the mean; the bound of the mean is {mean_cm} cm"));
             require!(mean <= mean_cm, refusal());
         }
-        notes.extend(left_out(motion, &coded, &whole.pose));
+        if !has_keys {
+            notes.extend(left_out(motion, &coded, &whole.pose));
+        }
         Ok((bytes, coded, Errors::Joints(report)))
     }
 
@@ -259,9 +266,39 @@ impl Prepared {
             );
             notes.push(Note::warning(NoteKind::BoundRaised, text).of_joint(name));
         }
-        let bytes = self.file(&coded, notes)?;
+        let by_segments = self.file(&coded, notes)?;
+        let within = |bytes: &[u8]| channel_error::verify(bytes, rig, motion, &bounds).map(drop);
+        let bytes = self.smaller_by_keys(&coded, &by_segments, &within, notes).unwrap_or(by_segments);
         let report = channel_error::verify(&bytes, rig, motion, &bounds)?;
         Ok((bytes, coded, Errors::Channels(report, bounds.constraint)))
+    }
+
+    /// The key clip of the motion, if one was asked for and is smaller than the clip of its segments; a note says which one it is, and why.
+    fn smaller_by_keys(
+        &self,
+        coded: &Coded,
+        by_segments: &[u8],
+        within: &dyn Fn(&[u8]) -> Result<()>,
+        notes: &mut Vec<Note>,
+    ) -> Option<Vec<u8>> {
+        let Options { keys: true, rig_apart, .. } = self.options else { return None };
+        let made = key_clip(&self.motion, &self.rig, (coded.frame_time_ns, coded.length_exponent), rig_apart);
+        let made = made.and_then(|bytes| within(&bytes).map(|()| bytes));
+        let (text, bytes) = match made {
+            Ok(bytes) if bytes.len() < by_segments.len() => {
+                let saved = by_segments.len() - bytes.len();
+                (
+                    format!(
+                        "keys: the clip holds the motion's keys, which take {saved} bytes less than segments within the bound"
+                    ),
+                    Some(bytes),
+                )
+            }
+            Ok(bytes) => (format!("keys: segments within the bound take {} bytes less", bytes.len() - by_segments.len()), None),
+            Err(error) => (format!("keys: segments, for there is no key clip of this motion: {error:#}"), None),
+        };
+        notes.push(Note::info(NoteKind::Keys, text));
+        bytes
     }
 
     /// The clip's bytes, with the index that was asked for; a note says what it costs.

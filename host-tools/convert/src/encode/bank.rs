@@ -6,6 +6,7 @@ use crate::encode::rig;
 use crate::memory::Memory;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::codec::crc;
+use pantin::codec::keys::{KEY_VERSION, KEYS};
 use pantin::codec::layout::*;
 use pantin::{Bank, Clip, Rig};
 use std::collections::HashMap;
@@ -70,7 +71,8 @@ pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
         bodies.extend(body);
     }
     contents.extend(crc::of(&contents).to_le_bytes());
-    let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], VERSION];
+    let has_keys = clips.iter().any(|named| named.clip.get(2) == Some(&KEY_VERSION));
+    let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], if has_keys { KEY_VERSION } else { VERSION }];
     for (kind, body) in [(section::RIG, &first.rig[..]), (section::CONTENTS, &contents), (section::CLIPS, &bodies)] {
         put_section(&mut out, kind, body)?;
     }
@@ -87,7 +89,8 @@ pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
 /// A bank with a section of a type that only some programs read, in place of another of that type.
 pub fn with_section(bank: &[u8], kind: u8, body: &[u8]) -> Result<Vec<u8>> {
     let sections = Bank::new_checked(bank)?.sections().filter(|(own, _)| *own != kind).chain([(kind, body)]);
-    let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], VERSION];
+    let version = bank.get(2).copied().unwrap_or(VERSION);
+    let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], version];
     for (kind, body) in sections {
         put_section(&mut out, kind, body)?;
     }
@@ -139,7 +142,10 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// The parts of a file that opens.
     fn of(file: &'a [u8]) -> Result<Parts<'a>> {
-        let flags = *file.get(3).context("the clip is truncated")?;
+        let mut flags = *file.get(3).context("the clip is truncated")?;
+        if file.get(2) == Some(&KEY_VERSION) {
+            flags |= KEYS;
+        }
         let mut rest = &file[4..];
         let mut part = |present: bool| -> Result<&'a [u8]> {
             if !present {

@@ -6,6 +6,7 @@ use super::{index, varint};
 use crate::memory::Memory;
 use anyhow::{Context, Result, bail, ensure};
 use pantin::Event;
+use pantin::codec::keys::{KEY_VERSION, KEYS};
 use pantin::codec::layout::*;
 use pantin::codec::{Statuses, crc, step_size};
 
@@ -131,19 +132,27 @@ fn file(coded: &Coded, rig: &[u8], apart: bool, index: Option<&[u8]>) -> Result<
     symbols(coded, &parsed, &mut gathered);
     payload.extend(gathered.finish());
     let mut out = assembled(flags, rig, &payload, index);
-    if flags & HAS_EVENT_NAMES != 0 {
-        let mut names = Vec::new();
-        coded.event_names.iter().for_each(|name| varint::put_name(&mut names, name));
-        names.extend_from_slice(&crc::of(&names).to_le_bytes());
-        varint::put(&mut out, names.len() as u32);
-        out.extend_from_slice(&names);
-    }
+    put_event_names(&mut out, &coded.event_names);
     Ok(out)
 }
 
-/// A file up to its names of events: the rig is part of it if the flags say so, motion and index are payloads.
+/// The names of events, if there are any, behind the rest of a file.
+pub fn put_event_names(out: &mut Vec<u8>, event_names: &[String]) {
+    if event_names.is_empty() {
+        return;
+    }
+    let mut names = Vec::new();
+    event_names.iter().for_each(|name| varint::put_name(&mut names, name));
+    names.extend_from_slice(&crc::of(&names).to_le_bytes());
+    varint::put(out, names.len() as u32);
+    out.extend_from_slice(&names);
+}
+
+/// A file up to its names of events: the rig is part of it if the flags say so, motion and index are payloads. [`KEYS`] among the flags makes it a
+/// key clip.
 pub fn assembled(flags: u8, rig: &[u8], motion: &[u8], index: Option<&[u8]>) -> Vec<u8> {
-    let mut out = vec![MAGIC[0], MAGIC[1], VERSION, flags];
+    let version = if flags & KEYS == 0 { VERSION } else { KEY_VERSION };
+    let mut out = vec![MAGIC[0], MAGIC[1], version, flags & !KEYS];
     if flags & HAS_RIG != 0 {
         varint::put(&mut out, rig.len() as u32);
         out.extend_from_slice(rig);
@@ -176,32 +185,63 @@ pub fn put_blocks(out: &mut Vec<u8>, payload: &[u8], mut crc: u16) -> u16 {
     last
 }
 
-fn head(coded: &Coded, flags: u8, rig_id: Option<u32>) -> Vec<u8> {
-    let mut out = Vec::new();
-    match FRAME_TIMES_NS.iter().skip(1).position(|&time| time == coded.frame_time_ns) {
-        Some(index) => out.push(index as u8 + 1),
-        None => {
-            out.push(0);
-            out.extend_from_slice(&coded.frame_time_ns.to_le_bytes());
+/// The first fields of a motion's head.
+#[derive(Clone, Copy, Debug)]
+pub struct Head {
+    /// Time from one frame to the next.
+    pub frame_time_ns: u32,
+    /// Number of frames.
+    pub frames: u32,
+    /// Exponent of the unit of positions.
+    pub length_exponent: i8,
+    /// The id of a rig that is not in the file.
+    pub rig_id: Option<u32>,
+    /// The states that a key clip needs.
+    pub states: Option<u32>,
+}
+
+impl Head {
+    /// Their bytes.
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        match FRAME_TIMES_NS.iter().skip(1).position(|&time| time == self.frame_time_ns) {
+            Some(index) => out.push(index as u8 + 1),
+            None => {
+                out.push(0);
+                out.extend_from_slice(&self.frame_time_ns.to_le_bytes());
+            }
         }
+        varint::put(&mut out, self.frames);
+        out.push(self.length_exponent as u8);
+        out.extend(self.rig_id.iter().flat_map(|id| id.to_le_bytes()));
+        self.states.iter().for_each(|&states| varint::put(&mut out, states));
+        out
     }
-    varint::put(&mut out, coded.frames);
-    out.push(coded.length_exponent as u8);
-    out.extend(rig_id.iter().flat_map(|id| id.to_le_bytes()));
+}
+
+fn head(coded: &Coded, flags: u8, rig_id: Option<u32>) -> Vec<u8> {
+    let &Coded { frame_time_ns, frames, length_exponent, .. } = coded;
+    let mut out = Head { frame_time_ns, frames, length_exponent, rig_id, states: None }.bytes();
     if flags & HAS_EXPONENTIALS != 0 {
         let bits = |chunk: &[bool]| chunk.iter().enumerate().fold(0, |byte, (bit, &set)| byte | u8::from(set) << bit);
         out.extend(coded.exponentials.chunks(8).map(bits));
     }
-    if flags & HAS_EVENTS != 0 {
-        varint::put(&mut out, coded.events.len() as u32);
-        let mut before = 0;
-        for event in &coded.events {
-            varint::put(&mut out, event.frame - before);
-            varint::put(&mut out, event.id);
-            before = event.frame;
-        }
-    }
+    put_events(&mut out, &coded.events);
     out
+}
+
+/// The event markers, if there are any.
+pub fn put_events(out: &mut Vec<u8>, events: &[Event]) {
+    if events.is_empty() {
+        return;
+    }
+    varint::put(out, events.len() as u32);
+    let mut before = 0;
+    for event in events {
+        varint::put(out, event.frame - before);
+        varint::put(out, event.id);
+        before = event.frame;
+    }
 }
 
 /// The change from one index of a step to the next as a zigzag number.

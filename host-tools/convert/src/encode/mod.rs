@@ -4,6 +4,7 @@ pub mod bank;
 pub mod clip;
 pub mod entropy;
 pub mod index;
+pub mod keys;
 pub mod rans;
 pub mod rig;
 pub mod same_rig;

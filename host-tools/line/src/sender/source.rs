@@ -42,6 +42,8 @@ pub struct Source {
 pub enum SourceError {
     /// More joints have a choice of how they turn than a head has bits for; `--rotations euler` makes a clip that leaves it.
     Exponentials,
+    /// It is a key clip, whose segments exist only in the player.
+    Keys,
     /// It does not open.
     Player(TooSmall),
 }
@@ -49,7 +51,12 @@ pub enum SourceError {
 impl core::fmt::Display for SourceError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            SourceError::Exponentials => write!(f, "more than {} joints could be exponential maps", 8 * EXPONENTIAL_BYTES),
+            SourceError::Exponentials => write!(
+                f,
+                "more than {} joints could be exponential maps; `pantin convert --rotations euler` makes a clip that can be sent",
+                8 * EXPONENTIAL_BYTES
+            ),
+            SourceError::Keys => write!(f, "a key clip cannot be sent; `pantin convert` without --keys makes a clip that can"),
             SourceError::Player(error) => write!(f, "{error}"),
         }
     }
@@ -63,6 +70,9 @@ const JOIN_NS: u64 = 500_000_000;
 impl Source {
     /// Takes a clip apart.
     pub fn new(clip: &Clip<'_>) -> Result<Source, SourceError> {
+        if clip.has_keys() {
+            return Err(SourceError::Keys);
+        }
         let channels = clip.rig().channels();
         let (mut states, mut pose) = (vec![ChannelState::default(); clip.moving()], vec![0; channels]);
         let mut player = Player::new(*clip, &mut states, &mut pose).map_err(SourceError::Player)?;

@@ -33,6 +33,7 @@ use std::sync::OnceLock;
   pantin convert walk.bvh -o walk.ptn --max-error 3cm
   pantin convert walk.bvh -o walk.ptn --rig-out figure.rig
   pantin convert motions/walk.keys -o walk.ptn --exact
+  pantin convert motions/walk.keys -o walk.ptn --keys
   pantin convert walk.bvh -o walk.ptn --index 2
   pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5
   pantin convert walk.bvh -o walk.ptn --footsteps --event clap@12 --event 'door opens@1.5s'
@@ -133,6 +134,10 @@ pub struct Arguments {
     /// Store a snapshot of the player's state every N seconds, so that seeking starts from the nearest one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
+    /// Write a key clip where that is smaller: it holds the motion's keys and their interpolation, exactly. For .keys files and other curves
+    /// whose keys lie on frames. Only players with feature `keys` play it
+    #[arg(long, conflicts_with_all = ["same_form", "index"])]
+    keys: bool,
     /// Which animation of a file that holds several (glTF, FBX, VRML): its name, or its number from 0. `all` writes a clip for each:
     /// OUTPUT-NAME.ptn, or NAME.ptn if --output is a folder
     #[arg(long, value_name = "NAME|INDEX|all")]
@@ -173,6 +178,7 @@ impl Arguments {
         options.max_joint_error = self.max_joint_error;
         (options.channels, options.index) = (self.channels.bound(), self.index);
         (options.looped, options.footsteps) = (self.edits.looped, self.edits.footsteps);
+        options.keys = self.keys;
         options.rig_apart = self.rig_out.is_some();
         Recipe::new().import(import).edits(self.edits.edits(self.fps)).options(options)
     }

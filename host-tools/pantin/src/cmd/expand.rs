@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use indicatif::ProgressBar;
 use pantin::{Bank, Clip};
 use pantin_convert::expand::{Expanded, gather};
+use pantin_convert::expand_keys;
 use pantin_convert::export::{self, bvh::Columns};
 use pantin_convert::motion::{Event, Frames, Motion, Rig};
 use serde_json::json;
@@ -17,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// Turn a clip back into per-frame motion, or a clip or a bank into source text for firmware.
 ///
 /// The output's extension selects the format: .bvh has the same joints and frames, and three rotations a joint; .glb is a
-/// tree of nodes, with scalars as morph weights; .csv has one row per frame with the time in seconds and
+/// tree of nodes, with scalars as morph weights; .keys is key-frame text, with the keys of a clip that holds keys (`pantin convert --keys`); .csv has one row per frame with the time in seconds and
 /// all channels' values; .h and .rs hold the bytes of the clip or the bank, names, and the sizes of the memory that it takes: in Rust as a
 /// type, `WalkRoom`.
 #[derive(clap::Args)]
@@ -27,13 +28,14 @@ use std::path::{Path, PathBuf};
   pantin expand walk.ptn --rig figure.rig -o walk.bvh
   pantin expand walk.ptn -o walk.glb
   pantin expand face.ptn -o face.csv
+  pantin expand walk-keys.ptn -o walk.keys
   pantin expand walk.ptn -o walk.h
   pantin expand walk.ptn -o src/walk.rs
   pantin expand moves.ptb -o src/moves.rs")]
 pub struct Arguments {
     /// The clip, or the bank for .h and .rs
     input: PathBuf,
-    /// The file to write: .bvh, .glb (glTF), .csv, .h or .rs [default: the clip's name, ending in .bvh, or in .csv without joints;
+    /// The file to write: .bvh, .glb (glTF), .keys, .csv, .h or .rs [default: the clip's name, ending in .bvh, or in .csv without joints;
     /// a file that is there already is kept]
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -52,6 +54,8 @@ enum Format {
     Bvh,
     /// Binary glTF
     Glb,
+    /// Key-frame text
+    Keys,
     /// A table
     Csv,
     /// A C header
@@ -65,7 +69,8 @@ impl Arguments {
     fn check(&self, output: &Path) -> Result<()> {
         let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(self.rig.as_deref()).collect();
         output::check(&inputs, &[output])?;
-        refuse_foreign(output, Wanted::Motion)
+        let is_keys = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("keys"));
+        refuse_foreign(output, if is_keys { Wanted::Keys } else { Wanted::Motion })
     }
 
     /// What names in source text are made of: the output's name, or the input's where standard output has none.
@@ -79,6 +84,7 @@ impl Arguments {
         let format = match self.format {
             Some(Format::Bvh) => "bvh",
             Some(Format::Glb) => "glb",
+            Some(Format::Keys) => "keys",
             Some(Format::Csv) => "csv",
             Some(Format::H) => "h",
             Some(Format::Rs) => "rs",
@@ -131,7 +137,7 @@ impl Format {
     fn plays(self) -> u64 {
         match self {
             Format::Csv => 2,
-            Format::Bvh | Format::Glb | Format::H | Format::Rs => 1,
+            Format::Bvh | Format::Glb | Format::Keys | Format::H | Format::Rs => 1,
         }
     }
 }
@@ -190,7 +196,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => arguments.default_output(&clip)?,
     };
     let Some(format) = format_of(output, arguments.format)? else {
-        bail!("{}: expected a name that ends in .bvh, .glb, .csv, .h or .rs, or --format", output.display());
+        bail!("{}: expected a name that ends in .bvh, .glb, .keys, .csv, .h or .rs, or --format", output.display());
     };
     let stem = arguments.stem(output);
     let expanded = Expanded::new(&clip);
@@ -200,6 +206,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let least = match format {
         Format::Glb => 4 * values,
         Format::H | Format::Rs => 3 * files.clip_len() as u64,
+        Format::Keys => files.clip_len() as u64,
         Format::Bvh | Format::Csv => 2 * values,
     };
     output::check_size(output, least)?;
@@ -224,6 +231,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         Format::Bvh => export::bvh::write(&watched, Columns::ThreeRotations, &mut out),
         Format::Csv => export::table::write(&watched, &mut out),
         Format::Glb => glb(&clip, &watched, &mut out),
+        Format::Keys => expand_keys::write(&clip).and_then(|text| Ok(out.write_all(text.as_bytes())?)),
         Format::H => export::source::c_header(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?)),
         Format::Rs => {
             export::source::rust_module(&clip, files.clip(), &stem).and_then(|text| Ok(out.write_all(text.as_bytes())?))

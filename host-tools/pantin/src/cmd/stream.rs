@@ -140,8 +140,7 @@ pub(super) fn sender() -> Sender {
 fn source(clip: &Clip, path: &Path) -> Result<Source> {
     // The sender keeps the state of every channel at every frame.
     memory::limit().check(clip.frames() as usize, clip.rig().channels()).with_context(|| path.display().to_string())?;
-    Source::new(clip)
-        .with_context(|| format!("{}: `pantin convert --rotations euler` makes one that can be sent", path.display()))
+    Source::new(clip).with_context(|| path.display().to_string())
 }
 
 fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<LineSettings> {

@@ -30,7 +30,7 @@ pub enum Wanted {
 }
 
 /// The hint for files that are read and not written.
-const READ_ALONE: &str = "Pantin reads these files and does not write them; `pantin expand` writes .bvh, .glb and .csv";
+const READ_ALONE: &str = "Pantin reads these files and does not write them; `pantin expand` writes .bvh, .glb, .keys and .csv";
 
 /// Kinds of file, their extensions, and which command writes them.
 const KINDS: &[(Wanted, &[&str], &str)] = &[
@@ -38,11 +38,7 @@ const KINDS: &[(Wanted, &[&str], &str)] = &[
     (Wanted::Bank, &["ptb"], "`pantin pack` and `pantin convert FOLDER` write banks"),
     (Wanted::Rig, &["rig"], "`pantin convert --rig-out` writes rigs"),
     (Wanted::Motion, &["bvh", "glb", "csv", "h"], "to write a motion or source text use `pantin expand`"),
-    (
-        Wanted::Keys,
-        &["keys"],
-        "`pantin face fit` and `pantin face speak` write .keys; `pantin expand` writes .bvh, .glb and .csv",
-    ),
+    (Wanted::Keys, &["keys"], "`pantin face fit`, `pantin face speak` and `pantin expand` write .keys"),
     (Wanted::Picture, &["png", "apng", "gif", "svg"], "to draw a clip use `pantin render`"),
     (
         Wanted::Other,
@@ -78,7 +74,7 @@ pub fn refuse_foreign(path: &Path, wanted: Wanted) -> Result<()> {
         Wanted::Clip => "a clip's name ends in .ptn",
         Wanted::Bank => "a bank's name ends in .ptb",
         Wanted::Rig => "a rig's name ends in .rig",
-        Wanted::Motion => "expected a name that ends in .bvh, .glb, .csv, .h or .rs",
+        Wanted::Motion => "expected a name that ends in .bvh, .glb, .keys, .csv, .h or .rs",
         Wanted::Keys => "key-frame text has a name that ends in .keys",
         Wanted::Picture => "expected a name that ends in .gif, .apng, .png or .svg",
         Wanted::Model => "a model's name ends in .model",

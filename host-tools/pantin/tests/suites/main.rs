@@ -34,6 +34,7 @@ mod gltf_real_files;
 mod import_hostile;
 mod info_command;
 mod interchange;
+mod key_clips;
 mod keyframes_input;
 mod livelink_input;
 mod machine;

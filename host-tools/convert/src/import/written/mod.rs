@@ -176,7 +176,7 @@ impl Header {
 
     /// Every channel held still where it is without a line of its own.
     pub fn at_rest(&self, frames: usize) -> Vec<Vec<f64>> {
-        self.rig.channel_kinds().into_iter().map(|place| vec![rig::rest(&self.rig, place); frames]).collect()
+        self.rig.channel_kinds().into_iter().map(|place| vec![self.rig.rest(place); frames]).collect()
     }
 }
 

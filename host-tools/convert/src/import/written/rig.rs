@@ -112,12 +112,3 @@ pub fn check_groups(rig: &Rig, channels: &[usize]) -> Read<()> {
     }
     Ok(())
 }
-
-/// What a channel without keys stays at.
-pub fn rest(rig: &Rig, (joint, kind): (Option<usize>, Kind)) -> f64 {
-    match (joint, kind.axis()) {
-        (Some(joint), Some(axis)) if kind.is_position() => rig.joints[joint].offset[axis],
-        _ if kind == Kind::Wquaternion => 1.0,
-        _ => 0.0,
-    }
-}

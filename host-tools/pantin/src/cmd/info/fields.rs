@@ -16,8 +16,8 @@ pub const CAPACITY: [usize; 3] = [400, 320, 80];
 
 /// How many segments a clip has.
 pub(super) struct SegmentCount {
-    /// Their number, taken to go on as it begins if the clip is too long to be played.
-    pub count: usize,
+    /// Their number, taken to go on as it begins if the clip is too long to be played; a key clip has none.
+    pub count: Option<usize>,
     /// The frames in which they were counted, if not all.
     pub counted_frames: Option<u32>,
     /// A time between snapshots with which seeks are short; none if they are, or if the clip has an index.
@@ -27,11 +27,14 @@ pub(super) struct SegmentCount {
 impl SegmentCount {
     /// Counts them by playing the clip, for at most half a second.
     pub fn of(clip: &Clip) -> Result<SegmentCount> {
+        if clip.has_keys() {
+            return Ok(SegmentCount { count: None, counted_frames: None, suggested_index_seconds: None });
+        }
         let counted = facts::segments(clip)?;
         let count = (counted.count as f64 * f64::from(clip.frames()) / f64::from(counted.frames)).round() as usize;
         let spacing = facts::index_spacing(clip.duration_ns() as f64 * 1e-9, count);
         Ok(SegmentCount {
-            count,
+            count: Some(count),
             counted_frames: Some(counted.frames).filter(|&frames| frames != clip.frames()),
             suggested_index_seconds: spacing.filter(|_| clip.index_len() == 0),
         })
@@ -44,7 +47,7 @@ pub(super) fn of_clip(
     file_bytes: usize,
     memory: &MemoryNeeds,
     segments: &SegmentCount,
-) -> Vec<(&'static str, Value)> {
+) -> Result<Vec<(&'static str, Value)>> {
     let rig = clip.rig();
     let mut fields = vec![
         ("frames", json!(clip.frames())),
@@ -66,6 +69,7 @@ pub(super) fn of_clip(
         ("head_bytes", json!(clip.head_len())),
         ("crc_bytes", json!(clip.crc_len())),
         ("index_bytes", json!(clip.index_len())),
+        ("keys", json!(facts::keys(clip)?)),
         ("segments", json!(segments.count)),
         ("segments_counted_in_frames", json!(segments.counted_frames)),
         ("suggested_index_seconds", json!(segments.suggested_index_seconds)),
@@ -75,15 +79,15 @@ pub(super) fn of_clip(
     fields.extend(memory_fields(memory));
     let (built_in, by_update) = boards(clip, memory, file_bytes);
     fields.extend([("boards", json!(built_in)), ("boards_by_update", json!(by_update))]);
-    fields
+    Ok(fields)
 }
 
-/// The boards that play the clip when it is built in, and those that keep it when `pantin update` sends it.
+/// The boards that play the clip when it is built in, and those that keep it when `pantin update` sends it. Their images play no key clips.
 fn boards(clip: &Clip, memory: &MemoryNeeds, file: usize) -> (Vec<&'static str>, Vec<&'static str>) {
     let needs = [memory.channels, memory.moving, memory.figure_joints];
     let plays = |region: &&Region| {
         let capacity = if region.board == "microbit" { SMALL_CAPACITY } else { CAPACITY };
-        needs.iter().zip(capacity).all(|(need, most)| *need <= most)
+        !clip.has_keys() && needs.iter().zip(capacity).all(|(need, most)| *need <= most)
     };
     let keeps = |region: &&Region| plays(region) && clip.rig_len() > 0 && file + BLOCK_BYTES <= region.slot as usize;
     let names = |fits: &dyn Fn(&&Region) -> bool| REGIONS.iter().filter(fits).map(|region| region.board).collect();

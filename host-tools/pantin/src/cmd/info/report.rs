@@ -32,7 +32,7 @@ impl<'c> Report<'c> {
         let segments = SegmentCount::of(clip)?;
         Ok(Report {
             clip,
-            fields: fields::of_clip(clip, file_bytes, &memory, &segments),
+            fields: fields::of_clip(clip, file_bytes, &memory, &segments)?,
             segments,
             compared: against.map(|motion| against::errors(clip, motion)).transpose()?,
             channels: facts::channels(clip)?,
@@ -77,7 +77,7 @@ impl<'c> Report<'c> {
 
     /// Suggests an index if seeks pass many segments.
     fn note_seeks(&self) {
-        let SegmentCount { count, suggested_index_seconds: Some(seconds), .. } = self.segments else { return };
+        let SegmentCount { count: Some(count), suggested_index_seconds: Some(seconds), .. } = self.segments else { return };
         let ms = count as f64 * facts::SEEK_MS_PER_SEGMENT;
         note!(
             "a seek passes up to {count} segments ({ms:.0} ms on a Cortex-M0 at 48 MHz): `pantin convert --index {seconds}` adds snapshots to seek from"
