@@ -3,8 +3,9 @@
 //   node decode.mjs FOLDER                    checks every FOLDER/*.ptn against its .json
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
+import { KeyPlayer, checkFlags, checkHead } from "./keys.mjs";
 
-const VERSION = 1, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, HAS_SECTIONS = 64, BLOCK = 256, CRC_BYTES = 2;
+const VERSION = 1, KEY_VERSION = 2, HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, HAS_SECTIONS = 64, BLOCK = 256, CRC_BYTES = 2;
 const FRAME_RATES = [0, 120, 60, 30, 24, 25, 50, 100, 36, 15];
 const LENGTHS = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96];
 const LENGTH_CLASSES = [0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3, 3];
@@ -103,7 +104,7 @@ function readBlocks(bytes, before, what, crc = 0xffff) {
 // A place among blocks, CRCs counted [14], as a place in the payload.
 const inPayload = (at) => Math.floor(at / BLOCK) * (BLOCK - CRC_BYTES) + Math.min(at % BLOCK, (BLOCK - CRC_BYTES));
 
-function readHead(fields, flags, rig) { // [4]
+function readHead(fields, flags, rig, hasKeys) { // [4]
   const rate = FRAME_RATES[fields.u8()], exponentialJoints = [], events = [];
   need(rate !== undefined, "The frame rate's index is not from 0 to 9.");
   const frameTime = rate ? Math.floor((1e9 + (rate >> 1)) / rate) : fields.u32();
@@ -116,12 +117,14 @@ function readHead(fields, flags, rig) { // [4]
     const bits = Array.from({ length: Math.ceil(able.length / 8) }, () => fields.u8());
     exponentialJoints.push(...able.filter((_, i) => (bits[i >> 3] >> (i % 8)) & 1));
   }
+  const states = hasKeys ? fields.varint() : 0;
+  if (hasKeys) checkHead(frames, states);
   for (let left = flags & HAS_EVENTS ? fields.varint() : 0, frame = 0; left > 0; left--) {
     frame = (frame + fields.varint()) >>> 0;
     events.push([frame, fields.varint()]);
     need(fields.at <= fields.bytes.length, "The events lead past the motion's end.");
   }
-  return { frames, frame_time_ns: frameTime, length_exponent: clipExponent, exponential_joints: exponentialJoints, events };
+  return { frames, frame_time_ns: frameTime, length_exponent: clipExponent, exponential_joints: exponentialJoints, events, states };
 }
 
 /** The rANS decoder [5]. */
@@ -275,17 +278,19 @@ function readNames(bytes) { // [15]
 export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = true } = {}) {
   const file = new Fields(clipBytes, "file"), before = file.take(4), [P, n, version, flags] = before;
   need(P === 0x50 && n === 0x6e, "The file does not begin with the magic of a clip.");
-  need(version === VERSION && flags < 128, "The file's version, or a flag that it sets, is unknown.");
+  const hasKeys = version === KEY_VERSION;
+  need((version === VERSION || hasKeys) && flags < 128, "The file's version, or a flag that it sets, is unknown.");
+  if (hasKeys) checkFlags(flags);
   const itsRig = flags & HAS_RIG ? file.take(file.varint()) : rigBytes;
   const motion = file.take(file.varint()), index = flags & HAS_INDEX ? file.take(file.varint()) : null;
   const names = flags & HAS_EVENT_NAMES ? readNames(file.take(file.varint())) : [];
   need(flags & HAS_SECTIONS || file.at === clipBytes.length, "Bytes follow the last part.");
   need(itsRig, "The clip has no rig of its own, and none was given.");
   const rig = readRig(itsRig, tables), { payload, lastCrc } = readBlocks(motion, [...before, ...u32Bytes(motion.length)], "motion");
-  const fields = new Fields(payload, "motion", true), head = readHead(fields, flags, rig);
+  const fields = new Fields(payload, "motion", true), head = readHead(fields, flags, rig, hasKeys);
   const clip = {
     ...head, looped: (flags & LOOPED) !== 0, event_names: names, up: rig.up, helpers: [...rig.joints.keys()].filter((j) => rig.joints[j].isHelper), joints: rig.joints.length, channels: rig.channels.length,
-    rig, tables, payload, symbolsAt: fields.at, snapshots: [], player: (snapshot) => new Player(clip, snapshot),
+    rig, tables, payload, symbolsAt: fields.at, snapshots: [], player: (snapshot) => (hasKeys ? new KeyPlayer(clip, rig.channels.map((channel) => restValue(rig, channel, clip.length_exponent))) : new Player(clip, snapshot)),
     pose: (frame) => {
       need(Number.isInteger(frame) && frame >= 0 && frame < clip.frames, "The clip has no such frame.");
       const player = clip.player(clip.snapshots.findLast((snapshot) => snapshot.frame <= frame));
@@ -293,7 +298,7 @@ export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = tru
       return player.pose();
     },
   };
-  clip.moving = clip.player().moving.length;
+  clip.moving = hasKeys ? head.states : clip.player().moving.length;
   const snapshots = index && readBlocks(index, u32Bytes(index.length), "index", lastCrc).payload;
   if (snapshots && withSnapshots) clip.snapshots = readIndex(snapshots, clip.frames, clip.moving);
   return clip;
@@ -303,7 +308,7 @@ export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = tru
 export function decodeBank(bytes, tables) {
   const file = new Fields(bytes, "bank"), [P, b, version] = file.take(3), sections = new Map();
   need(P === 0x50 && b === 0x62, "The file does not begin with the magic of a bank.");
-  need(version === VERSION, "The bank's version is unknown.");
+  need(version === VERSION || version === KEY_VERSION, "The bank's version is unknown.");
   while (file.at < bytes.length) {
     const type = file.u8(), body = file.take(file.varint());
     need(!sections.has(type) || type < 1 || type > 3, "The bank has two sections of one type.");

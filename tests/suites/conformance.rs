@@ -61,13 +61,15 @@ fn a_decoder_written_from_the_format_alone_agrees() {
         return;
     }
     let script = paths::root().join("tests/independent/decode.mjs");
-    let output = Command::new(setup::emulator("node").unwrap()).arg(script).arg(vectors::folder()).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
-    let banks = std::fs::read_dir(vectors::folder()).unwrap();
-    let banks =
-        banks.filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "ptb")).count();
-    assert_eq!(told.lines().count(), vectors::load(&vectors::folder()).unwrap().len() + banks);
+    for folder in [vectors::folder(), vectors::keyed::folder()] {
+        let output = Command::new(setup::emulator("node").unwrap()).arg(&script).arg(&folder).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
+        let banks = std::fs::read_dir(&folder).unwrap();
+        let banks =
+            banks.filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|extension| extension == "ptb")).count();
+        assert_eq!(told.lines().count(), vectors::load(&folder).unwrap().len() + banks);
+    }
 }
 
 /// The JavaScript package: the vectors by steps and seeks, joints placed by matrices, and damaged files that the independent decoder reads too.

@@ -65,6 +65,11 @@ fn clips_behind_their_crcs() {
 }
 
 #[test]
+fn key_clips_behind_their_crcs() {
+    holds("keys_play", CLIPS);
+}
+
+#[test]
 fn rigs() {
     holds("rig_open", CLIPS);
 }

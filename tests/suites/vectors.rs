@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use harness::vectors::{self, bank, c_face, c_figure, c_header, constants, coverage, faces, record, sums, synthetic, turns};
+use harness::vectors::{
+    self, bank, c_face, c_figure, c_header, constants, coverage, faces, keyed, record, sums, synthetic, turns,
+};
 use pantin::Bank;
 
 /// Bytes that the folder may have.
@@ -117,4 +119,25 @@ fn the_files_are_few_and_small() {
     let entries = fs::read_dir(vectors::folder()).unwrap();
     let total: u64 = entries.map(|entry| entry.unwrap().metadata().unwrap().len()).sum();
     assert!(total < MOST, "{total} bytes");
+}
+
+#[test]
+fn key_clips_come_out_byte_for_byte_and_decode_to_their_records() {
+    let folder = keyed::folder();
+    let mut committed: Vec<_> = keyed::load().unwrap().into_iter().map(|vector| (vector.name.clone(), vector)).collect();
+    let mut made = keyed::all().unwrap();
+    committed.sort_by(|(a, _), (b, _)| a.cmp(b));
+    made.sort_by(|a, b| a.name.cmp(&b.name));
+    assert!(
+        made.iter().map(|vector| &vector.name).eq(committed.iter().map(|(name, _)| name)),
+        "`cargo xtask vectors` adds vectors"
+    );
+    for (made, (name, committed)) in made.iter().zip(&committed) {
+        assert!(made.clip == committed.clip, "{name}: the encoder makes other bytes than those committed");
+        let recorded = fs::read_to_string(folder.join(name).with_extension("json")).unwrap();
+        assert_eq!(record::of(&committed.open().unwrap()).unwrap(), recorded, "{name}");
+    }
+    assert_eq!(fs::read_to_string(keyed::tables_path(&folder)).unwrap(), keyed::tables(), "`cargo xtask vectors` writes them");
+    let sums = fs::read_to_string(folder.join(sums::NAME)).unwrap();
+    assert_eq!(sums, sums::text(&folder).unwrap(), "a vector never changes; `cargo xtask vectors` adds new ones");
 }

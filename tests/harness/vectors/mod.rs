@@ -8,6 +8,7 @@ pub mod constants;
 pub mod coverage;
 pub mod faces;
 mod json;
+pub mod keyed;
 pub mod orders;
 pub mod own;
 pub mod record;

@@ -52,7 +52,7 @@ const QUATERNION: [Kind; 4] = [Kind::Wquaternion, Kind::Xquaternion, Kind::Yquat
 const EXPONENTIAL: [Kind; 3] = [Kind::Xexponential, Kind::Yexponential, Kind::Zexponential];
 
 /// A chain of joints with these channels, one unit of 1 cm apart, and as many scalars.
-fn figure(joints: &[&[Kind]], scalars: usize) -> Rig {
+pub fn figure(joints: &[&[Kind]], scalars: usize) -> Rig {
     let joint = |(index, kinds): (usize, &&[Kind])| Joint {
         name: format!("j{index}"),
         parent: index.checked_sub(1),

@@ -32,6 +32,73 @@ pub fn crc_fixed_play(bytes: &[u8]) -> bool {
     open_play(&bytes)
 }
 
+/// Makes the bytes a key clip whose CRCs are right, and plays it.
+pub fn keys_play(bytes: &[u8]) -> bool {
+    let mut bytes = bytes.to_vec();
+    fix::key_clip(&mut bytes);
+    move_rig(&bytes);
+    open_play(&bytes)
+}
+
+/// Some of the vectors of key clips, and three that break a rule.
+pub fn key_clips() -> Vec<Vec<u8>> {
+    macro_rules! vectors {
+        ($($name:literal),*) => { vec![$(include_bytes!(concat!("../../key-vectors/", $name, ".ptn")).to_vec()),*] };
+    }
+    vectors!(
+        "walk",
+        "run",
+        "kinds",
+        "loop",
+        "odd-loop",
+        "catmull-rom",
+        "long-spans",
+        "events",
+        "face-yawn",
+        "frames-2-loop",
+        "malformed-acceleration",
+        "malformed-noise",
+        "malformed-few-states"
+    )
+}
+
+/// Plays a key clip forwards, by seeking and backwards, in memory that is exactly as large as it says.
+fn play_keys(clip: Clip<'_>, bytes: &[u8]) {
+    let (channels, needed) = (clip.rig().channels(), clip.moving());
+    let (mut states, mut pose) = (vec![ChannelState::default(); needed], vec![0; channels]);
+    if needed > 0 {
+        assert!(Player::new(clip, &mut states[1..], &mut pose).is_err());
+    }
+    let mut player = Player::new(clip, &mut states, &mut pose).expect("memory as asked for");
+    let moving = player.states().len();
+    assert!(moving <= channels && (!player.is_malformed() || moving == 0));
+    for channel in 0..moving {
+        let keys = player.channel_keys(channel).expect("a channel with keys");
+        let last = clip.frames() - u32::from(!clip.looped());
+        assert!(keys.iter().is_sorted_by(|(before, _), (after, _)| before < after), "keys out of order");
+        assert_eq!(keys.iter().next().zip(keys.iter().last()).map(|(first, end)| (first.0, end.0)), Some((0, last)));
+    }
+    let frames = clip.frames().min(1 + (VALUES / channels.max(1) as u64) as u32) as usize;
+    let mut stepped = Vec::with_capacity(frames * channels);
+    for frame in 0..frames {
+        assert_eq!(player.frame() as usize, frame);
+        stepped.extend_from_slice(player.pose().values);
+        player.step();
+    }
+    let mut noise = Noise::new(bytes.len() as u64);
+    for _ in 0..SEEKS {
+        let frame = noise.below(frames);
+        player.seek(frame as u32);
+        assert!(player.pose().values == &stepped[frame * channels..][..channels], "frame {frame} by seeking is another");
+    }
+    let mut memory = SeekCache::new(&player, &mut [], &mut [], &mut [], &mut []);
+    for _ in 0..BACK.min(player.frame()) {
+        player.step_back(&mut memory);
+        let frame = player.frame() as usize;
+        assert!(player.pose().values == &stepped[frame * channels..][..channels], "frame {frame} by going back is another");
+    }
+}
+
 /// Takes the rig out of a clip or puts it in, as banks do: an error or a clip.
 fn move_rig(bytes: &[u8]) {
     let Ok(clip) = Clip::with_rig(bytes, RIG) else { return };
@@ -97,6 +164,9 @@ fn bank_of(bytes: &[u8]) -> bool {
 }
 
 fn play(clip: Clip<'_>, bytes: &[u8]) {
+    if clip.has_keys() {
+        return play_keys(clip, bytes);
+    }
     let channels = clip.rig().channels();
     let moving = clip.moving();
     assert!(moving <= channels);

@@ -1,5 +1,6 @@
 //! Repairs what the first checks would refuse, and nothing else.
 
+use pantin::codec::keys::{KEY_FLAGS, KEY_VERSION};
 use pantin::codec::layout::{
     BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, HAS_SECTIONS, KNOWN_FLAGS, MAGIC, VERSION, section,
 };
@@ -26,12 +27,21 @@ pub fn bank(bytes: &mut [u8]) {
     }
 }
 
-/// Makes magic, version, flags, the motion's length and all CRCs right.
+/// Makes magic, version, flags, the motion's length and all CRCs of a clip of segments right.
 pub fn clip(bytes: &mut Vec<u8>) {
+    of_version(bytes, VERSION, KNOWN_FLAGS);
+}
+
+/// The same of a key clip.
+pub fn key_clip(bytes: &mut Vec<u8>) {
+    of_version(bytes, KEY_VERSION, KEY_FLAGS);
+}
+
+fn of_version(bytes: &mut Vec<u8>, version: u8, known_flags: u8) {
     bytes.resize(bytes.len().max(8), 0);
     bytes[..2].copy_from_slice(&MAGIC);
-    bytes[2] = VERSION;
-    bytes[3] &= KNOWN_FLAGS;
+    bytes[2] = version;
+    bytes[3] &= known_flags;
     let flags = bytes[3];
     let mut at = 4;
     if flags & HAS_RIG != 0 {

@@ -29,9 +29,10 @@ pub struct FuzzTarget {
 const CLIPS: &[&str] = &["ptn"];
 
 /// All entry points.
-pub const FUZZ_TARGETS: [FuzzTarget; 21] = [
+pub const FUZZ_TARGETS: [FuzzTarget; 22] = [
     FuzzTarget { name: "open_play", run: clips::open_play, words: &[], vectors: CLIPS, made: Vec::new },
     FuzzTarget { name: "crc_fixed_play", run: clips::crc_fixed_play, words: &[], vectors: CLIPS, made: Vec::new },
+    FuzzTarget { name: "keys_play", run: clips::keys_play, words: &[], vectors: &[], made: clips::key_clips },
     FuzzTarget { name: "rig_open", run: clips::rig_open, words: &[], vectors: &["rig"], made: Vec::new },
     FuzzTarget { name: "bank_open", run: clips::bank_open, words: &[], vectors: &["ptb"], made: Vec::new },
     FuzzTarget { name: "animator", run: animator::animator, words: &[], vectors: &[], made: animator::tables },

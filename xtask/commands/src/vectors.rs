@@ -9,7 +9,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use harness::vectors::{
-    self, Vector, bank, c_face, c_figure, c_header, constants, coverage, faces, own, record, sums, synthetic, turns,
+    self, Vector, bank, c_face, c_figure, c_header, constants, coverage, faces, keyed, own, record, sums, synthetic, turns,
 };
 use pantin::codec::layout::VERSION;
 use pantin_tools::output::write_whole;
@@ -52,6 +52,7 @@ impl Vectors {
                 }
             }
         }
+        println!("{} new files of key clips", put_keyed()?);
         write_whole(&folder.join(constants::NAME), constants::text().as_bytes())?;
         write_whole(&c_header::path(), c_header::text().as_bytes())?;
         write_whole(&c_figure::path(), c_figure::text().as_bytes())?;
@@ -63,6 +64,29 @@ impl Vectors {
         println!("{} files as they were, {added} new", files.len() - added);
         Ok(())
     }
+}
+
+/// Adds the vectors of key clips that are missing, and returns how many files that were.
+fn put_keyed() -> Result<usize> {
+    let folder = keyed::folder();
+    fs::create_dir_all(&folder)?;
+    let (mut files, mut added) = (BTreeMap::new(), 0);
+    for vector in keyed::all()? {
+        put(&mut files, &vector)?;
+    }
+    for (name, bytes) in &files {
+        let path = folder.join(name);
+        match fs::read(&path) {
+            Ok(there) => ensure!(there == *bytes, "{name}: a vector of key clips never changes, and would have other bytes now"),
+            Err(_) => {
+                write_whole(&path, bytes)?;
+                added += 1;
+            }
+        }
+    }
+    write_whole(&keyed::tables_path(&folder), keyed::tables().as_bytes())?;
+    write_whole(&folder.join(sums::NAME), sums::text(&folder)?.as_bytes())?;
+    Ok(added)
 }
 
 /// Takes the vectors away if they are not of this version.
