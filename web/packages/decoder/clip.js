@@ -139,9 +139,9 @@ const unblocked = (bytes, crc, isPartial) => {
 /**
  * Opens a clip (.ptn) [1]. One without a rig needs that of `openRig` or of a bank. With `isPartial`, the bytes are the beginning of a file: blocks count up to
  * the first that is missing or damaged, and a player is `dry` once it has read past them. Of the programs that use it, `names` are those of `openRawRig`, `named` adds to a clip, and players have what
- * `poseOf` makes of a clip and its raw values.
+ * `poseOf` makes of a clip and its raw values. Key clips need the `keys` of keys.js.
  */
-export const openRawClip = (data, rig, isPartial, { names, named, poseOf } = {}) => {
+export const openRawClip = (data, rig, isPartial, { names, named, poseOf, keys } = {}) => {
   const bytes = bytesOf(data);
   const file = fieldsOf(bytes);
   const head = [...file.take(4)];
@@ -149,7 +149,9 @@ export const openRawClip = (data, rig, isPartial, { names, named, poseOf } = {})
   const eventNames = [];
   const events = [];
   check(head[0] === 80 && head[1] === 110, "no Pantin clip");
-  check(head[2] === 1 && flags < 128, "another version of the format");
+  const hasKeys = head[2] === 2;
+  check(!hasKeys || keys, "a key clip needs the keys of @pantin/decoder/keys");
+  check((head[2] === 1 || hasKeys) && flags < 128, "another version of the format");
   const rigBytes = flags & HAS_RIG ? file.varint() : 0;
   if (flags & HAS_RIG) rig = openRawRig(file.take(rigBytes), names);
   const motionBytes = file.varint();
@@ -183,6 +185,8 @@ export const openRawClip = (data, rig, isPartial, { names, named, poseOf } = {})
     bits >>= 1;
     return isExponential ? { ...joint, kinds: joint.kinds.map((kind) => (isEuler(kind) ? component++ : kind)) } : joint;
   });
+  const states = hasKeys ? varint() : 0;
+  if (hasKeys) keys.check(flags, frames, states);
   for (let left = flags & HAS_EVENTS ? varint() : 0, frame = 0; left--; ) {
     frame = (frame + varint()) >>> 0;
     const id = varint();
@@ -192,10 +196,10 @@ export const openRawClip = (data, rig, isPartial, { names, named, poseOf } = {})
   const { scalars } = rig;
   const looped = (flags & LOOPED) > 0;
   const clip = {
-    rig, joints, scalars, events, eventNames, frames, frameTimeNs, exponent, looped, rigBytes, motionBytes,
+    rig, joints, scalars, events, eventNames, frames, frameTimeNs, exponent, looped, hasKeys, states, rigBytes, motionBytes,
     // Seconds. In a loop, the last frame lasts as long as the others.
     duration: ((frames - !looped) * frameTimeNs) / 1e9,
-    play: () => play(clip, poseOf, payload, at(), payload.length + 2 * ceil(motionBytes / 256) < motionBytes),
+    play: () => (hasKeys ? playKeys : play)(clip, poseOf, payload, at(), payload.length + 2 * ceil(motionBytes / 256) < motionBytes, keys),
   };
   named?.(clip);
   return clip;
@@ -207,7 +211,7 @@ export const openRawBank = (data, extras) => {
   const sections = [];
   const clips = new Map();
   check(u8() === 80 && u8() === 98, "not a bank");
-  check(u8() === 1, "unknown version");
+  check([1, extras.keys ? 2 : 1].includes(u8()), "unknown version");
   while (more()) {
     const type = u8();
     check(!sections[type] || type < 1 || type > 3, "bad bank");
@@ -236,8 +240,20 @@ export const openRawBank = (data, extras) => {
   };
 };
 
+// Calls `each` with the kind of every channel and its value at rest.
+const eachRest = ({ rig, exponent }, each) => {
+  const shift = rig.exponent - exponent;
+  rig.joints.forEach((joint) => joint.kinds.forEach((kind) => each(kind, kind > 2 ? 0 : shift < 0 ? joint.rest[kind] >> min(-shift, 31) : joint.rest[kind] << shift % 32)));
+  rig.scalars.forEach(() => each(13, 0));
+};
+
+const frameAt = ({ frames, frameTimeNs, looped }, seconds) => {
+  const to = floor((seconds * 1e9) / frameTimeNs + 1e-6);
+  return looped ? ((to % frames) + frames) % frames : to;
+};
+
 const play = (clip, poseOf, payload, at, isPartial) => {
-  const { rig, frames, frameTimeNs } = clip;
+  const { rig, frames } = clip;
   const raw = new Int32Array(rig.channels);
   // Channels that move, and their state.
   const channels = [];
@@ -305,9 +321,7 @@ const play = (clip, poseOf, payload, at, isPartial) => {
     }
     raw[channel++] = rest;
   };
-  const shift = rig.exponent - clip.exponent;
-  rig.joints.forEach((joint) => joint.kinds.forEach((kind) => begin(kind, kind > 2 ? 0 : shift < 0 ? joint.rest[kind] >> min(-shift, 31) : joint.rest[kind] << shift % 32)));
-  rig.scalars.forEach(() => begin(13, 0));
+  eachRest(clip, begin);
   const state = Int32Array.from(start);
   const snapshots = [[0, at, x, state.slice()]];
 
@@ -389,10 +403,39 @@ const play = (clip, poseOf, payload, at, isPartial) => {
     get dry() {
       return isPartial && at >= payload.length;
     },
-    seekTime: (seconds) => {
-      const to = floor((seconds * 1e9) / frameTimeNs + 1e-6);
-      return seek(clip.looped ? ((to % frames) + frames) % frames : to);
-    },
+    seekTime: (seconds) => seek(frameAt(clip, seconds)),
   };
   return player;
+};
+
+// Plays a key clip: `keys` computes all of its frames. Before the whole motion is there, it rests at frame 0.
+const playKeys = (clip, poseOf, payload, at, isPartial, keys) => {
+  const { rig, frames } = clip;
+  const raw = new Int32Array(rig.channels);
+  let frame = 0;
+  let channel = 0;
+  eachRest(clip, (_, rest) => (raw[channel++] = rest));
+  const { moving, show } = isPartial ? { moving: 0, show: () => {} } : keys.play(clip, payload, at, raw);
+  const step = () => {
+    if (isPartial || frame + 1 >= frames) return false;
+    show(++frame);
+    return true;
+  };
+  const seek = (to) => {
+    frame = isPartial ? 0 : max(0, min(floor(to) || 0, frames - 1));
+    show(frame);
+    return player;
+  };
+  const player = {
+    ...poseOf?.(clip, raw),
+    clip, raw, step, seek, moving,
+    get frame() {
+      return frame;
+    },
+    get dry() {
+      return isPartial;
+    },
+    seekTime: (seconds) => seek(frameAt(clip, seconds)),
+  };
+  return seek(0);
 };

@@ -1,3 +1,5 @@
+import type { Keys } from "./keys.js";
+
 /** Bytes of a file. */
 export type Bytes = ArrayBuffer | ArrayBufferView;
 
@@ -123,11 +125,12 @@ export interface Bank {
 /**
  * Opens a clip (.ptn). Throws an Error if the bytes are damaged or are no clip. `rig` is that of a clip whose file contains none. With `isPartial`, the bytes are the
  * beginning of a file: step a player until it is `dry`, then seek back to the frame before, the last one that can be shown. Names of events are missing.
+ * Key clips need `keys` of "@pantin/decoder/keys": a player of them is `dry` at frame 0 until the whole motion is there.
  */
-export function openClip(data: Bytes, rig?: Rig, isPartial?: boolean): Clip;
+export function openClip(data: Bytes, rig?: Rig, isPartial?: boolean, keys?: Keys): Clip;
 /** Reads raw values of a clip's form, such as a mixture of two poses. The functions read `raw` when they are called. */
 export function poseOf(clip: Clip, raw: Int32Array): Pose;
-/** Opens a bank of clips (.ptb). */
-export function openBank(data: Bytes): Bank;
+/** Opens a bank of clips (.ptb). One with key clips needs `keys` of "@pantin/decoder/keys". */
+export function openBank(data: Bytes, keys?: Keys): Bank;
 /** Opens a rig that is a file of its own. */
 export function openRig(data: Bytes): Rig;

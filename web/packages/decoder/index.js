@@ -19,11 +19,11 @@ const named = (clip) => Object.assign(clip, {
 });
 const EXTRAS = { names: LIVE_LINK, named, poseOf };
 
-/** Opens a clip (.ptn). One without a rig needs that of `openRig` or of a bank. With `isPartial`, the bytes are the beginning of a file. */
-const openClip = (data, rig, isPartial) => openRawClip(data, rig, isPartial, EXTRAS);
+/** Opens a clip (.ptn). One without a rig needs that of `openRig` or of a bank. With `isPartial`, the bytes are the beginning of a file. Key clips need the `keys` of keys.js. */
+const openClip = (data, rig, isPartial, keys) => openRawClip(data, rig, isPartial, { ...EXTRAS, keys });
 
-/** Opens a bank (.ptb), the clips of one rig by name. */
-const openBank = (data) => openRawBank(data, EXTRAS);
+/** Opens a bank (.ptb), the clips of one rig by name. A bank with key clips needs the `keys` of keys.js. */
+const openBank = (data, keys) => openRawBank(data, { ...EXTRAS, keys });
 
 /** Opens a rig that is a file of its own. */
 const openRig = (data) => openRawRig(data, LIVE_LINK);

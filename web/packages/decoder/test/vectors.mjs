@@ -7,8 +7,10 @@ import { decode } from "../../../../tests/independent/decode.mjs";
 
 const { openBank, openClip, openRig } = await import(process.argv[2] ? pathToFileURL(resolve(process.argv[2])) : "../index.js");
 const { degrees, findJoint } = await import("../turns.js");
+const { keys } = await import("../keys.js");
 const folder = new URL("../../../../tests/vectors/", import.meta.url);
-const read = (name) => readFileSync(new URL(name, folder));
+const keyFolder = new URL("../../../../tests/key-vectors/", import.meta.url);
+const read = (name, from = folder) => readFileSync(new URL(name, from));
 const json = (name) => JSON.parse(read(name));
 const tables = json("tables.json");
 const LARGEST = 2 ** 16;
@@ -120,6 +122,22 @@ for (const file of readdirSync(folder).filter((name) => /\.pt[nb]$/.test(name)))
   for (const frame in expected.poses) assert.deepEqual([...clip.play().seek(+frame).raw], expected.poses[frame]);
 }
 
+// Key clips, which open with `keys` alone.
+for (const file of readdirSync(keyFolder).filter((name) => name.endsWith(".ptn"))) {
+  const [name, bytes] = [file.slice(0, -4), read(file, keyFolder)];
+  const expected = JSON.parse(read(`${name}.json`, keyFolder));
+  const rig = existsSync(new URL(`${name}.rig`, keyFolder)) ? openRig(read(`${name}.rig`, keyFolder)) : undefined;
+  assert.throws(() => openClip(bytes, rig), /a key clip needs/);
+  const clip = openClip(bytes, rig, false, keys);
+  assert.deepEqual([clip.frames, clip.looped, clip.states, clip.events.map(({ frame, id }) => [frame, id]), clip.eventNames], [expected.frames, expected.looped, expected.moving, expected.events, expected.event_names], name);
+  crcs(clip, name, expected.crcs);
+  vectors++;
+  // A part counts by whole blocks of the motion.
+  if (clip.motionBytes < 260) continue;
+  const arriving = openClip(bytes.subarray(0, -3), rig, true, keys).play();
+  assert.deepEqual([arriving.dry, arriving.step(), arriving.frame], [true, false, 0], name);
+}
+
 // By name, by time, and scalars.
 {
   const clip = openClip(read("scalars.ptn"));
@@ -196,9 +214,11 @@ const outcome = (act) => {
   }
 };
 let [mutants, played] = [0, 0];
-for (const file of readdirSync(folder).filter((name) => name.endsWith(".ptn") && name !== "channels-300.ptn")) {
+const LONG = ["channels-300.ptn", "most-frames.ptn"];
+const filesOf = (from) => readdirSync(from).filter((name) => name.endsWith(".ptn") && !LONG.includes(name)).map((name) => [name, from]);
+for (const [file, from] of [folder, keyFolder].flatMap(filesOf)) {
   for (let round = 0; round < 60; round++) {
-    const bytes = new Uint8Array(read(file));
+    const bytes = new Uint8Array(read(file, from));
     for (let edits = 1 + chance(3); edits--; ) bytes[chance(bytes.length)] = chance(4) ? chance(256) : bytes[chance(bytes.length)] ^ (1 << chance(8));
     // Half of the changed motions get a checksum that fits, so that their symbols are read.
     if (round & 1 && bytes[3] & 1) {
@@ -226,7 +246,7 @@ for (const file of readdirSync(folder).filter((name) => name.endsWith(".ptn") &&
       return clip.frames > LARGEST ? "long" : frames(clip.frames).map(clip.pose);
     });
     const ours = outcome(() => {
-      const clip = openClip(bytes);
+      const clip = openClip(bytes, undefined, false, keys);
       return clip.frames > LARGEST ? "long" : frames(clip.frames).map((frame) => [...clip.play().seek(frame).raw]);
     });
     assert.deepEqual(ours, theirs, `${file}, round ${round}`);
