@@ -9,7 +9,7 @@ use pantin::{ChannelState, Clip, Player};
 
 use super::guest::Guest;
 use super::table::mean;
-use super::{Goal, Setting, reference, table, tool, turns};
+use super::{Goal, Setting, decode_keys, reference, table, tool, turns};
 use xtask::steps::say;
 
 const BOUND_CM: f64 = 1.0;
@@ -83,6 +83,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
     }
     let walk = clips.iter().find(|clip| clip.name == WALK).context("our walk is not among the clips")?;
     goals.extend(turns::run(&walk.path)?);
+    goals.extend(decode_keys::run(setting)?);
     Ok(goals)
 }
 

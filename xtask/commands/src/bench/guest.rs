@@ -20,7 +20,12 @@ pub struct Guest {
 impl Guest {
     /// Builds it.
     pub fn new(machine: Machine, program: &str) -> Result<Self> {
-        let firmware = Firmware::build("testsuite", program, machine.target, &[])?;
+        Self::featuring("", machine, program)
+    }
+
+    /// Builds it with features of the package, separated by commas.
+    pub fn featuring(features: &str, machine: Machine, program: &str) -> Result<Self> {
+        let firmware = Firmware::featuring(features, "testsuite", program, machine.target, &[])?;
         Ok(Self { machine, firmware, plugin: icount::plugin(machine.emulator)? })
     }
 

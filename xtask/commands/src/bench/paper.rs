@@ -9,7 +9,7 @@ use pantin_convert::import::{self, ImportOptions};
 use pantin_convert::motion::{Kind, Motion};
 
 use super::tool::{self, Converted};
-use super::{Goal, Setting, plot, table};
+use super::{Goal, Setting, paper_keys, plot, table};
 use xtask::steps::say;
 
 const BOUND_CM: f64 = 0.5;
@@ -42,6 +42,7 @@ pub fn run(setting: &Setting) -> Result<Vec<Goal>> {
         goals.push(Goal::at_most(what, made.info.motion_bytes, most, 0, "bytes"));
     }
     table::print(&HEADER, &rows);
+    goals.extend(paper_keys::run()?);
     goals.extend(saving(setting)?);
     Ok(goals)
 }
