@@ -54,7 +54,8 @@ fn play(bytes: &'static [u8]) -> Option<()> {
         look.at(pose, black_box([0; 3]));
         hand.reach(pose, black_box([0; 3]), Some([0, 0, 1]));
         foot.update(pose, placement, black_box(true), 16_667);
-        black_box((animator.pose().values, animator.take_increment()));
+        black_box(animator.take_increment());
+        black_box(animator.pose().values);
         if black_box(false) {
             animator.switch(clip, black_box(3), I16F16::ONE, Transition::Inertialized(black_box(9))).ok()?;
         }
