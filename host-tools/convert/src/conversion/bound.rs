@@ -13,7 +13,7 @@ use crate::verify::compare;
 use anyhow::Result;
 
 /// What closing a loop may take of the bound.
-const CLOSING: f64 = 0.9;
+pub(crate) const CLOSING: f64 = 0.9;
 
 /// What a conversion keeps to.
 #[derive(Clone, Debug)]
@@ -59,8 +59,20 @@ impl Bound {
 }
 
 fn close_within(distance: &mut Distance, motion: &Motion) -> Result<Closed> {
+    let whole = *distance;
+    let most = Most::Distance(&whole.pose, whole.scalar_part);
+    let (left, closed) = loop_seam::first_that_fits(motion, most, |ways| {
+        let mut left = whole;
+        let closed = close_but_for(&mut left, motion, ways)?;
+        Ok((left, closed))
+    })?;
+    *distance = left;
+    Ok(closed)
+}
+
+fn close_but_for(distance: &mut Distance, motion: &Motion, ways: &[usize]) -> Result<Closed> {
     let Distance { pose, scalar_part } = distance;
-    let closed = loop_seam::close(motion, Most::Distance(pose, *scalar_part))?;
+    let closed = loop_seam::close_but_for(motion, Most::Distance(pose, *scalar_part), ways)?;
     let (max_cm, least) = (pose.max_cm, closed.moved_cm / CLOSING);
     // Half of the seam at most, or a little more where joints turn far: then there is nothing left to code with.
     let too_far = || {

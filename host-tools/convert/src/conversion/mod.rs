@@ -15,6 +15,8 @@ use crate::error::Error;
 use crate::motion::Motion;
 use crate::note::Note;
 use crate::options::Options;
+pub(crate) use bound::CLOSING;
+pub(crate) use distance::Distance;
 #[cfg(feature = "internals")]
 #[doc(hidden)]
 pub use keyed::key_clip;

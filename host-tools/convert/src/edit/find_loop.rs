@@ -4,11 +4,13 @@
 //! it. A stretch in which less happens than in the whole motion is no cycle, since standing still is a perfect loop: of those the best one of a second or more is proposed
 //! apart, as one for standing.
 
-use super::loop_seam::places_root;
+use super::cut;
+use super::loop_seam::{least_seam, places_root};
+use crate::conversion::{CLOSING, Distance};
 use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, distance};
-use crate::memory::Memory;
 use crate::motion::Motion;
+use crate::options::Options;
 use anyhow::Result;
 
 /// A proposal.
@@ -18,8 +20,10 @@ pub struct Cut {
     pub from: usize,
     /// The last frame, at which the pose is that of the first one again.
     pub to: usize,
-    /// The farthest that a joint is in one pose from where it is in the other, in cm.
+    /// The farthest that a joint is in one pose from where it is in the other, in cm, as closing the loop measures it.
     pub seam_cm: f64,
+    /// The least bound with which the loop is closed, in cm.
+    pub bound_cm: f64,
     /// The joint.
     pub joint: String,
     /// Whether the figure moves little in it: a loop for standing, not a cycle.
@@ -37,14 +41,16 @@ const SHORTEST_STILL: f64 = 1.0;
 /// Poses that are compared with each other at most; of a longer motion, every few frames, and then the frames beside the best.
 const POSES: usize = 1200;
 
-/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere.
-pub fn find(motion: &Motion, memory: Memory) -> Result<Vec<Cut>> {
+/// The best cuts, the best first, and after them one for standing, if the figure stands anywhere. Seams are measured at the points that `options` bound.
+pub fn find(motion: &Motion, options: &Options) -> Result<Vec<Cut>> {
+    let bare = unmarked(motion);
+    let motion = &bare;
     let shortest = ((SHORTEST / motion.frame_time).round() as usize).max(2);
     let wrong = |text: String| Error::setting(Setting::FindLoop, text);
     require!(!motion.rig.joints.is_empty(), wrong("the motion has no joints".into()));
     let frames = motion.frames;
     require!(frames > shortest + 1, wrong(format!("{frames} frames; expected more than {}", shortest + 1)));
-    let poses = all_positions(&motion.rig, &on_the_spot(motion), motion.frames, memory)?;
+    let poses = all_positions(&motion.rig, &on_the_spot(motion), motion.frames, options.memory)?;
     let apart = |a: usize, b: usize| greatest(&poses[a], &poses[b]);
     // The movement up to each frame.
     let mut moved = vec![0.0; motion.frames];
@@ -87,16 +93,26 @@ pub fn find(motion: &Motion, memory: Memory) -> Result<Vec<Cut>> {
         let pairs = pairs.filter(|&(from, to)| to >= from + shortest && lively(from, to));
         pairs.min_by(|a, b| cost(a.0, a.1).total_cmp(&cost(b.0, b.1)))
     });
-    let cut = |(from, to): (usize, usize)| {
-        let (seam_cm, joint) = apart(from, to);
-        Cut { from, to, seam_cm, joint: motion.rig.joint_name(joint), still: !lively(from, to) }
+    let cut = |(from, to): (usize, usize)| -> Result<Cut> {
+        let part = cut::cut(motion, Some(from), Some(to))?;
+        let (seam_cm, joint, bound_cm) = least_seam(&part, &Distance::of(options, &part)?.pose, CLOSING)?;
+        // What the file's own rounding takes of a bound.
+        let bound_cm = bound_cm + motion.origin.error_cm;
+        Ok(Cut { from, to, seam_cm, bound_cm, joint, still: !lively(from, to) })
     };
-    let mut cuts: Vec<Cut> = refined.map(cut).collect();
+    let mut cuts: Vec<Cut> = refined.map(cut).collect::<Result<_>>()?;
     cuts.sort_by(|a, b| a.seam_cm.total_cmp(&b.seam_cm));
     let shortest = ((SHORTEST_STILL / motion.frame_time).round() as usize).max(2);
     let standing = |from: usize, to: usize| moved[to] - moved[from] < still / 2.0 * (to - from) as f64;
-    cuts.extend(best(shortest, &standing).first().map(|&(_, from, to)| cut((from, to))));
+    if let Some(&(_, from, to)) = best(shortest, &standing).first() {
+        cuts.push(cut((from, to))?);
+    }
     Ok(cuts)
+}
+
+/// The motion as one that is no loop yet.
+fn unmarked(motion: &Motion) -> Motion {
+    Motion { looped: false, ..motion.clone() }
 }
 
 /// The motion without the way of the root on the ground.

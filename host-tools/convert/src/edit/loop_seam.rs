@@ -56,6 +56,70 @@ const CLOSED_CM: f64 = 1e-6;
 
 /// Closes `motion`. Refuses a seam that is more than `most`, naming its worst joint or channel.
 pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
+    first_that_fits(motion, most, |ways| close_but_for(motion, most, ways))
+}
+
+/// The result of the first choice of ways that `attempt` accepts, or the error of the choice with the least seam.
+///
+/// A place of the root that does not come back is a way that the figure goes, and is kept, or a part of the seam, and is closed. As few as possible are ways: those
+/// that are more than the bound, and others where the seam is within the bound without them alone. So a looser bound takes what a tighter one takes.
+pub(crate) fn first_that_fits<T>(motion: &Motion, most: Most, attempt: impl Fn(&[usize]) -> Result<T>) -> Result<T> {
+    let steps = if motion.frames > 0 { differences(motion) } else { Vec::new() };
+    let mut refused = None;
+    for ways in choices(motion, &steps, most) {
+        let seam_cm = if motion.frames > 0 { seam(motion, &ways, most.shell_cm()).cm } else { 0.0 };
+        match attempt(&ways) {
+            Ok(done) => return Ok(done),
+            Err(error) if refused.as_ref().is_none_or(|(least, _)| seam_cm < *least) => refused = Some((seam_cm, error)),
+            Err(_) => {}
+        }
+    }
+    Err(refused.map_or_else(|| open("the motion has no seam".into()).into(), |(_, error)| error))
+}
+
+/// The seam of the choice of ways with which the least bound on the points of `pose` is enough: how far the farthest joint is off in cm, the joint, and that bound, of
+/// which closing takes less than the part `closing`.
+pub(crate) fn least_seam(motion: &Motion, pose: &PoseBound, closing: f64) -> Result<(f64, String, f64)> {
+    let bound = PoseBound { shell: pose.shell, ..PoseBound::places(f64::MAX) };
+    let most = Most::Distance(&bound, f64::MAX);
+    let steps = differences(motion);
+    let mut least: Option<(f64, String, f64)> = None;
+    for ways in choices(motion, &steps, most) {
+        let closed = close_but_for(motion, most, &ways)?;
+        let needed = closed.seam_cm.max(closed.moved_cm / closing);
+        if least.as_ref().is_none_or(|(.., other)| needed < *other) {
+            least = Some((closed.seam_cm, closed.seam_joint, needed));
+        }
+    }
+    least.ok_or_else(|| open("the motion has no seam".into()).into())
+}
+
+/// Ways of the root that are chosen from at most: all choices are tried.
+const WAYS: usize = 6;
+
+/// The choices of channels that are ways, those with fewest first.
+fn choices(motion: &Motion, steps: &[f64], most: Most) -> Vec<Vec<usize>> {
+    let kinds = motion.rig.channel_kinds();
+    let limit = |channel: usize| match most {
+        Most::Distance(bound, _) => bound.max_cm / motion.rig.cm_per_unit,
+        Most::Channels(bounds) => bounds.greatest[channel],
+    };
+    let moved = (0..steps.len()).filter(|&channel| steps[channel] != 0.0 && places_root(motion, kinds[channel]));
+    let (far, near): (Vec<usize>, Vec<usize>) = moved.partition(|&channel| steps[channel].abs() > limit(channel));
+    // Channels that are bounded one by one need no choice.
+    let near = if matches!(most, Most::Channels(_)) { &[][..] } else { &near[..near.len().min(WAYS)] };
+    let mut choices: Vec<Vec<usize>> = (0..1u32 << near.len())
+        .map(|chosen| {
+            let also = near.iter().enumerate().filter(|(bit, _)| chosen >> bit & 1 != 0).map(|(_, &channel)| channel);
+            far.iter().copied().chain(also).collect()
+        })
+        .collect();
+    choices.sort_by_key(Vec::len);
+    choices
+}
+
+/// Closes `motion`, but for channels that are ways of the figure.
+pub(crate) fn close_but_for(motion: &Motion, most: Most, ways: &[usize]) -> Result<Closed> {
     if motion.looped {
         return Ok(Closed {
             motion: motion.clone(),
@@ -72,10 +136,10 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     let short = || open(format!("{} frames are no loop; expected 3 or more", motion.frames));
     require!(motion.frames > 2, short());
     let mut steps = differences(motion);
-    let travel = travel(motion, &mut steps, most);
-    check(motion, &steps, &travel, most)?;
+    let travel: Vec<(usize, f64)> = ways.iter().map(|&channel| (channel, -std::mem::take(&mut steps[channel]))).collect();
+    check(motion, &steps, ways, most)?;
     let shell_cm = most.shell_cm();
-    let gap = seam(motion, &travel, shell_cm);
+    let gap = seam(motion, ways, shell_cm);
     let (seam_cm, seam_joint) = (gap.cm, gap.name(motion));
     let last = (motion.frames - 1) as f64;
     let part = |frame: usize| frame as f64 / last - 0.5;
@@ -83,7 +147,7 @@ pub fn close(motion: &Motion, most: Most) -> Result<Closed> {
     for (values, step) in out.values.iter_mut().zip(&steps) {
         values.iter_mut().enumerate().for_each(|(frame, value)| *value += step * part(frame));
     }
-    let gap = seam(&out, &travel, shell_cm).cm;
+    let gap = seam(&out, ways, shell_cm).cm;
     let jump = || open(format!("the seam's angles are too different to be closed (the pose would still jump by {gap:.3} cm)"));
     require!(gap < CLOSED_CM, jump());
     for (keys, step) in out.keys.iter_mut().zip(&steps) {
@@ -170,6 +234,9 @@ pub(super) fn places_root(motion: &Motion, (joint, kind): (Option<usize>, Kind))
     kind.is_position() && joint.is_some_and(|joint| !(0..joint).any(turns))
 }
 
+/// Degrees by which another triple of angles has to be nearer than the plain one.
+const SHORTER_DEG: f64 = 1e-3;
+
 /// What takes each channel's last value to the first one's pose: angles to the nearest that turn alike.
 fn differences(motion: &Motion) -> Vec<f64> {
     let last = motion.frames - 1;
@@ -186,7 +253,12 @@ fn differences(motion: &Motion) -> Vec<f64> {
             let turn = local(joint, |slot| motion.values[first + slot][0]).0;
             let before = std::array::from_fn(|n| motion.values[first + slots[n]][last]);
             let near = euler::near(&turn, [axes[0], axes[1], axes[2]], before);
-            (0..3).for_each(|n| steps[first + slots[n]] = near[n] - before[n]);
+            let way: [f64; 3] = std::array::from_fn(|n| near[n] - before[n]);
+            // Angles that turn alike another way come out of a matrix, which blurs them: the plain way is exact.
+            let own: f64 = slots.iter().map(|slot| steps[first + slot].abs()).sum();
+            if way.iter().map(|way| way.abs()).sum::<f64>() < own - SHORTER_DEG {
+                (0..3).for_each(|n| steps[first + slots[n]] = way[n]);
+            }
         }
         // A quaternion turns like its opposite: to the nearer one.
         let ends = |slot: usize| [0, last].map(|frame| motion.values[first + slot][frame]);
@@ -199,23 +271,6 @@ fn differences(motion: &Motion) -> Vec<f64> {
         }
     }
     steps
-}
-
-/// Places of the root that are farther apart than the bound are a way that the figure goes: they stay, and are no part of the seam.
-fn travel(motion: &Motion, steps: &mut [f64], most: Most) -> Vec<(usize, f64)> {
-    let kinds = motion.rig.channel_kinds();
-    let mut found = Vec::new();
-    for (channel, step) in steps.iter_mut().enumerate() {
-        let limit = match most {
-            Most::Distance(bound, _) => bound.max_cm / motion.rig.cm_per_unit,
-            Most::Channels(bounds) => bounds.greatest[channel],
-        };
-        if places_root(motion, kinds[channel]) && step.abs() > limit {
-            found.push((channel, -*step));
-            *step = 0.0;
-        }
-    }
-    found
 }
 
 /// How far two poses are from each other: the greatest distance of a bounded joint, that joint, and the greatest rotations.
@@ -266,10 +321,10 @@ impl Most<'_> {
     }
 }
 
-/// How far the last frame's pose is from the first one's, but for the travel.
-fn seam(motion: &Motion, travel: &[(usize, f64)], shell_cm: f64) -> Gap {
+/// How far the last frame's pose is from the first one's, but for the ways.
+fn seam(motion: &Motion, ways: &[usize], shell_cm: f64) -> Gap {
     let mut ends: Vec<Vec<f64>> = motion.values.iter().map(|values| vec![values[0], values[motion.frames - 1]]).collect();
-    travel.iter().for_each(|&(channel, _)| ends[channel][1] = ends[channel][0]);
+    ways.iter().for_each(|&channel| ends[channel][1] = ends[channel][0]);
     let [first, last] = [0, 1].map(|frame| frame_pose(&motion.rig, &ends, frame));
     Gap::between(motion, &first, &last, shell_cm)
 }
@@ -279,12 +334,12 @@ fn greatest(distances: impl Iterator<Item = f64>) -> (f64, usize) {
     indexed.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-fn check(motion: &Motion, steps: &[f64], travel: &[(usize, f64)], most: Most) -> Result<()> {
+fn check(motion: &Motion, steps: &[f64], ways: &[usize], most: Most) -> Result<()> {
     let rig = &motion.rig;
     let limits: Vec<(usize, f64)> = match most {
         Most::Channels(bounds) => bounds.greatest.iter().copied().enumerate().collect(),
         Most::Distance(bound, part) => {
-            let gap = seam(motion, travel, most.shell_cm());
+            let gap = seam(motion, ways, most.shell_cm());
             let cm = bound.max_cm;
             if gap.cm > cm {
                 let (name, gap) = (gap.name(motion), gap.cm);

@@ -314,22 +314,26 @@ fn find_loop(arguments: &Arguments) -> Result<()> {
     if motion.looped {
         note!("{}: a loop already: --from and --to would make another of it", place());
     }
-    let mut cuts = find_loop::find(&motion, limit()).with_context(place)?;
+    let mut cuts = find_loop::find(&motion, &arguments.recipe().options).with_context(place)?;
     // Frames count as those of --from and --to do: before the cut.
     let first = arguments.edits.first_frame(motion.frame_time);
     cuts.iter_mut().for_each(|cut| (cut.from, cut.to) = (cut.from + first, cut.to + first));
     let seconds = |cut: &Cut| (cut.to - cut.from) as f64 * motion.frame_time;
+    // Above the least bound, in whole millimetres.
+    let asked_cm = if let Length::Cm(cm) = Options::MAX_ERROR { cm } else { 0.0 };
+    let bound_cm = |cut: &Cut| asked_cm.max(((cut.bound_cm * 10.0).floor() + 1.0) / 10.0);
     if output::is_json() {
-        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "joint": cut.joint, "seconds": seconds(cut), "still": cut.still});
+        let object = |cut: &Cut| json!({"from": cut.from, "to": cut.to, "seam_cm": cut.seam_cm, "max_error_cm": bound_cm(cut), "joint": cut.joint, "seconds": seconds(cut), "still": cut.still});
         output::report(json!({"loops": cuts.iter().map(object).collect::<Vec<_>>()}));
         return Ok(());
     }
     for cut in &cuts {
         let (frames, joint) = (cut.to - cut.from, output::clean(&cut.joint));
         outln!(
-            "--from {} --to {} --loop: {frames} frames, {:.2} s, seam {:.3} cm ({joint}){}",
+            "--from {} --to {} --loop --max-error {}cm: {frames} frames, {:.2} s, seam {:.3} cm ({joint}){}",
             cut.from,
             cut.to,
+            bound_cm(cut),
             seconds(cut),
             cut.seam_cm,
             if cut.still { "; the figure stands" } else { "" }

@@ -137,6 +137,28 @@ fn a_motion_that_is_one_cycle_is_proposed_whole_and_standing_apart() {
     assert!(said.lines().last().unwrap().ends_with("; the figure stands"), "{said}");
 }
 
+/// What `--find-loop` prints of captured motions, run as printed.
+#[test]
+fn proposals_for_captured_loops_convert_as_they_are_printed() {
+    let repository = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let data = std::env::var_os("PANTIN_DATA").map_or_else(|| repository.join("../shared/data"), std::path::PathBuf::from);
+    let names = ["bvh_bandai1_walk.bvh", "bvh_xia_strut-walk.bvh", "bvh_mixamo-beta_run-loop.bvh"];
+    if !names.iter().all(|name| data.join(name).is_file()) {
+        return println!("skipped: no captured clips in {}; set PANTIN_DATA", data.display());
+    }
+    let folder = super::outputs::Folder::new();
+    for name in names {
+        let path = data.join(name);
+        let printed = String::from_utf8(folder.done(&["convert", path.to_str().unwrap(), "--find-loop"]).stdout).unwrap();
+        assert!(printed.lines().count() >= 2, "{name}: {printed}");
+        for (number, line) in printed.lines().enumerate() {
+            let out = format!("{name}-{number}.ptn");
+            let options: Vec<&str> = line.split_once(':').unwrap().0.split(' ').collect();
+            folder.done(&[&["convert", path.to_str().unwrap(), "-o", &out], &options[..]].concat());
+        }
+    }
+}
+
 #[test]
 fn options_without_effect_are_named_or_refused() {
     let folder = super::outputs::Folder::new();
