@@ -44,42 +44,18 @@ impl Joint {
 impl<'a, const N: usize> Chain<'a, N> {
     /// The chain to a joint by its name.
     pub(crate) fn to(clip: &Clip<'a>, groups: &[Group], name: &str) -> Result<Self, Error> {
+        let end = clip.rig().find(name).ok_or_else(|| Error::NoSuchJoint(Name::new(name)))?.index();
+        Chain::to_joint(clip, groups, end)
+    }
+
+    /// The chain to a joint by its index.
+    pub(crate) fn to_joint(clip: &Clip<'a>, groups: &[Group], end: usize) -> Result<Self, Error> {
         let rig = clip.rig();
-        let mut next = Some(rig.find(name).ok_or_else(|| Error::NoSuchJoint(Name::new(name)))?.index());
-        let largest = rig.joints().flat_map(|joint| joint.offset).fold(0, |largest, x| largest | x.unsigned_abs());
-        let down = 18 - largest.leading_zeros() as i32;
-        let shift = i32::from(rig.length_exponent()) + down - i32::from(clip.length_exponent());
+        let (down, shift) = units(clip);
         let mut chain = Chain { bones: Vec::new(), shift };
-        while let Some(joint) = next.and_then(|index| rig.joint(index)) {
-            let index = next.unwrap_or(0);
-            let mut bone = Bone {
-                offset: joint.offset.map(|raw| shifted(raw, down)),
-                place: [None; 3],
-                first: 0,
-                len: 0,
-                shape: Shape::Free,
-                kinds: joint.kinds,
-                axes: [0; 3],
-            };
-            for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
-                let axis = kind.axis().unwrap_or(0);
-                if kind.is_position() {
-                    if let Some(place) = bone.place.get_mut(axis) {
-                        *place = Some(channel);
-                    }
-                    continue;
-                }
-                if bone.len == 0 {
-                    bone.first = channel;
-                    let own = groups.iter().find(|group| usize::from(group.bit) == index && group.first == channel);
-                    bone.shape = own.map_or(Shape::Free, |group| group.shape);
-                }
-                if let Some(own) = bone.axes.get_mut(usize::from(bone.len)) {
-                    *own = axis as u8;
-                }
-                bone.len += 1;
-            }
-            let given = N;
+        let mut next = Some(end);
+        while let Some((index, joint)) = next.and_then(|index| Some((index, rig.joint(index)?))) {
+            let (bone, given) = (Bone::of(&joint, index, groups, down), N);
             chain.bones.push(bone).map_err(|_| Error::TooSmall { what: "joints of a chain", needed: N + 1, given })?;
             next = joint.parent.map(usize::from);
         }
@@ -97,7 +73,54 @@ impl<'a, const N: usize> Chain<'a, N> {
     }
 }
 
+/// Right shifts to figure units: of the rig's offsets, and of a position channel's raw value.
+pub(crate) fn units(clip: &Clip<'_>) -> (i32, i32) {
+    let rig = clip.rig();
+    let largest = rig.joints().flat_map(|joint| joint.offset).fold(0, |largest, x| largest | x.unsigned_abs());
+    let down = 18 - largest.leading_zeros() as i32;
+    (down, i32::from(rig.length_exponent()) + down - i32::from(clip.length_exponent()))
+}
+
+impl<'a> Bone<'a> {
+    /// The bone of the joint of an index; `down` is the offsets' shift to figure units.
+    pub(crate) fn of(joint: &pantin::Joint<'a>, index: usize, groups: &[Group], down: i32) -> Bone<'a> {
+        let mut bone = Bone {
+            offset: joint.offset.map(|raw| shifted(raw, down)),
+            place: [None; 3],
+            first: 0,
+            len: 0,
+            shape: Shape::Free,
+            kinds: joint.kinds,
+            axes: [0; 3],
+        };
+        for (kind, channel) in joint.kinds.zip(joint.first_channel..) {
+            let axis = kind.axis().unwrap_or(0);
+            if kind.is_position() {
+                if let Some(place) = bone.place.get_mut(axis) {
+                    *place = Some(channel);
+                }
+                continue;
+            }
+            if bone.len == 0 {
+                bone.first = channel;
+                let own = groups.iter().find(|group| usize::from(group.bit) == index && group.first == channel);
+                bone.shape = own.map_or(Shape::Free, |group| group.shape);
+            }
+            if let Some(own) = bone.axes.get_mut(usize::from(bone.len)) {
+                *own = axis as u8;
+            }
+            bone.len += 1;
+        }
+        bone
+    }
+}
+
 impl Bone<'_> {
+    /// The channel of its place along an axis.
+    pub(crate) fn position(&self, axis: usize) -> Option<u16> {
+        self.place.get(axis).copied().flatten()
+    }
+
     /// The joint that hangs on another.
     pub(crate) fn after(&self, parent: &Joint, pose: &[i32], shift: i32) -> Joint {
         let mut joint = Joint { place: self.place_in(parent, pose, shift), rotation: parent.rotation };

@@ -1,8 +1,9 @@
 //! A state machine with all that it plays with: the animator, the second clip of a blend, and layers.
 
 use crate::animator::Animator;
+use crate::feet::{Feet, Hold, Instant, hold};
 use crate::layer::{Ramp, Weight};
-use crate::machine::{LAYERS, LayerRow, Machine, Table, Updated, clip};
+use crate::machine::{Entries, FeetTable, LAYERS, LayerRow, Machine, Table, Updated, clip};
 use crate::mask::Mask;
 use crate::memory::{LayerMemory, Memory};
 use crate::root::{self, Placement, Root};
@@ -39,6 +40,8 @@ pub struct Character<'a, 'm> {
     pub(crate) animator: Animator<'a, 'm>,
     pub(crate) second: Option<Track<'a, 'm>>,
     pub(crate) layers: Vec<Layer<'a, 'm>, LAYERS>,
+    /// With what holds them, so that programs without feet have none of its code.
+    pub(crate) feet: Option<(&'m mut Feet<'a>, Hold<'a>, Entries<'a>)>,
 }
 
 impl<'a, 'm> Character<'a, 'm> {
@@ -50,7 +53,7 @@ impl<'a, 'm> Character<'a, 'm> {
         let carrier = carrier(&bank, machine.table(), memory.states, memory.values)?;
         let mut animator = Animator::carried_by(carrier, machine.first_clip(&bank)?, memory)?;
         machine.start(&mut animator);
-        Ok(Character { bank, machine, animator, second: None, layers: Vec::new() })
+        Ok(Character { bank, machine, animator, second: None, layers: Vec::new(), feet: None })
     }
 
     /// Lends what the second clips of blends need: `states` as [`Memory::states`], `values` as [`Memory::values`].
@@ -76,6 +79,19 @@ impl<'a, 'm> Character<'a, 'm> {
         let track = Track::new(clip, states, values)?;
         let layer = Layer { row, track, sampled, mask, ramp: Ramp::at(Weight::ZERO), state: LayerState::Rests };
         self.layers.push(layer).map_err(|_| missing)
+    }
+
+    /// Lends what holds the feet, by the bank's table of feet: without one, [`Error::Machine`] of [`TableError::Missing`]. After [`Character::detach`] the
+    /// same feet are lent again, and go on as they were.
+    pub fn lend_feet(&mut self, feet: &'m mut Feet<'a>) -> Result<(), Error> {
+        let table = feet.set_up(&self.bank, &self.animator)?;
+        self.feet = Some((feet, hold, (table, FeetTable::next_entry)));
+        Ok(())
+    }
+
+    /// What holds the feet, if it was lent.
+    pub fn feet(&self) -> Option<&Feet<'a>> {
+        self.feet.as_ref().map(|(feet, ..)| &**feet)
     }
 
     /// The machine, for inputs and parameters.
@@ -118,12 +134,17 @@ impl<'a, 'm> Character<'a, 'm> {
         self.layers.get(layer).map_or(Weight::ZERO, |layer| layer.ramp.weight())
     }
 
-    /// Lets time pass: [`Machine::update`], then the layers. Events that were not taken are dropped first.
+    /// Lets time pass: [`Machine::update`], then the layers and the feet. Events that were not taken are dropped first.
     pub fn update(&mut self, elapsed_us: u32) -> Result<Updated, Error> {
         self.animator.events().clear();
-        let updated = self.machine.update(elapsed_us, &self.bank, &mut self.animator, self.second.as_mut())?;
+        let entries = self.feet.as_ref().map(|(.., entries)| *entries);
+        let updated = self.machine.update_with(entries, elapsed_us, &self.bank, &mut self.animator, self.second.as_mut())?;
         for layer in &mut self.layers {
             layer.update(elapsed_us, &self.machine, &self.bank, &mut self.animator)?;
+        }
+        if let Some((feet, hold, _)) = &mut self.feet {
+            let (clip, frame) = self.machine.on_the_ground(&self.animator, self.second.as_ref());
+            hold(feet, &mut self.animator, Instant { clip, frame, entered: updated.entered.is_some(), elapsed_us })?;
         }
         Ok(updated)
     }

@@ -2,11 +2,12 @@
 
 use crate::animator::Animator;
 use crate::character::{Character, Layer};
+use crate::machine::{LAYERS, Machine};
 use crate::mask::Mask;
 use crate::memory::{LayerMemory, Memory};
 use crate::track::Track;
 use heapless::Vec;
-use pantin::ChannelState;
+use pantin::{Bank, ChannelState};
 
 /// An [`Animator`] without its memory.
 ///
@@ -64,12 +65,18 @@ impl<'a> DetachedAnimator<'a> {
 
 /// A [`Character`] without its memory, which has to be as the character left it.
 #[derive(Debug)]
-pub struct DetachedCharacter<'a>(Character<'a, 'static>);
+pub struct DetachedCharacter<'a> {
+    bank: Bank<'a>,
+    machine: Machine<'a>,
+    animator: DetachedAnimator<'a>,
+    second: Option<Track<'a, 'static>>,
+    layers: Vec<Layer<'a, 'static>, LAYERS>,
+}
 
 impl<'a, 'm> Character<'a, 'm> {
-    /// Gives all memory back: the animator's, the second track's and that of layers.
+    /// Gives all memory back: the animator's, the second track's, that of layers and that of the feet.
     pub fn detach(self) -> DetachedCharacter<'a> {
-        let Character { bank, machine, animator, second, layers } = self;
+        let Character { bank, machine, animator, second, layers, .. } = self;
         let second = second.map(|track| track.in_memory(&mut [], &mut []));
         let mut detached = Vec::new();
         for Layer { row, track, ramp, state, .. } in layers {
@@ -77,20 +84,20 @@ impl<'a, 'm> Character<'a, 'm> {
             // As many as there were.
             let _ = detached.push(Layer { row, track, sampled: &mut [], mask, ramp, state });
         }
-        DetachedCharacter(Character { bank, machine, animator: animator.detach().0, second, layers: detached })
+        DetachedCharacter { bank, machine, animator: animator.detach(), second, layers: detached }
     }
 }
 
 impl<'a> DetachedCharacter<'a> {
     /// The character in its memory again: that of the animator, of [`Character::lend_second`] if it was lent, and of each call of
-    /// [`Character::lend_layer`] in their order. `None` if there is less of it than before.
+    /// [`Character::lend_layer`] in their order; feet are lent again by [`Character::lend_feet`]. `None` if there is less of it than before.
     pub fn attach<'m>(
         self,
         memory: Memory<'m>,
         second: Option<(&'m mut [ChannelState], &'m mut [i32])>,
         layers: impl IntoIterator<Item = LayerMemory<'m>>,
     ) -> Option<Character<'a, 'm>> {
-        let Character { bank, machine, animator, second: track, layers: detached } = self.0;
+        let DetachedCharacter { bank, machine, animator, second: track, layers: detached } = self;
         let second = match track {
             Some(track) => {
                 let (states, values) = second?;
@@ -107,8 +114,8 @@ impl<'a> DetachedCharacter<'a> {
             let track = attached(track, states, values)?;
             attached_layers.push(Layer { row, track, sampled, mask, ramp, state }).ok()?;
         }
-        let animator = DetachedAnimator(animator).attach(memory)?;
-        Some(Character { bank, machine, animator, second, layers: attached_layers })
+        let animator = animator.attach(memory)?;
+        Some(Character { bank, machine, animator, second, layers: attached_layers, feet: None })
     }
 }
 

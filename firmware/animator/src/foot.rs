@@ -1,6 +1,7 @@
 //! A foot that stays where it came down.
 
 use crate::Error;
+use crate::ease::{Ease, part};
 use crate::groups::Group;
 use crate::root::Placement;
 use crate::two_bone::{Limb, Limits, Reach};
@@ -17,31 +18,6 @@ enum State {
     Released(u32),
 }
 
-/// How far a foot is from where the clip has it, along one of the horizontal axes, in raw units.
-#[derive(Clone, Copy, Debug, Default)]
-struct Distance {
-    /// While it is locked, the present distance; after that, the one at which it was let go.
-    d: i32,
-    /// The distance that it would go in the whole time of the release, at the velocity of the last locked update.
-    v: i32,
-}
-
-impl Distance {
-    /// The distance at a part of the release, in 2^-15: the cubic that begins with this distance and velocity and ends at zero with neither.
-    fn at(self, part: u32) -> i32 {
-        let t = i64::from(part.min(ONE));
-        let left = i64::from(ONE) - t;
-        let squared = (left * left) >> 15;
-        // Below 2^32 times 2^17.
-        let own = (i64::from(self.d) * ((squared * (i64::from(ONE) + 2 * t)) >> 15)) >> 15;
-        let moved = (i64::from(self.v) * ((squared * t) >> 15)) >> 15;
-        (own + moved).clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32
-    }
-}
-
-/// The whole release, in 2^-15.
-const ONE: u32 = 1 << 15;
-
 /// Keeps a foot in its place in the world from the moment at which it bears weight until the clip lifts it or carries it on. The ankle's height and
 /// its rotation stay the clip's. A foot that is let go starts with its own velocity, and is back in the clip's motion after the time of the release, at
 /// any display rate.
@@ -52,7 +28,7 @@ pub struct FootLock<'a> {
     negative: bool,
     state: State,
     /// What is left of the lock after it ends, along the two horizontal axes.
-    distances: [Distance; 2],
+    distances: [Ease; 2],
     release_us: u32,
 }
 
@@ -63,7 +39,7 @@ impl<'a> FootLock<'a> {
         let limb = Limb::to(clip, groups, ankle, limits)?;
         let rig: Rig<'_> = clip.rig();
         let (up, negative) = (rig.up().axis(), rig.up().is_negative());
-        Ok(FootLock { limb, up, negative, state: State::Free, distances: [Distance::default(); 2], release_us })
+        Ok(FootLock { limb, up, negative, state: State::Free, distances: [Ease::default(); 2], release_us })
     }
 
     /// Whether the foot is held.
@@ -92,7 +68,7 @@ impl<'a> FootLock<'a> {
             // Where the foot is now, with what is left of the last lock: nothing jumps.
             let [a, b] = flat;
             let [left_a, left_b] = self.left();
-            self.distances = [left_a, left_b].map(|d| Distance { d, v: 0 });
+            self.distances = [left_a, left_b].map(Ease::at_rest);
             self.state = State::Locked(placement.to_world([a.wrapping_add(left_a), b.wrapping_add(left_b)]), height);
         }
         if let State::Locked(anchor, least) = self.state {
@@ -118,12 +94,8 @@ impl<'a> FootLock<'a> {
 
     /// Keeps the foot at a place of the pose, and its distance's velocity.
     fn hold(&mut self, wanted: [i32; 2], flat: [i32; 2], elapsed_us: u32) {
-        let release = i64::from(self.release_us);
         for ((own, wanted), flat) in self.distances.iter_mut().zip(wanted).zip(flat) {
-            let d = wanted.wrapping_sub(flat);
-            let moved = i64::from(d.wrapping_sub(own.d)) * release;
-            let v = moved.checked_div(elapsed_us.into()).unwrap_or(0);
-            *own = Distance { d, v: v.clamp(i64::from(-i32::MAX), i64::from(i32::MAX)) as i32 };
+            own.hold(wanted.wrapping_sub(flat), elapsed_us, self.release_us);
         }
     }
 
@@ -131,9 +103,7 @@ impl<'a> FootLock<'a> {
         let part = match self.state {
             State::Free => return [0; 2],
             State::Locked(..) => 0,
-            State::Released(since) => {
-                (u64::from(since) << 15).checked_div(self.release_us.into()).unwrap_or(u64::from(ONE)) as u32
-            }
+            State::Released(since) => part(since, self.release_us),
         };
         self.distances.map(|own| own.at(part))
     }

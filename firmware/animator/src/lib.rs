@@ -55,7 +55,7 @@
 //! | wave while walking | a [`Track`], a [`Mask`] and [`layer::blend`] |
 //! | add a recoil | [`layer::add`] |
 //! | breathe, blink | [`procedural::Breath`], [`procedural::Blink`] |
-//! | keep feet where they stand | [`FootLock`] |
+//! | keep feet where they stand | [`Character::lend_feet`], or a [`FootLock`] with an animator of one's own |
 //! | reach for something | [`Limb`] |
 //! | look at something | [`Look`] |
 //! | mix a walk and a run in step | [`Track::sync_to`], or a state that blends |
@@ -75,8 +75,10 @@ mod animator;
 mod chain;
 mod character;
 mod detached;
+mod ease;
 mod error;
 mod events;
+mod feet;
 mod foot;
 mod groups;
 pub mod layer;
@@ -101,6 +103,7 @@ pub use character::{Character, first_clip, visit_poses};
 pub use detached::{DetachedAnimator, DetachedCharacter};
 pub use error::{Error, Name};
 pub use events::{EVENTS, EventQueue, EventsLost, Fired};
+pub use feet::Feet;
 pub use foot::FootLock;
 pub use groups::Group;
 pub use look::{Look, Share};

@@ -26,7 +26,8 @@ use crate::animator::Animator;
 use crate::events::EventsLost;
 use crate::layer::Weight;
 pub use crate::table::{
-    Cause, INPUTS, LAYERS, LayerRow, PARAMETERS, SECTION, STATES, StateRow, Table, TableError, TransitionRow, VERSION,
+    Cause, Contact, Entry, FEET, FEET_SECTION, FEET_VERSION, FeetTable, FootRow, INPUTS, LAYERS, LayerRow, PARAMETERS, POINTS,
+    SECTION, STATES, StateRow, Table, TableError, TransitionRow, VERSION,
 };
 use crate::track::Track;
 use crate::{Error, sync};
@@ -47,7 +48,12 @@ pub struct Machine<'a> {
     state: u8,
     /// Whether the second track plays this state's second clip.
     blending: bool,
+    /// The transition that waits for a matching foot.
+    waiting: Option<u8>,
 }
+
+/// A table of feet, and [`FeetTable::next_entry`], so that programs without feet have none of that.
+pub(crate) type Entries<'a> = (FeetTable<'a>, fn(&FeetTable<'a>, u8, u32, u32, bool) -> Option<(Entry, u32)>);
 
 /// How often the state changes in one instant, and at how many instants in the middle of an update, at most.
 const CHANGES: usize = 4;
@@ -82,7 +88,17 @@ impl<'a> Machine<'a> {
             let [_, _, initial] = table.parameter_row(index);
             *parameter = initial;
         }
-        Machine { table, parameters, fired: 0, seen: 0, held: 0, held_before: 0, state: table.first(), blending: false }
+        Machine {
+            table,
+            parameters,
+            fired: 0,
+            seen: 0,
+            held: 0,
+            held_before: 0,
+            state: table.first(),
+            blending: false,
+            waiting: None,
+        }
     }
 
     /// Starts an animator of [`Machine::first_clip`] as the state says: at its speed, from the frame at which it begins. [`crate::Character`] does so.
@@ -157,13 +173,26 @@ impl<'a> Machine<'a> {
         animator: &mut Animator<'b, '_>,
         second: Option<&mut Track<'b, '_>>,
     ) -> Result<Updated, Error> {
-        let updated = self.run(u64::from(elapsed_us) * 1000, bank, animator, second);
+        self.update_with(None, elapsed_us, bank, animator, second)
+    }
+
+    /// [`Machine::update`] with transitions that wait for the instants of a table of feet.
+    pub(crate) fn update_with<'b>(
+        &mut self,
+        entries: Option<Entries<'_>>,
+        elapsed_us: u32,
+        bank: &Bank<'b>,
+        animator: &mut Animator<'b, '_>,
+        second: Option<&mut Track<'b, '_>>,
+    ) -> Result<Updated, Error> {
+        let updated = self.run(entries, u64::from(elapsed_us) * 1000, bank, animator, second);
         (self.seen, self.fired, self.held_before) = (self.fired | self.held, 0, self.held);
         updated
     }
 
     fn run<'b>(
         &mut self,
+        entries: Option<Entries<'_>>,
         elapsed_ns: u64,
         bank: &Bank<'b>,
         animator: &mut Animator<'b, '_>,
@@ -174,20 +203,28 @@ impl<'a> Machine<'a> {
         let before = Inputs { down: self.held & self.held_before, up: !(self.held | self.held_before) };
         for _ in 0..CHANGES {
             heard = animator.events().iter().count();
-            let (rest_ns, outcome) = animator.play(left_ns);
-            left_ns = rest_ns;
+            let entry = self.waiting.and_then(|waiting| Some((waiting, next_entry(entries, waiting, animator.track())?)));
+            let entry = entry.filter(|(_, (_, ns))| *ns < left_ns);
+            let whole_ns = entry.map_or(left_ns, |(_, (_, ns))| ns);
+            let (rest_ns, outcome) = animator.play(whole_ns);
+            left_ns = left_ns - whole_ns + rest_ns;
             updated.lost = outcome.err().or(updated.lost);
             if left_ns == 0 {
                 break;
             }
-            let Some(state) = self.enter_all(before, before, heard, bank, animator)? else { break };
+            if let Some((waiting, (frame, _))) = entry {
+                updated.entered = self.make(waiting.into(), Some(frame), bank, animator)?.or(updated.entered);
+                self.blend(bank, animator, second.as_deref_mut())?;
+                continue;
+            }
+            let Some(state) = self.enter_all(entries, before, before, heard, bank, animator)? else { break };
             updated.entered = Some(state);
             self.blend(bank, animator, second.as_deref_mut())?;
         }
         animator.hold(left_ns);
         let (fired, held) = (self.fired, Inputs { down: self.held, up: !self.held });
         let now = Inputs { down: fired | held.down, up: held.up };
-        updated.entered = self.enter_all(now, held, heard, bank, animator)?.or(updated.entered);
+        updated.entered = self.enter_all(entries, now, held, heard, bank, animator)?.or(updated.entered);
         self.blend(bank, animator, second)?;
         Ok(updated)
     }
@@ -196,6 +233,7 @@ impl<'a> Machine<'a> {
     /// `first` for the first one and `then` for the others, of which none leads back. Returns the last state, if one was entered.
     fn enter_all<'b>(
         &mut self,
+        entries: Option<Entries<'_>>,
         first: Inputs,
         then: Inputs,
         heard: usize,
@@ -207,7 +245,7 @@ impl<'a> Machine<'a> {
         let mut been = 0;
         for _ in 0..CHANGES {
             been |= state_bit(self.state);
-            let Some(state) = self.enter(inputs, heard, been, bank, animator)? else { break };
+            let Some(state) = self.enter(entries, inputs, heard, been, bank, animator)? else { break };
             (inputs, heard, last) = (then, animator.events().iter().count(), Some(state));
         }
         Ok(last)
@@ -217,6 +255,7 @@ impl<'a> Machine<'a> {
     /// after the first `heard` count.
     fn enter<'b>(
         &mut self,
+        entries: Option<Entries<'_>>,
         inputs: Inputs,
         heard: usize,
         been: u64,
@@ -232,22 +271,43 @@ impl<'a> Machine<'a> {
             let row = self.table.transition(index).filter(|row| !any || row.to != state)?;
             // In its first state, a machine may start the same state again.
             let back = been != state_bit(state) && been & state_bit(row.to) != 0;
-            (!back && self.happens(row.cause, inputs, heard, animator)).then_some(row)
+            (!back && self.happens(row.cause, inputs, heard, animator)).then_some(index)
         });
-        let Some(wanted) = wanted else { return Ok(None) };
+        // One that waits is made unless one before it happens, and at the end of its clip.
+        let waiting = self.waiting.map(usize::from);
+        let wanted = wanted.filter(|index| waiting.is_none_or(|waiting| *index < waiting));
+        let ended = waiting.filter(|_| animator.track().ended());
+        let Some(wanted) = wanted.or(ended) else { return Ok(None) };
+        if ended.is_none() && next_entry(entries, wanted as u8, animator.track()).is_some() {
+            self.waiting = Some(wanted as u8);
+            return Ok(None);
+        }
+        self.make(wanted, None, bank, animator)
+    }
+
+    /// Makes a transition, to a frame of the new clip or to that which its row names. Returns the new state.
+    fn make<'b>(
+        &mut self,
+        index: usize,
+        frame: Option<u32>,
+        bank: &Bank<'b>,
+        animator: &mut Animator<'b, '_>,
+    ) -> Result<Option<u8>, Error> {
+        let Some(wanted) = self.table.transition(index) else { return Ok(None) };
         let Some(row) = self.table.state(wanted.to) else { return Ok(None) };
         let clip = clip(bank, row.clip)?;
-        let frame = match wanted.first_frame {
-            Some(frame) => frame.into(),
+        let frame = match (frame, wanted.first_frame) {
+            (Some(frame), _) => frame,
+            (None, Some(frame)) => frame.into(),
             // Without footsteps it begins at its first frame.
-            None => {
+            (None, None) => {
                 let (old, frame, part) = (animator.track().clip(), animator.track().frame(), animator.track().part());
                 sync::in_step(old, frame, part, &clip, 0).map_or(0, |(frame, _)| frame)
             }
         };
         let frame = begun(frame, &clip, row.speed);
         animator.switch(clip, frame, row.speed, wanted.transition)?;
-        (self.state, self.blending) = (wanted.to, false);
+        (self.state, self.blending, self.waiting) = (wanted.to, false, None);
         Ok(Some(wanted.to))
     }
 
@@ -259,6 +319,23 @@ impl<'a> Machine<'a> {
             Cause::Event(id) => animator.events().iter().skip(heard).any(|fired| fired.id == u32::from(id)),
             Cause::Above(parameter, threshold) => self.get(parameter) > threshold,
             Cause::Below(parameter, threshold) => self.get(parameter) < threshold,
+        }
+    }
+
+    /// How much of the second clip a parameter mixes in.
+    fn weight(&self, parameter: u8) -> Weight {
+        let [least, most, _] = self.table.parameter_row(parameter.into());
+        let (way, whole) = (i32::from(self.get(parameter)) - i32::from(least), i32::from(most) - i32::from(least));
+        Weight::from_bits((way << 15).checked_div(whole).unwrap_or(0).clamp(0, 1 << 15) as u16)
+    }
+
+    /// The clip, and its frame, whose feet the figure has: of two that are blended the one that there is more of.
+    pub(crate) fn on_the_ground(&self, animator: &Animator<'_, '_>, second: Option<&Track<'_, '_>>) -> (u8, u32) {
+        let row = self.table.state(self.state);
+        let other = row.and_then(|row| row.blend).filter(|_| self.blending);
+        match (other, second) {
+            (Some((clip, parameter)), Some(track)) if self.weight(parameter).to_bits() > 1 << 14 => (clip, track.frame()),
+            _ => (row.map_or(0, |row| row.clip), animator.track().frame()),
         }
     }
 
@@ -275,9 +352,7 @@ impl<'a> Machine<'a> {
             second.start(clip(bank, other)?, 0, row.speed)?;
             self.blending = true;
         }
-        let [least, most, _] = self.table.parameter_row(parameter.into());
-        let (way, whole) = (i32::from(self.get(parameter)) - i32::from(least), i32::from(most) - i32::from(least));
-        let weight = Weight::from_bits((way << 15).checked_div(whole).unwrap_or(0).clamp(0, 1 << 15) as u16);
+        let weight = self.weight(parameter);
         let strides = (sync::stride(animator.track().clip()), sync::stride(second.clip()));
         if let (Ok(own), Ok(its)) = strides {
             // The stride takes a time between those of the two clips, whatever their frame rates.
@@ -293,6 +368,23 @@ impl<'a> Machine<'a> {
         animator.mix(second, weight)?;
         Ok(())
     }
+}
+
+/// The frame at which the transition that waits begins in the new clip, and the time in ns until then; `None` if none waits, or if no such instant
+/// comes.
+fn next_entry(entries: Option<Entries<'_>>, transition: u8, track: &Track<'_, '_>) -> Option<(u32, u64)> {
+    let (table, find) = entries?;
+    let speed = track.speed().to_bits();
+    if speed <= 0 {
+        return None;
+    }
+    let clip = track.clip();
+    let behind = u32::from(track.part().to_bits() != 0);
+    let (entry, ahead) = find(&table, transition, track.frame() + behind, clip.frames(), clip.looped())?;
+    let way = (u64::from(ahead + behind) << 16).saturating_sub(u64::from(track.part().to_bits()));
+    // Below 2^33 times 2^30, and rounded up so that the frame is reached.
+    let ns = way.saturating_mul(u64::from(clip.frame_time_ns())).div_ceil(u64::from(speed.unsigned_abs()));
+    Some((entry.start.into(), ns))
 }
 
 /// The bit of an input in a set of them; 0 for one that no table has.

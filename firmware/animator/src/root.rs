@@ -106,6 +106,11 @@ impl Heading {
         [times(a, self.cos) - times(b, self.sin), times(a, self.sin) + times(b, self.cos)]
     }
 
+    /// The angle the other way.
+    pub(crate) fn reverse(self) -> Heading {
+        Heading { angle: -self.angle, sin: -self.sin, cos: self.cos }
+    }
+
     /// The same of a way below 2^61, beyond the range of a channel: in parts of 2^30, whose products are whole.
     fn rotate_wide(&self, [a, b]: [i64; 2]) -> [i64; 2] {
         if self.angle == Angle::ZERO {
@@ -202,6 +207,11 @@ impl<'a> Root<'a> {
         let own = groups.iter().find(|group| usize::from(group.bit) == index && Some(usize::from(group.first)) == first);
         let turns = own.copied().unwrap_or(Group::NONE);
         Some(Root { joint, place: [channel(up + 1), channel(up + 2)], order, axis, turns })
+    }
+
+    /// The vertical axis: 0 to 2.
+    pub(crate) fn up(&self) -> usize {
+        self.axis as usize
     }
 
     /// Takes the horizontal place out of a pose.

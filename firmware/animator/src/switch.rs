@@ -73,6 +73,34 @@ impl<'a> Animator<'a, '_> {
         Ok(())
     }
 
+    /// Where the figure will be, by its clip alone, when the transition that runs has ended and the clip still stood where it does now.
+    pub(crate) fn end_of_glide(&self) -> Placement {
+        let values = self.track.values();
+        let place = self.root.place.map(|channel| channel.and_then(|at| values.get(usize::from(at)).copied()).unwrap_or(0));
+        let at = self.travel.placement(place, self.track.seam());
+        // The points of the clip's pose have its place in them.
+        let [x, y] = at.place;
+        let [a, b] = Heading::new(at.heading).rotate(place);
+        Placement { place: [x.wrapping_sub(a), y.wrapping_sub(b)], ..at }
+    }
+
+    /// Lets the figure go a way of the world beside its clip's while the transition lasts. Nothing moves in this instant.
+    pub(crate) fn glide(&mut self, way: [i64; 2]) {
+        if way == [0; 2] || self.left == 0 {
+            return;
+        }
+        let way = Heading::new(-self.travel.heading.angle).rotate(way.map(|x| x as i32));
+        let cubic = Cubic::new(self.left);
+        let channels = self.root.place.iter().zip(way).zip(self.place.iter_mut().zip(&mut self.travel.origin));
+        for ((channel, way), (place, origin)) in channels {
+            let Some(offset) = channel.and_then(|channel| self.offsets.get_mut(usize::from(channel))) else { continue };
+            offset.d = offset.d.wrapping_sub(way as i32);
+            *place = place.wrapping_sub(way as i32);
+            *origin = origin.wrapping_sub(way);
+            cubic.solve(offset);
+        }
+    }
+
     /// Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset.
     fn take_motion(&mut self, clip: &Clip<'a>) {
         // How much of a frame of the old clip passes in one of the new, in 2^-16.

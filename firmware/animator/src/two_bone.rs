@@ -54,7 +54,16 @@ impl<'a> Limb<'a> {
     /// The limb that ends in a joint, by its name: its parent and its parent's parent bend. `groups` are those of the poses:
     /// [`crate::Animator::groups`]. [`Error::ChainTooShort`] for a joint with fewer than two above it, or for bones without length.
     pub fn to(clip: &Clip<'a>, groups: &[Group], end: &str, limits: Limits) -> Result<Limb<'a>, Error> {
-        let chain = Chain::to(clip, groups, end)?;
+        Limb::along(Chain::to(clip, groups, end)?, end, limits)
+    }
+
+    /// [`Limb::to`] the joint of an index.
+    pub(crate) fn to_joint(clip: &Clip<'a>, groups: &[Group], end: usize, limits: Limits) -> Result<Limb<'a>, Error> {
+        let name = clip.rig().joint(end).map_or("", |joint| joint.name());
+        Limb::along(Chain::to_joint(clip, groups, end)?, name, limits)
+    }
+
+    fn along(chain: Chain<'a, JOINTS>, end: &str, limits: Limits) -> Result<Limb<'a>, Error> {
         let (count, short) = (chain.bones.len(), Error::ChainTooShort(Name::new(end)));
         let length = |back: usize| {
             let bone = chain.bones.get(count.wrapping_sub(back)).ok_or(short)?;
@@ -94,16 +103,43 @@ impl<'a> Limb<'a> {
         self.solve(pose, target.map(|x| shifted(x, self.chain.shift)), pole)
     }
 
-    #[inline(never)]
     pub(crate) fn solve(&mut self, pose: &mut [i32], target: Vector, pole: Option<Vector>) -> Reach {
+        let places = self.places(pose);
+        self.solve_from(&places, pose, target, pole)
+    }
+
+    /// Right shift from a position channel's raw value to figure units.
+    pub(crate) fn shift(&self) -> i32 {
+        self.chain.shift
+    }
+
+    /// The joint above the limb and the limb's three joints in a pose.
+    pub(crate) fn places(&self, pose: &[i32]) -> [Joint; 4] {
+        let (shift, count) = (self.chain.shift, self.chain.bones.len());
+        let above = self.chain.place(pose, count.saturating_sub(3));
+        let Some([first, second, third]) = self.chain.bones.last_chunk::<3>() else { return [above; 4] };
+        let hip = first.after(&above, pose, shift);
+        let knee = second.after(&hip, pose, shift);
+        [above, hip, knee, third.after(&knee, pose, shift)]
+    }
+
+    /// The first position channel along an axis above the limb.
+    pub(crate) fn height(&self, axis: usize) -> Option<u16> {
+        self.chain.bones.iter().rev().skip(3).rev().find_map(|bone| bone.position(axis))
+    }
+
+    /// The distance of the end from the upper joint at which the limb is stretched as far as its limits allow, in figure units.
+    pub(crate) fn greatest(&self) -> i32 {
+        self.greatest
+    }
+
+    /// [`Limb::reach`] in figure units, where [`Limb::places`] are known.
+    #[inline(never)]
+    pub(crate) fn solve_from(&mut self, places: &[Joint; 4], pose: &mut [i32], target: Vector, pole: Option<Vector>) -> Reach {
         let failed = Reach { error: u32::MAX, within: false };
         let shift = self.chain.shift;
-        let count = self.chain.bones.len();
-        let above = self.chain.place(pose, count.saturating_sub(3));
+        let [above, hip, knee, ankle] = places;
         let Some([first, second, third]) = self.chain.bones.last_chunk::<3>() else { return failed };
-        let hip: Joint = first.after(&above, pose, shift);
-        let knee = second.after(&hip, pose, shift);
-        let ankle = third.after(&knee, pose, shift);
         // Within 2^-13 of a bone's length: nothing to do, and an unlocked limb costs no more than its kinematics.
         if sub(target, ankle.place).iter().all(|x| x.unsigned_abs() <= 2) {
             return Reach { error: 0, within: true };
@@ -166,7 +202,7 @@ impl<'a> Limb<'a> {
         let mut off = (distance - reached).abs();
         if [first, second, third].iter().any(|bone| bone.is_hinge()) {
             // Joints with fewer than three angles cannot leave their plane.
-            let end = third.after(&second.after(&first.after(&above, pose, shift), pose, shift), pose, shift);
+            let end = third.after(&second.after(&first.after(above, pose, shift), pose, shift), pose, shift);
             off = direction(sub(target, end.place)).map_or(0, |(_, length)| length);
         }
         Reach { error: shifted(off, -shift).unsigned_abs(), within: distance == reached }

@@ -3,10 +3,10 @@
 use fixed::types::I16F16;
 use pantin::{Angle, Bank, Clip};
 use pantin_animator::layer::{Weight, add, blend};
-use pantin_animator::machine::{LAYERS, Machine, SECTION, Table};
+use pantin_animator::machine::{FEET_SECTION, FEET_VERSION, LAYERS, Machine, SECTION, Table};
 use pantin_animator::session::Session;
 use pantin_animator::{
-    Animator, Character, FootLock, Group, LayerMemory, Limb, Limits, Look, Mask, Share, Track, Transition, Workspace,
+    Animator, Character, Feet, FootLock, Group, LayerMemory, Limb, Limits, Look, Mask, Share, Track, Transition, Workspace,
 };
 
 use crate::noise::Noise;
@@ -42,19 +42,44 @@ pub fn animator(bytes: &[u8]) -> bool {
     read
 }
 
+/// A table of feet with anything in it that its rules allow, and sometimes what they do not.
+fn feet_of(seed: &[u8]) -> Vec<u8> {
+    let mut noise = noise_of(seed);
+    let clips = Bank::new_checked(BANK).map_or(0, |bank| bank.len());
+    let (feet, contacts, entries) = (1 + noise.below(2), clips * noise.below(4), noise.below(12));
+    let mut body = vec![FEET_VERSION, feet as u8, clips as u8, 0, contacts as u8, 0, entries as u8, 0];
+    for _ in 0..feet {
+        body.extend([noise.below(24) as u8, 0, noise.below(5) as u8, 0]);
+        body.extend((0..4).flat_map(|_| [noise.below(24) as u8, 0]));
+    }
+    (1..=clips).for_each(|clip| body.extend([(clip * contacts / clips) as u8, 0]));
+    for _ in 0..contacts {
+        let from = noise.below(30);
+        body.extend([noise.below(feet) as u8, noise.below(2) as u8, from as u8, 0, (from + 1 + noise.below(30)) as u8, 0]);
+    }
+    (0..entries).for_each(|_| body.extend([noise.below(8) as u8, 0, noise.below(60) as u8, 0, noise.below(60) as u8, 0]));
+    body.extend(pantin::codec::crc::of(&body).to_le_bytes());
+    body
+}
+
 /// The same table with its layers, steered by a session of random text.
 fn character(table: &[u8], seed: &[u8]) -> bool {
     let mut bytes = BANK.to_vec();
     bytes.push(SECTION);
     pantin::codec::varint::put(table.len() as u32, &mut |byte| bytes.push(byte));
     bytes.extend(table);
-    let mut memory = Workspace::<512, 512>::new();
+    let section = feet_of(seed);
+    bytes.push(FEET_SECTION);
+    pantin::codec::varint::put(section.len() as u32, &mut |byte| bytes.push(byte));
+    bytes.extend(section);
+    let (mut memory, mut feet) = (Workspace::<512, 512>::new(), Feet::new());
     let mut rooms = [(); LAYERS].map(|()| ([pantin::ChannelState::NEW; 512], [0; 512], [0; 512], [0; 32]));
     let Ok(mut character) = Character::new(&bytes, memory.lend()) else { return false };
     for (states, values, sampled, words) in &mut rooms {
         let _ = character.lend_layer(LayerMemory { states, values, sampled, words });
     }
     let mut noise = noise_of(seed);
+    let _ = character.lend_feet(&mut feet);
     let _ = Session::new_checked(&String::from_utf8_lossy(seed), character.table());
     let words = ["press", "hold", "release", "set", "end", ""];
     let mut text = String::new();

@@ -2,11 +2,13 @@
 
 mod check;
 mod error;
+mod feet;
 mod rows;
 
 use crate::Error;
 use crate::switch::Transition;
 pub use error::TableError;
+pub use feet::{Contact, Entry, FEET, FEET_SECTION, FEET_VERSION, FeetTable, FootRow, POINTS};
 use fixed::types::I16F16;
 use pantin::Bank;
 pub use rows::{Cause, LayerRow, StateRow, TransitionRow};

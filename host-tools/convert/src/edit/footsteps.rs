@@ -4,7 +4,7 @@
 //! ground. The ground's own velocity is the median of what is near it: of a walk in place the ground moves backwards. A foot is down while one of
 //! its points is planted, but for moments shorter than a person can step.
 
-use super::sides::{Side, parts};
+use super::sides::{Part, Side, parts};
 use crate::error::{Error, Setting, require};
 use crate::fk::{all_positions, distance};
 use crate::memory::Memory;
@@ -29,17 +29,8 @@ const FEET: [&str; 3] = ["foot", "ankle", "toe"];
 pub fn footsteps(motion: &Motion, memory: Memory) -> Result<Vec<Event>> {
     let names: Vec<String> = motion.rig.joints.iter().map(|joint| joint.name.clone()).collect();
     let parts = parts(&names);
-    let foot = |side: Side| {
-        FEET.iter().find_map(|word| parts.iter().position(|part| part.side == Some(side) && part.rest.contains(word)))
-    };
-    let (left, right) = (foot(Side::Left), foot(Side::Right));
-    require!(
-        left.is_some() || right.is_some(),
-        Error::setting(
-            Setting::Footsteps,
-            "no joint is named as a left or a right foot, ankle or toe, as in LeftFoot, Foot_L or lfoot"
-        )
-    );
+    let (left, right) = (foot(&parts, Side::Left), foot(&parts, Side::Right));
+    require!(left.is_some() || right.is_some(), Error::setting(Setting::Footsteps, NO_FOOT));
     let poses = all_positions(&motion.rig, &motion.values, motion.frames, memory)?;
     let mut events = Vec::new();
     let feet: Vec<(usize, &str)> = left
@@ -57,20 +48,30 @@ pub fn footsteps(motion: &Motion, memory: Memory) -> Result<Vec<Event>> {
     Ok(events)
 }
 
+/// The joint of a side that is named as a foot, an ankle or a toe.
+pub(super) fn foot(parts: &[Part], side: Side) -> Option<usize> {
+    FEET.iter().find_map(|word| parts.iter().position(|part| part.side == Some(side) && part.rest.contains(word)))
+}
+
+/// Why no feet are found.
+pub(super) const NO_FOOT: &str = "no joint is named as a left or a right foot, ankle or toe, as in LeftFoot, Foot_L or lfoot";
+
 /// A point of a foot.
-struct FootPoint {
+pub(super) struct FootPoint {
+    /// Its joint.
+    pub joint: usize,
     /// Above the lowest place of the clip, in cm.
-    height: Vec<f64>,
+    pub height: Vec<f64>,
     /// In cm a second.
-    velocity: Vec<[f64; 3]>,
+    pub velocity: Vec<[f64; 3]>,
     /// Height below which it can be planted.
-    low: f64,
+    pub low: f64,
     /// The least speed of a step.
     stepping: f64,
 }
 
 /// The foot's joint and all that hangs on it.
-fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<FootPoint> {
+pub(super) fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<FootPoint> {
     let joints = &motion.rig.joints;
     let mut of_foot = vec![false; joints.len()];
     for (index, joint) in joints.iter().enumerate() {
@@ -91,6 +92,7 @@ fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<FootPoin
             std::array::from_fn(|axis| (poses[after][point][axis] - poses[before][point][axis]) / seconds)
         };
         FootPoint {
+            joint: point,
             height: heights.iter().map(|height| height - lowest).collect(),
             velocity: (0..poses.len()).map(velocity).collect(),
             low: LOW * leg,
@@ -101,7 +103,7 @@ fn tracks(motion: &Motion, poses: &[Vec<[f64; 3]>], foot: usize) -> Vec<FootPoin
 }
 
 /// The velocity of what is near the ground, axis by axis in the median.
-fn ground(feet: &[Vec<FootPoint>]) -> [f64; 3] {
+pub(super) fn ground(feet: &[Vec<FootPoint>]) -> [f64; 3] {
     std::array::from_fn(|axis| {
         let near = |track: &'_ FootPoint| -> Vec<f64> {
             let frames = track.height.iter().zip(&track.velocity);
@@ -114,7 +116,7 @@ fn ground(feet: &[Vec<FootPoint>]) -> [f64; 3] {
 }
 
 /// Whether the foot is down, for each frame.
-fn down(motion: &Motion, points: &[FootPoint], ground: [f64; 3]) -> Vec<bool> {
+pub(super) fn down(motion: &Motion, points: &[FootPoint], ground: [f64; 3]) -> Vec<bool> {
     let planted = |track: &FootPoint| -> Vec<bool> {
         let speeds: Vec<f64> = track.velocity.iter().map(|&velocity| distance(velocity, ground)).collect();
         // Of the moving frames alone: how long a foot stands before and after says nothing about its steps.

@@ -4,6 +4,7 @@ pub mod append;
 mod apply;
 pub mod between;
 pub mod body;
+pub mod contacts;
 pub mod curve;
 pub mod cut;
 pub mod display;

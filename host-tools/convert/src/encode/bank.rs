@@ -88,7 +88,16 @@ pub fn encode(clips: &[Named]) -> Result<Vec<u8>> {
 
 /// A bank with a section of a type that only some programs read, in place of another of that type.
 pub fn with_section(bank: &[u8], kind: u8, body: &[u8]) -> Result<Vec<u8>> {
-    let sections = Bank::new_checked(bank)?.sections().filter(|(own, _)| *own != kind).chain([(kind, body)]);
+    with_sections(bank, Bank::new_checked(bank)?.sections().filter(|(own, _)| *own != kind).chain([(kind, body)]))
+}
+
+/// A bank without the sections of a type that only some programs read.
+pub fn without_section(bank: &[u8], kind: u8) -> Result<Vec<u8>> {
+    with_sections(bank, Bank::new_checked(bank)?.sections().filter(|(own, _)| *own != kind))
+}
+
+/// A bank of the version of another, with these sections.
+fn with_sections<'a>(bank: &[u8], sections: impl Iterator<Item = (u8, &'a [u8])>) -> Result<Vec<u8>> {
     let version = bank.get(2).copied().unwrap_or(VERSION);
     let mut out = vec![BANK_MAGIC[0], BANK_MAGIC[1], version];
     for (kind, body) in sections {

@@ -7,7 +7,7 @@ use crate::output::{self, Wanted, note, refuse_foreign};
 use crate::words;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin::Bank;
-use pantin_animator::machine::SECTION;
+use pantin_animator::machine::{FEET_SECTION, SECTION};
 use pantin_convert::bank;
 use pantin_pictures::machine::{Source, Text, graph, make};
 use serde_json::json;
@@ -78,7 +78,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     let bank = Bank::new_checked(&bytes).with_context(|| path.display().to_string())?;
     let made = make(&source, &file, &bank)?;
-    let whole = bank::with_section(&bytes, SECTION, &made.table)?;
+    let feet = made.feet.as_deref();
+    let whole = bank::without_section(&bytes, FEET_SECTION)?;
+    let whole = bank::with_section(&whole, SECTION, &made.table)?;
+    let whole = feet.map_or(Ok(whole.clone()), |feet| bank::with_section(&whole, FEET_SECTION, feet))?;
     let picture = graph::svg(&source);
     let files = [(&arguments.output, whole.as_slice()), (&arguments.graph, picture.as_bytes())];
     let files: Vec<(&Path, &[u8])> = files.into_iter().filter_map(|(path, bytes)| Some((path.as_deref()?, bytes))).collect();

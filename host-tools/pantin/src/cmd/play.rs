@@ -199,8 +199,8 @@ impl Arguments {
             let frames =
                 self.frames.with_context(|| format!("{}: --plain needs --frames: a state machine does not end", place()))?;
             let settings = Settings { colours: Colours::None, ..self.settings() };
-            let mut room = SteeringRoom::of(file.clip())?;
-            let mut character = room.character(file.clip()).with_context(place)?;
+            let (mut room, mut feet) = (SteeringRoom::of(file.clip())?, pantin_animator::Feet::new());
+            let mut character = room.character(file.clip(), &mut feet).with_context(place)?;
             let mut out = stdout().lock();
             for _ in 0..frames {
                 let grid = steering.draw(&character, &settings, self.size.0).with_context(place)?;

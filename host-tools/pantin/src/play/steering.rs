@@ -7,8 +7,8 @@ use super::settings::Settings;
 use crate::output::clean;
 use anyhow::Result;
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use pantin_animator::Character;
 use pantin_animator::machine::{Cause, Table};
+use pantin_animator::{Character, Feet};
 use pantin_figure::View;
 use pantin_pictures::machine::playback::{Room, Stage};
 use pantin_pictures::render::figure::MOST_PIXELS;
@@ -150,8 +150,8 @@ impl<'b> Steering<'b> {
     /// Plays until a key ends it.
     pub fn play(&mut self, session: &mut Session) -> Result<()> {
         loop {
-            let mut room = Room::of(self.bytes)?;
-            let mut character = room.character(self.bytes)?;
+            let (mut room, mut feet) = (Room::of(self.bytes)?, Feet::new());
+            let mut character = room.character(self.bytes, &mut feet)?;
             if !self.play_once(session, &mut character)? {
                 return Ok(());
             }

@@ -27,6 +27,7 @@ mod fap_input;
 mod fbx_input;
 #[cfg(feature = "fbx")]
 mod fbx_real_files;
+mod feet;
 mod figure;
 mod format_example;
 mod gltf_input;

@@ -4,9 +4,9 @@ use crate::render::scene::Scene;
 use crate::render::smooth;
 use anyhow::{Context, Result};
 use pantin::{Bank, ChannelState, Clip, Matrix};
-use pantin_animator::machine::{LAYERS, Table, TableError};
+use pantin_animator::machine::{FEET_SECTION, LAYERS, Table, TableError};
 use pantin_animator::session::{Replay, Session};
-use pantin_animator::{Character, Error, Group, LayerMemory, Mask, Memory, Offset, Placement, first_clip, visit_poses};
+use pantin_animator::{Character, Error, Feet, Group, LayerMemory, Mask, Memory, Offset, Placement, first_clip, visit_poses};
 use pantin_convert::Remedy;
 use pantin_figure::{CameraTarget, Canvas, Detail, FigureRenderer, JointInfo, RIG_JOINTS, Skeleton, Stand, View};
 use pantin_images::image::Image;
@@ -22,6 +22,7 @@ pub struct Room {
     groups: Vec<Group>,
     second: (Vec<ChannelState>, Vec<i32>),
     layers: Vec<LayerRoom>,
+    holds_feet: bool,
 }
 
 struct LayerRoom {
@@ -56,16 +57,20 @@ impl Room {
             groups: vec![Group::NONE; groups],
             second: (states(), values()),
             layers: (0..LAYERS).map(layer).collect(),
+            holds_feet: bank.section(FEET_SECTION)?.is_some(),
         })
     }
 
-    /// The character of the bank, at its start.
-    pub fn character<'a, 'm>(&'m mut self, bytes: &'a [u8]) -> Result<Character<'a, 'm>> {
-        let Room { states, values, offsets, pose, groups, second, layers } = self;
+    /// The character of the bank, at its start. `feet` is memory for what holds them.
+    pub fn character<'a, 'm>(&'m mut self, bytes: &'a [u8], feet: &'m mut Feet<'a>) -> Result<Character<'a, 'm>> {
+        let Room { states, values, offsets, pose, groups, second, layers, holds_feet } = self;
         let mut character = Character::new(bytes, Memory { states, values, offsets, pose, groups })?;
         character.lend_second(&mut second.0, &mut second.1)?;
         for LayerRoom { states, values, sampled, words } in layers.iter_mut().take(character.table().layers()) {
             character.lend_layer(LayerMemory { states, values, sampled, words })?;
+        }
+        if *holds_feet {
+            character.lend_feet(feet)?;
         }
         Ok(character)
     }
@@ -102,8 +107,8 @@ impl Stage {
         let factor = size[0].max(size[1]).div_ceil(crate::render::figure::MOST_PIXELS);
         let [width, height] = size.map(|pixels| pixels.div_ceil(factor) as u16);
         let canvas = Canvas { width, height };
-        let mut room = Room::of(bytes)?;
-        let character = room.character(bytes)?;
+        let (mut room, mut feet) = (Room::of(bytes)?, Feet::new());
+        let character = room.character(bytes, &mut feet)?;
         let mut skeleton = Skeleton::empty();
         let (pose, _) = character.pose();
         let rig = first_clip(bytes)?.rig();
@@ -172,8 +177,8 @@ pub fn play<'a>(
     mut replay: Replay<'a>,
     mut show: impl FnMut(&mut Character<'a, '_>) -> Result<()>,
 ) -> Result<()> {
-    let mut room = Room::of(bytes)?;
-    let mut character = room.character(bytes)?;
+    let (mut room, mut feet) = (Room::of(bytes)?, Feet::new());
+    let mut character = room.character(bytes, &mut feet)?;
     while replay.next(&mut character)? {
         show(&mut character)?;
     }

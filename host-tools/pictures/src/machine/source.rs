@@ -20,6 +20,8 @@ pub struct Source {
     /// Parameters.
     #[serde(default, rename = "parameter")]
     pub parameters: Vec<Parameter>,
+    /// Planted feet are held: absent, they are not.
+    pub feet: Option<Spanned<Feet>>,
     /// Transitions from any state.
     #[serde(default)]
     pub any: Vec<Spanned<Transition>>,
@@ -42,6 +44,16 @@ pub struct Parameter {
     pub range: (i16, i16),
     /// Its value at the start: the least one without it.
     pub first: Option<i16>,
+}
+
+/// The joints of the feet, where the usual names do not find them.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Feet {
+    /// The left ankle.
+    pub left: Option<String>,
+    /// The right ankle.
+    pub right: Option<String>,
 }
 
 /// A clip that an input plays over some joints.
@@ -114,9 +126,21 @@ pub struct Transition {
     pub frames: Option<u32>,
     /// The length in seconds.
     pub seconds: Option<f64>,
+    /// Where it may begin: at once without it.
+    pub sync: Option<Sync>,
+    /// The longest that it waits to begin, in seconds.
+    pub within: Option<f64>,
     /// The new clip's first frame: 0 without it.
     #[serde(default)]
     pub start: Start,
+}
+
+/// What a transition waits for.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Sync {
+    /// Poses, and feet on the ground, that match.
+    Feet,
 }
 
 /// How the difference of the poses goes away.

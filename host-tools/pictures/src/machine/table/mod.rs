@@ -1,6 +1,8 @@
 //! A state machine's table: `firmware/animator/MACHINE.md`.
 
 mod clips;
+mod entries;
+mod feet;
 mod names;
 mod rows;
 mod transitions;
@@ -33,6 +35,8 @@ type Row = [u8; 8];
 pub struct Made {
     /// Its bytes, as a bank's section holds them.
     pub table: Vec<u8>,
+    /// The bytes of the table of feet, if the text has one.
+    pub feet: Option<Vec<u8>>,
     /// What is odd about it.
     pub warnings: Vec<Warning>,
 }
@@ -44,7 +48,12 @@ pub fn make(source: &Source, file: &Text, bank: &Bank<'_>) -> Result<Made> {
     maker.warn_of_unused(source, file);
     let table = maker.bytes(source, &rows);
     check(&table, source, file, bank)?;
-    Ok(Made { table, warnings: maker.warnings })
+    maker.check_sync(source, file)?;
+    let feet = source
+        .feet
+        .as_ref()
+        .map(|feet| maker.feet(feet.get_ref(), source).with_context(|| format!("{}: feet", file.at(feet.span()))));
+    Ok(Made { table, feet: feet.transpose()?, warnings: maker.warnings })
 }
 
 /// Everything in a table that refers to names.

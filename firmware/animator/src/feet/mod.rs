@@ -1,0 +1,220 @@
+//! Feet that stay where they are put: for each foot of a bank's table the point that is on the ground, in states and through transitions.
+//!
+//! At a transition the new clip is placed by a foot that is on the ground in both clips, and the figure glides there while the transition lasts. Inverse
+//! kinematics and the height of the figure's carrier take the rest.
+
+mod foot;
+mod frame;
+
+use crate::Error;
+use crate::animator::{Animator, RootMotion};
+use crate::chain::shifted;
+use crate::machine::{FEET, FeetTable, TableError};
+use foot::{Foot, Wanted, difference};
+use frame::Frame;
+use heapless::Vec;
+use pantin::Bank;
+
+/// The feet of a [`crate::Character`], to be lent to it: [`crate::Character::lend_feet`]. About 2 kB.
+#[derive(Clone, Debug, Default)]
+pub struct Feet<'a> {
+    table: Option<FeetTable<'a>>,
+    feet: Vec<Foot<'a>, FEET>,
+    /// 2 cm in raw units, and the exponent of this unit.
+    most_drop: i32,
+    exponent: i8,
+}
+
+/// Where the clip that plays is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant {
+    /// The clip's index in the bank.
+    pub(crate) clip: u8,
+    pub(crate) frame: u32,
+    /// Whether a state was entered in this update.
+    pub(crate) entered: bool,
+    pub(crate) elapsed_us: u32,
+}
+
+/// What corrects a pose after an update: [`hold`].
+pub(crate) type Hold<'a> = fn(&mut Feet<'a>, &mut Animator<'a, '_>, Instant) -> Result<(), Error>;
+
+impl<'a> Feet<'a> {
+    /// Feet of no character yet.
+    pub const fn new() -> Feet<'a> {
+        Feet { table: None, feet: Vec::new(), most_drop: 0, exponent: 0 }
+    }
+
+    /// The joint at which a foot of the table is held, by its index in the rig; `None` while the clip moves the foot.
+    pub fn held(&self, foot: usize) -> Option<u16> {
+        let point = self.feet.get(foot)?.held()?;
+        let row = self.table?.foot(foot)?;
+        match usize::from(point).checked_sub(1) {
+            None => Some(row.ankle),
+            Some(at) => row.points().get(at).copied(),
+        }
+    }
+
+    /// Sets up the feet of a bank's table. Feet that were lent before go on as they were.
+    pub(crate) fn set_up(&mut self, bank: &Bank<'a>, animator: &Animator<'a, '_>) -> Result<FeetTable<'a>, Error> {
+        if let Some(table) = self.table {
+            return Ok(table);
+        }
+        let table = FeetTable::of(bank).map_err(Error::Machine)?.ok_or(Error::Machine(TableError::Missing))?;
+        let (clip, groups) = (animator.track().clip(), animator.groups());
+        self.feet.clear();
+        for row in (0..table.feet()).filter_map(|index| table.foot(index)) {
+            let _ = self.feet.push(Foot::new(row, clip, groups)?);
+        }
+        self.table = Some(table);
+        self.measure(animator);
+        Ok(table)
+    }
+
+    fn measure(&mut self, animator: &Animator<'a, '_>) {
+        let clip = animator.track().clip();
+        self.exponent = clip.length_exponent();
+        // In 2^-8 of the source's unit.
+        let units = (2_000_000u32 << 8).checked_div(clip.rig().unit_micro_cm()).unwrap_or(0);
+        self.most_drop = shifted(units.min(1 << 30) as i32, i32::from(self.exponent) + 8);
+    }
+
+    /// Brings the feet to the form of the clip that plays now.
+    fn follow_form(&mut self, animator: &Animator<'a, '_>) -> Result<(), Error> {
+        let (Some(table), clip) = (self.table, animator.track().clip()) else { return Ok(()) };
+        let shift = i32::from(self.exponent) - i32::from(clip.length_exponent());
+        for (index, foot) in self.feet.iter_mut().enumerate() {
+            if let Some(row) = table.foot(index) {
+                *foot = foot.in_form(row, clip, animator.groups(), shift)?;
+            }
+        }
+        self.measure(animator);
+        Ok(())
+    }
+
+    /// Places the clip that was entered by the feet that are held and are on the ground in it, too.
+    fn enter(&mut self, animator: &mut Animator<'a, '_>, frame: &Frame, contacts: [Option<u8>; FEET]) {
+        let mut ways = [None; FEET];
+        for ((foot, contact), way) in self.feet.iter().zip(contacts).zip(&mut ways) {
+            let anchor = contact.and_then(|point| Some((point, foot.held_at(animator.pose, frame, point)?)));
+            let Some((point, anchor)) = anchor else { continue };
+            let values = animator.track().values();
+            let place = foot.point(values, &foot.limb.places(values), point);
+            let [a, b, _] = difference(anchor, Frame::new(animator.end_of_glide(), animator.root.up()).to_world(place));
+            *way = Some((point, anchor, [a, b]));
+        }
+        let length = self.feet.first().map_or(0, |foot| i64::from(foot.limb.length()));
+        let glide =
+            if animator.transition_left() < 2 { [0; 2] } else { glide(ways.map(|way| way.map(|(_, _, way)| way)), length) };
+        animator.glide(glide);
+        let [glide_a, glide_b] = glide;
+        for ((foot, contact), way) in self.feet.iter_mut().zip(contacts).zip(ways) {
+            let rest = way.map(|(_, _, [a, b])| (a.wrapping_sub(glide_a)).abs().max((b.wrapping_sub(glide_b)).abs()));
+            match (way, rest) {
+                (Some((point, anchor, _)), Some(rest)) if rest <= length / 12 => foot.hold_on(point, anchor),
+                (_, rest) => {
+                    let lift = rest.unwrap_or(0).min(length / 4) / 4;
+                    let up = if animator.track().clip().rig().up().is_negative() { -lift } else { lift };
+                    foot.land_later(contact, up as i32);
+                }
+            }
+        }
+    }
+
+    /// How far the figure's carrier goes down so that the legs reach, in figure units.
+    fn drop(&self, wanted: &[Option<Wanted>; FEET], up: usize, negative: bool) -> i32 {
+        let mut drop = 0;
+        for (foot, wanted) in self.feet.iter().zip(wanted) {
+            let Some(Wanted { places: [_, hip, _, ankle], target }) = wanted else { continue };
+            let square = |v: [i32; 3]| v.map(|x| i64::from(x).pow(2));
+            let way = pantin_math::vector::sub(hip.place, *target);
+            let [x, y, z] = square(pantin_math::vector::sub(hip.place, ankle.place));
+            let own = (x + y + z).unsigned_abs().isqrt() as i64;
+            // Not straighter than in the clip, or nearly straight.
+            let greatest = i64::from(foot.limb.greatest());
+            let most = own.max(greatest - greatest / 128).min(greatest);
+            let height = way.get(up).map_or(0, |height| i64::from(if negative { -*height } else { *height }));
+            let [x, y, z] = square(way);
+            let flat = x + y + z - height * height;
+            let reached = (most * most - flat).max(0).unsigned_abs().isqrt() as i64;
+            drop = drop.max(height - reached);
+        }
+        let most = self.feet.first().map_or(0, |foot| shifted(self.most_drop, foot.limb.shift()));
+        drop.min(most.into()) as i32
+    }
+}
+
+/// The way that brings the feet to where they are held: of two the mean, or the shorter one if they are far apart.
+fn glide(ways: [Option<[i64; 2]>; FEET], length: i64) -> [i64; 2] {
+    let far = |[a, b]: [i64; 2]| a.abs().max(b.abs());
+    let way = match ways {
+        [Some(one), Some(other)] => {
+            let ([a, b], [x, y]) = (one, other);
+            if far([a - x, b - y]) <= length / 8 {
+                [(a + x) / 2, (b + y) / 2]
+            } else if far(one) <= far(other) {
+                one
+            } else {
+                other
+            }
+        }
+        [Some(way), None] | [None, Some(way)] => way,
+        [None, None] => [0; 2],
+    };
+    if far(way) <= length / 2 { way } else { [0; 2] }
+}
+
+/// Corrects the pose of an update.
+pub(crate) fn hold<'a>(feet: &mut Feet<'a>, animator: &mut Animator<'a, '_>, now: Instant) -> Result<(), Error> {
+    let Some(table) = feet.table else { return Ok(()) };
+    if animator.motion == RootMotion::InPlace {
+        return Ok(());
+    }
+    if now.entered {
+        feet.follow_form(animator)?;
+    }
+    let (up, negative) = (animator.root.up(), animator.track().clip().rig().up().is_negative());
+    let frame = Frame::new(animator.placement(), up);
+    let contacts = [0, 1].map(|foot| table.contact(now.clip, foot, now.frame));
+    if now.entered {
+        feet.enter(animator, &frame, contacts);
+    }
+    let calm = animator.transition_left() == 0;
+    let mut wanted = [None; FEET];
+    for ((foot, contact), wanted) in feet.feet.iter_mut().zip(contacts).zip(&mut wanted) {
+        *wanted = foot.update(animator.pose, &frame, contact, calm, now.elapsed_us);
+    }
+    let drop = feet.drop(&wanted, up, negative);
+    let down = |place: [i32; 3], by: i32| {
+        let mut place = place;
+        if let Some(height) = place.get_mut(up) {
+            *height = height.wrapping_sub(if negative { -by } else { by });
+        }
+        place
+    };
+    let shift = feet.feet.first().map_or(0, |foot| foot.limb.shift());
+    let height = feet.feet.first().and_then(|foot| foot.limb.height(up)).filter(|_| drop > 0);
+    let height = height.and_then(|channel| animator.pose.get_mut(usize::from(channel)));
+    let drop = if height.is_some() { drop } else { 0 };
+    if let Some(height) = height {
+        let raw = shifted(drop, -shift);
+        *height = height.wrapping_sub(if negative { -raw } else { raw });
+    }
+    for (foot, wanted) in feet.feet.iter_mut().zip(wanted) {
+        // A foot that is free stays where it is while the figure goes down.
+        let own = || {
+            let places = foot.limb.places(animator.pose);
+            let [.., ankle] = places;
+            Wanted {
+                places: places.map(|joint| crate::chain::Joint { place: down(joint.place, -drop), ..joint }),
+                target: down(ankle.place, -drop),
+            }
+        };
+        let Some(Wanted { mut places, target }) = wanted.or_else(|| (drop > 0).then(own)) else { continue };
+        for joint in &mut places {
+            joint.place = down(joint.place, drop);
+        }
+        foot.limb.solve_from(&places, animator.pose, target, None);
+    }
+    Ok(())
+}

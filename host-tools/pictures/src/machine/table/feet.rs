@@ -1,0 +1,115 @@
+//! The table of feet: when which point of a foot is on the ground in each clip.
+
+use super::entries::{Clip, best};
+use super::{Maker, Warning};
+use crate::machine::source::{Feet, Source, Start, Text};
+use anyhow::{Context, Result, ensure};
+use pantin::codec::crc;
+use pantin_animator::machine::{FEET_VERSION, FeetTable, POINTS};
+use pantin_convert::edit::contacts::{contacts, feet};
+use pantin_convert::expand::expand;
+use pantin_convert::import::text::quoted;
+use pantin_convert::{Memory, Remedy};
+
+/// The longest that a transition waits to begin, in seconds, where the file states none.
+const WITHIN: f64 = 0.5;
+
+impl Maker<'_, '_> {
+    /// The table's bytes.
+    pub(super) fn feet(&mut self, named: &Feet, source: &Source) -> Result<Vec<u8>> {
+        let mut found = None;
+        let mut clips = Vec::new();
+        let (mut ends, mut rows): (Vec<u16>, Vec<[u8; 6]>) = (Vec::new(), Vec::new());
+        for (name, clip) in &self.clips.all {
+            let place = || format!("clip {}", quoted(name));
+            let motion = expand(clip).with_context(place)?;
+            if found.is_none() {
+                found = Some(feet(&motion.rig, [named.left.as_deref(), named.right.as_deref()])?);
+            }
+            let own = found.as_deref().unwrap_or_default();
+            ensure!(motion.frames <= usize::from(u16::MAX), "clip {}: {} frames; at most 65535", quoted(name), motion.frames);
+            let contacts = contacts(&motion, own, Memory::default()).with_context(place)?;
+            clips.push(Clip::of(&motion, contacts.as_deref().unwrap_or_default())?);
+            match contacts {
+                Some(contacts) => {
+                    for (foot, contact) in
+                        contacts.iter().enumerate().flat_map(|(foot, own)| own.iter().map(move |own| (foot, own)))
+                    {
+                        let [[a, b], [c, d]] = [contact.from, contact.to].map(|frame| (frame as u16).to_le_bytes());
+                        rows.push([foot as u8, contact.point as u8, a, b, c, d]);
+                    }
+                }
+                None => {
+                    let text = format!("clip {}: its ground moves, as on a treadmill, so no foot is held in it", quoted(name));
+                    self.warnings.push(Warning::new(text, None::<Remedy>));
+                }
+            }
+            ends.push(u16::try_from(rows.len()).context("more than 65535 contacts of feet")?);
+        }
+        let feet = found.unwrap_or_default();
+        let entries = self.entries(source, &clips)?;
+        let count = u8::try_from(ends.len()).context("more than 255 clips")?;
+        let mut out = vec![FEET_VERSION, feet.len() as u8, count, 0];
+        out.extend((rows.len() as u16).to_le_bytes());
+        out.extend(u16::try_from(entries.len()).context("more than 65535 entries of transitions")?.to_le_bytes());
+        for foot in &feet {
+            out.extend((foot.ankle as u16).to_le_bytes());
+            out.extend([foot.points.len() as u8, 0]);
+            let points = foot.points.iter().map(|&point| point as u16).chain(std::iter::repeat(0)).take(POINTS);
+            out.extend(points.flat_map(u16::to_le_bytes));
+        }
+        out.extend(ends.into_iter().flat_map(u16::to_le_bytes));
+        out.extend(rows.into_iter().chain(entries).flatten());
+        out.extend(crc::of(&out).to_le_bytes());
+        FeetTable::new(&out, self.clips.all.len())?;
+        Ok(out)
+    }
+
+    /// The rows of instants at which transitions with `sync = "feet"` may begin.
+    fn entries(&self, source: &Source, clips: &[Clip]) -> Result<Vec<[u8; 6]>> {
+        let mut rows = Vec::new();
+        let mut index = source.any.len();
+        for state in &source.states {
+            for transition in &state.transitions {
+                let row = transition.get_ref();
+                if row.sync.is_some() {
+                    let to = &source.states[usize::from(self.state(&row.to)?)];
+                    let [from, to] = [self.clip_of(state)?, self.clip_of(to)?].map(|clip| &clips[usize::from(clip)]);
+                    let start = match &row.start {
+                        Start::Frame(frame) if *frame > 0 => Some(*frame as usize),
+                        _ => None,
+                    };
+                    let speed = state.speed.unwrap_or(1.0);
+                    for (at, start) in best(from, to, start, row.within.unwrap_or(WITHIN) * speed) {
+                        let [[a, b], [c, d]] = [at, start].map(|frame| (frame as u16).to_le_bytes());
+                        rows.push([u8::try_from(index)?, 0, a, b, c, d]);
+                    }
+                }
+                index += 1;
+            }
+        }
+        Ok(rows)
+    }
+
+    /// Refuses what transitions cannot wait for.
+    pub(super) fn check_sync(&self, source: &Source, file: &Text) -> Result<()> {
+        let transitions = source.states.iter().flat_map(|state| state.transitions.iter().map(move |row| (Some(state), row)));
+        for (state, row) in transitions.chain(source.any.iter().map(|row| (None, row))) {
+            let (place, own) = (file.at(row.span()), row.get_ref());
+            let wait = own.sync.is_some();
+            ensure!(wait || own.within.is_none(), "{place}: within: only a transition with sync = \"feet\" waits");
+            ensure!(!wait || source.feet.is_some(), "{place}: sync = \"feet\" needs feet: write [feet] above the states");
+            ensure!(!wait || state.is_some(), "{place}: sync = \"feet\": a transition from any state does not wait");
+            ensure!(!wait || own.end.is_none(), "{place}: sync = \"feet\": a transition at a clip's end does not wait");
+            ensure!(
+                !wait || state.and_then(|state| state.speed).is_none_or(|speed| speed > 0.0),
+                "{place}: sync = \"feet\": the state plays backwards, or stands"
+            );
+            ensure!(
+                own.within.is_none_or(|within| within > 0.0 && within <= 4.0),
+                "{place}: within: expected a time above 0, at most 4 s"
+            );
+        }
+        Ok(())
+    }
+}
