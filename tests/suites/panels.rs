@@ -4,11 +4,11 @@ use std::cell::RefCell;
 use std::convert::Infallible;
 use std::path::PathBuf;
 
-use board_drivers::ssd1306::{ADDRESSES, Ssd1306};
-use board_drivers::st7789::{
+use board_drivers::color_panels::{
     self, ColorPanel, GC9A01_240X240, ILI9341_240X320, Module, Rotation, ST7789_135X240, ST7789_170X320, ST7789_240X240,
     ST7789_240X320,
 };
+use board_drivers::ssd1306::{ADDRESSES, Ssd1306};
 use embedded_graphics::pixelcolor::raw::{RawData, RawU16};
 use embedded_graphics::pixelcolor::{BinaryColor, Rgb565};
 use embedded_hal::delay::DelayNs;
@@ -174,7 +174,8 @@ fn greys_and_the_panic_screen_have_the_same_place() {
 #[test]
 fn a_framebuffer_larger_than_the_glass_shows_nothing() {
     let wires = RefCell::new((Colour::new(Glass { size: [135, 240], offset: [52, 40], ..ST7789 }), false));
-    let mut driver = ColorPanel::new(st7789::ST7789_135X240, Wire(&wires), Wire(&wires), &mut Nothing, &mut Nothing).unwrap();
+    let mut driver =
+        ColorPanel::new(color_panels::ST7789_135X240, Wire(&wires), Wire(&wires), &mut Nothing, &mut Nothing).unwrap();
     simulator::present::<Rgb565Rows<240, 240, 28800>>(&clips(), &[b""], |frame| driver.show(frame).unwrap()).unwrap();
     assert!(wires.borrow().0.picture().is_dark());
 }

@@ -111,7 +111,7 @@ pub use mask::Mask;
 pub use memory::{LayerMemory, LayerWorkspace, Memory, Workspace};
 pub use root::{GroundPose, Placement};
 pub use scene::Scene;
-pub use switch::Transition;
 pub use track::Track;
 pub use transition::Offset;
+pub use transition::Transition;
 pub use two_bone::{Limb, Limits, Reach};

@@ -5,31 +5,9 @@ use crate::animator::Animator;
 use crate::groups::{self, Group, Shape, nearest};
 use crate::math;
 use crate::root::{Heading, Placement, Root, Travel};
-use crate::transition::{Cubic, Offset};
+use crate::transition::{Cubic, Offset, Transition};
 use fixed::types::I16F16;
 use pantin::{Angle, Clip, FormRef, Joint, WrongForm};
-
-/// How one clip follows another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Transition {
-    /// At once. The pose jumps; place and heading do not.
-    Cut,
-    /// The difference of the poses and of their velocities dies out as a cubic in this many frames of the new clip, after which the pose is
-    /// exactly the clip's. 0 frames are a cut; 1 frame keeps the old pose for the first instant alone.
-    Inertialized(u8),
-    /// The difference of the poses alone dies out: the old motion stops at once. For comparison.
-    Faded(u8),
-}
-
-impl Transition {
-    fn frames(self) -> u8 {
-        match self {
-            Transition::Cut => 0,
-            Transition::Inertialized(frames) | Transition::Faded(frames) => frames,
-        }
-    }
-}
 
 impl<'a> Animator<'a, '_> {
     /// Goes over to a clip of the same rig, from a frame (from the last one if there are fewer) and at a speed of -4 to 4 (others are cut off).

@@ -1,4 +1,26 @@
-//! The difference that a transition leaves behind, one channel: a segment of the decoder's own kind that ends at zero.
+//! How one clip follows another, and the difference that this leaves behind, one channel: a segment of the decoder's own kind that ends at zero.
+
+/// How one clip follows another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Transition {
+    /// At once. The pose jumps; place and heading do not.
+    Cut,
+    /// The difference of the poses and of their velocities dies out as a cubic in this many frames of the new clip, after which the pose is
+    /// exactly the clip's. 0 frames are a cut; 1 frame keeps the old pose for the first instant alone.
+    Inertialized(u8),
+    /// The difference of the poses alone dies out: the old motion stops at once. For comparison.
+    Faded(u8),
+}
+
+impl Transition {
+    pub(crate) fn frames(self) -> u8 {
+        match self {
+            Transition::Cut => 0,
+            Transition::Inertialized(frames) | Transition::Faded(frames) => frames,
+        }
+    }
+}
 
 /// What one channel is away from its clip during a transition: 16 bytes. It moves by the decoder's three additions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ mod feet;
 mod rows;
 
 use crate::Error;
-use crate::switch::Transition;
+use crate::transition::Transition;
 pub use error::TableError;
 pub use feet::{Contact, Entry, FEET, FEET_SECTION, FEET_VERSION, FeetTable, FootRow, POINTS};
 use fixed::types::I16F16;

@@ -1,6 +1,6 @@
 //! The rows of a table.
 
-use crate::switch::Transition;
+use crate::transition::Transition;
 use fixed::types::I16F16;
 
 /// What makes a transition happen. Tables of a later version may have more causes.

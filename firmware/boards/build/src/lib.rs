@@ -28,7 +28,7 @@ pub fn board_in(map: &str, link_arguments: &[&str]) {
     clips();
 }
 
-/// The displays over SPI: the board's feature, the name of its `Module` in `board_drivers::st7789`, and the most columns and rows of its
+/// The displays over SPI: the board's feature, the name of its `Module` in `board_drivers::color_panels`, and the most columns and rows of its
 /// pictures.
 const DISPLAYS: [(&str, &str, [usize; 2]); 6] = [
     ("st7789", "ST7789_240X240", [240, 240]),
@@ -64,8 +64,8 @@ pub fn display() {
     let in_pairs = wide / 2 * 2;
     let in_eights = wide / 8 * 8;
     let text = format!(
-        "pub const MODULE: board_drivers::st7789::Module<board_drivers::st7789::{controller}> =\n    \
-         board_drivers::st7789::{module}.rotated(board_drivers::st7789::Rotation::Deg{rotation});\n\
+        "pub const MODULE: board_drivers::color_panels::Module<board_drivers::color_panels::{controller}> =\n    \
+         board_drivers::color_panels::{module}.rotated(board_drivers::color_panels::Rotation::Deg{rotation});\n\
          /// In colour.\n#[allow(dead_code)]\n\
          pub type Colour = pantin_figure::surface::Rgb565Rows<{in_pairs}, {high}, {pairs}>;\n\
          /// In 16 greys.\n#[allow(dead_code)]\n\

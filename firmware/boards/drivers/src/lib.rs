@@ -2,6 +2,7 @@
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
+pub mod color_panels;
 mod display;
 mod heartbeat;
 pub mod indexed;
@@ -10,10 +11,9 @@ pub mod nrf52;
 pub mod scan;
 pub mod servo;
 pub mod ssd1306;
-pub mod st7789;
 
+pub use color_panels::ColorPanel;
 pub use display::Display;
 pub use heartbeat::Heartbeat;
 pub use servo::Servo;
 pub use ssd1306::{Mono128x64, Ssd1306};
-pub use st7789::ColorPanel;
