@@ -10,9 +10,11 @@ use harness::build::Firmware;
 use harness::display::{Display, Picture};
 use harness::lossy::arrivals;
 use harness::rp2040::{self, CLOCK, LCD, OLED, Outcome, Request, Spi};
+use harness::vectors::synthetic::noisy;
 use harness::{clips, paths, screen, setup, simulator, sync};
 use pantin::{Axis, ChannelState, Clip, Player};
 use pantin_app::TextScreen;
+use pantin_convert::import::{Disk, ImportOptions, import};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::surface::{Framebuffer, MonoPages};
 use pantin_line::sender::{LineSettings, Sender, Source};
@@ -207,6 +209,25 @@ fn plays_at_its_own_pace() {
     let period = (last.nanos - first.nanos) / (PICTURES - 3) as f64;
     // Our walk has 120 frames a second. Pictures are shown as soon as they are sent, sooner or later by what changed.
     assert!((period * 120.0 / 1e9 - 1.0).abs() < 0.02, "{period} ns");
+}
+
+/// A clip nearly as large as the flash: 0.2 seconds until the first picture, half of that until the watchdog would have to be fed again.
+#[test]
+fn the_longest_clip_shows_its_first_picture_soon() {
+    if setup::host_only("the Pico's start with a long clip") {
+        return;
+    }
+    let walk = import(&Disk::default(), &paths::root().join("motions/walk.keys"), &ImportOptions::new()).unwrap();
+    let bytes = noisy(&walk.motion.rig, 88_000).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let clip = folder.path().join("long.ptn");
+    fs::write(&clip, &bytes).unwrap();
+    let (_image, image) = program("pico", "", &[clip]);
+    let outcome = Request::new(&image, OLED).pictures(3).timed().run().unwrap();
+    let first = outcome.frames.first().map_or(f64::NAN, |first| first.nanos / 1e6);
+    println!("{} bytes: {}, the first picture after {first:.0} ms", bytes.len(), outcome.ended);
+    assert_eq!(outcome.ended, "done");
+    assert!(first < 300.0, "{first} ms");
 }
 
 #[test]

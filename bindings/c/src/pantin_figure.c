@@ -16,6 +16,8 @@ typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 #define DISTANCE 4
 #define TRIAL_SCALE 16384L
 #define SAMPLES 48u
+/* Of a clip with more bytes of motion, the camera is chosen by the first of equal parts that are no larger. */
+#define SURVEYED_BYTES 16384u
 
 enum { TURN_X = 0, OFFSET = 3, EXPONENTIAL = 4, QUATERNION = 5 };
 enum { PLACEMENT = 1, END_SITE = 2, HEAD = 4, KEPT = 8, BEARS = 16, FORKS = 32, PARENT = 64 };
@@ -946,7 +948,8 @@ static void orient(pantin_figure *f, bounds *b, uint8_t rig_up, int32_t *up, int
 
 /* Moves to the next of the frames by which the camera is chosen. */
 static int next_sample(pantin_player *player, uint32_t *frame, pantin_result *result) {
-    uint32_t frames = player->clip->frames, stride = (frames + SAMPLES - 1) / SAMPLES;
+    uint32_t parts = (player->clip->end - player->clip->start + SURVEYED_BYTES - 1) / SURVEYED_BYTES;
+    uint32_t frames = player->clip->frames / parts + (player->clip->frames % parts != 0), stride = (frames + SAMPLES - 1) / SAMPLES;
     if (*result != PANTIN_OK || *frame >= frames) return 0;
     *result = pantin_seek(player, *frame);
     *frame += stride;

@@ -7,30 +7,13 @@ use crate::layout::{MAGIC, VERSION};
 /// The value before the first byte.
 pub const INITIAL: u16 = 0xffff;
 
-/// The remainder of one nibble: 32 bytes of flash in place of 512.
-const NIBBLE: [u16; 16] = nibble_table();
-
-const fn nibble_table() -> [u16; 16] {
-    let mut table = [0; 16];
-    let mut n = 0;
-    while n < 16 {
-        let mut crc = (n as u16) << 12;
-        let mut bit = 0;
-        while bit < 4 {
-            crc = if crc & 0x8000 != 0 { (crc << 1) ^ 0x1021 } else { crc << 1 };
-            bit += 1;
-        }
-        table[n] = crc;
-        n += 1;
-    }
-    table
-}
-
-/// Continues `crc` over one byte.
+/// Continues `crc` over one byte, without a table.
 #[inline(always)]
 pub(crate) fn push(crc: u16, byte: u8) -> u16 {
-    let high = (crc << 4) ^ NIBBLE[usize::from((crc >> 12) as u8 & 0xf) ^ usize::from(byte >> 4)];
-    (high << 4) ^ NIBBLE[usize::from((high >> 12) as u8 & 0xf) ^ usize::from(byte & 0xf)]
+    // The byte's quotient by the polynomial; x^16 leaves x^12 + x^5 + 1.
+    let quotient = (crc >> 8) ^ u16::from(byte);
+    let quotient = quotient ^ (quotient >> 4);
+    (crc << 8) ^ (quotient << 12) ^ (quotient << 5) ^ quotient
 }
 
 /// Continues `crc` over `bytes`.

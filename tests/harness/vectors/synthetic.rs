@@ -130,6 +130,13 @@ fn alive(rig: &Rig, coded: &mut Coded, noise: &mut Noise) {
     }
 }
 
+/// A clip in which every channel of `rig` moves by noise, whose bytes grow with its length as no motion's do.
+pub fn noisy(rig: &Rig, frames: u32) -> Result<Vec<u8>> {
+    let mut coded = Coded { frame_time_ns: 8_333_333, ..motion(frames) };
+    alive(rig, &mut coded, &mut Noise::new(3));
+    clip::encode(&coded, &rig::encode(rig)?, false)
+}
+
 fn simple(name: &'static str, joints: &[&[Kind]], scalars: usize, mut coded: Coded) -> Made {
     let rig = figure(joints, scalars);
     let seed = name.len() as u64 + u64::from(coded.frames);

@@ -522,7 +522,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       const player = this.#player;
       const { frame } = player;
       this.#figure ??= figureOf(clip, player.seek(0).raw);
-      this.#figure.aim(...view, visitor(this.#playable, (frame) => player.seek(frame).raw));
+      this.#figure.aim(...view, visitor(clip, this.#playable, (frame) => player.seek(frame).raw));
       player.seek(frame);
     }
     face?.aim(side, hasBody ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);

@@ -7,6 +7,8 @@ const HALF = ONE / 2;
 const QUARTER_TURN = Math.PI / 2;
 // Poses that the camera looks at before it knows its scale, and the scale at which it does.
 const SAMPLES = 48;
+// Of a clip with more bytes of motion, only the first of equal parts that are no larger is looked at.
+const SURVEYED_BYTES = 16384;
 const TRIAL = 1 << 14;
 const LONGEST_ROW = 37000;
 const DISTANCE = 4;
@@ -429,7 +431,8 @@ export const figureOf = (clip, raw) => {
   };
 };
 
-// Passes some of a clip's poses, of the frames that there are: about as many as the camera needs.
-export const visitor = (frames, poseAt) => (visit) => {
+// Passes some of a clip's poses, of the frames that there are: about as many as the camera needs. Of a long clip they are of a first part, as in the firmware.
+export const visitor = (clip, playable, poseAt) => (visit) => {
+  const frames = Math.min(playable, Math.ceil(clip.frames / Math.ceil(clip.motionBytes / SURVEYED_BYTES)));
   for (let frame = 0, stride = Math.max(1, Math.ceil(frames / SAMPLES)); frame < frames; frame += stride) visit(poseAt(frame));
 };

@@ -6,7 +6,9 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use harness::paths;
+use harness::vectors::synthetic::noisy;
 use pantin::{Player, Pose};
+use pantin_convert::import::{Disk, ImportOptions, import};
 use pantin_figure::{CameraTarget, Canvas, FigureRenderer, View};
 use tempfile::TempDir;
 
@@ -38,6 +40,12 @@ pub fn lines(folder: &TempDir) -> Result<()> {
     clips.retain(|(clip, _)| clip.extension().is_some_and(|extension| extension == "ptn"));
     let motions = ["greet", "kneebend", "run", "walk"].map(|name| paths::root().join("motions").join(name).with_extension("ptn"));
     clips.extend(motions.into_iter().map(|clip| (clip, None)));
+    // Of which the camera sees the first part alone.
+    let long = folder.path().join("long.ptn");
+    let walk = import(&Disk::default(), &paths::root().join("motions/walk.keys"), &ImportOptions::new())?;
+    std::fs::write(&long, noisy(&walk.motion.rig, 2100)?)?;
+    ensure!(pantin::Clip::new_checked(&std::fs::read(&long)?)?.motion_len() > 1 << 14, "the clip is long");
+    clips.push((long, None));
     let (mut figures, mut lines) = (0, 0);
     for (clip, rig) in &clips {
         let expected = text(clip, rig.as_deref()).with_context(|| clip.display().to_string())?;
