@@ -9,6 +9,7 @@ use pantin_face::MODEL;
 use pantin_face::{Binding, Model};
 
 use crate::build;
+use crate::paths;
 use crate::qemu::{LM3S6965EVB, Machine};
 
 /// Returns the boards' feature that draws faces if any of the clips drives one, otherwise none.
@@ -40,4 +41,42 @@ pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {
     let words = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "{}: {}", motion.display(), words.trim());
     Ok(clip)
+}
+
+/// The folders and files of our motions, in the order in which boards play them: first those of a body, then faces.
+const MOTIONS: [&str; 6] = ["walk.keys", "greet.keys", "library", "face", "kneebend.keys", "emotes"];
+
+/// Converts all our motions to clips of 60 frames per second in `folder`. Those of the library are one bank.
+pub fn own(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut clips = vec![];
+    for name in MOTIONS {
+        let motion = paths::root().join("motions").join(name);
+        if name == "library" {
+            let bank = folder.join("library.ptb");
+            convert_own(&[&motion], &["--same-form", "--max-error", "0.5cm"], &bank)?;
+            clips.push(bank);
+        } else if motion.is_dir() {
+            let own = folder.join(name);
+            convert_own(&[&motion], &[], &own)?;
+            let files = std::fs::read_dir(&own).with_context(|| own.display().to_string())?;
+            let mut files: Vec<PathBuf> = files.map(|file| Ok(file?.path())).collect::<Result<_>>()?;
+            files.retain(|file| file.extension().is_some_and(|extension| extension == "ptn"));
+            files.sort();
+            clips.append(&mut files);
+        } else {
+            let clip = folder.join(name).with_extension("ptn");
+            convert_own(&[&motion], &[], &clip)?;
+            clips.push(clip);
+        }
+    }
+    Ok(clips)
+}
+
+fn convert_own(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
+    let mut command = Command::new(build::host_tool()?);
+    // The figures are drawn as lines between joints.
+    command.args(["convert", "--places-only"]).args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
+    let output = command.output().context("cannot start the host tool")?;
+    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
+    Ok(())
 }

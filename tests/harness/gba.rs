@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use anyhow::{Context, Result, ensure};
 use tempfile::TempDir;
 
-use crate::build::{self, Firmware};
+use crate::build::Firmware;
 use crate::display::{Depth, Display, Picture, Way};
 use crate::segments::{self, Segment};
 use crate::{paths, setup};
@@ -25,44 +25,6 @@ pub const MOST: usize = 256 * 1024;
 /// Where cartridges begin in the console's memory.
 const CARTRIDGE: u64 = 0x0800_0000;
 const HEADER: usize = 0xc0;
-
-/// The folders and files of our motions, in the order in which the console plays them: first those of a body, then faces.
-const MOTIONS: [&str; 6] = ["walk.keys", "greet.keys", "library", "face", "kneebend.keys", "emotes"];
-
-/// Converts our motions to clips of 60 frames per second, the display's rate, in `folder`. Those of the library are one bank.
-pub fn motions(folder: &Path) -> Result<Vec<PathBuf>> {
-    let mut clips = vec![];
-    for name in MOTIONS {
-        let motion = paths::root().join("motions").join(name);
-        if name == "library" {
-            let bank = folder.join("library.ptb");
-            convert(&[&motion], &["--same-form", "--max-error", "0.5cm"], &bank)?;
-            clips.push(bank);
-        } else if motion.is_dir() {
-            let own = folder.join(name);
-            convert(&[&motion], &[], &own)?;
-            let files = std::fs::read_dir(&own).with_context(|| own.display().to_string())?;
-            let mut files: Vec<PathBuf> = files.map(|file| Ok(file?.path())).collect::<Result<_>>()?;
-            files.retain(|file| file.extension().is_some_and(|extension| extension == "ptn"));
-            files.sort();
-            clips.append(&mut files);
-        } else {
-            let clip = folder.join(name).with_extension("ptn");
-            convert(&[&motion], &[], &clip)?;
-            clips.push(clip);
-        }
-    }
-    Ok(clips)
-}
-
-fn convert(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
-    let mut command = Command::new(build::host_tool()?);
-    // The figures are drawn as lines between joints.
-    command.args(["convert", "--places-only"]).args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
-    let output = command.output().context("cannot start the host tool")?;
-    ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
-    Ok(())
-}
 
 /// Builds the program with these clips and returns the cartridge's image.
 pub fn image(clips: &[&Path]) -> Result<Vec<u8>> {

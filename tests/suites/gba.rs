@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use harness::display::Picture;
 use harness::gba::{self, Console, FRAME_CYCLES, LCD, MOST};
 use harness::simulator::Reading;
-use harness::{screen, setup, simulator};
+use harness::{clips, screen, setup, simulator};
 use pantin_app::SteerKey;
 use pantin_figure::rotation::Rotation;
 use tempfile::TempDir;
@@ -15,7 +15,7 @@ use tempfile::TempDir;
 /// The clips of the image with all our motions, and the image.
 static CARTRIDGE: LazyLock<(TempDir, Vec<PathBuf>, Vec<u8>)> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let clips = gba::motions(folder.path()).unwrap();
+    let clips = clips::own(folder.path()).unwrap();
     let image = gba::image(&clips.iter().map(PathBuf::as_path).collect::<Vec<_>>()).unwrap();
     (folder, clips, image)
 });

@@ -135,11 +135,13 @@ fn shows(session: &mut Session, film: &Film, what: &str) {
 }
 
 /// The boards of the table: Rust target, all of the flash, and how far from the slots' place in it the processor reads them.
-const FLASHES: [(&str, &str, Range<u64>, u64); 5] = [
+const FLASHES: [(&str, &str, Range<u64>, u64); 7] = [
     ("blackpill", "thumbv7em-none-eabihf", 0x0800_0000..0x0808_0000, 0),
     ("esp32-c3", "riscv32imc-unknown-none-elf", 0..0x40_0000, 0x3c40_0000 - 0x3e_0000),
     ("microbit", "thumbv6m-none-eabi", 0..0x4_0000, 0),
     ("microbit-v2", "thumbv7em-none-eabihf", 0..0x8_0000, 0),
+    ("nrf52840-dk", "thumbv7em-none-eabihf", 0..0x10_0000, 0),
+    ("nucleo-f411re", "thumbv7em-none-eabihf", 0x0800_0000..0x0808_0000, 0),
     ("pico", "thumbv6m-none-eabi", 0x1000_0000..0x1020_0000, 0),
 ];
 /// Where `espflash` puts a program, which it packs out of parts that are linked elsewhere, each into whole pages of the mapping.

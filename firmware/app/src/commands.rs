@@ -41,12 +41,14 @@ pub enum Command {
     Style,
     /// Show name, frame and speed, or hide them.
     Hud,
+    /// Open the menu, or choose what it shows.
+    Menu,
     /// Send the list of letters over the serial line.
     Help,
 }
 
 /// The letters of the commands, each with a short description.
-pub const LETTERS: [(u8, Command, &str); if cfg!(feature = "solid") { 19 } else { 18 }] = [
+pub const LETTERS: [(u8, Command, &str); if cfg!(feature = "solid") { 20 } else { 19 }] = [
     (b' ', Command::Pause, "pause"),
     (b'.', Command::Step, "step"),
     (b',', Command::Back, "step back"),
@@ -66,6 +68,7 @@ pub const LETTERS: [(u8, Command, &str); if cfg!(feature = "solid") { 19 } else 
     #[cfg(feature = "solid")]
     (b'o', Command::Style, "solid or lines"),
     (b'i', Command::Hud, "info"),
+    (b'm', Command::Menu, "menu"),
     (b'?', Command::Help, "this list"),
 ];
 

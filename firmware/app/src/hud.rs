@@ -40,8 +40,17 @@ pub(crate) fn show<B: Board>(
     lines([&top, &bottom], target, board);
 }
 
-/// Shows a line at the top and one at the bottom.
-#[inline(always)]
+/// Shows the name at the top, and the size at the bottom.
+#[inline(never)]
+pub(crate) fn caption<B: Board>(name: &str, bytes: usize, target: &mut Framebuffer<B::Layout>, board: &mut B) {
+    let mut size = TextLine::new();
+    number(&mut size, bytes as u32);
+    let _ = size.push_str(" bytes");
+    lines([name.get(..24).unwrap_or(name), &size], target, board);
+}
+
+/// Shows a line at the top and one at the bottom. Not inlined, so that the drawing of text, which is, stands once in the image.
+#[inline(never)]
 pub(crate) fn lines<B: Board>(lines: [&str; 2], target: &mut Framebuffer<B::Layout>, board: &mut B) {
     if !board.overlay(lines) {
         draw(lines, target);

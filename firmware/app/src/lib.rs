@@ -66,7 +66,7 @@
 //!
 //! A frame passes through them in this order: a *source* (clip, link or state machine) gives a pose, a *content* (body, face or both) draws it on the
 //! framebuffer, and the board presents that. `run` holds the only loop over frames. Modules import only modules that stand
-//! before them here: `commands`, `keys`, `capacity`, `events`, `board`, `options`, `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
+//! before them here: `commands`, `keys`, `capacity`, `events`, `board`, `options`, `idle`, `menu` with `view_state`, `update`, `session`, `source`, `content`, `hud`, `run`,
 //! `multi`, `stored`, `steer`.
 //!
 //! A function that needs a large workspace or buffer keeps it in a stack frame of its own and is marked `#[inline(never)]`: the stack then
@@ -82,9 +82,11 @@ mod content;
 mod events;
 pub mod frame_stream;
 mod hud;
+mod idle;
 #[cfg(feature = "steer")]
 mod keys;
 mod log;
+mod menu;
 mod multi;
 mod options;
 mod run;

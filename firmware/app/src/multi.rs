@@ -48,7 +48,8 @@ pub fn multi<B: Board>(
     let mut first = 0;
     loop {
         let listener = Listener::default();
-        let mut context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
+        let mut context =
+            PlayContext { mode: options.mode, several: false, view_state: &mut view_state, framebuffer, board, listener };
         match play_from(entries, first, buffers, &mut context) {
             Outcome::Clip(steps) => first = (first as i32 + steps).checked_rem_euclid(entries.len() as i32).unwrap_or(0) as usize,
             Outcome::Exit(exit) => return exit,
@@ -66,7 +67,7 @@ fn play_from<B: Board>(
     context: &mut PlayContext<B>,
 ) -> Outcome {
     let count = buffers.len().min(FIGURES);
-    let mut figures: Vec<(&str, Player, &mut BoardRenderer<B>), FIGURES> = Vec::new();
+    let mut figures: Vec<(&Entry, Player, &mut BoardRenderer<B>), FIGURES> = Vec::new();
     let entries = entries.iter().cycle().skip(first);
     for (index, (buffers, entry)) in buffers.iter_mut().zip(entries).take(count).enumerate() {
         let clip = match Clip::with_rig(entry.bytes, entry.rig) {
@@ -89,11 +90,11 @@ fn play_from<B: Board>(
         }
         player.seek(clip.frames() / count as u32 * index as u32);
         // There are at most `FIGURES`.
-        let _ = figures.push((entry.name, player, &mut buffers.renderer));
+        let _ = figures.push((entry, player, &mut buffers.renderer));
     }
     let mut actors: Vec<Actor<B, Player>, FIGURES> = Vec::new();
-    for (name, source, renderer) in &mut figures {
-        let _ = actors.push(Actor { name, source, content: *renderer });
+    for (entry, source, renderer) in &mut figures {
+        let _ = actors.push(Actor { name: entry.name, bytes: entry.bytes.len(), source, content: *renderer });
     }
     play(&mut actors, context)
 }

@@ -32,6 +32,8 @@ pub struct Options {
     pub solid: bool,
     /// Whether name, frame and speed are shown at first.
     pub hud: bool,
+    /// Whether the display stays lit when nobody gives a command for ten minutes.
+    pub awake: bool,
     /// Number of figures side by side.
     pub figures: usize,
     /// Whether poses arrive over the serial line.
@@ -58,7 +60,7 @@ pub enum Key {
 }
 
 impl Options {
-    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info` and `figures=N`, with the feature `solid` also `solid`, with the feature `link` also `link` and
+    /// Parses the words `frames=N`, `sync`, `view=DEGREES`, `smooth`, `info`, `awake` and `figures=N`, with the feature `solid` also `solid`, with the feature `link` also `link` and
     /// `fec`, with the feature `key` also `key=HEX`. Other words are ignored: an emulator without arguments passes the program's path.
     pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Options {
         let mut options = Options {
@@ -68,6 +70,7 @@ impl Options {
             #[cfg(feature = "solid")]
             solid: false,
             hud: false,
+            awake: false,
             figures: 1,
             #[cfg(feature = "link")]
             link: false,
@@ -87,6 +90,7 @@ impl Options {
                 #[cfg(feature = "link")]
                 None if word == "fec" => options.fec = true,
                 None if word == "info" => options.hud = true,
+                None if word == "awake" => options.awake = true,
                 #[cfg(feature = "key")]
                 Some(("key", digits)) => {
                     options.key = pantin_link::packet::TagKey::from_hex(digits).map_or(Key::Invalid, Key::Tag);

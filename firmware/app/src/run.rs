@@ -7,6 +7,7 @@ use crate::content::build::build;
 use crate::content::{AnyContent, Content};
 use crate::hud;
 use crate::log::{error, info};
+use crate::menu;
 use crate::options::{Mode, NEXT, Options, QUIT, SHOWN};
 use crate::session::{Entry, Outcome, PlayContext};
 use crate::source::Source;
@@ -27,7 +28,14 @@ pub fn run<B: Board>(entries: &[Entry], options: Options, framebuffer: &mut Fram
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
         let listener = Listener::default();
-        let mut context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
+        let mut context = PlayContext {
+            mode: options.mode,
+            several: entries.len() > 1,
+            view_state: &mut view_state,
+            framebuffer,
+            board,
+            listener,
+        };
         match open(entry, Task::Play { from: 0 }, &mut context) {
             Outcome::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             Outcome::Exit(exit) => return exit,
@@ -76,7 +84,7 @@ pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: &mut PlayContex
         player.states().len()
     );
     build(&mut player, context, |player, content, context| match task {
-        Task::Play { from } => start(entry.name, player, from, content, context),
+        Task::Play { from } => start(entry, player, from, content, context),
         #[cfg(feature = "update")]
         Task::Check => Outcome::Playable,
     })
@@ -84,7 +92,7 @@ pub(crate) fn open<B: Board>(entry: &Entry, task: Task, context: &mut PlayContex
 
 /// Plays a clip's content from a frame, with poses of the clip or of the link.
 fn start<B: Board>(
-    name: &str,
+    entry: &Entry,
     player: &mut Player,
     from: u32,
     content: &mut AnyContent<B>,
@@ -103,15 +111,18 @@ fn start<B: Board>(
             #[cfg(feature = "key")]
             sync: context.mode == Mode::Sync,
         };
-        return crate::source::link::open::<B>(player, line, |source| play(&mut [Actor { name, source, content }], context));
+        return crate::source::link::open::<B>(player, line, |source| {
+            play(&mut [Actor { name: entry.name, bytes: entry.bytes.len(), source, content }], context)
+        });
     }
-    play(&mut [Actor { name, source: player, content }], context)
+    play(&mut [Actor { name: entry.name, bytes: entry.bytes.len(), source: player, content }], context)
 }
 
 /// A figure on the display: what gives its poses, and what draws them.
 pub(crate) struct Actor<'a, B: Board, S> {
-    /// The clip's name.
+    /// The clip's name, and its size.
     pub name: &'a str,
+    pub bytes: usize,
     pub source: &'a mut S,
     pub content: &'a mut AnyContent<'a, B>,
 }
@@ -120,8 +131,10 @@ pub(crate) struct Actor<'a, B: Board, S> {
 /// those of the first figure; commands apply to all.
 #[inline(never)]
 pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mut PlayContext<B>) -> Outcome {
-    let PlayContext { mode, view_state, framebuffer, board, listener } = context;
+    let PlayContext { mode, several, view_state, framebuffer, board, listener } = context;
     let (mode, view_state, framebuffer, board) = (*mode, &mut **view_state, &mut **framebuffer, &mut **board);
+    // A live source and a state machine go on by themselves, and a host or a test asks for its pictures.
+    let idles = mode == Mode::Play && S::COMMANDS && !S::LIVE;
     let mut frame_ns = actors.first().map_or(0, |first| first.source.frame_time_ns());
     let (mut frames, mut shown, mut late) = (0, 0u32, 0u32);
     let mut effects = Effects::new();
@@ -129,7 +142,6 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         board.start_timer(view_state.tick_ns(frame_ns));
     }
     loop {
-        #[cfg(feature = "events")]
         let before = actors.first().map_or(0, |first| first.source.frame());
         advance(actors, frames, board);
         if let Some(exit) = actors.first().and_then(|first| first.source.ended()) {
@@ -138,15 +150,15 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         set_poses(actors, board);
         draw(actors, view_state, framebuffer, board);
         let Some(first) = actors.first_mut() else { break };
+        if idles && *several && frames > 0 && first.source.frame() < before && view_state.idle.is_over() {
+            view_state.idle.begin_clip();
+            return Outcome::Clip(1);
+        }
         if S::LIVE && mode != Mode::Sync && first.source.frame_time_ns() != frame_ns {
             frame_ns = first.source.frame_time_ns();
             board.start_timer(frame_ns);
         }
-        if view_state.hud {
-            hud::show(view_state, first.name, &first.source.status(), framebuffer, board);
-        } else {
-            board.overlay([""; 2]);
-        }
+        show_text(first, view_state, idles, framebuffer, board);
         present(framebuffer, board);
         // Between the pictures of `Sync`, the line has its own protocol.
         #[cfg(feature = "events")]
@@ -163,6 +175,7 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         };
         let Some(ticks) = ticks else { break };
         late = late.wrapping_add(ticks.saturating_sub(1));
+        view_state.idle.pass(ticks, view_state.tick_ns(frame_ns));
         #[cfg(feature = "update")]
         if listener.is_complete() {
             return Outcome::Received(first.source.frame());
@@ -177,7 +190,10 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
                 Effect::Rate if mode == Mode::Sync => {}
                 Effect::Rate => board.start_timer(view_state.tick_ns(frame_ns)),
                 Effect::Move(by) => frames = by,
-                Effect::Clip(steps) => return Outcome::Clip(steps),
+                Effect::Clip(steps) => {
+                    view_state.idle.begin_clip();
+                    return Outcome::Clip(steps);
+                }
                 Effect::Help => help(board),
             }
         }
@@ -190,6 +206,29 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         first.source.log();
     }
     Outcome::Exit(Exit::Done)
+}
+
+/// Shows the menu, what the display reports of the source, or a caption; on a display that is to be dark, nothing, the picture neither.
+fn show_text<B: Board, S: Source>(
+    first: &Actor<B, S>,
+    view_state: &ViewState,
+    idles: bool,
+    framebuffer: &mut Framebuffer<B::Layout>,
+    board: &mut B,
+) {
+    if idles && view_state.idle.is_dark() {
+        framebuffer.clear();
+        board.overlay([""; 2]);
+    } else if let Some(at) = view_state.menu {
+        let [top, bottom] = menu::lines(view_state, at);
+        hud::lines([&top, &bottom], framebuffer, board);
+    } else if view_state.hud {
+        hud::show(view_state, first.name, &first.source.status(), framebuffer, board);
+    } else if idles && view_state.idle.has_caption() {
+        hud::caption(first.name, first.bytes, framebuffer, board);
+    } else {
+        board.overlay([""; 2]);
+    }
 }
 
 /// Reports the frame that is on the display and takes commands until the next picture is asked for. Returns 1, or `None` if the program is
@@ -250,8 +289,10 @@ fn wait_for_tick<B: Board, S: Source>(
 }
 
 fn queue(command: Option<Command>, view_state: &mut ViewState, effects: &mut Effects) {
-    if let Some(command) = command {
-        let _ = effects.push_back(view_state.apply(command));
+    if let Some(command) = command
+        && view_state.idle.touch()
+    {
+        let _ = effects.push_back(menu::apply(view_state, command));
     }
 }
 

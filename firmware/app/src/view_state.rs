@@ -2,6 +2,7 @@
 
 use crate::capacity::Style;
 use crate::commands::Command;
+use crate::idle::Idle;
 use crate::options::Options;
 use pantin_figure::{CameraTarget, DrawStyle, View};
 
@@ -21,6 +22,10 @@ pub(crate) struct ViewState {
     pub rate_log2: i8,
     /// Name, frame and speed are on the display.
     pub hud: bool,
+    /// The number of the menu's item that is shown, if the menu is open.
+    pub menu: Option<usize>,
+    /// Since when nobody gave a command.
+    pub idle: Idle,
     /// Poses arrive over the serial line.
     #[cfg(feature = "link")]
     pub link: bool,
@@ -69,6 +74,8 @@ impl ViewState {
             backwards: false,
             rate_log2: 0,
             hud: options.hud,
+            menu: None,
+            idle: Idle::new(options.awake),
             #[cfg(feature = "link")]
             link: options.link,
             #[cfg(feature = "link")]
@@ -78,7 +85,7 @@ impl ViewState {
         }
     }
 
-    /// Applies a command. Returns what else is to be done for it.
+    /// Applies a command, as it is while the menu is closed. Returns what else is to be done for it.
     pub fn apply(&mut self, command: Command) -> Effect {
         match command {
             Command::Pause => self.paused = !self.paused,
@@ -121,6 +128,7 @@ impl ViewState {
                 return Effect::Aim;
             }
             Command::Hud => self.hud = !self.hud,
+            Command::Menu => self.menu = Some(0),
             Command::Help => return Effect::Help,
         }
         Effect::Nothing

@@ -18,7 +18,7 @@ pub struct Region {
 }
 
 /// The boards with a store. Their memory maps contain the same addresses.
-pub const REGIONS: [Region; 5] = [
+pub const REGIONS: [Region; 7] = [
     // The last two sectors of 512 KiB.
     Region { board: "blackpill", address: 0x0804_0000, slot: 128 << 10, sector: 128 << 10, word: 1, family: None },
     // The last 128 KiB of 4 MiB, as flash addresses; the firmware maps them elsewhere.
@@ -27,6 +27,10 @@ pub const REGIONS: [Region; 5] = [
     Region { board: "microbit", address: 0x0003_0000, slot: 32 << 10, sector: 1024, word: 4, family: None },
     // The last 128 KiB of 512.
     Region { board: "microbit-v2", address: 0x0006_0000, slot: 64 << 10, sector: 4096, word: 4, family: None },
+    // The last 128 KiB of 1,024.
+    Region { board: "nrf52840-dk", address: 0x000e_0000, slot: 64 << 10, sector: 4096, word: 4, family: None },
+    // As the Black Pill's.
+    Region { board: "nucleo-f411re", address: 0x0804_0000, slot: 128 << 10, sector: 128 << 10, word: 1, family: None },
     // The last 512 KiB of 2,048.
     Region { board: "pico", address: 0x1018_0000, slot: 256 << 10, sector: 4096, word: 256, family: Some(0xe48b_ff56) },
 ];

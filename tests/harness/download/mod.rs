@@ -3,6 +3,8 @@
 mod page;
 mod wires;
 
+use std::path::PathBuf;
+
 use anyhow::{Context, Result, ensure};
 
 use crate::build::Firmware;
@@ -116,14 +118,12 @@ impl Image {
         format!("pantin-{}{name}{display}", self.board.package)
     }
 
-    /// Builds it with its own clips.
-    pub fn build(&self) -> Result<File> {
+    /// Builds it with these clips.
+    pub fn build(&self, clips: &[PathBuf]) -> Result<File> {
         let name = format!("{}.{}", self.stem(), self.board.format.extension());
         let features = if self.program == self.board.package { self.board.features } else { "" };
         let features = [features, self.display.map_or("", |display| display.feature)].join(",");
         let Board { package, target, .. } = *self.board;
-        let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
-        let clips = if self.board.format == Format::Gba { gba::motions(folder.path())? } else { vec![] };
         let clips: Vec<_> = clips.iter().map(std::path::PathBuf::as_path).collect();
         let firmware = Firmware::released(&features, package, self.program, target, &clips).with_context(|| name.clone())?;
         let flash = crate::image::loaded(firmware.elf())?;

@@ -115,7 +115,7 @@ pub const BOARDS: [Board; 9] = [
         title: "Raspberry Pi Pico",
         target: "thumbv6m-none-eabi",
         format: Format::Uf2,
-        features: "face,update,usb",
+        features: "face,bank,events,usb",
         programs: &["servo"],
         flashing: "Hold BOOTSEL while you plug the board in, and drag <code>FILE</code> onto the drive RPI-RP2. The board's USB port is then a serial \
                    port (<code>/dev/ttyACM0</code>, <code>COM3</code>): <code>cargo pantin update walk.ptn --to serial:/dev/ttyACM0</code> \
@@ -144,7 +144,7 @@ pub const BOARDS: [Board; 9] = [
         title: "STM32F411 \"Black Pill\"",
         target: "thumbv7em-none-eabihf",
         format: Format::Bin(0x0800_0000),
-        features: "face",
+        features: "face,bank,events",
         programs: &[],
         flashing: "Hold BOOT0, press and release NRST, release BOOT0: the chip's boot loader is on the USB port. Then \
                    <code>dfu-util -a 0 -s 0x08000000:leave -D FILE</code>, or STM32CubeProgrammer with the address 0x08000000.",
@@ -192,7 +192,7 @@ pub const BOARDS: [Board; 9] = [
         title: "BBC micro:bit v2",
         target: "thumbv7em-none-eabihf",
         format: Format::Hex,
-        features: "face,update",
+        features: "face,bank,events",
         programs: &[],
         flashing: "Plug it in, and drag <code>FILE</code> onto the drive MICROBIT. The board's own 5x5 LEDs show a small figure; the display is \
                    optional. Buttons and serial port are the board's. A first micro:bit (without a loudspeaker) has too little memory.",
@@ -210,7 +210,7 @@ pub const BOARDS: [Board; 9] = [
         title: "ESP32-C3",
         target: "riscv32imc-unknown-none-elf",
         format: Format::Elf,
-        features: "face,update",
+        features: "face,bank,events,usb",
         programs: &[],
         flashing: "<code>cargo install espflash --locked</code>, once; then <code>espflash flash --monitor FILE</code>. If the board is not found, \
                    hold BOOT while you plug it in.",
@@ -238,7 +238,7 @@ pub const BOARDS: [Board; 9] = [
         title: "Raspberry Pi Pico 2",
         target: "thumbv8m.main-none-eabihf",
         format: Format::Uf2Rp2350,
-        features: "face,usb",
+        features: "face,events,usb",
         programs: &[],
         flashing: "Hold BOOTSEL while you plug the board in, and drag <code>FILE</code> onto the drive RP2350. The board's USB port is then a serial \
                    port (<code>/dev/ttyACM0</code>, <code>COM3</code>).",
@@ -251,7 +251,7 @@ pub const BOARDS: [Board; 9] = [
         title: "Nucleo-F411RE",
         target: "thumbv7em-none-eabihf",
         format: Format::Bin(0x0800_0000),
-        features: "face",
+        features: "face,bank,events",
         programs: &[],
         flashing: "Plug it in, and drag <code>FILE</code> onto the drive NODE_F411RE. The serial port is the board's.",
         supply: ["3V3", "GND"],
@@ -292,7 +292,7 @@ pub const BOARDS: [Board; 9] = [
         title: "nRF52840 DK",
         target: "thumbv7em-none-eabihf",
         format: Format::Hex,
-        features: "face,update",
+        features: "face,bank,events",
         programs: &[],
         flashing: "Plug it in, and drag <code>FILE</code> onto the drive JLINK. Buttons and serial port are the board's.",
         supply: ["VDD", "GND"],
@@ -309,7 +309,7 @@ pub const BOARDS: [Board; 9] = [
         title: "ESP32-C6",
         target: "riscv32imac-unknown-none-elf",
         format: Format::Elf,
-        features: "face",
+        features: "face,events,usb",
         programs: &[],
         flashing: "<code>cargo install espflash --locked</code>, once; then <code>espflash flash --monitor FILE</code>. If the board is not found, \
                    hold BOOT while you plug it in.",

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use harness::download::{self, BOARDS};
-use harness::paths;
+use harness::{clips, paths};
 use pantin_tools::output::write_whole;
 
 use xtask::steps::say;
@@ -36,10 +36,12 @@ impl Images {
         }
         let out = if self.out.is_absolute() { self.out } else { paths::root().join(self.out) };
         std::fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
+        let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
+        let clips = clips::own(folder.path())?;
         let mut files = vec![];
         for board in BOARDS.iter().filter(|board| self.board.is_empty() || self.board.iter().any(|name| name == board.package)) {
             for image in board.images() {
-                let file = image.build()?;
+                let file = image.build(&clips)?;
                 write_whole(&out.join(&file.name), &file.bytes)?;
                 say(&format!("{}: {} bytes of flash", file.name, file.flash));
                 files.push(file);

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use harness::gba;
+use harness::{clips, gba};
 use pantin_tools::output::write_whole;
 
 /// Makes a cartridge image for the Game Boy Advance, with all our motions
@@ -27,7 +27,7 @@ impl Gba {
     /// Builds the program and writes the file.
     pub fn run(self) -> Result<()> {
         let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
-        let clips = if self.clip.is_empty() { gba::motions(folder.path())? } else { self.clip };
+        let clips = if self.clip.is_empty() { clips::own(folder.path())? } else { self.clip };
         let image = gba::image(&clips.iter().map(PathBuf::as_path).collect::<Vec<&Path>>())?;
         ensure!(image.len() <= gba::MOST, "{} bytes; there is room for {}", image.len(), gba::MOST);
         write_whole(&self.out, &image)?;

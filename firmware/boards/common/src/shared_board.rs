@@ -19,6 +19,8 @@ pub struct SharedBoard<L, C, R, D, S, B, T, W> {
     serial: S,
     buttons: B,
     timer: T,
+    /// Nanoseconds of the timer's tick.
+    tick_ns: u32,
     feed: W,
     kinds: PhantomData<Kinds<L, C, R>>,
 }
@@ -27,7 +29,16 @@ impl<L, C, R, D, S, B, T, W: FnMut()> SharedBoard<L, C, R, D, S, B, T, W> {
     /// Makes a board. The watchdog that `feed` feeds must wait for 1 s at least; a board without one passes `|| {}`.
     #[inline(always)]
     pub fn new(display: D, serial: S, buttons: B, timer: T, feed: W) -> Self {
-        SharedBoard { display, serial, buttons, timer, feed, kinds: PhantomData }
+        SharedBoard { display, serial, buttons, timer, tick_ns: 0, feed, kinds: PhantomData }
+    }
+}
+
+impl<L: Layout, C, R, D: Display<L>, S, B: ButtonSource, T, W> SharedBoard<L, C, R, D, S, B, T, W> {
+    /// Passes on that time has passed.
+    fn pass(&mut self, ticks: u32) {
+        let ns = self.tick_ns.saturating_mul(ticks);
+        self.display.pass(ns);
+        self.buttons.read(ns);
     }
 }
 
@@ -57,20 +68,21 @@ where
     }
 
     fn start_timer(&mut self, period_ns: u32) {
+        self.tick_ns = period_ns;
         self.timer.start(period_ns);
     }
 
     fn ticks(&mut self) -> u32 {
         let ticks = self.timer.ticks();
         if ticks > 0 {
-            self.buttons.read();
+            self.pass(ticks);
         }
         ticks
     }
 
     fn wait_ticks(&mut self) -> u32 {
         let ticks = self.timer.wait(&mut self.feed);
-        self.buttons.read();
+        self.pass(ticks);
         ticks
     }
 

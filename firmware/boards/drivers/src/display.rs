@@ -11,6 +11,9 @@ pub trait Display<L: Layout> {
     /// There is no error to return: a program has nothing better to do than to try again with the next picture.
     fn present(&mut self, framebuffer: &mut Framebuffer<L>);
 
+    /// So many nanoseconds have passed; of more than 4.29 s, these.
+    fn pass(&mut self, _ns: u32) {}
+
     /// Shows text by hardware of its own, as `pantin_app::Board::overlay` says.
     fn overlay(&mut self, _lines: [&str; 2]) -> bool {
         false

@@ -4,16 +4,17 @@ use crate::Display;
 use embedded_hal::digital::OutputPin;
 use pantin_figure::surface::{Framebuffer, Layout};
 
-/// The LED changes after this many pictures: at 30 a second it blinks once a second.
-const PICTURES: u8 = 16;
+/// The LED changes twice a second.
+const HALF_NS: u32 = 500_000_000;
 
-/// A display, and an LED that blinks as pictures are sent to it.
+/// A display, and an LED that blinks once a second while the program runs.
 #[derive(Debug)]
 pub struct Heartbeat<D, P> {
     display: D,
     led: P,
     on: bool,
-    pictures: u8,
+    /// Since the LED changed.
+    ns: u32,
 }
 
 impl<D, P: OutputPin> Heartbeat<D, P> {
@@ -21,19 +22,23 @@ impl<D, P: OutputPin> Heartbeat<D, P> {
     pub fn new(display: D, mut led: P) -> Self {
         // A pin that fails has nothing to say.
         let _ = led.set_high();
-        Heartbeat { display, led, on: true, pictures: 0 }
+        Heartbeat { display, led, on: true, ns: 0 }
     }
 }
 
 impl<L: Layout, D: Display<L>, P: OutputPin> Display<L> for Heartbeat<D, P> {
     fn present(&mut self, framebuffer: &mut Framebuffer<L>) {
-        self.pictures += 1;
-        if self.pictures == PICTURES {
-            self.pictures = 0;
+        self.display.present(framebuffer);
+    }
+
+    fn pass(&mut self, ns: u32) {
+        self.ns = self.ns.saturating_add(ns);
+        if self.ns >= HALF_NS {
+            // Where more than half a second passes at a time, the LED changes each time.
+            self.ns = (self.ns - HALF_NS).min(HALF_NS);
             self.on = !self.on;
             let _ = self.led.set_state(self.on.into());
         }
-        self.display.present(framebuffer);
     }
 
     fn overlay(&mut self, lines: [&str; 2]) -> bool {
@@ -68,18 +73,18 @@ mod tests {
     }
 
     #[test]
-    fn the_led_blinks_with_the_pictures_that_a_display_gets() {
-        let (lit, shown) = (Cell::new(false), Cell::new(0));
-        let display = |_: &mut Framebuffer<Mono128x64>| shown.set(shown.get() + 1);
-        let mut display = Heartbeat::new(display, Led(&lit));
-        assert!(lit.get());
-        let mut frame = Framebuffer::new();
-        let mut was = vec![];
-        for _ in 0..48 {
-            display.present(&mut frame);
-            was.push(lit.get());
+    fn the_led_blinks_once_a_second_at_any_rate() {
+        for rate in [24, 30, 60, 120] {
+            let lit = Cell::new(false);
+            let mut display = Heartbeat::new(|_: &mut Framebuffer<Mono128x64>| (), Led(&lit));
+            assert!(lit.get());
+            let (mut changes, mut was) = (0, true);
+            for _ in 0..rate * 60 {
+                Display::<Mono128x64>::pass(&mut display, 1_000_000_000 / rate);
+                changes += i32::from(lit.get() != was);
+                was = lit.get();
+            }
+            assert!((119..=120).contains(&changes), "{changes} changes in a minute at {rate} ticks a second");
         }
-        assert_eq!(was, [vec![true; 15], vec![false; 16], vec![true; 16], vec![false; 1]].concat());
-        assert_eq!(shown.get(), 48);
     }
 }

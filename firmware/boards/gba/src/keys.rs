@@ -88,7 +88,7 @@ impl Keys {
 }
 
 impl ButtonSource for Keys {
-    fn read(&mut self) {
+    fn read(&mut self, _ns: u32) {
         let now = held();
         let (pressed, released) = (now & !self.held, self.held & !now);
         self.held = now;

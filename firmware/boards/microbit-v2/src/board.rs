@@ -16,6 +16,8 @@ const TIMER_HZ: u32 = 1_000_000;
 
 /// Sets the board up, once.
 pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> {
+    // Before all that can hang.
+    let feed = watchdog::start(parts.WDT);
     Clocks::new(parts.CLOCK).enable_ext_hfosc();
     let (p0, p1) = (p0::Parts::new(parts.P0), p1::Parts::new(parts.P1));
     let tx = p0.p0_06.into_push_pull_output(Level::High).degrade();
@@ -35,5 +37,5 @@ pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rot
     timer.start(u32::MAX);
     // The interrupt that lights the LEDs ends the sleep every millisecond.
     let tick_timer = TickTimer::<TIMER_HZ, _, _>::new(move || timer.read(), cortex_m::asm::wfi);
-    SharedBoard::new(display, serial, buttons, tick_timer, watchdog::start(parts.WDT))
+    SharedBoard::new(display, serial, buttons, tick_timer, feed)
 }

@@ -12,6 +12,8 @@ use pantin_figure::rotation::Rotation;
 
 /// Sets the board up, once.
 pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rotation, Capacity = Capacity> {
+    // Before all that can hang.
+    let feed = watchdog::start(parts.WDT);
     Clocks::new(parts.CLOCK).enable_ext_hfosc();
     let p0 = p0::Parts::new(parts.P0);
     let tx = p0.p0_06.into_push_pull_output(Level::High).degrade();
@@ -22,5 +24,5 @@ pub fn new(parts: Peripherals) -> impl Board<Layout = Mono128x64, Rotation = Rot
     let display = oled::new(parts.TWIM0, scl, sda, |bus| report_bus(&mut serial, bus));
     // LED 1.
     let display = Heartbeat::new(display, p0.p0_13.into_push_pull_output(Level::High));
-    SharedBoard::new(display, serial, buttons, SysTick::<CPU_HZ>::new(), watchdog::start(parts.WDT))
+    SharedBoard::new(display, serial, buttons, SysTick::<CPU_HZ>::new(), feed)
 }

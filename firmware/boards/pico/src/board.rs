@@ -29,6 +29,9 @@ pub fn new(
     let mut resets = parts.RESETS;
     let mut watchdog = Watchdog::new(parts.WATCHDOG);
     let usb_clock = clocks::start(parts.XOSC, parts.CLOCKS, (parts.PLL_SYS, parts.PLL_USB), &mut resets, &mut watchdog);
+    // Before all that can hang, but after the clocks, which it needs.
+    watchdog.pause_on_debug(true);
+    watchdog.start(WATCHDOG_MS.millis());
     let pins = Pins::new(parts.IO_BANK0, parts.PADS_BANK0, Sio::new(parts.SIO).gpio_bank0, &mut resets);
     let config = UartConfig::new(BAUD.Hz(), DataBits::Eight, None, StopBits::One);
     // Without an adapter, the pull-up keeps the line idle. A line that is low is one break after the other.
@@ -64,8 +67,6 @@ pub fn new(
         pins.gpio13.into_pull_up_input().into_dyn_pin(),
         pins.gpio14.into_pull_up_input().into_dyn_pin(),
     ]);
-    watchdog.pause_on_debug(true);
-    watchdog.start(WATCHDOG_MS.millis());
     let feed = move || {
         watchdog.feed();
         #[cfg(feature = "usb")]
