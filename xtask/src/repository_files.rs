@@ -46,7 +46,7 @@ const LARGE: [&str; 2] = ["fuzz/", "docs/pictures/"];
 
 /// Files that may stand twice: what is copied with a folder, what a linker looks for beside a program, seeds and golden vectors, and
 /// clips that the tests of a published package need.
-const TWICE: [&str; 5] = ["LICENSE-", "memory.x", "fuzz/", "tests/vectors/", "decoder/tests/"];
+const TWICE: [&str; 6] = ["LICENSE-", "memory.x", "fuzz/", "tests/vectors/", "tests/key-vectors/", "decoder/tests/"];
 
 /// The files that git keeps, from the root; `None` where this is no checkout of git.
 pub fn files() -> Result<Option<Vec<String>>> {

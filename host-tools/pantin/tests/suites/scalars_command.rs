@@ -97,7 +97,7 @@ fn a_chart_is_drawn_and_what_cannot_be_is_refused() {
     }
     for (input, output, part) in [
         (&clip, "x.bvh", "`top` moves no joint"),
-        (&clip, "x.txt", ".bvh, .glb, .csv, .h or .rs"),
+        (&clip, "x.txt", ".bvh, .glb, .keys, .csv, .h or .rs"),
         (&source, "x.h", "servos.csv: "),
         (&source, "x.rs", "servos.csv: "),
     ] {
