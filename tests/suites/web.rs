@@ -42,7 +42,7 @@ fn extras() -> Vec<(&'static str, Vec<u8>)> {
     let late = long.len() * 3 / 4;
     damaged[late] ^= 0x10;
     let mut version = long.clone();
-    version[2] = 2;
+    version[2] = 3;
     vec![
         ("truncated", long[..late].to_vec()),
         ("damaged", damaged),

@@ -55,7 +55,7 @@ for (const clip of clips) {
   for (const [width, height] of SIZES) {
     for (const [orbit, tilt, isFollowing, axis] of VIEWS) {
       assert.equal(wasm.aim(slot, width, height, orbit, tilt, +!isFollowing + 2 * (axis === undefined ? 0 : axis + 1)), 0);
-      figure.aim(width, height, orbit, tilt, isFollowing, axis, visitor(frames, (frame) => player.seek(frame).raw));
+      figure.aim(width, height, orbit, tilt, isFollowing, axis, visitor(player.clip, frames, (frame) => player.seek(frame).raw));
       for (const frame of chosen) {
         wasm.go(slot, frame);
         player.seek(frame);

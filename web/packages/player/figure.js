@@ -433,6 +433,6 @@ export const figureOf = (clip, raw) => {
 
 // Passes some of a clip's poses, of the frames that there are: about as many as the camera needs. Of a long clip they are of a first part, as in the firmware.
 export const visitor = (clip, playable, poseAt) => (visit) => {
-  const frames = Math.min(playable, Math.ceil(clip.frames / Math.ceil(clip.motionBytes / SURVEYED_BYTES)));
+  const frames = Math.min(playable, Math.ceil(clip.frames / Math.ceil((clip.motionBytes || 0) / SURVEYED_BYTES)));
   for (let frame = 0, stride = Math.max(1, Math.ceil(frames / SAMPLES)); frame < frames; frame += stride) visit(poseAt(frame));
 };

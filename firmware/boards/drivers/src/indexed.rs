@@ -240,7 +240,7 @@ mod tests {
             assert_eq!(Indexed::tint(tint, 256).rgb(), tint.rgb);
             for light in 96..=256 {
                 let [found, exact] =
-                    [Indexed::tint(tint, light).rgb(), tint.rgb.map(|part| (u16::from(part) * light >> 8) as u8)];
+                    [Indexed::tint(tint, light).rgb(), tint.rgb.map(|part| ((u16::from(part) * light) >> 8) as u8)];
                 assert!((0..3).all(|channel| found[channel].abs_diff(exact[channel]) <= 20), "{tint:?} {light}: {found:?}");
             }
         }
