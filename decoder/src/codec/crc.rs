@@ -16,7 +16,8 @@ pub(crate) fn push(crc: u16, byte: u8) -> u16 {
     (crc << 8) ^ (quotient << 12) ^ (quotient << 5) ^ quotient
 }
 
-/// Continues `crc` over `bytes`.
+/// Continues `crc` over `bytes`. Not inlined: it is small, and called in many places.
+#[inline(never)]
 pub fn update(crc: u16, bytes: &[u8]) -> u16 {
     bytes.iter().fold(crc, |crc, &byte| push(crc, byte))
 }
