@@ -1,6 +1,7 @@
 //! Two lines of text over the picture: the clip's name, and the state of its source.
 
 use crate::board::Board;
+use crate::session::Entry;
 use crate::source::{Status, TextLine};
 use crate::view_state::ViewState;
 use embedded_graphics::Drawable;
@@ -42,11 +43,11 @@ pub(crate) fn show<B: Board>(
 
 /// Shows the name at the top, and the size at the bottom.
 #[inline(never)]
-pub(crate) fn caption<B: Board>(name: &str, bytes: usize, target: &mut Framebuffer<B::Layout>, board: &mut B) {
+pub(crate) fn caption<B: Board>(entry: &Entry, target: &mut Framebuffer<B::Layout>, board: &mut B) {
     let mut size = TextLine::new();
-    number(&mut size, bytes as u32);
+    number(&mut size, entry.bytes.len() as u32);
     let _ = size.push_str(" bytes");
-    lines([name.get(..24).unwrap_or(name), &size], target, board);
+    lines([entry.name.get(..24).unwrap_or(entry.name), &size], target, board);
 }
 
 /// Shows a line at the top and one at the bottom. Not inlined, so that the drawing of text, which is, stands once in the image.

@@ -26,12 +26,14 @@ pub(crate) struct Idle {
     moved_on: bool,
     /// Whether the display stays lit.
     awake: bool,
+    /// Whether there is another clip, which follows while nobody gives commands.
+    pub several: bool,
 }
 
 impl Idle {
     /// At the start of the program. `awake` keeps the display lit.
     pub const fn new(awake: bool) -> Idle {
-        Idle { quiet: 0, playing: 0, rest: 0, touched: false, moved_on: false, awake }
+        Idle { quiet: 0, playing: 0, rest: 0, touched: false, moved_on: false, awake, several: false }
     }
 
     /// Another clip begins, or the same one again.
@@ -67,7 +69,7 @@ impl Idle {
 
     /// Whether the clip, which has come to its end, is left for the next one.
     pub fn is_over(&self) -> bool {
-        self.playing >= STAY_MS && (!self.touched || self.quiet >= PRESENCE_MS)
+        self.several && self.playing >= STAY_MS && (!self.touched || self.quiet >= PRESENCE_MS)
     }
 
     /// Whether name and size are shown: not of the first clip, with which a program begins that may have no other.
@@ -84,7 +86,7 @@ mod tests {
 
     #[test]
     fn clips_follow_one_another_unless_somebody_is_there() {
-        let mut idle = Idle::new(false);
+        let mut idle = Idle { several: true, ..Idle::new(false) };
         assert!(!idle.has_caption());
         idle.pass(299, FRAME_NS);
         assert!(!idle.is_over());
@@ -103,7 +105,7 @@ mod tests {
 
     #[test]
     fn the_display_gets_dark_and_the_first_command_lights_it() {
-        let (mut idle, mut awake) = (Idle::new(false), Idle::new(true));
+        let (mut idle, mut awake) = (Idle { several: true, ..Idle::new(false) }, Idle::new(true));
         for idle in [&mut idle, &mut awake] {
             idle.pass(18_001, FRAME_NS);
         }

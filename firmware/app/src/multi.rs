@@ -48,8 +48,7 @@ pub fn multi<B: Board>(
     let mut first = 0;
     loop {
         let listener = Listener::default();
-        let mut context =
-            PlayContext { mode: options.mode, several: false, view_state: &mut view_state, framebuffer, board, listener };
+        let mut context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
         match play_from(entries, first, buffers, &mut context) {
             Outcome::Clip(steps) => first = (first as i32 + steps).checked_rem_euclid(entries.len() as i32).unwrap_or(0) as usize,
             Outcome::Exit(exit) => return exit,
@@ -94,7 +93,7 @@ fn play_from<B: Board>(
     }
     let mut actors: Vec<Actor<B, Player>, FIGURES> = Vec::new();
     for (entry, source, renderer) in &mut figures {
-        let _ = actors.push(Actor { name: entry.name, bytes: entry.bytes.len(), source, content: *renderer });
+        let _ = actors.push(Actor { entry, source, content: *renderer });
     }
     play(&mut actors, context)
 }

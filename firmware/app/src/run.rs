@@ -25,17 +25,11 @@ type Effects = Deque<Effect, 8>;
 /// Returns [`Exit::BadClip`] for a clip that is damaged or larger than [`Board::Capacity`].
 pub fn run<B: Board>(entries: &[Entry], options: Options, framebuffer: &mut Framebuffer<B::Layout>, board: &mut B) -> Exit {
     let mut view_state = ViewState::new(&options);
+    view_state.idle.several = entries.len() > 1;
     let mut at = 0;
     while let Some(entry) = entries.get(at) {
         let listener = Listener::default();
-        let mut context = PlayContext {
-            mode: options.mode,
-            several: entries.len() > 1,
-            view_state: &mut view_state,
-            framebuffer,
-            board,
-            listener,
-        };
+        let mut context = PlayContext { mode: options.mode, view_state: &mut view_state, framebuffer, board, listener };
         match open(entry, Task::Play { from: 0 }, &mut context) {
             Outcome::Clip(steps) => at = (at as i32 + steps).rem_euclid(entries.len() as i32) as usize,
             Outcome::Exit(exit) => return exit,
@@ -111,18 +105,15 @@ fn start<B: Board>(
             #[cfg(feature = "key")]
             sync: context.mode == Mode::Sync,
         };
-        return crate::source::link::open::<B>(player, line, |source| {
-            play(&mut [Actor { name: entry.name, bytes: entry.bytes.len(), source, content }], context)
-        });
+        return crate::source::link::open::<B>(player, line, |source| play(&mut [Actor { entry, source, content }], context));
     }
-    play(&mut [Actor { name: entry.name, bytes: entry.bytes.len(), source: player, content }], context)
+    play(&mut [Actor { entry, source: player, content }], context)
 }
 
 /// A figure on the display: what gives its poses, and what draws them.
 pub(crate) struct Actor<'a, B: Board, S> {
-    /// The clip's name, and its size.
-    pub name: &'a str,
-    pub bytes: usize,
+    /// The clip.
+    pub entry: &'a Entry<'a>,
     pub source: &'a mut S,
     pub content: &'a mut AnyContent<'a, B>,
 }
@@ -131,7 +122,7 @@ pub(crate) struct Actor<'a, B: Board, S> {
 /// those of the first figure; commands apply to all.
 #[inline(never)]
 pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mut PlayContext<B>) -> Outcome {
-    let PlayContext { mode, several, view_state, framebuffer, board, listener } = context;
+    let PlayContext { mode, view_state, framebuffer, board, listener } = context;
     let (mode, view_state, framebuffer, board) = (*mode, &mut **view_state, &mut **framebuffer, &mut **board);
     // A live source and a state machine go on by themselves, and a host or a test asks for its pictures.
     let idles = mode == Mode::Play && S::COMMANDS && !S::LIVE;
@@ -150,7 +141,7 @@ pub(crate) fn play<B: Board, S: Source>(actors: &mut [Actor<B, S>], context: &mu
         set_poses(actors, board);
         draw(actors, view_state, framebuffer, board);
         let Some(first) = actors.first_mut() else { break };
-        if idles && *several && frames > 0 && first.source.frame() < before && view_state.idle.is_over() {
+        if idles && frames > 0 && first.source.frame() < before && view_state.idle.is_over() {
             view_state.idle.begin_clip();
             return Outcome::Clip(1);
         }
@@ -223,9 +214,9 @@ fn show_text<B: Board, S: Source>(
         let [top, bottom] = menu::lines(view_state, at);
         hud::lines([&top, &bottom], framebuffer, board);
     } else if view_state.hud {
-        hud::show(view_state, first.name, &first.source.status(), framebuffer, board);
+        hud::show(view_state, first.entry.name, &first.source.status(), framebuffer, board);
     } else if idles && view_state.idle.has_caption() {
-        hud::caption(first.name, first.bytes, framebuffer, board);
+        hud::caption(first.entry, framebuffer, board);
     } else {
         board.overlay([""; 2]);
     }

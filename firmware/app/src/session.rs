@@ -20,8 +20,6 @@ pub struct Entry<'a> {
 /// What a clip is played with.
 pub(crate) struct PlayContext<'a, B: Board> {
     pub mode: Mode,
-    /// Whether there are several clips, of which the next one follows while nobody gives commands.
-    pub several: bool,
     pub view_state: &'a mut ViewState,
     pub framebuffer: &'a mut Framebuffer<B::Layout>,
     pub board: &'a mut B,

@@ -6,7 +6,7 @@ use crate::keys::SteerKey;
 use crate::log::error;
 use crate::options::Options;
 use crate::run::{Actor, play};
-use crate::session::{Outcome, PlayContext};
+use crate::session::{Entry, Outcome, PlayContext};
 use crate::source::steered::SteeredSource;
 use crate::update::Listener;
 use crate::view_state::ViewState;
@@ -60,7 +60,7 @@ pub fn steer<B: Board, const CHANNELS: usize>(
     let mode = options.mode;
     let mut view_state = ViewState::new(&Options { hud: true, ..options });
     let listener = Listener::default();
-    let mut context = PlayContext { mode, several: false, view_state: &mut view_state, framebuffer, board, listener };
+    let mut context = PlayContext { mode, view_state: &mut view_state, framebuffer, board, listener };
     match set_up::<B, CHANNELS>(bank, keys, leave, &mut context) {
         Ok(Outcome::Exit(exit)) => exit,
         Ok(_) => Exit::Done,
@@ -93,7 +93,10 @@ fn set_up<B: Board, const CHANNELS: usize>(
         character.lend_layer(layer)?;
     }
     let mut source = SteeredSource::new(character, keys, leave, context.mode, context.board.held());
-    Ok(play(&mut [Actor { name: "", bytes: 0, source: &mut source, content: &mut renderer }], context))
+    Ok(play(
+        &mut [Actor { entry: &Entry { name: "", bytes: &[], rig: &[] }, source: &mut source, content: &mut renderer }],
+        context,
+    ))
 }
 
 /// Sets the figure up, and the camera for the clips of all states.

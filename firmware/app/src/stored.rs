@@ -40,9 +40,9 @@ struct StoredContext<'a, B: Board> {
 
 impl<B: Board> StoredContext<'_, B> {
     /// Lends it to one clip.
-    fn lend<'s>(&'s mut self, several: bool, listener: Listener<'s>) -> PlayContext<'s, B> {
+    fn lend<'s>(&'s mut self, listener: Listener<'s>) -> PlayContext<'s, B> {
         let StoredContext { options, view_state, framebuffer, board } = self;
-        PlayContext { mode: options.mode, several, view_state, framebuffer, board, listener }
+        PlayContext { mode: options.mode, view_state, framebuffer, board, listener }
     }
 }
 
@@ -74,12 +74,13 @@ fn until_replaced<B: Board, S: Slot>(
     mut stored_context: StoredContext<B>,
 ) -> Option<Exit> {
     let mut own = stored.as_ref().map_or(0, count);
+    stored_context.view_state.idle.several = own + entries.len() > 1;
     let (mut at, mut from) = (0usize, 0);
     while let Some(entry) = match at.checked_sub(own) {
         Some(at) => entries.get(at).copied(),
         None => stored.as_ref().and_then(|stored| entry(stored, at)),
     } {
-        let mut context = stored_context.lend(own + entries.len() > 1, Listener { update: Some(update) });
+        let mut context = stored_context.lend(Listener { update: Some(update) });
         match open(&entry, Task::Play { from }, &mut context) {
             Outcome::Clip(steps) => {
                 let count = (entries.len() + own) as i32;
@@ -110,7 +111,7 @@ fn is_playable<B: Board, S: Slot>(update: &Update<S>, stored_context: &mut Store
     let mut is_playable = |at: usize| {
         let entry = entry(&candidate, at);
         entry.is_some_and(|entry| {
-            matches!(open(&entry, Task::Check, &mut stored_context.lend(false, Listener::default())), Outcome::Playable)
+            matches!(open(&entry, Task::Check, &mut stored_context.lend(Listener::default())), Outcome::Playable)
         })
     };
     (0..count(&candidate)).all(&mut is_playable)
