@@ -104,7 +104,7 @@ pub mod context {
     pub const NEGATIVE: usize = LENGTH + 8 * LONG;
     /// How many contexts there are.
     pub const COUNT_OF_ALL: usize = NEGATIVE + 2;
-    /// Contexts of a number in unary: ones after so many share the last.
+    /// Number of contexts of a number in unary. Each leading one has its own context; from this number on, they share the last.
     pub const LONG: usize = 12;
 }
 

@@ -54,7 +54,7 @@ pub(super) fn start(state: &mut ChannelState, p: &mut i32, words: &[ChannelState
 }
 
 impl Span {
-    /// Value and second difference so many frames after the first key.
+    /// Value and second difference at a frame, which is counted from the first key.
     #[inline(never)]
     fn at(&self, frames: u32) -> (i64, i64) {
         let (n, all, [w, end]) = (frames as i32, self.frames as i32, self.w);

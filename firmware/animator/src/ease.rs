@@ -18,7 +18,7 @@ impl Ease {
         Ease { d, v: 0 }
     }
 
-    /// The same in a unit that is 2^-`shift` of the old one.
+    /// Converts the distance and its velocity to another unit: 2^-`shift` old units.
     pub(crate) fn in_unit(self, shift: i32) -> Ease {
         Ease { d: crate::chain::shifted(self.d, -shift), v: crate::chain::shifted(self.v, -shift) }
     }

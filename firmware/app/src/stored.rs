@@ -74,12 +74,12 @@ fn until_replaced<B: Board, S: Slot>(
     mut stored_context: StoredContext<B>,
 ) -> Option<Exit> {
     let mut own = stored.as_ref().map_or(0, count);
-    stored_context.view_state.idle.several = own + entries.len() > 1;
     let (mut at, mut from) = (0usize, 0);
     while let Some(entry) = match at.checked_sub(own) {
         Some(at) => entries.get(at).copied(),
         None => stored.as_ref().and_then(|stored| entry(stored, at)),
     } {
+        stored_context.view_state.idle.several = own + entries.len() > 1;
         let mut context = stored_context.lend(Listener { update: Some(update) });
         match open(&entry, Task::Play { from }, &mut context) {
             Outcome::Clip(steps) => {

@@ -63,7 +63,7 @@ fn play(entries: &[Entry], presses: &[(usize, Command)]) -> Mock {
     board
 }
 
-/// Pictures until the end of the round in which so many seconds are over, and pictures of these seconds.
+/// Number of pictures until a clip is left that stays for `seconds`, and number of pictures in `seconds`. A clip is left at the end of a round.
 fn round(entry: Entry, seconds: u64) -> (usize, usize) {
     let clip = pantin::Clip::new_checked(entry.bytes).unwrap();
     let pictures = (seconds * 1_000_000_000).div_ceil(clip.frame_time_ns().into()) as usize;
@@ -91,7 +91,7 @@ fn a_clip_that_somebody_chose_stays_a_minute() {
 
 #[test]
 fn the_display_gets_dark_after_ten_minutes_and_a_press_lights_it() {
-    /// At 120 pictures a second, of which each takes 8.33 ms.
+    /// Pictures at 120 a second.
     const TEN_MINUTES: usize = 72_001;
     // A paused clip is not left.
     let presses = [(1, Command::Pause), (TEN_MINUTES + 100, Command::Reverse), (TEN_MINUTES + 200, Command::NextClip)];

@@ -53,7 +53,8 @@ const TRIAL_SCALE: i32 = 1 << 14;
 /// A clip is looked at in about this many places before it plays.
 const SAMPLES: u32 = 48;
 
-/// Of a clip with more bytes of motion than this, only a first part is looked at, which takes at most so many: bytes are what a seek costs.
+/// Most bytes of motion that the camera reads. A larger clip is divided into equal parts of at most this size, and the camera sees the first. The time of a
+/// seek grows with the bytes.
 const SURVEYED_BYTES: usize = 1 << 14;
 
 impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {

@@ -88,7 +88,7 @@ impl<'a> Foot<'a> {
         })
     }
 
-    /// The same foot for clips of another form, whose unit is 2^-`shift` of the old one's.
+    /// Converts the foot to another form of clips. The unit of that form is 2^-`shift` old units.
     pub(super) fn in_form(&self, row: FootRow, clip: &Clip<'a>, groups: &[Group], shift: i32) -> Result<Foot<'a>, Error> {
         let Foot { limb, points, .. } = Foot::new(row, clip, groups)?;
         let wide = |x: i64| if shift >= 0 { x.wrapping_shl(shift.min(63) as u32) } else { x >> shift.unsigned_abs().min(63) };

@@ -11,7 +11,7 @@ pub trait Display<L: Layout> {
     /// There is no error to return: a program has nothing better to do than to try again with the next picture.
     fn present(&mut self, framebuffer: &mut Framebuffer<L>);
 
-    /// So many nanoseconds have passed; of more than 4.29 s, these.
+    /// Reports that time has passed, in nanoseconds since the last call: at most 4.29 s.
     fn pass(&mut self, _ns: u32) {}
 
     /// Shows text by hardware of its own, as `pantin_app::Board::overlay` says.

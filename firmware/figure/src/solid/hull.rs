@@ -194,7 +194,7 @@ fn pixels([low, high]: Span) -> Span {
     [middle, middle]
 }
 
-/// A span of at least so many sixteenths of a pixel shows one.
+/// Least length of a span that lights a pixel although it covers no pixel's middle, in sixteenths of a pixel.
 const NARROW: i32 = 10;
 
 /// The root of a square below 2^31, rounded down: Newton's, from a first value that is not smaller.

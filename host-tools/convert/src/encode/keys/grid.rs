@@ -20,7 +20,7 @@ pub fn half_cycle(frames: u32, looped: bool) -> Option<u32> {
 }
 
 impl Grid {
-    /// Of times, in a clip of so many frames.
+    /// Makes the grid of these times. `frames` is the number of frames of the clip.
     pub fn new(interpolation: u8, times: &[u32], frames: u32, looped: bool) -> Grid {
         let inner = times.len() - 1;
         let repeats = |half: u32| {
