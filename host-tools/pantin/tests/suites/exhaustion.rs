@@ -2,6 +2,7 @@
 
 use super::outputs::{Folder, err};
 use super::processor_time::within;
+use std::path::Path;
 use std::process::Output;
 
 /// Most CPU time of a command that refuses: it does not depend on what else the machine does.
@@ -301,11 +302,18 @@ fn peak(folder: &Folder, arguments: &[&str]) -> Option<u64> {
     let mut command = folder.command(arguments);
     command.env("RAYON_NUM_THREADS", "2").stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped());
     let mut child = command.spawn().unwrap();
+    let process = Path::new("/proc").join(child.id().to_string());
+    let program = |process: &Path| std::fs::read_link(process.join("exe")).ok();
+    let tests = program(Path::new("/proc/self"));
     let mut most = 0;
     loop {
-        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        // A process has its parent's memory until it runs its own program: on a busy machine it may not have come to that.
+        let began = program(&process).is_some_and(|path| Some(path) != tests);
+        let status = std::fs::read_to_string(process.join("status")).unwrap_or_default();
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.strip_suffix("kB"));
-        most = line.and_then(|kb| kb.trim().parse().ok()).unwrap_or(0).max(most);
+        if began {
+            most = line.and_then(|kb| kb.trim().parse().ok()).unwrap_or(0).max(most);
+        }
         if child.try_wait().unwrap().is_some() {
             break;
         }
