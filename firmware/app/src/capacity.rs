@@ -81,6 +81,9 @@ pub struct Style {
     /// A body with volume.
     #[cfg(feature = "solid")]
     pub solid: bool,
+    /// Its character.
+    #[cfg(feature = "solid")]
+    pub look: pantin_figure::solid::Look,
 }
 
 /// A renderer of figures for any number of joints.
@@ -122,7 +125,10 @@ pub trait Renderer {
 #[inline(always)]
 fn make_room<const N: usize, R: RotationBackend>(figure: &mut Figure<N, R>, style: Style) {
     #[cfg(feature = "solid")]
-    figure.make_room(style.solid);
+    {
+        figure.set_look(style.look);
+        figure.make_room(style.solid);
+    }
     #[cfg(not(feature = "solid"))]
     let _ = (figure, style);
 }

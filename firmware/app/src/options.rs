@@ -30,6 +30,9 @@ pub struct Options {
     /// Whether figures have volume at first.
     #[cfg(feature = "solid")]
     pub solid: bool,
+    /// The character of figures that have volume.
+    #[cfg(feature = "solid")]
+    pub look: pantin_figure::solid::Look,
     /// Whether name, frame and speed are shown at first.
     pub hud: bool,
     /// Whether the display stays lit when nobody gives a command for ten minutes.
@@ -69,6 +72,8 @@ impl Options {
             smooth: false,
             #[cfg(feature = "solid")]
             solid: false,
+            #[cfg(feature = "solid")]
+            look: pantin_figure::solid::Look::DEFAULT,
             hud: false,
             awake: false,
             figures: 1,

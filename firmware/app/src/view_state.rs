@@ -64,6 +64,8 @@ impl ViewState {
             lines: DrawStyle { smooth: options.smooth, ..DrawStyle::default() },
             #[cfg(feature = "solid")]
             solid: options.solid,
+            #[cfg(feature = "solid")]
+            look: options.look,
         };
         ViewState {
             view,

@@ -3,10 +3,10 @@
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Size};
-use embedded_graphics::pixelcolor::{BinaryColor, Gray4, PixelColor, Rgb565};
+use embedded_graphics::pixelcolor::{BinaryColor, Gray4, PixelColor, Rgb565, Rgb888, RgbColor};
 use pantin::{Clip, Form, Player, Pose, Room};
 use pantin_figure::ink::Ink;
-use pantin_figure::solid::{Build, Look, Material, SolidFigure};
+use pantin_figure::solid::{Build, Look, Material, SolidFigure, look_text};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
 use pantin_figure::{Canvas, DrawStyle, FigureRenderer, View};
 
@@ -52,16 +52,37 @@ fn with_player(clip: &'static [u8], test: impl FnOnce(&mut Player)) {
     test(&mut room.player(Clip::new_checked(clip).unwrap()).unwrap());
 }
 
-fn figure(player: &mut Player, [width, height]: [usize; 2], orbit: i16) -> SolidFigure<JOINTS> {
-    let canvas = Canvas { width: width as u16, height: height as u16 };
-    let view = View { orbit, ..View::default() };
-    SolidFigure::of_clip(player, canvas, view, Look::DEFAULT).unwrap()
+fn figure(player: &mut Player, size: [usize; 2], orbit: i16) -> SolidFigure<JOINTS> {
+    figure_of(player, size, orbit, Look::DEFAULT)
 }
 
-/// Draws every 16th frame on a framebuffer of a layout and on a target, and compares them.
+fn figure_of(player: &mut Player, [width, height]: [usize; 2], orbit: i16, look: Look) -> SolidFigure<JOINTS> {
+    let canvas = Canvas { width: width as u16, height: height as u16 };
+    let view = View { orbit, ..View::default() };
+    SolidFigure::of_clip(player, canvas, view, look).unwrap()
+}
+
+fn look(text: &str) -> Look {
+    Look::new(look_text::compile(text).unwrap().to_vec().leak()).unwrap()
+}
+
+/// The default character and all that are shipped.
+fn looks() -> [Look; 4] {
+    let shipped = ["dancer", "ranger", "cat"].map(|name| {
+        let path = format!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../motions/looks/{}.look"), name);
+        look(&std::fs::read_to_string(path).unwrap())
+    });
+    [Look::DEFAULT, shipped[0], shipped[1], shipped[2]]
+}
+
+/// Draws every 16th frame of every character on a framebuffer of a layout and on a target, and compares them.
 fn same_on_both<L: Layout<Ink: PartialEq + core::fmt::Debug>>(player: &mut Player) {
+    looks().into_iter().for_each(|look| same_of_a_look::<L>(player, look));
+}
+
+fn same_of_a_look<L: Layout<Ink: PartialEq + core::fmt::Debug>>(player: &mut Player, look: Look) {
     let size = [L::WIDTH, L::HEIGHT];
-    let (mut one, mut other) = (figure(player, size, -50), figure(player, size, -50));
+    let (mut one, mut other) = (figure_of(player, size, -50, look), figure_of(player, size, -50, look));
     assert_eq!(one.build(), Build::Person);
     let mut framebuffer = Framebuffer::<L>::new();
     for frame in (0..player.clip().frames()).step_by(16) {
@@ -114,7 +135,7 @@ fn lines_are_those_of_the_figure_without_volume() {
 
 #[test]
 fn the_face_is_seen_from_the_front_alone() {
-    let face = Rgb565::tint(Look::DEFAULT.tint(Material::Face), 256);
+    let face = Rgb565::tint(&Look::DEFAULT.tint(Material::Face), 256);
     for clip in CLIPS {
         with_player(clip, |player| {
             let seen = [0, 90, -90, 180].map(|orbit| {
@@ -131,22 +152,69 @@ fn the_face_is_seen_from_the_front_alone() {
 }
 
 #[test]
-fn the_whole_figure_is_on_the_display() {
-    for clip in CLIPS {
+fn the_whole_figure_is_on_the_display_with_all_that_is_attached() {
+    let tall = look("attach head ff0000 15 bright 0 60 0 40 0 250 0 30\nattach hips ff0000 15 bright 0 0 0 40 0 0 -250 30");
+    for (clip, look) in CLIPS.into_iter().flat_map(|clip| looks().into_iter().chain([tall]).map(move |look| (clip, look))) {
         with_player(clip, |player| {
             for orbit in [0, -50, -90, 140] {
-                let mut figure = figure(player, [176, 220], orbit);
+                let mut figure = figure_of(player, [176, 220], orbit, look);
                 for frame in (0..player.clip().frames()).step_by(4) {
                     player.seek(frame);
                     let mut target = Target::<BinaryColor>::new([176, 220]);
                     figure.set_pose(player.pose()).unwrap();
                     figure.draw_on(&mut pantin_figure::surface::OnTarget::new(&mut target), false);
                     let (top, bottom) = (&target.pixels[..176 * 2], &target.pixels[176 * 218..]);
-                    assert!(top.iter().chain(bottom).all(|pixel| pixel.is_off()), "frame {frame} from {orbit} degrees");
+                    let sides = (0..220).flat_map(|row| [row * 176, row * 176 + 175].map(|index| &target.pixels[index]));
+                    let border = top.iter().chain(bottom).chain(sides);
+                    assert!({ border }.all(|pixel| pixel.is_off()), "frame {frame} from {orbit} degrees");
                 }
             }
         });
     }
+}
+
+#[test]
+fn shipped_characters_have_at_most_200_bytes_and_attachments() {
+    for look in &looks()[1..] {
+        assert!(look.bytes().len() <= 200 && look.attachments().count() >= 3, "{}", look.bytes().len());
+    }
+}
+
+/// Pixels of a colour in frame 7 of a clip, and the mean of their rows and columns.
+fn seen(player: &mut Player, look: Look, orbit: i16, rgb: [u8; 3]) -> [usize; 3] {
+    let mut figure = figure_of(player, [176, 220], orbit, look);
+    player.seek(7);
+    let mut target = Target::<Rgb888>::new([176, 220]);
+    figure.draw(player.pose(), &mut target).unwrap();
+    // Lit or shaded: the hue stays.
+    let is_own =
+        |pixel: &Rgb888| (pixel.r() > 60) == (rgb[0] > 0) && (pixel.g() > 60) == (rgb[1] > 0) && (pixel.b() > 60) == (rgb[2] > 0);
+    let places: Vec<usize> = (0..target.pixels.len()).filter(|index| is_own(&target.pixels[*index])).collect();
+    let mean = |of: fn(usize) -> usize| places.iter().map(|place| of(*place)).sum::<usize>() / places.len().max(1);
+    [places.len(), mean(|place| place / 176), mean(|place| place % 176)]
+}
+
+#[test]
+fn attachments_are_where_their_anchors_say() {
+    const MAGENTA: [u8; 3] = [255, 0, 255];
+    let attached = |place: &str| look(&format!("colour left 808080\ncolour right 808080\nattach {place}"));
+    with_player(CLIPS[0], |player| {
+        let mut at = |place: &str, orbit| seen(player, attached(place), orbit, MAGENTA);
+        // Rows: hat, bag, belt, hem.
+        let places = ["head ff00ff 15 bright 0 80 0 50", "chest ff00ff 15 bright 0 0 -90 40", "hips ff00ff 15 bright 0 0 -90 40"];
+        let [hat, bag, tail] = places.map(|place| at(place, 180));
+        let hem = at("thighs ff00ff 15 bright 0 -150 0 60 -2 -150 0 60", 180);
+        assert!([hat, bag, tail, hem].iter().all(|seen| seen[0] > 100), "{hat:?} {bag:?} {tail:?} {hem:?}");
+        assert!(hat[1] < bag[1] && bag[1] < tail[1] && tail[1] < hem[1], "{hat:?} {bag:?} {tail:?} {hem:?}");
+        // What is on the back is hidden from the front.
+        assert!(at(places[1], 0)[0] * 4 < bag[0]);
+        // The left side is on the left from behind, and on the right from the front.
+        for anchor in ["head", "chest", "hips", "thighs"] {
+            let [left, right] = [120, -120].map(|left| format!("{anchor} ff00ff 15 bright {left} 0 0 40"));
+            assert!(at(&left, 180)[2] + 10 < at(&right, 180)[2], "{anchor}");
+            assert!(at(&left, 0)[2] > at(&right, 0)[2] + 10, "{anchor}");
+        }
+    });
 }
 
 #[test]
@@ -181,7 +249,7 @@ fn no_pose_draws_outside_or_fails() {
         let form: Form = player.pose().form.to_form();
         for round in 0..60 {
             let size = [[64, 32], [128, 64], [176, 220], [320, 240]][round % 4];
-            let mut figure = figure(player, size, random.i16(-180..180));
+            let mut figure = figure_of(player, size, random.i16(-180..180), looks()[round / 4 % 4]);
             for _ in 0..4 {
                 let most = 1 << random.u32(8..31);
                 let values: Vec<i32> = (0..player.pose().values.len()).map(|_| random.i32(-most..most)).collect();

@@ -84,7 +84,7 @@ impl Palette {
         let mut colours = vec![self.paper, self.margin(), self.letters()];
         if self.scale == Scale::Hues {
             let lights = (143..=256).step_by(16).chain((88..=160).step_by(16)).chain([256]);
-            let of = |light: u16| look.tints.iter().map(move |tint| rgb(Rgb565::tint(tint, light).into()));
+            let of = |light: u16| look.tints().map(move |tint| rgb(Rgb565::tint(&tint, light).into()));
             lights.flat_map(of).for_each(|colour| {
                 if !colours.contains(&colour) && colours.len() < 256 {
                     colours.push(colour);

@@ -12,6 +12,10 @@ mod emulated_panic;
 #[cfg(feature = "emulated")]
 mod exit;
 mod flash;
+#[cfg(feature = "solid")]
+mod look {
+    include!(concat!(env!("OUT_DIR"), "/look.rs"));
+}
 // Panics of emulated boards end the emulator; one of these boards has no atomic memory access.
 #[cfg(not(feature = "emulated"))]
 mod panic_screen;
@@ -35,6 +39,8 @@ pub use embedded_storage::nor_flash;
 #[cfg(feature = "emulated")]
 pub use exit::{Code, exit};
 pub use flash::{Flash, NoFlash};
+#[cfg(feature = "solid")]
+pub use look::LOOK;
 #[cfg(not(feature = "emulated"))]
 pub use panic_screen::{PanicBoard, panic_screen, refusal_screen};
 pub use register::Register;

@@ -56,7 +56,11 @@ pub(crate) fn options() -> Options {
     #[allow(unsafe_code, deprecated)]
     let read = unsafe { sys_get_cmdline(&mut line) };
     let text = read.ok().and_then(|()| core::str::from_utf8(buffer.get(..line.size)?).ok());
-    Options::parse(text.unwrap_or("").split(' '))
+    Options {
+        #[cfg(feature = "solid")]
+        look: crate::LOOK,
+        ..Options::parse(text.unwrap_or("").split(' '))
+    }
 }
 
 impl From<Exit> for Code {

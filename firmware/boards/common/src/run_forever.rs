@@ -42,6 +42,8 @@ fn options<B: Board>(board: &mut B) -> Options {
         mode,
         #[cfg(feature = "solid")]
         solid: true,
+        #[cfg(feature = "solid")]
+        look: crate::LOOK,
         #[cfg(feature = "link")]
         link: true,
         ..Options::parse([])

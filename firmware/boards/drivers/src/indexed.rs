@@ -48,11 +48,11 @@ impl Indexed {
     const fn material_rgb(self) -> [u8; 3] {
         let (material, step) = ((self.0 - SOLID) / LIGHTS, (self.0 - SOLID) % LIGHTS);
         // The last two indices are of no material.
-        if material as usize >= Look::DEFAULT.tints.len() {
+        if material as usize >= Look::DEFAULT_TINTS.len() {
             return [0; 3];
         }
         let light = 256 - (LIGHTS - 1 - step) as u16 * LIGHT_STEP;
-        let mut rgb = Look::DEFAULT.tints[material as usize].rgb;
+        let mut rgb = Look::DEFAULT_TINTS[material as usize].rgb;
         let mut channel = 0;
         while channel < 3 {
             rgb[channel] = ((rgb[channel] as u16 * light) >> 8) as u8;
@@ -93,7 +93,7 @@ impl Ink for Indexed {
     #[inline(never)]
     fn tint(tint: &Tint, light: Light) -> Self {
         let apart = |own: &Tint| own.rgb.iter().zip(tint.rgb).map(|(own, other)| u32::from(own.abs_diff(other))).sum::<u32>();
-        let nearest = Look::DEFAULT.tints.iter().enumerate().min_by_key(|(_, own)| apart(own));
+        let nearest = Look::DEFAULT_TINTS.iter().enumerate().min_by_key(|(_, own)| apart(own));
         let material = nearest.map_or(0, |(index, _)| index as u8);
         let darker = (256 - light.min(256)).div_ceil(LIGHT_STEP).min(u16::from(LIGHTS) - 1) as u8;
         Indexed(SOLID + material * LIGHTS + LIGHTS - 1 - darker)
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn every_material_of_a_solid_figure_has_its_colour() {
-        for tint in &Look::DEFAULT.tints {
+        for tint in &Look::DEFAULT_TINTS {
             assert_eq!(Indexed::tint(tint, 256).rgb(), tint.rgb);
             for light in 96..=256 {
                 let [found, exact] =

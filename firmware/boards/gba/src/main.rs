@@ -57,6 +57,8 @@ fn options() -> Options {
         hud: true,
         #[cfg(feature = "solid")]
         solid: true,
+        #[cfg(feature = "solid")]
+        look: board_common::LOOK,
         ..Options::parse([])
     }
 }

@@ -21,7 +21,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     /// Draws the floor, and the shadow of a person.
     #[inline(never)]
     pub(super) fn draw_floor<S: Surface>(&self, painter: &mut Painter<S>, joints: Option<&Joints>) {
-        let ink = |material: Material| S::Ink::tint(self.look.tint(material), 256);
+        let ink = |material: Material| S::Ink::tint(&self.look.tint(material), 256);
         let (edge, shadow, floor) = (ink(Material::Edge), ink(Material::Shadow), ink(Material::Floor));
         let bare = Outline { ink: edge, width: 0, cuts: [Cut::None; 2] };
         let hips = joints.map_or(self.figure.skeleton().hips as u8, |joints| joints.hips);

@@ -48,7 +48,7 @@ impl Head {
         // 256 if the face looks at the camera.
         let toward = (-self.face[2] * 256 / r.max(1)).clamp(-256, 256);
         let shade = |light: Light| ((u32::from(light) * SHADE) >> 8) as Light;
-        let ink = |material: Material, light: Light| S::Ink::tint(look.tint(material), light);
+        let ink = |material: Material, light: Light| S::Ink::tint(&look.tint(material), light);
         let edge = ink(Material::Edge, 256);
         let outline = Outline { ink: edge, width, cuts: [Cut::None; 2] };
         let bare = Outline { width: 0, ..outline };

@@ -10,6 +10,8 @@
 //!   joints of the spine one waist. If a rig is no person's, each bone is a capsule ([`Build::Bones`]); if it has more than [`MOST_PARTS`], only
 //!   lines can be drawn ([`Build::Lines`]).
 //! - **Sizes.** All radii are thousandths of the figure's height, which is 2.04 times thigh and shin: [`Look`].
+//! - **Characters.** A [`Look`] has radii, materials and attachments such as a hat, hair, a skirt or a tail, in at most 200 bytes. It is written as
+//!   text ([`look_text`]). The camera makes room for attachments as far as they reach in any direction.
 //! - **Rows.** A part is the convex hull of one to four circles (`hull.rs`). Each row of it is one span, which `paint.rs` fills with the surface's
 //!   own [`Surface::span`]. The outline is what the rows reach with a pixel more on each side; it is open where a part that was drawn before
 //!   goes on, so that no seam shows at joints.
@@ -23,11 +25,13 @@
 //! On displays of two colours, for figures below 40 pixels; for arms before chest or face on such displays; where instructions count: solid
 //! figures take seven times as many or more.
 
+mod attach;
 mod floor;
 mod head;
 mod hull;
 mod joints;
-mod look;
+pub mod look;
+pub mod look_text;
 mod paint;
 mod parts;
 mod sizes;
@@ -44,7 +48,8 @@ use embedded_graphics::draw_target::DrawTarget;
 use head::Head;
 use heapless::Vec;
 use joints::Joints;
-pub use look::{Look, MATERIALS, Material, RADII, Radius};
+use look::{Anchor, MOST_ATTACHMENTS};
+pub use look::{Look, LookError, MATERIALS, Material, RADII, Radius};
 use paint::{Cut, Fill, Outline, Painter};
 use pantin::{Player, Pose, WrongForm};
 use pantin_math::vector::{cross, direction, dot, sub};
@@ -98,10 +103,12 @@ pub struct SolidFigure<const N: usize, R: RotationBackend = Rotation> {
     roomy: bool,
 }
 
-/// Thousandths of the height that a head reaches from its joint: its middle is 62 above it, and the outline is part of the margin.
-const HEAD_REACH: i32 = 140;
-/// Those that a hand reaches from the wrist.
-const HAND_REACH: i32 = 70;
+/// Thousandths of the height from the head's joint to the skull's middle. The outline is part of the camera's margin.
+const HEAD_MIDDLE: i32 = 62;
+/// Those that a hand reaches from the wrist beyond its radius.
+const HAND_REACH: i32 = 44;
+/// Joints of a person, and how far what hangs on them reaches from each in figure units.
+type Ends = [(u8, i32); 5];
 /// Length of the vectors in the head's axes.
 const AXIS: i32 = 1 << 13;
 /// A clip is looked at in about this many places before it plays.
@@ -147,11 +154,20 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             Some(joints) => Kind::Person(joints),
             None => Kind::Bones,
         };
+        if let Kind::Person(joints) = self.kind {
+            self.learn_head(player, &joints);
+        }
+        self.list();
+    }
+
+    /// Lists the parts.
+    fn list(&mut self) {
+        const { assert!(HUMAN_PARTS + MOST_ATTACHMENTS <= MOST_PARTS) };
         self.order.clear();
         let mut fits = true;
-        if let Kind::Person(joints) = self.kind {
-            (0..HUMAN_PARTS as u8).for_each(|part| fits &= self.order.push(part).is_ok());
-            self.learn_head(player, &joints);
+        if let Kind::Person(_) = self.kind {
+            let parts = HUMAN_PARTS + self.look.attachments().count();
+            (0..parts as u8).for_each(|part| fits &= self.order.push(part).is_ok());
         } else {
             for (index, bone) in self.figure.skeleton().bones.iter().enumerate() {
                 if bone.parent.is_some() && matches!(bone.part, Role::Bone | Role::Crown) {
@@ -214,13 +230,16 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         self.roomy = room;
     }
 
-    /// The joints of head and hands and how far these reach from them in figure units, of a person for whose volume there is room.
-    fn ends(&self) -> Option<[(u8, i32); 3]> {
+    /// Joints and how far head, hands and attachments reach from them in figure units, of a person for whose volume there is room.
+    fn ends(&self) -> Option<Ends> {
         let Kind::Person(joints) = self.kind else { return None };
         let eighth = sizes::height(&self.figure.skeleton().bones, &joints) >> 3;
         let reach = |thousandths: i32| eighth * thousandths / 125;
-        let [left, right] = joints.arms.map(|[.., wrist]| (wrist, reach(HAND_REACH)));
-        self.roomy.then_some([(joints.head, reach(HEAD_REACH)), left, right])
+        let radius = |of: Radius| i32::from(self.look.radius(of, false));
+        let head = HEAD_MIDDLE + radius(Radius::Skull).max(self.look.reach(&[Anchor::Head]));
+        let [left, right] = joints.arms.map(|[.., wrist]| (wrist, reach(HAND_REACH + radius(Radius::Hand))));
+        let [chest, hips] = [&[Anchor::Chest][..], &[Anchor::Hips, Anchor::Thighs]].map(|anchors| self.look.reach(anchors));
+        self.roomy.then_some([(joints.head, reach(head)), left, right, (joints.neck, reach(chest)), (joints.hips, reach(hips))])
     }
 
     /// Works out sizes for the camera.
@@ -233,10 +252,10 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         self.sorted = false;
     }
 
-    /// Changes the character.
+    /// Changes the character. Set the camera up after it: it makes room for the character's volume, and works its sizes out.
     pub fn set_look(&mut self, look: Look) {
         self.look = look;
-        self.measure();
+        self.list();
     }
 
     /// What the rig is drawn as.
@@ -374,11 +393,11 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
 }
 
 /// Takes in what a pose covers: the bones, and circles about joints, given with their radii in figure units.
-fn cover<const N: usize, R: RotationBackend>(extent: &mut Extent, figure: &FigureRenderer<N, R>, ends: Option<[(u8, i32); 3]>) {
+fn cover<const N: usize, R: RotationBackend>(extent: &mut Extent, figure: &FigureRenderer<N, R>, ends: Option<Ends>) {
     let Some(ends) = ends else { return extent.include(figure) };
     extent.include_bones(figure);
     for (joint, reach) in ends {
-        if let Some(seen) = figure.visible(joint) {
+        if let Some(seen) = figure.visible(joint).filter(|_| reach > 0) {
             let radius = (figure.camera().length(reach) * magnification(seen.depth.into())) >> MAGNIFICATION_BITS;
             extent.widen(seen.place, radius.min(i16::MAX.into()) as i16);
         }
@@ -410,12 +429,16 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         }
         let key = self.depth_of(part);
         let part = match joints {
-            Some(joints) => self.human(joints, part),
+            Some(joints) => match usize::from(part).checked_sub(HUMAN_PARTS).and_then(|index| self.look.attachments().nth(index))
+            {
+                Some(attachment) => self.attached(joints, &attachment),
+                None => self.human(joints, part),
+            },
             None => self.bone(part),
         };
         let light = self.light(key, part.right);
         let lit = S::Ink::tint(&part.tint, light);
-        let edge = S::Ink::tint(self.look.tint(Material::Edge), 256);
+        let edge = S::Ink::tint(&self.look.tint(Material::Edge), 256);
         let mut outline = Outline { ink: edge, width: self.sizes.outline, cuts: [Cut::None; 2] };
         for (cut, (circle, joint)) in outline.cuts.iter_mut().zip(part.ends) {
             if joint & *drawn != 0 {
@@ -426,7 +449,8 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         let fill = if !S::Ink::TONES {
             match part.tint.pattern {
                 Pattern::Checkered => Fill::Checkered(lit, edge),
-                _ => Fill::Plain(lit),
+                Pattern::Dark => Fill::Rimmed(S::Ink::tint(&self.look.tint(Material::Face), 256), lit),
+                Pattern::Bright => Fill::Plain(lit),
             }
         } else if shaded {
             // 0.42 of the mean radius towards the lower right.
@@ -455,7 +479,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 
     /// The joint at the far end of a part of a person.
     fn human_joint(&self, joints: &Joints, part: u8) -> Option<u8> {
-        let limb = part.checked_sub(4)?;
+        let limb = part.checked_sub(4).filter(|_| usize::from(part) < HUMAN_PARTS)?;
         let side = usize::from(limb >= 6);
         let index = usize::from(limb % 6);
         let [arm, leg] = [joints.arms.get(side)?, joints.legs.get(side)?];

@@ -21,6 +21,8 @@ pub(super) const HEAD: u8 = 3;
 /// The first part of the left side; those of the right side follow.
 const LIMBS: u8 = 4;
 const SIDE: u8 = 6;
+/// Thousandths of the height by which the head counts as nearer than the skull's middle.
+pub(super) const HEAD_OVER: i32 = 30;
 
 /// A joint where parts meet, as a bit: the outline of a part that is drawn later is open there.
 pub(super) type JointBit = u64;
@@ -121,7 +123,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         set(PELVIS, pelvis + height / 200);
         set(CHEST, trunk);
         set(NECK, skull - height * 24 / 1000);
-        set(HEAD, skull - height * 30 / 1000);
+        set(HEAD, skull - height * HEAD_OVER / 1000);
         for side in 0..2 {
             let first = LIMBS + SIDE * side as u8;
             let [shoulder, elbow, wrist] = joints.arms[side].map(depth);
@@ -133,10 +135,13 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
             set(first + 4, (knee + ankle) / 2);
             set(first + 5, mix(ankle, self.foot(joints, side)[1][2], 154) - height / 200);
         }
+        for (part, attachment) in (HUMAN_PARTS as u8..).zip(self.look.attachments()) {
+            set(part, self.attached_key(joints, &attachment, thighs));
+        }
     }
 
     /// The depth of the skull's middle.
-    fn head_depth(&self, joints: &Joints) -> i32 {
+    pub(super) fn head_depth(&self, joints: &Joints) -> i32 {
         let [.., away] = self.head.up;
         // The skull's radius is a known part of the height, and as long as the vectors.
         let radius = self.head.skull[2].max(1);
@@ -145,7 +150,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     }
 
     fn skull_thousandths(&self) -> u8 {
-        self.look.radii[usize::from(self.sizes.small)][Radius::Skull as usize]
+        self.look.radius(Radius::Skull, self.sizes.small)
     }
 
     fn waist(&self, joints: &Joints) -> Place {
@@ -163,7 +168,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         const HEAD_JOINT: JointBit = 4;
         let limb_joint = |side: usize, index: usize| 8 << (6 * side + index);
         let both = |index: usize| limb_joint(0, index) | limb_joint(1, index);
-        let plain = |material: Material| *self.look.tint(material);
+        let plain = |material: Material| self.look.tint(material);
         let pair = |limbs: &[Limb; 2], inwards: i32, radius: Radius| {
             let [left, right] = [self.joint(limbs[0][0]), self.joint(limbs[1][0])];
             let middle = between(left, right, 128);
@@ -242,7 +247,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         let bit = |joint: u8| 1u64.checked_shl(joint.into()).unwrap_or(0);
         Part {
             circles: Vec::from_slice(&[near, far]).unwrap_or_default(),
-            tint: *self.look.tint(material),
+            tint: self.look.tint(material),
             ends: [(0, bit(parent)), (1, bit(index))],
             covers: bit(parent) | bit(index),
             right: body_part == BodyPart::Right,

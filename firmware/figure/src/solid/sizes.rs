@@ -71,15 +71,14 @@ impl Sizes {
         // A size is 2^13 units of depth; a height has at most 19 bits.
         sizes.depth = ((sizes.height >> 3) * (1 << 10) / (size >> 6).max(1)).max(1);
         sizes.small = sizes.pixels < SMALL;
-        let radii = look.radii[usize::from(sizes.small)];
-        for (radius, thousandths) in sizes.radii.iter_mut().zip(radii) {
-            *radius = (sizes.pixels * i32::from(thousandths) / 1000).clamp(1, 1 << 11) as i16;
+        for (radius, thousandths) in sizes.radii.iter_mut().zip(look.radii(sizes.small)) {
+            *radius = (sizes.pixels * i32::from(*thousandths) / 1000).clamp(1, 1 << 11) as i16;
         }
-        let skull = i32::from(radii[Radius::Skull as usize]).max(1);
+        let skull = i32::from(look.radius(Radius::Skull, sizes.small)).max(1);
         sizes.skull = [62 * 256 / skull, 12 * 256 / skull];
         // A figure that reaches beyond the display has no thicker outline than one that fills it.
         let most = i32::from(figure.canvas().height) << 4;
-        sizes.outline = ((sizes.pixels.min(most) + 8) / (i32::from(look.outline).max(1) * 16)).clamp(1, 8);
+        sizes.outline = ((sizes.pixels.min(most) + 8) / (i32::from(look.outline()).max(1) * 16)).clamp(1, 8);
         sizes
     }
 

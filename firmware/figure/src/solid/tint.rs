@@ -11,6 +11,17 @@ pub enum Pattern {
     Checkered,
 }
 
+impl Pattern {
+    /// The pattern of a number; bright for one without a pattern.
+    pub(super) fn of(number: u8) -> Pattern {
+        match number {
+            0 => Pattern::Dark,
+            2 => Pattern::Checkered,
+            _ => Pattern::Bright,
+        }
+    }
+}
+
 /// A material, for every kind of display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tint {

@@ -1,6 +1,6 @@
 //! `pantin play`
 
-use super::render::{Side, Size, StyleName};
+use super::render::{Side, Size, StyleName, read_look};
 use super::up_axis;
 use super::{Files, rig_is_needed};
 use crate::open::is_bank;
@@ -20,6 +20,7 @@ use anyhow::{Context, Result, bail, ensure};
 use pantin::Clip;
 use pantin::Up;
 use pantin_convert::expand::expand_within;
+use pantin_figure::solid::Look;
 use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 use pantin_pictures::face::cast::is_face;
@@ -41,6 +42,7 @@ use std::time::Duration;
   pantin play walk.ptn
   pantin play walk.ptn run.ptn --palette amber --dots half
   pantin play walk.ptn --style solid
+  pantin play walk.ptn --style solid --look motions/looks/cat.look
   pantin play character.ptb
   pantin play walk.ptn --plain --once --frames 10 --size 60x20 > frames.txt
 
@@ -72,6 +74,9 @@ pub struct Arguments {
     /// What a body is drawn as at first
     #[arg(long, value_enum, default_value = "lines")]
     style: StyleName,
+    /// The character that is drawn with volume: a .look file [default: a person in a pale shirt and blue trousers]
+    #[arg(long, value_name = "FILE")]
+    look: Option<PathBuf>,
     /// Start with a fixed camera instead of following the figure
     #[arg(long)]
     fixed: bool,
@@ -128,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         stdin().is_terminal() && stdout().is_terminal(),
         "play needs a terminal for its pictures and keys; --plain writes text to a pipe or a file, and pantin render pictures"
     );
-    let settings = arguments.settings();
+    let settings = arguments.settings()?;
     let mut session = Session::new(Terminal::enter(settings.colours)?, settings, arguments.once, arguments.frames);
     let mut index = 0;
     loop {
@@ -157,7 +162,7 @@ fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Re
 }
 
 impl Arguments {
-    fn settings(&self) -> Settings {
+    fn settings(&self) -> Result<Settings> {
         let track = if self.fixed { CameraTarget::Fixed } else { CameraTarget::Follow };
         let variable = |name: &str| std::env::var(name).ok();
         let colours = self.colours.unwrap_or_else(|| Colours::of_environment(variable));
@@ -173,15 +178,17 @@ impl Arguments {
             up: self.up,
             ..View::default()
         };
-        Settings {
+        let look = self.look.as_deref().map_or(Ok(Look::DEFAULT), read_look)?;
+        Ok(Settings {
             view,
             ground: true,
             solid: self.style == StyleName::Solid,
+            look,
             dots,
             colours,
             palette: self.palette.clone(),
             help: false,
-        }
+        })
     }
 
     /// Plays a bank's state machine.
@@ -189,6 +196,7 @@ impl Arguments {
         let [file] = files else { bail!("a bank with a state machine plays alone") };
         let place = || self.inputs[0].display().to_string();
         ensure!(self.rig.is_none(), "{}: --rig has no effect: a bank holds its rig", place());
+        ensure!(self.look.is_none(), "{}: --look has no effect: a character of a state machine is drawn as lines", place());
         ensure!(!self.once, "{}: --once has no effect: a state machine does not end", place());
         ensure!(self.up.is_none(), "{}: --up has no effect: a figure that travels goes by its rig's up", place());
         let name = self.inputs[0].file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -198,7 +206,7 @@ impl Arguments {
         if self.plain {
             let frames =
                 self.frames.with_context(|| format!("{}: --plain needs --frames: a state machine does not end", place()))?;
-            let settings = Settings { colours: Colours::None, ..self.settings() };
+            let settings = Settings { colours: Colours::None, ..self.settings()? };
             let (mut room, mut feet) = (SteeringRoom::of(file.clip())?, pantin_animator::Feet::new());
             let mut character = room.character(file.clip(), &mut feet).with_context(place)?;
             let mut out = stdout().lock();
@@ -213,7 +221,7 @@ impl Arguments {
             stdin().is_terminal() && stdout().is_terminal(),
             "play needs a terminal for its pictures and keys; --plain writes text, and pantin steer pictures of a session"
         );
-        let settings = self.settings();
+        let settings = self.settings()?;
         let mut session = Session::new(Terminal::enter(settings.colours)?, settings, false, self.frames);
         steering.play(&mut session).with_context(place)
     }
@@ -231,7 +239,7 @@ impl Arguments {
 
     /// All frames of all clips, or as many as are asked for (of one clip, more than it has if it is not to play once).
     fn plainly(&self, clips: &[Clip]) -> Result<()> {
-        let settings = Settings { colours: Colours::None, ..self.settings() };
+        let settings = Settings { colours: Colours::None, ..self.settings()? };
         let mut out = stdout().lock();
         let mut left = self.frames.unwrap_or(u32::MAX);
         for (index, clip) in clips.iter().enumerate() {

@@ -6,7 +6,7 @@ use super::playback::Playback;
 use super::settings::Settings;
 use anyhow::{Context, Result};
 use pantin::Player;
-use pantin_figure::solid::{Look, SolidFigure};
+use pantin_figure::solid::SolidFigure;
 use pantin_figure::{Canvas, RIG_JOINTS, View};
 use pantin_images::shades::Depth;
 use pantin_images::shades::Shades;
@@ -38,7 +38,8 @@ impl<'a, 'm> Figure<'a, 'm> {
         Figure { playback, scout, shown: None, ahead }
     }
 
-    fn set_up(&mut self, canvas: Canvas, view: View, solid: bool) -> Result<()> {
+    fn set_up(&mut self, canvas: Canvas, settings: &Settings) -> Result<()> {
+        let &Settings { view, solid, .. } = settings;
         if self.shown.as_ref().is_none_or(|shown| (shown.canvas, shown.view, shown.solid) != (canvas, view, solid)) {
             let from = View { orbit: view.orbit - self.ahead.orbit, tilt: view.tilt - self.ahead.tilt, ..view };
             let face = Cast::of_clip(self.scout.clip(), canvas, &[from])?;
@@ -46,7 +47,7 @@ impl<'a, 'm> Figure<'a, 'm> {
             let body = match self.scout.clip().rig().joint_count() {
                 0 => None,
                 _ => {
-                    let body = SolidFigure::of_clip(&mut self.scout, area, view, Look::DEFAULT);
+                    let body = SolidFigure::of_clip(&mut self.scout, area, view, settings.look);
                     let mut body = body.context("this figure cannot be drawn")?;
                     if !solid {
                         body.make_room(false);
@@ -72,7 +73,7 @@ fn canvas(settings: &Settings, grid: &Grid, rows: usize) -> (Dots, Canvas) {
 impl Show for Figure<'_, '_> {
     fn draw(&mut self, frame: u32, settings: &Settings, grid: &mut Grid, rows: usize) -> Result<()> {
         let (dots, canvas) = canvas(settings, grid, rows);
-        self.set_up(canvas, settings.view, settings.solid)?;
+        self.set_up(canvas, settings)?;
         let pose = self.playback.pose(frame);
         let mut shades = Shades::new(canvas.width.into(), canvas.height.into());
         if let Some(Shown { body, face, .. }) = &mut self.shown {

@@ -3,6 +3,7 @@
 use super::cells::Dots;
 use super::colours::Colours;
 use super::keys::Action;
+use pantin_figure::solid::Look;
 use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 
@@ -18,6 +19,8 @@ pub struct Settings {
     pub ground: bool,
     /// Whether the body has volume.
     pub solid: bool,
+    /// The character of a body with volume.
+    pub look: Look,
     /// How pixels become letters; none for what the terminal's size asks for.
     pub dots: Option<Dots>,
     /// The terminal's colours.
@@ -82,6 +85,7 @@ mod tests {
             view: View::default(),
             ground: true,
             solid: false,
+            look: Look::DEFAULT,
             dots: None,
             colours: Colours::All,
             palette: Palette::default(),

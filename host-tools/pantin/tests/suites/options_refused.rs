@@ -5,7 +5,7 @@ use super::manners::prepared;
 use super::outputs::err;
 
 /// Options of `render` for figures: a chart is drawn as it is.
-const OF_FIGURES: [&[&str]; 13] = [
+const OF_FIGURES: [&[&str]; 14] = [
     &["--size", "99x99"],
     &["--scale", "2"],
     &["--palette", "dusk"],
@@ -13,6 +13,7 @@ const OF_FIGURES: [&[&str]; 13] = [
     &["--smooth"],
     &["--view", "side"],
     &["--tilt", "5"],
+    &["--look", "a.look"],
     &["--up", "x"],
     &["--fixed"],
     &["--from", "1"],

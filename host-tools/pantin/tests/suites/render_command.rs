@@ -265,6 +265,34 @@ fn equal_input_gives_equal_bytes() {
 }
 
 #[test]
+fn a_character_of_a_text_file_is_drawn_and_a_wrong_one_is_refused_with_its_line() {
+    let folder = Folder::new("look");
+    let looks = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../motions/looks");
+    let of = ["--frame", "9", "--size", "100x120", "--palette", "phone", "--style", "solid"];
+    let plain = folder.render("plain.png", &of);
+    for name in ["dancer", "ranger", "cat"] {
+        let look = looks.join(name).with_extension("look");
+        let own = folder.render(&format!("{name}.png"), &[&of[..], &["--look", look.to_str().unwrap()]].concat());
+        assert!(png(&own).1 != png(&plain).1, "{name}");
+    }
+    std::fs::write(folder.0.join("empty.look"), "# nothing\n").unwrap();
+    assert!(folder.render("same.png", &[&of[..], &["--look", "empty.look"]].concat()) == plain);
+    std::fs::write(folder.0.join("bad.look"), "radius hip 50\ncolour shirt red\n").unwrap();
+    std::fs::write(folder.0.join("binary.look"), [0xff, 0xfe, 0]).unwrap();
+    for (look, expected) in [
+        ("bad.look", "bad.look: line 2: expected a colour of six hexadecimal digits, RRGGBB"),
+        ("binary.look", "binary.look: the file is no text"),
+        ("absent.look", "absent.look"),
+    ] {
+        let said = folder.refusal("no.png", &[&of[..], &["--look", look]].concat());
+        assert!(said.contains(expected), "{said}");
+        let played = folder.pantin(&["play", "walk.ptn", "--plain", "--once", "--look", look]);
+        assert!(!played.status.success() && text(&played.stderr).contains(expected), "{}", text(&played.stderr));
+    }
+    assert!(folder.refusal("no.png", &["--look", "empty.look"]).contains("--look is for --style solid"));
+}
+
+#[test]
 fn what_cannot_be_done_is_refused_in_one_clear_line() {
     let folder = Folder::new("refusals");
     let cases: [(&str, &[&str], &[&str]); 14] = [

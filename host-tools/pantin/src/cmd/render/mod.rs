@@ -6,12 +6,12 @@ mod values;
 use super::{Files, check_read, default_output, format_of, up_axis};
 use crate::memory;
 use crate::output::{Staged, Wanted, check, commit, note, refuse_foreign, report};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use output::{Kind, Output};
 use pantin::Up;
 use pantin_convert::expand::expand_within;
 use pantin_face::Model;
-use pantin_figure::solid::{Build, Look};
+use pantin_figure::solid::{Build, Look, look_text};
 use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 use pantin_pictures::face::cast::drives;
@@ -47,6 +47,7 @@ const PALETTE: &str = "grey";
   pantin render walk.ptn -o walk.png --view front,side,quarter
   pantin render walk.ptn -o walk.gif --size 480x480 --palette dusk --fps 25
   pantin render walk.ptn -o walk.gif --style solid --palette phone --size 240x240
+  pantin render walk.ptn -o walk.gif --style solid --look motions/looks/dancer.look --palette phone --size 240x240
   pantin render walk.ptn -o stride.svg --strip 8 --from 20 --to 60 --size 160x240 --palette paper
   pantin render walk.ptn -o poster.png --frame 0.5s --size 1200x1600 --palette blueprint
   pantin render face.ptn -o face.png
@@ -79,6 +80,9 @@ pub struct Arguments {
     /// What a body is drawn as
     #[arg(long, value_enum, default_value = "lines")]
     style: StyleName,
+    /// The character of --style solid: a .look file [default: a person in a pale shirt and blue trousers]
+    #[arg(long, value_name = "FILE")]
+    look: Option<PathBuf>,
     /// Draw lines of whole pixels, as the firmware does [default below 240 pixels]
     #[arg(long, conflicts_with = "smooth")]
     pixels: bool,
@@ -193,12 +197,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let joints = clip.rig().joint_count() > 0;
         ensure!(joints || arguments.up.is_none(), "{}: --up does not apply to a clip without joints", arguments.input.display());
         ensure!(joints || !arguments.fixed, "{}: --fixed does not apply to a clip without joints", arguments.input.display());
-        let look = arguments.look(kind)?;
+        let look = arguments.line_style(kind)?;
+        let character = arguments.character()?;
         let mut memory = PlayerBuffers::of(&clip);
         let sides = arguments.sides(face);
         let style = match arguments.style {
             StyleName::Lines => Style::Lines,
-            StyleName::Solid => Style::Solid(Look::DEFAULT),
+            StyleName::Solid => Style::Solid(character),
         };
         let views = arguments.views(&sides, face);
         let figure = Figure::new(memory.player(clip)?, arguments.size.0, &views, model, (style, look))?;
@@ -206,7 +211,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             warn_of(build);
         }
         let frame_time = f64::from(clip.frame_time_ns()) * 1e-9;
-        Output { arguments, sides, figure, kind, look, frames: clip.frames(), frame_time }.write(&mut file)?;
+        Output { arguments, sides, figure, kind, look, character, frames: clip.frames(), frame_time }.write(&mut file)?;
     }
     commit(vec![file])?;
     report(json!({"frames": clip.frames(), "kind": format!("{kind:?}").to_lowercase()}));
@@ -214,6 +219,16 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         note!("{}: written", output.display());
     }
     Ok(())
+}
+
+/// Reads a character.
+pub(super) fn read_look(path: &Path) -> Result<Look> {
+    let place = || path.display().to_string();
+    let text = String::from_utf8(memory::read(path).with_context(place)?).ok();
+    let bytes = look_text::compile(&text.with_context(|| format!("{}: the file is no text", place()))?);
+    let bytes = bytes.map_err(|error| anyhow!("{}: {error}", place()))?;
+    // A character lives as long as the program.
+    Look::new(bytes.to_vec().leak()).with_context(place)
 }
 
 /// Notes that a solid figure is not a person's.
@@ -260,10 +275,18 @@ impl Arguments {
         compact::encode(&blueprint)
     }
 
+    /// The solid figure's character.
+    fn character(&self) -> Result<Look> {
+        let Some(path) = &self.look else { return Ok(Look::DEFAULT) };
+        ensure!(self.style == StyleName::Solid, "--look is for --style solid");
+        read_look(path)
+    }
+
     /// Checks the output before any work.
     fn check(&self, output: &Path) -> Result<()> {
         let face = self.face.as_deref().filter(|name| name.as_os_str() != CARTOON);
-        let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(self.rig.as_deref()).chain(face).collect();
+        let more = [self.rig.as_deref(), face, self.look.as_deref()];
+        let inputs: Vec<&Path> = [self.input.as_path()].into_iter().chain(more.into_iter().flatten()).collect();
         check(&inputs, &[output])?;
         refuse_foreign(output, Wanted::Picture)
     }
@@ -290,6 +313,7 @@ impl Arguments {
             ("--size", SIZE.parse().is_ok_and(|size: Size| self.size != size)),
             ("--scale", self.scale.is_some()),
             ("--style", self.style != StyleName::Lines),
+            ("--look", self.look.is_some()),
             ("--palette", PALETTE.parse().is_ok_and(|palette: Palette| self.palette != palette)),
             ("--pixels", self.pixels),
             ("--smooth", self.smooth),
@@ -327,7 +351,7 @@ impl Arguments {
         Ok(kind)
     }
 
-    fn look(&self, kind: Kind) -> Result<LineStyle> {
+    fn line_style(&self, kind: Kind) -> Result<LineStyle> {
         let [width, height] = self.size.0;
         let smooth = self.smooth || !self.pixels && is_smooth(self.size.0, &self.palette);
         ensure!(!(self.smooth && self.palette.is_mono()), "the palette mono has no colours between that make lines smooth");

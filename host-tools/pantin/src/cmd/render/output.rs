@@ -47,6 +47,7 @@ pub struct Output<'a, 'm> {
     pub figure: Figure<'a, 'm>,
     pub kind: Kind,
     pub look: LineStyle,
+    pub character: Look,
     pub frames: u32,
     pub frame_time: f64,
 }
@@ -109,7 +110,7 @@ impl Output<'_, '_> {
         let palette = &self.arguments.palette;
         let mut animation: Box<dyn Animation + '_> = match (self.kind, self.look) {
             (Kind::Gif, _) if self.arguments.style == StyleName::Solid => {
-                Box::new(Gif::new(&mut out, &palette.solid_colours(&Look::DEFAULT), timing.seconds))
+                Box::new(Gif::new(&mut out, &palette.solid_colours(&self.character), timing.seconds))
             }
             (Kind::Gif, LineStyle::Pixels) => Box::new(Gif::new(&mut out, &palette.pixel_colours(), timing.seconds)),
             (Kind::Gif, LineStyle::Smooth) => Box::new(Gif::new(&mut out, &palette.smooth_colours(), timing.seconds)),
