@@ -10,6 +10,7 @@
 //! | weights from a clip of the `pantin` crate | [`Binding`] |
 //! | from weights to vertices | [`Morph`] |
 //! | from vertices to a display | [`FaceRenderer`], seen from a [`FaceView`] |
+//! | lips for speech, from sound or from visemes with times | [`talk::Talk`] |
 //! | what the model consists of | [`curve`], [`shape`], [`model`] |
 //!
 //! A picture takes three calls: [`Morph::apply`], [`FaceRenderer::project`], [`FaceRenderer::draw`].
@@ -65,6 +66,7 @@ mod renderer;
 mod rotate;
 pub mod shape;
 mod strokes;
+pub mod talk;
 mod target;
 mod vertex;
 mod weights;

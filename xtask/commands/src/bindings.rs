@@ -9,6 +9,7 @@ mod licences;
 mod micropython;
 mod python;
 mod readme;
+mod talk;
 mod turns;
 mod uno;
 
@@ -24,8 +25,8 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, rotations, figures, and faces.
-const SOURCES: [&str; 4] = ["src/pantin.c", "src/pantin_turn.c", "src/pantin_figure.c", "src/pantin_face.c"];
+/// The decoder, rotations, figures, faces, and lips for speech.
+const SOURCES: [&str; 5] = ["src/pantin.c", "src/pantin_turn.c", "src/pantin_figure.c", "src/pantin_face.c", "src/pantin_talk.c"];
 
 /// Every warning is an error.
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
@@ -193,6 +194,8 @@ impl Bindings {
         steps.run("faces against the crate's", || face::pictures(&folder));
         steps.run("what faces promise", || face::rules(&folder));
         steps.run("memory of faces", || face::memory(&folder));
+        steps.run("lips for speech against the crate's", || talk::weights(&folder));
+        steps.run("lips for speech of espeak-ng", || talk::speech(&folder));
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         for target in &TARGETS {
@@ -359,6 +362,8 @@ impl Target {
         let faces: u64 = self.functions(folder, "src/pantin_face.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {faces} bytes of code for faces");
         ensure!(faces > 1000 && faces <= face::MOST_CODE, "faces may take {} bytes", face::MOST_CODE);
+        let talk: u64 = self.functions(folder, "src/pantin_talk.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {talk} bytes of code for lips for speech");
         if let Some(limit) = self.figures {
             ensure!(figure > 1000 && figure <= limit, "figures may take {limit} bytes");
         }

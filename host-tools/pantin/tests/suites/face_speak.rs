@@ -91,10 +91,10 @@ fn lips_close_at_p_b_m_and_the_jaw_opens_on_open_vowels() {
 }
 
 #[test]
-fn a_mouth_follows_the_level_of_a_recording() {
-    // Half a second of silence, half a second of a tone, again silence.
+fn a_mouth_follows_a_recording() {
+    // Half a second of silence, half a second of a tone where open vowels have their first formant, again silence.
     let rate = 8_000u32;
-    let tone = |index: u32| if (4_000..8_000).contains(&index) { (f64::from(index) * 0.3).sin() * 12_000.0 } else { 0.0 };
+    let tone = |index: u32| if (4_000..8_000).contains(&index) { (f64::from(index) * 0.55).sin() * 12_000.0 } else { 0.0 };
     let samples: Vec<u8> = (0..12_000).flat_map(|index| (tone(index) as i16).to_le_bytes()).collect();
     let mut wav = b"RIFF\0\0\0\0WAVEfmt \x10\0\0\0\x01\0\x01\0".to_vec();
     wav.extend(rate.to_le_bytes());

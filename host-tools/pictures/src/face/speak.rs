@@ -1,6 +1,8 @@
-//! A track of visemes for spoken text, or for the level of a recording.
+//! A track of visemes for spoken text, or for a recording.
 
 use anyhow::{Context, Result, ensure};
+use pantin_face::FULL_WEIGHT;
+use pantin_face::talk::{MOST_RATE, Talk, VISEMES};
 use std::fmt::Write;
 
 /// Frames a second of the track.
@@ -317,31 +319,49 @@ pub fn keys(spoken: &[Spoken], comment: &str) -> String {
     out
 }
 
-/// Writes the level of a WAV as key-frame text: jaw and lips follow it frame by frame. Fails for other files than PCM of 16 bits.
+/// Writes the mouth of a recording as key-frame text: the weights of [`Talk`] at each frame. Fails for other files than PCM of 16 bits.
 pub fn of_wav(bytes: &[u8], comment: &str) -> Result<String> {
     let (rate, samples) = wav(bytes)?;
-    let step = (f64::from(rate) / FPS).max(1.0);
+    let (rate, samples) = lowered(rate, samples);
+    let mut talk = Talk::new(rate).with_context(|| format!("expected a sampling rate of at least 8,000 Hz, not {rate}"))?;
+    let step = f64::from(rate) / FPS;
     let count = ((samples.len() as f64 / step).ceil() as usize).max(2);
     ensure!(count <= 1 << 16, "the recording is longer than {} minutes", (1 << 16) / 30 / 60);
-    let level = |frame: usize| {
-        let part = (frame as f64 * step) as usize..(((frame + 1) as f64 * step) as usize).min(samples.len());
-        let some = &samples[part.start.min(part.end)..part.end];
-        (some.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>() / some.len().max(1) as f64).sqrt()
-    };
-    let levels: Vec<f64> = (0..count).map(level).collect();
-    let mut sorted = levels.clone();
-    sorted.sort_by(f64::total_cmp);
-    // What is louder than nearly all of it opens the mouth fully; what is as soft as a thirtieth of that is silence.
-    let (loud, silent) = (sorted[(count * 95 / 100).min(count - 1)].max(1.0), 1.0 / 30.0);
-    let mut out = format!(
-        "keyframes 1\n# {}\nfps {FPS:.0}\nframes {count}\n\nscalar viseme_aa scale 1\n\nkeys linear viseme_aa\n",
-        comment.replace('\n', " ")
-    );
-    for (frame, level) in levels.iter().enumerate() {
-        let part = ((level / loud - silent) / (1.0 - silent)).clamp(0.0, 1.0).sqrt();
-        let _ = writeln!(out, "  {frame} {part:.3}");
+    let mut pushed = 0;
+    let mut weights = Vec::with_capacity(count);
+    for frame in 0..count {
+        let end = ((frame as f64 * step) as usize).min(samples.len());
+        talk.push(&samples[pushed..end]);
+        pushed = end;
+        weights.push(*talk.weights());
+    }
+    let mut out = format!("keyframes 1\n# {}\nfps {FPS:.0}\nframes {count}\n\n", comment.replace('\n', " "));
+    let used = |viseme: &usize| weights.iter().any(|weights| weights[*viseme] > 0);
+    // A recording of silence has a mouth too, which is closed.
+    let mut visemes: Vec<usize> = (0..VISEMES.len()).filter(used).collect();
+    if visemes.is_empty() {
+        visemes = VISEMES.iter().position(|name| *name == "viseme_aa").into_iter().collect();
+    }
+    for &viseme in &visemes {
+        let _ = writeln!(out, "scalar {} scale 1", VISEMES[viseme]);
+    }
+    for viseme in visemes {
+        let _ = writeln!(out, "\nkeys linear {}", VISEMES[viseme]);
+        for (frame, weights) in weights.iter().enumerate() {
+            let _ = writeln!(out, "  {frame} {:.3}", f64::from(weights[viseme]) / f64::from(FULL_WEIGHT));
+        }
     }
     Ok(out)
+}
+
+/// A recording whose rate is at most that of [`Talk`]: means of so many samples that it is.
+fn lowered(rate: u32, samples: Vec<i16>) -> (u32, Vec<i16>) {
+    let group = rate.div_ceil(MOST_RATE);
+    if group == 1 {
+        return (rate, samples);
+    }
+    let mean = |part: &[i16]| (part.iter().map(|&x| i64::from(x)).sum::<i64>() / part.len() as i64) as i16;
+    (rate / group, samples.chunks(group as usize).map(mean).collect())
 }
 
 /// The sampling rate and the first channel of a WAV.

@@ -66,7 +66,7 @@ pub fn pictures(folder: &TempDir) -> Result<()> {
 }
 
 /// An error that names the first line that differs.
-fn same(what: &str, rust: &str, c: &str) -> Result<()> {
+pub fn same(what: &str, rust: &str, c: &str) -> Result<()> {
     let differs = rust.lines().zip(c.lines()).position(|(rust, c)| rust != c);
     if let Some(at) = differs {
         let [rust, c] = [rust, c].map(|text| text.lines().nth(at).unwrap_or_default());

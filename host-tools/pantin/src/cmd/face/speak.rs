@@ -7,10 +7,10 @@ use pantin_pictures::face::speak;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Write a face that speaks a text, or moves its mouth to the level of a recording, as key-frame text.
+/// Write a face that speaks a text, or a recording, as key-frame text.
 ///
 /// Phonemes are those of espeak-ng where it is installed, and follow rules of English spelling otherwise. The lips close at every p, b and m, and the jaw opens on
-/// every open vowel.
+/// every open vowel. Of a recording, vowels, s and closed lips are found from the sound, as boards find them while it is played.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin face speak \"Hello, my name is Pantin.\" -o hello.keys
@@ -20,7 +20,7 @@ pub struct Arguments {
     /// What is said
     #[arg(required_unless_present = "wav", conflicts_with = "wav")]
     text: Option<String>,
-    /// A recording whose level the mouth follows: PCM of 16 bits
+    /// A recording that the mouth follows: PCM of 16 bits, 8,000 Hz or more
     #[arg(long, value_name = "FILE")]
     wav: Option<PathBuf>,
     /// The file to write (.keys)
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let track = match &arguments.wav {
         Some(path) => {
             let place = || path.display().to_string();
-            speak::of_wav(&memory::read(path)?, &format!("The level of {}.", place())).with_context(place)?
+            speak::of_wav(&memory::read(path)?, &format!("The mouth of {}.", place())).with_context(place)?
         }
         None => {
             let phonemes = if arguments.rules { None } else { phonemes(text)? };
