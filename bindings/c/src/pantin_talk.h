@@ -13,7 +13,7 @@
  *         pantin_face_step(&face, 33);
  *     }
  *
- * A second of 16 kHz takes 1.6 million instructions on a Cortex-M3 and 2.5 million on a Cortex-M0; the structure has 292 bytes.
+ * A second of 16 kHz takes 1.6 million instructions on a Cortex-M3 and 2.5 million on a Cortex-M0; the structure has 260 bytes.
  */
 #ifndef PANTIN_TALK_H
 #define PANTIN_TALK_H
