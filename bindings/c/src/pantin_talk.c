@@ -15,7 +15,7 @@ typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
 #define TICK_MS 10
 
 /* The time without samples after which the mouth closes. */
-#define SILENT_MS 60
+#define SILENT_MS 150
 
 /* Noise is the lowest level of at least this number of hops. */
 #define LOWEST_HOPS 80

@@ -7,7 +7,7 @@
  *
  *     pantin_talk_open(&talk, 16000);
  *     for (;;) {
- *         pantin_talk_push(&talk, samples, count);      // what is played now, in parts of any length
+ *         pantin_talk_push(&talk, samples, count);      // what is played now, in parts of any length: lips are smooth by parts of up to 30 ms
  *         pantin_talk_step(&talk, 33);
  *         for (viseme = 1; viseme <= PANTIN_TALK_VISEMES; viseme++) pantin_face_viseme(&face, viseme, talk.weights[viseme - 1]);
  *         pantin_face_step(&face, 33);
@@ -70,7 +70,7 @@ void pantin_talk_push(pantin_talk *talk, const int16_t *samples, size_t count);
  * PANTIN_NO_ROOM if PANTIN_TALK_WAITING visemes wait already. */
 pantin_result pantin_talk_viseme(pantin_talk *talk, uint8_t viseme, uint32_t at);
 
-/* Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 60 ms. */
+/* Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms. */
 void pantin_talk_step(pantin_talk *talk, uint16_t ms);
 
 #ifdef __cplusplus

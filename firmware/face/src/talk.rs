@@ -66,7 +66,7 @@ const HOP: u8 = 80;
 const TICK_MS: u32 = 10;
 
 /// The time without samples after which the mouth closes.
-const SILENT_MS: u32 = 60;
+const SILENT_MS: u32 = 150;
 
 /// Noise is the lowest level of at least this number of hops.
 const LOWEST_HOPS: u8 = 80;
@@ -217,7 +217,7 @@ impl Talk {
         self.waiting.push_back((viseme, at)).map_err(|_| VisemeError::Full)
     }
 
-    /// Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 60 ms.
+    /// Lets time pass: visemes become due, the weights approach theirs every 10 ms, and the mouth closes if no samples came for 150 ms.
     pub fn step(&mut self, ms: u16) {
         self.rest += u32::from(ms);
         while self.rest >= TICK_MS {

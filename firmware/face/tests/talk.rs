@@ -232,7 +232,7 @@ fn the_mouth_closes_when_sound_stops_coming() {
     talk.push(&voice.samples[..5000]);
     let open = talk.weights()[9];
     assert!(i32::from(open) > FULL_WEIGHT / 2);
-    talk.step(50);
+    talk.step(140);
     assert_eq!(talk.weights()[9], open);
     talk.step(200);
     assert_eq!(talk.weights(), &[0; 14]);
