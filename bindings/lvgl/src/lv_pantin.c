@@ -181,7 +181,6 @@ static void pass(lv_timer_t *timer) {
         pantin_face_viseme(&p->face, viseme, p->talk.weights[viseme - 1]);
     }
     pantin_face_step(&p->face, ms);
-    if (!p->picture) resize(p);
     if (p->picture && lv_obj_is_visible(obj)) draw(p);
 }
 

@@ -6,6 +6,7 @@ mod blender;
 mod face;
 mod figure;
 mod licences;
+mod lvgl;
 mod micropython;
 mod python;
 mod readme;
@@ -196,6 +197,7 @@ impl Bindings {
         steps.run("memory of faces", || face::memory(&folder));
         steps.run("lips for speech against the crate's", || talk::weights(&folder));
         steps.run("lips for speech of espeak-ng", || talk::speech(&folder));
+        steps.run("a face on the test display of LVGL", lvgl::run);
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         for target in &TARGETS {
