@@ -93,7 +93,7 @@ static void switches(void) {
         lv_test_fast_forward(i % 5 == 0 ? 700 : LV_PANTIN_PERIOD);
         if (i == 30) before = used();
     }
-    NEED(used() == before);
+    NEED(used() <= before);
     /* A face at rest, then one that blinks, is drawn in part. */
     NEED(pantin_face_live(lv_pantin_get_face(face), 0) == PANTIN_OK);
     NEED(lv_pantin_set_emote(face, "neutral") == LV_RESULT_OK);
@@ -182,6 +182,6 @@ int main(void) {
     refused(display);
     lv_test_wait(100);
     printf("%u bytes of LVGL's memory before the faces, %u after\n", (unsigned)before, (unsigned)used());
-    NEED(used() == before);
+    NEED(used() <= before);
     return 0;
 }
