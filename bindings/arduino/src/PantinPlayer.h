@@ -36,7 +36,8 @@ template <uint16_t CHANNELS> class PantinPlayer {
         return pantin_next_entry(&first) && pantin_open_entry(&clip, &first) == PANTIN_OK && start();
     }
 
-    /* Shows the frame that is due at a time in milliseconds: pass millis(). Returns true if the pose changed. A clip starts again at its end. */
+    /* Shows the frame that is due at a time in milliseconds: pass millis(). Returns true if the pose changed. A clip starts again at its end, unless
+     * repeat(false) was called. */
     bool update(uint32_t now) {
         if (!ready) return false;
         if (!running) last = now;
@@ -45,15 +46,59 @@ template <uint16_t CHANNELS> class PantinPlayer {
         running = true;
         /* After a long pause the motion goes on where it was. */
         if (elapsed > 1000) elapsed = 0;
-        due += static_cast<uint64_t>(elapsed) * 1000000u;
+        if (!stopped && !ended) due += static_cast<uint64_t>(elapsed) * 10000u * percent;
         bool changed = fresh;
+        passed = fresh ? 1 : 0;
         fresh = false;
         while (due >= clip.frame_time_ns) {
             due -= clip.frame_time_ns;
+            if (player.frame + 1 >= clip.frames && !repeats) {
+                ended = true;
+                due = 0;
+                break;
+            }
             if (pantin_step(&player) != PANTIN_OK && pantin_restart(&player) != PANTIN_OK) return false;
+            if (passed < clip.frames) passed++;
             changed = true;
         }
         return changed;
+    }
+
+    /* Whether a clip starts again at its end: true without a call. */
+    void repeat(bool again) { repeats = again; }
+
+    /* Whether a clip that does not repeat has shown its last frame for its time. */
+    bool finished() const { return ended; }
+
+    /* Holds the pose until resume() or play(). */
+    void stop() { stopped = true; }
+    void resume() { stopped = false; }
+
+    /* Sets the speed in percent, 0 to 1000: 100 without a call. */
+    void speed(uint16_t percentage) { percent = percentage > 1000 ? 1000 : percentage; }
+
+    /* Shows a frame: the next update() returns true. Returns false if the clip has no such frame. A frame that lies back is found from frame 0, or from
+     * the clip's index. */
+    bool seek(uint32_t frame) {
+        if (!ready || frame >= clip.frames || pantin_seek(&player, frame) != PANTIN_OK) return false;
+        due = 0;
+        ended = false;
+        fresh = true;
+        return true;
+    }
+
+    /* Whether an event of this name, such as "left_foot_down", lies on one of the frames that the last update() reached. */
+    bool event(const char *name) {
+        pantin_event event;
+        if (!ready || passed == 0) return false;
+        pantin_first_event(&event, &clip);
+        while (pantin_next_event(&event)) {
+            /* Frames since then, around the end of the clip. */
+            uint32_t since = player.frame >= event.frame ? player.frame - event.frame : player.frame + clip.frames - event.frame;
+            pantin_name called;
+            if (event.frame < clip.frames && since < passed && pantin_event_name(&clip, event.id, &called) && pantin_name_is(&called, name)) return true;
+        }
+        return false;
     }
 
     /* Starts a clip of a bank by its name. Returns false if there is none; the clip before has ended then. */
@@ -117,8 +162,9 @@ template <uint16_t CHANNELS> class PantinPlayer {
   protected:
     bool start() {
         ready = pantin_start(&player, &clip, pose, CHANNELS, moving, CHANNELS) == PANTIN_OK;
-        running = false;
+        running = stopped = ended = false;
         fresh = true;
+        passed = 0;
         due = 0;
         return ready;
     }
@@ -133,8 +179,9 @@ template <uint16_t CHANNELS> class PantinPlayer {
     uint8_t page[64];
 #endif
     uint64_t due;
-    uint32_t last;
-    bool isBank, ready, running, fresh;
+    uint32_t last, passed; /* the time of the last update; frames that it reached */
+    uint16_t percent = 100;
+    bool isBank, ready = false, running, fresh, stopped = false, ended = false, repeats = true;
 };
 
 /* Draws clips as a figure of at most BONES bones, from rigs of at most JOINTS joints. */

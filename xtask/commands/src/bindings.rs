@@ -214,6 +214,7 @@ impl Bindings {
             command.args(SECTIONS).args(["-std=c99", "-ffreestanding", "-isystem", "tests/include", "-r", "-nostdlib"]);
             compile(command, &SOURCES, &folder.path().join("esp8266.elf")).map(drop)
         });
+        steps.run("classes of the Arduino library", || arduino::classes(&folder));
         steps.run("examples of the Arduino library", || arduino::examples(&folder));
         steps.run("sketch of the Arduino library on an Uno in simavr", || arduino::uno(&folder));
         steps.run("names that a clip lacks, on an Uno in simavr", || arduino::missing(&folder));

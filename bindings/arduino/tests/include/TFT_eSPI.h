@@ -8,6 +8,7 @@ class TFT_eSPI {
     void init(uint8_t tc = 0);
     virtual void drawPixel(int32_t x, int32_t y, uint32_t color);
     virtual void drawLine(int32_t xs, int32_t ys, int32_t xe, int32_t ye, uint32_t color);
+    virtual void drawFastHLine(int32_t x, int32_t y, int32_t w, uint32_t color);
     void fillCircle(int32_t x, int32_t y, int32_t r, uint32_t color);
 };
 class TFT_eSprite : public TFT_eSPI {

@@ -68,6 +68,32 @@ pub fn examples(folder: &TempDir) -> Result<()> {
     Ok(())
 }
 
+/// Runs `tests/library.cpp`: the classes on this machine, with sanitizers.
+pub fn classes(folder: &TempDir) -> Result<()> {
+    let place = folder.path();
+    let clip = place.join("run.ptn");
+    own::convert(&build::host_tool()?, &paths::root().join("motions/library/run.keys"), &clip, &[])?;
+    let bytes = std::fs::read(&clip)?;
+    std::fs::write(place.join("run.h"), c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, "run")?)?;
+    let program = place.join("library");
+    let mut objects = vec![];
+    for source in super::SOURCES {
+        let object = place.join(format!("library{}.o", objects.len()));
+        let mut gcc = Command::new("gcc");
+        gcc.arg("-std=c99").args(super::SANITIZERS);
+        objects.push(super::compile(gcc, &[source], &object)?);
+    }
+    let mut compiler = Command::new("g++");
+    compiler.args(["-std=c++11", "-Wall", "-Wextra", "-Werror"]).args(super::SANITIZERS).arg("-I").arg(place);
+    compiler.arg("-I").arg(super::home().join("src")).arg("-I").arg(arduino::home().join("src"));
+    compiler.arg(arduino::home().join("tests/library.cpp")).args(objects).arg("-o").arg(&program);
+    output(compiler)?;
+    let printed = String::from_utf8(output(Command::new(&program))?.stdout)?;
+    ensure!(printed.lines().count() == 2, "{printed}");
+    printed.lines().for_each(|line| println!("   {line}"));
+    Ok(())
+}
+
 /// Writes the README's sketch beside the header that it includes.
 fn readme_sketch(folder: &TempDir) -> Result<PathBuf> {
     let home = home(folder)?;
