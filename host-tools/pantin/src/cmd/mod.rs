@@ -32,7 +32,7 @@ use crate::words;
 use anyhow::{Context, Result, anyhow, ensure};
 use pantin::OpenError;
 use pantin_convert::import::{self, Disk, ImportOptions};
-use pantin_convert::{Level, Options, Recipe, shared_coding};
+use pantin_convert::{Level, Note, NoteKind, Options, Recipe, Setting, shared_coding};
 use std::path::{Path, PathBuf};
 
 /// A direction of the world.
@@ -112,14 +112,16 @@ impl Files {
             let import = ImportOptions::new().memory(memory::limit());
             // Only to be shown: as lines between joints, so that places are enough.
             let options = Options::new().effort(Level::FAST).places_only(true).memory(memory::limit());
+            // That this bound has no effect on a face concerns nobody: it was not asked for.
+            let asked = |note: &&Note| note.kind != NoteKind::NoEffect || note.setting != Some(Setting::PlacesOnly);
             let prepared = Recipe::new().import(import).options(options).prepare(&from, clip)?;
-            prepared.notes.iter().for_each(|note| note!("{}", words::line(note)));
+            prepared.notes.iter().filter(asked).for_each(|note| note!("{}", words::line(note)));
             let bar = output::progress(1000, "converting {wide_bar} {percent} % {eta} left")?;
             let moved = &mut |part: f64| bar.set_position((part * 1000.0) as u64);
             let made = prepared.code(&shared_coding(std::slice::from_ref(&prepared)), moved);
             let made = made.with_context(|| clip.display().to_string())?;
             bar.finish_and_clear();
-            made.notes[prepared.notes.len()..].iter().for_each(|note| note!("{}", words::line(note)));
+            made.notes[prepared.notes.len()..].iter().filter(asked).for_each(|note| note!("{}", words::line(note)));
             files.clip = made.clip;
         }
         Ok(files)

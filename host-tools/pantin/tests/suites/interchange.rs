@@ -168,6 +168,11 @@ fn a_motion_is_shown_without_a_clip_and_other_commands_name_the_way_to_one() {
     folder.done(&["render", "leaf.bvh", "-o", "leaf.png"]);
     let shown = folder.done(&["play", "leaf.bvh", "--plain", "--frames", "1"]);
     assert!(!shown.stdout.is_empty());
+    // Options that nobody gave are not named.
+    folder
+        .put("mouth.keys", "keyframes 1\nfps 30\nframes 4\n\nscalar viseme_aa scale 1\n\nkeys linear viseme_aa\n  0 0\n  3 1\n");
+    let said = folder.done(&["render", "mouth.keys", "-o", "mouth.png"]).stderr;
+    assert!(!String::from_utf8_lossy(&said).contains("--places-only"), "{}", String::from_utf8_lossy(&said));
     let said = folder.refused(&["info", "leaf.bvh"]);
     assert!(said.contains("a motion, not a clip") && said.contains("pantin convert leaf.bvh -o leaf.ptn"), "{said}");
     folder.done(&["convert", "leaf.bvh", "--rig-out", "leaf.rig"]);
