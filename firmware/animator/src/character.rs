@@ -3,7 +3,7 @@
 use crate::animator::Animator;
 use crate::feet::{Feet, Hold, Instant, hold};
 use crate::layer::{Ramp, Weight};
-use crate::machine::{Entries, FeetTable, LAYERS, LayerRow, Machine, Table, Updated, clip};
+use crate::machine::{Entries, LAYERS, LayerRow, Machine, Table, Updated, clip, next_entry};
 use crate::mask::Mask;
 use crate::memory::{LayerMemory, Memory};
 use crate::root::{self, Placement, Root};
@@ -85,7 +85,7 @@ impl<'a, 'm> Character<'a, 'm> {
     /// same feet are lent again, and go on as they were.
     pub fn lend_feet(&mut self, feet: &'m mut Feet<'a>) -> Result<(), Error> {
         let table = feet.set_up(&self.bank, &self.animator)?;
-        self.feet = Some((feet, hold, (table, FeetTable::next_entry)));
+        self.feet = Some((feet, hold, (table, next_entry)));
         Ok(())
     }
 

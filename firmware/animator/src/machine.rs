@@ -52,8 +52,8 @@ pub struct Machine<'a> {
     waiting: Option<u8>,
 }
 
-/// A table of feet, and [`FeetTable::next_entry`], so that programs without feet have none of that.
-pub(crate) type Entries<'a> = (FeetTable<'a>, fn(&FeetTable<'a>, u8, u32, u32, bool) -> Option<(Entry, u32)>);
+/// A table of feet, and [`next_entry`], so that programs without feet have none of that.
+pub(crate) type Entries<'a> = (FeetTable<'a>, fn(&FeetTable<'a>, u8, &Track<'_, '_>) -> Option<(u32, u64)>);
 
 /// How often the state changes in one instant, and at how many instants in the middle of an update, at most.
 const CHANGES: usize = 4;
@@ -203,7 +203,9 @@ impl<'a> Machine<'a> {
         let before = Inputs { down: self.held & self.held_before, up: !(self.held | self.held_before) };
         for _ in 0..CHANGES {
             heard = animator.events().iter().count();
-            let entry = self.waiting.and_then(|waiting| Some((waiting, next_entry(entries, waiting, animator.track())?)));
+            let entry = self
+                .waiting
+                .and_then(|waiting| entries.and_then(|(table, find)| Some((waiting, find(&table, waiting, animator.track())?))));
             let entry = entry.filter(|(_, (_, ns))| *ns < left_ns);
             let whole_ns = entry.map_or(left_ns, |(_, (_, ns))| ns);
             let (rest_ns, outcome) = animator.play(whole_ns);
@@ -278,7 +280,7 @@ impl<'a> Machine<'a> {
         let wanted = wanted.filter(|index| waiting.is_none_or(|waiting| *index < waiting));
         let ended = waiting.filter(|_| animator.track().ended());
         let Some(wanted) = wanted.or(ended) else { return Ok(None) };
-        if ended.is_none() && next_entry(entries, wanted as u8, animator.track()).is_some() {
+        if ended.is_none() && entries.is_some_and(|(table, find)| find(&table, wanted as u8, animator.track()).is_some()) {
             self.waiting = Some(wanted as u8);
             return Ok(None);
         }
@@ -372,15 +374,14 @@ impl<'a> Machine<'a> {
 
 /// The frame at which the transition that waits begins in the new clip, and the time in ns until then; `None` if none waits, or if no such instant
 /// comes.
-fn next_entry(entries: Option<Entries<'_>>, transition: u8, track: &Track<'_, '_>) -> Option<(u32, u64)> {
-    let (table, find) = entries?;
+pub(crate) fn next_entry(table: &FeetTable<'_>, transition: u8, track: &Track<'_, '_>) -> Option<(u32, u64)> {
     let speed = track.speed().to_bits();
     if speed <= 0 {
         return None;
     }
     let clip = track.clip();
     let behind = u32::from(track.part().to_bits() != 0);
-    let (entry, ahead) = find(&table, transition, track.frame() + behind, clip.frames(), clip.looped())?;
+    let (entry, ahead) = table.next_entry(transition, track.frame() + behind, clip.frames(), clip.looped())?;
     let way = (u64::from(ahead + behind) << 16).saturating_sub(u64::from(track.part().to_bits()));
     // Below 2^33 times 2^30, and rounded up so that the frame is reached.
     let ns = way.saturating_mul(u64::from(clip.frame_time_ns())).div_ceil(u64::from(speed.unsigned_abs()));
