@@ -134,13 +134,17 @@ pub(crate) fn nearest(shape: Shape, from: &mut [i32], to: &[i32]) {
             }
         }
         (Shape::Map, from @ &mut [..]) => {
+            let now = from.iter().zip(to).fold(0i64, |sum, (&a, &b)| sum + (i64::from(a) - i64::from(b)).abs());
+            // A turn less is 2^32 away in these sums or farther, less 3 for rounding.
+            if now < (1 << 31) - 3 {
+                return;
+            }
             // Below 2^64, and the root below 2^32.
             let length = from.iter().fold(0u64, |sum, &x| sum.saturating_add(u64::from(x.unsigned_abs()).pow(2))).isqrt() as i64;
             // A turn less, the other way.
             let shorter = |x: i32| (i64::from(x) * (length - (1 << 32))).checked_div(length).unwrap_or(0);
             let fits = from.iter().all(|&x| i32::try_from(shorter(x)).is_ok());
             let apart = from.iter().zip(to).fold(0i64, |sum, (&a, &b)| sum + (shorter(a) - i64::from(b)).abs());
-            let now = from.iter().zip(to).fold(0i64, |sum, (&a, &b)| sum + (i64::from(a) - i64::from(b)).abs());
             if length > 0 && fits && apart < now {
                 for x in from {
                     *x = shorter(*x) as i32;
@@ -156,5 +160,36 @@ pub(crate) fn nearest(shape: Shape, from: &mut [i32], to: &[i32]) {
             }
         }
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearer_of_two_maps_is_taken() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let sum = |a: [f64; 3], b: [i32; 3]| a.iter().zip(b).map(|(a, b)| (a - f64::from(b)).abs()).sum::<f64>();
+        let mut changed = 0;
+        for shift in [0, 1, 2, 5, 20] {
+            for _ in 0..20_000 {
+                let [from, to] = [0; 2].map(|_| [0; 3].map(|_: i32| random.i32(-i32::MAX..) >> random.u8(0..=shift)));
+                let own = from.map(f64::from);
+                let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let other = own.map(|x| x * (1.0 - 4_294_967_296.0 / length));
+                let mut nearer = from;
+                nearest(Shape::Map, &mut nearer, &to);
+                // Where they are about as far, either may be taken.
+                if (sum(other, to) - sum(own, to)).abs() > 16.0 {
+                    let fits = other.iter().all(|x| x.abs() < 2_147_483_600.0);
+                    let expected = length > 0.0 && fits && sum(other, to) < sum(own, to);
+                    let edge = !fits && other.iter().all(|x| x.abs() < 2_147_483_700.0);
+                    assert!(edge || (nearer != from) == expected, "{from:?} {to:?}");
+                }
+                changed += usize::from(nearer != from);
+            }
+        }
+        assert!(changed > 1000, "{changed}");
     }
 }

@@ -3,6 +3,9 @@
 use crate::error::{Error, Name};
 use pantin::Rig;
 
+/// Joints of which [`Mask::set`] notes that they match, on its stack; those of larger rigs are looked up again.
+const NOTED: usize = 256;
+
 /// A bit for each joint of a rig, End Sites included, and then for each scalar, in memory of the caller's.
 #[derive(Debug)]
 pub struct Mask<'m> {
@@ -43,10 +46,19 @@ impl<'m> Mask<'m> {
             None => (pattern, false),
         };
         let mut found = false;
+        // Joints that match or hang on one that does: a parent comes before its children.
+        let mut hanging = [0; NOTED / 32];
+        let mut noted = Mask { words: &mut hanging };
         for (joint, index) in rig.joints().zip(0usize..) {
             let own = !joint.end_site && matches(pattern.as_bytes(), joint.name_bytes());
-            if own || below && joint.parent.is_some_and(|parent| self.hangs(rig, parent, pattern)) {
+            let parent = joint.parent.filter(|_| below);
+            let below_one = |parent: u16| {
+                let at = usize::from(parent);
+                if at < NOTED { noted.contains(at) } else { hangs(rig, parent, pattern) }
+            };
+            if own || parent.is_some_and(below_one) {
                 self.put(index, on);
+                noted.put(index, true);
                 found |= own;
             }
         }
@@ -57,18 +69,6 @@ impl<'m> Mask<'m> {
             }
         }
         if found { Ok(()) } else { Err(Error::NothingMatches(Name::new(asked))) }
-    }
-
-    /// Whether a joint or one above it matches.
-    fn hangs(&self, rig: &Rig<'_>, joint: u16, pattern: &str) -> bool {
-        let mut next = Some(joint);
-        while let Some(joint) = next.and_then(|index| rig.joint(index.into())) {
-            if !joint.end_site && matches(pattern.as_bytes(), joint.name_bytes()) {
-                return true;
-            }
-            next = joint.parent;
-        }
-        false
     }
 
     /// Turns every bit over: what this mask leaves to others.
@@ -91,6 +91,18 @@ impl<'m> Mask<'m> {
             *word = if on { *word | bit } else { *word & !bit };
         }
     }
+}
+
+/// Whether a joint or one above it matches, by a walk through the rig for each of them.
+fn hangs(rig: &Rig<'_>, joint: u16, pattern: &str) -> bool {
+    let mut next = Some(joint);
+    while let Some(joint) = next.and_then(|index| rig.joint(index.into())) {
+        if !joint.end_site && matches(pattern.as_bytes(), joint.name_bytes()) {
+            return true;
+        }
+        next = joint.parent;
+    }
+    false
 }
 
 /// Whether a name matches a pattern of `*` and `?`. Takes at most as many steps as the product of the lengths.

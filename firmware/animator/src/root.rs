@@ -158,9 +158,14 @@ pub(crate) fn carrier<'a>(
     values: &mut [i32],
 ) -> Result<usize, Error> {
     let (mut first, mut carrier, mut upright) = (0, usize::MAX, usize::MAX);
+    let mut found = false;
     for clip in clips {
         let clip = clip?;
         let rig = clip.rig();
+        // Then a player would neither change the carrier nor lack memory, but for a key clip, which may be refused where it is entered.
+        if found && rig.channels() <= states.len().min(values.len()) {
+            continue;
+        }
         first = first_with_positions(&rig);
         let player = Player::new(clip, states, values)?;
         let moves = |from: usize, to: usize| player.states().iter().any(|state| (from..to).contains(&state.slot()));
@@ -171,6 +176,8 @@ pub(crate) fn carrier<'a>(
             let turned = channels.filter(|(kind, _)| !kind.is_position()).any(|(kind, value)| !kind.is_rotation() || *value != 0);
             if has_positions(joint.kinds) && moves(from, to) {
                 carrier = index;
+                // No joint before it has channels.
+                found = from == 0;
                 break;
             }
             if turned {

@@ -108,6 +108,11 @@ impl Cubic {
     /// Sets acceleration and slope by difference and velocity.
     pub(crate) fn solve(&self, offset: &mut Offset) {
         let Offset { d, v, .. } = *offset;
+        if offset.is_zero() {
+            // What the cubic gives, without its products: as in many channels of a pose.
+            *offset = Offset::ZERO;
+            return;
+        }
         match self.frames {
             0 => *offset = Offset::ZERO,
             1 => (offset.v, offset.w, offset.k) = (d.wrapping_neg(), d, 0),

@@ -13,12 +13,13 @@ use measured::lent;
 use pantin::Clip;
 use pantin_animator::layer::{Ramp, Weight, add, blend};
 use pantin_animator::procedural::{Blink, Breath};
-use pantin_animator::{Animator, FootLock, Limb, Limits, Look, Mask, Memory, Track, Transition};
+use pantin_animator::{Animator, Character, Feet, FootLock, LayerMemory, Limb, Limits, Look, Mask, Memory, Track, Transition};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     loop {
         let _ = black_box(play(lent()));
+        let _ = black_box(steer(lent()));
     }
 }
 
@@ -62,5 +63,26 @@ fn play(bytes: &'static [u8]) -> Option<()> {
         while let Some(event) = animator.events().take() {
             black_box(event);
         }
+    }
+}
+
+/// A state machine with blends, layers and feet.
+#[inline(never)]
+fn steer(bytes: &'static [u8]) -> Option<()> {
+    let memory = Memory { states: lent(), values: lent(), offsets: lent(), pose: lent(), groups: lent() };
+    let mut feet = Feet::new();
+    let mut character = Character::new(bytes, memory).ok()?;
+    character.lend_second(lent(), lent()).ok()?;
+    character.lend_layer(LayerMemory { states: lent(), values: lent(), sampled: lent(), words: lent() }).ok()?;
+    character.lend_feet(&mut feet).ok()?;
+    let speed = character.table().parameter(black_box("speed"))?;
+    let jump = character.table().input(black_box("jump"))?;
+    loop {
+        character.machine().set(speed, black_box(100));
+        character.machine().fire(jump);
+        character.machine().hold(jump, black_box(true));
+        character.update(black_box(16_667)).ok()?;
+        black_box(character.animator().take_increment());
+        black_box(character.pose());
     }
 }
