@@ -62,8 +62,11 @@ pub(super) fn divide(value: i64, by: u32) -> i64 {
     let mut rest = value.unsigned_abs() + u64::from(by >> 1);
     let skipped = rest.leading_zeros();
     rest = rest.wrapping_shl(skipped);
-    let mut above = 0u32;
-    for _ in skipped..64 {
+    // As many bits as the divisor has but one are less than it: they give no bit of the quotient.
+    let known = 31_u32.wrapping_sub(by.leading_zeros()) & 31;
+    let mut above = ((rest >> 33) as u32) >> (31 - known);
+    rest <<= known;
+    for _ in skipped + known..64 {
         let carry = above >> 31 != 0;
         above = above << 1 | (rest >> 63) as u32;
         rest <<= 1;

@@ -58,6 +58,13 @@ impl Span {
     #[inline(never)]
     fn at(&self, frames: u32) -> (i64, i64) {
         let (n, all, [w, end]) = (frames as i32, self.frames as i32, self.w);
+        // What the formulas below give at the keys, without their divisions: most parts are whole spans.
+        if n == 0 {
+            return (self.p, w.into());
+        }
+        if n == all {
+            return (self.p + self.rise, end.into());
+        }
         // Below 2^46.
         let bent = i64::from(2 * all - n) * i64::from(w) + i64::from(all + n) * i64::from(end);
         let bent = bent.wrapping_mul(i64::from(n * (all - n)));
