@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use hostile::mutants::{EVENTS, FRAMES, REFUSED, VALUES, mutant, read};
+use hostile::mutants::{EVENTS, FRAMES, REFUSED, VALUES, key_mutant, mutant, read};
 use hostile::noise::Noise;
 
 use crate::{paths, setup, vectors};
@@ -67,14 +67,32 @@ impl Counts {
 }
 
 /// Compares `count` mutants of the golden vectors; `seed` selects which. `after_batch` receives the counts so far.
-pub fn run(decoder: &Decoder, count: usize, seed: u64, mut after_batch: impl FnMut(&Counts)) -> Result<Counts> {
-    let vectors = vectors::load(&vectors::folder())?;
+pub fn run(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&Counts)) -> Result<Counts> {
+    compare(decoder, (&vectors::folder(), mutant), count, seed, after_batch)
+}
+
+/// The same of the vectors of key clips, for a decoder that plays these.
+pub fn run_keys(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&Counts)) -> Result<Counts> {
+    compare(decoder, (&vectors::keyed::folder(), key_mutant), count, seed, after_batch)
+}
+
+/// A folder of vectors, and how one is damaged.
+type Source<'a> = (&'a Path, fn(&mut Noise, &[Vec<u8>]) -> Vec<u8>);
+
+fn compare(
+    decoder: &Decoder,
+    (folder, damaged): Source<'_>,
+    count: usize,
+    seed: u64,
+    mut after_batch: impl FnMut(&Counts),
+) -> Result<Counts> {
+    let vectors = vectors::load(folder)?;
     let clips: Vec<Vec<u8>> = vectors.into_iter().map(|vector| vector.clip).collect();
     let mut noise = Noise::new(seed);
     let (mut counts, mut left) = (Counts::default(), count);
     while left > 0 {
         let batch = left.min(BATCH);
-        counts.add_read_by(decoder, (0..batch).map(|_| mutant(&mut noise, &clips)).collect())?;
+        counts.add_read_by(decoder, (0..batch).map(|_| damaged(&mut noise, &clips)).collect())?;
         left -= batch;
         after_batch(&counts);
     }

@@ -4,6 +4,14 @@
  * memory, pages and streams. A failed read yields 0 and sets the source's `error`; functions that change state check it before they commit. */
 #include "pantin.h"
 #include "pantin_tables.h"
+#ifdef PANTIN_KEYS
+#include "pantin_keys.h"
+#define IS_KEYS(clip) (((clip)->flags & PANTIN_KEY_CLIP) != 0)
+#define MAX_MOVING PANTIN_MAX_STATES
+#else
+#define MAX_MOVING PANTIN_MAX_CHANNELS
+#define IS_KEYS(clip) 0
+#endif
 
 enum { HAS_RIG = 1, LOOPED = 2, HAS_EXPONENTIALS = 4, HAS_EVENTS = 8, HAS_INDEX = 16, HAS_EVENT_NAMES = 32, HAS_SECTIONS = 64, KNOWN_FLAGS = 127 };
 enum { RESTS = 0, CONSTANT = 1, MOVES = 2, FOLLOWS = 3 };
@@ -11,6 +19,7 @@ enum { RESTS = 0, CONSTANT = 1, MOVES = 2, FOLLOWS = 3 };
 #define CRC_BYTES 2u
 #define CRC_START 0xffffu
 #define LOW 0x10000u /* the smallest state between symbols */
+#define KEY_VERSION 2u
 #define NO_LEADER 255u
 #define CARRY 3u
 
@@ -417,15 +426,31 @@ static uint16_t check_blocks(pantin_source *s, uint32_t start, uint32_t end, uin
 /* ---- Clip ---- */
 
 /* Reads what precedes the motion (1). `end` is the end of the clip. */
+/* Whether this decoder plays clips of a version (12). */
+static int is_known(uint8_t version) {
+#ifdef PANTIN_KEYS
+    if (version == KEY_VERSION) return 1;
+#endif
+    return version == PANTIN_VERSION;
+}
+
 static void open_front(pantin_clip *clip, pantin_source *source, uint32_t start, uint32_t end, const pantin_rig *rig) {
     fields f = fields_of(source, start, end);
     uint32_t length;
+    uint8_t version;
     memset(clip, 0, sizeof *clip);
     clip->source = source;
     if (field(&f) != PANTIN_MAGIC_0 || field(&f) != PANTIN_MAGIC_1) fail(source, PANTIN_ERROR_MAGIC);
-    if (field(&f) != PANTIN_VERSION) fail(source, PANTIN_ERROR_VERSION);
+    version = field(&f);
+    if (!is_known(version)) fail(source, PANTIN_ERROR_VERSION);
     clip->flags = field(&f);
     if (clip->flags & ~KNOWN_FLAGS) fail(source, PANTIN_ERROR_FLAGS);
+#ifdef PANTIN_KEYS
+    if (version == KEY_VERSION) {
+        if (clip->flags & (HAS_EXPONENTIALS | HAS_INDEX)) fail(source, PANTIN_ERROR_FLAGS);
+        clip->flags |= PANTIN_KEY_CLIP;
+    }
+#endif
     if (source->error != PANTIN_OK) return;
     clip->looped = (clip->flags & LOOPED) != 0;
     if (clip->flags & HAS_RIG) {
@@ -451,8 +476,8 @@ static uint16_t motion_crc(const pantin_clip *clip) {
     uint8_t i;
     bytes[0] = PANTIN_MAGIC_0;
     bytes[1] = PANTIN_MAGIC_1;
-    bytes[2] = PANTIN_VERSION;
-    bytes[3] = clip->flags;
+    bytes[2] = IS_KEYS(clip) ? KEY_VERSION : PANTIN_VERSION;
+    bytes[3] = clip->flags & KNOWN_FLAGS;
     for (i = 0; i < 4; i++) bytes[4 + i] = (uint8_t)(length >> (8 * i));
     return crc_of_bytes(bytes, 8, CRC_START);
 }
@@ -480,6 +505,13 @@ static void open_head(pantin_clip *clip) {
         fail(s, PANTIN_ERROR_HEAD);
     }
     if (!(clip->flags & HAS_RIG) && next_u32(&r) != clip->rig.id) fail(s, PANTIN_ERROR_OTHER_RIG);
+#ifdef PANTIN_KEYS
+    if (IS_KEYS(clip)) {
+        uint32_t states = next_varint(&r);
+        if (states > PANTIN_MAX_STATES || clip->frames > PANTIN_MAX_KEY_FRAMES) fail(s, PANTIN_ERROR_HEAD);
+        clip->states = (uint16_t)states;
+    }
+#endif
     clip->exponentials = r.position;
     if (clip->flags & HAS_EXPONENTIALS) {
         uint32_t bits = 0;
@@ -720,12 +752,43 @@ static void start_channel(pantin_player *p, uint8_t kind, int32_t rest) {
     p->resume++;
 }
 
+/* Kind and offset of the channel to go on with; the offset is 0 unless it is a position. */
+static pantin_result channel_at(pantin_player *p, uint8_t *kind, int32_t *offset) {
+    const pantin_rig *rig = &p->clip->rig;
+    *kind = PANTIN_SCALAR;
+    *offset = 0;
+    if (p->resume < rig->channels - rig->scalars) {
+        while (p->resume >= p->joint.first_channel + p->joint.channels) {
+            if (!next_joint(&p->joint)) return PANTIN_ERROR_READ;
+        }
+        *kind = pantin_joint_kind(&p->joint, (uint8_t)(p->resume - p->joint.first_channel));
+        if (rig->source->error != PANTIN_OK) return rig->source->error;
+        /* The file may have changed since it was checked. */
+        if (*kind >= PANTIN_SCALAR) return PANTIN_ERROR_RIG;
+        if (*kind < PANTIN_EULER_X) *offset = p->joint.offset[*kind];
+    }
+    return PANTIN_OK;
+}
+
+#ifdef PANTIN_KEYS
+uint8_t pantin_keys_byte(pantin_reader *reader) { return next_byte(reader); }
+
+pantin_result pantin_keys_channel(pantin_player *player, pantin_key_channel *channel) {
+    pantin_result result = channel_at(player, &channel->kind, &channel->offset);
+    channel->rest = rest_value(player->clip, channel->offset);
+    return result;
+}
+#endif
+
 pantin_result pantin_continue(pantin_player *p) {
     const pantin_clip *clip = p->clip;
     const pantin_rig *rig = &clip->rig;
     pantin_source *s = clip->source;
     if (!p->pose) return PANTIN_NO_ROOM;
     s->error = rig->source->error = PANTIN_OK;
+#ifdef PANTIN_KEYS
+    if (IS_KEYS(clip)) return pantin_keys_start(p);
+#endif
     if (p->reader.x == 0) {
         pantin_reader before = p->reader;
         first_state(&p->reader);
@@ -733,19 +796,11 @@ pantin_result pantin_continue(pantin_player *p) {
     }
     while (s->error == PANTIN_OK && p->resume < rig->channels) {
         pantin_reader before = p->reader;
-        uint8_t kind = PANTIN_SCALAR;
-        int32_t rest = 0;
-        if (p->resume < rig->channels - rig->scalars) {
-            while (p->resume >= p->joint.first_channel + p->joint.channels) {
-                if (!next_joint(&p->joint)) return PANTIN_ERROR_READ;
-            }
-            kind = pantin_joint_kind(&p->joint, (uint8_t)(p->resume - p->joint.first_channel));
-            if (rig->source->error != PANTIN_OK) return rig->source->error;
-            /* The file may have changed since it was checked. */
-            if (kind >= PANTIN_SCALAR) return PANTIN_ERROR_RIG;
-            if (kind < PANTIN_EULER_X) rest = rest_value(clip, p->joint.offset[kind]);
-        }
-        start_channel(p, kind, rest);
+        uint8_t kind;
+        int32_t offset;
+        pantin_result result = channel_at(p, &kind, &offset);
+        if (result != PANTIN_OK) return result;
+        start_channel(p, kind, rest_value(clip, offset));
         if (s->error != PANTIN_OK) p->reader = before;
         s->done = p->reader.position;
     }
@@ -776,7 +831,7 @@ pantin_result pantin_start(pantin_player *player, const pantin_clip *clip, int32
     if (pose_room < clip->rig.channels) return PANTIN_NO_ROOM;
     player->pose = pose;
     player->moving = moving;
-    player->moving_room = (uint16_t)(moving_room > PANTIN_MAX_CHANNELS ? PANTIN_MAX_CHANNELS : moving_room);
+    player->moving_room = (uint16_t)(moving_room > MAX_MOVING ? MAX_MOVING : moving_room);
     return pantin_restart(player);
 }
 
@@ -844,6 +899,12 @@ pantin_result pantin_step(pantin_player *p) {
     uint16_t i;
     if (!p->started || p->moving_count > p->moving_room) return PANTIN_NO_ROOM;
     if (p->frame + 1 >= p->clip->frames) return PANTIN_END;
+#ifdef PANTIN_KEYS
+    if (IS_KEYS(p->clip)) {
+        pantin_keys_step(p);
+        return PANTIN_OK;
+    }
+#endif
     if (p->frame + 2 < p->clip->frames) {
         s->error = PANTIN_OK;
         for (; p->resume < p->moving_count; p->resume++) {
@@ -925,6 +986,12 @@ pantin_result pantin_seek(pantin_player *p, uint32_t frame) {
     if (!p->started || p->moving_count > p->moving_room) return PANTIN_NO_ROOM;
     if (frame >= p->clip->frames) return PANTIN_NOT_FOUND;
     s->error = PANTIN_OK;
+#ifdef PANTIN_KEYS
+    if (IS_KEYS(p->clip)) {
+        pantin_keys_seek(p, frame);
+        return PANTIN_OK;
+    }
+#endif
     if (!to_snapshot(p, frame) && s->error == PANTIN_OK && frame < p->frame) result = pantin_restart(p);
     if (s->error != PANTIN_OK) {
         /* A snapshot that was read in part is of no use. */
@@ -956,7 +1023,7 @@ pantin_result pantin_open_bank(pantin_bank *bank, pantin_source *source) {
     bank->source = source;
     source->error = PANTIN_OK;
     if (field(&f) != 'P' || field(&f) != 'b') fail(source, PANTIN_ERROR_MAGIC);
-    if (field(&f) != PANTIN_VERSION) fail(source, PANTIN_ERROR_VERSION);
+    if (!is_known(field(&f))) fail(source, PANTIN_ERROR_VERSION);
     while (f.position < f.end && source->error == PANTIN_OK) {
         uint8_t type = field(&f);
         uint32_t bytes = field_varint(&f), at = skip(&f, bytes);

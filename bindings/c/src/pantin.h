@@ -16,6 +16,9 @@
  *         do { show(pose); } while (pantin_step(&player) == PANTIN_OK);
  *     }
  *
+ * With PANTIN_KEYS defined for all files (compile pantin_keys.c too), it plays key clips as well: version 2 of the format. Without it they are
+ * PANTIN_ERROR_VERSION.
+ *
  * A structure that is lent must not be moved or changed while another one refers to it: a clip refers to its source, a player to its clip,
  * pose and moving channels. Fields of structures may be read; only the functions change them.
  */
@@ -204,6 +207,9 @@ typedef struct pantin_clip {
     int8_t exponent;             /* positions are in 2^exponent units of the source */
     uint8_t flags;
     uint8_t looped;              /* 1: frame 0 follows the last frame */
+#ifdef PANTIN_KEYS
+    uint16_t states;             /* of a key clip: channels that a player needs, 0 to 14130 */
+#endif
 } pantin_clip;
 
 /* Opens a clip that fills a source, and checks it: lengths, CRCs, bounds. `rig` is used if the clip contains none, and may be NULL. */
@@ -243,6 +249,9 @@ typedef struct pantin_channel {
     uint8_t mode;
     uint8_t left;      /* frames to the segment's end */
     int8_t prev_sign;
+#ifdef PANTIN_KEYS
+    uint8_t more;      /* of a key clip */
+#endif
 } pantin_channel;
 
 /* The reader of symbols. */
@@ -259,9 +268,9 @@ typedef struct pantin_player {
     int32_t *pose;          /* the raw values of all channels at this frame: section 11 defines their units */
     pantin_channel *moving;
     uint32_t frame;         /* 0 to frames - 1 */
-    uint16_t moving_count;  /* moving channels: what `moving` must have room for */
+    uint16_t moving_count;  /* moving channels, of a key clip its states: what `moving` must have room for */
     uint16_t moving_room;
-    uint16_t resume;        /* the channel to go on with if bytes were missing */
+    uint16_t resume;        /* the channel to go on with if bytes were missing; of a key clip: channels with keys */
     uint8_t started;        /* 1 once all channels have their start values */
     uint8_t last_status, last_step[2];
     uint8_t last_of_kind[14];
@@ -351,7 +360,7 @@ typedef struct pantin_stream {
 } pantin_stream;
 
 /* Prepares a stream. `memory` lends `size` bytes: those before the motion's symbols, rounded up to the end of their block, and
- * PANTIN_STREAM_BYTES more; further bytes let it receive ahead. `rig` is used if the clip contains none, and may be NULL. */
+ * PANTIN_STREAM_BYTES more; further bytes let it receive ahead. A key clip needs room for all its bytes: it is read as a whole. `rig` is used if the clip contains none, and may be NULL. */
 void pantin_open_stream(pantin_stream *stream, uint8_t *memory, uint32_t size, const pantin_rig *rig);
 
 /* Takes bytes that have arrived, at most `count`. Returns how many it took: the others must be pushed again after further steps. Once

@@ -9,13 +9,18 @@
 #include "pantin.h"
 
 static int32_t pose[1023];
-static pantin_channel moving[1023];
+#ifdef PANTIN_KEYS
+#define ROOM 14130u
+#else
+#define ROOM 1023u
+#endif
+static pantin_channel moving[ROOM];
 static uint32_t opened;
 
 static void play(const pantin_clip *clip) {
     pantin_player player;
     unsigned i;
-    if (pantin_start(&player, clip, pose, 1023, moving, 1023) != PANTIN_OK) return;
+    if (pantin_start(&player, clip, pose, 1023, moving, ROOM) != PANTIN_OK) return;
     for (i = 0; i < 100 && pantin_step(&player) == PANTIN_OK; i++) {}
     pantin_seek(&player, clip->frames < 1000 ? clip->frames - 1 : 999);
 }

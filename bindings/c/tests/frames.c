@@ -33,7 +33,12 @@ static void check(int held, const char *what) {
 }
 
 static int32_t pose[1023];
-static pantin_channel moving[1023];
+#ifdef PANTIN_KEYS
+#define ROOM 14130u
+#else
+#define ROOM 1023u
+#endif
+static pantin_channel moving[ROOM];
 
 static void print_name(const pantin_name *name) {
     char text[1024];
@@ -47,7 +52,7 @@ static void play(const pantin_clip *clip, int whole) {
     uint16_t *crcs = (uint16_t *)malloc(clip->frames * sizeof *crcs);
     uint32_t f, x = 12345;
     pantin_result result;
-    check(pantin_start(&player, clip, pose, 1023, moving, 1023) == PANTIN_OK, "start");
+    check(pantin_start(&player, clip, pose, 1023, moving, ROOM) == PANTIN_OK, "start");
     printf("\"moving\": %u, \"crcs\": [", player.moving_count);
     f = 0;
     do {
@@ -74,7 +79,7 @@ static void play(const pantin_clip *clip, int whole) {
     }
     if (whole) {
         printf(", \"poses\": {");
-        check(pantin_start(&player, clip, pose, 1023, moving, 1023) == PANTIN_OK, "start");
+        check(pantin_start(&player, clip, pose, 1023, moving, ROOM) == PANTIN_OK, "start");
         do {
             printf("%s\"%u\": [", player.frame ? ", " : "", (unsigned)player.frame);
             for (f = 0; f < clip->rig.channels; f++) printf(f ? ", %ld" : "%ld", (long)pose[f]);
@@ -96,7 +101,7 @@ static void other_sources(const pantin_clip *clip, uint8_t *bytes, uint32_t leng
     static const uint32_t spare[] = {0, 1, 224, 5000};
     pantin_player player, other;
     static int32_t other_pose[1023];
-    static pantin_channel other_moving[1023];
+    static pantin_channel other_moving[ROOM];
     unsigned i;
     size_t pose_bytes = clip->rig.channels * sizeof *pose;
     for (i = 0; i < 4; i++) {
@@ -105,8 +110,8 @@ static void other_sources(const pantin_clip *clip, uint8_t *bytes, uint32_t leng
         uint8_t page[1000];
         pantin_paged(&pages, length, read_bytes, bytes, page, sizes[i]);
         check(pantin_open(&paged, &pages.source, rig) == PANTIN_OK, "paged open");
-        check(pantin_start(&player, clip, pose, 1023, moving, 1023) == PANTIN_OK, "start");
-        check(pantin_start(&other, &paged, other_pose, 1023, other_moving, 1023) == PANTIN_OK, "paged start");
+        check(pantin_start(&player, clip, pose, 1023, moving, ROOM) == PANTIN_OK, "start");
+        check(pantin_start(&other, &paged, other_pose, 1023, other_moving, ROOM) == PANTIN_OK, "paged start");
         do {
             check(memcmp(pose, other_pose, pose_bytes) == 0, "paged frame");
             check(pantin_step(&other) == pantin_step(&player), "paged step");
@@ -115,11 +120,14 @@ static void other_sources(const pantin_clip *clip, uint8_t *bytes, uint32_t leng
     for (i = 0; i < 4; i++) {
         pantin_stream stream;
         uint32_t size = clip->symbols + 256 + PANTIN_STREAM_BYTES + spare[i], sent = 0;
-        uint8_t *memory = (uint8_t *)malloc(size);
+        uint8_t *memory;
         pantin_result result = PANTIN_NEED_MORE;
+        /* A key clip is read as a whole before it plays. */
+        if (bytes[2] == 2) size += length;
+        memory = (uint8_t *)malloc(size);
         pantin_open_stream(&stream, memory, size, rig);
         other.frame = 0xffffffffu;
-        check(pantin_start(&player, clip, pose, 1023, moving, 1023) == PANTIN_OK, "start");
+        check(pantin_start(&player, clip, pose, 1023, moving, ROOM) == PANTIN_OK, "start");
         for (;;) {
             uint32_t piece = length - sent < sizes[i] ? length - sent : sizes[i];
             uint32_t taken = pantin_push(&stream, bytes + sent, piece);
@@ -128,7 +136,7 @@ static void other_sources(const pantin_clip *clip, uint8_t *bytes, uint32_t leng
             sent += taken;
             if (!stream.opened) continue;
             if (other.frame == 0xffffffffu) {
-                result = pantin_start(&other, &stream.clip, other_pose, 1023, other_moving, 1023);
+                result = pantin_start(&other, &stream.clip, other_pose, 1023, other_moving, ROOM);
             } else if (!other.started) {
                 result = pantin_continue(&other);
             } else {

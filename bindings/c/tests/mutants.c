@@ -10,7 +10,12 @@
 #include "pantin.h"
 
 static int32_t pose[1023];
-static pantin_channel moving[1023];
+#ifdef PANTIN_KEYS
+#define ROOM 14130u
+#else
+#define ROOM 1023u
+#endif
+static pantin_channel moving[ROOM];
 
 static uint32_t hash(uint32_t channels) {
     uint32_t hash = 0x811c9dc5u, i;
@@ -48,7 +53,7 @@ int main(int argc, char **argv) {
             free(copy);
             continue;
         }
-        if (pantin_start(&player, &clip, pose, 1023, moving, 1023) != PANTIN_OK) return 3;
+        if (pantin_start(&player, &clip, pose, 1023, moving, ROOM) != PANTIN_OK) return 3;
         channels = clip.rig.channels;
         printf("%u frames of %u ns, exponent %d, looped %s, %u joints, %u channels, %u moving, %u events", (unsigned)clip.frames,
                (unsigned)clip.frame_time_ns, clip.exponent, clip.looped ? "true" : "false", clip.rig.joints, (unsigned)channels,

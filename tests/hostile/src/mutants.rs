@@ -31,6 +31,14 @@ pub fn mutant(noise: &mut Noise, clips: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
+/// A key clip damaged in one to three places, with its CRCs and lengths mended.
+pub fn key_mutant(noise: &mut Noise, clips: &[Vec<u8>]) -> Vec<u8> {
+    let [input, other] = [0; 2].map(|_| &clips[noise.below(clips.len())]);
+    let mut bytes = noise.damage(input, other, &[]);
+    fix::key_clip(&mut bytes);
+    bytes
+}
+
 /// What `Clip` and `Player` read: one line, whose fields every decoder can print.
 pub fn read(bytes: &[u8]) -> String {
     let Ok(clip) = Clip::with_rig(bytes, RIG) else { return REFUSED.to_owned() };

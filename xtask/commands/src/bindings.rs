@@ -26,8 +26,11 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, rotations, figures, faces, and lips for speech.
-const SOURCES: [&str; 5] = ["src/pantin.c", "src/pantin_turn.c", "src/pantin_figure.c", "src/pantin_face.c", "src/pantin_talk.c"];
+/// The decoder, key clips, rotations, figures, faces, and lips for speech.
+const SOURCES: [&str; 6] =
+    ["src/pantin.c", "src/pantin_keys.c", "src/pantin_turn.c", "src/pantin_figure.c", "src/pantin_face.c", "src/pantin_talk.c"];
+/// Defined where key clips are to be played.
+const KEYS: &str = "-DPANTIN_KEYS";
 
 /// Every warning is an error.
 const WARNINGS: [&str; 4] = ["-Wall", "-Wextra", "-Werror", "-pedantic"];
@@ -173,6 +176,7 @@ impl Bindings {
         });
         for compiler in ["gcc", "clang"] {
             steps.run(&format!("test vectors with {compiler} and sanitizers"), || test_vectors(&folder, compiler));
+            steps.run(&format!("test vectors of key clips with {compiler} and sanitizers"), || key_vectors(&folder, compiler));
         }
         steps.run("the README's program in C", || readme::run(&folder));
         steps.run("rotations against the crate's", || turns::vectors(&folder));
@@ -186,7 +190,7 @@ impl Bindings {
             for (compiler, source) in ["g++", "clang++"].into_iter().flat_map(|compiler| SOURCES.map(|source| (compiler, source)))
             {
                 let mut command = Command::new(compiler);
-                command.args(["-x", "c++", "-std=c++11"]);
+                command.args(["-x", "c++", "-std=c++11", KEYS]);
                 compile(command, &[source], &folder.path().join("cpp.o"))?;
             }
             Ok(())
@@ -200,6 +204,7 @@ impl Bindings {
         steps.run("a face on the test display of LVGL", lvgl::run);
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
+        steps.run(&format!("{} mutants of key clips", self.mutants), || self.key_mutants(&folder));
         for target in &TARGETS {
             steps.run(&format!("size with {}", target.compiler), || target.size(&folder));
         }
@@ -233,12 +238,25 @@ impl Bindings {
         let counts = differential::run(&Decoder::Program(program), self.mutants, self.seed, |counts| {
             xtask::steps::progress("mutants", counts.agreed + counts.refused + counts.differing.len(), self.mutants);
         })?;
-        println!("   {} agreed, {} refused by both, {} differing", counts.agreed, counts.refused, counts.differing.len());
-        if let Some(first) = counts.differing.first() {
-            bail!("{}\nRust: {}\nC:    {}", first.bytes.escape_ascii(), first.rust, first.independent);
-        }
-        Ok(())
+        no_difference(&counts)
     }
+
+    fn key_mutants(&self, folder: &TempDir) -> Result<()> {
+        let program = host_program_with(folder, "gcc", "mutants", &[KEYS])?;
+        let counts = differential::run_keys(&Decoder::Program(program), self.mutants, self.seed, |counts| {
+            xtask::steps::progress("mutants", counts.agreed + counts.refused + counts.differing.len(), self.mutants);
+        })?;
+        no_difference(&counts)
+    }
+}
+
+/// Prints how many mutants agreed; an error that shows the first one that does not.
+fn no_difference(counts: &differential::Counts) -> Result<()> {
+    println!("   {} agreed, {} refused by both, {} differing", counts.agreed, counts.refused, counts.differing.len());
+    if let Some(first) = counts.differing.first() {
+        bail!("{}\nRust: {}\nC:    {}", first.bytes.escape_ascii(), first.rust, first.independent);
+    }
+    Ok(())
 }
 
 /// The folder of the decoder in C.
@@ -266,8 +284,12 @@ fn output(mut command: Command) -> Result<Output> {
 
 /// Builds a test program for this machine, with sanitizers.
 fn host_program(folder: &TempDir, compiler: &str, name: &str) -> Result<PathBuf> {
+    host_program_with(folder, compiler, name, &[])
+}
+
+fn host_program_with(folder: &TempDir, compiler: &str, name: &str, options: &[&str]) -> Result<PathBuf> {
     let mut command = Command::new(compiler);
-    command.arg("-std=c99").args(SANITIZERS);
+    command.arg("-std=c99").args(SANITIZERS).args(options);
     let test = format!("tests/{name}.c");
     let sources: Vec<&str> = SOURCES.into_iter().chain([test.as_str()]).collect();
     compile(command, &sources, &folder.path().join(format!("{name}-{compiler}")))
@@ -275,8 +297,12 @@ fn host_program(folder: &TempDir, compiler: &str, name: &str) -> Result<PathBuf>
 
 /// The clips and banks among the vectors, with their rigs.
 fn files() -> Result<Vec<(PathBuf, Option<PathBuf>)>> {
+    files_of(&vectors::folder())
+}
+
+fn files_of(folder: &Path) -> Result<Vec<(PathBuf, Option<PathBuf>)>> {
     let mut files = vec![];
-    for entry in std::fs::read_dir(vectors::folder())? {
+    for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
         if path.extension().is_some_and(|extension| extension == "ptn" || extension == "ptb") {
             let rig = path.with_extension("rig");
@@ -290,10 +316,19 @@ fn files() -> Result<Vec<(PathBuf, Option<PathBuf>)>> {
 
 /// Compares what the decoder prints of every vector with its record.
 fn test_vectors(folder: &TempDir, compiler: &str) -> Result<()> {
-    let program = host_program(folder, compiler, "frames")?;
-    let files = files()?;
-    for (file, rig) in &files {
-        let mut command = Command::new(&program);
+    compare_records(&host_program(folder, compiler, "frames")?, &files()?)
+}
+
+/// The same of key clips, and of all others with the decoder that plays both.
+fn key_vectors(folder: &TempDir, compiler: &str) -> Result<()> {
+    let program = host_program_with(folder, compiler, "frames", &[KEYS])?;
+    compare_records(&program, &files_of(&vectors::keyed::folder())?)?;
+    compare_records(&program, &files()?)
+}
+
+fn compare_records(program: &Path, files: &[(PathBuf, Option<PathBuf>)]) -> Result<()> {
+    for (file, rig) in files {
+        let mut command = Command::new(program);
         command.arg(file).args(rig);
         let printed = output(command).with_context(|| file.display().to_string())?;
         agrees(file, &printed.stdout).with_context(|| file.display().to_string())?;
@@ -358,6 +393,8 @@ impl Target {
         println!("   {figure} bytes of code for figures, {euler} with Euler angles alone");
         let turns: u64 = self.functions(folder, "src/pantin_turn.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {turns} bytes of code for rotations of joints");
+        let keys: u64 = self.functions(folder, "src/pantin_keys.c", &[KEYS])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {keys} bytes of code for key clips");
         if self.limits.is_some() && self.compiler.starts_with("avr") {
             // A face does not fit its RAM beside a display's library.
             return Ok(());
