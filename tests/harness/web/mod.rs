@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use std::thread;
 
 use anyhow::{Context, Result};
-use pantin_tools::serve::{Site, serve};
+use pantin_tools::serve::{Site, Times, serve};
 
 pub use xtask::browser;
 pub use xtask_web::site::{CHARACTER, CONVERTER, EXPORT, FACE, OTHERS, PLAYER, Size, build, sizes};
@@ -25,6 +25,6 @@ pub fn served(extras: Vec<(String, Vec<u8>)>) -> Result<String> {
     }
     let listener = TcpListener::bind("127.0.0.1:0").context("cannot listen on this machine")?;
     let address = format!("http://{}/", listener.local_addr()?);
-    thread::spawn(move || serve(&listener, site));
+    thread::spawn(move || serve(&listener, site, Times::default()));
     Ok(address)
 }

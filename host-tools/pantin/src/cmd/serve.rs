@@ -1,7 +1,7 @@
 //! `pantin serve`.
 
 use crate::output::{self, outln};
-use crate::serve::{Site, serve};
+use crate::serve::{Site, Times, serve};
 use anyhow::{Context, Result};
 use serde_json::json;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, TcpListener};
@@ -60,6 +60,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     } else {
         outln!("http://{address}/ (Ctrl-C ends it)")?;
     }
-    serve(&listener, site);
+    serve(&listener, site, Times::default());
     Ok(())
 }

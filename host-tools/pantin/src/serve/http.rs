@@ -18,25 +18,41 @@ pub const MOST_HEAD: usize = 8 << 10;
 pub const MOST_CONNECTIONS: usize = 32;
 /// Connections that have their answer and are not closed yet: each takes a thread for [`CLOSE_TIME`] at most. Others wait in the system's queue.
 const MOST_CLOSING: usize = 96;
-/// How long a request's head may take to come, and how long a client may take no byte of the answer.
+/// [`Times::request`] of `pantin serve`.
 pub const PATIENCE: Duration = Duration::from_secs(5);
 /// How long a client has for its request's head in any case, where others wait for its place.
 const SHORT_PATIENCE: Duration = Duration::from_millis(200);
-/// The time in which a client must have taken its answer, plus one second per [`SLOWEST`] bytes.
-pub const ANSWER_TIME: Duration = Duration::from_secs(10);
+/// [`Times::answer`] of `pantin serve`.
+const ANSWER_TIME: Duration = Duration::from_secs(10);
 /// Bytes per second at which a client must take an answer.
-pub const SLOWEST: usize = 512 << 10;
+const SLOWEST: usize = 512 << 10;
 /// The time that a client has to close the connection after its answer.
 const CLOSE_TIME: Duration = Duration::from_millis(500);
 const MOST_HEADERS: usize = 64;
 /// Bytes that are read of what a client still sends once it has its answer: unread, they would take it back from the client.
 const MOST_REST: usize = 64 << 10;
 
+/// The times that clients have.
+#[derive(Clone, Copy, Debug)]
+pub struct Times {
+    /// How long a request's head may take to come, and how long a client may take no byte of the answer.
+    pub request: Duration,
+    /// The time in which a client must have taken its answer, plus one second per [`SLOWEST`] bytes.
+    pub answer: Duration,
+}
+
+impl Default for Times {
+    /// [`PATIENCE`] and 10 s.
+    fn default() -> Times {
+        Times { request: PATIENCE, answer: ANSWER_TIME }
+    }
+}
+
 /// Serves for ever. A listener on a loopback address answers only requests whose header `Host`, if there is one, names this machine and the port: a page of
 /// another site whose name leads here gets nothing.
-pub fn serve(listener: &TcpListener, site: Site) {
+pub fn serve(listener: &TcpListener, site: Site, times: Times) {
     let site = Arc::new(site);
-    let places = Arc::new(Places::default());
+    let places = Arc::new(Places { times, ..Places::default() });
     let local = listener.local_addr().ok().filter(|address| address.ip().is_loopback());
     for stream in listener.incoming() {
         // A connection that is gone before it was taken, or no file handle for one: others may come.
@@ -57,6 +73,7 @@ pub fn serve(listener: &TcpListener, site: Site) {
 /// The places of connections.
 #[derive(Default)]
 struct Places {
+    times: Times,
     taken: Mutex<Taken>,
     changed: Condvar,
 }
@@ -207,24 +224,25 @@ impl Status {
 }
 
 fn attend(stream: &TcpStream, site: &Site, local: Option<SocketAddr>, mut guest: Guest) -> io::Result<()> {
-    stream.set_write_timeout(Some(PATIENCE))?;
+    let times = guest.places.times;
+    stream.set_write_timeout(Some(times.request))?;
     let mut buffer = [0; MOST_HEAD];
     let refused = guest.stage == Stage::Closing;
     let request = if refused { Err(Status::Busy) } else { head(stream, &mut buffer, &guest) };
     let kept = !refused && guest.go_on(Stage::Answered);
     match request {
-        _ if !kept => refuse(stream, Status::Busy, true, CLOSE_TIME)?,
-        Err(status) => refuse(stream, status, true, ANSWER_TIME)?,
+        _ if !kept => refuse(stream, Status::Busy, true, Times { answer: CLOSE_TIME, ..times })?,
+        Err(status) => refuse(stream, status, true, times)?,
         Ok(Request { hosts, .. }) if !local.is_none_or(|local| hosts.iter().all(|host| is_here(host, local))) => {
-            refuse(stream, Status::Forbidden, true, ANSWER_TIME)?;
+            refuse(stream, Status::Forbidden, true, times)?;
         }
         Ok(request) => {
             let path = request.path.split('?').next().unwrap_or_default();
             let (wants_body, allowed) = (request.method == "GET", ["GET", "HEAD"].contains(&request.method));
             match site.file(path) {
-                _ if !allowed => refuse(stream, Status::Method, true, ANSWER_TIME)?,
-                None => refuse(stream, Status::Missing, wants_body, ANSWER_TIME)?,
-                Some(file) => send(stream, site, path, file, &request)?,
+                _ if !allowed => refuse(stream, Status::Method, true, times)?,
+                None => refuse(stream, Status::Missing, wants_body, times)?,
+                Some(file) => send(stream, site, path, file, &request, times)?,
             }
         }
     }
@@ -258,7 +276,7 @@ fn is_here(host: &[u8], local: SocketAddr) -> bool {
 
 /// Reads until the head is whole, or the place is lost.
 fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD], guest: &Guest) -> Result<Request<'b>, Status> {
-    let until = Instant::now() + PATIENCE;
+    let until = Instant::now() + guest.places.times.request;
     let mut len = 0;
     loop {
         let left = until.saturating_duration_since(Instant::now());
@@ -303,7 +321,7 @@ fn head<'b>(mut stream: &TcpStream, buffer: &'b mut [u8; MOST_HEAD], guest: &Gue
 }
 
 /// Sends a file: in a coding that the client takes, or a part of it, or word that it has not changed.
-fn send(stream: &TcpStream, site: &Site, path: &str, file: &File, request: &Request<'_>) -> io::Result<()> {
+fn send(stream: &TcpStream, site: &Site, path: &str, file: &File, request: &Request<'_>, times: Times) -> io::Result<()> {
     // A part of a file is one of its own bytes.
     let mut codings = CODINGS.iter().filter(|coding| request.range.is_empty() && takes(request.codings, coding.name));
     let coded = codings.find_map(|coding| Some((coding, site.coded(path, coding)?)));
@@ -329,7 +347,7 @@ fn send(stream: &TcpStream, site: &Site, path: &str, file: &File, request: &Requ
         }
         (None, None) => (Status::Good, all),
     };
-    answer(stream, status, &head, bytes, request.method == "GET", ANSWER_TIME)
+    answer(stream, status, &head, bytes, request.method == "GET", times)
 }
 
 /// Whether a header `Accept-Encoding` names a coding, and not with the weight 0.
@@ -355,36 +373,36 @@ fn part(header: &str, len: usize) -> Option<Option<(usize, usize)>> {
 }
 
 /// Writes an answer without a file.
-fn refuse(stream: &TcpStream, status: Status, body: bool, time: Duration) -> io::Result<()> {
+fn refuse(stream: &TcpStream, status: Status, body: bool, times: Times) -> io::Result<()> {
     let help = match status {
         Status::Forbidden => "The Host header names another server. Open the URL that `pantin serve` prints.\n",
         _ => "",
     };
     let allow = if let Status::Method = status { "Allow: GET, HEAD\r\n" } else { "" };
     let text = format!("{}\n{help}", status.line());
-    answer(stream, status, &format!("Content-Type: text/plain\r\n{allow}"), text.as_bytes(), body, time)
+    answer(stream, status, &format!("Content-Type: text/plain\r\n{allow}"), text.as_bytes(), body, times)
 }
 
-/// Writes an answer within `time` and what its length adds to it.
-fn answer(stream: &TcpStream, status: Status, head: &str, bytes: &[u8], body: bool, time: Duration) -> io::Result<()> {
+/// Writes an answer within its time and what its length adds to that.
+fn answer(stream: &TcpStream, status: Status, head: &str, bytes: &[u8], body: bool, times: Times) -> io::Result<()> {
     let head = format!(
         "HTTP/1.1 {}\r\nContent-Length: {}\r\n{head}X-Content-Type-Options: nosniff\r\nCache-Control: no-cache\r\nConnection: close\r\n\r\n",
         status.line(),
         bytes.len()
     );
-    let until = Instant::now() + time + Duration::from_secs((bytes.len() / SLOWEST) as u64);
-    write_until(stream, head.as_bytes(), until)?;
-    if body { write_until(stream, bytes, until) } else { Ok(()) }
+    let until = Instant::now() + times.answer + Duration::from_secs((bytes.len() / SLOWEST) as u64);
+    write_until(stream, head.as_bytes(), until, times)?;
+    if body { write_until(stream, bytes, until, times) } else { Ok(()) }
 }
 
 /// Writes all bytes, or fails at the deadline: a client that takes a byte now and then must not hold its connection for ever.
-fn write_until(mut stream: &TcpStream, mut bytes: &[u8], until: Instant) -> io::Result<()> {
+fn write_until(mut stream: &TcpStream, mut bytes: &[u8], until: Instant, times: Times) -> io::Result<()> {
     while !bytes.is_empty() {
         let left = until.saturating_duration_since(Instant::now());
         if left.is_zero() {
             return Err(ErrorKind::TimedOut.into());
         }
-        stream.set_write_timeout(Some(left.min(PATIENCE)))?;
+        stream.set_write_timeout(Some(left.min(times.request)))?;
         match stream.write(bytes) {
             Ok(0) => return Err(ErrorKind::WriteZero.into()),
             Ok(count) => bytes = bytes.get(count..).unwrap_or_default(),

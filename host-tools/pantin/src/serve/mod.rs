@@ -3,5 +3,5 @@
 mod http;
 mod site;
 
-pub use http::{ANSWER_TIME, MOST_CONNECTIONS, MOST_HEAD, PATIENCE, SLOWEST, serve};
+pub use http::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, Times, serve};
 pub use site::{CODINGS, Coding, File, Site};

@@ -1,7 +1,7 @@
 //! The server against hostile clients: it answers, or drops them, and goes on serving others.
 
 use crate::noise::Noise;
-use pantin_tools::serve::{ANSWER_TIME, MOST_CONNECTIONS, MOST_HEAD, PATIENCE, SLOWEST, Site, serve};
+use pantin_tools::serve::{MOST_CONNECTIONS, MOST_HEAD, PATIENCE, Site, Times, serve};
 use std::fs;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -13,20 +13,31 @@ use std::time::{Duration, Instant};
 const PAGE: &[u8] = b"<!doctype html>page";
 
 /// A server of a page and of a file of some megabytes, for as long as the tests run.
+/// Bytes of an answer that the system's buffers between a server and a client that reads nothing do not hold: on Linux a little more than 4 MB.
+const LARGE: usize = 16 << 20;
+
+/// The longest that a test waits for what must come: far more than a busy machine takes.
+const MOST: Duration = Duration::from_secs(600);
+
 fn server() -> SocketAddr {
+    server_with(Times::default())
+}
+
+fn server_with(times: Times) -> SocketAddr {
     let mut site = Site::default();
     site.add("/index.html".into(), PAGE.to_vec()).unwrap();
     site.add("/clips/0.ptn".into(), vec![7; 4 << 20]).unwrap();
+    site.add("/clips/large.ptn".into(), vec![7; LARGE]).unwrap();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let place = listener.local_addr().unwrap();
-    thread::spawn(move || serve(&listener, site));
+    thread::spawn(move || serve(&listener, site, times));
     place
 }
 
 fn connect(place: SocketAddr) -> TcpStream {
     let stream = TcpStream::connect(place).unwrap();
-    stream.set_read_timeout(Some(2 * PATIENCE)).unwrap();
-    stream.set_write_timeout(Some(2 * PATIENCE)).unwrap();
+    stream.set_read_timeout(Some(MOST)).unwrap();
+    stream.set_write_timeout(Some(MOST)).unwrap();
     stream
 }
 
@@ -97,7 +108,7 @@ fn unchanged_files_parts_and_codings_are_answered_as_asked() {
     site.add("/0.ptn".into(), (0..100).collect()).unwrap();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let place = listener.local_addr().unwrap();
-    thread::spawn(move || serve(&listener, site));
+    thread::spawn(move || serve(&listener, site, Times::default()));
     let ask = |path: &str, headers: &str| {
         let answer = talk(place, format!("GET {path} HTTP/1.1\r\n{headers}\r\n").as_bytes());
         (status(&answer), String::from_utf8_lossy(&answer).into_owned(), body(&answer).to_vec())
@@ -148,7 +159,7 @@ fn other_sites_read_only_what_is_shared() {
     site.add("/index.html".into(), PAGE.to_vec()).unwrap();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let place = listener.local_addr().unwrap();
-    thread::spawn(move || serve(&listener, site));
+    thread::spawn(move || serve(&listener, site, Times::default()));
     let answer = talk(place, b"GET / HTTP/1.1\r\n\r\n");
     assert!(String::from_utf8_lossy(&answer).contains("Access-Control-Allow-Origin: *\r\n"));
 }
@@ -197,7 +208,7 @@ fn another_bound_address_has_any_name() {
     site.add("/index.html".into(), PAGE.to_vec()).unwrap();
     let listener = TcpListener::bind("0.0.0.0:0").unwrap();
     let place = SocketAddr::from(([127, 0, 0, 1], listener.local_addr().unwrap().port()));
-    thread::spawn(move || serve(&listener, site));
+    thread::spawn(move || serve(&listener, site, Times::default()));
     assert_eq!(status(&talk(place, b"GET / HTTP/1.1\r\nHost: desk.local\r\n\r\n")), "200");
 }
 
@@ -308,7 +319,7 @@ fn slow_and_silent_clients_are_left_and_keep_nobody_waiting() {
     let begun = Instant::now();
     let mut slow = connect(place);
     let mut answer: Vec<u8> = vec![];
-    while begun.elapsed() < 3 * PATIENCE {
+    while begun.elapsed() < MOST {
         let _ = slow.write_all(b"G");
         thread::sleep(Duration::from_millis(200));
         slow.set_read_timeout(Some(Duration::from_millis(1))).unwrap();
@@ -320,7 +331,7 @@ fn slow_and_silent_clients_are_left_and_keep_nobody_waiting() {
             Err(_) => break,
         }
     }
-    assert!(begun.elapsed() < 2 * PATIENCE, "{:?}", begun.elapsed());
+    assert!(begun.elapsed() < MOST, "it is not left");
     assert!(["400", "408", "nothing"].contains(&status(&answer).as_str()), "{}", status(&answer));
     for stream in &mut silent {
         let mut answer = vec![];
@@ -330,32 +341,49 @@ fn slow_and_silent_clients_are_left_and_keep_nobody_waiting() {
     serves(place);
 }
 
+/// A client that asks for more than the buffers between us hold, and reads none of it.
+fn greedy(place: SocketAddr) -> TcpStream {
+    let mut stream = connect(place);
+    stream.write_all(b"GET /clips/large.ptn HTTP/1.1\r\n\r\n").unwrap();
+    stream
+}
+
+/// The status that another client gets.
+fn answered(place: SocketAddr) -> String {
+    let mut another = connect(place);
+    let _ = another.write_all(b"GET / HTTP/1.1\r\nConnection: close\r\n\r\n");
+    let mut answer = vec![];
+    let _ = another.read_to_end(&mut answer);
+    status(&answer)
+}
+
 #[test]
-fn more_clients_than_there_may_be_are_told_so_and_those_that_read_nothing_go() {
-    let place = server();
-    // More is asked for than the buffers between us hold, and none of it read.
-    let greedy: Vec<TcpStream> = (0..MOST_CONNECTIONS)
-        .map(|_| {
-            let mut stream = connect(place);
-            stream.write_all(b"GET /clips/0.ptn HTTP/1.1\r\n\r\n").unwrap();
-            stream
-        })
-        .collect();
-    // A busy machine takes its time to begin with all of them: until then another client is served.
-    let answered = || {
-        let mut another = connect(place);
-        let _ = another.write_all(b"GET / HTTP/1.1\r\nConnection: close\r\n\r\n");
-        let mut answer = vec![];
-        let _ = another.read_to_end(&mut answer);
-        status(&answer)
-    };
+fn more_clients_than_there_may_be_are_told_so() {
+    let place = server_with(Times { request: MOST, answer: MOST });
+    let mut all: Vec<TcpStream> = (0..MOST_CONNECTIONS).map(|_| greedy(place)).collect();
     let begun = Instant::now();
-    while answered() != "503" {
-        assert!(begun.elapsed() < PATIENCE, "nobody is refused");
+    // A busy machine may have taken a place from one whose request it had not read yet: another takes it.
+    while answered(place) != "503" {
+        assert!(begun.elapsed() < MOST, "nobody is refused");
+        all.push(greedy(place));
     }
-    thread::sleep(2 * PATIENCE);
+    drop(all);
+}
+
+#[test]
+fn clients_that_read_nothing_go() {
+    let short = Duration::from_millis(500);
+    let place = server_with(Times { request: short, answer: short });
+    // On a busy machine it takes longer until the server has written what the buffers hold.
+    let left = (0..8).any(|turn| {
+        let mut stream = greedy(place);
+        thread::sleep(2 * short * (1 << turn));
+        let mut answer = vec![];
+        let _ = stream.read_to_end(&mut answer);
+        answer.len() < LARGE
+    });
+    assert!(left, "the whole answer came after two minutes in which none of it was read");
     serves(place);
-    drop(greedy);
 }
 
 #[test]
@@ -400,19 +428,19 @@ fn clients_that_drip_bytes_after_their_answer_keep_nobody_waiting() {
 
 #[test]
 fn hundreds_of_clients_that_drip_their_requests_leave_places_to_others() {
-    let place = server();
+    // Without a place that is taken from one of them, nobody else would be served.
+    let place = server_with(Times { request: MOST, answer: MOST });
     let mut dripping: Vec<(TcpStream, Vec<u8>)> = Vec::new();
     let (begun, mut served, mut statuses) = (Instant::now(), 0, std::collections::BTreeSet::new());
     let (done, stop) = std::sync::mpsc::channel();
     let other = thread::spawn(move || {
         thread::sleep(Duration::from_secs(1));
         for _ in 0..5 {
-            let begun = Instant::now();
             serves(place);
-            done.send(begun.elapsed()).unwrap();
+            done.send(()).unwrap();
         }
     });
-    while served < 5 && begun.elapsed() < 6 * PATIENCE {
+    while served < 5 && begun.elapsed() < MOST {
         // Those that were refused come again.
         while dripping.len() < 300 {
             let stream = connect(place);
@@ -435,10 +463,7 @@ fn hundreds_of_clients_that_drip_their_requests_leave_places_to_others() {
             statuses.insert(status(answer));
             false
         });
-        for time in stop.try_iter() {
-            assert!(time < PATIENCE, "{time:?}");
-            served += 1;
-        }
+        served += stop.try_iter().count();
         thread::sleep(Duration::from_millis(50));
     }
     assert_eq!(served, 5);
@@ -451,17 +476,19 @@ fn hundreds_of_clients_that_drip_their_requests_leave_places_to_others() {
 
 #[test]
 fn clients_that_take_an_answer_byte_by_byte_keep_nobody_waiting() {
-    let place = server();
+    let answer = Duration::from_secs(1);
+    let place = server_with(Times { request: MOST, answer });
     let mut slow: Vec<TcpStream> = (0..MOST_CONNECTIONS).map(|_| connect(place)).collect();
     for stream in &mut slow {
-        stream.write_all(b"GET /clips/0.ptn HTTP/1.1\r\n\r\n").unwrap();
+        stream.write_all(b"GET /clips/large.ptn HTTP/1.1\r\n\r\n").unwrap();
     }
     let (begun, mut piece) = (Instant::now(), vec![0; 2048]);
-    while begun.elapsed() < ANSWER_TIME + Duration::from_secs(1 + (4 << 20) / SLOWEST as u64) {
+    // At this pace the whole answer would take an hour.
+    while answered(place) != "200" || begun.elapsed() < answer {
+        assert!(begun.elapsed() < MOST, "they keep their places");
         for stream in &mut slow {
             let _ = stream.read(&mut piece);
         }
         thread::sleep(Duration::from_millis(500));
     }
-    serves(place);
 }
