@@ -273,7 +273,7 @@ pub(crate) struct Level {
 
 impl Level {
     fn height_of(&self, place: Vector) -> i32 {
-        (0..3).map(|axis| (place[axis] * self.upright[axis]) >> 2).sum::<i32>() >> 12
+        place.iter().zip(self.upright).map(|(part, upright)| (part * upright) >> 2).sum::<i32>() >> 12
     }
 }
 

@@ -49,18 +49,31 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
     /// Draws the pose that was placed last on a clear surface: the ground, the bones from far to near, and the head.
     #[inline(never)]
     pub fn draw_on<S: Surface>(&mut self, surface: &mut S, style: DrawStyle) {
-        if style.ground && self.ground().dotted {
-            let mut dots = Dots::on(surface);
-            self.each_dot(|dot| dots.put([pixel(dot.place[0]), pixel(dot.place[1])], S::Ink::of(BodyPart::Ground, dot.shade)));
-            dots.mark();
-        } else if style.ground {
-            self.each_ground_line(|line| stroke(&line, surface, style.smooth));
+        if style.ground {
+            self.draw_ground(surface, style.smooth, None);
         }
         self.sort();
         self.each_bone(|line| stroke(&line, surface, style.smooth));
         if let Some(head) = self.head() {
             let ink = S::Ink::of(BodyPart::Middle, head.shade);
             disc(surface, head.centre.map(pixel), pixel(head.radius.saturating_add(8)).max(1), ink, S::Ink::DARK);
+        }
+    }
+
+    /// Draws the ground, in its own brightness or in one colour.
+    pub(crate) fn draw_ground<S: Surface>(&self, surface: &mut S, smooth: bool, ink: Option<S::Ink>) {
+        if self.ground().dotted {
+            let mut dots = Dots::on(surface);
+            self.each_dot(|dot| {
+                let ink = ink.unwrap_or(S::Ink::of(BodyPart::Ground, dot.shade));
+                dots.put([pixel(dot.place[0]), pixel(dot.place[1])], ink);
+            });
+            dots.mark();
+        } else {
+            self.each_ground_line(|ground| match ink {
+                None => stroke(&ground, surface, smooth),
+                Some(ink) => line(surface, ground.from.map(pixel), ground.to.map(pixel), ink),
+            });
         }
     }
 

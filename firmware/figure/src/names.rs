@@ -2,7 +2,7 @@
 
 /// Whether `name` contains `word`, in any case.
 pub(crate) fn contains(name: &[u8], word: &[u8]) -> bool {
-    name.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word))
+    name.windows(word.len().max(1)).any(|part| part.eq_ignore_ascii_case(word))
 }
 
 /// For two names that differ in "left" and "right" or "l" and "r" alone, in any case: whether `a` is the left one.

@@ -74,6 +74,11 @@ impl Layout for Lcd {
     }
 
     #[inline(always)]
+    fn span(cells: &mut [Pair], y: usize, columns: [usize; 2], ink: Indexed) {
+        Rows::span(cells, y, columns, ink);
+    }
+
+    #[inline(always)]
     fn blend(cells: &mut [Pair], cursor: Half<240>, ink: Indexed, cover: u32) {
         Rows::blend(cells, cursor, ink, cover);
     }

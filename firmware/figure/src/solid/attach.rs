@@ -5,6 +5,7 @@ use super::joints::{Joints, Limb};
 use super::look::{Anchor, Attachment, MOST_CIRCLES, Radius};
 use super::parts::{Body, Part, Place, between};
 use crate::camera::{MAGNIFICATION_BITS, magnification};
+use crate::renderer::FigureRenderer;
 use crate::rotation::{RotationBackend, Vector};
 use heapless::Vec;
 use pantin_math::vector::{cross, direction, sub};
@@ -24,14 +25,22 @@ const OVER: i32 = 4;
 
 impl Frame {
     /// A vector of thousandths of the height, times `length`.
-    fn along(&self, [left, up, ahead, _]: [i32; 4], axis: usize) -> i32 {
-        self.axes[0][axis] * left + self.axes[1][axis] * up + self.axes[2][axis] * ahead
+    fn along(&self, [left, up, ahead, _]: [i32; 4]) -> Vector {
+        let [[a, b, c], [d, e, f], [g, h, i]] = self.axes;
+        [a * left + d * up + g * ahead, b * left + e * up + h * ahead, c * left + f * up + i * ahead]
     }
 
     fn circle(&self, place: [i32; 4]) -> Circle {
-        let at = |axis: usize| self.origin[axis] + self.along(place, axis) / self.thousandths;
-        [at(0), at(1), place[3] * self.length / self.thousandths]
+        let ([x, y, _], thousandths) = (self.along(place), self.thousandths.max(1));
+        [self.origin[0] + x / thousandths, self.origin[1] + y / thousandths, place[3] * self.length / thousandths]
     }
+}
+
+/// The direction from a joint to another one, 2^15 long; nothing if they are in one place.
+#[inline(never)]
+pub(super) fn way<const N: usize, R: RotationBackend>(figure: &FigureRenderer<N, R>, from: u8, to: u8) -> Vector {
+    let place = |joint: u8| figure.joints().position(joint.into());
+    direction(sub(place(to), place(from))).map_or([0; 3], |(v, _)| v)
 }
 
 impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
@@ -48,8 +57,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
                 thousandths: thousandths.max(1).into(),
             };
         }
-        let place = |joint: u8| self.figure.joints().position(joint.into());
-        let way = |from: u8, to: u8| direction(sub(place(to), place(from))).map_or([0; 3], |(v, _)| v);
+        let way = |from: u8, to: u8| way(self.figure, from, to);
         let pair = |limbs: &[Limb; 2]| limbs.map(|limb| limb[0]);
         let [one, other] = pair(if anchor == Anchor::Chest { &joints.arms } else { &joints.legs });
         let leftward = way(other, one);
@@ -82,7 +90,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
             return thighs[0].min(thighs[1]) - thousandth(OVER);
         }
         let frame = self.frame(joints, attachment.anchor, 0);
-        let away: i32 = attachment.circles().map(|place| frame.along(place, 2) / frame.length).sum();
+        let away: i32 = attachment.circles().map(|place| frame.along(place)[2] / frame.length.max(1)).sum();
         let over = if attachment.anchor == Anchor::Head { super::parts::HEAD_OVER } else { 0 };
         frame.origin[2] + thousandth(away / attachment.circles().len().max(1) as i32 - over - OVER)
     }

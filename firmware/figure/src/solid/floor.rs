@@ -3,11 +3,9 @@
 use super::joints::{Joints, NONE};
 use super::look::Material;
 use super::paint::{Cut, Fill, Outline, Painter};
-use super::parts::{Body, Place};
+use super::parts::{Body, Place, between};
 use crate::camera::{Level, MAGNIFICATION_BITS, magnification};
 use crate::ink::Ink;
-use crate::lines::pixel;
-use crate::raster::{Dots, line};
 use crate::rotation::RotationBackend;
 use crate::surface::Surface;
 
@@ -30,15 +28,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
             let stage = self.disc(self.figure.below(hips, &ground), 620);
             painter.hull(&[stage], true, &bare, &Fill::Plain(ink(Material::Stage)));
         }
-        if self.figure.ground().dotted {
-            let mut dots = Dots::on(painter.surface);
-            self.figure.each_dot(|dot| dots.put([pixel(dot.place[0]), pixel(dot.place[1])], floor));
-            dots.mark();
-        } else {
-            self.figure.each_ground_line(|ground| {
-                line(painter.surface, ground.from.map(pixel), ground.to.map(pixel), floor);
-            });
-        }
+        self.figure.draw_ground(painter.surface, false, Some(floor));
         if let Some(joints) = joints {
             let fill = if S::Ink::TONES { Fill::Plain(shadow) } else { Fill::Dotted(shadow, edge) };
             self.draw_shadow(painter, joints, &ground, &bare, &fill);
@@ -55,18 +45,17 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         fill: &Fill<S::Ink>,
     ) {
         let below = |joint: u8| self.figure.below(joint, ground);
-        let middle = |a: Place, b: Place| core::array::from_fn(|axis| (a[axis] + b[axis]) / 2);
-        let hips = below(joints.hips);
-        let chest = middle(below(joints.arms[0][0]), below(joints.arms[1][0]));
-        let feet = joints.legs.map(|[.., ankle]| (self.joint(ankle), below(ankle)));
-        let height = feet.iter().map(|(ankle, floor)| floor[1] - ankle[1]).min().unwrap_or(0).max(0);
+        let middle = |a: u8, b: u8| between(below(a), below(b), 128);
+        let [ankles, shoulders] = [joints.legs.map(|[.., ankle]| ankle), joints.arms.map(|[shoulder, ..]| shoulder)];
+        let above = ankles.iter().map(|ankle| below(*ankle)[1] - self.joint(*ankle)[1]);
+        let height = above.min().unwrap_or(0).max(0);
         // From 1 on the floor to 0.45.
-        let part = |thousandths: i32| thousandths * (256 - height * 154 / self.sizes.pixels).clamp(115, 256) / 256;
-        painter.hull(&[self.disc(hips, part(105)), self.disc(chest, part(84))], true, bare, fill);
-        for (side, (_, floor)) in feet.into_iter().enumerate() {
-            let toes = joints.toes[side];
-            let foot = if toes == NONE { floor } else { middle(floor, below(toes)) };
-            painter.hull(&[self.disc(hips, part(105)), self.disc(foot, part(70))], true, bare, fill);
+        let scale = (256 - height * 154 / self.sizes.pixels.max(1)).clamp(115, 256);
+        let hips = self.disc(below(joints.hips), 105 * scale / 256);
+        let foot = |ankle: u8, toes: u8| (ankle, if toes == NONE { ankle } else { toes }, 70);
+        let feet = [foot(ankles[0], joints.toes[0]), foot(ankles[1], joints.toes[1])];
+        for (from, to, thousandths) in [(shoulders[0], shoulders[1], 84), feet[0], feet[1]] {
+            painter.hull(&[hips, self.disc(middle(from, to), thousandths * scale / 256)], true, bare, fill);
         }
     }
 }

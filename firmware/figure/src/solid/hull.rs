@@ -2,6 +2,7 @@
 //! tangents of every two circles.
 
 use super::MARGIN;
+use pantin_math::rotation::inverse_length;
 
 /// A circle in sixteenths of a pixel: centre and radius.
 pub(super) type Circle = [i32; 3];
@@ -56,10 +57,10 @@ impl Rows {
         self.spans.get((row - self.base) as usize).copied().unwrap_or(EMPTY)
     }
 
-    /// Computes the rows of the hull of `circles` in the window from row `top` on. With `flat`, heights are multiplied by 4: circles become
-    /// ellipses, as discs on the floor are seen.
+    /// Computes the rows of the hull of `circles` in the window from row `top` on; `around` rows above and below it are empty. With `flat`, heights
+    /// are multiplied by 4: circles become ellipses, as discs on the floor are seen.
     #[inline(never)]
-    pub(super) fn compute(&mut self, circles: &[Circle], top: i32, flat: bool) {
+    pub(super) fn compute(&mut self, circles: &[Circle], top: i32, flat: bool, around: i32) {
         let (pitch, shift) = if flat { (64, 6) } else { (16, 4) };
         self.base = top - MARGIN;
         let (mut low, mut high) = (i32::MAX, i32::MIN);
@@ -74,9 +75,9 @@ impl Rows {
             return;
         }
         let (from, to) = ((self.first - self.base) as usize, (self.last - self.base) as usize);
-        // With what outlines look at.
-        let around = from.saturating_sub(MARGIN as usize)..(to + 1 + MARGIN as usize).min(ROWS);
-        self.spans.get_mut(around).into_iter().flatten().for_each(|span| *span = EMPTY);
+        let around = around as usize;
+        let cleared = from.saturating_sub(around)..(to + 1 + around).min(ROWS);
+        self.spans.get_mut(cleared).into_iter().flatten().for_each(|span| *span = EMPTY);
         for (index, circle) in circles.iter().enumerate() {
             self.circle(circle, pitch, shift);
             for other in circles.get(index + 1..).unwrap_or(&[]) {
@@ -104,15 +105,22 @@ impl Rows {
         }
     }
 
-    /// Widens the spans, in sixteenths, from row `from` to row `to` by places that begin at `x` and move by `slope`, both with 12 more bits.
+    /// Widens the spans, in sixteenths, to the left or to the right, from row `from` to row `to`, by places that begin at `x` and move by `slope`,
+    /// both with 12 more bits.
     #[inline(always)]
-    fn edge(&mut self, from: i32, to: i32, mut x: i32, slope: i32) {
+    fn edge(&mut self, from: i32, to: i32, left: bool, mut x: i32, slope: i32) {
         let used = (from - self.base) as usize..((to - self.base) as usize).wrapping_add(1);
-        for [low, high] in self.spans.get_mut(used).into_iter().flatten() {
-            let place = (x >> 12) as i16;
-            *low = (*low).min(place);
-            *high = (*high).max(place);
-            x = x.wrapping_add(slope);
+        let spans = self.spans.get_mut(used).unwrap_or_default();
+        if left {
+            for [low, _] in spans {
+                *low = (*low).min((x >> 12) as i16);
+                x = x.wrapping_add(slope);
+            }
+        } else {
+            for [_, high] in spans {
+                *high = (*high).max((x >> 12) as i16);
+                x = x.wrapping_add(slope);
+            }
         }
     }
 
@@ -150,13 +158,14 @@ impl Rows {
         if square <= (k * k) as u32 {
             return;
         }
-        let along = root(square - (k * k) as u32) as i32;
-        // Directions have 12 bits: both parts of the division lose what 18 bits have no room for.
-        let cut = 14u32.saturating_sub(square.leading_zeros());
-        let divisor = (square >> cut) as i32;
+        // Along the line through both middles: a vector 2^15 long, and what the tangents lean towards it, as a sine and a cosine.
+        let (inverse, up) = inverse_root(square);
+        let [ux, uy, sine] = [dx, dy, k].map(|part| (part * inverse) >> (15 - up));
+        let cosine = root_of_fraction(((1 << 30) - sine * sine) as u32);
         for sign in [1, -1] {
-            let normal = [k * dx - sign * along * dy, k * dy + sign * along * dx].map(|part| ((part >> cut) << 12) / divisor);
-            let touch = |x: i32, y: i32, r: i32| [x + ((r * normal[0]) >> 12), y + ((r * normal[1]) >> 12)];
+            let cosine = sign * cosine;
+            let normal = [(sine * ux - cosine * uy) >> 15, (sine * uy + cosine * ux) >> 15];
+            let touch = |x: i32, y: i32, r: i32| [x + ((r * normal[0]) >> 15), y + ((r * normal[1]) >> 15)];
             let (mut from, mut to) = (touch(x0, y0, r0), touch(x1, y1, r1));
             if from[1] > to[1] {
                 (from, to) = (to, from);
@@ -166,11 +175,28 @@ impl Rows {
             if first > last || to[1] <= from[1] {
                 continue;
             }
-            let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]);
+            let slope = ((to[0] - from[0]) << 12) / (to[1] - from[1]).max(1);
             let start = (from[0] << 12).wrapping_add(slope.wrapping_mul(first * pitch + pitch / 2 - from[1]));
-            self.edge(first, last, start, slope.wrapping_mul(pitch));
+            self.edge(first, last, normal[0] < 0, start, slope.wrapping_mul(pitch));
         }
     }
+}
+
+/// 2^15 over the root of a square from 1 on, without a division: a number of 15 bits, and by how many bits more it is to be shifted up.
+#[inline(always)]
+fn inverse_root(square: u32) -> (i32, u32) {
+    let up = square.leading_zeros() & !1;
+    (inverse_length(square << up).unwrap_or(0) >> 7, up / 2)
+}
+
+/// The root of a number of at most 2^30, within 6: of its 15 bits, products have 14.
+#[inline(always)]
+fn root_of_fraction(square: u32) -> i32 {
+    if square == 0 {
+        return 0;
+    }
+    let (inverse, up) = inverse_root(square);
+    (((square << (2 * up)) >> 17) as i32 * inverse) >> (13 + up)
 }
 
 /// Circles farther apart, in sixteenths of a pixel, have no tangents: squares stay below 2^31.
@@ -204,7 +230,7 @@ pub(super) fn root(square: u32) -> u32 {
     }
     let mut root = 1 << (33 - square.leading_zeros()).div_ceil(2);
     loop {
-        let next = (root + square / root) >> 1;
+        let next = (root + square / root.max(1)) >> 1;
         if next >= root {
             return root;
         }
@@ -222,6 +248,15 @@ mod tests {
             let found = u64::from(root(square));
             assert!(found * found <= u64::from(square) && (found + 1) * (found + 1) > u64::from(square), "{square}: {found}");
         }
+    }
+
+    #[test]
+    fn roots_by_table_are_within_six() {
+        for square in (1..70_000).chain((0..1 << 20).map(|index| (1 << 30) - index * 1009)) {
+            let exact = f64::from(square).sqrt();
+            assert!((f64::from(root_of_fraction(square)) - exact).abs() <= 6.0, "{square}");
+        }
+        assert_eq!(root_of_fraction(0), 0);
     }
 
     #[test]
@@ -250,7 +285,7 @@ mod tests {
             let mut circle = || [random.i32(0..2000), random.i32(0..900), random.i32(9..150)];
             let circles = [circle(), circle()];
             let mut rows = Rows::new();
-            rows.compute(&circles, 0, false);
+            rows.compute(&circles, 0, false, 0);
             for row in 0..56 {
                 let [first, last] = rows.span(row);
                 for column in 0..125i16 {
@@ -268,8 +303,8 @@ mod tests {
     fn windows_of_a_picture_continue_each_other() {
         let circles = [[300, 100, 90], [900, 3000, 200], [200, 2500, 60]];
         let (mut one, mut other) = (Rows::new(), Rows::new());
-        one.compute(&circles, 0, false);
-        other.compute(&circles, WINDOW as i32, false);
+        one.compute(&circles, 0, false, 0);
+        other.compute(&circles, WINDOW as i32, false, 0);
         for row in WINDOW as i32 - MARGIN..WINDOW as i32 + MARGIN {
             assert_eq!(one.span(row), other.span(row), "{row}");
             assert_ne!(one.span(row), EMPTY, "{row}");

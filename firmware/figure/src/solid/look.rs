@@ -10,12 +10,12 @@
 //! | 1 | the figure's height divided by the width of outlines |
 //! | 14, 14 | radii in thousandths of the height, by [`Radius`]: of figures of 80 pixels and more, and of smaller ones |
 //! | 4 each | tints by [`Material`]: red, green, blue, and grey in the higher half of a byte above the [`Pattern`] |
+//! | 3 | how far attachments reach from head, chest, and hips or thighs in any direction, in 4 thousandths of the height |
 //! | 1 | number of attachments |
 //! | for each | one byte with the [`Anchor`] in the higher half and the number of circles less one below it, a tint, and 4 bytes each circle |
 //!
 //! A circle is left, up and ahead of its anchor, as signed bytes, and a radius, all in [`STEP`] thousandths of the height.
 
-use super::hull::root;
 use super::tint::{Pattern, Tint};
 
 /// Circles that parts are made of.
@@ -83,6 +83,10 @@ pub const MOST_BYTES: usize = 200;
 pub const VERSION: u8 = 1;
 /// Thousandths of the height that places and radii of attachments are multiples of.
 pub const STEP: i32 = 2;
+/// Anchors for which a character has how far attachments reach: [`Anchor::Hips`] and [`Anchor::Thighs`] share the last one.
+pub const REACHES: usize = 3;
+/// Thousandths of the height that these are multiples of.
+pub const REACH_STEP: i32 = 4;
 /// Most circles of an attachment.
 pub const MOST_CIRCLES: usize = 4;
 /// Most attachments.
@@ -90,7 +94,8 @@ pub const MOST_ATTACHMENTS: usize = 12;
 
 const RADII_AT: usize = 2;
 const TINTS_AT: usize = RADII_AT + 2 * RADII;
-const COUNT_AT: usize = TINTS_AT + 4 * MATERIALS;
+const REACH_AT: usize = TINTS_AT + 4 * MATERIALS;
+const COUNT_AT: usize = REACH_AT + REACHES;
 /// Bytes before the attachments.
 const FIXED: usize = COUNT_AT + 1;
 
@@ -130,12 +135,6 @@ impl<'a> Attachment<'a> {
         self.circles
             .iter()
             .map(move |[left, up, ahead, radius]| [signed(*left), signed(*up), signed(*ahead), i32::from(*radius) * STEP])
-    }
-
-    /// How far it reaches from its anchor, in thousandths of the figure's height.
-    fn reach(&self) -> i32 {
-        let far = |[left, up, ahead, radius]: [i32; 4]| root((left * left + up * up + ahead * ahead) as u32) as i32 + 1 + radius;
-        self.circles().map(far).max().unwrap_or(0)
     }
 }
 
@@ -218,12 +217,13 @@ impl Look {
             }
             at += 1;
         }
-        while at < COUNT_AT {
+        while at < REACH_AT {
             if bytes[at + 3] & 15 > Pattern::Checkered as u8 {
                 return Err(LookError::Value(at + 3));
             }
             at += 4;
         }
+        at = COUNT_AT;
         let mut left = bytes[at];
         if left as usize > MOST_ATTACHMENTS {
             return Err(LookError::Value(at));
@@ -302,7 +302,7 @@ impl Look {
     /// What is attached.
     pub fn attachments(&self) -> impl Iterator<Item = Attachment<'static>> {
         let (look, mut at) = (*self, FIXED);
-        (0..self.byte(COUNT_AT)).map_while(move |_| {
+        (0..self.count()).map_while(move |_| {
             let head = look.bytes.get(at)?;
             let anchor = Anchor::ALL.get(usize::from(head >> 4)).copied()?;
             let (tint, first) = (look.tint_at(at + 1), at + 5);
@@ -311,13 +311,15 @@ impl Look {
         })
     }
 
-    /// How far attachments reach from an anchor, in thousandths of the figure's height; 0 if there are none.
-    pub(super) fn reach(&self, anchors: &[Anchor]) -> i32 {
-        self.attachments()
-            .filter(|attachment| anchors.contains(&attachment.anchor))
-            .map(|attachment| attachment.reach())
-            .max()
-            .unwrap_or(0)
+    /// How many attachments there are.
+    #[inline(always)]
+    pub(super) fn count(&self) -> u8 {
+        self.byte(COUNT_AT)
+    }
+
+    /// How far attachments reach from head, chest and hips in any direction, in thousandths of the figure's height; 0 if there are none.
+    pub(super) fn reaches(&self) -> [i32; REACHES] {
+        core::array::from_fn(|anchor| i32::from(self.byte(REACH_AT + anchor)) * REACH_STEP)
     }
 }
 

@@ -16,7 +16,10 @@
 //! each left, up, ahead and radius in thousandths of the height. Their convex hull is drawn. Places are from -254 to 254, radii from 2 to 250; both
 //! are stored in steps of 2.
 
-use super::look::{Anchor, Look, MATERIALS, MOST_ATTACHMENTS, MOST_BYTES, MOST_CIRCLES, RADII, STEP, VERSION};
+use super::hull::root;
+use super::look::{
+    Anchor, Look, MATERIALS, MOST_ATTACHMENTS, MOST_BYTES, MOST_CIRCLES, RADII, REACH_STEP, REACHES, STEP, VERSION,
+};
 use super::tint::{Pattern, Tint};
 use heapless::Vec;
 
@@ -121,6 +124,8 @@ struct Draft {
     radii: [[u8; RADII]; 2],
     outline: u8,
     tints: [Tint; MATERIALS],
+    /// As in the compiled character.
+    reaches: [u8; REACHES],
     count: u8,
     /// As in the compiled character.
     attachments: Vec<u8, MOST_BYTES>,
@@ -135,6 +140,7 @@ pub fn compile(text: &str) -> Result<Vec<u8, MOST_BYTES>, TextError> {
         radii: Look::DEFAULT_RADII,
         outline: Look::DEFAULT.outline(),
         tints: Look::DEFAULT_TINTS,
+        reaches: [0; REACHES],
         count: 0,
         attachments: Vec::new(),
     };
@@ -199,6 +205,8 @@ impl Draft {
             }
             circle[3] = (number(Some(words.next().ok_or(TextErrorKind::Circles)?), STEP, 125 * STEP)? / STEP) as u8;
             circles.extend_from_slice(&circle).map_err(|_| TextErrorKind::Circles)?;
+            let reach = &mut self.reaches[anchor.min(REACHES - 1)];
+            *reach = (*reach).max(reach_of(&circle));
         }
         let count = circles.len() / 4;
         if count == 0 {
@@ -223,10 +231,19 @@ impl Draft {
         add(&[VERSION, self.outline])?;
         self.radii.iter().try_for_each(|radii| add(radii))?;
         self.tints.iter().try_for_each(|tint| add(&packed(tint)))?;
+        add(&self.reaches)?;
         add(&[self.count])?;
         add(&self.attachments)?;
         Some(bytes)
     }
+}
+
+/// How far a circle reaches from its anchor, rounded up.
+fn reach_of(&[left, up, ahead, radius]: &[u8; 4]) -> u8 {
+    let square: i32 = [left, up, ahead].map(|place| (i32::from(place as i8) * STEP).pow(2)).iter().sum();
+    let reach = root(square as u32) as i32 + 1 + i32::from(radius) * STEP;
+    // At most 691.
+    ((reach + REACH_STEP - 1) / REACH_STEP) as u8
 }
 
 fn packed(Tint { rgb: [red, green, blue], grey, pattern }: &Tint) -> [u8; 4] {
@@ -302,8 +319,8 @@ mod tests {
         assert_eq!(found[1].0, Anchor::Thighs);
         assert_eq!(found[1].2, [[10, 0, 0, 20], [-10, 0, 0, 20], [2, 4, 4, 6], [2, 2, 2, 2]]);
         assert_eq!(look.tint(Material::Hair).grey, 4);
-        assert_eq!(look.reach(&[Anchor::Chest, Anchor::Hips]), 0);
-        assert!((610..=614).contains(&look.reach(&[Anchor::Head])), "{}", look.reach(&[Anchor::Head]));
+        // sqrt(2 * 254^2) + 250; 10 + 20.
+        assert_eq!(look.reaches(), [612, 0, 32]);
     }
 
     #[test]

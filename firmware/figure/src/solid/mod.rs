@@ -48,11 +48,11 @@ use embedded_graphics::draw_target::DrawTarget;
 use head::Head;
 use heapless::Vec;
 use joints::Joints;
-use look::{Anchor, MOST_ATTACHMENTS};
+use look::MOST_ATTACHMENTS;
 pub use look::{Look, LookError, MATERIALS, Material, RADII, Radius};
 use paint::{Cut, Fill, Outline, Painter};
 use pantin::{Player, Pose, WrongForm};
-use pantin_math::vector::{cross, direction, dot, sub};
+use pantin_math::vector::{cross, direction, dot};
 use parts::{Body, HEAD, HUMAN_PARTS};
 use sizes::Sizes;
 pub use tint::{Light, Pattern, Tint};
@@ -166,8 +166,7 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         self.order.clear();
         let mut fits = true;
         if let Kind::Person(_) = self.kind {
-            let parts = HUMAN_PARTS + self.look.attachments().count();
-            (0..parts as u8).for_each(|part| fits &= self.order.push(part).is_ok());
+            (0..HUMAN_PARTS as u8 + self.look.count()).for_each(|part| fits &= self.order.push(part).is_ok());
         } else {
             for (index, bone) in self.figure.skeleton().bones.iter().enumerate() {
                 if bone.parent.is_some() && matches!(bone.part, Role::Bone | Role::Crown) {
@@ -192,18 +191,12 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             player.seek(frame);
             let values = player.pose().values;
             self.figure.place_in_world(values);
-            let place = |joint: u8| self.figure.joints().position(joint.into());
+            let way = |from: u8, to: u8| attach::way(&self.figure, from, to);
             let turned = self.figure.joints().turned(self.figure.skeleton(), values, &Rotation::IDENTITY, joints.head);
-            let shoulders = direction(sub(place(joints.arms[0][0]), place(joints.arms[1][0])));
-            let spine = direction(sub(place(joints.neck), place(joints.hips)));
-            let neck = direction(sub(place(joints.head), place(joints.neck)));
-            if let (Some((left, _)), Some((spine, _))) = (shoulders, spine) {
-                let facing = cross(left, spine);
-                let own = |v: Vector| turned.0.map(|column| dot(column, v));
-                // Sums of at most 2 SAMPLES directions.
-                let add = |sum: &mut Vector, v: Vector| (0..3).for_each(|axis| sum[axis] += v[axis] >> 2);
-                add(&mut ahead, own(facing));
-                add(&mut up, own(neck.map_or(spine, |(neck, _)| neck)));
+            let facing = cross(way(joints.arms[1][0], joints.arms[0][0]), way(joints.hips, joints.neck));
+            // Sums of at most 2 SAMPLES directions, in the head's own axes.
+            for (sum, v) in [(&mut ahead, facing), (&mut up, way(joints.neck, joints.head))] {
+                sum.iter_mut().zip(turned.0).for_each(|(sum, column)| *sum += dot(column, v) >> 2);
             }
             frame += stride;
         }
@@ -236,9 +229,9 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         let eighth = sizes::height(&self.figure.skeleton().bones, &joints) >> 3;
         let reach = |thousandths: i32| eighth * thousandths / 125;
         let radius = |of: Radius| i32::from(self.look.radius(of, false));
-        let head = HEAD_MIDDLE + radius(Radius::Skull).max(self.look.reach(&[Anchor::Head]));
+        let [of_head, chest, hips] = self.look.reaches();
+        let head = HEAD_MIDDLE + radius(Radius::Skull).max(of_head);
         let [left, right] = joints.arms.map(|[.., wrist]| (wrist, reach(HAND_REACH + radius(Radius::Hand))));
-        let [chest, hips] = [&[Anchor::Chest][..], &[Anchor::Hips, Anchor::Thighs]].map(|anchors| self.look.reach(anchors));
         self.roomy.then_some([(joints.head, reach(head)), left, right, (joints.neck, reach(chest)), (joints.hips, reach(hips))])
     }
 
@@ -360,7 +353,7 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
     /// Puts the farthest part first. The first picture is sorted exactly, later ones from the order of the one before.
     #[inline(never)]
     fn sort(&mut self) {
-        let mut keys = [0i16; MOST_PARTS];
+        let mut keys = [0; MOST_PARTS];
         let body = Body { figure: &self.figure, kind: &self.kind, sizes: &self.sizes, look: &self.look, head: &self.head };
         let person = match &self.kind {
             Kind::Person(joints) => {
@@ -370,7 +363,7 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             _ => false,
         };
         let key = |part: u8| -> i32 {
-            if person { keys.get(usize::from(part)).map_or(0, |key| i32::from(*key)) } else { body.figure.bone_depth(part) }
+            if person { keys.get(usize::from(part)).copied().unwrap_or(0) } else { body.figure.bone_depth(part) }
         };
         let passing = if self.sorted { self.sizes.depth * PASSING / 1000 } else { 0 };
         for place in 1..self.order.len() {
@@ -488,18 +481,16 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 
     /// 0.94 at the target's distance, more before it and less behind it, from 0.62 to 1; 0.9 of that on the right.
     fn light(&self, depth: i32, right: bool) -> Light {
-        let light = (241 - depth * 230 / self.sizes.depth).clamp(159, 256);
+        let light = (241 - depth * 230 / self.sizes.depth.max(1)).clamp(159, 256);
         (if right { light * 9 / 10 } else { light }) as Light
     }
 }
 
 /// The cut at a circle of a part, away from the others' middle.
+#[inline(never)]
 fn open_at(circles: &[hull::Circle], index: usize) -> Cut {
     let Some(own) = circles.get(index) else { return Cut::None };
     let others = (circles.len() as i32 - 1).max(1);
-    let inwards = [0, 1].map(|axis| {
-        let sum: i32 = circles.iter().map(|circle| circle[axis]).sum();
-        (sum - own[axis]) / others - own[axis]
-    });
-    Cut::at(own, inwards)
+    let [x, y] = circles.iter().fold([0; 2], |[x, y], circle| [x + circle[0], y + circle[1]]);
+    Cut::at(own, [(x - own[0]) / others - own[0], (y - own[1]) / others - own[1]])
 }

@@ -2,7 +2,7 @@
 
 use super::hull::{Circle, Rows, WINDOW};
 use crate::ink::Ink;
-use crate::surface::{Cursor, Surface};
+use crate::surface::Surface;
 
 /// What a hull is filled with.
 #[derive(Clone, Copy)]
@@ -48,8 +48,8 @@ impl Cut {
             return Cut::Rows { above: dy > 0, row: row >> 4 };
         }
         // dx (x' - x) + dy (y' - y) = -beyond length.
-        let slope = -(dy << 12) / dx;
-        let aside = -(beyond * length) / dx;
+        let over = |part: i32| part.checked_div(dx).unwrap_or(0);
+        let (slope, aside) = (over(-(dy << 12)), over(-(beyond * length)));
         // Pixels' middles are at 8.
         let at = ((x + aside - 8) << 8) + ((slope * (8 - y)) >> 4);
         Cut::Columns { from_left: dx > 0, at, slope }
@@ -141,7 +141,7 @@ impl<'a, S: Surface> Painter<'a, S> {
         let [first, last] = rows_of(circles, flat, outline.width, self.surface.size()[1]);
         let mut top = first;
         while top <= last {
-            self.rows.compute(circles, top, flat);
+            self.rows.compute(circles, top, flat, 2 * outline.width);
             paint(self.surface, &self.rows, top, outline, fill);
             top += WINDOW as i32;
         }
@@ -157,9 +157,9 @@ impl<'a, S: Surface> Painter<'a, S> {
         let known = (self.rows.first <= known[0] + 1 && self.rows.last >= known[1] - 1) || first > last;
         while top <= last {
             if !known {
-                self.rows.compute(hull, top, false);
+                self.rows.compute(hull, top, false, 0);
             }
-            own.compute(&[circle], top, false);
+            own.compute(&[circle], top, false, 0);
             own.clip(&self.rows);
             paint(self.surface, &own, top, &Outline { ink: S::Ink::DARK, width: 0, cuts: [Cut::None; 2] }, fill);
             top += WINDOW as i32;
@@ -179,6 +179,9 @@ fn rows_of(circles: &[Circle], flat: bool, outline: i32, height: i32) -> [i32; 2
     [((low >> shift) - outline).max(0), ((high >> shift) + outline).min(height - 1)]
 }
 
+/// Spans of at most this many pixels are drawn over what lies below them: two spans beside them would take longer.
+const NARROW: i32 = 8;
+
 /// Draws a hull's rows in the window from row `top` on.
 #[inline(never)]
 fn paint<S: Surface>(surface: &mut S, rows: &Rows, top: i32, outline: &Outline<S::Ink>, fill: &Fill<S::Ink>) {
@@ -191,41 +194,44 @@ fn paint<S: Surface>(surface: &mut S, rows: &Rows, top: i32, outline: &Outline<S
     let most = width - 1;
     let (mut edges, [from, to]) = outline.edges(first);
     let cut = edges.iter().any(|edge| edge.at != i32::MIN);
-    let reaches = outline.reaches();
+    let reaches = if wide > 1 { outline.reaches() } else { [0; WIDEST] };
     let (mut left, mut right) = (most, 0);
     for (window, row) in rows.stretch(first - wide, last + wide).windows(2 * wide as usize + 1).zip(first..) {
-        let own;
-        if wide > 0 {
-            let (mut low, mut high);
-            if let [above, middle, below] = window {
-                own = middle.map(i32::from);
-                low = (own[0] - 1).min(above[0].min(below[0]).into());
-                high = (own[1] + 1).max(above[1].max(below[1]).into());
-            } else {
-                let Some((above, [middle, below @ ..])) = window.split_at_checked(wide as usize) else { continue };
-                own = middle.map(i32::from);
-                (low, high) = (own[0] - wide, own[1] + wide);
-                for ((above, below), reach) in above.iter().rev().zip(below).zip(&reaches) {
-                    low = low.min(i32::from(above[0].min(below[0])) - reach);
-                    high = high.max(i32::from(above[1].max(below[1])) + reach);
-                }
-            }
-            if cut {
-                edges.iter_mut().for_each(|edge| edge.cut(&mut low, &mut high));
-            }
-            (low, high) = (low.max(0), high.min(most));
-            if low <= high && (from..=to).contains(&row) {
-                (left, right) = (left.min(low), right.max(high));
-                surface.span(row, [low, high], outline.ink);
-            }
+        let (own, mut low, mut high);
+        if let [above, middle, below] = window {
+            own = middle.map(i32::from);
+            low = (own[0] - 1).min(above[0].min(below[0]).into());
+            high = (own[1] + 1).max(above[1].max(below[1]).into());
         } else {
-            let [only] = window else { continue };
-            own = only.map(i32::from);
+            let Some((above, [middle, below @ ..])) = window.split_at_checked(wide as usize) else { continue };
+            own = middle.map(i32::from);
+            (low, high) = (own[0] - wide, own[1] + wide);
+            for ((above, below), reach) in above.iter().rev().zip(below).zip(&reaches) {
+                low = low.min(i32::from(above[0].min(below[0])) - reach);
+                high = high.max(i32::from(above[1].max(below[1])) + reach);
+            }
+        }
+        if cut {
+            edges.iter_mut().for_each(|edge| edge.cut(&mut low, &mut high));
+        }
+        (low, high) = (low.max(0), high.min(most));
+        if wide == 0 || !(from..=to).contains(&row) {
+            (low, high) = (most, -1);
         }
         let inner = [own[0].max(0), own[1].min(most)];
+        let narrow = inner[1] - inner[0] < NARROW;
+        if low <= high {
+            (left, right) = (left.min(low), right.max(high));
+            if narrow {
+                span(surface, row, [low, high], outline.ink);
+            } else {
+                span(surface, row, [low, high.min(inner[0] - 1)], outline.ink);
+                span(surface, row, [low.max(inner[1] + 1), high], outline.ink);
+            }
+        }
         if inner[0] <= inner[1] {
             (left, right) = (left.min(inner[0]), right.max(inner[1]));
-            fill_row(surface, rows, row, inner, fill);
+            fill_row(surface, rows, row, inner, fill, narrow);
         }
     }
     if left <= right {
@@ -233,59 +239,42 @@ fn paint<S: Surface>(surface: &mut S, rows: &Rows, top: i32, outline: &Outline<S
     }
 }
 
+/// Fills a row.
 #[inline(always)]
-fn fill_row<S: Surface>(surface: &mut S, rows: &Rows, row: i32, inner: [i32; 2], fill: &Fill<S::Ink>) {
-    match *fill {
-        Fill::Plain(ink) => surface.span(row, inner, ink),
-        Fill::Checkered(ink, other) => {
-            surface.span(row, inner, other);
-            every_other(surface, row, inner, row & 1, ink);
-        }
-        Fill::Dotted(ink, other) => {
-            surface.span(row, inner, other);
-            if row & 1 == 0 {
-                every_other(surface, row, inner, 0, ink);
+fn fill_row<S: Surface>(surface: &mut S, rows: &Rows, row: i32, inner: [i32; 2], fill: &Fill<S::Ink>, narrow: bool) {
+    let inside = |[low, high]: [i32; 2]| [low.max(inner[0]), high.min(inner[1])];
+    let (lit, around, ink) = match *fill {
+        Fill::Plain(ink) => return span(surface, row, inner, ink),
+        Fill::Checkered(ink, other) | Fill::Dotted(ink, other) => {
+            span(surface, row, inner, other);
+            let begin = inner[0] + ((inner[0] ^ row) & 1);
+            if begin <= inner[1] && (row & 1 == 0 || matches!(fill, Fill::Checkered(..))) {
+                surface.alternate(row, [begin, inner[1]], ink);
             }
+            return;
         }
         Fill::Shaded(lit, shaded, [across, down]) => {
             let [low, high] = rows.span(row + down).map(i32::from);
-            let [low, high] = [(low - across).max(inner[0]), (high - across).min(inner[1])];
-            if low > high {
-                return surface.span(row, inner, shaded);
-            }
-            span(surface, row, [inner[0], low - 1], shaded);
-            surface.span(row, [low, high], lit);
-            span(surface, row, [high + 1, inner[1]], shaded);
+            (inside([low - across, high - across]), shaded, lit)
         }
         Fill::Rimmed(rim, ink) => {
             let [[low, high], above, below] = [0, -1, 1].map(|away| rows.span(row + away).map(i32::from));
-            surface.span(row, inner, rim);
-            let low = (low + 1).max(above[0]).max(below[0]).max(inner[0]);
-            let high = (high - 1).min(above[1]).min(below[1]).min(inner[1]);
-            span(surface, row, [low, high], ink);
+            (inside([(low + 1).max(above[0]).max(below[0]), (high - 1).min(above[1]).min(below[1])]), rim, ink)
         }
+    };
+    if narrow || lit[0] > lit[1] {
+        span(surface, row, inner, around);
+    } else {
+        span(surface, row, [inner[0], lit[0] - 1], around);
+        span(surface, row, [lit[1] + 1, inner[1]], around);
     }
+    span(surface, row, lit, ink);
 }
 
 /// The pixels of a row, where there are any.
-#[inline(always)]
+#[inline(never)]
 fn span<S: Surface>(surface: &mut S, row: i32, [low, high]: [i32; 2], ink: S::Ink) {
     if low <= high {
         surface.span(row, [low, high], ink);
-    }
-}
-
-/// The even pixels of a row, or the odd ones.
-#[inline(always)]
-fn every_other<S: Surface>(surface: &mut S, row: i32, [low, high]: [i32; 2], odd: i32, ink: S::Ink) {
-    let mut column = low + ((low ^ odd) & 1);
-    let mut cursor = surface.cursor(column.min(high), row);
-    while column <= high {
-        surface.put(cursor, ink);
-        column += 2;
-        if column <= high {
-            cursor.across(true);
-            cursor.across(true);
-        }
     }
 }

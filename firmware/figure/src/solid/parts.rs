@@ -1,11 +1,11 @@
 //! The parts of a figure: which circles a part is the hull of, how far away it counts as, and what it is made of.
 
 use super::hull::Circle;
-use super::joints::{Joints, Limb, NONE};
+use super::joints::{Joints, NONE};
 use super::look::{Look, Material, RADII, Radius};
 use super::sizes::Sizes;
 use super::tint::Tint;
-use super::{Head, Kind};
+use super::{Head, Kind, MOST_PARTS};
 use crate::camera::{MAGNIFICATION_BITS, magnification};
 use crate::ink::BodyPart;
 use crate::renderer::FigureRenderer;
@@ -14,7 +14,7 @@ use heapless::Vec;
 
 /// Parts of a person.
 pub(super) const HUMAN_PARTS: usize = 16;
-const PELVIS: u8 = 0;
+/// Pelvis (0), chest, neck and head.
 const CHEST: u8 = 1;
 const NECK: u8 = 2;
 pub(super) const HEAD: u8 = 3;
@@ -26,6 +26,20 @@ pub(super) const HEAD_OVER: i32 = 30;
 
 /// A joint where parts meet, as a bit: the outline of a part that is drawn later is open there.
 pub(super) type JointBit = u64;
+
+const WAIST: JointBit = 1;
+const NECK_JOINT: JointBit = 2;
+const HEAD_JOINT: JointBit = 4;
+
+/// Radii at both ends of a side's parts.
+static SEGMENTS: [[Radius; 2]; SIDE as usize] = [
+    [Radius::Shoulder, Radius::Elbow],
+    [Radius::Elbow, Radius::Wrist],
+    [Radius::Wrist, Radius::Hand],
+    [Radius::Hip, Radius::Knee],
+    [Radius::Knee, Radius::Ankle],
+    [Radius::Ankle, Radius::Toe],
+];
 
 /// A part on the display.
 pub(super) struct Part {
@@ -105,38 +119,32 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
 
     /// How far away the parts of a person count as, in units of depth. Upper arm and thigh count as what is farther from the trunk, so that
     /// they lie over it or under it as a whole.
-    pub(super) fn human_keys(&self, joints: &Joints, keys: &mut [i16]) {
-        let depth = |joint: u8| self.joint(joint)[2];
+    #[inline(never)]
+    pub(super) fn human_keys(&self, joints: &Joints, keys: &mut [i32; MOST_PARTS]) {
         let mix = |a: i32, b: i32, part: i32| a + (((b - a) * part) >> 8);
         let height = self.sizes.depth;
-        let ends = |limbs: &[Limb; 2]| depth(limbs[0][0]) + depth(limbs[1][0]);
-        let trunk = (ends(&joints.arms) + 2 * self.waist(joints)[2] + ends(&joints.legs)) / 6;
+        let [arms, legs] = [joints.arms, joints.legs].map(|limbs| limbs.map(|limb| limb.map(|joint| self.joint(joint)[2])));
+        let ends = arms[0][0] + arms[1][0] + legs[0][0] + legs[1][0];
+        let trunk = (ends + 2 * self.waist(joints)[2]) / 6;
         let skull = self.head_depth(joints);
-        let mut set = |part: u8, key: i32| {
-            if let Some(place) = keys.get_mut(usize::from(part)) {
-                *place = key.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-            }
-        };
         // Under both thighs, so that trousers are one garment, but not behind an arm behind the back.
-        let thighs = joints.legs.map(|[hip, knee, _]| mix(depth(hip), depth(knee), 179));
-        let pelvis = thighs[0].max(thighs[1]).clamp(trunk, trunk + height * 8 / 100);
-        set(PELVIS, pelvis + height / 200);
-        set(CHEST, trunk);
-        set(NECK, skull - height * 24 / 1000);
-        set(HEAD, skull - height * HEAD_OVER / 1000);
-        for side in 0..2 {
-            let first = LIMBS + SIDE * side as u8;
-            let [shoulder, elbow, wrist] = joints.arms[side].map(depth);
-            let [hip, knee, ankle] = joints.legs[side].map(depth);
-            set(first, mix(shoulder, elbow, 192));
-            set(first + 1, (elbow + wrist) / 2);
-            set(first + 2, mix(wrist, self.hand(joints, side)[2], 179));
-            set(first + 3, mix(hip, knee, 179));
-            set(first + 4, (knee + ankle) / 2);
-            set(first + 5, mix(ankle, self.foot(joints, side)[1][2], 154) - height / 200);
+        let thighs = legs.map(|[hip, knee, _]| mix(hip, knee, 179));
+        let pelvis = thighs[0].max(thighs[1]).max(trunk).min(trunk + height * 8 / 100);
+        let [middle, rest @ ..] = keys.as_chunks_mut::<{ LIMBS as usize }>().0 else { return };
+        *middle = [pelvis + height / 200, trunk, skull - height * 24 / 1000, skull - height * HEAD_OVER / 1000];
+        for (side, limbs) in rest.as_flattened_mut().as_chunks_mut::<{ SIDE as usize }>().0.iter_mut().take(2).enumerate() {
+            let [[shoulder, elbow, wrist], [hip, knee, ankle]] = [arms[side], legs[side]];
+            *limbs = [
+                mix(shoulder, elbow, 192),
+                (elbow + wrist) / 2,
+                mix(wrist, self.hand(joints, side)[2], 179),
+                mix(hip, knee, 179),
+                (knee + ankle) / 2,
+                mix(ankle, self.foot(joints, side)[1][2], 154) - height / 200,
+            ];
         }
-        for (part, attachment) in (HUMAN_PARTS as u8..).zip(self.look.attachments()) {
-            set(part, self.attached_key(joints, &attachment, thighs));
+        for (key, attachment) in keys.iter_mut().skip(HUMAN_PARTS).zip(self.look.attachments()) {
+            *key = self.attached_key(joints, &attachment, thighs);
         }
     }
 
@@ -163,67 +171,57 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
     /// A part of a person but the head.
     #[inline(never)]
     pub(super) fn human(&self, joints: &Joints, part: u8) -> Part {
-        const WAIST: JointBit = 1;
-        const NECK_JOINT: JointBit = 2;
-        const HEAD_JOINT: JointBit = 4;
-        let limb_joint = |side: usize, index: usize| 8 << (6 * side + index);
-        let both = |index: usize| limb_joint(0, index) | limb_joint(1, index);
-        let plain = |material: Material| self.look.tint(material);
-        let pair = |limbs: &[Limb; 2], inwards: i32, radius: Radius| {
-            let [left, right] = [self.joint(limbs[0][0]), self.joint(limbs[1][0])];
-            let middle = between(left, right, 128);
-            [left, right].map(|end| self.circle(between(end, middle, inwards), radius))
+        let bit = |side: usize, index: usize| 8 << (6 * side + index);
+        let mut made =
+            Part { circles: Vec::new(), tint: self.look.tint(Material::Skin), ends: [(0, 0); 2], covers: 0, right: false };
+        let mut add = |place: Place, radius: Radius| {
+            // There is room for four.
+            let _ = made.circles.push(self.circle(place, radius));
         };
-        let waist = || self.circle(self.waist(joints), Radius::Waist);
-        let make = |circles: &[Circle], tint: Tint, ends: [(u8, JointBit); 2], right: bool| {
-            let covers = ends[0].1 | ends[1].1;
-            // At most 3.
-            Part { circles: Vec::from_slice(circles).unwrap_or_default(), tint, ends, covers, right }
-        };
-        match part {
-            PELVIS | CHEST => {
-                let (limbs, inwards, radius, material) = match part {
-                    CHEST => (&joints.arms, 61, Radius::Chest, Material::Shirt),
-                    _ => (&joints.legs, 26, Radius::Pelvis, Material::Trousers),
-                };
-                let [left, right] = pair(limbs, inwards, radius);
-                let mut part_made = make(&[left, right, waist()], plain(material), [(2, WAIST), (0, 0)], false);
-                part_made.covers |= if part == CHEST { both(0) | NECK_JOINT } else { both(3) };
-                part_made
+        if part == NECK {
+            let [from, to] = [joints.neck, joints.head].map(|joint| self.joint(joint));
+            add(between(from, to, self.sizes.neck.into()), Radius::Neck);
+            add(to, Radius::Neck);
+            made.ends = [(0, NECK_JOINT), (1, HEAD_JOINT)];
+        } else if part < LIMBS {
+            let (limbs, inwards, radius, material, covers) = match part {
+                CHEST => (&joints.arms, 61, Radius::Chest, Material::Shirt, bit(0, 0) | bit(1, 0) | NECK_JOINT),
+                _ => (&joints.legs, 26, Radius::Pelvis, Material::Trousers, bit(0, 3) | bit(1, 3)),
+            };
+            let ends = [limbs[0][0], limbs[1][0]].map(|joint| self.joint(joint));
+            let middle = between(ends[0], ends[1], 128);
+            ends.into_iter().for_each(|end| add(between(end, middle, inwards), radius));
+            add(self.waist(joints), Radius::Waist);
+            made.tint = self.look.tint(material);
+            (made.ends[0], made.covers) = ((2, WAIST), covers);
+        } else {
+            let side = usize::from(part >= LIMBS + SIDE);
+            let index = usize::from((part - LIMBS) % SIDE);
+            let (limb, at) = if index < 3 { (&joints.arms[side], index) } else { (&joints.legs[side], index - 3) };
+            let [from, to] = SEGMENTS[index];
+            let mut far = self.joint(limb[(at + 1) % 3]);
+            let is_end = at == 2;
+            if index == 2 {
+                far = self.hand(joints, side);
+            } else if is_end {
+                let [heel, toes] = self.foot(joints, side);
+                add(heel, Radius::Heel);
+                far = toes;
             }
-            NECK => {
-                let [from, to] = [joints.neck, joints.head].map(|joint| self.joint(joint));
-                let ends = [between(from, to, self.sizes.neck.into()), to].map(|place| self.circle(place, Radius::Neck));
-                make(&ends, plain(Material::Skin), [(0, NECK_JOINT), (1, HEAD_JOINT)], false)
+            add(self.joint(limb[at]), from);
+            add(far, to);
+            made.ends[0] = (u8::from(index == 5), bit(side, index));
+            if !is_end {
+                made.ends[1] = (1, bit(side, index + 1));
             }
-            _ => {
-                let side = usize::from(part >= LIMBS + SIDE);
-                let index = usize::from((part - LIMBS) % SIDE);
-                let own = if side == 0 { Material::Left } else { Material::Right };
-                let end = if side == 0 { Material::Left } else { Material::RightEnd };
-                let limb = |of: Material| self.look.limb(of, own);
-                let [shoulder, elbow, wrist] = joints.arms[side];
-                let [hip, knee, ankle] = joints.legs[side];
-                let at = |joint: u8, radius: Radius| self.circle(self.joint(joint), radius);
-                let ends = [(0, limb_joint(side, index)), (1, limb_joint(side, index + 1))];
-                let right = side == 1;
-                match index {
-                    0 => make(&[at(shoulder, Radius::Shoulder), at(elbow, Radius::Elbow)], limb(own), ends, right),
-                    1 => make(&[at(elbow, Radius::Elbow), at(wrist, Radius::Wrist)], limb(Material::Skin), ends, right),
-                    2 => {
-                        let far = self.circle(self.hand(joints, side), Radius::Hand);
-                        make(&[at(wrist, Radius::Wrist), far], self.look.limb(end, end), [ends[0], (0, 0)], right)
-                    }
-                    3 => make(&[at(hip, Radius::Hip), at(knee, Radius::Knee)], limb(Material::Trousers), ends, right),
-                    4 => make(&[at(knee, Radius::Knee), at(ankle, Radius::Ankle)], limb(Material::Trousers), ends, right),
-                    _ => {
-                        let [heel, toes] = self.foot(joints, side);
-                        let circles = [self.circle(heel, Radius::Heel), at(ankle, Radius::Ankle), self.circle(toes, Radius::Toe)];
-                        make(&circles, self.look.limb(end, end), [(1, ends[0].1), (0, 0)], right)
-                    }
-                }
-            }
+            let own = if side == 0 { Material::Left } else { Material::Right };
+            let end = if side == 0 { Material::Left } else { Material::RightEnd };
+            let material = [own, Material::Skin, end, Material::Trousers, Material::Trousers, end][index];
+            made.tint = self.look.limb(material, if is_end { end } else { own });
+            made.right = side == 1;
         }
+        made.covers |= made.ends[0].1 | made.ends[1].1;
+        made
     }
 
     /// A bone of a rig that is no person's.
@@ -240,7 +238,7 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         };
         // Long bones are thicker, within what keeps a figure one.
         let long = bone.map_or(0, |bone| crate::joint_info::length(bone.offset.map(i32::from)));
-        let units = (long / 6).clamp(self.sizes.height / 60, self.sizes.height / 22);
+        let units = (long / 6).max(self.sizes.height / 60).min(self.sizes.height / 22);
         let radius = self.figure.camera().length(units).max(8);
         let near = self.round(self.joint(parent), radius);
         let far = self.round(self.joint(index), radius * 3 / 4);

@@ -83,8 +83,8 @@ impl Sizes {
     }
 
     fn extremities(&mut self, bones: &[Bone], joints: &Joints) {
-        let part =
-            |thousandths: i32, of: i32| ((self.height >> 4) * thousandths / 1000 * 256 / (of >> 4).max(1)).clamp(0, 2000) as i16;
+        let height = self.height >> 4;
+        let part = |thousandths: i32, of: i32| ratio(height, thousandths, of);
         // The last 0.075 of the height.
         self.neck = (256 - part(75, way(bones, joints.neck, joints.head))).max(0);
         for side in 0..2 {
@@ -99,11 +99,17 @@ impl Sizes {
                 (256 * 95 / 78) as i16
             } else {
                 // At least 0.095 of the height, at most 0.135.
-                part(foot.clamp(least, most) / (self.height / 1000).max(1), foot)
+                part(foot.max(least).min(most) / (self.height / 1000).max(1), foot)
             };
             self.heels[side] = [part(18, way(bones, knee, ankle)), if toes == NONE { 40 } else { part(12, foot) }];
         }
     }
+}
+
+/// Thousandths of 16 heights as a part of a length.
+#[inline(never)]
+fn ratio(height: i32, thousandths: i32, of: i32) -> i16 {
+    (height * thousandths / 1000 * 256 / (of >> 4).max(1)).clamp(0, 2000) as i16
 }
 
 /// The height of a person in figure units.

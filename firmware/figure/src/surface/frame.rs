@@ -43,6 +43,17 @@ pub trait Layout {
         }
         Self::put(cells, cursor, ink);
     }
+    /// Sets every other pixel of row `y` from column `from` to column `to`; all are inside. See [`Surface::alternate`].
+    #[inline]
+    fn alternate(cells: &mut [Self::Cell], y: usize, [from, to]: [usize; 2], ink: Self::Ink) {
+        let mut cursor = Self::cursor(from, y);
+        for _ in 0..(to - from) / 2 {
+            Self::put(cells, cursor, ink);
+            cursor.across(true);
+            cursor.across(true);
+        }
+        Self::put(cells, cursor, ink);
+    }
     /// See [`Surface::blend`].
     fn blend(cells: &mut [Self::Cell], cursor: Self::Cursor, ink: Self::Ink, cover: u32);
     /// What a pixel shows.
@@ -197,6 +208,11 @@ impl<L: Layout> Surface for Framebuffer<L> {
     #[inline(always)]
     fn span(&mut self, y: i32, columns: [i32; 2], ink: L::Ink) {
         L::span(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
+    }
+
+    #[inline(always)]
+    fn alternate(&mut self, y: i32, columns: [i32; 2], ink: L::Ink) {
+        L::alternate(self.cells.as_mut(), y as usize, columns.map(|x| x as usize), ink);
     }
 
     #[inline(always)]

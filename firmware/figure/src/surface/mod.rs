@@ -54,6 +54,18 @@ pub trait Surface {
         self.put(cursor, ink);
     }
 
+    /// Sets every other pixel of row `y` from column `from` to column `to`, `from` first. All are inside, and `from` is at most `to`.
+    #[inline]
+    fn alternate(&mut self, y: i32, [from, to]: [i32; 2], ink: Self::Ink) {
+        let mut cursor = self.cursor(from, y);
+        for _ in 0..(to - from) / 2 {
+            self.put(cursor, ink);
+            cursor.across(true);
+            cursor.across(true);
+        }
+        self.put(cursor, ink);
+    }
+
     /// Brightens a pixel towards the ink: `cover` of 16 parts of it, and never darker than it was.
     fn blend(&mut self, cursor: Self::Cursor, ink: Self::Ink, cover: u32);
 

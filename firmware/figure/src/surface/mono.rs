@@ -72,6 +72,15 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
         }
     }
 
+    /// The same bit of every other byte.
+    #[inline(always)]
+    fn alternate(cells: &mut [u8], y: usize, [from, to]: [usize; 2], ink: BinaryColor) {
+        let (row, mask) = (y / BAND * WIDTH, 1u8 << (y % BAND));
+        let (set, kept) = (if ink.is_on() { mask } else { 0 }, !mask);
+        let cells = cells.get_mut(row + from..(row + to).wrapping_add(1)).unwrap_or_default();
+        cells.chunks_mut(2).filter_map(|pair| pair.first_mut()).for_each(|cell| *cell = *cell & kept | set);
+    }
+
     /// More than half of a pixel lights it.
     #[inline(always)]
     fn blend(cells: &mut [u8], cursor: Bit<WIDTH>, ink: BinaryColor, cover: u32) {
