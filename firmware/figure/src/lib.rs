@@ -32,6 +32,7 @@
 //! | draw a clip into a display driver | [`FigureRenderer::of_clip`], then [`FigureRenderer::draw`] for each frame |
 //! | do so with little stack | [`FigureRenderer::empty`], [`FigureRenderer::set_up`] and [`FigureRenderer::aim`] |
 //! | draw a body with volume instead of lines | [`solid::SolidFigure`] |
+//! | draw several bodies that may reach around each other | [`solid::draw_together`] |
 //! | draw several figures side by side | a renderer each, [`FigureRenderer::shift`] and [`FigureRenderer::draw_over`] |
 //! | draw a figure that stands somewhere in the world | [`FigureRenderer::set_pose_at`] |
 //! | look from elsewhere | [`View`] with [`FigureRenderer::aim`] |

@@ -439,6 +439,15 @@ impl<const N: usize, R: RotationBackend> FigureRenderer<N, R> {
         &self.ground
     }
 
+    /// Takes over the camera and the ground of another figure of the same rig.
+    pub(crate) fn share_camera(&mut self, other: &Self) {
+        self.orientation = other.orientation;
+        self.canvas = other.canvas;
+        self.camera = other.camera;
+        self.view = other.view;
+        self.ground = other.ground;
+    }
+
     /// The figure's joints.
     pub fn skeleton(&self) -> &Skeleton<N> {
         &self.skeleton

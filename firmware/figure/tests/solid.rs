@@ -6,9 +6,9 @@ use embedded_graphics::geometry::{OriginDimensions, Size};
 use embedded_graphics::pixelcolor::{BinaryColor, Gray4, PixelColor, Rgb565, Rgb888, RgbColor};
 use pantin::{Clip, Form, Player, Pose, Room};
 use pantin_figure::ink::Ink;
-use pantin_figure::solid::{Build, Look, Material, SolidFigure, look_text};
+use pantin_figure::solid::{Build, Look, Material, SolidFigure, draw_together, look_text};
 use pantin_figure::surface::{Framebuffer, Gray4Rows, Layout, MonoPages, Rgb565Rows};
-use pantin_figure::{Canvas, DrawStyle, FigureRenderer, View};
+use pantin_figure::{CameraTarget, Canvas, DrawStyle, FigureRenderer, Stand, View};
 
 const CLIPS: [&[u8]; 2] = [include_bytes!("../../../motions/walk.ptn"), include_bytes!("../../../motions/run.ptn")];
 const JOINTS: usize = 36;
@@ -257,5 +257,48 @@ fn no_pose_draws_outside_or_fails() {
                 figure.draw(Pose { values: &values, form: (&form).into() }, &mut target).unwrap();
             }
         }
+    });
+}
+
+#[test]
+fn figures_of_one_world_are_sorted_among_each_other() {
+    const GREEN: [u8; 3] = [0, 255, 0];
+    const MAGENTA: [u8; 3] = [255, 0, 255];
+    // All in one colour, and shaded: the hue stays.
+    let coloured = |rgb: &str| {
+        let materials = ["shirt", "trousers", "skin", "hair", "face", "nose", "left", "right", "right-end"];
+        look(&materials.map(|material| format!("colour {material} {rgb}\n")).concat())
+    };
+    with_player(CLIPS[0], |player| {
+        // One stands half a metre before the other, which is a little aside, as seen from the front.
+        let exponent = i32::from(player.pose().form.length_exponent());
+        let units = |cm: f64| (cm * 2f64.powi(-exponent)) as i64;
+        let mut near = figure_of(player, [176, 220], 0, coloured("00ff00"));
+        near.aim(player, View { orbit: 0, track: CameraTarget::Fixed, ..View::default() });
+        let mut far = figure_of(player, [176, 220], 0, coloured("ff00ff"));
+        far.share_camera(&near);
+        let stand = |z: f64, x: f64| Stand { place: [units(z), units(x)], ..Stand::default() };
+        player.seek(0);
+        near.set_pose_at(player.pose(), stand(25.0, 0.0)).unwrap();
+        far.set_pose_at(player.pose(), stand(-25.0, 12.0)).unwrap();
+        let count = |target: &Target<Rgb888>, rgb: [u8; 3]| {
+            let of_hue = |pixel: &&Rgb888| {
+                (pixel.r() > 60) == (rgb[0] > 0) && (pixel.g() > 100) == (rgb[1] > 0) && (pixel.b() > 60) == (rgb[2] > 0)
+            };
+            target.pixels.iter().filter(of_hue).count()
+        };
+        let draw = |figures: &mut [&mut SolidFigure<JOINTS>]| {
+            let mut target = Target::<Rgb888>::new([176, 220]);
+            draw_together(figures, &mut pantin_figure::surface::OnTarget::new(&mut target), false);
+            target
+        };
+        let alone = [draw(&mut [&mut near]), draw(&mut [&mut far])];
+        let both = draw(&mut [&mut near, &mut far]);
+        assert_eq!(both, draw(&mut [&mut far, &mut near]), "whatever the order of the figures");
+        let [near_alone, far_alone] = [count(&alone[0], GREEN), count(&alone[1], MAGENTA)];
+        assert!(near_alone > 1000 && far_alone > 1000, "{near_alone} {far_alone}");
+        assert_eq!(count(&both, GREEN), near_alone, "nothing hides the nearer one");
+        let seen = count(&both, MAGENTA);
+        assert!(seen > 100 && seen * 10 < far_alone * 9, "{seen} of {far_alone}");
     });
 }

@@ -1,6 +1,7 @@
 //! What the figure stands on: a disc, the floor's lines or dots, and the figure's shadow.
 
 use super::joints::{Joints, NONE};
+use super::joints_of;
 use super::look::Material;
 use super::paint::{Cut, Fill, Outline, Painter};
 use super::parts::{Body, Place, between};
@@ -16,19 +17,22 @@ impl<const N: usize, R: RotationBackend> Body<'_, N, R> {
         [x, y * 4, (self.sizes.pixels * thousandths / 1000 * magnification(depth)) >> MAGNIFICATION_BITS]
     }
 
-    /// Draws the floor, and the shadow of a person.
+    /// Draws the floor, if it is wanted, and the shadow of a person.
     #[inline(never)]
-    pub(super) fn draw_floor<S: Surface>(&self, painter: &mut Painter<S>, joints: Option<&Joints>) {
+    pub(super) fn draw_floor<S: Surface>(&self, painter: &mut Painter<S>, whole: bool) {
+        let joints = joints_of(self.kind);
         let ink = |material: Material| S::Ink::tint(&self.look.tint(material), 256);
         let (edge, shadow, floor) = (ink(Material::Edge), ink(Material::Shadow), ink(Material::Floor));
         let bare = Outline { ink: edge, width: 0, cuts: [Cut::None; 2] };
         let hips = joints.map_or(self.figure.skeleton().hips as u8, |joints| joints.hips);
         let ground = self.figure.ground_level();
-        if S::Ink::HUES {
+        if S::Ink::HUES && whole {
             let stage = self.disc(self.figure.below(hips, &ground), 620);
             painter.hull(&[stage], true, &bare, &Fill::Plain(ink(Material::Stage)));
         }
-        self.figure.draw_ground(painter.surface, false, Some(floor));
+        if whole {
+            self.figure.draw_ground(painter.surface, false, Some(floor));
+        }
         if let Some(joints) = joints {
             let fill = if S::Ink::TONES { Fill::Plain(shadow) } else { Fill::Dotted(shadow, edge) };
             self.draw_shadow(painter, joints, &ground, &bare, &fill);

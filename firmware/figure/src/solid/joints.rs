@@ -103,7 +103,7 @@ impl Joints {
         for side in 0..2 {
             let [wrist, ankle] = [joints.arms.get(side)?[2], joints.legs.get(side)?[2]];
             *joints.fingers.get_mut(side)? = far_end(rig, bones, wrist, skeleton.size / 50);
-            *joints.toes.get_mut(side)? = far_end(rig, bones, ankle, skeleton.size / 30);
+            *joints.toes.get_mut(side)? = unfolded(bones, ankle, far_end(rig, bones, ankle, skeleton.size / 30));
         }
         Some(joints)
     }
@@ -212,11 +212,51 @@ fn far_end(rig: &Rig, bones: &[Bone], joint: u8, shortest: i32) -> u8 {
     best.1
 }
 
+/// The end of a foot, or the joint before it if the end leads back towards the ankle: some exporters turn End Sites with other axes than the joints'.
+fn unfolded(bones: &[Bone], ankle: u8, end: u8) -> u8 {
+    let Some(before) = bones.get(usize::from(end)).and_then(|bone| bone.parent).filter(|before| *before > ankle) else {
+        return end;
+    };
+    let straight = |to: u8| {
+        let (mut sum, mut joint) = ([0; 3], to);
+        while joint > ankle {
+            let Some(bone) = bones.get(usize::from(joint)) else { break };
+            sum.iter_mut().zip(bone.offset).for_each(|(sum, part)| *sum += i32::from(part));
+            joint = bone.parent.unwrap_or(ankle);
+        }
+        length(sum)
+    };
+    if straight(end) < straight(before) { before } else { end }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::solid::{Build, Look, SolidFigure};
     use crate::{Canvas, View};
     use pantin::{Clip, Room};
+
+    #[test]
+    fn a_foot_whose_end_leads_back_ends_at_its_toes() {
+        let bone = |parent: Option<u8>, offset: [i16; 3]| Bone {
+            offset,
+            parent,
+            joint: 0,
+            part: Part::Bone,
+            body_part: BodyPart::Left,
+            drives: 0,
+            slot: u8::MAX,
+            parent_slot: u8::MAX,
+            moves: false,
+        };
+        let leg =
+            |end: [i16; 3]| [bone(None, [0; 3]), bone(Some(0), [0, -400, 0]), bone(Some(1), [-2, -122, 83]), bone(Some(2), end)];
+        // As a character of Mixamo was exported, and as its toes are.
+        assert_eq!(unfolded(&leg([0, 147, 0]), 1, 3), 2);
+        assert_eq!(unfolded(&leg([0, -10, 60]), 1, 3), 3);
+        assert_eq!(unfolded(&leg([0, 147, 0]), 1, 2), 2);
+        assert_eq!(unfolded(&leg([0, 147, 0]), 1, NONE), NONE);
+    }
 
     #[test]
     fn a_persons_joints_are_found_and_a_knees_are_not() {

@@ -36,6 +36,7 @@ mod paint;
 mod parts;
 mod sizes;
 mod tint;
+mod together;
 
 use crate::camera::{Canvas, MAGNIFICATION_BITS, View, magnification};
 use crate::ink::Ink;
@@ -56,6 +57,7 @@ use pantin_math::vector::{cross, direction, dot};
 use parts::{Body, HEAD, HUMAN_PARTS};
 use sizes::Sizes;
 pub use tint::{Light, Pattern, Tint};
+pub use together::{MOST_FIGURES, draw_together};
 
 /// Rows beyond a window that outlines and shaded sides may look at.
 const MARGIN: i32 = 16;
@@ -325,16 +327,27 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             return self.figure.draw_on(surface, crate::DrawStyle { ground: floor, smooth: false });
         }
         self.sort();
-        let Self { figure, kind, look, sizes, head, order, .. } = self;
-        let body = Body { figure, kind, sizes, look, head };
+        let body = self.body();
         let mut painter = Painter::on(surface);
         if floor {
-            body.draw_floor(&mut painter, joints_of(kind));
+            body.draw_floor(&mut painter, true);
         }
         let mut drawn = 0;
-        for &part in order.iter() {
+        for &part in self.order.iter() {
             body.draw(&mut painter, part, &mut drawn);
         }
+    }
+
+    /// The figure as it is drawn.
+    #[inline(always)]
+    fn body(&self) -> Body<'_, N, R> {
+        Body { figure: &self.figure, kind: &self.kind, sizes: &self.sizes, look: &self.look, head: &self.head }
+    }
+
+    /// Takes over camera and ground of another figure of the same rig, so that both stand in one world: see [`draw_together`].
+    pub fn share_camera(&mut self, other: &Self) {
+        self.figure.share_camera(&other.figure);
+        self.measure();
     }
 
     /// Clears the target and draws the figure in a pose, with the floor.
@@ -350,21 +363,20 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
         surface.outcome().map_err(DrawError::Target)
     }
 
+    #[inline(always)]
+    fn keys(&self) -> Keys {
+        let Kind::Person(joints) = &self.kind else { return Keys(None) };
+        let mut keys = [0; MOST_PARTS];
+        self.body().human_keys(joints, &mut keys);
+        Keys(Some(keys))
+    }
+
     /// Puts the farthest part first. The first picture is sorted exactly, later ones from the order of the one before.
     #[inline(never)]
     fn sort(&mut self) {
-        let mut keys = [0; MOST_PARTS];
-        let body = Body { figure: &self.figure, kind: &self.kind, sizes: &self.sizes, look: &self.look, head: &self.head };
-        let person = match &self.kind {
-            Kind::Person(joints) => {
-                body.human_keys(joints, &mut keys);
-                true
-            }
-            _ => false,
-        };
-        let key = |part: u8| -> i32 {
-            if person { keys.get(usize::from(part)).copied().unwrap_or(0) } else { body.figure.bone_depth(part) }
-        };
+        let keys = self.keys();
+        let figure = &self.figure;
+        let key = |part: u8| keys.of(figure, part);
         let passing = if self.sorted { self.sizes.depth * PASSING / 1000 } else { 0 };
         for place in 1..self.order.len() {
             let Some(&moving) = self.order.get(place) else { return };
@@ -382,6 +394,20 @@ impl<const N: usize, R: RotationBackend> SolidFigure<N, R> {
             }
         }
         self.sorted = true;
+    }
+}
+
+/// How far away a person's parts count as; the bones of other rigs know it.
+struct Keys(Option<[i32; MOST_PARTS]>);
+
+impl Keys {
+    /// How far away a part counts as, in units of depth.
+    #[inline(always)]
+    fn of<const N: usize, R: RotationBackend>(&self, figure: &FigureRenderer<N, R>, part: u8) -> i32 {
+        match &self.0 {
+            Some(keys) => keys.get(usize::from(part)).copied().unwrap_or(0),
+            None => figure.bone_depth(part),
+        }
     }
 }
 
