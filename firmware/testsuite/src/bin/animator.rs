@@ -60,8 +60,9 @@ fn animated(clip: Clip<'static>) {
     for _ in 0..FRAMES {
         update(&mut animator);
     }
-    // To frame 0, then into the middle: from elsewhere, for nothing is left of a switch to the same frame.
-    for (before, frame) in [(start(&clip), 0), (0, start(&clip))] {
+    // To frame 0, then into the middle: from elsewhere, for nothing is left of a switch to the same frame, and not back to where it came from, which
+    // would leave the figure without a heading of its own.
+    for (before, frame) in [(start(&clip), 0), (start(&clip) / 2, start(&clip))] {
         animator.seek(before);
         markers::start();
         let switched = animator.switch(clip, frame, fixed::types::I16F16::ONE, Transition::Inertialized(FRAMES));
