@@ -145,7 +145,7 @@ class Clip:
         decoder on a device: multiples of 2^-32 turns. Raises KeyError if there is no such joint.
         """
         turns = np.frombuffer(_pantin.euler(self._bytes, self.joint_index(joint), order), np.int32)
-        return turns.reshape(self.frames, 3) * (360 / 2**32)
+        return turns.reshape(self.frames, 3).astype(np.float64) * (360 / 2**32)
 
     def positions(self) -> Floats:
         """Positions of the joints in the world, in cm: (frames, joints, 3)."""

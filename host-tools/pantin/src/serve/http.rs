@@ -37,7 +37,7 @@ const MOST_REST: usize = 64 << 10;
 pub struct Times {
     /// How long a request's head may take to come, and how long a client may take no byte of the answer.
     pub request: Duration,
-    /// The time in which a client must have taken its answer, plus one second per [`SLOWEST`] bytes.
+    /// The time in which a client must have taken its answer, plus one second per 512 KiB.
     pub answer: Duration,
 }
 

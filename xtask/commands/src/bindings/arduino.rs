@@ -75,7 +75,7 @@ pub fn classes(folder: &TempDir) -> Result<()> {
     own::convert(&build::host_tool()?, &paths::root().join("motions/library/run.keys"), &clip, &[])?;
     let bytes = std::fs::read(&clip)?;
     std::fs::write(place.join("run.h"), c_header(&pantin::Clip::new_checked(&bytes)?, &bytes, "run")?)?;
-    let program = place.join("library");
+    let program = place.join("classes");
     let mut objects = vec![];
     for source in super::SOURCES {
         let object = place.join(format!("library{}.o", objects.len()));
