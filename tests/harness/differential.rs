@@ -71,7 +71,7 @@ pub fn run(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&
     compare(decoder, (&vectors::folder(), mutant), count, seed, after_batch)
 }
 
-/// The same of the vectors of key clips, for a decoder that plays these.
+/// Compares `count` mutants of the vectors of key clips; otherwise like [`run`].
 pub fn run_keys(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&Counts)) -> Result<Counts> {
     compare(decoder, (&vectors::keyed::folder(), key_mutant), count, seed, after_batch)
 }

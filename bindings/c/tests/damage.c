@@ -7,14 +7,8 @@
 
 #include "file.h"
 #include "pantin.h"
+#include "room.h"
 
-static int32_t pose[1023];
-#ifdef PANTIN_KEYS
-#define ROOM 14130u
-#else
-#define ROOM 1023u
-#endif
-static pantin_channel moving[ROOM];
 static uint32_t opened;
 
 static void play(const pantin_clip *clip) {

@@ -8,6 +8,7 @@
 
 #include "file.h"
 #include "pantin.h"
+#include "room.h"
 
 static uint16_t crc_byte(uint16_t crc, uint8_t byte) {
     int i;
@@ -32,13 +33,6 @@ static void check(int held, const char *what) {
     }
 }
 
-static int32_t pose[1023];
-#ifdef PANTIN_KEYS
-#define ROOM 14130u
-#else
-#define ROOM 1023u
-#endif
-static pantin_channel moving[ROOM];
 
 static void print_name(const pantin_name *name) {
     char text[1024];

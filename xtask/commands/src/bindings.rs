@@ -319,7 +319,7 @@ fn test_vectors(folder: &TempDir, compiler: &str) -> Result<()> {
     compare_records(&host_program(folder, compiler, "frames")?, &files()?)
 }
 
-/// The same of key clips, and of all others with the decoder that plays both.
+/// Compares the vectors of key clips, then all others, with the decoder that plays both.
 fn key_vectors(folder: &TempDir, compiler: &str) -> Result<()> {
     let program = host_program_with(folder, compiler, "frames", &[KEYS])?;
     compare_records(&program, &files_of(&vectors::keyed::folder())?)?;

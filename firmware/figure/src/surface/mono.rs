@@ -72,7 +72,7 @@ impl<const WIDTH: usize, const HEIGHT: usize, const BYTES: usize> Layout for Mon
         }
     }
 
-    /// The same bit of every other byte.
+    /// Writes one bit of every second byte.
     #[inline(always)]
     fn alternate(cells: &mut [u8], y: usize, [from, to]: [usize; 2], ink: BinaryColor) {
         let (row, mask) = (y / BAND * WIDTH, 1u8 << (y % BAND));

@@ -261,22 +261,8 @@ impl Speech {
 
 /// The face's name of a viseme.
 fn name(short: &str) -> &'static str {
-    match short {
-        "pp" => "viseme_pp",
-        "ff" => "viseme_ff",
-        "th" => "viseme_th",
-        "dd" => "viseme_dd",
-        "kk" => "viseme_kk",
-        "ch" => "viseme_ch",
-        "ss" => "viseme_ss",
-        "nn" => "viseme_nn",
-        "rr" => "viseme_rr",
-        "aa" => "viseme_aa",
-        "e" => "viseme_e",
-        "i" => "viseme_i",
-        "o" => "viseme_o",
-        _ => "viseme_u",
-    }
+    let named = |name: &&&str| name.strip_prefix("viseme_") == Some(short);
+    VISEMES.iter().find(named).expect("the tables of spellings and phonemes name visemes")
 }
 
 /// The frame of a time.
@@ -354,7 +340,7 @@ pub fn of_wav(bytes: &[u8], comment: &str) -> Result<String> {
     Ok(out)
 }
 
-/// A recording whose rate is at most that of [`Talk`]: means of so many samples that it is.
+/// A recording at a rate that [`Talk`] takes: where its own is higher, each sample is the mean of several.
 fn lowered(rate: u32, samples: Vec<i16>) -> (u32, Vec<i16>) {
     let group = rate.div_ceil(MOST_RATE);
     if group == 1 {
