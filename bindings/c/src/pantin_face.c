@@ -1539,7 +1539,7 @@ pantin_result pantin_face_play(pantin_face *face, const uint8_t *clip, uint32_t 
 pantin_result pantin_face_emote(pantin_face *face, const char *name) {
     uint16_t i;
     if (!face->vertices) return PANTIN_ERROR_HEAD;
-    for (i = 0; i < face->emote_count; i++) {
+    for (i = 0; name && i < face->emote_count; i++) {
         if (strcmp(face->emotes[i].name, name) == 0) return pantin_face_play(face, face->emotes[i].bytes, face->emotes[i].length);
     }
     return PANTIN_NOT_FOUND;
@@ -1554,7 +1554,7 @@ pantin_result pantin_face_transition(pantin_face *face, uint16_t ms) {
 pantin_result pantin_face_weight(pantin_face *face, const char *name, int32_t weight) {
     uint32_t hash;
     if (!face->vertices) return PANTIN_ERROR_HEAD;
-    if (!find_name(&face->model, name, &hash)) return PANTIN_NOT_FOUND;
+    if (!name || !find_name(&face->model, name, &hash)) return PANTIN_NOT_FOUND;
     drive_name(&face->model, face->own, hash, weight, 1);
     face->known &= BEFORE | ROUNDED;
     return PANTIN_OK;

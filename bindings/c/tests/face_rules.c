@@ -64,6 +64,7 @@ static void refusals(void) {
     need(pantin_face_size(&face, 0, 10) == PANTIN_NOT_FOUND && pantin_face_size(&face, 10, 2048) == PANTIN_NOT_FOUND, "sizes", "");
     need(pantin_face_emote(&face, "hapy") == PANTIN_NOT_FOUND && pantin_face_emote(&face, "") == PANTIN_NOT_FOUND, "names of emotes", "");
     need(pantin_face_weight(&face, "hapy", 1) == PANTIN_NOT_FOUND && pantin_face_weight(&face, "", 1) == PANTIN_NOT_FOUND, "names of units", "");
+    need(pantin_face_emote(&face, NULL) == PANTIN_NOT_FOUND && pantin_face_weight(&face, NULL, 1) == PANTIN_NOT_FOUND, "no name", "");
     need(pantin_face_viseme(&face, 15, 1) == PANTIN_NOT_FOUND, "visemes", "");
     need(pantin_face_shift(&face, 1024, 0) == PANTIN_NOT_FOUND, "shifts", "");
     need(pantin_face_draw(&face, PANTIN_RGB565, other, 2 * SIDE - 1, 0, 1) == PANTIN_NO_ROOM, "narrow rows", "");

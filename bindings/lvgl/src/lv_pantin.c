@@ -215,7 +215,7 @@ lv_result_t lv_pantin_set_emote(lv_obj_t *obj, const char *name) {
         LV_LOG_WARN("lv_pantin: the emote %s is damaged, or has more than LV_PANTIN_CHANNELS channels", name);
         return LV_RESULT_INVALID;
     }
-    LV_LOG_WARN("lv_pantin: there is no emote %s; there are:", name);
+    LV_LOG_WARN("lv_pantin: there is no emote %s; there are:", name ? name : "NULL");
     for (i = 0; i < face->emote_count; i++) LV_LOG_WARN("  %s", face->emotes[i].name);
     return LV_RESULT_INVALID;
 }

@@ -3,7 +3,7 @@
  *     lv_obj_t *face = lv_pantin_create(lv_screen_active());
  *     lv_obj_set_size(face, 240, 240);
  *     lv_pantin_set_emote(face, "happy");
- *     lv_pantin_push_pcm(face, samples, count);       // what is played now
+ *     lv_pantin_push_pcm(face, samples, count);       // what is played now, at most 30 ms of it at a time
  *
  * It takes one picture from LVGL's memory (2 bytes a pixel, 1 on displays of L8 and I1), 16 rows beside it, and about 2.4 KB for the face. Frames
  * allocate nothing; only the part of the picture that changed is drawn again.
@@ -38,7 +38,8 @@ extern "C" {
 
 extern const lv_obj_class_t lv_pantin_class;
 
-/* Makes a face of 128 by 128 pixels: the cartoon with our 23 emotes, at rest, which blinks. NULL if LVGL's memory is used up. */
+/* Makes a face of 128 by 128 pixels; lv_obj_set_size takes up to 2047 each way. A size for which there is no memory shows nothing, and LVGL's log says so.
+ * The face is the cartoon with our 23 emotes, at rest, which blinks, on a background of its own: black. NULL if LVGL's memory is used up. */
 lv_obj_t *lv_pantin_create(lv_obj_t *parent);
 
 /* Shows another model, which `pantin face model` writes. The bytes are not copied. LV_RESULT_INVALID if it is damaged or memory is used up: the face
@@ -54,10 +55,10 @@ lv_result_t lv_pantin_set_emote(lv_obj_t *obj, const char *name);
 /* Sets the rate of the sound that follows, 8,000 to 48,000 Hz: 16,000 without a call. LV_RESULT_INVALID for another. */
 lv_result_t lv_pantin_set_rate(lv_obj_t *obj, uint32_t rate);
 
-/* Moves the lips by sound: samples of one channel as they are played, in parts of any length. */
+/* Moves the lips by sound: samples of one channel as they are played. Push at most 30 ms at a time: longer parts make the lips jump. */
 void lv_pantin_push_pcm(lv_obj_t *obj, const int16_t *samples, size_t count);
 
-/* Shows a viseme of MPEG-4, 1 to 14, or none, 0, in `ms` milliseconds from now until the next one's time; visemes win over sound. LV_RESULT_INVALID for
+/* Shows a viseme of MPEG-4, 1 to 14, or none, 0, `ms` milliseconds from now, until the next one's time; visemes win over sound. LV_RESULT_INVALID for
  * another number, for a time before that of one that waits, and if PANTIN_TALK_WAITING wait already. */
 lv_result_t lv_pantin_set_viseme(lv_obj_t *obj, uint8_t viseme, uint32_t ms);
 

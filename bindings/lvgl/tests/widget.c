@@ -141,7 +141,7 @@ static void refused(lv_display_t *display) {
     damaged[2] ^= 0x55;
     NEED(lv_pantin_set_src(face, damaged, sizeof damaged) == LV_RESULT_INVALID);
     NEED(lv_pantin_set_src(face, pantin_cartoon, 100) == LV_RESULT_INVALID);
-    NEED(lv_pantin_set_emote(face, "nobody") == LV_RESULT_INVALID);
+    NEED(lv_pantin_set_emote(face, "nobody") == LV_RESULT_INVALID && lv_pantin_set_emote(face, NULL) == LV_RESULT_INVALID);
     NEED(lv_pantin_set_src(face, pantin_cartoon, sizeof pantin_cartoon) == LV_RESULT_OK);
     NEED(lv_pantin_set_emote(face, "happy") == LV_RESULT_OK);
     /* Sizes without a picture, and a size for which there is no memory. */

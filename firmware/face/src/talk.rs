@@ -7,7 +7,7 @@
 //! let mut talk = Talk::new(16_000).unwrap();
 //! let mut weights = Weights::new();
 //! # let samples = [0; 533];
-//! talk.push(&samples); // what is played now, in parts of any length
+//! talk.push(&samples); // what is played now, at most 30 ms of it: longer parts make the lips jump
 //! talk.step(33);
 //! talk.add_to(&mut weights, &model)?;
 //! # Ok::<(), Box<dyn core::error::Error>>(())

@@ -83,7 +83,7 @@ fn readme(folder: &Path, environment: &Path) -> Result<()> {
     let code =
         readme.split("```python\n").nth(1).and_then(|rest| rest.split("```").next()).context("the README has a program")?;
     ensure!(readme.lines().take(14).any(|line| line == "```"), "the README's program is at its top");
-    let place = folder.join("readme");
+    let place = folder.join("readme-of-python");
     std::fs::create_dir(&place)?;
     std::fs::write(place.join("readme.py"), code)?;
     let mut expand = Command::new(build::host_tool()?);
