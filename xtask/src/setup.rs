@@ -20,6 +20,22 @@ pub fn host_only(test: &str) -> bool {
     skip
 }
 
+/// An error that says how much is free, unless the disk of the build folders has `megabytes` to spare: linkers and tests that find a full disk
+/// fail by the hundred, and name other reasons. Where `df` is missing, nothing is checked.
+pub fn free_disk(megabytes: u64) -> Result<()> {
+    let Ok(output) = Command::new("df").arg("-Pk").arg(paths::root()).output() else { return Ok(()) };
+    let Some(free) = free_megabytes(&String::from_utf8_lossy(&output.stdout)) else { return Ok(()) };
+    let folder = paths::root().display().to_string();
+    ensure!(free >= megabytes, "the disk of {folder} has {free} MB free, and {megabytes} MB are needed at least");
+    Ok(())
+}
+
+/// The field "Available" of `df -Pk`.
+fn free_megabytes(df: &str) -> Option<u64> {
+    let kilobytes: u64 = df.lines().nth(1)?.split_whitespace().nth(3)?.parse().ok()?;
+    Some(kilobytes / 1024)
+}
+
 /// Targets without a compiled core library: cargo compiles it from the toolchain's source.
 const FROM_SOURCE: [&str; 1] = ["armv4t-none-eabi"];
 
@@ -205,4 +221,16 @@ pub fn flasher_advice(name: &str) -> String {
 fn is_root() -> bool {
     let id = Command::new("id").arg("-u").output();
     id.is_ok_and(|id| id.stdout.trim_ascii() == b"0")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::free_megabytes;
+
+    #[test]
+    fn free_megabytes_are_read_from_df() {
+        let df = "Filesystem     1024-blocks      Used Available Capacity Mounted on\n/dev/vda         263174212  12345678  71234560      15% /\n";
+        assert_eq!(free_megabytes(df), Some(69_565));
+        assert_eq!(free_megabytes("df: no such file\n"), None);
+    }
 }

@@ -30,6 +30,9 @@ use crate::{public_items, publish};
 use cargo::{Workspace, finish, finish_quietly};
 use group::Group;
 
+/// With less no test can be linked. A first run of the daily tests takes about 2,200.
+const LEAST_FREE_MEGABYTES: u64 = 500;
+
 const USAGE: &str = "Usage: cargo xtask test [OPTIONS]
 
 Runs checks and tests. Without options: formatting, lints, the tests on the host, the golden vectors, and one emulated
@@ -79,6 +82,7 @@ impl Plan {
     }
 
     fn run(&self) -> Result<()> {
+        setup::free_disk(LEAST_FREE_MEGABYTES)?;
         let steps = Steps::default();
         steps.run("tools", || self.tools());
         if self.has(Group::Daily) {
