@@ -10,6 +10,7 @@ mod lvgl;
 mod micropython;
 mod python;
 mod readme;
+mod solid;
 mod talk;
 mod turns;
 mod uno;
@@ -26,9 +27,16 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, key clips, rotations, figures, faces, and lips for speech.
-const SOURCES: [&str; 6] =
-    ["src/pantin.c", "src/pantin_keys.c", "src/pantin_turn.c", "src/pantin_figure.c", "src/pantin_face.c", "src/pantin_talk.c"];
+/// The decoder, key clips, rotations, figures, solid ones, faces, and lips for speech.
+const SOURCES: [&str; 7] = [
+    "src/pantin.c",
+    "src/pantin_keys.c",
+    "src/pantin_turn.c",
+    "src/pantin_figure.c",
+    "src/pantin_solid.c",
+    "src/pantin_face.c",
+    "src/pantin_talk.c",
+];
 /// Defined where key clips are to be played.
 const KEYS: &str = "-DPANTIN_KEYS";
 
@@ -196,6 +204,7 @@ impl Bindings {
             Ok(())
         });
         steps.run("lines of figures against the crate's", || figure::lines(&folder));
+        steps.run("solid figures against the crate's", || solid::pictures(&folder));
         steps.run("faces against the crate's", || face::pictures(&folder));
         steps.run("what faces promise", || face::rules(&folder));
         steps.run("memory of faces", || face::memory(&folder));
@@ -401,6 +410,9 @@ impl Target {
         }
         let faces: u64 = self.functions(folder, "src/pantin_face.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {faces} bytes of code for faces");
+        let solid: u64 = self.functions(folder, "src/pantin_solid.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {solid} bytes of code for solid figures");
+        ensure!(solid > 1000 && solid <= solid::MOST_CODE, "solid figures may take {} bytes", solid::MOST_CODE);
         ensure!(faces > 1000 && faces <= face::MOST_CODE, "faces may take {} bytes", face::MOST_CODE);
         let talk: u64 = self.functions(folder, "src/pantin_talk.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {talk} bytes of code for lips for speech");
