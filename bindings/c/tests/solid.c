@@ -98,7 +98,7 @@ static void frames(pantin_player *player) {
         }
     }
     /* Poses that no clip contains. */
-    for (n = 0; n < CHAOS && solid.figure.bone_count; n++) {
+    for (n = 0; n < CHAOS && solid.figure.width; n++) {
         for (c = 0; c < player->clip->rig.channels; c++) {
             x = x * 1664525u + 1013904223u;
             pose[c] = (int32_t)(x & 0xffffff00u) >> (n % 16);
