@@ -1375,10 +1375,33 @@ static int check_states(const pantin_character *c) {
     return check_reach(c);
 }
 
+/* Whether bytes are UTF-8. */
+static int is_text(pantin_source *source, uint32_t at, uint32_t end) {
+    while (at < end) {
+        uint8_t lead = pantin_byte(source, at++), more = (uint8_t)(lead < 0x80 ? 0 : lead < 0xe0 ? 1 : lead < 0xf0 ? 2 : 3), low = 0x80, high = 0xbf;
+        if ((lead >= 0x80 && lead < 0xc2) || lead > 0xf4) return 0;
+        if (lead == 0xe0) low = 0xa0;
+        if (lead == 0xed) high = 0x9f;
+        if (lead == 0xf0) low = 0x90;
+        if (lead == 0xf4) high = 0x8f;
+        for (; more > 0; more--, low = 0x80, high = 0xbf) {
+            uint8_t byte = at < end ? pantin_byte(source, at) : 0;
+            at++;
+            if (byte < low || byte > high) return 0;
+        }
+    }
+    return 1;
+}
+
+/* Checks that the names end where the table does, and that the joints of layers are text. */
 static int check_names(const pantin_character *c) {
     uint32_t at = c->table + layer_at(c, c->counts[LAYERS]);
     uint16_t names = (uint16_t)(c->counts[STATES] + c->counts[PARAMETERS] + c->counts[INPUTS] + c->counts[LAYERS]);
-    for (; names > 0 && at < c->table_end; names--) at += 1u + pantin_byte(c->bank.source, at);
+    for (; names > 0 && at < c->table_end; names--) {
+        uint32_t next = at + 1 + pantin_byte(c->bank.source, at);
+        if (next > c->table_end || (names <= c->counts[LAYERS] && !is_text(c->bank.source, at + 1, next))) return 0;
+        at = next;
+    }
     return names == 0 && at == c->table_end;
 }
 
@@ -1472,7 +1495,7 @@ static pantin_result check_parts(const pantin_character *c) {
     uint32_t start, end;
     pantin_result feet = pantin_find_section(&c->bank, FEET_SECTION, &start, &end);
     if (feet != PANTIN_NOT_FOUND && !(c->without & PANTIN_WITHOUT_FEET)) return feet == PANTIN_OK ? PANTIN_UNSUPPORTED : feet;
-    return c->counts[LAYERS] && !(c->without & PANTIN_WITHOUT_LAYERS) ? PANTIN_UNSUPPORTED : PANTIN_OK;
+    return PANTIN_OK;
 }
 
 pantin_result pantin_character_open(pantin_character *c, pantin_source *source, const pantin_animator_memory *memory, uint8_t without) {
@@ -1734,8 +1757,180 @@ static pantin_result run(pantin_character *c, uint64_t left_ns) {
     return result == PANTIN_OK ? blend(c) : result;
 }
 
+/* ---- Layers ---- */
+
+enum { RESTS = 0, PLAYS, FADES };
+
+/* Whether a name matches a pattern of `length` bytes at `start`, in which * stands for any characters and ? for one. */
+static int matches(pantin_source *source, uint32_t start, uint32_t length, const pantin_name *name) {
+    uint32_t at = 0, from = 0, behind = 0, taken = 0;
+    uint8_t star = 0;
+    while (at < name->length) {
+        uint8_t byte = from < length ? pantin_byte(source, start + from) : 0;
+        if (from < length && byte == '*') {
+            star = 1;
+            behind = ++from;
+            taken = at;
+        } else if (from < length && (byte == '?' || byte == pantin_name_byte(name, at))) {
+            at++;
+            from++;
+        } else if (star) {
+            from = behind;
+            at = ++taken;
+        } else {
+            return 0;
+        }
+    }
+    while (from < length && pantin_byte(source, start + from) == '*') from++;
+    return from == length;
+}
+
+/* Adds the joints and scalars that match a pattern, which " +" follows if joints below those are meant too. */
+static pantin_result add_matching(const pantin_rig *rig, pantin_source *source, uint32_t start, uint32_t end, uint32_t *words) {
+    uint8_t hanging[PANTIN_MAX_JOINTS / 8 + 1], below = 0, found = 0;
+    pantin_joint joint;
+    pantin_scalar scalar;
+    memset(hanging, 0, sizeof hanging);
+    if (end - start >= 2 && pantin_byte(source, end - 2) == ' ' && pantin_byte(source, end - 1) == '+') {
+        below = 1;
+        end -= 2;
+    }
+    pantin_first_joint(&joint, rig);
+    while (pantin_next_joint(&joint)) {
+        uint8_t own = !joint.end_site && matches(source, start, end - start, &joint.name);
+        /* A parent comes before its children. */
+        if (!own && !(below && joint.parent != PANTIN_NO_PARENT && hanging[joint.parent >> 3] >> (joint.parent & 7) & 1)) continue;
+        hanging[joint.index >> 3] = (uint8_t)(hanging[joint.index >> 3] | 1u << (joint.index & 7));
+        words[joint.index >> 5] |= (uint32_t)1 << (joint.index & 31);
+        found |= own;
+    }
+    pantin_first_scalar(&scalar, rig);
+    while (pantin_next_scalar(&scalar)) {
+        uint16_t bit = (uint16_t)(rig->joints + scalar.index);
+        if (!matches(source, start, end - start, &scalar.name)) continue;
+        words[bit >> 5] |= (uint32_t)1 << (bit & 31);
+        found = 1;
+    }
+    if (rig->source->error != PANTIN_OK) return rig->source->error;
+    return found ? PANTIN_OK : PANTIN_NOT_FOUND;
+}
+
+/* The mask of a layer, by the patterns of its name: one a line. */
+static pantin_result find_mask(const pantin_character *c, uint8_t layer, uint32_t *words) {
+    uint32_t at = c->table + layer_at(c, c->counts[LAYERS]), end, line;
+    uint16_t before = (uint16_t)(c->counts[STATES] + c->counts[PARAMETERS] + c->counts[INPUTS] + layer);
+    pantin_source *source = c->bank.source;
+    pantin_result result = PANTIN_OK;
+    for (; before > 0; before--) at += 1u + pantin_byte(source, at);
+    end = at + 1 + pantin_byte(source, at);
+    for (at++, line = at; result == PANTIN_OK && line <= end; line++) {
+        if (line < end && pantin_byte(source, line) != '\n') continue;
+        result = add_matching(&c->bank.rig, source, at, line, words);
+        at = line + 1;
+    }
+    return result;
+}
+
+pantin_result pantin_character_layer(pantin_character *c, pantin_layer *layer, pantin_channel *moving, size_t moving_room, int32_t *values,
+                                     int32_t *sampled, size_t channel_room, uint32_t *words, size_t word_room) {
+    uint8_t index = c->layer_count, i;
+    uint32_t at = layer_at(c, index), needed = ((uint32_t)c->bank.rig.joints + c->bank.rig.scalars + 31) / 32;
+    pantin_result result;
+    if (index >= c->counts[LAYERS]) return PANTIN_NOT_FOUND;
+    memset(layer, 0, sizeof *layer);
+    layer->clip = table_byte(c, at);
+    layer->input = table_byte(c, at + 1);
+    layer->fade_us = table_byte(c, at + 2) * (uint32_t)15625;
+    for (i = 0; i < 8; i++) layer->states |= (uint64_t)table_byte(c, at + 4 + i) << (8 * i);
+    layer->sampled = sampled;
+    layer->words = words;
+    layer->track.speed = PANTIN_SPEED;
+    if (channel_room < c->bank.rig.channels || word_room < needed) return PANTIN_NO_ROOM;
+    memset(words, 0, needed * sizeof *words);
+    result = open_clip(c, layer->clip, &layer->track.clip);
+    if (result == PANTIN_OK) result = find_mask(c, index, words);
+    if (result == PANTIN_OK) result = start_player(&layer->track, moving, moving_room, values, channel_room);
+    if (result == PANTIN_OK) c->layers[c->layer_count++] = layer;
+    return result;
+}
+
+/* Lets a weight go to another one in the time of the layer, at once if that is 0. */
+static void fade_to(pantin_layer *l, uint16_t weight) {
+    l->to = weight;
+    l->left_us = l->fade_us;
+    if (l->fade_us == 0) l->weight = weight;
+}
+
+static void fade(pantin_layer *l, uint32_t elapsed_us) {
+    if (elapsed_us >= l->left_us) {
+        l->weight = l->to;
+        l->left_us = 0;
+    } else {
+        l->weight = (uint16_t)(l->weight + ((int64_t)l->to - l->weight) * elapsed_us / l->left_us);
+        l->left_us -= elapsed_us;
+    }
+}
+
+/* Whether a layer is to go: a loop when its input is let go, another clip when what is left of it is the time that it takes to go. */
+static int is_over(const pantin_character *c, const pantin_layer *l) {
+    const pantin_clip *clip = &l->track.clip;
+    uint32_t next = frame_of(&l->track) + 1;
+    if (clip->looped) return !(c->held & bit_of(l->input));
+    return l->track.ended || (uint64_t)(clip->frames > next ? clip->frames - next : 0) * clip->frame_time_ns <= (uint64_t)l->fade_us * 1000;
+}
+
+/* Puts a layer over the pose of this instant, but not over the root's horizontal place. */
+static pantin_result put_over(pantin_animator *a, const pantin_layer *l) {
+    const pantin_clip *own = &a->track.clip, *its = &l->track.clip;
+    uint16_t g;
+    uint8_t i;
+    memcpy(l->sampled, l->track.player.pose, a->channels * sizeof *l->sampled);
+    add_part(&l->track, 1u << 15, l->sampled);
+    if (own->exponent != its->exponent || own->coding != its->coding) return PANTIN_ERROR_OTHER_RIG;
+    for (g = 0; g < a->group_count && l->weight; g++) {
+        const pantin_group *group = &a->memory->groups[g];
+        if (!(l->words[group->bit >> 5] >> (group->bit & 31) & 1)) continue;
+        mix_group(group->shape, a->pose + group->first, l->sampled + group->first, group->length, l->weight);
+    }
+    for (i = 0; i < 2; i++) {
+        if (a->place_channels[i] != NO_CHANNEL) a->pose[a->place_channels[i]] = 0;
+    }
+    return PANTIN_OK;
+}
+
+static pantin_result update_layer(pantin_character *c, pantin_layer *l, uint32_t elapsed_us) {
+    uint8_t allowed = l->states >> (c->state & 63) & 1;
+    pantin_result result;
+    passage p;
+    uint64_t left_ns;
+    if (l->doing == RESTS) {
+        pantin_clip clip;
+        if (!allowed || !(c->seen & bit_of(l->input))) return PANTIN_OK;
+        result = open_clip(c, l->clip, &clip);
+        if (result == PANTIN_OK) result = start_track(&l->track, &clip, c->animator.channels, 0, PANTIN_SPEED);
+        if (result != PANTIN_OK) return result;
+        fade_to(l, 1u << 15);
+        l->doing = PLAYS;
+    } else {
+        result = advance(&l->track, NULL, (uint64_t)elapsed_us * 1000, &p, &left_ns);
+        if (result != PANTIN_OK) return result;
+        fade(l, elapsed_us);
+    }
+    if (l->doing == PLAYS && (!allowed || is_over(c, l))) {
+        fade_to(l, 0);
+        l->doing = FADES;
+    }
+    if (l->doing == FADES && l->weight == 0) {
+        l->doing = RESTS;
+        return PANTIN_OK;
+    }
+    return put_over(&c->animator, l);
+}
+
 pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) {
     pantin_result result;
+    uint8_t i;
+    if (c->layer_count < c->counts[LAYERS] && !(c->without & PANTIN_WITHOUT_LAYERS)) return PANTIN_UNSUPPORTED;
     c->animator.event_count = 0;
     c->animator.lost = 0;
     c->entered = 0;
@@ -1743,5 +1938,6 @@ pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) 
     c->seen = c->fired | c->held;
     c->fired = 0;
     c->held_before = c->held;
+    for (i = 0; result == PANTIN_OK && i < c->layer_count; i++) result = update_layer(c, c->layers[i], elapsed_us);
     return result;
 }

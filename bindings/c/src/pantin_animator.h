@@ -11,7 +11,7 @@
  *     static pantin_character character;
  *
  *     pantin_memory(&source, moves, sizeof moves);
- *     if (pantin_character_open(&character, &source, &memory, PANTIN_WITHOUT_LAYERS | PANTIN_WITHOUT_FEET) == PANTIN_OK) {
+ *     if (pantin_character_open(&character, &source, &memory, PANTIN_WITHOUT_LAYERS | PANTIN_WITHOUT_BLENDS | PANTIN_WITHOUT_FEET) == PANTIN_OK) {
  *         go = pantin_character_input(&character, "go");
  *         for (;;) {
  *             pantin_character_hold(&character, go, pressed);
@@ -20,7 +20,7 @@
  *         }
  *     }
  *
- * Layers and feet of a bank, and key clips, are not played: the functions below refuse them.
+ * Feet of a bank and key clips are not played: the functions below refuse them.
  */
 #ifndef PANTIN_ANIMATOR_H
 #define PANTIN_ANIMATOR_H
@@ -153,35 +153,54 @@ int pantin_animator_take(pantin_animator *animator, pantin_fired *fired);
 
 /* ---- State machines ----------------------------------------------------------------------------------------------------------------- */
 
-/* What a bank has and a character does not play: without one of these, such a bank is PANTIN_UNSUPPORTED. With it, layers never play; feet can slide and
- * transitions do not wait for them; states that blend play their first clip alone. */
+/* What a character does without although the bank has it. Layers for which no memory was lent never play; feet can slide and transitions do not wait for
+ * them; states that blend play their first clip alone if no memory was lent for the second. A bank with such a part is PANTIN_UNSUPPORTED unless the
+ * program says so. */
 enum { PANTIN_WITHOUT_LAYERS = 1, PANTIN_WITHOUT_FEET = 2, PANTIN_WITHOUT_BLENDS = 4 };
 
 /* An input or a parameter that a table lacks. */
 #define PANTIN_NO_INPUT 255u
+
+/* A layer of a state machine: a clip that an input plays over some joints. */
+typedef struct pantin_layer {
+    pantin_track track;
+    int32_t *sampled;
+    uint32_t *words;  /* a bit for each joint and scalar that it moves */
+    uint64_t states;  /* those in which it may play */
+    uint32_t fade_us, left_us; /* the time in which it comes and goes, and what is left of it */
+    uint16_t weight, to;       /* in 2^-15 */
+    uint8_t clip, input, doing;
+} pantin_layer;
 
 /* A figure that a state machine moves. */
 typedef struct pantin_character {
     pantin_bank bank;
     pantin_animator animator;
     pantin_track *second;       /* of states that blend; NULL without memory for it */
+    pantin_layer *layers[4];    /* those for which memory was lent */
     uint32_t table, table_end;  /* positions, without the CRC */
     uint32_t fired, held, held_before, seen; /* sets of inputs */
     int16_t parameters[8];
     uint8_t counts[8];          /* the table's header */
     uint8_t state;
     uint8_t entered;            /* 1 if the last update entered a state */
-    uint8_t blending, without;
+    uint8_t blending, without, layer_count;
 } pantin_character;
 
 /* Starts the state machine of a bank that fills a source. `without` says which of the bank's parts may be left out. Returns PANTIN_UNSUPPORTED if it has
  * others, PANTIN_NOT_FOUND if it has no state machine, PANTIN_ERROR_MACHINE for a table that contradicts itself, or the errors of
- * pantin_animator_open. A bank with states that blend also needs pantin_character_second. */
+ * pantin_animator_open. A bank with states that blend or layers also needs pantin_character_second or pantin_character_layer. */
 pantin_result pantin_character_open(pantin_character *character, pantin_source *source, const pantin_animator_memory *memory, uint8_t without);
 
 /* Lends what the second clips of blends need: call it right after pantin_character_open. `values` has an element for each channel. */
 pantin_result pantin_character_second(pantin_character *character, pantin_track *track, pantin_channel *moving, size_t moving_room, int32_t *values,
                                       size_t value_room);
+
+/* Lends what the table's next layer needs; the first call is for the first layer. `values` and `sampled` have `channel_room` elements, at least one for
+ * each channel, and `words` one for each 32 joints and scalars. Returns PANTIN_NOT_FOUND if the table has no further layer, or if one of the patterns that
+ * say what it moves matches nothing. */
+pantin_result pantin_character_layer(pantin_character *character, pantin_layer *layer, pantin_channel *moving, size_t moving_room, int32_t *values,
+                                     int32_t *sampled, size_t channel_room, uint32_t *words, size_t word_room);
 
 /* Indices of an input, a parameter and a state by name; PANTIN_NO_INPUT if there is none. */
 uint8_t pantin_character_input(const pantin_character *character, const char *name);
@@ -196,8 +215,8 @@ void pantin_character_hold(pantin_character *character, uint8_t input, int down)
 void pantin_character_set(pantin_character *character, uint8_t parameter, int16_t value);
 
 /* Lets time pass, then takes the transition whose condition holds. Events that were not taken are dropped first. On an error of a clip that cannot be
- * opened, or for which there is too little memory, the old state goes on. Returns PANTIN_UNSUPPORTED if a state blends and the memory for it was
- * neither lent nor declared absent. */
+ * opened, or for which there is too little memory, the old state goes on. Returns PANTIN_UNSUPPORTED if a state blends, or if the bank has layers, and the
+ * memory was neither lent nor declared absent. */
 pantin_result pantin_character_update(pantin_character *character, uint32_t elapsed_us);
 
 #ifdef __cplusplus

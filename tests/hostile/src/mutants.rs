@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use pantin::{ChannelState, Clip, Player, Progress, Stream};
+use pantin::{Bank, ChannelState, Clip, Player, Progress, Stream};
 
 use crate::clips::RIG;
 use crate::fix;
@@ -39,9 +39,34 @@ pub fn key_mutant(noise: &mut Noise, clips: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
+/// A bank damaged in one to three places, with its CRCs mended: of one in two mutants those of its clips too.
+pub fn bank_mutant(noise: &mut Noise, banks: &[Vec<u8>]) -> Vec<u8> {
+    let [input, other] = [0; 2].map(|_| &banks[noise.below(banks.len())]);
+    let mut bytes = noise.damage(input, other, &[]);
+    fix::bank(&mut bytes);
+    if noise.below(2) == 0 {
+        fix::clips_of_bank(&mut bytes);
+    }
+    bytes
+}
+
+/// What `Bank` reads: the number of joints, then for each clip its length and what `Clip` and `Player` read.
+pub fn read_bank(bytes: &[u8]) -> String {
+    let Ok(bank) = Bank::new_checked(bytes) else { return REFUSED.to_owned() };
+    let mut line = format!("{} joints", bank.rig().joint_count());
+    for entry in bank.entries() {
+        let read = bank.open(&entry).map_or(REFUSED.to_owned(), read_clip);
+        let _ = write!(line, "; {} bytes: {read}", entry.bytes().len());
+    }
+    line
+}
+
 /// What `Clip` and `Player` read: one line, whose fields every decoder can print.
 pub fn read(bytes: &[u8]) -> String {
-    let Ok(clip) = Clip::with_rig(bytes, RIG) else { return REFUSED.to_owned() };
+    Clip::with_rig(bytes, RIG).map_or(REFUSED.to_owned(), read_clip)
+}
+
+fn read_clip(clip: Clip<'_>) -> String {
     let (channels, moving) = (clip.rig().channels(), clip.moving());
     let mut line = format!(
         "{} frames of {} ns, exponent {}, looped {}, {} joints, {} channels, {} moving, {} events",

@@ -1,6 +1,7 @@
 //! `cargo xtask bindings [--mutants N]`: tests of the decoder in C, the Arduino library, the decoder in MicroPython and the Python package
 //! (`bindings`), which need compilers for other targets.
 
+mod animator;
 mod arduino;
 mod blender;
 mod face;
@@ -27,8 +28,8 @@ use tempfile::TempDir;
 use xtask::setup;
 use xtask::steps::Steps;
 
-/// The decoder, key clips, rotations, figures, solid ones, faces, and lips for speech.
-const SOURCES: [&str; 7] = [
+/// The decoder, key clips, rotations, figures, solid ones, faces, lips for speech, and the animator.
+const SOURCES: [&str; 8] = [
     "src/pantin.c",
     "src/pantin_keys.c",
     "src/pantin_turn.c",
@@ -36,6 +37,7 @@ const SOURCES: [&str; 7] = [
     "src/pantin_solid.c",
     "src/pantin_face.c",
     "src/pantin_talk.c",
+    "src/pantin_animator.c",
 ];
 /// Defined where key clips are to be played.
 const KEYS: &str = "-DPANTIN_KEYS";
@@ -69,7 +71,11 @@ const TARGETS: [Target; 3] = [
 ];
 
 /// Functions of banks and streams, which the slice decoder does not need.
-const EXTRAS: [&str; 13] = [
+const EXTRAS: [&str; 17] = [
+    "pantin_byte",
+    "pantin_find_event",
+    "pantin_find_section",
+    "pantin_keep_starts",
     "pantin_open_bank",
     "pantin_first_entry",
     "pantin_next_entry",
@@ -210,10 +216,13 @@ impl Bindings {
         steps.run("memory of faces", || face::memory(&folder));
         steps.run("lips for speech against the crate's", || talk::weights(&folder));
         steps.run("lips for speech of espeak-ng", || talk::speech(&folder));
+        steps.run("animators against the crate's", || animator::transitions(&folder));
+        steps.run("state machines against the crate's", || animator::machines(&folder));
         steps.run("a face on the test display of LVGL", lvgl::run);
         steps.run("cuts and flipped bits", || damage(&folder));
         steps.run(&format!("{} mutants", self.mutants), || self.mutants(&folder));
         steps.run(&format!("{} mutants of key clips", self.mutants), || self.key_mutants(&folder));
+        steps.run(&format!("{} mutants of banks", self.mutants), || self.bank_mutants(&folder));
         for target in &TARGETS {
             steps.run(&format!("size with {}", target.compiler), || target.size(&folder));
         }
@@ -253,6 +262,14 @@ impl Bindings {
     fn key_mutants(&self, folder: &TempDir) -> Result<()> {
         let program = host_program_with(folder, "gcc", "mutants", &[KEYS])?;
         let counts = differential::run_keys(&Decoder::Program(program), self.mutants, self.seed, |counts| {
+            xtask::steps::progress("mutants", counts.agreed + counts.refused + counts.differing.len(), self.mutants);
+        })?;
+        no_difference(&counts)
+    }
+
+    fn bank_mutants(&self, folder: &TempDir) -> Result<()> {
+        let program = host_program_with(folder, "gcc", "mutants", &[KEYS])?;
+        let counts = differential::run_banks(&Decoder::Program(program), self.mutants, self.seed, |counts| {
             xtask::steps::progress("mutants", counts.agreed + counts.refused + counts.differing.len(), self.mutants);
         })?;
         no_difference(&counts)
@@ -416,6 +433,9 @@ impl Target {
         ensure!(faces > 1000 && faces <= face::MOST_CODE, "faces may take {} bytes", face::MOST_CODE);
         let talk: u64 = self.functions(folder, "src/pantin_talk.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
         println!("   {talk} bytes of code for lips for speech");
+        let animator: u64 = self.functions(folder, "src/pantin_animator.c", &[])?.iter().map(|(_, bytes)| bytes).sum();
+        println!("   {animator} bytes of code for the animator");
+        ensure!(animator > 1000 && animator <= animator::MOST_CODE, "the animator may take {} bytes", animator::MOST_CODE);
         if let Some(limit) = self.figures {
             ensure!(figure > 1000 && figure <= limit, "figures may take {limit} bytes");
         }
