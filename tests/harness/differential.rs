@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use hostile::mutants::{EVENTS, FRAMES, REFUSED, VALUES, bank_mutant, key_mutant, mutant, read, read_bank};
+use hostile::mutants::{BANK_VALUES, EVENTS, FRAMES, REFUSED, VALUES, bank_mutant, key_mutant, mutant, read, read_bank};
 use hostile::noise::Noise;
 
 use crate::{paths, setup, vectors};
@@ -133,7 +133,8 @@ fn independent(decoder: &Decoder, of: File, clips: &[Vec<u8>]) -> Result<Vec<Str
     let file = folder.path().join("mutants");
     fs::write(&file, all)?;
     let mut command = command(decoder, &file)?;
-    command.args([VALUES, FRAMES, EVENTS].map(|limit| limit.to_string()));
+    let values = if of == File::Bank { BANK_VALUES } else { VALUES };
+    command.args([values, FRAMES, EVENTS].map(|limit| limit.to_string()));
     if of == File::Bank {
         command.arg("banks");
     }

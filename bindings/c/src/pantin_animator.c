@@ -881,7 +881,7 @@ static uint16_t first_with_positions(const pantin_rig *rig) {
     return 0;
 }
 
-pantin_result pantin_animator_open_carried(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier) {
+static pantin_result open_carried(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier) {
     static const pantin_placement nowhere = {{0, 0}, 0};
     pantin_result result;
     memset(a, 0, sizeof *a);
@@ -901,6 +901,12 @@ pantin_result pantin_animator_open_carried(pantin_animator *a, const pantin_clip
     compose(a);
     new_travel(a, &nowhere);
     return PANTIN_OK;
+}
+
+pantin_result pantin_animator_open_carried(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory, uint16_t carrier) {
+    pantin_result result = open_carried(a, clip, memory, carrier);
+    if (result != PANTIN_OK) memset(a, 0, sizeof *a);
+    return result;
 }
 
 pantin_result pantin_animator_open(pantin_animator *a, const pantin_clip *clip, const pantin_animator_memory *memory) {
@@ -941,7 +947,7 @@ static void hold(pantin_animator *a, uint64_t elapsed_ns) {
 
 pantin_result pantin_animator_update(pantin_animator *a, uint32_t elapsed_us) {
     uint64_t left_ns;
-    pantin_result result = play(a, (uint64_t)elapsed_us * 1000, &left_ns);
+    pantin_result result = a->memory ? play(a, (uint64_t)elapsed_us * 1000, &left_ns) : PANTIN_ERROR_HEAD;
     if (result == PANTIN_OK) hold(a, left_ns);
     return result;
 }
@@ -949,7 +955,7 @@ pantin_result pantin_animator_update(pantin_animator *a, uint32_t elapsed_us) {
 pantin_result pantin_animator_step(pantin_animator *a) {
     passage p;
     uint16_t c;
-    pantin_result result = step_track(&a->track, a, &p);
+    pantin_result result = a->memory ? step_track(&a->track, a, &p) : PANTIN_ERROR_HEAD;
     if (result != PANTIN_OK) return result;
     pass(a, &p);
     a->rest_ns = 0;
@@ -970,7 +976,7 @@ pantin_result pantin_animator_step(pantin_animator *a) {
 }
 
 pantin_result pantin_animator_seek(pantin_animator *a, uint32_t frame) {
-    pantin_result result = seek_track(&a->track, frame);
+    pantin_result result = a->memory ? seek_track(&a->track, frame) : PANTIN_ERROR_HEAD;
     if (result != PANTIN_OK) return result;
     compose(a);
     locate(a);
@@ -1137,6 +1143,7 @@ pantin_result pantin_animator_switch(pantin_animator *a, const pantin_clip *clip
     int32_t yaw, turned;
     uint8_t i;
     pantin_result result;
+    if (!a->memory) return PANTIN_ERROR_HEAD;
     if (old.rig.id != clip->rig.id) return PANTIN_ERROR_OTHER_RIG;
     if (kind == PANTIN_CUT) frames = 0;
     yaw = yaw_of(a, a->pose);
@@ -1498,7 +1505,7 @@ static pantin_result check_parts(const pantin_character *c) {
     return PANTIN_OK;
 }
 
-pantin_result pantin_character_open(pantin_character *c, pantin_source *source, const pantin_animator_memory *memory, uint8_t without) {
+static pantin_result open_character(pantin_character *c, pantin_source *source, const pantin_animator_memory *memory, uint8_t without) {
     static const pantin_placement nowhere = {{0, 0}, 0};
     pantin_clip first;
     uint16_t carrier = 0;
@@ -1528,10 +1535,17 @@ pantin_result pantin_character_open(pantin_character *c, pantin_source *source, 
     return result;
 }
 
+pantin_result pantin_character_open(pantin_character *c, pantin_source *source, const pantin_animator_memory *memory, uint8_t without) {
+    pantin_result result = open_character(c, source, memory, without);
+    if (result != PANTIN_OK) memset(c, 0, sizeof *c);
+    return result;
+}
+
 pantin_result pantin_character_second(pantin_character *c, pantin_track *track, pantin_channel *moving, size_t moving_room, int32_t *values,
                                       size_t value_room) {
     state_row row;
     pantin_result result;
+    if (!c->bank.source) return PANTIN_ERROR_HEAD;
     memset(track, 0, sizeof *track);
     track->speed = PANTIN_SPEED;
     read_state(c, c->state, &row);
@@ -1930,6 +1944,7 @@ static pantin_result update_layer(pantin_character *c, pantin_layer *l, uint32_t
 pantin_result pantin_character_update(pantin_character *c, uint32_t elapsed_us) {
     pantin_result result;
     uint8_t i;
+    if (!c->bank.source) return PANTIN_ERROR_HEAD;
     if (c->layer_count < c->counts[LAYERS] && !(c->without & PANTIN_WITHOUT_LAYERS)) return PANTIN_UNSUPPORTED;
     c->animator.event_count = 0;
     c->animator.lost = 0;

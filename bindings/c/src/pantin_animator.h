@@ -20,7 +20,8 @@
  *         }
  *     }
  *
- * Feet of a bank and key clips are not played: the functions below refuse them.
+ * Feet of a bank and key clips are not played: the functions below refuse them. A function that is called for an animator or a character of zeroes, also
+ * after it could not be opened, returns PANTIN_ERROR_HEAD.
  */
 #ifndef PANTIN_ANIMATOR_H
 #define PANTIN_ANIMATOR_H

@@ -554,7 +554,9 @@ static void measure(pantin_solid *s) {
 }
 
 pantin_result pantin_solid_aim(pantin_solid *s, pantin_player *player, const pantin_view *view) {
-    pantin_result result = pantin_figure_aim_for(&s->figure, player, view, cover, s);
+    pantin_result result;
+    if (!s->figure.width) return PANTIN_ERROR_HEAD;
+    result = pantin_figure_aim_for(&s->figure, player, view, cover, s);
     measure(s);
     return result;
 }
@@ -677,7 +679,7 @@ static void find_anchor(const pantin_solid *s, uint8_t kind, int32_t left, ancho
         way(s, p->hips, p->neck, a->axes[1]);
     }
     /* Below 2^15, so that products stay within 32 bits. */
-    a->length = clamp((least(s->pixels, 1 << 14) * pantin_figure_magnification(a->origin[2])) >> 14, 1, (1 << 15) - 1);
+    a->length = clamp((least(s->pixels, 1 << 14) * pantin_figure_magnification(a->origin[2])) >> 14, 1, 32767);
     cross(a->axes[0], a->axes[1], a->axes[2]);
     for (i = 0; i < 3; i++) {
         for (j = 0; j < 3; j++) a->axes[i][j] = (a->axes[i][j] * a->length) >> 15;
@@ -762,6 +764,7 @@ static void sort(pantin_solid *s) {
 }
 
 void pantin_solid_pose(pantin_solid *s, const int32_t *pose) {
+    if (!s->figure.width) return;
     if (s->build == PANTIN_LINES) {
         pantin_figure_pose(&s->figure, pose);
         return;

@@ -84,7 +84,8 @@ pantin_result pantin_solid_look(pantin_solid *solid, const uint8_t *look, size_t
 pantin_result pantin_solid_set_up(pantin_solid *solid, pantin_player *player, uint16_t width, uint16_t height, pantin_joint_info *scratch,
                                   size_t scratch_room);
 
-/* Chooses the camera: see pantin_figure_aim. It makes room for head, hands and attachments unless solid->tight was set to 1. */
+/* Chooses the camera: see pantin_figure_aim. It makes room for head, hands and attachments unless solid->tight was set to 1. PANTIN_ERROR_HEAD for a
+ * figure of zeroes, which was not set up. */
 pantin_result pantin_solid_aim(pantin_solid *solid, pantin_player *player, const pantin_view *view);
 
 /* Places the figure in a pose of the clip's rig and sorts its parts. Parts change places only if their depths differ clearly, so the order can depend

@@ -56,6 +56,10 @@ static void play(const char *script) {
     int count;
     char word;
     pantin_fired fired;
+    if (pantin_animator_update(&animator, 1) != PANTIN_ERROR_HEAD || pantin_animator_step(&animator) != PANTIN_ERROR_HEAD ||
+        pantin_character_update(&character, 1) != PANTIN_ERROR_HEAD || pantin_character_input(&character, "go") != PANTIN_NO_INPUT) {
+        puts("calls before it was opened");
+    }
     if (pantin_animator_open(&animator, &clips[0], &memory) != PANTIN_OK) {
         puts("refused");
         return;
@@ -101,6 +105,7 @@ static void steer(const char *script, pantin_source *source, int blends) {
         opened = pantin_character_layer(&character, &layers[i], layer_moving[i], CHANNELS, layer_values[i], sampled[i], CHANNELS, words[i], 16);
     }
     if (opened != PANTIN_OK) {
+        if (pantin_character_update(&character, 1) == PANTIN_OK) puts("an update before it was opened");
         puts("refused");
         return;
     }

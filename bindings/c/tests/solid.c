@@ -50,6 +50,8 @@ static int set_up(pantin_player *player, uint8_t shot) {
     solid.look = look;
     pantin_figure_memory(&solid.figure, bones, BONES, drives, DRIVES, slots, PANTIN_FIGURE_SLOTS);
     need(draw_solid(PANTIN_L8, bones, 1, 0, 0) == PANTIN_ERROR_HEAD, "nothing is drawn before the set-up");
+    need(pantin_solid_aim(&solid, player, &shots[shot].view) == PANTIN_ERROR_HEAD, "no camera before the set-up");
+    pantin_solid_pose(&solid, player->pose);
     result = pantin_solid_set_up(&solid, player, shots[shot].width, shots[shot].height, scratch, JOINTS);
     if (result != PANTIN_OK) return 0;
     need(pantin_solid_aim(&solid, player, &shots[shot].view) == PANTIN_OK && player->frame == 0, "aim");

@@ -157,8 +157,7 @@ pub fn sum_of(bits: &Picture<BinaryColor>, greys: &Picture<Gray8>, colours: &Pic
     let width = bits.width;
     let mut hash = START;
     for row in bits.pixels.chunks(width) {
-        let byte =
-            |eight: &[BinaryColor]| eight.iter().enumerate().map(|(x, pixel)| u8::from(pixel.is_on()) << (7 - x)).sum();
+        let byte = |eight: &[BinaryColor]| eight.iter().enumerate().map(|(x, pixel)| u8::from(pixel.is_on()) << (7 - x)).sum();
         hash = fold(hash, &row.chunks(8).map(byte).collect::<Vec<u8>>());
     }
     for row in bits.pixels.chunks(width) {

@@ -1,10 +1,10 @@
 //! Repairs what the first checks would refuse, and nothing else.
 
+use pantin::Bank;
 use pantin::codec::keys::{KEY_FLAGS, KEY_VERSION};
 use pantin::codec::layout::{
     BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, HAS_SECTIONS, KNOWN_FLAGS, MAGIC, VERSION, section,
 };
-use pantin::Bank;
 use pantin::codec::{crc, varint};
 
 /// Makes the CRC of a rig or of event names right, if they are long enough to have one.

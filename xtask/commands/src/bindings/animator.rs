@@ -67,10 +67,14 @@ pub fn transitions(folder: &TempDir) -> Result<()> {
     let (programs, mut lines, mut forms) = (programs(folder)?, 0, 0);
     for (rig, bytes) in &groups {
         let clips: Vec<Clip> = bytes.iter().filter_map(|bytes| Clip::new_checked(bytes).ok()).collect();
-        let own = clips.iter().enumerate().filter(|(at, clip)| clips[..*at].iter().all(|before| before.form_ref() != clip.form_ref()));
+        let own =
+            clips.iter().enumerate().filter(|(at, clip)| clips[..*at].iter().all(|before| before.form_ref() != clip.form_ref()));
         forms += own.count() - 1;
-        let paths: Vec<PathBuf> =
-            bytes.iter().enumerate().map(|(at, bytes)| write(folder, &format!("{rig:08x}-{at}.ptn"), bytes)).collect::<Result<_>>()?;
+        let paths: Vec<PathBuf> = bytes
+            .iter()
+            .enumerate()
+            .map(|(at, bytes)| write(folder, &format!("{rig:08x}-{at}.ptn"), bytes))
+            .collect::<Result<_>>()?;
         for seed in 0..SCRIPTS {
             let text = reference::script(&clips, LINES, &mut Sequence(seed));
             let (script, expected) = (write(folder, "script", &text)?, reference::play(&clips, &text));

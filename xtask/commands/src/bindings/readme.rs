@@ -38,7 +38,10 @@ pub fn run(folder: &TempDir) -> Result<()> {
         let source = place.join(format!("further-{index}.c"));
         std::fs::write(&source, program)?;
         let mut gcc = Command::new("gcc");
-        gcc.current_dir(&place).args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Isrc", "-I.", "-c"]).arg(&source).args(["-o", "further.o"]);
+        gcc.current_dir(&place)
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Isrc", "-I.", "-c"])
+            .arg(&source)
+            .args(["-o", "further.o"]);
         output(gcc)?;
     }
     println!("   {} frames, {} further programs", expected.lines().count(), others.len());

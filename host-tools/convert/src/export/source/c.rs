@@ -38,7 +38,10 @@ pub fn c_header_of_bank(bank: &Bank, bytes: &[u8], stem: &str) -> Result<String>
 /// A C header with the bytes of a character of the solid figure, whose names are made of `stem`.
 pub fn c_header_of_look(bytes: &[u8], stem: &str) -> String {
     let name = format!("LOOK_{}", identifier(stem));
-    let rows: String = bytes.chunks(24).map(|row| format!("    {}\n", row.iter().map(|byte| format!("{byte},")).collect::<Vec<_>>().join(" "))).collect();
+    let rows: String = bytes
+        .chunks(24)
+        .map(|row| format!("    {}\n", row.iter().map(|byte| format!("{byte},")).collect::<Vec<_>>().join(" ")))
+        .collect();
     format!(
         "/* A character of {} bytes for pantin_solid_look. Written by `pantin expand`. */\n#ifndef PANTIN_{name}_H\n#define PANTIN_{name}_H\n\n#define {name}_LEN {}\n\nstatic const unsigned char {name}[{name}_LEN] = {{\n{rows}}};\n\n#endif\n",
         bytes.len(),

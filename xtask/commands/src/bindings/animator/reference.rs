@@ -64,7 +64,11 @@ pub fn inputs(table: &Table<'_>, updates: u32, numbers: &mut Sequence) -> String
         if numbers.below(8) == 0 && parameters > 0 {
             let parameter = numbers.below(parameters);
             let [least, most, _] = table.range(parameter as u8);
-            let _ = writeln!(text, "s {parameter} {}", numbers.between(i32::from(least) - 3, i32::from(most) + 3).clamp(-32768, 32767));
+            let _ = writeln!(
+                text,
+                "s {parameter} {}",
+                numbers.between(i32::from(least) - 3, i32::from(most) + 3).clamp(-32768, 32767)
+            );
         }
         let most = if numbers.below(20) == 0 { 5_000_000 } else { 50_000 };
         let _ = writeln!(text, "u {}", numbers.below(most));
@@ -97,7 +101,8 @@ pub fn with_table(bank: &[u8], clips: u32, numbers: &mut Sequence) -> Vec<u8> {
     let [states, parameters, inputs] = [1 + numbers.below(5), numbers.below(3), 1 + numbers.below(4)];
     let [own, any] = [numbers.below(3), numbers.below(3)];
     let transitions = any + own * states;
-    let mut body = vec![1, states as u8, transitions as u8, parameters as u8, inputs as u8, numbers.below(states) as u8, any as u8, 0];
+    let mut body =
+        vec![1, states as u8, transitions as u8, parameters as u8, inputs as u8, numbers.below(states) as u8, any as u8, 0];
     let layers = numbers.below(3);
     body[7] = layers as u8;
     for state in 0..states {
@@ -161,7 +166,11 @@ fn print(text: &mut String, animator: &mut Animator<'_, '_>) {
     let track = animator.track();
     let (frame, part, speed, ended) = (track.frame(), track.part().to_bits(), track.speed().to_bits(), u8::from(track.ended()));
     let Placement { place: [a, b], heading } = animator.placement();
-    let hash = animator.pose().values.iter().fold(0x811c_9dc5u32, |hash, &value| (hash ^ value.cast_unsigned()).wrapping_mul(0x0100_0193));
+    let hash = animator
+        .pose()
+        .values
+        .iter()
+        .fold(0x811c_9dc5u32, |hash, &value| (hash ^ value.cast_unsigned()).wrapping_mul(0x0100_0193));
     let left = animator.transition_left();
     let _ = write!(text, "{frame} {part} {speed} {ended} {left} {a} {b} {} {hash:08x}", heading.to_bits());
     for fired in animator.events().iter() {
@@ -183,13 +192,15 @@ pub fn play(clips: &[Clip<'_>], script: &str) -> String {
         match word {
             "w" => {
                 let frames = numbers[4] as u8;
-                let transition = [Transition::Cut, Transition::Inertialized(frames), Transition::Faded(frames)][numbers[3] as usize];
+                let transition =
+                    [Transition::Cut, Transition::Inertialized(frames), Transition::Faded(frames)][numbers[3] as usize];
                 let speed = I16F16::from_bits(numbers[2] as i32);
                 refused = animator.switch(clips[numbers[0] as usize], numbers[1] as u32, speed, transition).is_err();
             }
             "k" => animator.seek(numbers[0] as u32),
             "v" => animator.set_speed(I16F16::from_bits(numbers[0] as i32)),
-            "s" => animator.set_placement(Placement { place: [numbers[0], numbers[1]], heading: Angle::from_bits(numbers[2] as i32) }),
+            "s" => animator
+                .set_placement(Placement { place: [numbers[0], numbers[1]], heading: Angle::from_bits(numbers[2] as i32) }),
             "p" => drop(animator.step()),
             _ => drop(animator.update(numbers[0] as u32)),
         }
