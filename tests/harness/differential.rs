@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use hostile::mutants::{EVENTS, FRAMES, REFUSED, VALUES, key_mutant, mutant, read};
+use hostile::mutants::{BANK_VALUES, EVENTS, FRAMES, REFUSED, VALUES, bank_mutant, key_mutant, mutant, read, read_bank};
 use hostile::noise::Noise;
 
 use crate::{paths, setup, vectors};
@@ -53,9 +53,13 @@ impl Counts {
 
     /// Adds the comparison of more mutants with another decoder.
     pub fn add_read_by(&mut self, decoder: &Decoder, mutants: Vec<Vec<u8>>) -> Result<()> {
-        let independent = independent(decoder, &mutants)?;
+        self.compare(decoder, File::Clip, mutants)
+    }
+
+    fn compare(&mut self, decoder: &Decoder, of: File, mutants: Vec<Vec<u8>>) -> Result<()> {
+        let independent = independent(decoder, of, &mutants)?;
         for (bytes, independent) in mutants.into_iter().zip(independent) {
-            let rust = read(&bytes);
+            let rust = if of == File::Bank { read_bank(&bytes) } else { read(&bytes) };
             match (rust == independent, rust == REFUSED) {
                 (true, true) => self.refused += 1,
                 (true, false) => self.agreed += 1,
@@ -68,39 +72,58 @@ impl Counts {
 
 /// Compares `count` mutants of the golden vectors; `seed` selects which. `after_batch` receives the counts so far.
 pub fn run(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&Counts)) -> Result<Counts> {
-    compare(decoder, (&vectors::folder(), mutant), count, seed, after_batch)
+    compare(decoder, (File::Clip, clips(&vectors::folder())?, mutant), count, seed, after_batch)
 }
 
 /// Compares `count` mutants of the vectors of key clips; otherwise like [`run`].
 pub fn run_keys(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&Counts)) -> Result<Counts> {
-    compare(decoder, (&vectors::keyed::folder(), key_mutant), count, seed, after_batch)
+    compare(decoder, (File::Clip, clips(&vectors::keyed::folder())?, key_mutant), count, seed, after_batch)
 }
 
-/// A folder of vectors, and how one is damaged.
-type Source<'a> = (&'a Path, fn(&mut Noise, &[Vec<u8>]) -> Vec<u8>);
+/// Compares `count` mutants of the vectors' bank and of our character's; otherwise like [`run`].
+pub fn run_banks(decoder: &Decoder, count: usize, seed: u64, after_batch: impl FnMut(&Counts)) -> Result<Counts> {
+    let small = fs::read(vectors::folder().join("bank.ptb"))?;
+    let large = fs::read(paths::root().join("motions/character.ptb"))?;
+    // The small one is read in less time.
+    let banks = vec![small.clone(), small.clone(), small, large];
+    compare(decoder, (File::Bank, banks, bank_mutant), count, seed, after_batch)
+}
+
+/// What is damaged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum File {
+    Clip,
+    Bank,
+}
+
+/// Files, and how one is damaged.
+type Source = (File, Vec<Vec<u8>>, fn(&mut Noise, &[Vec<u8>]) -> Vec<u8>);
+
+/// The clips of a folder of vectors.
+fn clips(folder: &Path) -> Result<Vec<Vec<u8>>> {
+    Ok(vectors::load(folder)?.into_iter().map(|vector| vector.clip).collect())
+}
 
 fn compare(
     decoder: &Decoder,
-    (folder, damaged): Source<'_>,
+    (of, files, damaged): Source,
     count: usize,
     seed: u64,
     mut after_batch: impl FnMut(&Counts),
 ) -> Result<Counts> {
-    let vectors = vectors::load(folder)?;
-    let clips: Vec<Vec<u8>> = vectors.into_iter().map(|vector| vector.clip).collect();
     let mut noise = Noise::new(seed);
     let (mut counts, mut left) = (Counts::default(), count);
     while left > 0 {
         let batch = left.min(BATCH);
-        counts.add_read_by(decoder, (0..batch).map(|_| damaged(&mut noise, &clips)).collect())?;
+        counts.compare(decoder, of, (0..batch).map(|_| damaged(&mut noise, &files)).collect())?;
         left -= batch;
         after_batch(&counts);
     }
     Ok(counts)
 }
 
-/// What another decoder reads of each clip.
-fn independent(decoder: &Decoder, clips: &[Vec<u8>]) -> Result<Vec<String>> {
+/// What another decoder reads of each clip or bank.
+fn independent(decoder: &Decoder, of: File, clips: &[Vec<u8>]) -> Result<Vec<String>> {
     let mut all = vec![];
     for clip in clips {
         all.extend_from_slice(&(clip.len() as u32).to_le_bytes());
@@ -110,8 +133,12 @@ fn independent(decoder: &Decoder, clips: &[Vec<u8>]) -> Result<Vec<String>> {
     let file = folder.path().join("mutants");
     fs::write(&file, all)?;
     let mut command = command(decoder, &file)?;
-    let output =
-        command.args([VALUES, FRAMES, EVENTS].map(|limit| limit.to_string())).output().context("cannot start the decoder")?;
+    let values = if of == File::Bank { BANK_VALUES } else { VALUES };
+    command.args([values, FRAMES, EVENTS].map(|limit| limit.to_string()));
+    if of == File::Bank {
+        command.arg("banks");
+    }
+    let output = command.output().context("cannot start the decoder")?;
     ensure!(output.status.success(), "the independent decoder fails: {}", String::from_utf8_lossy(&output.stderr));
     let lines: Vec<String> = String::from_utf8(output.stdout)?.lines().map(str::to_owned).collect();
     ensure!(lines.len() == clips.len(), "{} lines for {} clips", lines.len(), clips.len());

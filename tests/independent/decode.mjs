@@ -304,8 +304,8 @@ export function decode(clipBytes, tables, rigBytes, { index: withSnapshots = tru
   return clip;
 }
 
-/** Reads a bank [16]: its rig, and its clips in their order, each with the bytes of its file. */
-export function decodeBank(bytes, tables) {
+/** Reads a bank [16]: its rig, and its clips in their order, each with the bytes of its file. A damaged clip is an error unless `each` catches it. */
+export function decodeBank(bytes, tables, each = (open) => open(), options = {}) {
   const file = new Fields(bytes, "bank"), [P, b, version] = file.take(3), sections = new Map();
   need(P === 0x50 && b === 0x62, "The file does not begin with the magic of a bank.");
   need(version === VERSION || version === KEY_VERSION, "The bank's version is unknown.");
@@ -321,8 +321,10 @@ export function decodeBank(bytes, tables) {
   while (entries.at < end) {
     const name = entries.name(), clip = clips.take(entries.varint());
     need(name !== "", "A clip of the bank has no name.");
-    need(!(clip[3] & HAS_RIG), "A clip of the bank holds a rig.");
-    found.push({ name, bytes: clip, clip: decode(clip, tables, sections.get(1)) });
+    found.push({ name, bytes: clip, clip: each(() => {
+      need(!(clip[3] & HAS_RIG), "A clip of the bank holds a rig.");
+      return decode(clip, tables, sections.get(1), options);
+    }) });
   }
   need(found.length > 0 && clips.at === sections.get(3).length, "The bank is empty, or its clips are longer than its contents say.");
   return { rig: readRig(sections.get(1), tables), clips: found };

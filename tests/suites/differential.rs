@@ -8,6 +8,8 @@ use pantin::codec::layout::{BLOCK_BYTES, CRC_BYTES, HAS_EVENTS, HAS_RIG};
 
 /// Mutants of the golden vectors: a few seconds.
 const MUTANTS: usize = 4000;
+/// Mutants of banks, which have many clips.
+const BANKS: usize = 600;
 
 /// Fails with the first of the differences.
 fn alike(counts: &Counts) {
@@ -62,6 +64,17 @@ fn mutants_of_the_golden_vectors_are_read_alike() {
     println!("{} agreed, {} refused", counts.agreed, counts.refused);
     alike(&counts);
     assert!(counts.agreed > MUTANTS / 4 && counts.refused > MUTANTS / 20, "{} agreed, {} refused", counts.agreed, counts.refused);
+}
+
+#[test]
+fn mutants_of_banks_are_read_alike() {
+    if setup::host_only("the independent decoder") {
+        return;
+    }
+    let counts = differential::run_banks(&Decoder::JavaScript, BANKS, 1, |_| {}).unwrap();
+    println!("{} agreed, {} refused", counts.agreed, counts.refused);
+    alike(&counts);
+    assert!(counts.agreed > BANKS / 4 && counts.refused > BANKS / 20, "{} agreed, {} refused", counts.agreed, counts.refused);
 }
 
 /// Payloads that end before, at and after the end of the last event: in the second block, and with the last byte of the first.

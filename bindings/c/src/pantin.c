@@ -2,7 +2,7 @@
  *
  * All arithmetic of the format is done on uint32_t, which wraps. Every byte is read through a source's window, so that one code serves
  * memory, pages and streams. A failed read yields 0 and sets the source's `error`; functions that change state check it before they commit. */
-#include "pantin.h"
+#include "pantin_parts.h"
 #include "pantin_tables.h"
 #ifdef PANTIN_KEYS
 #include "pantin_keys.h"
@@ -627,6 +627,17 @@ int pantin_next_event(pantin_event *event) {
     return 1;
 }
 
+pantin_result pantin_find_event(const pantin_clip *clip, const char *name, uint32_t *id) {
+    fields f = fields_of(clip->source, clip->names, clip->names_end);
+    clip->source->error = PANTIN_OK;
+    for (*id = 0; f.position < f.end && clip->source->error == PANTIN_OK; ++*id) {
+        pantin_name own;
+        field_name(&f, &own);
+        if (own.length && pantin_name_is(&own, name)) return PANTIN_OK;
+    }
+    return clip->source->error != PANTIN_OK ? clip->source->error : PANTIN_NOT_FOUND;
+}
+
 int pantin_event_name(const pantin_clip *clip, uint32_t id, pantin_name *name) {
     fields f = fields_of(clip->source, clip->names, clip->names_end);
     clip->source->error = PANTIN_OK;
@@ -722,7 +733,7 @@ static void start_channel(pantin_player *p, uint8_t kind, int32_t rest) {
             leader = NO_LEADER;
         } else if (m < p->moving_room) {
             const pantin_channel *of = &p->moving[m - leader];
-            position = (uint32_t)p->pose[of->channel];
+            position = p->starts_alone ? of->w : (uint32_t)p->pose[of->channel];
             velocity = of->v;
         }
     } else if (status != RESTS) {
@@ -733,9 +744,12 @@ static void start_channel(pantin_player *p, uint8_t kind, int32_t rest) {
         if (status == MOVES) velocity = magnitude(r, pantin_velocity) * channel_step(step, 2);
     }
     if (r->source->error != PANTIN_OK) return;
-    p->pose[p->resume] = (int32_t)position;
+    if (!p->starts_alone) p->pose[p->resume] = (int32_t)position;
     if (status >= MOVES) {
-        if (m < p->moving_room) {
+        if (m < p->moving_room && p->starts_alone) {
+            p->moving[m].w = position;
+            p->moving[m].k = 0;
+        } else if (m < p->moving_room) {
             pantin_channel *c = &p->moving[m];
             memset(c, 0, sizeof *c);
             c->v = velocity;
@@ -822,6 +836,12 @@ pantin_result pantin_restart(pantin_player *p) {
     reader_of(&p->reader, clip->source, clip->start, clip->end, clip->symbols);
     pantin_first_joint(&p->joint, &clip->rig);
     return pantin_continue(p);
+}
+
+pantin_result pantin_keep_starts(const pantin_player *player) {
+    pantin_player starts = *player;
+    starts.starts_alone = 1;
+    return pantin_restart(&starts);
 }
 
 pantin_result pantin_start(pantin_player *player, const pantin_clip *clip, int32_t *pose, size_t pose_room, pantin_channel *moving,
@@ -1048,6 +1068,30 @@ pantin_result pantin_open_bank(pantin_bank *bank, pantin_source *source) {
         bank->clips++;
     }
     if (bank->clips == 0 || total != length[3]) fail(source, PANTIN_ERROR_BANK);
+    return source->error;
+}
+
+uint8_t pantin_byte(pantin_source *source, uint32_t position) { return byte_at(source, position); }
+
+pantin_result pantin_find_section(const pantin_bank *bank, uint8_t type, uint32_t *start, uint32_t *end) {
+    pantin_source *source = bank->source;
+    fields f = fields_of(source, 3, source->length);
+    uint8_t seen = 0;
+    source->error = PANTIN_OK;
+    while (f.position < f.end && source->error == PANTIN_OK) {
+        uint8_t own = field(&f);
+        uint32_t bytes = field_varint(&f), at = skip(&f, bytes);
+        if (own != type) continue;
+        if (seen) return PANTIN_ERROR_BANK;
+        seen = 1;
+        *start = at;
+        *end = at + bytes;
+    }
+    if (source->error != PANTIN_OK) return source->error;
+    if (!seen) return PANTIN_NOT_FOUND;
+    if (*end - *start < CRC_BYTES) return PANTIN_ERROR_LENGTH;
+    *end -= CRC_BYTES;
+    check_crc(source, *start, *end, CRC_START);
     return source->error;
 }
 

@@ -50,7 +50,9 @@ typedef enum pantin_result {
     PANTIN_ERROR_NO_RIG,   /* the clip has no rig and none was supplied */
     PANTIN_ERROR_OTHER_RIG, /* the clip is of another rig than the one supplied */
     PANTIN_ERROR_HEAD,     /* a value of the motion's head is out of its bounds */
-    PANTIN_ERROR_BANK      /* the sections of a bank contradict each other */
+    PANTIN_ERROR_BANK,     /* the sections of a bank contradict each other */
+    PANTIN_ERROR_MACHINE,  /* the table of a state machine contradicts itself or the bank */
+    PANTIN_UNSUPPORTED     /* the bank has what this function cannot play: pantin_animator.h lists it */
 } pantin_result;
 
 /* Kinds of channels (section 2). */
@@ -238,6 +240,9 @@ int pantin_next_event(pantin_event *event);
 /* Finds the name of an event's id. Returns 1, or 0 if the id has no name. */
 int pantin_event_name(const pantin_clip *clip, uint32_t id, pantin_name *name);
 
+/* Finds the id of an event's name. Returns PANTIN_NOT_FOUND if no id has it. */
+pantin_result pantin_find_event(const pantin_clip *clip, const char *name, uint32_t *id);
+
 /* ---- Player ------------------------------------------------------------------------------------------------------------------------- */
 
 /* The state of a moving channel: 20 bytes. Its value is in the pose. */
@@ -272,6 +277,7 @@ typedef struct pantin_player {
     uint16_t moving_room;
     uint16_t resume;        /* the channel to go on with if bytes were missing; of a key clip: channels with keys */
     uint8_t started;        /* 1 once all channels have their start values */
+    uint8_t starts_alone;   /* 1 in a copy that reads the values at frame 0 */
     uint8_t last_status, last_step[2];
     uint8_t last_of_kind[14];
     pantin_reader reader;
@@ -336,6 +342,10 @@ pantin_result pantin_open_entry(pantin_clip *clip, const pantin_entry *entry);
 
 /* Opens a clip by name. Returns PANTIN_NOT_FOUND if there is none. */
 pantin_result pantin_open_named(pantin_clip *clip, const pantin_bank *bank, const char *name);
+
+/* Finds the section of an application's type in a bank: the positions of its first byte and of the CRC that ends it, which is checked. Returns
+ * PANTIN_NOT_FOUND if there is none, PANTIN_ERROR_BANK if there are several. */
+pantin_result pantin_find_section(const pantin_bank *bank, uint8_t type, uint32_t *start, uint32_t *end);
 
 /* ---- Stream ------------------------------------------------------------------------------------------------------------------------- */
 

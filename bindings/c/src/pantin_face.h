@@ -32,6 +32,7 @@
 #define PANTIN_FACE_H
 
 #include "pantin.h"
+#include "pantin_format.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,14 +52,8 @@ extern "C" {
 #define PANTIN_FACE_WORDS(vertices, channels) \
     (((vertices) * 11 + 3 + PANTIN_FACE_SHAPES * 12 + ((vertices) > 128 ? PANTIN_FACE_OUTLINE * 5 : 0) + (channels) * 36) / 4 + 2)
 
-/* Formats of rows. A row begins at a byte; of 16-bit formats at an even address. */
-typedef enum pantin_face_format {
-    PANTIN_I1 = 0,         /* a bit a pixel, the left one in the highest bit: LVGL, drawBitmap of Adafruit_GFX */
-    PANTIN_I1_LSB,         /* a bit a pixel, the left one in the lowest bit: XBM, U8g2 */
-    PANTIN_L8,             /* a byte a pixel: brightness */
-    PANTIN_RGB565,         /* 16 bits a pixel, red in the highest five, in the processor's byte order */
-    PANTIN_RGB565_SWAPPED  /* the same with both bytes exchanged: what many displays take by SPI */
-} pantin_face_format;
+/* Formats of rows: see pantin_format.h. */
+typedef pantin_format pantin_face_format;
 
 /* An emote: a clip that drives a face, by its name. */
 typedef struct pantin_emote {

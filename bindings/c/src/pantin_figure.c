@@ -2,7 +2,7 @@
  *
  * The steps and the rounding are those of the crate pantin-figure, so that both draw the same pixels. Sums that damaged clips can make overflow
  * are taken on uint32_t. The right shift of a negative number is taken to round down, as it does with every compiler for small machines. */
-#include "pantin_figure.h"
+#include "pantin_figure_parts.h"
 #include "pantin_figure_tables.h"
 
 typedef char right_shift_rounds_down[(-1 >> 1) == -1 ? 1 : -1];
@@ -76,19 +76,23 @@ static uint8_t bits_of_largest(const int32_t *v, uint8_t count) {
     return bits_of(all);
 }
 
-static int32_t length_of(const int16_t *v) {
-    int32_t wide[3];
-    uint8_t shift, i;
+int32_t pantin_figure_length(const int32_t *v) {
+    uint8_t shift = bits_of_largest(v, 3), i;
     uint32_t square = 0;
-    for (i = 0; i < 3; i++) wide[i] = v[i];
-    shift = bits_of_largest(wide, 3);
     shift = (uint8_t)(shift > 15 ? shift - 15 : 0);
-    for (i = 0; i < 3; i++) square += size_of(wide[i] >> shift) * size_of(wide[i] >> shift);
+    for (i = 0; i < 3; i++) square += size_of(v[i] >> shift) * size_of(v[i] >> shift);
     return (int32_t)(integer_root(square) << shift);
 }
 
+static int32_t length_of(const int16_t *v) {
+    int32_t wide[3];
+    uint8_t i;
+    for (i = 0; i < 3; i++) wide[i] = v[i];
+    return pantin_figure_length(wide);
+}
+
 /* The direction of a vector in Q15. Returns 0 for a vector of no length. */
-static int direction(int32_t *v) {
+int pantin_figure_direction(int32_t *v) {
     uint8_t bits = bits_of_largest(v, 3), i;
     uint32_t square = 0;
     int32_t length;
@@ -144,14 +148,14 @@ static void turn(int32_t (*r)[3], uint8_t axis, int32_t angle) {
 }
 
 /* The image of a vector whose components are within 2^15 and whose length is below 2^16. */
-static void apply(int32_t (*r)[3], const int32_t *v, int32_t *to) {
+void pantin_figure_apply(int32_t (*r)[3], const int32_t *v, int32_t *to) {
     int32_t x = v[0], y = v[1], z = v[2];
     uint8_t i;
     for (i = 0; i < 3; i++) to[i] = (r[0][i] * x + r[1][i] * y + r[2][i] * z + HALF) >> FRACTION;
 }
 
 /* The image of a vector of any length: cut off at 2^29. */
-static void apply_any(int32_t (*r)[3], const int32_t *v, int32_t *to) {
+void pantin_figure_apply_any(int32_t (*r)[3], const int32_t *v, int32_t *to) {
     int32_t high[3], low[3];
     uint8_t i, wide = 0;
     for (i = 0; i < 3; i++) {
@@ -160,10 +164,10 @@ static void apply_any(int32_t (*r)[3], const int32_t *v, int32_t *to) {
         low[i] = v[i] & 0x7fff;
     }
     if (!wide) {
-        apply(r, v, to);
+        pantin_figure_apply(r, v, to);
         return;
     }
-    apply(r, low, low);
+    pantin_figure_apply(r, low, low);
     for (i = 0; i < 3; i++) to[i] = r[0][i] * high[0] + r[1][i] * high[1] + r[2][i] * high[2] + low[i];
 }
 
@@ -172,6 +176,13 @@ static void apply_any(int32_t (*r)[3], const int32_t *v, int32_t *to) {
 static int32_t scaled(int32_t x, int32_t factor) { return (x * (factor >> 7) + ((x * (factor & 0x7f)) >> 7) + HALF) >> FRACTION; }
 
 static int32_t twice(int32_t q30) { return (q30 + 8192) >> 14; }
+
+int32_t pantin_figure_inverse_length(uint32_t square) {
+    uint32_t above = square > 0x40000000u ? square - 0x40000000u : 0;
+    int16_t index = (int16_t)(above >> 23);
+    int32_t from = PANTIN_I32(pantin_inverse_root + index);
+    return from + (((PANTIN_I32(pantin_inverse_root + index + 1) - from) * (int32_t)((above >> 8) & 0x7fff)) >> FRACTION);
+}
 
 /* Turns a rotation by a quaternion w, x, y, z of length 1 in Q15. */
 static void turn_unit(int32_t (*r)[3], const int32_t *q) {
@@ -186,7 +197,7 @@ static void turn_unit(int32_t (*r)[3], const int32_t *q) {
     local[2][0] = twice(x * z + w * y);
     local[2][1] = twice(y * z - w * x);
     local[2][2] = ONE - twice(x * x + y * y);
-    for (i = 0; i < 3; i++) apply(r, local[i], local[i]);
+    for (i = 0; i < 3; i++) pantin_figure_apply(r, local[i], local[i]);
     memcpy(r, local, sizeof local);
 }
 
@@ -221,16 +232,13 @@ static uint32_t square_of(const int32_t *q, int16_t shift) {
 
 static void turn_quaternion(int32_t (*r)[3], int32_t *q) {
     uint8_t bits = bits_of_largest(q, 4), i;
-    int16_t shift = (int16_t)(bits - 15), index;
+    int16_t shift = (int16_t)(bits - 15);
     uint32_t square;
-    int32_t from, inverse;
+    int32_t inverse;
     if (bits == 0) return;
     square = square_of(q, shift);
     if (square < 0x40000000u) square = square_of(q, --shift);
-    square = square > 0x40000000u ? square - 0x40000000u : 0;
-    index = (int16_t)(square >> 23);
-    from = PANTIN_I32(pantin_inverse_root + index);
-    inverse = from + (((PANTIN_I32(pantin_inverse_root + index + 1) - from) * (int32_t)((square >> 8) & 0x7fff)) >> FRACTION);
+    inverse = pantin_figure_inverse_length(square);
     for (i = 0; i < 4; i++) q[i] = scaled(shift_right(q[i], shift), inverse);
     turn_unit(r, q);
 }
@@ -243,13 +251,17 @@ static uint8_t lower(const pantin_name *name, uint32_t i) {
     return (uint8_t)(c >= 'A' && c <= 'Z' ? c + 32 : c);
 }
 
-/* Returns 1 if a name contains "head", in any case. */
-static uint8_t names_head(const pantin_name *name) {
-    uint32_t i;
-    for (i = 0; i + 4 <= name->length; i++) {
-        if (lower(name, i) == 'h' && lower(name, i + 1) == 'e' && lower(name, i + 2) == 'a' && lower(name, i + 3) == 'd') return 1;
+uint8_t pantin_figure_names(const pantin_name *name, const char *words) {
+    for (;;) {
+        uint32_t i;
+        uint8_t j;
+        for (i = 0; i < name->length; i++) {
+            for (j = 0; words[j] && words[j] != '|' && lower(name, i + j) == (uint8_t)words[j]; j++) {}
+            if (!words[j] || words[j] == '|') return 1;
+        }
+        while (*words && *words != '|') words++;
+        if (!*words++) return 0;
     }
-    return 0;
 }
 
 /* Length of the word for a side with which a name goes on at `start`, or 0. */
@@ -383,7 +395,7 @@ static void read_table(table *t, const pantin_rig *rig, const int32_t *pose, int
     pantin_first_joint(&joint, rig);
     while (next_joint(&joint)) {
         pantin_joint_info *info = &t->of[joint.index];
-        uint8_t head = (uint8_t)(!has_head && names_head(&joint.name));
+        uint8_t head = (uint8_t)(!has_head && pantin_figure_names(&joint.name, "head|kopf"));
         has_head |= head;
         memset(info, 0, sizeof *info);
         info->finger = NO_FINGER;
@@ -599,8 +611,7 @@ static pantin_result add_joint(pantin_figure *f, const pantin_clip *clip, const 
     return PANTIN_OK;
 }
 
-/* Moves a cursor to a joint of the rig. Returns 0 if it cannot be read. */
-static int go_to(pantin_joint *joint, const pantin_rig *rig, uint8_t index) {
+int pantin_figure_go_to(pantin_joint *joint, const pantin_rig *rig, uint8_t index) {
     if (joint->index == 0xffff || joint->index > index) pantin_first_joint(joint, rig);
     while (joint->index != index) {
         if (!next_joint(joint)) return 0;
@@ -619,7 +630,7 @@ static void find_sides(pantin_figure *f, const pantin_rig *rig, const table *t) 
         pantin_bone *bone = &f->bones[i];
         int8_t left = -1;
         if (bone->parent != NONE) bone->part = f->bones[bone->parent].part;
-        if (!go_to(&own, rig, bone->joint)) return;
+        if (!pantin_figure_go_to(&own, rig, bone->joint)) return;
         pantin_first_joint(&other, rig);
         while (left < 0 && next_joint(&other)) {
             if (other.index != own.index && (t->of[other.index].flags & KEPT)) left = left_of(&own.name, &other.name);
@@ -675,7 +686,7 @@ static pantin_result build(pantin_figure *f, const pantin_clip *clip, const int3
     f->up = clip->rig.up;
     pantin_first_joint(&joint, &clip->rig);
     while ((index = after(t, index)) != NONE) {
-        if (!go_to(&joint, &clip->rig, index)) return PANTIN_ERROR_READ;
+        if (!pantin_figure_go_to(&joint, &clip->rig, index)) return PANTIN_ERROR_READ;
         result = add_joint(f, clip, &joint, t);
         if (result != PANTIN_OK) return result;
     }
@@ -723,7 +734,7 @@ static void own_offset(const pantin_figure *f, uint8_t index, const pantin_drive
     }
 }
 
-static void rotate(int32_t (*r)[3], const pantin_bone *bone, const pantin_drive *drives, const int32_t *pose) {
+void pantin_figure_rotate(int32_t (*r)[3], const pantin_bone *bone, const pantin_drive *drives, const int32_t *pose) {
     uint8_t d;
     for (d = 0; d < bone->drives; d++) {
         const int32_t *from = pose + drives[d].first;
@@ -748,12 +759,9 @@ static void rotate(int32_t (*r)[3], const pantin_bone *bone, const pantin_drive 
     }
 }
 
-/* What is done with each joint's position. */
-typedef void (*visit)(void *context, uint8_t index, const int32_t *position);
-
 /* Places the first `count` joints about `origin`, turned by `view`. */
-static void place_in(const pantin_figure *f, const int32_t *pose, int32_t (*view)[3], const int32_t *origin, uint16_t count, visit each,
-                     void *context) {
+void pantin_figure_place(const pantin_figure *f, const int32_t *pose, int32_t (*view)[3], const int32_t *origin, uint16_t count,
+                         pantin_figure_visit each, void *context) {
     const pantin_drive *drives = f->drives;
     uint8_t index, i;
     for (index = 0; index < f->bone_count && index < count; index++) {
@@ -763,11 +771,11 @@ static void place_in(const pantin_figure *f, const int32_t *pose, int32_t (*view
         int32_t position[3], offset[3];
         if (above && !bone->moves) {
             for (i = 0; i < 3; i++) offset[i] = bone->offset[i];
-            apply(turned, offset, position);
+            pantin_figure_apply(turned, offset, position);
         } else {
             own_offset(f, index, drives, pose, offset);
             for (i = 0; i < 3 && !above; i++) offset[i] = difference(offset[i], origin[i]);
-            apply_any(turned, offset, position);
+            pantin_figure_apply_any(turned, offset, position);
         }
         for (i = 0; i < 3 && above; i++) position[i] = sum(position[i], above->position[i]);
         each(context, index, position);
@@ -775,13 +783,13 @@ static void place_in(const pantin_figure *f, const int32_t *pose, int32_t (*view
             pantin_slot *own = &f->slots[bone->slot];
             if (own != above) memcpy(own->rotation, turned, sizeof own->rotation);
             memcpy(own->position, position, sizeof position);
-            rotate(own->rotation, bone, drives, pose);
+            pantin_figure_rotate(own->rotation, bone, drives, pose);
         }
         drives += bone->drives;
     }
 }
 
-static void world(int32_t (*view)[3]) {
+void pantin_figure_world(int32_t (*view)[3]) {
     memset(view, 0, 3 * sizeof *view);
     view[0][0] = view[1][1] = view[2][2] = ONE;
 }
@@ -798,14 +806,14 @@ static void place_hips(const pantin_figure *f, const int32_t *pose, int32_t *hip
         own_offset(f, 0, f->drives, pose, hips);
     } else if (f->hips < f->bone_count) {
         int32_t origin[3] = {0, 0, 0};
-        world(view);
-        place_in(f, pose, view, origin, (uint16_t)(f->hips + 1u), keep_last, hips);
+        pantin_figure_world(view);
+        pantin_figure_place(f, pose, view, origin, (uint16_t)(f->hips + 1u), keep_last, hips);
     }
 }
 
 /* ---- Camera ---- */
 
-static int32_t magnification(int32_t depth) {
+int32_t pantin_figure_magnification(int32_t depth) {
     int32_t distance = clamp(depth + 16384, 0, 32767);
     uint8_t index = (uint8_t)(distance >> 8);
     return (int32_t)PANTIN_U16(pantin_magnification + 2 * index) +
@@ -813,26 +821,33 @@ static int32_t magnification(int32_t depth) {
 }
 
 /* A place in the camera's axes on the display. Returns its depth. */
-static int32_t project(const pantin_figure *f, const int32_t *place, int16_t *to) {
-    int32_t depth = ((int32_t)narrow(place[2] >> f->shift) * f->depth_factor) >> f->depth_shift, factor = magnification(depth);
+int32_t pantin_figure_project(const pantin_figure *f, const int32_t *place, int32_t *to) {
+    int32_t depth = ((int32_t)narrow(place[2] >> f->shift) * f->depth_factor) >> f->depth_shift, factor = pantin_figure_magnification(depth);
     uint8_t i;
-    for (i = 0; i < 2; i++) to[i] = narrow((((int32_t)narrow(place[i] >> f->shift) * factor) >> f->spare) + f->centre[i]);
+    for (i = 0; i < 2; i++) to[i] = (((int32_t)narrow(place[i] >> f->shift) * factor) >> f->spare) + f->centre[i];
     return depth;
 }
 
-static void see(void *context, uint8_t index, const int32_t *position) {
+static int32_t project(const pantin_figure *f, const int32_t *place, int16_t *to) {
+    int32_t wide[2], depth = pantin_figure_project(f, place, wide);
+    to[0] = narrow(wide[0]);
+    to[1] = narrow(wide[1]);
+    return depth;
+}
+
+void pantin_figure_see(void *context, uint8_t index, const int32_t *position) {
     pantin_figure *f = (pantin_figure *)context;
     pantin_bone *bone = &f->bones[index];
     bone->depth = narrow(project(f, position, bone->place));
 }
 
-static void set_values(pantin_figure *f, const int32_t *pose) {
+void pantin_figure_values(pantin_figure *f, const int32_t *pose, pantin_figure_visit each, void *context) {
     uint8_t axis;
     place_hips(f, pose, f->target);
     for (axis = 0; axis < 3; axis++) {
         if (f->fixed_axes >> axis & 1) f->target[axis] = f->fixed[axis];
     }
-    place_in(f, pose, f->view, f->target, PANTIN_MAX_BONES + 1, see, f);
+    pantin_figure_place(f, pose, f->view, f->target, PANTIN_MAX_BONES + 1, each, context);
 }
 
 /* What a clip asks of the camera: the least and greatest coordinates, and the sum of left minus right. */
@@ -916,11 +931,7 @@ static void set_camera(pantin_figure *f, const bounds *b, const int32_t *up, con
     f->camera_size = size;
 }
 
-typedef struct {
-    int32_t top, bottom, side;
-} extent;
-
-static void widen(extent *e, const int16_t *place, int16_t radius) {
+void pantin_figure_widen(pantin_extent *e, const int16_t *place, int16_t radius) {
     int32_t x = place[0], y = place[1];
     e->side = most(e->side, (x < 0 ? -x : x) + radius);
     e->top = least(e->top, y - radius);
@@ -935,7 +946,7 @@ static void orient(pantin_figure *f, bounds *b, uint8_t rig_up, int32_t *up, int
     for (i = 0; i < 3; i++) up[i] = facing[i] = 0;
     up[axis] = rig_up & 4 ? -ONE : ONE;
     b->leftward[axis] = 0;
-    if (direction(b->leftward)) {
+    if (pantin_figure_direction(b->leftward)) {
         cross(b->leftward, up, facing);
     } else if (axis == 2) {
         facing[1] = -ONE;
@@ -956,13 +967,24 @@ static int next_sample(pantin_player *player, uint32_t *frame, pantin_result *re
     return *result == PANTIN_OK;
 }
 
+void pantin_figure_cover_head(const void *context, const pantin_figure *f, pantin_extent *e) {
+    pantin_head head;
+    (void)context;
+    if (pantin_figure_head(f, &head)) pantin_figure_widen(e, head.centre, head.radius);
+}
+
 pantin_result pantin_figure_aim(pantin_figure *f, pantin_player *player, const pantin_view *view) {
+    return pantin_figure_aim_for(f, player, view, pantin_figure_cover_head, NULL);
+}
+
+pantin_result pantin_figure_aim_for(pantin_figure *f, pantin_player *player, const pantin_view *view, pantin_figure_cover cover,
+                                    const void *context) {
     uint32_t now = player->frame, frame = 0;
     pantin_result result = PANTIN_OK;
     int32_t up[3], facing[3], scale;
     uint8_t i, finer;
     bounds b;
-    extent e;
+    pantin_extent e;
     int32_t origin[3] = {0, 0, 0};
     b.figure = f;
     for (i = 0; i < 3; i++) {
@@ -970,8 +992,8 @@ pantin_result pantin_figure_aim(pantin_figure *f, pantin_player *player, const p
         b.high[i] = -0x7fffffffL - 1;
         b.leftward[i] = 0;
     }
-    world(f->view);
-    while (next_sample(player, &frame, &result)) place_in(f, player->pose, f->view, origin, PANTIN_MAX_BONES + 1, include, &b);
+    pantin_figure_world(f->view);
+    while (next_sample(player, &frame, &result)) pantin_figure_place(f, player->pose, f->view, origin, PANTIN_MAX_BONES + 1, include, &b);
     orient(f, &b, view->up == PANTIN_RIG_UP ? f->up : view->up, up, facing);
     f->dotted = (uint32_t)f->width * f->height < 45000u;
     finer = f->dotted ? 3 : 2;
@@ -981,14 +1003,13 @@ pantin_result pantin_figure_aim(pantin_figure *f, pantin_player *player, const p
     memset(&e, 0, sizeof e);
     frame = 0;
     while (next_sample(player, &frame, &result)) {
-        pantin_head head;
-        set_values(f, player->pose);
+        pantin_figure_values(f, player->pose, pantin_figure_see, f);
         for (i = 0; i < f->line_count; i++) {
             const pantin_bone *bone = &f->bones[f->bones[i].order];
-            widen(&e, f->bones[bone->parent].place, 0);
-            widen(&e, bone->place, 0);
+            pantin_figure_widen(&e, f->bones[bone->parent].place, 0);
+            pantin_figure_widen(&e, bone->place, 0);
         }
-        if (pantin_figure_head(f, &head)) widen(&e, head.centre, head.radius);
+        cover(context, f, &e);
     }
     scale = clamp(least(fit(f->height, e.bottom - e.top), fit(f->width, 2 * e.side)), 1, TRIAL_SCALE);
     set_camera(f, &b, up, facing, view, scale);
@@ -1017,7 +1038,7 @@ static int32_t key(const pantin_figure *f, uint8_t index) {
 void pantin_figure_pose(pantin_figure *f, const int32_t *pose) {
     uint8_t i, place, moving;
     int32_t own;
-    set_values(f, pose);
+    pantin_figure_values(f, pose, pantin_figure_see, f);
     for (i = 1; i < f->line_count; i++) {
         moving = f->bones[i].order;
         own = key(f, moving);
@@ -1042,18 +1063,22 @@ int pantin_figure_line(const pantin_figure *f, uint8_t index, pantin_line *line)
     return 1;
 }
 
+int32_t pantin_figure_seen(const pantin_figure *f, int32_t length) {
+    uint8_t cut = bits_of((uint32_t)f->camera_size);
+    cut = (uint8_t)(cut > 13 ? cut - 13 : 0);
+    return least(length >> cut, 32767) * f->scale / most(f->camera_size >> cut, 1);
+}
+
 int pantin_figure_head(const pantin_figure *f, pantin_head *head) {
     const pantin_bone *from, *to;
-    uint8_t i, cut;
+    uint8_t i;
     int32_t radius;
     if (f->crown == NONE) return 0;
     to = &f->bones[f->crown];
     from = &f->bones[to->parent];
     for (i = 0; i < 2; i++) head->centre[i] = (int16_t)(((int32_t)from->place[i] + to->place[i]) >> 1);
-    cut = bits_of((uint32_t)f->camera_size);
-    cut = (uint8_t)(cut > 13 ? cut - 13 : 0);
-    radius = least(f->head_radius >> cut, 32767) * f->scale / most(f->camera_size >> cut, 1);
-    head->radius = narrow((radius * magnification(to->depth)) >> 14);
+    radius = pantin_figure_seen(f, f->head_radius);
+    head->radius = narrow((radius * pantin_figure_magnification(to->depth)) >> 14);
     head->shade = shade_of(between(from, to));
     return 1;
 }
@@ -1072,9 +1097,9 @@ void pantin_first_ground(pantin_ground *g, const pantin_figure *f) {
         int32_t step[3] = {0, 0, 0}, past = sum(f->target[axis], spacing / 2) & (spacing - 1);
         corner[axis] = spacing / 2 - past - rows / 2 * spacing;
         step[axis] = spacing;
-        apply_any(view, step, g->steps[next - 1]);
+        pantin_figure_apply_any(view, step, g->steps[next - 1]);
     }
-    apply_any(view, corner, g->corner);
+    pantin_figure_apply_any(view, corner, g->corner);
     memcpy(g->place, g->corner, sizeof g->place);
 }
 

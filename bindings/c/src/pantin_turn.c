@@ -1,5 +1,5 @@
 /* Rotations of joints: see pantin_turn.h. The steps are those that turn.rs and trig.rs of the Rust decoder state, with the same names. */
-#include "pantin_turn.h"
+#include "pantin_turn_parts.h"
 #include "pantin_tables.h"
 
 #define ONE 0x40000000L
@@ -411,8 +411,8 @@ static uint8_t own_order(const pantin_joint_ref *joint) {
 }
 
 /* The values of a joint of one form: Euler angles in the joint's order, x, y, z of a map, or w, x, y, z of a quaternion. */
-static void own_values(const pantin_player *player, const pantin_joint_ref *joint, int32_t *own) {
-    const int32_t *value = player->pose + joint->first_channel;
+static void own_values(const int32_t *pose, const pantin_joint_ref *joint, int32_t *own) {
+    const int32_t *value = pose + joint->first_channel;
     uint8_t c, count = 0;
     memset(own, 0, 4 * sizeof *own);
     for (c = 0; c < joint->channels; c++, value++) {
@@ -428,8 +428,8 @@ static void own_values(const pantin_player *player, const pantin_joint_ref *join
 }
 
 /* The product of everything that turns a joint of several parts. */
-static void chain(const pantin_player *player, const pantin_joint_ref *joint, int32_t *q) {
-    const int32_t *value = player->pose + joint->first_channel;
+static void chain(const int32_t *pose, const pantin_joint_ref *joint, int32_t *q) {
+    const int32_t *value = pose + joint->first_channel;
     int32_t coded[4] = {0, 0, 0, 0}, quaternion[4] = {0, 0, 0, 0}, map[4] = {0, 0, 0, 0};
     uint8_t c, count = 0;
     no_rotation(q);
@@ -454,14 +454,14 @@ static void chain(const pantin_player *player, const pantin_joint_ref *joint, in
     (void)direction(q);
 }
 
-static void unit(const pantin_player *player, const pantin_joint_ref *joint, int32_t *q) {
+static void unit(const int32_t *pose, const pantin_joint_ref *joint, int32_t *q) {
     int32_t own[4];
     uint8_t axes[3], i;
     if (joint->form == PANTIN_FORM_CHAIN) {
-        chain(player, joint, q);
+        chain(pose, joint, q);
         return;
     }
-    own_values(player, joint, own);
+    own_values(pose, joint, own);
     switch (joint->form) {
     case PANTIN_FORM_EXPONENTIAL:
         memcpy(q + 1, own, 3 * sizeof *own);
@@ -507,10 +507,10 @@ pantin_result pantin_euler(const pantin_player *player, pantin_joint_ref *joint,
     int32_t q[4];
     if (result != PANTIN_OK) return result;
     if (joint->form == PANTIN_FORM_EULER && own_order(joint) == (uint8_t)order) {
-        own_values(player, joint, q);
+        own_values(player->pose, joint, q);
         memcpy(angles, q, 3 * sizeof *q);
     } else {
-        unit(player, joint, q);
+        unit(player->pose, joint, q);
         angles_of(q, (uint8_t)order, angles);
     }
     return PANTIN_OK;
@@ -518,16 +518,13 @@ pantin_result pantin_euler(const pantin_player *player, pantin_joint_ref *joint,
 
 pantin_result pantin_quaternion(const pantin_player *player, pantin_joint_ref *joint, int32_t *wxyz) {
     pantin_result result = check(player, joint);
-    if (result == PANTIN_OK) unit(player, joint, wxyz);
+    if (result == PANTIN_OK) unit(player->pose, joint, wxyz);
     return result;
 }
 
-pantin_result pantin_matrix(const pantin_player *player, pantin_joint_ref *joint, int32_t *rows) {
-    pantin_result result = check(player, joint);
-    int32_t q[4], a[2], b[2];
+static void matrix_of(const int32_t *q, int32_t *rows) {
+    int32_t a[2], b[2];
     uint8_t i;
-    if (result != PANTIN_OK) return result;
-    unit(player, joint, q);
     for (i = 0; i < 3; i++) {
         uint8_t j = (uint8_t)(i == 2 ? 0 : i + 1), k = (uint8_t)(3 - i - j);
         a[0] = q[j + 1];
@@ -543,18 +540,29 @@ pantin_result pantin_matrix(const pantin_player *player, pantin_joint_ref *joint
         b[1] = q[i + 1];
         rows[3 * k + j] = dot(a, b, 2, 3);
     }
+}
+
+pantin_result pantin_matrix(const pantin_player *player, pantin_joint_ref *joint, int32_t *rows) {
+    pantin_result result = check(player, joint);
+    int32_t q[4];
+    if (result != PANTIN_OK) return result;
+    unit(player->pose, joint, q);
+    matrix_of(q, rows);
     return PANTIN_OK;
+}
+
+static int32_t whole_angle(int32_t *q) {
+    uint32_t w = magnitude(q[0]);
+    q[0] = 0;
+    return (int32_t)(2 * (uint32_t)atan2_of((int32_t)direction(q), (int32_t)w));
 }
 
 pantin_result pantin_angle(const pantin_player *player, pantin_joint_ref *joint, int32_t *angle) {
     pantin_result result = check(player, joint);
     int32_t q[4];
-    uint32_t w;
     if (result != PANTIN_OK) return result;
-    unit(player, joint, q);
-    w = magnitude(q[0]);
-    q[0] = 0;
-    *angle = (int32_t)(2 * (uint32_t)atan2_of((int32_t)direction(q), (int32_t)w));
+    unit(player->pose, joint, q);
+    *angle = whole_angle(q);
     return PANTIN_OK;
 }
 
@@ -565,3 +573,18 @@ pantin_result pantin_raw_value(const pantin_player *player, const pantin_joint_r
     *value = player->pose[joint->first_channel + channel];
     return PANTIN_OK;
 }
+
+/* ---- For the animator: see pantin_turn_parts.h ---- */
+
+void pantin_turn_sin_cos(int32_t angle, int32_t *sine, int32_t *cosine) { sin_cos(angle, sine, cosine); }
+int32_t pantin_turn_atan2(int32_t y, int32_t x) { return atan2_of(y, x); }
+void pantin_turn_unit(const int32_t *pose, const pantin_joint_ref *joint, int32_t *q) { unit(pose, joint, q); }
+void pantin_turn_matrix(const int32_t *q, int32_t *rows) { matrix_of(q, rows); }
+void pantin_turn_about(int32_t *q, uint8_t axis, int32_t angle) { turn_about(q, axis, angle); }
+void pantin_turn_multiply(int32_t *a, const int32_t *b) { multiply(a, b); }
+void pantin_turn_exponential(int32_t *q) { of_exponential(q); }
+void pantin_turn_normalize(int32_t *q) { (void)direction(q); }
+int32_t pantin_turn_angle(int32_t *q) { return whole_angle(q); }
+void pantin_turn_angles(const int32_t *q, uint8_t order, int32_t *angles) { angles_of(q, order, angles); }
+void pantin_turn_axes(uint8_t order, uint8_t *axes) { axes_of(order, axes); }
+int32_t pantin_turn_dot(const int32_t *a, const int32_t *b) { return dot(a, b, 2, 2); }

@@ -142,37 +142,45 @@ impl<'a> Face<'a> {
         debug_assert!(weights.pairs().flatten().all(|weight| weight.abs() <= FULL_WEIGHT));
         self.morph.apply(&self.model, weights);
         self.renderer.project(&self.model, &self.morph);
-        let bits: Picture<BinaryColor> = self.picture();
-        let width = usize::from(self.size[0]);
-        let mut hash = START;
-        for row in bits.pixels.chunks(width) {
-            let byte =
-                |eight: &[BinaryColor]| eight.iter().enumerate().map(|(x, pixel)| u8::from(pixel.is_on()) << (7 - x)).sum();
-            hash = fold(hash, &row.chunks(8).map(byte).collect::<Vec<u8>>());
-        }
-        for row in bits.pixels.chunks(width) {
-            let byte = |eight: &[BinaryColor]| eight.iter().enumerate().map(|(x, pixel)| u8::from(pixel.is_on()) << x).sum();
-            hash = fold(hash, &row.chunks(8).map(byte).collect::<Vec<u8>>());
-        }
-        let greys: Picture<Gray8> = self.picture();
-        hash = fold(hash, &greys.pixels.iter().map(|grey| grey.luma()).collect::<Vec<_>>());
-        let colours: Picture<Rgb565> = self.picture();
-        let colours: Vec<u16> = colours.pixels.iter().map(|&colour| RawU16::from(colour).into_inner()).collect();
-        hash = fold(hash, &colours.iter().flat_map(|colour| colour.to_le_bytes()).collect::<Vec<_>>());
-        fold(hash, &colours.iter().flat_map(|colour| colour.to_be_bytes()).collect::<Vec<_>>())
+        sum_of(&self.picture(), &self.picture(), &self.picture())
     }
 
     fn picture<C: Ink>(&self) -> Picture<C> {
-        let [width, height] = self.size.map(usize::from);
-        let mut picture = Picture { pixels: vec![C::DARK; width * height], width };
+        let mut picture = Picture::new(self.size);
         let Ok(()) = self.renderer.draw(&self.model, &mut picture);
         picture
     }
 }
 
-struct Picture<C> {
+/// The checksum of a picture in all formats of rows in C, in their order.
+pub fn sum_of(bits: &Picture<BinaryColor>, greys: &Picture<Gray8>, colours: &Picture<Rgb565>) -> u32 {
+    let width = bits.width;
+    let mut hash = START;
+    for row in bits.pixels.chunks(width) {
+        let byte = |eight: &[BinaryColor]| eight.iter().enumerate().map(|(x, pixel)| u8::from(pixel.is_on()) << (7 - x)).sum();
+        hash = fold(hash, &row.chunks(8).map(byte).collect::<Vec<u8>>());
+    }
+    for row in bits.pixels.chunks(width) {
+        let byte = |eight: &[BinaryColor]| eight.iter().enumerate().map(|(x, pixel)| u8::from(pixel.is_on()) << x).sum();
+        hash = fold(hash, &row.chunks(8).map(byte).collect::<Vec<u8>>());
+    }
+    hash = fold(hash, &greys.pixels.iter().map(|grey| grey.luma()).collect::<Vec<_>>());
+    let colours: Vec<u16> = colours.pixels.iter().map(|&colour| RawU16::from(colour).into_inner()).collect();
+    hash = fold(hash, &colours.iter().flat_map(|colour| colour.to_le_bytes()).collect::<Vec<_>>());
+    fold(hash, &colours.iter().flat_map(|colour| colour.to_be_bytes()).collect::<Vec<_>>())
+}
+
+/// A picture of any size in the colours of a display.
+pub struct Picture<C> {
     pixels: Vec<C>,
     width: usize,
+}
+
+impl<C: Ink> Picture<C> {
+    /// A dark one.
+    pub fn new([width, height]: [u16; 2]) -> Self {
+        Picture { pixels: vec![C::DARK; usize::from(width) * usize::from(height)], width: width.into() }
+    }
 }
 
 impl<C> OriginDimensions for Picture<C> {

@@ -1,5 +1,6 @@
 //! Repairs what the first checks would refuse, and nothing else.
 
+use pantin::Bank;
 use pantin::codec::keys::{KEY_FLAGS, KEY_VERSION};
 use pantin::codec::layout::{
     BANK_MAGIC, BLOCK_BYTES, CRC_BYTES, HAS_EVENT_NAMES, HAS_INDEX, HAS_RIG, HAS_SECTIONS, KNOWN_FLAGS, MAGIC, VERSION, section,
@@ -24,6 +25,24 @@ pub fn bank(bytes: &mut [u8]) {
             rig(body);
         }
         rest = behind;
+    }
+}
+
+/// Makes the clips of a bank that opens right, as [`clip`] does, as far as that leaves them their lengths.
+pub fn clips_of_bank(bytes: &mut [u8]) {
+    let Ok(bank) = Bank::new_checked(bytes) else { return };
+    let clips: Vec<(usize, Vec<u8>)> = bank
+        .entries()
+        .map(|entry| {
+            let mut mended = entry.bytes().to_vec();
+            clip(&mut mended);
+            (entry.bytes().as_ptr().addr() - bytes.as_ptr().addr(), mended)
+        })
+        .zip(bank.entries())
+        .filter_map(|(mended, entry)| (mended.1.len() == entry.bytes().len()).then_some(mended))
+        .collect();
+    for (at, mended) in clips {
+        bytes[at..at + mended.len()].copy_from_slice(&mended);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use pantin::{ChannelState, Clip, Player, Progress, Stream};
+use pantin::{Bank, ChannelState, Clip, Player, Progress, Stream};
 
 use crate::clips::RIG;
 use crate::fix;
@@ -10,6 +10,8 @@ use crate::noise::Noise;
 
 /// Values of poses that one mutant is compared by: a few milliseconds in a slow decoder.
 pub const VALUES: usize = 4000;
+/// Values of poses that each clip of a bank's mutant is compared by.
+pub const BANK_VALUES: usize = 200;
 /// Frames that one mutant is compared by at most, where poses are short.
 pub const FRAMES: usize = 400;
 /// Events that one mutant is compared by at most.
@@ -39,9 +41,34 @@ pub fn key_mutant(noise: &mut Noise, clips: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
+/// A bank damaged in one to three places, with its CRCs mended: of one in two mutants those of its clips too.
+pub fn bank_mutant(noise: &mut Noise, banks: &[Vec<u8>]) -> Vec<u8> {
+    let [input, other] = [0; 2].map(|_| &banks[noise.below(banks.len())]);
+    let mut bytes = noise.damage(input, other, &[]);
+    fix::bank(&mut bytes);
+    if noise.below(2) == 0 {
+        fix::clips_of_bank(&mut bytes);
+    }
+    bytes
+}
+
+/// What `Bank` reads: the number of joints, then for each clip its length and what `Clip` and `Player` read.
+pub fn read_bank(bytes: &[u8]) -> String {
+    let Ok(bank) = Bank::new_checked(bytes) else { return REFUSED.to_owned() };
+    let mut line = format!("{} joints", bank.rig().joint_count());
+    for entry in bank.entries() {
+        let read = bank.open(&entry).map_or(REFUSED.to_owned(), |clip| read_clip(clip, BANK_VALUES));
+        let _ = write!(line, "; {} bytes: {read}", entry.bytes().len());
+    }
+    line
+}
+
 /// What `Clip` and `Player` read: one line, whose fields every decoder can print.
 pub fn read(bytes: &[u8]) -> String {
-    let Ok(clip) = Clip::with_rig(bytes, RIG) else { return REFUSED.to_owned() };
+    Clip::with_rig(bytes, RIG).map_or(REFUSED.to_owned(), |clip| read_clip(clip, VALUES))
+}
+
+fn read_clip(clip: Clip<'_>, values: usize) -> String {
     let (channels, moving) = (clip.rig().channels(), clip.moving());
     let mut line = format!(
         "{} frames of {} ns, exponent {}, looped {}, {} joints, {} channels, {} moving, {} events",
@@ -60,7 +87,7 @@ pub fn read(bytes: &[u8]) -> String {
     let (mut states, mut pose) = (vec![ChannelState::default(); moving], vec![0; channels]);
     let Ok(mut player) = Player::new(clip, &mut states, &mut pose) else { return "no memory".to_owned() };
     line += ", poses";
-    for frame in 0..compared_frames(clip.frames() as usize, channels) {
+    for frame in 0..compared_frames(clip.frames() as usize, channels, values) {
         if frame > 0 {
             player.step();
         }
@@ -93,8 +120,8 @@ pub fn stream_refuses(bytes: &[u8], rig: &[u8]) -> bool {
 }
 
 /// Frames that a mutant is compared by.
-fn compared_frames(frames: usize, channels: usize) -> usize {
-    frames.min(1 + VALUES / channels.max(1)).min(FRAMES)
+fn compared_frames(frames: usize, channels: usize, values: usize) -> usize {
+    frames.min(1 + values / channels.max(1)).min(FRAMES)
 }
 
 /// FNV-1a over whole values.

@@ -110,7 +110,14 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let folder = place.path().join("libraries/Pantin");
         let count = write(&folder).unwrap();
-        for name in ["pantin.c", "pantin_turn.c", "pantin_figure.c", "pantin_face.c", "pantin_face_data.h", "pantin.h"] {
+        let sources = ["pantin.c", "pantin_turn.c", "pantin_figure.c", "pantin_solid.c", "pantin_animator.c", "pantin_face.c"];
+        for name in sources.into_iter().chain([
+            "pantin_face_data.h",
+            "pantin_format.h",
+            "pantin_solid.h",
+            "pantin_animator.h",
+            "pantin.h",
+        ]) {
             let source = paths::root().join("bindings/c/src").join(name);
             assert_eq!(fs::read(folder.join("src").join(name)).unwrap(), fs::read(source).unwrap());
         }

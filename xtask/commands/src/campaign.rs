@@ -33,16 +33,24 @@ pub struct MutantsDifferential {
     /// Selects which mutants are made
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Damages banks instead of clips
+    #[arg(long)]
+    banks: bool,
 }
 
 impl MutantsDifferential {
     /// Runs it; an error if a mutant is read differently.
     pub fn run(self) -> Result<()> {
         let start = Instant::now();
-        let counts = differential::run(&Decoder::JavaScript, self.count, self.seed, |counts| {
+        let progress = |counts: &differential::Counts| {
             let done = counts.agreed + counts.refused + counts.differing.len();
             xtask::steps::progress("mutants", done, self.count);
-        })?;
+        };
+        let counts = if self.banks {
+            differential::run_banks(&Decoder::JavaScript, self.count, self.seed, progress)
+        } else {
+            differential::run(&Decoder::JavaScript, self.count, self.seed, progress)
+        }?;
         println!(
             "{} mutants in {:.0} s: {} agreed, {} refused by both, {} differing",
             self.count,

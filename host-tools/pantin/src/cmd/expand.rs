@@ -1,5 +1,6 @@
 //! `pantin expand`.
 
+use super::render::read_look;
 use super::{Files, default_output, format_of};
 use crate::memory;
 use crate::open::is_bank;
@@ -15,12 +16,12 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Turn a clip back into per-frame motion, or a clip or a bank into source text for firmware.
+/// Turn a clip back into per-frame motion, or a clip, a bank or a character into source text for firmware.
 ///
 /// The output's extension selects the format: .bvh has the same joints and frames, and three rotations a joint; .glb is a
 /// tree of nodes, with scalars as morph weights; .keys is key-frame text, with the keys of a clip that holds keys (`pantin convert --keys`); .csv has one row per frame with the time in seconds and
 /// all channels' values; .h and .rs hold the bytes of the clip or the bank, names, and the sizes of the memory that it takes: in Rust as a
-/// type, `WalkRoom`.
+/// type, `WalkRoom`. A .look file, a character of solid figures, becomes a .h for C.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   pantin expand walk.ptn -o walk.bvh
@@ -31,9 +32,10 @@ use std::path::{Path, PathBuf};
   pantin expand walk-keys.ptn -o walk.keys
   pantin expand walk.ptn -o walk.h
   pantin expand walk.ptn -o src/walk.rs
-  pantin expand moves.ptb -o src/moves.rs")]
+  pantin expand moves.ptb -o src/moves.rs
+  pantin expand motions/looks/cat.look -o cat.h")]
 pub struct Arguments {
-    /// The clip, or the bank for .h and .rs
+    /// The clip, the bank for .h and .rs, or the .look file for .h
     input: PathBuf,
     /// The file to write: .bvh, .glb (glTF), .keys, .csv, .h or .rs [default: the clip's name, ending in .bvh, or in .csv without joints;
     /// a file that is there already is kept]
@@ -132,6 +134,27 @@ fn bank(arguments: &Arguments, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
+/// Writes a character as a C header.
+fn look(arguments: &Arguments) -> Result<()> {
+    let place = || arguments.input.display().to_string();
+    ensure!(arguments.rig.is_none(), "{}: --rig is for clips without one, and this is a character", place());
+    let output = match &arguments.output {
+        Some(output) => output.clone(),
+        None => default_output(&arguments.input, "h")?,
+    };
+    let is_header = format_of(&output, arguments.format)? == Some(Format::H);
+    ensure!(is_header, "{}: a character becomes .h alone", place());
+    arguments.check(&output)?;
+    let look = read_look(&arguments.input)?;
+    let text = export::source::c_header_of_look(look.bytes(), &arguments.stem(&output));
+    output::write_whole(&output, text.as_bytes())?;
+    output::report(json!({"bytes": look.bytes().len()}));
+    if arguments.output.is_none() {
+        note!("{}: written", output.display());
+    }
+    Ok(())
+}
+
 impl Format {
     /// How often the clip is played to write it; source text holds its bytes.
     fn plays(self) -> u64 {
@@ -184,6 +207,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if let Some(output) = &arguments.output {
         arguments.check(output)?;
         format_of(output, arguments.format)?;
+    }
+    if arguments.input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("look")) {
+        return look(arguments);
     }
     let files = Files::read(&arguments.input, arguments.rig.as_deref())?;
     let place = || arguments.input.display().to_string();

@@ -269,7 +269,7 @@ pub fn metadata(folder: &TempDir) -> Result<()> {
     let version = format!("version: \"{}\"", property("version").unwrap_or_default());
     ensure!(read("idf_component.yml")?.lines().any(|line| line == version), "the version of idf_component.yml");
     let sources: Vec<String> = read("CMakeLists.txt")?.split('"').skip(1).step_by(2).map(str::to_owned).collect();
-    ensure!(sources.len() == 4 && sources.iter().all(|path| home.join(path).exists()), "the paths of CMakeLists.txt");
+    ensure!(sources.len() == 8 && sources.iter().all(|path| home.join(path).exists()), "the paths of CMakeLists.txt");
     let Some(pio) = xtask::paths::program("pio") else {
         println!("   `pio pkg pack` skipped: PlatformIO is not installed (pip install platformio)");
         return Ok(());

@@ -1,4 +1,4 @@
-//! The program of the README of the decoder in C, as written.
+//! The programs of the README of the decoder in C, as written.
 
 use std::process::Command;
 
@@ -9,7 +9,8 @@ use tempfile::TempDir;
 
 use super::{home, output};
 
-/// Compiles the program with the README's own command, beside the header that `pantin expand` writes, and compares the angles that it prints.
+/// Compiles the first program with the README's own command, beside the header that `pantin expand` writes, and compares the angles that it prints. The
+/// other programs are compiled alone.
 pub fn run(folder: &TempDir) -> Result<()> {
     let place = folder.path().join("readme");
     std::fs::create_dir_all(&place)?;
@@ -18,9 +19,11 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let compile = readme.lines().find(|line| line.starts_with("cc ")).context("the README does not compile its program")?;
     std::fs::write(place.join("play.c"), program)?;
     let clip = paths::root().join("motions/walk.ptn");
-    let mut expand = Command::new(build::host_tool()?);
-    expand.arg("expand").arg(&clip).arg("-o").arg(place.join("walk.h"));
-    output(expand)?;
+    for (file, header) in [("walk.ptn", "walk.h"), ("character.ptb", "character.h"), ("looks/cat.look", "cat.h")] {
+        let mut expand = Command::new(build::host_tool()?);
+        expand.arg("expand").arg(paths::root().join("motions").join(file)).arg("-o").arg(place.join(header));
+        output(expand)?;
+    }
     // The command names the sources from the folder of the decoder.
     let mut copy = Command::new("cp");
     copy.arg("-r").arg(home().join("src")).arg(&place);
@@ -30,7 +33,19 @@ pub fn run(folder: &TempDir) -> Result<()> {
     let printed = String::from_utf8(output(shell)?.stdout)?;
     let expected = angles(&std::fs::read(clip)?)?;
     ensure!(printed == expected, "the program prints\n{printed}");
-    println!("   {} frames", expected.lines().count());
+    let others: Vec<&str> = readme.split("```c\n").skip(2).filter_map(|rest| rest.split("```").next()).collect();
+    for (index, program) in others.iter().enumerate() {
+        let source = place.join(format!("further-{index}.c"));
+        std::fs::write(&source, program)?;
+        let mut gcc = Command::new("gcc");
+        gcc.current_dir(&place)
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-Isrc", "-I.", "-c"])
+            .arg(&source)
+            .args(["-o", "further.o"]);
+        output(gcc)?;
+    }
+    println!("   {} frames, {} further programs", expected.lines().count(), others.len());
+    ensure!(others.len() >= 4, "few programs");
     Ok(())
 }
 

@@ -35,6 +35,20 @@ pub fn c_header_of_bank(bank: &Bank, bytes: &[u8], stem: &str) -> Result<String>
     Ok(header(&Described::of_bank(bank, bytes)?, stem))
 }
 
+/// A C header with the bytes of a character of the solid figure, whose names are made of `stem`.
+pub fn c_header_of_look(bytes: &[u8], stem: &str) -> String {
+    let name = format!("LOOK_{}", identifier(stem));
+    let rows: String = bytes
+        .chunks(24)
+        .map(|row| format!("    {}\n", row.iter().map(|byte| format!("{byte},")).collect::<Vec<_>>().join(" ")))
+        .collect();
+    format!(
+        "/* A character of {} bytes for pantin_solid_look. Written by `pantin expand`. */\n#ifndef PANTIN_{name}_H\n#define PANTIN_{name}_H\n\n#define {name}_LEN {}\n\nstatic const unsigned char {name}[{name}_LEN] = {{\n{rows}}};\n\n#endif\n",
+        bytes.len(),
+        bytes.len()
+    )
+}
+
 /// The header of a clip or a bank, whose names are made of `stem`.
 pub fn header(described: &Described, stem: &str) -> String {
     let (kind, things, of_each, names) = match &described.content {

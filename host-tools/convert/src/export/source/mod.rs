@@ -7,6 +7,6 @@ mod described;
 mod names;
 mod rust;
 
-pub use c::{c_header, c_header_of_bank, header};
+pub use c::{c_header, c_header_of_bank, c_header_of_look, header};
 pub use described::Described;
 pub use rust::{RustText, rust_module, rust_module_of_bank};
