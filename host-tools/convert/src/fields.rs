@@ -81,6 +81,8 @@ impl Remedy {
             Remedy::MapJoints => "map-joints",
             Remedy::ShareForm => "share-form",
             Remedy::FindFootsteps => "find-footsteps",
+            Remedy::WriteSegments => "write-segments",
+            Remedy::AllowSegments => "allow-segments",
         }
     }
 }

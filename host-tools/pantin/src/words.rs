@@ -72,6 +72,8 @@ pub fn advice(remedy: Remedy) -> &'static str {
         Remedy::MapJoints => "--map FILE names them",
         Remedy::ShareForm => "`pantin convert --same-form` gives them one form",
         Remedy::FindFootsteps => "`pantin convert --footsteps` finds them",
+        Remedy::WriteSegments => "--segments writes a clip for players without feature `keys`",
+        Remedy::AllowSegments => "without --keys it gets segments",
         other => other.text(),
     }
 }
