@@ -129,6 +129,7 @@ impl Setting {
             Setting::MaxChannelError => "max-channel-error",
             Setting::MaxAccelError => "max-accel-error",
             Setting::Exact => "exact",
+            Setting::Keys => "keys",
             Setting::Rotations => "rotations",
             Setting::Effort => "effort",
             Setting::Index => "index",

@@ -5,12 +5,14 @@ use crate::open::no_clip;
 use crate::output::{clean, is_hostile, note};
 use anyhow::{Context, Result, anyhow, ensure};
 use pantin::codec::layout::BANK_MAGIC;
-use pantin::{Bank, Clip, OpenError};
+use pantin::{Bank, BankEntry, Clip, OpenError};
+use pantin_convert::bank::{self, Named};
 use pantin_convert::expand_keys::to_segments;
 use pantin_pictures::machine::playback::has_machine;
 use pantin_store::ClipInfo;
 use pantin_store::header::NAME_BYTES;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Why a board gets no bank with key clips.
 const NO_KEYS: &str = "the boards' images play it with feature `keys` alone; send it with --keys, or convert its motion with --segments";
@@ -45,9 +47,12 @@ pub fn read(path: &Path, Sent { name, keys }: &Sent) -> Result<(Vec<u8>, ClipInf
     if clip.starts_with(&BANK_MAGIC) {
         let bank = Bank::new_checked(&clip).with_context(place)?;
         for entry in bank.entries() {
-            let opened = bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
-            ensure!(*keys || !opened.has_keys(), "{}: `{}` is a key clip; {NO_KEYS}", place(), clean(entry.name()));
+            bank.open(&entry).with_context(|| format!("{}: `{}`", place(), clean(entry.name())))?;
         }
+        if let Some(segments) = (!keys).then(|| bank_as_segments(path, &bank, &clip)).transpose()?.flatten() {
+            clip = segments;
+        }
+        let bank = Bank::new_checked(&clip)?;
         note!("{}: a bank of {} clips, for firmware that is built with feature `bank`", place(), bank.len());
         if has_machine(&clip) {
             note!("warning: {}: the boards' firmware plays the clips one after the other, not the state machine", place());
@@ -68,6 +73,26 @@ pub fn read(path: &Path, Sent { name, keys }: &Sent) -> Result<(Vec<u8>, ClipInf
         note!("{}: the board shows it as `{}`; --name chooses another name", place(), info.name.as_str());
     }
     Ok((clip, info))
+}
+
+/// A bank whose key clips became clips of segments, with a note; `None` if it has none.
+fn bank_as_segments(path: &Path, bank: &Bank<'_>, bytes: &[u8]) -> Result<Option<Vec<u8>>> {
+    let place = || path.display().to_string();
+    let mut any = false;
+    let segments = |entry: BankEntry<'_>| {
+        let opened = bank.open(&entry)?;
+        any |= opened.has_keys();
+        let clip = if opened.has_keys() { to_segments(&opened)? } else { entry.bytes().to_vec() };
+        anyhow::Ok(Named { name: entry.name().into(), place: place(), clip, rig: Arc::from(bank.rig_bytes()) })
+    };
+    let clips: Vec<Named> = bank.entries().map(segments).collect::<Result<_>>().with_context(place)?;
+    if !any {
+        return Ok(None);
+    }
+    ensure!(!has_machine(bytes), "{}: a state machine with key clips; {NO_KEYS}", place());
+    let segments = bank::encode(&clips).with_context(place)?;
+    note!("{}: its key clips are sent as segments, the bank then has {} bytes", place(), segments.len());
+    Ok(Some(segments))
 }
 
 /// A key clip as a clip of segments, with a note.

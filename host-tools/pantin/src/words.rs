@@ -44,6 +44,7 @@ pub fn option(setting: Setting) -> &'static str {
         Setting::MaxChannelError => "--max-channel-error",
         Setting::MaxAccelError => "--max-accel-error",
         Setting::Exact => "--exact",
+        Setting::Keys => "--keys",
         Setting::Rotations => "--rotations",
         Setting::Effort => "--effort",
         Setting::Index => "--index",
