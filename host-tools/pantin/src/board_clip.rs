@@ -28,7 +28,7 @@ pub fn board_name(text: &str) -> Result<String, String> {
 }
 
 /// What a board gets, and under which name.
-#[derive(clap::Args)]
+#[derive(clap::Args, Clone, Debug, Default)]
 pub struct Sent {
     /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
     #[arg(long, value_parser = board_name)]
