@@ -1,8 +1,8 @@
 //! The keyword arguments of `pantin.convert`, and the recipe that they ask for.
 
-use pantin_convert::edit::{Body, Edits, InPlace};
 use pantin_convert::Level;
 use pantin_convert::Rotations;
+use pantin_convert::edit::{Body, Edits, InPlace};
 use pantin_convert::import::{ImportOptions, up};
 use pantin_convert::motion::Up;
 use pantin_convert::number::Number;

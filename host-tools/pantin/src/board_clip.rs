@@ -15,7 +15,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Why a board gets no bank with key clips.
-const NO_KEYS: &str = "the boards' images play it with feature `keys` alone; send it with --keys, or convert its motion with --segments";
+const NO_KEYS: &str =
+    "the boards' images play it with feature `keys` alone; send it with --keys, or convert its motion with --segments";
 
 /// Reads a name for a clip on a board: what fits its header, and what a screen can show.
 pub fn board_name(text: &str) -> Result<String, String> {

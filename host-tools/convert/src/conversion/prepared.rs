@@ -298,7 +298,9 @@ impl Prepared {
         let bytes = match made {
             Ok(bytes) => bytes,
             Err(error) if keys == UseKeys::Always => {
-                return Err(Error::bound(format!("there is no key clip of this motion: {error:#}")).remedy(Remedy::AllowSegments).into());
+                return Err(Error::bound(format!("there is no key clip of this motion: {error:#}"))
+                    .remedy(Remedy::AllowSegments)
+                    .into());
             }
             Err(error) => {
                 let text = format!("keys: segments, for there is no key clip of this motion: {error:#}");
@@ -309,7 +311,9 @@ impl Prepared {
         let [more, fewer] = [bytes.len().saturating_sub(by_segments.len()), by_segments.len().saturating_sub(bytes.len())];
         let (text, written) = match keys {
             UseKeys::Always if more > 0 => (format!("keys: segments within the bound would take {more} bytes less"), true),
-            UseKeys::IfSmaller if fewer == 0 => (format!("keys: segments within the bound take {more} bytes less than the motion's keys"), false),
+            UseKeys::IfSmaller if fewer == 0 => {
+                (format!("keys: segments within the bound take {more} bytes less than the motion's keys"), false)
+            }
             _ => (format!("keys: a key clip, which takes {fewer} bytes less than segments within the bound"), true),
         };
         let note = Note::info(NoteKind::Keys, text);

@@ -100,7 +100,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let clips = files.iter().zip(&arguments.clips).map(|(files, path)| files.open().with_context(|| path.display().to_string()));
     let clips = clips.collect::<Result<Vec<_>>>()?;
     rig_is_needed(arguments.rig.as_deref(), &clips)?;
-    let sources = clips.iter().zip(&files).map(|(clip, files)| source(clip, &files.path, &files.rig)).collect::<Result<Vec<_>>>()?;
+    let sources =
+        clips.iter().zip(&files).map(|(clip, files)| source(clip, &files.path, &files.rig)).collect::<Result<Vec<_>>>()?;
     let lines =
         sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
     let mut line = arguments.to.open()?;
