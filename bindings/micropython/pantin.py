@@ -201,7 +201,9 @@ class Clip:
         _check(end <= len(data), "length")
         f = _Fields(data, at, end)
         _check(bytes((f.byte(), f.byte())) == T.MAGIC, "magic")
-        _check(f.byte() == T.VERSION, "version")
+        version = f.byte()
+        _check(version != 2, "a key clip, which this decoder does not play: convert its motion with --segments")
+        _check(version == T.VERSION, "version")
         flags = f.byte()
         _check(flags < 128, "flags")
         self.data = data
@@ -562,7 +564,8 @@ class Bank:
     def __init__(self, data):
         f = _Fields(data, 0, len(data))
         _check(bytes((f.byte(), f.byte())) == b"Pb", "magic")
-        _check(f.byte() == T.VERSION, "version")
+        # A bank of version 2 holds key clips, and may hold others.
+        _check(f.byte() in (T.VERSION, 2), "version")
         sections = {}
         while f.at < f.end:
             kind, length = f.byte(), f.varint()

@@ -36,7 +36,12 @@ pub fn features(machine: Machine, clips: &[&Path]) -> Result<String> {
 pub fn convert(motion: &Path, folder: &Path) -> Result<PathBuf> {
     let name = motion.file_stem().unwrap_or(motion.as_os_str());
     let clip = folder.join(name).with_extension("ptn");
-    let output = Command::new(build::host_tool()?).args(["convert", "--places-only"]).arg(motion).arg("-o").arg(&clip).output();
+    let output = Command::new(build::host_tool()?)
+        .args(["convert", "--places-only", "--segments"])
+        .arg(motion)
+        .arg("-o")
+        .arg(&clip)
+        .output();
     let output = output.context("cannot start the host tool")?;
     let words = String::from_utf8_lossy(&output.stderr);
     ensure!(output.status.success(), "{}: {}", motion.display(), words.trim());
@@ -75,7 +80,13 @@ pub fn own(folder: &Path) -> Result<Vec<PathBuf>> {
 fn convert_own(motions: &[&Path], words: &[&str], out: &Path) -> Result<()> {
     let mut command = Command::new(build::host_tool()?);
     // The figures are drawn as lines between joints.
-    command.args(["convert", "--places-only"]).args(motions).args(["--fps", "60", "--quiet"]).args(words).arg("-o").arg(out);
+    command
+        .args(["convert", "--places-only", "--segments"])
+        .args(motions)
+        .args(["--fps", "60", "--quiet"])
+        .args(words)
+        .arg("-o")
+        .arg(out);
     let output = command.output().context("cannot start the host tool")?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(())

@@ -27,7 +27,7 @@ const LINES = {
 export function convert(tool, motion, clip, options) {
   const words = [motion.path, ...motion.options, ...options.split(" ").filter(Boolean)];
   try {
-    const json = execFileSync(tool, ["convert", ...words, "-o", clip, "--json"], { stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1 << 28 });
+    const json = execFileSync(tool, ["convert", "--segments", ...words, "-o", clip, "--json"], { stdio: ["ignore", "pipe", "pipe"], maxBuffer: 1 << 28 });
     return JSON.parse(json);
   } catch (error) {
     if (error.status !== 1) throw error;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use harness::build::Firmware;
 use harness::display::Picture;
 use harness::qemu::{BOARDS, LM3S6965EVB, Launch, MICROBIT, MPS2_AN386, Machine, Qemu, RISCV_VIRT, SX1};
-use harness::{clips, defmt_log, equal, paths, screen, setup, simulator};
+use harness::{clips, defmt_log, equal, paths, screen, setup, simulator, vectors};
 use pantin_figure::rotation::Rotation;
 use pantin_figure::rotation_float::FloatRotation;
 use tempfile::TempDir;
@@ -40,9 +40,13 @@ fn shows_what_the_host_shows(machine: Machine, keys: &[&[u8]]) {
 }
 
 /// No letters after a picture but those for the next clip after its last one.
-fn through_all_clips() -> Vec<&'static [u8]> {
+fn through_clips(count: usize) -> Vec<&'static [u8]> {
     let through = |&frames: &usize| std::iter::repeat_n(&b""[..], frames - 1).chain([&b"n"[..]]);
-    FRAMES[..CLIPS.1.len()].iter().flat_map(through).collect()
+    FRAMES[..count].iter().flat_map(through).collect()
+}
+
+fn through_all_clips() -> Vec<&'static [u8]> {
+    through_clips(CLIPS.1.len())
 }
 
 fn plays_all_clips(machine: Machine) {
@@ -59,6 +63,19 @@ fn lm3s6965evb_plays_all_clips_as_the_host_does() {
 #[test]
 fn microbit_plays_all_clips_as_the_host_does() {
     plays_all_clips(MICROBIT);
+}
+
+#[test]
+fn microbit_plays_key_clips_as_the_host_does() {
+    if setup::host_only("key clips on the microbit") {
+        return;
+    }
+    let clips = ["walk", "run"].map(|name| vectors::keyed::folder().join(name).with_extension("ptn"));
+    let firmware =
+        Firmware::featuring("keys", MICROBIT.name, MICROBIT.name, MICROBIT.target, &clips.each_ref().map(PathBuf::as_path));
+    let keys = through_clips(clips.len());
+    let expected = simulator::play::<Rotation>(MICROBIT.display.unwrap(), &clips, &[], &keys).unwrap();
+    equal::shows(MICROBIT, &firmware.unwrap(), &expected, &keys);
 }
 
 #[test]

@@ -44,7 +44,7 @@ struct Film {
 
 impl Film {
     fn of(path: &Path) -> Film {
-        let (bytes, info) = board_clip::read(path, None).unwrap();
+        let (bytes, info) = board_clip::read(path, &board_clip::Sent::default()).unwrap();
         let keys = [&b""[..]; 60];
         let pictures = simulator::play::<Rotation>(OLED, &[path.to_owned()], &[], &keys).unwrap();
         Film { bytes, info, pictures: pictures.into_iter().map(|(_, picture)| picture).collect() }

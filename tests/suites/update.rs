@@ -50,7 +50,7 @@ struct Film {
 
 impl Film {
     fn of(path: PathBuf) -> Film {
-        let (bytes, info) = board_clip::read(&path, None).unwrap();
+        let (bytes, info) = board_clip::read(&path, &board_clip::Sent::default()).unwrap();
         let keys = [&b""[..]; PICTURES - 1];
         let pictures = simulator::play::<Rotation>(MICROBIT.display.unwrap(), std::slice::from_ref(&path), &[], &keys).unwrap();
         Film { bytes, info, path, pictures }
@@ -74,7 +74,7 @@ static BENCH: LazyLock<Bench> = LazyLock::new(|| {
 
 /// A clip of more channels than the board has room for.
 fn wide() -> (Vec<u8>, ClipInfo) {
-    board_clip::read(&paths::root().join("tests/vectors/channels-300.ptn"), None).unwrap()
+    board_clip::read(&paths::root().join("tests/vectors/channels-300.ptn"), &board_clip::Sent::default()).unwrap()
 }
 
 /// The bench; none where there is no emulator.

@@ -90,11 +90,12 @@ fn synthetic_vectors_come_out_byte_for_byte() {
 }
 
 #[test]
-fn the_bank_is_what_the_encoder_makes_and_decodes_to_its_record() {
-    let file = |ending: &str| vectors::folder().join(bank::NAME).with_extension(ending);
-    let committed = fs::read(file("ptb")).unwrap();
-    assert!(bank::bytes().unwrap() == committed, "the encoder makes other bytes than those committed");
-    assert_eq!(bank::record(&committed).unwrap(), fs::read_to_string(file("json")).unwrap());
+fn banks_are_what_the_encoder_makes_and_decode_to_their_records() {
+    for (folder, made) in [(vectors::folder(), bank::bytes().unwrap()), (keyed::folder(), keyed::bank().unwrap())] {
+        let file = |ending: &str| folder.join(bank::NAME).with_extension(ending);
+        assert!(made == fs::read(file("ptb")).unwrap(), "the encoder makes other bytes than {}", file("ptb").display());
+        assert_eq!(bank::record(&made).unwrap(), fs::read_to_string(file("json")).unwrap());
+    }
 }
 
 #[test]

@@ -110,5 +110,18 @@ for name in sorted(os.listdir(folder)):
             pass
     files += 1
     frames += clip.frames
+# Key clips are refused by name, alone and in a bank, whose other clips play.
+key_vectors = folder.rstrip("/") + "/../key-vectors/"
+with open(key_vectors + "walk.ptn", "rb") as file:
+    data = file.read()
+with open(key_vectors + "bank.ptb", "rb") as file:
+    bank = pantin.Bank(file.read())
+for opens in (lambda: pantin.Clip(data), lambda: bank.clip("keys")):
+    try:
+        opens()
+        raise AssertionError("a key clip opens")
+    except ValueError as error:
+        assert "--segments" in str(error)
+assert bank.clip("walk").frames == 30
 assert turned == sum(len(lines) for lines in turns.values()) > 600
 print(files, "files,", frames, "frames,", turned, "rotations")

@@ -66,6 +66,7 @@ fn text(bytes: &[u8]) -> Result<String> {
         "frame_time_ns": clip.frame_time_ns(),
         "looped": clip.looped(),
         "moving": clip.moving(),
+        "has_keys": clip.has_keys(),
         "up": up::text(figure.up),
         "joints": figure.joints.iter().map(joint).collect::<Vec<_>>(),
         "scalars": figure.scalars.iter().map(|scalar| json!([scalar.name, scalar.full_scale])).collect::<Vec<_>>(),

@@ -28,7 +28,7 @@ mod _pantin {
     #[pymodule_export]
     use super::error::{BoundError, MemoryLimitError, PantinError, ReadError, SettingError, SourceError};
     #[pymodule_export]
-    use super::export::bvh;
+    use super::export::{bvh, keys};
     #[pymodule_export]
     use super::facts::{channel_bytes, facts};
     #[pymodule_export]

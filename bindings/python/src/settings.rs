@@ -1,12 +1,12 @@
 //! The keyword arguments of `pantin.convert`, and the recipe that they ask for.
 
-use pantin_convert::edit::{Body, Edits, InPlace};
 use pantin_convert::Level;
 use pantin_convert::Rotations;
+use pantin_convert::edit::{Body, Edits, InPlace};
 use pantin_convert::import::{ImportOptions, up};
 use pantin_convert::motion::Up;
 use pantin_convert::number::Number;
-use pantin_convert::{ChannelBound, Error, Length, Memory, Moment, Options, Problem, Recipe, Setting, parse_size};
+use pantin_convert::{ChannelBound, Error, Length, Memory, Moment, Options, Problem, Recipe, Setting, UseKeys, parse_size};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -27,6 +27,8 @@ pub struct Settings {
     max_channel_error: Option<f64>,
     max_accel_error: Option<f64>,
     exact: bool,
+    keys: bool,
+    segments: bool,
     effort: String,
     rotations: String,
     index: Option<f64>,
@@ -155,6 +157,12 @@ impl Settings {
         options.places_only = self.places_only;
         options.channels = self.channels()?;
         options.index = self.index;
+        options.keys = match (self.keys, self.segments) {
+            (true, true) => return Err(Error::setting(Setting::Keys, "a clip holds keys or segments: leave out segments")),
+            (true, false) => UseKeys::Always,
+            (false, true) => UseKeys::Never,
+            (false, false) => UseKeys::IfSmaller,
+        };
         Ok(options.rig_apart(self.rig_apart).looped(self.looped).footsteps(self.footsteps))
     }
 
@@ -261,6 +269,7 @@ impl Settings {
             Setting::Loop => flag(self.looped),
             Setting::CloseLoop => flag(self.close_loop),
             Setting::Exact => flag(self.exact),
+            Setting::Keys => flag(self.keys),
             Setting::PlacesOnly => flag(self.places_only),
             _ => None,
         }

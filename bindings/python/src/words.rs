@@ -44,6 +44,7 @@ pub fn keyword(setting: Setting) -> &'static str {
         Setting::MaxChannelError => "max_channel_error",
         Setting::MaxAccelError => "max_accel_error",
         Setting::Exact => "exact",
+        Setting::Keys => "keys",
         Setting::Rotations => "rotations",
         Setting::Effort => "effort",
         Setting::Index => "index",
@@ -68,6 +69,8 @@ fn arguments(remedy: Remedy) -> &'static str {
         Remedy::DropScales => "drop=",
         Remedy::MapJoints => "joint_map=",
         Remedy::FindFootsteps => "footsteps=",
+        Remedy::WriteSegments => "segments=True",
+        Remedy::AllowSegments => "keys=False",
         _ => "",
     }
 }

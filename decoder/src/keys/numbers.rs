@@ -56,26 +56,37 @@ pub(super) fn scaled(one: i32, other: i32) -> i64 {
     shift_rounded(i64::from(one) * i64::from(other), 30)
 }
 
-/// A quotient, rounded to the nearest; halves away from zero. One bit a turn: the compiler's own routine is several times as large.
+/// A quotient, rounded to the nearest; halves away from zero. Two digits of 32 bits, one bit a turn: the compiler's own routine is several times as
+/// large.
 #[inline(never)]
 pub(super) fn divide(value: i64, by: u32) -> i64 {
-    let mut rest = value.unsigned_abs() + u64::from(by >> 1);
-    let skipped = rest.leading_zeros();
-    rest = rest.wrapping_shl(skipped);
-    // As many bits as the divisor has but one are less than it: they give no bit of the quotient.
-    let known = 31_u32.wrapping_sub(by.leading_zeros()) & 31;
-    let mut above = ((rest >> 33) as u32) >> (31 - known);
-    rest <<= known;
-    for _ in skipped + known..64 {
+    let rest = value.unsigned_abs() + u64::from(by >> 1);
+    let zeros = by.leading_zeros();
+    let (above, high) = digit(0, (rest >> 32) as u32, (by, zeros));
+    let (_, low) = digit(above, rest as u32, (by, zeros));
+    let quotient = (u64::from(high) << 32 | u64::from(low)) as i64;
+    if value < 0 { quotient.wrapping_neg() } else { quotient }
+}
+
+/// A digit of a long division: `above`, the rest so far, is less than the divisor, which comes with its leading zeros. Returns the rest and the digit of
+/// the quotient.
+#[inline(never)]
+fn digit(above: u32, digit: u32, (by, zeros): (u32, u32)) -> (u32, u32) {
+    let room = if above == 0 { 32 + digit.leading_zeros() } else { above.leading_zeros() };
+    // As many bits more leave the rest less than the divisor: they give no bit of the quotient.
+    let known = room.saturating_sub(zeros + 1).min(32);
+    let both = (u64::from(above) << 32 | u64::from(digit)) << known;
+    let (mut above, mut rest) = ((both >> 32) as u32, both as u32);
+    for _ in known..32 {
         let carry = above >> 31 != 0;
-        above = above << 1 | (rest >> 63) as u32;
+        above = above << 1 | rest >> 31;
         rest <<= 1;
         if carry || above >= by {
             above = above.wrapping_sub(by);
             rest |= 1;
         }
     }
-    if value < 0 { (rest as i64).wrapping_neg() } else { rest as i64 }
+    (above, rest)
 }
 
 #[cfg(test)]

@@ -42,8 +42,7 @@ impl Solver {
 
     /// Weights of a neighbour at the other end of a span, and of a key itself, in 2^-16: of the discrete spline they differ by a frame's part.
     #[inline(never)]
-    fn weights(&self, states: &[ChannelState], span: usize) -> (i32, u32) {
-        let length = self.grid.length(states, span);
+    fn weights(&self, length: u32) -> (i32, u32) {
         let part = if self.grid.interpolation() == interpolation::DISCRETE { divide(1 << 16, length) as u32 } else { 0 };
         (((length << 16) - part) as i32, (length << 17) + part)
     }
@@ -53,10 +52,10 @@ impl Solver {
     pub(super) fn prepare(&self, states: &mut [ChannelState]) -> Option<()> {
         let last = self.grid.last();
         let mut factor = 0;
-        let (mut reach, mut hold) = self.weights(states, 0);
+        let (mut reach, mut hold) = self.weights(self.grid.length(states, 0));
         let first = hold;
         for key in 1..last {
-            let (right, held) = self.weights(states, key);
+            let (right, held) = self.weights(self.grid.length(states, key));
             // At most 2^32 less 2^20: two spans have at most as many frames as a loop twice.
             let pivot = (hold + held).wrapping_sub(scaled(reach, factor) as u32);
             factor = divide(i64::from(right) << 30, pivot) as i32;
@@ -81,21 +80,31 @@ impl Solver {
             Unknown::Second(keys, _) => (keys.at + 1, 2, 0),
         };
         let last = self.grid.last();
-        let slope = |states: &[ChannelState], key| match unknown {
+        let raw = |states: &[ChannelState], key| match unknown {
             Unknown::Dependence => 0,
-            Unknown::Second(keys, scale) => slope(states, keys, scale, key),
+            Unknown::Second(keys, scale) => scale.raw(keys.value(states, key)),
+        };
+        // Where the last chord ended, and the last span's length and reach: grids of equal spans need one division for it.
+        let (mut ended, mut span) = (raw(states, 0), (0, 0));
+        let mut chord = |states: &[ChannelState], key| {
+            let length = self.grid.length(states, key);
+            if length != span.0 {
+                span = (length, self.weights(length).0);
+            }
+            let from = core::mem::replace(&mut ended, raw(states, key + 1));
+            (divide((ended - from) << 8, length), span.1)
         };
         words::set(states, at, end);
         words::set(states, at + last * stride, end);
-        let (mut value, mut reach) = (end, self.weights(states, 0).0);
-        let first = slope(states, 0);
-        let (first_reach, mut before) = (reach, first);
+        let mut value = end;
+        let (first, first_reach) = chord(states, 0);
+        let (mut before, mut reach) = (first, first_reach);
         for key in 1..last {
-            let after = slope(states, key);
+            let (after, next_reach) = chord(states, key);
             let pull = i64::from(reach) * i64::from(value);
             value = i32::try_from(divide(bend(before, after) - pull, words::get(states, self.at(0, key)) as u32)).ok()?;
             words::set(states, at + key * stride, value);
-            (before, reach) = (after, self.weights(states, key).0);
+            (before, reach) = (after, next_reach);
         }
         let last_value = last - 1;
         value = end;

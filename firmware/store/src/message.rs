@@ -235,6 +235,9 @@ impl core::fmt::Display for Refusal {
             Refusal::TooLong { capacity } => write!(f, "the board has capacity for a clip of {capacity} bytes"),
             Refusal::NotBegun => f.write_str("the board gave this transfer up"),
             Refusal::BadCrc => f.write_str("the clip did not arrive as it was sent"),
+            Refusal::Clip(OpenError::UnsupportedVersion(2)) => {
+                f.write_str("it is a key clip, and the board's firmware is built without feature `keys`; send segments")
+            }
             Refusal::Clip(error) => write!(f, "the board's decoder cannot open it: {error}"),
             Refusal::TooBig => f.write_str("the board has not the memory to play it (its channels or joints are too many)"),
             Refusal::Flash => f.write_str("the board's flash cannot be written"),

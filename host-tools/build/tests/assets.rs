@@ -34,6 +34,16 @@ fn a_motion_is_converted_by_its_recipe_and_always_to_the_same_text() {
     assert!(default.bytes.len() > first.bytes.len());
 }
 
+/// Without feature `keys` of the decoder, such a program does not compile, instead of failing when it runs.
+#[test]
+fn motions_become_segments_and_a_key_clip_names_its_feature() {
+    let vectors = motions().join("../tests/key-vectors");
+    let walk = clip(vectors.join("walk.ptn")).generate().unwrap();
+    assert!(walk.text.contains("feature `keys`") && walk.text.contains("= pantin::Clip::has_keys;\n"));
+    assert!(bank(vectors.join("bank.ptb")).generate().unwrap().text.contains("pantin::Clip::has_keys"));
+    assert!(!clip(motions().join("greet.keys")).generate().unwrap().text.contains("has_keys"));
+}
+
 #[test]
 fn clips_and_banks_are_taken_as_they_are() {
     let walk = clip(motions().join("walk.ptn")).with_figure().generate().unwrap();

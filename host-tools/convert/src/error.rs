@@ -115,6 +115,8 @@ pub enum Setting {
     MaxAccelError,
     /// Exact coding.
     Exact,
+    /// Keys instead of segments.
+    Keys,
     /// How rotations are coded.
     Rotations,
     /// The encoder's effort.
@@ -165,6 +167,7 @@ impl Setting {
             Setting::MaxChannelError => "largest channel error",
             Setting::MaxAccelError => "largest acceleration error",
             Setting::Exact => "exact coding",
+            Setting::Keys => "keys",
             Setting::Rotations => "rotations",
             Setting::Effort => "effort",
             Setting::Index => "index",

@@ -1,9 +1,13 @@
 //! Key-frame text (docs/KEYFRAMES.md) of a key clip: the keys with the numbers that were written.
 
+use crate::conversion::convert;
 use crate::encode::rig;
 use crate::events;
+use crate::expand::expand_made;
 use crate::fit::raw;
-use crate::motion::Rig;
+use crate::keys::{cubics, sample_pieces, within};
+use crate::motion::{self, Rig};
+use crate::options::{ChannelBound, Options};
 use anyhow::{Context, Result, ensure};
 use pantin::{ChannelState, Clip, Interpolation, Kind, Player};
 use std::fmt::Write;
@@ -48,6 +52,29 @@ pub fn write(clip: &Clip<'_>) -> Result<String> {
         channel = next;
     }
     Ok(text)
+}
+
+/// A key clip's curves as a clip of segments, for players without feature `keys`: every channel as it is, but for rounding
+/// ([`ChannelBound::Exact`]). Its rig stays out if the key clip has none.
+pub fn to_segments(clip: &Clip<'_>) -> Result<Vec<u8>> {
+    ensure!(clip.has_keys(), "the clip holds segments already");
+    let mut motion = expand_made(clip)?;
+    for (channel, curve) in curves(clip, &motion.rig)?.into_iter().enumerate() {
+        let Some(Curve { interpolation, keys }) = curve.filter(|curve| curve.keys.len() > 1) else { continue };
+        let keys: Vec<(usize, f64)> = keys.iter().map(|&(frame, value)| (frame as usize, f64::from(value) / 1000.0)).collect();
+        let interpolation = match interpolation {
+            Interpolation::Linear => motion::Interpolation::Linear,
+            Interpolation::CatmullRom => motion::Interpolation::CatmullRom,
+            Interpolation::Natural => motion::Interpolation::Natural,
+            Interpolation::Discrete => motion::Interpolation::Discrete,
+        };
+        let pieces = cubics(&keys, interpolation, clip.looped());
+        let values = sample_pieces(&pieces, motion.frames);
+        motion.keys[channel] = Some(within(keys, interpolation, pieces, &values));
+        motion.values[channel] = values;
+    }
+    let options = Options::new().channels(ChannelBound::Exact).rig_apart(clip.rig_len() == 0);
+    Ok(convert(&motion, &options, &mut |_| ())?.clip)
 }
 
 fn times(curve: &Curve) -> impl Iterator<Item = u32> + '_ {
@@ -240,6 +267,24 @@ mod tests {
                 assert!(off < 0.0006, "{}: {} is {off} off", file.display(), written.rig.channel_name(channel));
             }
             assert!(made(&back) == clip, "{}: the text makes another clip", file.display());
+        }
+    }
+
+    #[test]
+    fn segments_play_the_curves_of_a_key_clip() {
+        let files = ["walk", "greet", "face/yawn"].map(|name| format!("../../motions/{name}.keys"));
+        for file in files.map(|file| Path::new(env!("CARGO_MANIFEST_DIR")).join(file)) {
+            let keyed = made(&loaded(&file));
+            let keyed = Clip::new_checked(&keyed).unwrap();
+            let segments = to_segments(&keyed).unwrap();
+            let segments = Clip::new_checked(&segments).unwrap();
+            assert!(!segments.has_keys() && segments.rig_len() == keyed.rig_len() && segments.looped() == keyed.looped());
+            assert!(segments.events().eq(keyed.events()));
+            let [played, exact] = [segments, keyed].map(|clip| expand_made(&clip).unwrap());
+            for (values, others) in played.values.iter().zip(&exact.values) {
+                let off = values.iter().zip(others).map(|(value, other)| (value - other).abs()).fold(0.0, f64::max);
+                assert!(off < 0.007, "{}: {off} off", file.display());
+            }
         }
     }
 

@@ -81,6 +81,8 @@ impl Remedy {
             Remedy::MapJoints => "map-joints",
             Remedy::ShareForm => "share-form",
             Remedy::FindFootsteps => "find-footsteps",
+            Remedy::WriteSegments => "write-segments",
+            Remedy::AllowSegments => "allow-segments",
         }
     }
 }
@@ -127,6 +129,7 @@ impl Setting {
             Setting::MaxChannelError => "max-channel-error",
             Setting::MaxAccelError => "max-accel-error",
             Setting::Exact => "exact",
+            Setting::Keys => "keys",
             Setting::Rotations => "rotations",
             Setting::Effort => "effort",
             Setting::Index => "index",

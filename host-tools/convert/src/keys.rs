@@ -4,7 +4,7 @@
 //! second derivative (`Natural`) or second difference (`Discrete`) w at the keys: both are linear in a segment, so the curve
 //! is known by w at its two ends, and one equation a key, that both sides meet smoothly, gives all w (docs/METHOD.md 2.1, 2.3).
 
-use crate::motion::{Interpolation, Piece};
+use crate::motion::{Interpolation, Keys, Piece};
 
 impl Piece {
     /// Value `s` frames after its start.
@@ -56,6 +56,14 @@ pub fn sample(keys: &[(usize, f64)], interpolation: Interpolation, frames: usize
         cubics.get(segment).map_or(keys[segment].1, |cubic| cubic.at((frame - keys[segment].0) as f64))
     };
     (0..frames).map(value).collect()
+}
+
+/// Keys up to the last frame that is there, with one on it.
+pub(crate) fn within(mut keys: Vec<(usize, f64)>, interpolation: Interpolation, pieces: Vec<Piece>, values: &[f64]) -> Keys {
+    let last = values.len() - 1;
+    keys.retain(|&(frame, _)| frame < last);
+    keys.push((last, values[last]));
+    Keys::OnFrames { interpolation, keys, pieces }
 }
 
 /// The cubics of that curve, one between two keys.

@@ -56,4 +56,4 @@ pub use length::Length;
 pub use memory::{Memory, parse as parse_size, size as size_text};
 pub use moment::Moment;
 pub use note::{Note, NoteKind, Place, Remedy, Severity};
-pub use options::{ChannelBound, Options};
+pub use options::{ChannelBound, Options, UseKeys};

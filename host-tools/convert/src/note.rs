@@ -159,6 +159,10 @@ pub enum Remedy {
     ShareForm,
     /// Find the footsteps of the motions.
     FindFootsteps,
+    /// Write segments, which players without feature `keys` play, too.
+    WriteSegments,
+    /// Allow segments where a motion has no key clip.
+    AllowSegments,
 }
 
 impl Remedy {
@@ -183,6 +187,8 @@ impl Remedy {
             Remedy::MapJoints => "map the names of the joints",
             Remedy::ShareForm => "convert the motions with one form",
             Remedy::FindFootsteps => "find the footsteps of the motions",
+            Remedy::WriteSegments => "write segments for players without feature `keys`",
+            Remedy::AllowSegments => "allow segments",
         }
     }
 }

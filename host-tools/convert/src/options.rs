@@ -18,6 +18,18 @@ pub enum ChannelBound {
     Exact,
 }
 
+/// Whether a clip holds the keys of its motion (a key clip, which only players with feature `keys` play) or segments, which every player plays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UseKeys {
+    /// Segments, for players of any build.
+    #[default]
+    Never,
+    /// Keys where they take fewer bytes than segments within the bound, else segments.
+    IfSmaller,
+    /// Keys. A motion without a key clip is an error.
+    Always,
+}
+
 /// What a user asks of a clip. The defaults suit a figure of human size on a small display.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -47,9 +59,8 @@ pub struct Options {
     pub rotations: Rotations,
     /// Seconds between snapshots for seeking; none by default.
     pub index: Option<f64>,
-    /// Whether the clip holds the motion's keys where it is smaller so than by segments within its bound: a key clip, which only players with feature
-    /// `keys` play. `false` by default.
-    pub keys: bool,
+    /// Whether the clip holds the motion's keys; [`UseKeys::Never`] by default. A clip with an [`index`](Options::index) has segments.
+    pub keys: UseKeys,
     /// Whether the rig stays out of the clip, to be shared by several; `false` by default.
     pub rig_apart: bool,
     /// Whether the seam between the last frame and the first is closed, which makes the clip a loop. What that moves is part of the bound.
@@ -74,7 +85,7 @@ impl Default for Options {
             effort: Level::DEFAULT,
             rotations: Rotations::ByCost,
             index: None,
-            keys: false,
+            keys: UseKeys::Never,
             rig_apart: false,
             looped: false,
             footsteps: false,
@@ -154,8 +165,8 @@ impl Options {
         Options { index: seconds.into(), ..self }
     }
 
-    /// Makes a key clip where that is smaller.
-    pub fn keys(self, keys: bool) -> Options {
+    /// Chooses between keys and segments.
+    pub fn keys(self, keys: UseKeys) -> Options {
         Options { keys, ..self }
     }
 

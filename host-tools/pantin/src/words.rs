@@ -44,6 +44,7 @@ pub fn option(setting: Setting) -> &'static str {
         Setting::MaxChannelError => "--max-channel-error",
         Setting::MaxAccelError => "--max-accel-error",
         Setting::Exact => "--exact",
+        Setting::Keys => "--keys",
         Setting::Rotations => "--rotations",
         Setting::Effort => "--effort",
         Setting::Index => "--index",
@@ -72,6 +73,8 @@ pub fn advice(remedy: Remedy) -> &'static str {
         Remedy::MapJoints => "--map FILE names them",
         Remedy::ShareForm => "`pantin convert --same-form` gives them one form",
         Remedy::FindFootsteps => "`pantin convert --footsteps` finds them",
+        Remedy::WriteSegments => "--segments writes a clip for players without feature `keys`",
+        Remedy::AllowSegments => "without --keys it gets segments",
         other => other.text(),
     }
 }

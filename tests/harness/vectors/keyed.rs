@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use hostile::noise::Noise;
 use pantin::codec::{keys as layout, layout::HAS_SECTIONS};
 use pantin::{ChannelState, Clip, Event, Kind, Player};
+use pantin_convert::bank::{self, Named};
 use pantin_convert::encode::keys::{self, Curve, KeyMotion, KeyedChannel};
 use pantin_convert::encode::rig;
 use pantin_convert::fit::raw::clip_length_exponent;
@@ -14,7 +15,8 @@ use pantin_convert::key_clip;
 use pantin_convert::motion::Rig;
 use serde_json::json;
 
-use super::{Vector, json, synthetic::figure};
+use super::synthetic::{self, figure};
+use super::{Vector, json};
 use crate::paths;
 
 /// Where they are.
@@ -94,15 +96,34 @@ fn vector(name: &str, motion: &KeyMotion, figure: &Rig, apart: bool) -> Result<V
 }
 
 /// A clip whose channels are noise: some rest, some are constant, some do what others do.
-fn noisy(name: &str, joints: &[&[Kind]], scalars: usize, (frames, looped): (u32, bool), interpolations: &[u8]) -> Result<Vector> {
+fn noisy(name: &str, joints: &[&[Kind]], scalars: usize, length: (u32, bool), interpolations: &[u8]) -> Result<Vector> {
     let figure = figure(joints, scalars);
+    let motion = noise(&figure, length, interpolations, name.len());
+    vector(name, &motion, &figure, false)
+}
+
+fn noise(figure: &Rig, (frames, looped): (u32, bool), interpolations: &[u8], seed: usize) -> KeyMotion {
     let mut motion = motion(frames, looped);
-    let mut noise = Noise::new(u64::from(frames) + name.len() as u64);
+    let mut noise = Noise::new(u64::from(frames) + seed as u64);
     for (_, kind) in figure.channel_kinds() {
         let channel = channel(&motion, kind, interpolations, &mut noise);
         motion.channels.push(channel);
     }
-    vector(name, &motion, &figure, false)
+    motion
+}
+
+/// A bank of key clips and a clip of segments.
+pub fn bank() -> Result<Vec<u8>> {
+    let segments = synthetic::in_bank().into_iter().next().context("a clip of the bank of version 1")?;
+    let rig = rig::encode(&segments.rig)?;
+    let named = |name: &str, clip: Vec<u8>| Named { name: name.into(), place: name.into(), clip, rig: rig.as_slice().into() };
+    let keyed = |name: &str, length| -> Result<Named> {
+        let motion = noise(&segments.rig, length, &[0, 1, 2, 3], name.len());
+        Ok(named(name, keys::encode(&motion, &rig, true)?))
+    };
+    let clips =
+        [keyed("keys", (36, false))?, named(segments.name, segments.vector()?.clip), keyed("keys of a loop", (24, true))?];
+    bank::encode(&clips)
 }
 
 /// The greatest value of a kind in thousandths.

@@ -58,7 +58,7 @@ pub fn vectors(wanted: impl Fn(&str) -> bool) -> Result<Vec<Vector>> {
 /// Converts a motion with the host tool.
 pub fn convert(tool: &Path, motion: &Path, clip: &Path, arguments: &[&str]) -> Result<()> {
     let mut convert = Command::new(tool);
-    convert.arg("convert").arg(motion).arg("-o").arg(clip).arg("--quiet").args(arguments);
+    convert.arg("convert").arg(motion).arg("-o").arg(clip).args(["--segments", "--quiet"]).args(arguments);
     let output = convert.output().context("cannot start the host tool")?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(())

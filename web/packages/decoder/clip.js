@@ -211,7 +211,9 @@ export const openRawBank = (data, extras) => {
   const sections = [];
   const clips = new Map();
   check(u8() === 80 && u8() === 98, "not a bank");
-  check([1, extras.keys ? 2 : 1].includes(u8()), "unknown version");
+  const version = u8();
+  check(version !== 2 || extras.keys, "a bank with key clips needs the keys of @pantin/decoder/keys");
+  check(version === 1 || version === 2, "unknown version");
   while (more()) {
     const type = u8();
     check(!sections[type] || type < 1 || type > 3, "bad bank");

@@ -108,8 +108,13 @@ fn one(tool: &Path, path: &Path, out: &Path) -> Result<Row> {
         _ => (1.0, "1cm"),
     };
     let clip = out.join(name(path)).with_extension("ptn");
-    let done =
-        Command::new(tool).arg("convert").arg(path).arg("-o").arg(&clip).args(["--quiet", "--max-error", text]).output()?;
+    let done = Command::new(tool)
+        .arg("convert")
+        .arg(path)
+        .arg("-o")
+        .arg(&clip)
+        .args(["--quiet", "--segments", "--max-error", text])
+        .output()?;
     ensure!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr).trim());
     let bytes = fs::read(&clip)?;
     let opened = pantin::Clip::new_checked(&bytes)?;

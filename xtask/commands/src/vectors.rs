@@ -74,6 +74,9 @@ fn put_keyed() -> Result<usize> {
     for vector in keyed::all()? {
         put(&mut files, &vector)?;
     }
+    let bank = keyed::bank()?;
+    files.insert(format!("{}.json", bank::NAME), bank::record(&bank)?.into_bytes());
+    files.insert(format!("{}.ptb", bank::NAME), bank);
     for (name, bytes) in &files {
         let path = folder.join(name);
         match fs::read(&path) {

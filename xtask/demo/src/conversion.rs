@@ -52,7 +52,7 @@ fn by_library(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
 fn by_program(motion: &Path, path: &Path, bounds: &Bounds) -> Result<Value> {
     let tool: PathBuf = build::host_tool()?;
     let mut convert = Command::new(tool);
-    convert.arg("convert").arg(motion).arg("-o").arg(path).args(["--places-only", "--json"]);
+    convert.arg("convert").arg(motion).arg("-o").arg(path).args(["--places-only", "--segments", "--json"]);
     convert.args(bounds.error.iter().flat_map(|error| ["--max-error", error]));
     convert.args(bounds.scalar_percent.iter().flat_map(|error| ["--max-scalar-error".to_owned(), error.to_string()]));
     convert.args(bounds.cm_per_unit.iter().flat_map(|unit| ["--cm-per-unit".to_owned(), unit.to_string()]));

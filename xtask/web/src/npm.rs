@@ -135,7 +135,15 @@ pub fn pixels(folder: &Path) -> Result<Vec<String>> {
             pantin(&["convert".as_ref(), source.as_ref(), "--to".as_ref(), "300".as_ref(), "-o".as_ref(), body.as_ref()])?;
             pantin(&["expand".as_ref(), body.as_ref(), "-o".as_ref(), file.as_ref()])?;
         }
-        pantin(&["convert".as_ref(), file.as_ref(), "--max-error".as_ref(), bound.as_ref(), "-o".as_ref(), clip.as_ref()])?;
+        pantin(&[
+            "convert".as_ref(),
+            "--segments".as_ref(),
+            file.as_ref(),
+            "--max-error".as_ref(),
+            bound.as_ref(),
+            "-o".as_ref(),
+            clip.as_ref(),
+        ])?;
     }
     let told: Value = serde_json::from_str(&node(folder, "pixels.mjs", &[pairs.path().into()])?).context("pixels.mjs")?;
     let line = |(name, bound, most): (&str, &str, f64)| {

@@ -61,6 +61,10 @@ class Clip:
         """Writes the clip as BVH. Fails if the clip has scalars, quaternions or no joints, which BVH cannot hold."""
         write(path, _pantin.bvh(self._bytes))
 
+    def to_keys(self, path: StrPath) -> None:
+        """Writes the keys of a key clip as key-frame text (.keys). Fails for a clip of segments, and for names that the text cannot hold."""
+        write(path, _pantin.keys(self._bytes))
+
     def __bytes__(self) -> bytes:
         return self._bytes
 
@@ -95,6 +99,11 @@ class Clip:
     def looped(self) -> bool:
         """Whether frame 0 follows the last frame."""
         return bool(self._facts["looped"])
+
+    @property
+    def has_keys(self) -> bool:
+        """Whether it is a key clip: it holds keys instead of segments."""
+        return bool(self._facts["has_keys"])
 
     @property
     def up(self) -> str:

@@ -36,6 +36,8 @@ def convert(
     max_channel_error: Optional[float] = None,
     max_accel_error: Optional[float] = None,
     exact: bool = False,
+    keys: bool = False,
+    segments: bool = False,
     effort: Union[int, str] = "default",
     rotations: str = "by-cost",
     index: Optional[float] = None,
@@ -93,6 +95,9 @@ def convert(
     max_channel_error: largest error of each channel, in place of all bounds above: degrees for rotations, percent of the range for others.
     max_accel_error: largest error of each channel's second difference, in place of all bounds above: degrees or percent per frame squared.
     exact: code known curves as they are, in place of all bounds above.
+    keys, segments: what the clip holds. A key clip holds a motion's keys and their interpolation, and only players with key clips play it. Default: keys
+        for .keys files and other curves whose keys lie on frames, if they take fewer bytes than segments; else segments. `keys=True` fails if there
+        is no key clip of the motion.
     effort: 1 to 9, or 'fast' (1), 'default' (6) or 'best' (9): speed against size. Each level takes at most 1.8 times the time of the one below.
     rotations: how joints with three Euler angles are coded: 'by-cost', 'euler', 'exponential' or 'quaternion'.
     index: seconds between snapshots for seeking. Default: no snapshots.

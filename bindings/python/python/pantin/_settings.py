@@ -38,7 +38,7 @@ NUMBERS = (
 )
 """Arguments that are numbers, or None."""
 
-FLAGS = ("places_only", "exact", "rig_apart", "loop", "footsteps", "mirror", "reverse", "close_loop")
+FLAGS = ("places_only", "exact", "keys", "segments", "rig_apart", "loop", "footsteps", "mirror", "reverse", "close_loop")
 """Arguments that are true or false."""
 
 WORDS = ("rotations", "retarget", "in_place", "up")

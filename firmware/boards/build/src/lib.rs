@@ -134,14 +134,14 @@ pub fn clips() -> [usize; 3] {
             };
             let _ = writeln!(banks, "static BANK_{index}: &[u8] = include_bytes!({copy:?});");
             for entry in bank.entries() {
-                let size = bank.open(&entry).map(|clip| size(&clip)).unwrap_or_default();
+                let size = bank.open(&entry).map(|clip| size(&clip, path)).unwrap_or_default();
                 largest = std::array::from_fn(|kind| size[kind].max(largest[kind]));
                 let (name, bytes, rig) = (entry.name(), part(entry.bytes()), part(bank.rig_bytes()));
                 let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: {bytes}, rig: {rig} }},");
             }
             continue;
         }
-        let size = pantin::Clip::new_checked(&bytes).map(|clip| size(&clip)).unwrap_or_default();
+        let size = pantin::Clip::new_checked(&bytes).map(|clip| size(&clip, path)).unwrap_or_default();
         largest = std::array::from_fn(|kind| size[kind].max(largest[kind]));
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let _ = writeln!(list, "    pantin_app::Entry {{ name: {name:?}, bytes: include_bytes!({copy:?}), rig: &[] }},");
@@ -174,9 +174,13 @@ pub fn feature(name: &str) -> bool {
     env::var_os(format!("CARGO_FEATURE_{}", name.to_uppercase().replace('-', "_"))).is_some()
 }
 
-/// Returns a clip's channels, moving channels, and joints of the figure with the crown that it may get. The program itself reports what is
+/// Returns a clip's channels, states of a player, and joints of the figure with the crown that it may get. The program itself reports what is
 /// no clip.
-fn size(clip: &pantin::Clip) -> [usize; 3] {
+fn size(clip: &pantin::Clip, path: &Path) -> [usize; 3] {
+    if clip.has_keys() && !feature("keys") {
+        let advice = "build with feature `keys`, or convert its motion with `--segments`";
+        println!("cargo::error={}: a key clip, which this image would not play: {advice}", path.display());
+    }
     [clip.rig().channels(), clip.moving(), clip.rig().joint_count() + 1]
 }
 

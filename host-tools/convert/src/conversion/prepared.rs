@@ -20,10 +20,10 @@ use crate::fit::rotation_coding::{Coding, Rotations, has_choice, quaternions};
 use crate::fit::{channelwise, fit_coding};
 use crate::import::up;
 use crate::length::Length;
-use crate::motion::{Motion, Up};
-use crate::note::{Note, NoteKind};
+use crate::motion::{Keys, Motion, Up};
+use crate::note::{Note, NoteKind, Remedy};
 use crate::number::Number;
-use crate::options::{ChannelBound, Options};
+use crate::options::{ChannelBound, Options, UseKeys};
 use crate::pose_bound::PoseBound;
 use crate::verify::verify;
 use anyhow::{Context, Result};
@@ -223,7 +223,7 @@ impl Prepared {
             _ => (motion, distance),
         };
         let within = |bytes: &[u8]| verify(bytes, rig, source, &whole.pose, whole.scalar_part).map(drop);
-        let keyed = self.smaller_by_keys(&coded, &by_segments, &within, notes);
+        let keyed = self.by_keys(&coded, &by_segments, &within, notes)?;
         let has_keys = keyed.is_some();
         let bytes = keyed.unwrap_or(by_segments);
         let report = verify(&bytes, rig, source, &whole.pose, whole.scalar_part)?;
@@ -268,37 +268,57 @@ impl Prepared {
         }
         let by_segments = self.file(&coded, notes)?;
         let within = |bytes: &[u8]| channel_error::verify(bytes, rig, motion, &bounds).map(drop);
-        let bytes = self.smaller_by_keys(&coded, &by_segments, &within, notes).unwrap_or(by_segments);
+        let bytes = self.by_keys(&coded, &by_segments, &within, notes)?.unwrap_or(by_segments);
         let report = channel_error::verify(&bytes, rig, motion, &bounds)?;
         Ok((bytes, coded, Errors::Channels(report, bounds.constraint)))
     }
 
-    /// The key clip of the motion, if one was asked for and is smaller than the clip of its segments; a note says which one it is, and why.
-    fn smaller_by_keys(
+    /// The key clip of the motion, if it is to be written; a note says which kind of clip is, and why.
+    fn by_keys(
         &self,
         coded: &Coded,
         by_segments: &[u8],
         within: &dyn Fn(&[u8]) -> Result<()>,
         notes: &mut Vec<Note>,
-    ) -> Option<Vec<u8>> {
-        let Options { keys: true, rig_apart, .. } = self.options else { return None };
+    ) -> Result<Option<Vec<u8>>> {
+        let Options { keys, rig_apart, index, .. } = self.options;
+        let has_keys = self.motion.keys.iter().flatten().any(|keys| matches!(keys, Keys::OnFrames { .. }));
+        match keys {
+            UseKeys::Never => return Ok(None),
+            // Motions without keys, as captures are, have nothing to choose from.
+            UseKeys::IfSmaller if index.is_some() || !has_keys => return Ok(None),
+            UseKeys::Always => {
+                let why = "a key clip has no index: its player seeks to any frame at once";
+                require!(index.is_none(), Error::setting(Setting::Index, why));
+            }
+            UseKeys::IfSmaller => {}
+        }
         let made = key_clip(&self.motion, &self.rig, (coded.frame_time_ns, coded.length_exponent), rig_apart);
         let made = made.and_then(|bytes| within(&bytes).map(|()| bytes));
-        let (text, bytes) = match made {
-            Ok(bytes) if bytes.len() < by_segments.len() => {
-                let saved = by_segments.len() - bytes.len();
-                (
-                    format!(
-                        "keys: the clip holds the motion's keys, which take {saved} bytes less than segments within the bound"
-                    ),
-                    Some(bytes),
-                )
+        let bytes = match made {
+            Ok(bytes) => bytes,
+            Err(error) if keys == UseKeys::Always => {
+                return Err(Error::bound(format!("there is no key clip of this motion: {error:#}"))
+                    .remedy(Remedy::AllowSegments)
+                    .into());
             }
-            Ok(bytes) => (format!("keys: segments within the bound take {} bytes less", bytes.len() - by_segments.len()), None),
-            Err(error) => (format!("keys: segments, for there is no key clip of this motion: {error:#}"), None),
+            Err(error) => {
+                let text = format!("keys: segments, for there is no key clip of this motion: {error:#}");
+                notes.push(Note::info(NoteKind::Keys, text));
+                return Ok(None);
+            }
         };
-        notes.push(Note::info(NoteKind::Keys, text));
-        bytes
+        let [more, fewer] = [bytes.len().saturating_sub(by_segments.len()), by_segments.len().saturating_sub(bytes.len())];
+        let (text, written) = match keys {
+            UseKeys::Always if more > 0 => (format!("keys: segments within the bound would take {more} bytes less"), true),
+            UseKeys::IfSmaller if fewer == 0 => {
+                (format!("keys: segments within the bound take {more} bytes less than the motion's keys"), false)
+            }
+            _ => (format!("keys: a key clip, which takes {fewer} bytes less than segments within the bound"), true),
+        };
+        let note = Note::info(NoteKind::Keys, text);
+        notes.push(if written && keys == UseKeys::IfSmaller { note.remedy(Remedy::WriteSegments) } else { note });
+        Ok(written.then_some(bytes))
     }
 
     /// The clip's bytes, with the index that was asked for; a note says what it costs.

@@ -2,8 +2,8 @@
 
 use super::written::{self, HEADINGS, Header, LineParser as _, Read, Wrong, number, rig, wrong};
 use super::{Request, Source};
-use crate::keys::{cubics, sample};
-use crate::motion::{Interpolation, Keys, Motion, Origin, Piece, Rig};
+use crate::keys::{cubics, sample, within};
+use crate::motion::{Interpolation, Motion, Origin, Rig};
 use anyhow::{Error, Result};
 use std::path::Path;
 
@@ -152,14 +152,6 @@ impl Block {
         }
         curve
     }
-}
-
-/// Keys up to the last frame that is there, with one on it.
-fn within(mut keys: Vec<(usize, f64)>, interpolation: Interpolation, pieces: Vec<Piece>, values: &[f64]) -> Keys {
-    let last = values.len() - 1;
-    keys.retain(|&(frame, _)| frame < last);
-    keys.push((last, values[last]));
-    Keys::OnFrames { interpolation, keys, pieces }
 }
 
 fn interpolation(word: &str) -> Read<Interpolation> {

@@ -56,7 +56,9 @@ impl core::fmt::Display for SourceError {
                 "more than {} joints could be exponential maps; `pantin convert --rotations euler` makes a clip that can be sent",
                 8 * EXPONENTIAL_BYTES
             ),
-            SourceError::Keys => write!(f, "a key clip cannot be sent; `pantin convert` without --keys makes a clip that can"),
+            SourceError::Keys => {
+                write!(f, "a key clip cannot be sent as segments; `pantin convert --segments` makes a clip that can")
+            }
             SourceError::Player(error) => write!(f, "{error}"),
         }
     }

@@ -14,7 +14,7 @@ use pantin::Up;
 use pantin_convert::edit::find_loop::{self, Cut};
 use pantin_convert::import::ImportOptions;
 use pantin_convert::motion::Motion;
-use pantin_convert::{Coding, Length, Level, Note, Options, Prepared, Recipe, shared_coding};
+use pantin_convert::{Coding, Length, Level, Note, Options, Prepared, Recipe, UseKeys, shared_coding};
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ use std::sync::OnceLock;
   pantin convert walk.bvh -o walk.ptn --max-error 3cm
   pantin convert walk.bvh -o walk.ptn --rig-out figure.rig
   pantin convert motions/walk.keys -o walk.ptn --exact
-  pantin convert motions/walk.keys -o walk.ptn --keys
+  pantin convert motions/walk.keys -o walk.ptn --segments
   pantin convert walk.bvh -o walk.ptn --index 2
   pantin convert walk.bvh -o walk.ptn --max-channel-error 0.5
   pantin convert walk.bvh -o walk.ptn --footsteps --event clap@12 --event 'door opens@1.5s'
@@ -134,10 +134,14 @@ pub struct Arguments {
     /// Store a snapshot of the player's state every N seconds, so that seeking starts from the nearest one
     #[arg(long, value_name = "SECONDS")]
     index: Option<f64>,
-    /// Write a key clip where that is smaller: it holds the motion's keys and their interpolation, exactly. For .keys files and other curves
-    /// whose keys lie on frames. Only players with feature `keys` play it
-    #[arg(long, conflicts_with_all = ["same_form", "index"])]
+    /// Write a key clip even if it is larger than segments, and fail if there is none. A key clip holds the motion's keys and their interpolation,
+    /// exactly, and only players with feature `keys` play it. Default: the smaller of the two, for .keys files and other curves whose keys lie on
+    /// frames, but segments with --index, with --same-form and in banks
+    #[arg(long, conflicts_with_all = ["same_form", "index", "segments"])]
     keys: bool,
+    /// Write segments (version 1 of the format), which players without feature `keys` play, too
+    #[arg(long)]
+    segments: bool,
     /// Which animation of a file that holds several (glTF, FBX, VRML): its name, or its number from 0. `all` writes a clip for each:
     /// OUTPUT-NAME.ptn, or NAME.ptn if --output is a folder
     #[arg(long, value_name = "NAME|INDEX|all")]
@@ -178,7 +182,13 @@ impl Arguments {
         options.max_joint_error = self.max_joint_error;
         (options.channels, options.index) = (self.channels.bound(), self.index);
         (options.looped, options.footsteps) = (self.edits.looped, self.edits.footsteps);
-        options.keys = self.keys;
+        // Boards' stores, the page and state machines of older players read banks.
+        let segments = self.segments || self.same_form || bank::is_bank_name(self.output());
+        options.keys = match (self.keys, segments) {
+            (true, _) => UseKeys::Always,
+            (_, true) => UseKeys::Never,
+            _ => UseKeys::IfSmaller,
+        };
         options.rig_apart = self.rig_out.is_some();
         Recipe::new().import(import).edits(self.edits.edits(self.fps)).options(options)
     }

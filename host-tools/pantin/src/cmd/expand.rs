@@ -239,6 +239,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if clip.event_count() > 0 && matches!(format, Format::Bvh) {
         note!("{}: {} events are left out: this kind of file holds none here", output.display(), clip.event_count());
     }
+    if clip.has_keys() && matches!(format, Format::H | Format::Rs) {
+        let help = "`pantin convert --segments` makes a clip for all players";
+        note!("{}: a key clip, for players with feature `keys`, in C with PANTIN_KEYS; {help}", output.display());
+    }
     if matches!(format, Format::Bvh) {
         let names = export::bvh::names(rig);
         let changed = rig.joints.iter().zip(&names).filter(|(joint, name)| !joint.end_site && joint.name != **name);

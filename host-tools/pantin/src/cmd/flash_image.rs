@@ -33,9 +33,8 @@ pub struct Arguments {
     /// The board; `microbit` is the one that QEMU emulates, for its firmware does not run on a real one
     #[arg(long, value_parser = PossibleValuesParser::new(REGIONS.map(|region| region.board)))]
     board: String,
-    /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
-    #[arg(long, value_parser = board_clip::board_name)]
-    name: Option<String>,
+    #[command(flatten)]
+    sent: board_clip::Sent,
 }
 
 /// The extension that a board's flash tool takes: drives take UF2 files, espflash writes plain bytes.
@@ -55,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         None => default_output(&arguments.input, extension(region))?,
     };
     check(&[&arguments.input], &[output])?;
-    let (clip, info) = board_clip::read(&arguments.input, arguments.name.as_deref())?;
+    let (clip, info) = board_clip::read(&arguments.input, &arguments.sent)?;
     let place = || arguments.input.display().to_string();
     let bytes = match output.extension().and_then(|extension| extension.to_str()) {
         Some("bin") => image::binary(region, &clip, &info).with_context(place)?,

@@ -1,5 +1,6 @@
 //! `pantin stream`: clips over a line, while they play.
 
+use crate::board_clip::as_segments;
 use crate::cmd::{Files, rig_is_needed};
 use crate::memory;
 use crate::output::{note, report};
@@ -99,7 +100,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let clips = files.iter().zip(&arguments.clips).map(|(files, path)| files.open().with_context(|| path.display().to_string()));
     let clips = clips.collect::<Result<Vec<_>>>()?;
     rig_is_needed(arguments.rig.as_deref(), &clips)?;
-    let sources = clips.iter().zip(&arguments.clips).map(|(clip, path)| source(clip, path)).collect::<Result<Vec<_>>>()?;
+    let sources =
+        clips.iter().zip(&files).map(|(clip, files)| source(clip, &files.path, &files.rig)).collect::<Result<Vec<_>>>()?;
     let lines =
         sources.iter().zip(&arguments.clips).map(|(source, path)| fitted(arguments, source, path)).collect::<Result<Vec<_>>>()?;
     let mut line = arguments.to.open()?;
@@ -137,10 +139,16 @@ pub(super) fn sender() -> Sender {
     Sender::new(RandomState::new().build_hasher().finish() as u16)
 }
 
-fn source(clip: &Clip, path: &Path) -> Result<Source> {
+fn source(clip: &Clip, path: &Path, rig: &[u8]) -> Result<Source> {
     // The sender keeps the state of every channel at every frame.
     memory::limit().check(clip.frames() as usize, clip.rig().channels()).with_context(|| path.display().to_string())?;
-    Source::new(clip).with_context(|| path.display().to_string())
+    let segments;
+    let mut clip = *clip;
+    if clip.has_keys() {
+        segments = as_segments(path, &clip)?;
+        clip = if clip.rig_len() == 0 { Clip::with_rig(&segments, rig)? } else { Clip::new_checked(&segments)? };
+    }
+    Source::new(&clip).with_context(|| path.display().to_string())
 }
 
 fn fitted(arguments: &Arguments, source: &Source, path: &Path) -> Result<LineSettings> {

@@ -27,9 +27,8 @@ pub struct Arguments {
     /// The board's line: serial:PORT[@BAUD] (default 115200), or tcp:HOST:PORT
     #[arg(long)]
     to: Place,
-    /// The name that the board shows, 1 to 28 bytes without control characters [default: the file's name, as far as it fits]
-    #[arg(long, value_parser = board_clip::board_name)]
-    name: Option<String>,
+    #[command(flatten)]
+    sent: board_clip::Sent,
     /// Seconds to wait for an answer before a message is sent again
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
     patience: f64,
@@ -44,7 +43,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let (clip, info) = board_clip::read(&arguments.input, arguments.name.as_deref())?;
+    let (clip, info) = board_clip::read(&arguments.input, &arguments.sent)?;
     let mut line = arguments.to.open()?;
     let bar = progress(info.length.into(), "{wide_bar} {bytes} of {total_bytes} {eta} left")?;
     let patience = RetryPolicy { answer: Duration::from_secs_f64(arguments.patience), tries: arguments.tries };

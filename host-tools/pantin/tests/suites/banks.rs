@@ -272,7 +272,7 @@ fn a_bank_in_place_of_a_clip_is_named_with_the_next_command() {
 #[test]
 fn a_flash_image_holds_a_bank() {
     let folder = super::outputs::Folder::new();
-    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast"]);
+    folder.done(&["convert", "run.keys", "-o", "a.ptn", "--effort", "fast", "--segments"]);
     folder.done(&["pack", "a.ptn", "-o", "moves.ptb"]);
     let said = super::outputs::err(&folder.done(&["flash-image", "moves.ptb", "--board", "pico", "-o", "a.bin"]));
     assert!(said.contains("a bank of 1 clips, for firmware that is built with feature `bank`"), "{said}");

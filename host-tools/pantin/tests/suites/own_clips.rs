@@ -1,5 +1,5 @@
 //! The clips that boards play of their own are what `pantin convert` makes of our motions by its defaults, but for the bound:
-//! they are drawn as lines between joints, so that the places of joints are bounded alone.
+//! they are drawn as lines between joints, so that the places of joints are bounded alone. They hold segments, which images without feature `keys` play.
 //!
 //! After a change of the motions, the fit or the format, `PANTIN_UPDATE=1 cargo test -p pantin-tools own_clips::` writes them again.
 
@@ -15,7 +15,7 @@ fn motions() -> PathBuf {
 
 fn converted(motion: &Path, clip: &Path) -> Vec<u8> {
     let out = Command::new(env!("CARGO_BIN_EXE_pantin"))
-        .args(["convert", "--places-only"])
+        .args(["convert", "--places-only", "--segments"])
         .arg(motion)
         .arg("-o")
         .arg(clip)

@@ -39,7 +39,7 @@ fn refusal(motions: &[PathBuf], options: &[&str], folder: &Path) -> String {
 fn alone_and_together(motions: &[PathBuf; 2], folder: &Path) -> [[(i8, Vec<usize>); 2]; 2] {
     let clip = |motion: &PathBuf| Path::new(motion.file_stem().unwrap()).with_extension("ptn");
     for motion in motions {
-        succeeds(std::slice::from_ref(motion), &["-o", clip(motion).to_str().unwrap()], folder);
+        succeeds(std::slice::from_ref(motion), &["--segments", "-o", clip(motion).to_str().unwrap()], folder);
     }
     succeeds(motions, &["--same-form", "-o", "together"], folder);
     let forms = |folder: &Path| motions.each_ref().map(|motion| form(&folder.join(clip(motion))));

@@ -93,19 +93,23 @@ function crcs(clip, name, expected) {
   poses += clip.frames;
 }
 
+// A bank against its record.
+function bankIs(bank, expected) {
+  assert.equal(bank.rig.joints.length, expected.joints);
+  assert.deepEqual(bank.names, expected.clips.map(([name]) => name));
+  for (const [name, , frames, looped, its] of expected.clips) {
+    const clip = bank.open(name);
+    assert.deepEqual([clip.frames, clip.looped], [frames, looped]);
+    crcs(clip, name, its);
+  }
+  assert.throws(() => bank.open("absent"), /no clip absent/);
+}
+
 for (const file of readdirSync(folder).filter((name) => /\.pt[nb]$/.test(name))) {
   const [name, expected] = [file.slice(0, -4), json(`${file.slice(0, -4)}.json`)];
   vectors++;
   if (file.endsWith("b")) {
-    const bank = openBank(read(file));
-    assert.equal(bank.rig.joints.length, expected.joints);
-    assert.deepEqual(bank.names, expected.clips.map(([name]) => name));
-    for (const [name, , frames, looped, its] of expected.clips) {
-      const clip = bank.open(name);
-      assert.deepEqual([clip.frames, clip.looped], [frames, looped]);
-      crcs(clip, name, its);
-    }
-    assert.throws(() => bank.open("absent"), /no clip absent/);
+    bankIs(openBank(read(file)), expected);
     continue;
   }
   const rig = existsSync(new URL(`${name}.rig`, folder)) ? openRig(read(`${name}.rig`)) : undefined;
@@ -120,6 +124,14 @@ for (const file of readdirSync(folder).filter((name) => /\.pt[nb]$/.test(name)))
   );
   crcs(clip, name, expected.crcs);
   for (const frame in expected.poses) assert.deepEqual([...clip.play().seek(+frame).raw], expected.poses[frame]);
+}
+
+// A bank of key clips and one of segments.
+{
+  const bytes = read("bank.ptb", keyFolder);
+  bankIs(openBank(bytes, keys), JSON.parse(read("bank.json", keyFolder)));
+  assert.throws(() => openBank(bytes), /a bank with key clips needs/);
+  vectors++;
 }
 
 // Key clips, which open with `keys` alone.

@@ -73,6 +73,10 @@ impl Tool {
         let start = Instant::now();
         let mut command = Command::new(&self.program);
         command.arg("convert").arg(motion).arg("-q").arg("-o").arg(&clip).args(options);
+        // What is measured is a kind of clip, not the choice between them.
+        if !options.iter().any(|option| option == "--keys") {
+            command.arg("--segments");
+        }
         let Watched { peak_mb, processor } = self.run_watched(&mut command)?;
         let seconds = Some(start.elapsed().as_secs_f64());
         Ok(Converted { info: self.info(&clip)?, clip, seconds, processor, peak_mb })

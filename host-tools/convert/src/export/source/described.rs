@@ -3,6 +3,7 @@
 use super::names::plain;
 use crate::facts::{FileKind, MemoryNeeds};
 use anyhow::Result;
+use pantin::codec::keys::KEY_VERSION;
 use pantin::{Bank, Clip};
 
 /// Bytes a line of a C header and of a Rust module.
@@ -18,6 +19,10 @@ pub struct Described<'a> {
     pub(super) title: String,
     /// What follows it, a line each.
     pub(super) lines: Vec<String>,
+}
+
+fn has_keys(bytes: &[u8]) -> bool {
+    bytes.get(2) == Some(&KEY_VERSION)
 }
 
 /// What the bytes hold.
@@ -49,7 +54,8 @@ impl<'a> Described<'a> {
         let rig = clip.rig();
         let (frames, frame_time_ns) = (clip.frames(), clip.frame_time_ns());
         let apart = if clip.rig_len() == 0 { "; its rig is apart" } else { "" };
-        let title = format!("A pantin clip: {} bytes, {}{apart}.", bytes.len(), length(clip));
+        let what = if clip.has_keys() { "key clip" } else { "clip" };
+        let title = format!("A pantin {what}: {} bytes, {}{apart}.", bytes.len(), length(clip));
         let mut lines = vec!["Channels, in the order of a pose, as the clip codes them:".into()];
         let mut channels = Vec::new();
         for (index, joint) in rig.joints().enumerate() {
@@ -69,7 +75,8 @@ impl<'a> Described<'a> {
 
     /// Describes `bank`, whose file has `bytes`. Its memory is the most that any clip takes. Fails for a bank with a damaged clip.
     pub fn of_bank(bank: &Bank, bytes: &'a [u8]) -> Result<Described<'a>> {
-        let title = format!("A pantin bank: {} bytes, {} clips.", bytes.len(), bank.len());
+        let what = if has_keys(bytes) { "bank with key clips" } else { "bank" };
+        let title = format!("A pantin {what}: {} bytes, {} clips.", bytes.len(), bank.len());
         let mut lines = vec!["Clips, in their order:".into()];
         let mut clips = Vec::new();
         for entry in bank.entries() {
@@ -83,6 +90,11 @@ impl<'a> Described<'a> {
     /// The memory that it takes: that of a clip, or the most of any clip of a bank.
     pub fn memory(&self) -> MemoryNeeds {
         self.memory
+    }
+
+    /// Whether it is a key clip or a bank with one, which players without key clips refuse.
+    pub fn has_keys(&self) -> bool {
+        has_keys(self.bytes)
     }
 
     /// Whether it is a bank.

@@ -107,6 +107,13 @@ impl RustText {
             out,
             "/// {doc}\n{allowed}#[rustfmt::skip]\npub const {name}_{list}: [&str; {name}_{of_each}] = [\n{names}];\n"
         );
+        if described.has_keys() {
+            // Without the feature it would compile, and fail when it runs.
+            let _ = write!(
+                out,
+                "/// Key clips take feature `keys` of the crate `pantin`.\nconst _: fn(&pantin::Clip<'_>) -> bool = pantin::Clip::has_keys;\n"
+            );
+        }
         self.write_bytes(out, described, title, allowed);
     }
 

@@ -82,7 +82,7 @@ pub(super) fn of_clip(
     Ok(fields)
 }
 
-/// The boards that play the clip when it is built in, and those that keep it when `pantin update` sends it. Their images play no key clips.
+/// The boards that play the clip when it is built in, and those that keep it when `pantin update` sends it. Key clips are left out, which take an image with feature `keys`.
 fn boards(clip: &Clip, memory: &MemoryNeeds, file: usize) -> (Vec<&'static str>, Vec<&'static str>) {
     let needs = [memory.channels, memory.moving, memory.figure_joints];
     let plays = |region: &&Region| {
