@@ -840,6 +840,12 @@ pantin_result pantin_restart(pantin_player *p) {
 
 pantin_result pantin_keep_starts(const pantin_player *player) {
     pantin_player starts = *player;
+#ifdef PANTIN_KEYS
+    if (IS_KEYS(player->clip)) {
+        pantin_keys_starts(player);
+        return PANTIN_OK;
+    }
+#endif
     starts.starts_alone = 1;
     return pantin_restart(&starts);
 }

@@ -363,6 +363,14 @@ static void rotate_wide(const pantin_heading *h, int64_t a, int64_t b, int64_t *
 
 static uint32_t frame_of(const pantin_track *t) { return t->player.frame; }
 
+/* Moving channels: behind their states, a player of a key clip keeps the keys. */
+static uint16_t moving_count(const pantin_player *p) {
+#ifdef PANTIN_KEYS
+    if (p->clip->flags & PANTIN_KEY_CLIP) return p->resume;
+#endif
+    return p->moving_count;
+}
+
 /* How far this instant is on the way from its frame to the next, in 2^-16. */
 static uint16_t part_of(const pantin_track *t) { return t->rest ? (uint16_t)(t->rest / (int64_t)t->clip.frame_time_ns) : 0; }
 
@@ -383,9 +391,6 @@ static void set_speed(pantin_track *t, int32_t speed) {
 }
 
 static pantin_result start_player(pantin_track *t, pantin_channel *moving, size_t moving_room, int32_t *values, size_t value_room) {
-#ifdef PANTIN_KEYS
-    if (t->clip.flags & PANTIN_KEY_CLIP) return PANTIN_UNSUPPORTED;
-#endif
     return pantin_start(&t->player, &t->clip, values, value_room, moving, moving_room);
 }
 
@@ -424,7 +429,7 @@ static pantin_result seek_track(pantin_track *t, uint32_t frame) {
 static void add_part(const pantin_track *t, uint16_t weight, int32_t *out) {
     uint16_t i, part = (uint16_t)(((uint32_t)(part_of(t) >> 1) * weight) >> 15);
     if (t->rest == 0) return;
-    for (i = 0; i < t->player.moving_count; i++) {
+    for (i = 0; i < moving_count(&t->player); i++) {
         const pantin_channel *c = &t->player.moving[i];
         out[c->channel] = sum(out[c->channel], weighted((int32_t)c->v, part));
     }
@@ -447,7 +452,7 @@ static uint32_t gap_of(const pantin_track *t, const pantin_channel *c) { return 
    accelerations become the values at frame 0. */
 static pantin_result lead_to_start(pantin_track *t) {
     const pantin_player *p = &t->player;
-    pantin_channel *c = p->moving, *end = p->moving + p->moving_count, *last;
+    pantin_channel *c = p->moving, *end = p->moving + moving_count(p), *last;
     uint32_t bound = raw_of_cm(&t->clip, RETURNS_CM);
     pantin_joint joint;
     pantin_result result = pantin_keep_starts(p);
@@ -479,7 +484,7 @@ static void root_turns(const pantin_animator *a, uint8_t what, int32_t *turns) {
     uint16_t m;
     memset(turns, 0, 4 * sizeof *turns);
     for (i = 0; i < count; i++) turns[i] = p->pose[a->turns.first + i];
-    for (m = 0; m < p->moving_count; m++) {
+    for (m = 0; m < moving_count(p); m++) {
         uint16_t at = (uint16_t)(p->moving[m].channel - a->turns.first);
         if (at < 4) turns[at] = moved(turns[at], &p->moving[m], what);
     }
@@ -493,7 +498,7 @@ static void root_at(const pantin_animator *a, uint8_t what, int32_t *place, int3
     for (i = 0; i < 2; i++) {
         uint16_t channel = a->place_channels[i];
         place[i] = channel == NO_CHANNEL ? 0 : p->pose[channel];
-        for (m = 0; m < p->moving_count; m++) {
+        for (m = 0; m < moving_count(p); m++) {
             if (p->moving[m].channel == channel) place[i] = moved(place[i], &p->moving[m], what);
         }
     }
@@ -542,7 +547,7 @@ static pantin_result close_loop(pantin_track *t, pantin_animator *a) {
         turn_root(a, t->seam.yaw, turns, count);
         nearest(a->turns.shape, turns, t->player.pose + a->turns.first, count);
     }
-    for (m = 0; m < t->player.moving_count; m++) {
+    for (m = 0; m < moving_count(&t->player); m++) {
         pantin_channel *c = &t->player.moving[m];
         uint16_t at = (uint16_t)(c->channel - a->turns.first);
         int32_t to;
@@ -988,7 +993,7 @@ pantin_result pantin_animator_seek(pantin_animator *a, uint32_t frame) {
 /* Whether the velocities lead on: nothing moves in a clip that has ended or is at its last frame. */
 static uint16_t moving_of(const pantin_track *t) {
     int last = frame_of(t) + 1 >= t->clip.frames && !t->clip.looped;
-    return last || t->ended ? 0 : t->player.moving_count;
+    return last || t->ended ? 0 : moving_count(&t->player);
 }
 
 /* Keeps the pose of this instant and of a frame of the new clip later, in difference and velocity of each offset. */
@@ -1448,7 +1453,7 @@ static pantin_result open_clip(const pantin_character *c, uint8_t index, pantin_
 /* Whether channels of a joint move in a clip, or turn the joint. */
 static int joint_moves(const pantin_player *p, const pantin_joint *joint) {
     uint16_t m;
-    for (m = 0; m < p->moving_count; m++) {
+    for (m = 0; m < moving_count(p); m++) {
         uint16_t at = (uint16_t)(p->moving[m].channel - joint->first_channel);
         if (at < joint->channels) return 1;
     }

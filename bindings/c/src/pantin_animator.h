@@ -20,7 +20,7 @@
  *         }
  *     }
  *
- * Feet of a bank and key clips are not played: the functions below refuse them. A function that is called for an animator or a character of zeroes, also
+ * Feet of a bank are not played: the functions below refuse them. With PANTIN_KEYS defined, key clips play too. A function that is called for an animator or a character of zeroes, also
  * after it could not be opened, returns PANTIN_ERROR_HEAD.
  */
 #ifndef PANTIN_ANIMATOR_H
@@ -123,7 +123,7 @@ typedef struct pantin_animator {
 } pantin_animator;
 
 /* Starts a clip at frame 0, at the world's origin. The figure is carried by the rig's first joint with positions. `memory` is not copied. Returns
- * PANTIN_NO_ROOM if it is too small, PANTIN_NOT_FOUND for a rig without joints, PANTIN_UNSUPPORTED for a key clip, or what reading returned. */
+ * PANTIN_NO_ROOM if it is too small, PANTIN_NOT_FOUND for a rig without joints, or what reading returned. */
 pantin_result pantin_animator_open(pantin_animator *animator, const pantin_clip *clip, const pantin_animator_memory *memory);
 
 /* The same for a figure that is carried by the joint of an index. */

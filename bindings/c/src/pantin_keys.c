@@ -609,6 +609,16 @@ void pantin_keys_seek(pantin_player *p, uint32_t frame) {
     p->frame = frame;
 }
 
+void pantin_keys_starts(const pantin_player *p) {
+    uint16_t i;
+    for (i = 0; i < p->resume; i++) {
+        pantin_channel *c = &p->moving[i];
+        keys_of keys = keys_of_channel(p, c);
+        c->w = (uint32_t)raw_value(keys.scale, value_of(p, &keys, 0));
+        c->k = 0;
+    }
+}
+
 void pantin_keys_step(pantin_player *p) {
     uint16_t i;
     p->frame++;

@@ -25,4 +25,7 @@ pantin_result pantin_keys_start(pantin_player *player);
 void pantin_keys_step(pantin_player *player);
 void pantin_keys_seek(pantin_player *player, uint32_t frame);
 
+/* Puts the value of each channel at frame 0 into its acceleration, and 0 into its slope. */
+void pantin_keys_starts(const pantin_player *player);
+
 #endif

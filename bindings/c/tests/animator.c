@@ -10,20 +10,20 @@
 #include "file.h"
 #include "pantin_animator.h"
 
-enum { CHANNELS = 512, CLIPS = 64 };
+enum { CHANNELS = 512, STATES = 4096, CLIPS = 64 };
 
-static pantin_channel moving[CHANNELS], second_moving[CHANNELS];
+static pantin_channel moving[STATES], second_moving[STATES];
 static int32_t values[CHANNELS], second_values[CHANNELS], pose[CHANNELS];
 static pantin_offset offsets[CHANNELS];
 static pantin_group groups[CHANNELS];
-static const pantin_animator_memory memory = {moving, CHANNELS, values, pose, offsets, CHANNELS, groups, CHANNELS};
+static const pantin_animator_memory memory = {moving, STATES, values, pose, offsets, CHANNELS, groups, CHANNELS};
 static pantin_source sources[CLIPS];
 static pantin_clip clips[CLIPS];
 static pantin_animator animator;
 static pantin_character character;
 static pantin_track second;
 static pantin_layer layers[4];
-static pantin_channel layer_moving[4][CHANNELS];
+static pantin_channel layer_moving[4][STATES];
 static int32_t layer_values[4][CHANNELS], sampled[4][CHANNELS];
 static uint32_t words[4][16];
 
@@ -100,9 +100,9 @@ static void steer(const char *script, pantin_source *source, int blends) {
     char word;
     uint8_t without = PANTIN_WITHOUT_LAYERS | PANTIN_WITHOUT_FEET | PANTIN_WITHOUT_BLENDS, i;
     pantin_result opened = pantin_character_open(&character, source, &memory, (uint8_t)(blends ? PANTIN_WITHOUT_FEET : without));
-    if (opened == PANTIN_OK && blends) opened = pantin_character_second(&character, &second, second_moving, CHANNELS, second_values, CHANNELS);
+    if (opened == PANTIN_OK && blends) opened = pantin_character_second(&character, &second, second_moving, STATES, second_values, CHANNELS);
     for (i = 0; opened == PANTIN_OK && blends && i < character.counts[7]; i++) {
-        opened = pantin_character_layer(&character, &layers[i], layer_moving[i], CHANNELS, layer_values[i], sampled[i], CHANNELS, words[i], 16);
+        opened = pantin_character_layer(&character, &layers[i], layer_moving[i], STATES, layer_values[i], sampled[i], CHANNELS, words[i], 16);
     }
     if (opened != PANTIN_OK) {
         if (pantin_character_update(&character, 1) == PANTIN_OK) puts("an update before it was opened");

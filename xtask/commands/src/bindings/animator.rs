@@ -13,7 +13,7 @@ use reference::Sequence;
 use tempfile::TempDir;
 
 use super::face::same;
-use super::{host_program, output};
+use super::{KEYS, host_program_with, output};
 
 /// Bytes of code that the animator may take on a Cortex-M0, without the decoder and rotations.
 pub const MOST_CODE: u64 = 20 * 1024;
@@ -38,7 +38,7 @@ fn motion(name: &str) -> PathBuf {
 
 /// Programs by two compilers, with sanitizers.
 fn programs(folder: &TempDir) -> Result<Vec<PathBuf>> {
-    ["gcc", "clang"].into_iter().map(|compiler| host_program(folder, compiler, "animator")).collect()
+    ["gcc", "clang"].into_iter().map(|compiler| host_program_with(folder, compiler, "animator", &[KEYS])).collect()
 }
 
 /// Writes a file for the programs.
@@ -48,12 +48,13 @@ fn write(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBu
     Ok(path)
 }
 
-/// Compares animators over random scripts: clips of every rig of the vectors in several forms, and our motions.
+/// Compares animators over random scripts: clips of every rig of the vectors in several forms, key clips, and our motions.
 pub fn transitions(folder: &TempDir) -> Result<()> {
     let mut files: Vec<Vec<u8>> = vectors::load(&vectors::folder())?.into_iter().map(|vector| vector.clip).collect();
     for name in ["walk.ptn", "run.ptn", "greet.ptn", "kneebend.ptn"] {
         files.push(std::fs::read(motion(name))?);
     }
+    files.extend(vectors::load(&vectors::keyed::folder())?.into_iter().map(|vector| vector.clip));
     let others: Vec<Vec<u8>> = files.iter().filter_map(|bytes| reference::in_another_form(bytes)).collect();
     files.extend(others);
     let mut groups: Vec<(u32, Vec<&[u8]>)> = vec![];

@@ -9,7 +9,7 @@ use pantin_animator::session::{Input, Session};
 use pantin_animator::{Animator, Character, LayerWorkspace, Placement, Transition, Workspace};
 
 /// Memory for every clip of the tests.
-type Room = Workspace<512, 512>;
+type Room = Workspace<4096, 512>;
 
 /// Numbers from a fixed sequence.
 pub struct Sequence(pub u64);
@@ -222,8 +222,8 @@ pub fn play(clips: &[Clip<'_>], script: &str) -> String {
 pub fn steer(bank: &[u8], second: bool, script: &str) -> String {
     let mut text = String::new();
     let mut memory = Box::new(Room::new());
-    let (mut states, mut values) = (vec![ChannelState::NEW; 512], vec![0; 512]);
-    let mut layers = vec![LayerWorkspace::<512, 512>::new(); LAYERS];
+    let (mut states, mut values) = (vec![ChannelState::NEW; 4096], vec![0; 512]);
+    let mut layers = vec![LayerWorkspace::<4096, 512>::new(); LAYERS];
     let Ok(mut character) = Character::new(bank, memory.lend()) else { return "refused\n".into() };
     if second && character.lend_second(&mut states, &mut values).is_err() {
         return "refused\n".into();
