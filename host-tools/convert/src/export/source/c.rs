@@ -96,6 +96,12 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_character_is_an_array_with_its_length() {
+        let header = c_header_of_look(&[1, 2, 3], "big cat");
+        assert!(header.contains("#define LOOK_BIG_CAT_LEN 3\n") && header.contains("= {\n    1, 2, 3,\n};"), "{header}");
+    }
+
+    #[test]
     fn literals_are_ascii() {
         assert_eq!(c_literal("a\"\\?\né"), r#""a\"\\\?\012\303\251""#);
     }
