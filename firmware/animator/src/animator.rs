@@ -7,7 +7,7 @@ use crate::layer::{Weight, blend, mix_group};
 use crate::mask::Mask;
 use crate::memory::Memory;
 use crate::root::{self, Placement, Root, Travel};
-use crate::track::{Passage, Track};
+use crate::track::{Passage, Track, Traveller};
 use crate::transition::{AGAIN, Cubic, Offset};
 use fixed::types::{I16F16, U0F16};
 use pantin::{Clip, FormRef, Pose, WrongForm};
@@ -85,6 +85,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             now: Placement::default(),
             before: Placement::default(),
         };
+        animator.track.keep_start(animator.offsets);
         animator.events.at(animator.track.clip(), 0);
         animator.compose();
         animator.travel = Travel::new(Placement::default(), animator.place.map(i64::from));
@@ -211,7 +212,8 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// Lets time pass up to the end of a clip that is no loop, and returns the time in ns that is left.
     pub(crate) fn play(&mut self, elapsed_ns: u64) -> (u64, Result<(), EventsLost>) {
-        let (passage, left_ns) = self.track.advance(elapsed_ns, Some(&self.root));
+        let spare = (self.left == 0).then_some(&mut *self.offsets);
+        let (passage, left_ns) = self.track.advance(elapsed_ns, Some(&mut Traveller { root: &self.root, spare }));
         let lost = self.events.lost();
         self.pass(&passage);
         self.run_transition(elapsed_ns.saturating_sub(left_ns));
@@ -232,7 +234,8 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// Goes on by exactly one frame of the clip, forwards and whatever its speed: for a program that shows one picture for each frame. Where this
     /// serves it is cheaper than [`Animator::update`]. A transition goes on by a frame too.
     pub fn step(&mut self) -> Result<(), EventsLost> {
-        let passage = self.track.step(Some(&self.root));
+        let spare = (self.left == 0).then_some(&mut *self.offsets);
+        let passage = self.track.step(Some(&mut Traveller { root: &self.root, spare }));
         let lost = self.events.lost();
         self.pass(&passage);
         self.rest_ns = 0;

@@ -84,6 +84,7 @@ impl<'a> Animator<'a, '_> {
         // How much of a frame of the old clip passes in one of the new, in 2^-16.
         let (old, new) = (self.track.clip().frame_time_ns(), clip.frame_time_ns());
         let ratio = (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64;
+        self.track.leave_offsets();
         let running = self.left > 0;
         for (offset, value) in self.offsets.iter_mut().zip(self.pose.iter()) {
             let own = if running { scaled(offset.v, ratio) } else { 0 };
