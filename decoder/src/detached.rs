@@ -87,6 +87,21 @@ impl<'a> DetachedPlayer<'a> {
         self.position.step(&mut Channels { states, pose: values }, &input, frames);
     }
 
+    /// [`DetachedPlayer::step`] of states to which other motions were added, such as what is left of a transition: to the channels' values, and to
+    /// velocity, acceleration and slope ([`ChannelState::set_rates`]). These are linear, so that the sums go on as their parts do; but where a segment
+    /// begins, `added` has to return the acceleration and slope that were added to the channel of an index in the pose, as they are at this frame. On the
+    /// last frame, and in a key clip, it does nothing. Channels that follow others have to be as their leaders.
+    #[inline(never)]
+    pub fn step_added(&mut self, added: &mut dyn FnMut(usize) -> [i32; 2], states: &mut [ChannelState], values: &mut [i32]) {
+        let (input, frames) = (self.clip.input(), self.clip.frames());
+        let Some(states) = states.get_mut(..self.moving.into()).filter(|states| states.len() == self.moving_channels()) else {
+            return;
+        };
+        if self.position.frame + 1 < frames {
+            self.position.step_added(&mut Channels { states, pose: values }, &input, frames, added);
+        }
+    }
+
     /// On the last frame of a loop: makes the velocities of `states` ([`ChannelState::rates`]) lead to frame 0, as [`Player::interpolate`] describes, until
     /// the next step or seek. The accelerations become the channels' values at frame 0. It reads the channels' starts, as a step to frame 0 does.
     /// Elsewhere it does nothing.

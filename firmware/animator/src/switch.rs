@@ -22,6 +22,7 @@ impl<'a> Animator<'a, '_> {
         if old_form.rig_id() != new_form.rig_id() {
             return Err(WrongForm::Rig.into());
         }
+        self.leave_carried();
         let mut placement = self.placement();
         let yaw_before = self.root.yaw_of(&self.pose());
         self.take_motion(&clip);
@@ -67,6 +68,7 @@ impl<'a> Animator<'a, '_> {
         if way == [0; 2] || self.left == 0 {
             return;
         }
+        self.leave_carried();
         let way = Heading::new(-self.travel.heading.angle).rotate(way.map(|x| x as i32));
         let cubic = Cubic::new(self.left);
         let channels = self.root.place.iter().zip(way).zip(self.place.iter_mut().zip(&mut self.travel.origin));
