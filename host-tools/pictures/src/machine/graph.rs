@@ -1,8 +1,7 @@
-//! A state machine as a picture: states on a circle, transitions as arrows with their causes, layers as lines below, as SVG.
+//! A state machine as a picture: states in two columns, transitions as arrows with their causes, layers as lines below, as SVG.
 
 use super::source::{Cause, Kind, Layer, Source, State, Transition};
 use crate::render::svg::escaped;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
 /// Width of a letter, height of a line, a state and a layer's line, and space around, in units of the picture.
@@ -11,8 +10,13 @@ const LINE: f64 = 15.0;
 const STATE: f64 = 44.0;
 const LAYER: f64 = LINE * 1.5;
 const MARGIN: f64 = 90.0;
-/// How far an arrow bends to its right, as a part of its length: there and back are two arrows.
+/// From a row of states to the next, and from a column to the middle beside half of a state. The picture is high rather than wide: a page that fits it
+/// into a column of text shrinks its letters little.
+const ROW: f64 = 88.0;
+const COLUMN: f64 = 150.0;
+/// How far an arrow bends to its right, as a part of its length, and at least: there and back are two arrows.
 const BEND: f64 = 0.16;
+const LEAST_BEND: f64 = 52.0;
 
 type Point = [f64; 2];
 
@@ -135,7 +139,7 @@ fn draw(out: &mut String, node: &Node, role: Role) {
     let _ = writeln!(out, r#"<text x="{x:.1}" y="{:.1}" font-weight="bold">{}</text>"#, y + up, escaped(&node.name));
     if !node.clip.is_empty() {
         let _ =
-            writeln!(out, r##"<text x="{x:.1}" y="{:.1}" font-size="11" fill="#567">{}</text>"##, y + 13.0, escaped(&node.clip));
+            writeln!(out, r##"<text x="{x:.1}" y="{:.1}" font-size="12" fill="#567">{}</text>"##, y + 13.0, escaped(&node.clip));
     }
 }
 
@@ -151,12 +155,22 @@ fn nodes(source: &Source) -> Vec<Node> {
     let named: Vec<(String, String)> = source.states.iter().map(|state| (state.name.get_ref().clone(), clip(state))).collect();
     let width = |(name, clip): &(String, String)| name.chars().count().max(clip.chars().count()) as f64 * LETTER + 24.0;
     let widest = named.iter().map(width).fold(80.0, f64::max);
-    // Neighbours on the circle are a state and a label apart.
-    let radius = if count == 1 { 0.0 } else { (widest + 110.0) / (2.0 * (PI / count as f64).sin()) };
-    let angle = |index: usize| TAU * index as f64 / count as f64 - if count == 2 { PI } else { FRAC_PI_2 };
+    // The first at the top, down on the right, up on the left; an even number has one at the bottom.
+    let (rows, even) = ((count - 1) / 2, count % 2 == 0);
+    let last = if even { rows + 1 } else { rows };
+    let place = |index: usize| {
+        let column = widest / 2.0 + COLUMN;
+        let (x, row) = match index {
+            0 => (0.0, 0),
+            _ if index <= rows => (column, index),
+            _ if even && index == rows + 1 => (0.0, last),
+            _ => (-column, count - index),
+        };
+        [x, ROW * (row as f64 - last as f64 / 2.0)]
+    };
     let node = |(index, (name, clip)): (usize, (String, String))| {
         let half = [width(&(name.clone(), clip.clone())) / 2.0, STATE / 2.0];
-        Node { at: [radius * angle(index).cos() * 1.15, radius * angle(index).sin()], name, clip, half }
+        Node { at: place(index), name, clip, half }
     };
     named.into_iter().enumerate().map(node).collect()
 }
@@ -206,7 +220,8 @@ fn arrow(out: &mut String, labels: &mut String, from: &Node, to: &Node, causes: 
         );
         (path, [top[0] - x * 14.0, top[1] - y * 14.0])
     } else {
-        let bend = [-(b[1] - a[1]) * BEND, (b[0] - a[0]) * BEND];
+        let part = BEND.max(LEAST_BEND / length);
+        let bend = [-(b[1] - a[1]) * part, (b[0] - a[0]) * part];
         let over = [(a[0] + b[0]) / 2.0 + bend[0], (a[1] + b[1]) / 2.0 + bend[1]];
         let (start, end) = (border(from, over), border(to, over));
         let middle = [0, 1].map(|axis| 0.25 * start[axis] + 0.5 * over[axis] + 0.25 * end[axis]);
