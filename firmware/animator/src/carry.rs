@@ -69,7 +69,7 @@ impl Animator<'_, '_> {
             self.leave_carried();
             return None;
         };
-        let (from, from_rest) = (self.track.frame(), self.rest_ns != 0);
+        let (from, from_rest) = (self.track.frame(), !self.track.stands_at(0));
         for _ in 0..frames {
             self.carry_on(&mut carried);
         }

@@ -37,7 +37,14 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        pantin_app::steer::<_, CHANNELS>(board_common::CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
+        pantin_app::steer::<_, CHANNELS>(
+            board_common::CHARACTER,
+            &keys::STEER,
+            keys::SELECT,
+            options(),
+            &mut framebuffer,
+            &mut board,
+        );
         board.overlay([""; 2]);
     }
     loop {
