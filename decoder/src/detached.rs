@@ -2,6 +2,8 @@
 
 use crate::channel::ChannelState;
 use crate::clip::Clip;
+use crate::entropy::Cursor;
+use crate::layout::START_MODE;
 use crate::play_state::{Channels, PlayState};
 use crate::player::Player;
 use crate::pose::Pose;
@@ -17,6 +19,10 @@ pub struct DetachedPlayer<'a> {
     moving: u16,
     position: PlayState,
 }
+
+/// Where the motion of a clip begins: [`DetachedPlayer::loop_start`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoopStart(Cursor);
 
 impl<'a> Player<'a, '_> {
     /// Gives the memory back.
@@ -81,6 +87,21 @@ impl<'a> DetachedPlayer<'a> {
         self.position.step(&mut Channels { states, pose: values }, &input, frames);
     }
 
+    /// [`DetachedPlayer::step`] of states to which other motions were added, such as what is left of a transition: to the channels' values, and to
+    /// velocity, acceleration and slope ([`ChannelState::set_rates`]). These are linear, so that the sums go on as their parts do; but where a segment
+    /// begins, `added` has to return the acceleration and slope that were added to the channel of an index in the pose, as they are at this frame. On the
+    /// last frame, and in a key clip, it does nothing. Channels that follow others have to be as their leaders.
+    #[inline(never)]
+    pub fn step_added(&mut self, added: &mut dyn FnMut(usize) -> [i32; 2], states: &mut [ChannelState], values: &mut [i32]) {
+        let (input, frames) = (self.clip.input(), self.clip.frames());
+        let Some(states) = states.get_mut(..self.moving.into()).filter(|states| states.len() == self.moving_channels()) else {
+            return;
+        };
+        if self.position.frame + 1 < frames {
+            self.position.step_added(&mut Channels { states, pose: values }, &input, frames, added);
+        }
+    }
+
     /// On the last frame of a loop: makes the velocities of `states` ([`ChannelState::rates`]) lead to frame 0, as [`Player::interpolate`] describes, until
     /// the next step or seek. The accelerations become the channels' values at frame 0. It reads the channels' starts, as a step to frame 0 does.
     /// Elsewhere it does nothing.
@@ -90,6 +111,34 @@ impl<'a> DetachedPlayer<'a> {
         if let Some(states) = states {
             seam::close(&self.clip, states, self.moving_channels(), values);
         }
+    }
+
+    /// At frame 0, what [`DetachedPlayer::restart`] takes; `None` at other frames, and in a key clip.
+    pub fn loop_start(&self) -> Option<LoopStart> {
+        #[cfg(feature = "keys")]
+        if self.clip.has_keys() {
+            return None;
+        }
+        (self.position.frame == 0).then_some(LoopStart(self.position.cursor))
+    }
+
+    /// Goes to frame 0 without reading how the channels start, which takes most of the time of a lap: `starts` are the values and velocities
+    /// ([`ChannelState::rates`]) that the states in use had there, in their order, and `start` is what [`DetachedPlayer::loop_start`] returned then.
+    pub fn restart(
+        &mut self,
+        start: LoopStart,
+        starts: impl Iterator<Item = [i32; 2]>,
+        states: &mut [ChannelState],
+        values: &mut [i32],
+    ) {
+        for (state, [p, v]) in states.iter_mut().take(self.moving.into()).zip(starts) {
+            (state.v, state.w, state.k) = (v, 0, 0);
+            (state.due, state.mode, state.prev_sign, state.next) = (0, START_MODE, 0, 0);
+            if let Some(value) = values.get_mut(usize::from(state.slot)) {
+                *value = p;
+            }
+        }
+        self.position = PlayState { cursor: start.0, frame: 0, next: 0 };
     }
 
     /// Goes to `frame`, or to the last one if there are fewer: [`Player::seek`].

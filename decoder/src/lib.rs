@@ -103,7 +103,7 @@ pub use bank::{Bank, BankEntry};
 pub use channel::ChannelState;
 pub use clip::{Clip, Event, LEFT_FOOT_DOWN, RIGHT_FOOT_DOWN};
 pub use clock::Clock;
-pub use detached::DetachedPlayer;
+pub use detached::{DetachedPlayer, LoopStart};
 pub use error::{Memory, OpenError, TooSmall};
 pub use form::{CodedKinds, Form, FormRef, WrongForm};
 pub use history::Undo;

@@ -82,6 +82,15 @@ pub(crate) fn follow(channels: &mut Channels<'_>) {
     }
 }
 
+/// [`segment::read`] of a state to which another motion was added. Not in line: the loop of the additions keeps its registers.
+#[inline(never)]
+fn read_added(state: &mut ChannelState, segments: &mut Segments<'_>, added: &mut dyn FnMut(usize) -> [i32; 2]) {
+    let [w, k] = added(state.slot());
+    (state.w, state.k) = (state.w.wrapping_sub(w), state.k.wrapping_sub(k));
+    segment::read(state, segments);
+    (state.w, state.k) = (state.w.wrapping_add(w), state.k.wrapping_add(k));
+}
+
 impl PlayState {
     /// Reads the segments that start at this frame, in the order of channels, and keeps in `history` what undoes it. False if
     /// the input ran dry: call again when it holds more.
@@ -155,12 +164,35 @@ impl PlayState {
 
     /// One frame on, with its segments: what `read_due` and `advance` do, in one loop.
     pub(crate) fn step(&mut self, channels: &mut Channels<'_>, input: &Input<'_>, frames: u32) {
+        self.step_reading(channels, input, frames, segment::read);
+    }
+
+    /// [`PlayState::step`] of states to which other motions were added: `added` returns the acceleration and slope of a state's.
+    #[inline(never)]
+    pub(crate) fn step_added(
+        &mut self,
+        channels: &mut Channels<'_>,
+        input: &Input<'_>,
+        frames: u32,
+        added: &mut dyn FnMut(usize) -> [i32; 2],
+    ) {
+        self.step_reading(channels, input, frames, |state, segments| read_added(state, segments, added));
+    }
+
+    #[inline(always)]
+    fn step_reading(
+        &mut self,
+        channels: &mut Channels<'_>,
+        input: &Input<'_>,
+        frames: u32,
+        mut read: impl FnMut(&mut ChannelState, &mut Segments<'_>),
+    ) {
         // No channel is due at the frame before: to the last frame, none reads a segment.
         let now = self.frame.wrapping_sub(u32::from(!reads(self.frame, frames))) as u8;
         let mut segments = Segments::at(self.cursor, input);
         for state in channels.states.iter_mut() {
             if state.due == now {
-                segment::read(state, &mut segments);
+                read(state, &mut segments);
             }
             state.add(channels.pose);
         }

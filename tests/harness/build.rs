@@ -30,6 +30,12 @@ impl Firmware {
         Self::built(features, package, program, target, clips, Default::default())
     }
 
+    /// Builds a board's program with this bank as the character that buttons steer.
+    pub fn steering(bank: &Path, package: &str, target: &str) -> Result<Self> {
+        let variable = ("PANTIN_CHARACTER".into(), std::path::absolute(bank)?.into_os_string());
+        Self::built("steer", package, package, target, &[], (vec![], vec![variable]))
+    }
+
     /// Builds a program to give away: without a log for debug probes, and without paths of this machine. It is built in a folder of its own.
     pub fn released(features: &str, package: &str, program: &str, target: &str, clips: &[&Path]) -> Result<Self> {
         let mut flags = vec![];

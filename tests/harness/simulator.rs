@@ -107,23 +107,21 @@ pub fn steer(bank: &[u8], keys: &[SteerKey], words: &[&str], readings: &[Reading
     Ok(pictures)
 }
 
-/// The pictures of a display while letters steer our character in step: the first, then one after each of `letters`.
-pub fn steer_in_step(display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
+/// The pictures of a display while letters steer the character of a bank in step: the first, then one after each of `letters`.
+pub fn steer_in_step(bank: &[u8], display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
     match display.depth {
-        Depth::Gray4 => steered::<Gray4Rows<128, 64, 1024>>(display, letters),
-        _ => steered::<Rgb565Rows<176, 220, 19360>>(display, letters),
+        Depth::Gray4 => steered::<Gray4Rows<128, 64, 1024>>(bank, display, letters),
+        _ => steered::<Rgb565Rows<176, 220, 19360>>(bank, display, letters),
     }
 }
 
-fn steered<L: Layout<Ink: Value>>(display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
-    let bank = std::fs::read(crate::steered::bank())?;
+fn steered<L: Layout<Ink: Value>>(bank: &[u8], display: Display, letters: &[Vec<u8>]) -> Result<Vec<Picture>> {
     let mut pictures = vec![];
     let present = |framebuffer: &mut Framebuffer<L>| pictures.push(picture(display, framebuffer));
     let wishes = letters.iter().flat_map(|letters| letters.iter().copied().chain([pantin_app::NEXT])).collect();
     let mut simulator = Simulator::<Rotation, L, _> { wishes, ..Simulator::new(present) };
     let mut frame = Box::new(Framebuffer::<L>::new());
-    let exit =
-        pantin_app::steer::<_, 64>(&bank, &CHARACTER_KEYS, 0, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
+    let exit = pantin_app::steer::<_, 64>(bank, &CHARACTER_KEYS, 0, Options::parse([sync::ARGUMENT]), &mut frame, &mut simulator);
     ensure!(exit == Exit::Done, "the character cannot be played");
     Ok(pictures)
 }

@@ -1,16 +1,17 @@
 //! Our character's state machine, steered by the recorded session: its poses and its pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use conformance::RATE;
 use pantin_animator::Character;
-use pantin_animator::machine::Table;
+use pantin_animator::machine::{FEET_SECTION, SECTION, Table};
 use pantin_animator::session::{Input, Replay};
 use pantin_app::CHARACTER_KEYS;
 use pantin_figure::surface::{Framebuffer, Gray4Rows};
 use pantin_figure::{DrawStyle, View};
 use pantin_pictures::machine::playback::{Stage, play, session};
+use pantin_pictures::machine::{Source, Text, make};
 
 use crate::build::Firmware;
 use crate::display::{OLED, Picture};
@@ -95,11 +96,23 @@ pub fn pictures() -> Result<Vec<Picture>> {
     Ok(shown)
 }
 
-/// Plays the session on a machine, in step with the host, and compares each picture with what the same program shows here; their number.
-pub fn on_board(machine: Machine) -> Result<usize> {
+/// Our character with a table of feet, which its own machine does not ask for.
+pub fn bank_with_feet() -> Result<Vec<u8>> {
+    let bytes = std::fs::read(bank())?;
+    let text = std::fs::read_to_string(paths::root().join("motions/character.toml"))? + "\n[feet]\n";
+    let file = Text { name: "character.toml", text: &text };
+    let made = make(&Source::parse(&file)?, &file, &pantin::Bank::new_checked(&bytes)?)?;
+    let whole = pantin_convert::bank::with_section(&bytes, SECTION, &made.table)?;
+    Ok(pantin_convert::bank::with_section(&whole, FEET_SECTION, &made.feet.context("a machine without feet")?)?)
+}
+
+/// Plays the session on a machine with the character of a bank, in step with the host, and compares each picture with what the same program shows here;
+/// returns the pictures.
+pub fn on_board(machine: Machine, bank: &Path) -> Result<Vec<Picture>> {
     let letters = letters()?;
-    let expected = simulator::steer_in_step(machine.display.context("a machine without a display")?, &letters)?;
-    let program = Firmware::featuring("steer", machine.name, machine.name, machine.target, &[])?;
+    let display = machine.display.context("a machine without a display")?;
+    let expected = simulator::steer_in_step(&std::fs::read(bank)?, display, &letters)?;
+    let program = Firmware::steering(bank, machine.name, machine.target)?;
     let mut session = Session::start(Launch::new(machine, program.elf()))?;
     let nothing: Vec<u8> = vec![];
     for (number, (letters, expected)) in std::iter::once(&nothing).chain(&letters).zip(&expected).enumerate() {
@@ -110,5 +123,5 @@ pub fn on_board(machine: Machine) -> Result<usize> {
             anyhow::bail!("picture {number}: {difference}");
         }
     }
-    Ok(expected.len())
+    Ok(expected)
 }

@@ -1,7 +1,7 @@
 //! A state machine on the reference board, steered by the recorded session: picture by picture what the host shows.
 
 use harness::qemu::LM3S6965EVB;
-use harness::{setup, steered};
+use harness::{setup, simulator, steered};
 
 /// `PANTIN_UPDATE=1` writes the record again, after a change of the motions, the machine or the animator.
 #[test]
@@ -21,7 +21,25 @@ fn the_reference_board_is_steered_as_on_the_host() {
     if setup::host_only("a state machine on a board") {
         return;
     }
-    let shown = steered::on_board(LM3S6965EVB).unwrap();
+    let shown = steered::on_board(LM3S6965EVB, &steered::bank()).unwrap().len();
     assert_eq!(shown, 901);
     println!("{shown} pictures are equal");
+}
+
+/// The same with a table of feet: the board holds them as the host does, and they are held.
+#[test]
+fn the_reference_board_holds_feet_as_the_host_does() {
+    if setup::host_only("feet on a board") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let bank = folder.path().join("feet.ptb");
+    std::fs::write(&bank, steered::bank_with_feet().unwrap()).unwrap();
+    let held = steered::on_board(LM3S6965EVB, &bank).unwrap();
+    let free = std::fs::read(steered::bank()).unwrap();
+    let free = simulator::steer_in_step(&free, LM3S6965EVB.display.unwrap(), &steered::letters().unwrap()).unwrap();
+    let others = held.iter().zip(&free).filter(|(held, free)| held.pixels != free.pixels).count();
+    println!("{} pictures are equal; in {others} the feet are elsewhere than without the table", held.len());
+    assert_eq!(held.len(), free.len());
+    assert!(others > 100, "{others}");
 }

@@ -30,6 +30,24 @@ fn a_detached_player_plays_what_a_player_plays() {
             player.seek(frame);
             assert_eq!((detached.frame(), detached.pose(&values).values), (player.frame(), player.pose().values));
         }
+        // With what was there at frame 0, it begins again without reading how the channels start.
+        detached.seek(0, &mut states, &mut values);
+        let start = detached.loop_start().unwrap();
+        let starts: Vec<[i32; 2]> =
+            states[..detached.moving()].iter().map(|state| [values[state.slot()], state.rates()[0]]).collect();
+        for last in [1, 2, 40, clip.frames() - 1] {
+            detached.seek(last, &mut states, &mut values);
+            assert_eq!(detached.loop_start(), None);
+            detached.restart(start, starts.iter().copied(), &mut states, &mut values);
+            player.seek(0);
+            for _ in 0..50 {
+                assert_eq!((detached.frame(), detached.pose(&values).values), (player.frame(), player.pose().values));
+                detached.step(&mut states, &mut values);
+                player.step();
+            }
+        }
+        detached.seek(7, &mut states, &mut values);
+        player.seek(7);
         assert_eq!(detached.attach(&mut states, &mut values).map(|player| player.frame()), Some(player.frame()));
         assert!(detached.attach(&mut [], &mut values).is_none());
     }

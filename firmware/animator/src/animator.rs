@@ -1,13 +1,14 @@
 //! A figure that plays one clip. `switch.rs` lets it go over to others.
 
 use crate::Error;
+use crate::carry::Carried;
 use crate::events::{EventQueue, EventsLost};
 use crate::groups::{self, Group};
 use crate::layer::{Weight, blend, mix_group};
 use crate::mask::Mask;
 use crate::memory::Memory;
 use crate::root::{self, Placement, Root, Travel};
-use crate::track::{Passage, Track};
+use crate::track::{Passage, Track, Traveller, copy};
 use crate::transition::{AGAIN, Cubic, Offset};
 use fixed::types::{I16F16, U0F16};
 use pantin::{Clip, FormRef, Pose, WrongForm};
@@ -34,6 +35,7 @@ pub struct Animator<'a, 'm> {
     /// Frames of the transition that are left, and the time in the frame that runs, in ns.
     pub(crate) left: u8,
     pub(crate) rest_ns: u32,
+    pub(crate) carried: Option<Carried>,
     /// Index of the joint that carries the figure.
     pub(crate) carrier: usize,
     pub(crate) root: Root<'a>,
@@ -76,6 +78,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             used_groups,
             left: 0,
             rest_ns: 0,
+            carried: None,
             carrier,
             root,
             travel: Travel::NONE,
@@ -85,13 +88,14 @@ impl<'a, 'm> Animator<'a, 'm> {
             now: Placement::default(),
             before: Placement::default(),
         };
+        animator.track.keep_start(animator.offsets);
         animator.events.at(animator.track.clip(), 0);
         animator.compose();
         animator.travel = Travel::new(Placement::default(), animator.place.map(i64::from));
         Ok(animator)
     }
 
-    /// The clip that plays: its frame, its speed, whether it has ended.
+    /// The clip that plays: its frame, its speed, whether it has ended. During a transition its pose can have a part of it.
     pub fn track(&self) -> &Track<'a, 'm> {
         &self.track
     }
@@ -147,6 +151,7 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// Begins at a frame, at the world's origin.
     pub(crate) fn begin_at(&mut self, frame: u32) {
+        self.leave_carried();
         self.track.seek(frame);
         self.compose();
         self.settle(Placement::default());
@@ -211,10 +216,17 @@ impl<'a, 'm> Animator<'a, 'm> {
 
     /// Lets time pass up to the end of a clip that is no loop, and returns the time in ns that is left.
     pub(crate) fn play(&mut self, elapsed_ns: u64) -> (u64, Result<(), EventsLost>) {
-        let (passage, left_ns) = self.track.advance(elapsed_ns, Some(&self.root));
         let lost = self.events.lost();
-        self.pass(&passage);
-        self.run_transition(elapsed_ns.saturating_sub(left_ns));
+        let left_ns = if let Some(passage) = self.play_carried(elapsed_ns) {
+            self.pass(&passage);
+            0
+        } else {
+            let spare = (self.left == 0).then_some(&mut *self.offsets);
+            let (passage, left_ns) = self.track.advance(elapsed_ns, Some(&mut Traveller { root: &self.root, spare }));
+            self.pass(&passage);
+            self.run_transition(elapsed_ns.saturating_sub(left_ns));
+            left_ns
+        };
         self.compose();
         self.locate();
         (left_ns, self.events.check(lost))
@@ -223,6 +235,7 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// Lets time pass after the end of the clip: a transition still runs.
     pub(crate) fn hold(&mut self, elapsed_ns: u64) {
         if self.left > 0 && elapsed_ns > 0 {
+            self.leave_carried();
             self.run_transition(elapsed_ns);
             self.compose();
             self.locate();
@@ -232,29 +245,36 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// Goes on by exactly one frame of the clip, forwards and whatever its speed: for a program that shows one picture for each frame. Where this
     /// serves it is cheaper than [`Animator::update`]. A transition goes on by a frame too.
     pub fn step(&mut self) -> Result<(), EventsLost> {
-        let passage = self.track.step(Some(&self.root));
         let lost = self.events.lost();
+        let passage = self.step_track();
         self.pass(&passage);
-        self.rest_ns = 0;
-        if self.left > 0 {
-            self.left -= 1;
-            self.compose_step();
-            self.solve_again();
-        } else {
-            self.compose();
-        }
+        self.compose();
         self.locate();
         self.events.check(lost)
     }
 
+    fn step_track(&mut self) -> Passage {
+        if let Some(passage) = self.step_carried() {
+            return passage;
+        }
+        let spare = (self.left == 0).then_some(&mut *self.offsets);
+        let passage = self.track.step(Some(&mut Traveller { root: &self.root, spare }));
+        self.rest_ns = 0;
+        if self.left > 0 {
+            self.step_transition();
+        }
+        passage
+    }
+
     /// Goes to a frame of the clip, or to the last one if there are fewer, without events. The transition stays where it is.
     pub fn seek(&mut self, frame: u32) {
+        self.leave_carried();
         self.track.seek(frame);
         self.compose();
         self.locate();
     }
 
-    fn solve_again(&mut self) {
+    pub(crate) fn solve_again(&mut self) {
         if AGAIN.contains(&self.left) {
             let cubic = Cubic::new(self.left);
             // Those that are at zero too: what is left of their acceleration would lead away again.
@@ -267,47 +287,45 @@ impl<'a, 'm> Animator<'a, 'm> {
         let mut rest = u64::from(self.rest_ns) + elapsed_ns;
         while rest >= frame_time && self.left > 0 {
             rest -= frame_time;
-            self.left -= 1;
-            for offset in self.offsets.iter_mut().filter(|offset| !offset.is_zero()) {
-                offset.step();
-            }
-            self.solve_again();
+            self.step_transition();
         }
         self.rest_ns = if self.left > 0 { rest as u32 } else { 0 };
     }
 
+    #[inline(never)]
+    fn step_transition(&mut self) {
+        self.left -= 1;
+        for offset in self.offsets.iter_mut().filter(|offset| !offset.is_zero()) {
+            offset.step();
+        }
+        self.solve_again();
+    }
+
     /// Writes the pose of this instant, and takes the root's place out of it.
     pub(crate) fn compose(&mut self) {
-        let values = self.track.values();
-        if let Some(values) = values.get(..self.pose.len()) {
-            self.pose.copy_from_slice(values);
-        }
+        copy(self.pose, self.track.values());
         if self.left > 0 {
             let part = Weight::from_bits(if self.rest_ns == 0 { 0 } else { self.transition_part().to_bits() >> 1 });
-            for (out, offset) in self.pose.iter_mut().zip(self.offsets.iter()) {
-                if offset.is_zero() {
-                    continue;
-                }
-                *out = out.wrapping_add(offset.d);
-                if part != Weight::ZERO {
-                    *out = out.wrapping_add(part.of(offset.v));
-                }
+            if let Some(carried) = self.carried {
+                self.add_others(carried, part);
+            } else {
+                self.add_offsets(part);
             }
         }
         self.finish();
     }
 
-    /// [`Animator::compose`] on a whole frame, with a step of the transition, in one pass.
-    #[inline(never)]
-    fn compose_step(&mut self) {
-        for ((out, value), offset) in self.pose.iter_mut().zip(self.track.values()).zip(self.offsets.iter_mut()) {
-            // Field by field: they stay in registers.
-            let Offset { d, v, w, k } = *offset;
-            let now = d.wrapping_add(v);
-            (offset.d, offset.v, offset.w) = (now, v.wrapping_add(w), w.wrapping_add(k));
-            *out = value.wrapping_add(now);
+    /// Adds the offsets to the pose, and a part of their velocities.
+    fn add_offsets(&mut self, part: Weight) {
+        for (out, offset) in self.pose.iter_mut().zip(self.offsets.iter()) {
+            if offset.is_zero() {
+                continue;
+            }
+            *out = out.wrapping_add(offset.d);
+            if part != Weight::ZERO {
+                *out = out.wrapping_add(part.of(offset.v));
+            }
         }
-        self.finish();
     }
 
     fn finish(&mut self) {

@@ -30,7 +30,22 @@ impl<'a, 'm> Animator<'a, 'm> {
     /// This animator in other memory.
     fn in_memory<'n>(self, memory: Memory<'n>) -> Animator<'a, 'n> {
         let Memory { states, values, offsets, pose, groups } = memory;
-        let Animator { track, used_groups, left, rest_ns, carrier, root, travel, place, motion, events, now, before, .. } = self;
+        let Animator {
+            track,
+            used_groups,
+            left,
+            rest_ns,
+            carried,
+            carrier,
+            root,
+            travel,
+            place,
+            motion,
+            events,
+            now,
+            before,
+            ..
+        } = self;
         let track = track.in_memory(states, values);
         Animator {
             track,
@@ -40,6 +55,7 @@ impl<'a, 'm> Animator<'a, 'm> {
             used_groups,
             left,
             rest_ns,
+            carried,
             carrier,
             root,
             travel,

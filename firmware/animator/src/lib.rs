@@ -31,8 +31,9 @@
 //! # What a transition costs
 //!
 //! At the switch, the pose and the velocity of each channel are kept, the player starts the new clip in the same memory, and the
-//! differences become a cubic that ends at zero, with velocity zero, after the given number of frames. Until then each channel costs three
-//! more additions a frame and one that adds the difference to the clip. At the end the pose is the clip's, bit for bit. Another
+//! differences become a cubic that ends at zero, with velocity zero, after the given number of frames. At speed 1 the player's own additions carry it, so
+//! that a frame takes little more than without a transition. At other speeds, and where the clip ends or a loop begins again, each channel that has a
+//! difference costs three more additions a frame and one that adds the difference to the clip. At the end the pose is the clip's, bit for bit. Another
 //! transition can start at any time: the difference that is left is a part of the pose from which it starts.
 //!
 //! Of the angles that are the same rotation the nearest to the new clip's are taken, once, at the switch: Euler angles by the other triple,
@@ -72,6 +73,7 @@
 #![forbid(unsafe_code)]
 
 mod animator;
+mod carry;
 mod chain;
 mod character;
 mod detached;

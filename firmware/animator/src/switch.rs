@@ -22,6 +22,7 @@ impl<'a> Animator<'a, '_> {
         if old_form.rig_id() != new_form.rig_id() {
             return Err(WrongForm::Rig.into());
         }
+        self.leave_carried();
         let mut placement = self.placement();
         let yaw_before = self.root.yaw_of(&self.pose());
         self.take_motion(&clip);
@@ -67,6 +68,7 @@ impl<'a> Animator<'a, '_> {
         if way == [0; 2] || self.left == 0 {
             return;
         }
+        self.leave_carried();
         let way = Heading::new(-self.travel.heading.angle).rotate(way.map(|x| x as i32));
         let cubic = Cubic::new(self.left);
         let channels = self.root.place.iter().zip(way).zip(self.place.iter_mut().zip(&mut self.travel.origin));
@@ -84,6 +86,7 @@ impl<'a> Animator<'a, '_> {
         // How much of a frame of the old clip passes in one of the new, in 2^-16.
         let (old, new) = (self.track.clip().frame_time_ns(), clip.frame_time_ns());
         let ratio = (u64::from(new) << 16).checked_div(old.into()).unwrap_or(0).min(1 << 30) as i64;
+        self.track.leave_offsets();
         let running = self.left > 0;
         for (offset, value) in self.offsets.iter_mut().zip(self.pose.iter()) {
             let own = if running { scaled(offset.v, ratio) } else { 0 };

@@ -48,6 +48,18 @@ impl Offset {
         self.d = -(i64::from(self.v) * i64::from(frames) / 3) as i32;
     }
 
+    /// A number of frames on, bit for bit as many [`Offset::step`].
+    #[inline(always)]
+    pub(crate) fn after(&self, frames: u8) -> Offset {
+        let Offset { d, v, w, k } = *self;
+        let n = i32::from(frames);
+        let pairs = n * (n - 1) / 2;
+        // Below 2^23, and whole.
+        let triples = pairs * (n - 2) / 3;
+        let sum = |a: i32, n: i32, b: i32| a.wrapping_add(n.wrapping_mul(b));
+        Offset { d: sum(sum(sum(d, n, v), pairs, w), triples, k), v: sum(sum(v, n, w), pairs, k), w: sum(w, n, k), k }
+    }
+
     /// One frame on.
     #[inline(always)]
     pub(crate) fn step(&mut self) {
@@ -169,6 +181,16 @@ mod tests {
                     assert!((f64::from(value) - truth(n as f64)).abs() <= near, "{frames} frames, {n}: {value}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn frames_at_once_are_as_many_steps() {
+        let start = Offset { d: -5_000_000, v: 700_001, w: i32::MAX - 3, k: i32::MIN + 7 };
+        let mut offset = start;
+        for frames in 0..=255 {
+            assert_eq!(start.after(frames), offset, "{frames}");
+            offset.step();
         }
     }
 

@@ -11,7 +11,8 @@ use crate::source::steered::SteeredSource;
 use crate::update::Listener;
 use crate::view_state::ViewState;
 use pantin::{ChannelState, Player};
-use pantin_animator::{Character, LayerMemory, Workspace, first_clip, visit_poses};
+use pantin_animator::machine::TableError;
+use pantin_animator::{Character, Feet, LayerMemory, Workspace, first_clip, visit_poses};
 use pantin_figure::surface::{Framebuffer, Layout};
 use pantin_figure::{Canvas, View};
 
@@ -45,7 +46,8 @@ impl From<pantin::TooSmall> for Refusal {
 }
 
 /// Plays the state machine of a bank until a button in `leave` is pressed, the letter `q` comes, or the mode ends. The rig has at most `CHANNELS`
-/// channels. The machine's first layer plays; further layers, and the second clips of blends, do not. Name, frame and speed are always shown.
+/// channels. The machine's first layer plays; further layers, and the second clips of blends, do not. If the bank has a table of feet, planted feet stay
+/// where they are, for about 2 KB of stack. Name, frame and speed are always shown.
 ///
 /// Returns [`Exit::BadClip`] for a bank without a state machine, one that is damaged, or a rig that is too large; the log has the reason.
 #[inline(never)]
@@ -85,12 +87,18 @@ fn set_up<B: Board, const CHANNELS: usize>(
     let mut memory = Workspace::<CHANNELS, CHANNELS>::new();
     let (mut states, mut values, mut sampled) = ([ChannelState::NEW; CHANNELS], [0; CHANNELS], [0; CHANNELS]);
     let mut words = [0; MASK_WORDS];
+    let mut feet = Feet::new();
     let mut renderer = BoardRenderer::<B>::empty();
     aim::<B>(bank, context.view_state.style, &mut renderer, &mut states, &mut values, &mut sampled)?;
     let mut character = Character::new(bank, memory.lend())?;
     if character.table().layer(0).is_some() {
         let layer = LayerMemory { states: &mut states, values: &mut values, sampled: &mut sampled, words: &mut words };
         character.lend_layer(layer)?;
+    }
+    match character.lend_feet(&mut feet) {
+        // A bank without feet.
+        Ok(()) | Err(pantin_animator::Error::Machine(TableError::Missing)) => {}
+        Err(error) => return Err(error.into()),
     }
     let mut source = SteeredSource::new(character, keys, leave, context.mode, context.board.held());
     Ok(play(

@@ -1,4 +1,5 @@
-//! Tells the code whether the processor is an Armv8-M, which Rust does not, and compiles the solid figure's character.
+//! Tells the code whether the processor is an Armv8-M, which Rust does not, and compiles the solid figure's character, and names the bank that
+//! is steered.
 
 fn main() {
     println!("cargo::rustc-check-cfg=cfg(armv8m)");
@@ -7,6 +8,18 @@ fn main() {
     }
     #[cfg(feature = "solid")]
     character();
+    #[cfg(feature = "steer")]
+    steered();
+}
+
+/// Names the bank that is steered: `PANTIN_CHARACTER`, an absolute path, or our character's.
+#[cfg(feature = "steer")]
+fn steered() {
+    println!("cargo::rerun-if-env-changed=PANTIN_CHARACTER");
+    let own = || concat!(env!("CARGO_MANIFEST_DIR"), "/../../../motions/character.ptb").into();
+    let path = std::env::var("PANTIN_CHARACTER").unwrap_or_else(|_| own());
+    println!("cargo::rerun-if-changed={path}");
+    println!("cargo::rustc-env=PANTIN_CHARACTER={path}");
 }
 
 /// Writes `look.rs` with the character `PANTIN_LOOK`, an absolute path of a `.look` file, or the default character.

@@ -94,6 +94,8 @@ impl<'a> Feet<'a> {
 
     /// Places the clip that was entered by the feet that are held and are on the ground in it, too.
     fn enter(&mut self, animator: &mut Animator<'a, '_>, frame: &Frame, contacts: [Option<u8>; FEET]) {
+        // Its own pose is asked for below.
+        animator.leave_carried();
         let mut ways = [None; FEET];
         for ((foot, contact), way) in self.feet.iter().zip(contacts).zip(&mut ways) {
             let anchor = contact.and_then(|point| Some((point, foot.held_at(animator.pose, frame, point)?)));

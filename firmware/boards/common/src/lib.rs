@@ -32,6 +32,10 @@ mod ticks;
 pub mod uart_rx;
 
 pub use board_drivers::Mono128x64;
+/// The character that buttons steer: a bank with a state machine, `PANTIN_CHARACTER` when this was built, or our own.
+#[cfg(feature = "steer")]
+pub static CHARACTER: &[u8] = include_bytes!(env!("PANTIN_CHARACTER"));
+
 pub use bus_report::report_bus;
 pub use buttons::{ButtonSource, Buttons, NoButtons, five_buttons, two_buttons};
 pub use capacity::Capacity;

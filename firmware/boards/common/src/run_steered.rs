@@ -1,12 +1,11 @@
-//! Our character in an emulator: buttons, or letters over the serial line, steer it.
+//! A character in an emulator: buttons, or letters over the serial line, steer it.
 
+use crate::CHARACTER;
 use crate::exit::exit;
 use crate::run_emulated::options;
 use pantin_app::{Board, CHARACTER_KEYS, steer};
 use pantin_figure::surface::Framebuffer;
 
-/// The character: a bank with a state machine.
-static CHARACTER: &[u8] = include_bytes!("../../../../motions/character.ptb");
 /// Channels of its rig, at most.
 const CHANNELS: usize = 64;
 

@@ -37,7 +37,14 @@ fn main() -> ! {
     #[cfg(feature = "steer")]
     if keys::held() & keys::A != 0 {
         framebuffer.clear();
-        pantin_app::steer::<_, CHANNELS>(CHARACTER, &keys::STEER, keys::SELECT, options(), &mut framebuffer, &mut board);
+        pantin_app::steer::<_, CHANNELS>(
+            board_common::CHARACTER,
+            &keys::STEER,
+            keys::SELECT,
+            options(),
+            &mut framebuffer,
+            &mut board,
+        );
         board.overlay([""; 2]);
     }
     loop {
@@ -63,10 +70,7 @@ fn options() -> Options {
     }
 }
 
-/// The character that is steered: a bank with a state machine.
-#[cfg(feature = "steer")]
-static CHARACTER: &[u8] = include_bytes!("../../../../motions/character.ptb");
-/// Channels of its rig, at most.
+/// Channels of the steered character's rig, at most.
 #[cfg(feature = "steer")]
 const CHANNELS: usize = 64;
 

@@ -4,6 +4,10 @@ use super::bank::is_bank_name;
 use crate::memory;
 use crate::open::is_bank;
 use crate::output::{self, Wanted, note, refuse_foreign};
+use crate::play::session::Session;
+use crate::play::settings::Settings;
+use crate::play::steering;
+use crate::play::terminal::Terminal;
 use crate::words;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use pantin::Bank;
@@ -11,7 +15,12 @@ use pantin_animator::machine::{FEET_SECTION, SECTION};
 use pantin_convert::bank;
 use pantin_pictures::machine::{Source, Text, graph, make};
 use serde_json::json;
+use std::io::{IsTerminal, stdin, stdout};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Time between two looks at the files that are watched.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// Put a state machine into a bank: states that play its clips, and transitions by inputs, events, parameters and ends of clips.
 ///
@@ -23,6 +32,7 @@ use std::path::{Path, PathBuf};
   pantin machine character.toml --bank moves.ptb -o character.ptb --graph character.svg
   pantin machine character.toml                            only checks
   pantin machine character.toml --graph character.svg      checks and draws
+  pantin machine character.toml --watch                    plays it, and every change of the file
 
 A small machine:
   bank = \"moves.ptb\"
@@ -46,6 +56,21 @@ pub struct Arguments {
     /// Draw states and transitions: an .svg file
     #[arg(long, value_name = "FILE")]
     graph: Option<PathBuf>,
+    /// Play the machine in the terminal, as `pantin play` does, and make it again whenever its file or its bank changes: the new one starts with the inputs that are held. An error is shown while the last one goes on
+    #[arg(long)]
+    watch: bool,
+}
+
+/// A machine that was made.
+struct Built {
+    /// The bank with it.
+    whole: Vec<u8>,
+    graph: String,
+    warnings: Vec<String>,
+    clips: usize,
+    states: usize,
+    transitions: usize,
+    table_bytes: usize,
 }
 
 /// Runs the command.
@@ -59,47 +84,107 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let svg = graph.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
         ensure!(svg || graph.as_os_str() == "-", "{}: the graph is written as .svg", graph.display());
     }
-    let outputs: Vec<&Path> = arguments.output.iter().chain(&arguments.graph).map(PathBuf::as_path).collect();
-    output::check(&[&arguments.input], &outputs)?;
-    ensure!(!is_bank_name(&arguments.input), "{place}: a bank; the state machine is a .toml file, and --bank names the bank");
-    let text = memory::read(&arguments.input)?;
-    let text = String::from_utf8(text).map_err(|_| anyhow!("{place}: not text (UTF-8)"))?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let file = Text { name: &place, text };
-    let source = Source::parse(&file)?;
-    let beside = |path: &PathBuf| arguments.input.parent().unwrap_or(Path::new("")).join(path);
-    let path = arguments.bank.clone().or_else(|| source.bank.as_ref().map(beside));
-    let path =
-        path.with_context(|| format!("{place}: no bank; write `bank = \"FILE.ptb\"` above the states, or give --bank FILE.ptb"))?;
-    output::check(&[&path], &outputs)?;
-    let bytes = memory::read(&path)?;
-    if !is_bank(&bytes) {
-        bail!("{}: not a bank; `pantin convert --same-form` and `pantin pack` make one", path.display());
+    if arguments.watch {
+        ensure!(stdin().is_terminal() && stdout().is_terminal(), "--watch needs a terminal for its pictures and keys");
+        output::take_stdout();
     }
-    let bank = Bank::new_checked(&bytes).with_context(|| path.display().to_string())?;
-    let made = make(&source, &file, &bank)?;
-    let feet = made.feet.as_deref();
-    let whole = bank::without_section(&bytes, FEET_SECTION)?;
-    let whole = bank::with_section(&whole, SECTION, &made.table)?;
-    let whole = feet.map_or(Ok(whole.clone()), |feet| bank::with_section(&whole, FEET_SECTION, feet))?;
-    let picture = graph::svg(&source);
-    let files = [(&arguments.output, whole.as_slice()), (&arguments.graph, picture.as_bytes())];
-    let files: Vec<(&Path, &[u8])> = files.into_iter().filter_map(|(path, bytes)| Some((path.as_deref()?, bytes))).collect();
-    output::write_together(&files)?;
-    let warnings: Vec<String> = made.warnings.iter().map(|warning| words::with_advice(&warning.text, warning.remedy)).collect();
+    output::check(&[&arguments.input], &arguments.outputs())?;
+    ensure!(!is_bank_name(&arguments.input), "{place}: a bank; the state machine is a .toml file, and --bank names the bank");
+    let (built, bank) = arguments.build(&memory::read(&arguments.input)?)?;
+    arguments.write(&built)?;
+    let Built { whole, warnings, clips, states, transitions, table_bytes, .. } = built;
     warnings.iter().for_each(|warning| note!("{place}: warning: {warning}"));
-    let transitions = source.any.len() + source.states.iter().map(|state| state.transitions.len()).sum::<usize>();
     output::report(json!({
-        "states": source.states.len(),
+        "states": states,
         "transitions": transitions,
-        "table_bytes": made.table.len(),
+        "table_bytes": table_bytes,
         "bytes": whole.len(),
         "warnings": warnings,
     }));
-    let count = format!("{} states, {transitions} transitions, a table of {} bytes", source.states.len(), made.table.len());
+    let count = format!("{states} states, {transitions} transitions, a table of {table_bytes} bytes");
     match &arguments.output {
-        Some(output) => note!("{}: {count}; {} bytes with {} clips", output.display(), whole.len(), bank.len()),
+        Some(output) => note!("{}: {count}; {} bytes with {clips} clips", output.display(), whole.len()),
+        None if arguments.watch => {}
         None => note!("{place}: {count}; checked, and no bank written (-o writes it)"),
     }
-    Ok(())
+    if arguments.watch { arguments.watch(whole, &bank) } else { Ok(()) }
+}
+
+impl Arguments {
+    fn outputs(&self) -> Vec<&Path> {
+        self.output.iter().chain(&self.graph).map(PathBuf::as_path).collect()
+    }
+
+    /// Makes the machine of a text, and returns it with the path of the bank whose clips it plays.
+    fn build(&self, text: &[u8]) -> Result<(Built, PathBuf)> {
+        let place = self.input.display().to_string();
+        let text = std::str::from_utf8(text).map_err(|_| anyhow!("{place}: not text (UTF-8)"))?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let file = Text { name: &place, text };
+        let source = Source::parse(&file)?;
+        let beside = |path: &PathBuf| self.input.parent().unwrap_or(Path::new("")).join(path);
+        let path = self.bank.clone().or_else(|| source.bank.as_ref().map(beside));
+        let path = path.with_context(|| {
+            format!("{place}: no bank; write `bank = \"FILE.ptb\"` above the states, or give --bank FILE.ptb")
+        })?;
+        output::check(&[&path], &self.outputs())?;
+        let bytes = memory::read(&path)?;
+        if !is_bank(&bytes) {
+            bail!("{}: not a bank; `pantin convert --same-form` and `pantin pack` make one", path.display());
+        }
+        let bank = Bank::new_checked(&bytes).with_context(|| path.display().to_string())?;
+        let made = make(&source, &file, &bank)?;
+        let whole = bank::without_section(&bytes, FEET_SECTION)?;
+        let whole = bank::with_section(&whole, SECTION, &made.table)?;
+        let whole = made.feet.as_deref().map_or(Ok(whole.clone()), |feet| bank::with_section(&whole, FEET_SECTION, feet))?;
+        let transitions = source.any.len() + source.states.iter().map(|state| state.transitions.len()).sum::<usize>();
+        let built = Built {
+            whole,
+            graph: graph::svg(&source),
+            warnings: made.warnings.iter().map(|warning| words::with_advice(&warning.text, warning.remedy)).collect(),
+            clips: bank.len(),
+            states: source.states.len(),
+            transitions,
+            table_bytes: made.table.len(),
+        };
+        Ok((built, path))
+    }
+
+    /// Writes what is to be written.
+    fn write(&self, built: &Built) -> Result<()> {
+        let files = [(&self.output, built.whole.as_slice()), (&self.graph, built.graph.as_bytes())];
+        let files: Vec<(&Path, &[u8])> = files.into_iter().filter_map(|(path, bytes)| Some((path.as_deref()?, bytes))).collect();
+        output::write_together(&files)
+    }
+
+    /// Plays the machine, and each that changed files give.
+    fn watch(&self, whole: Vec<u8>, bank: &Path) -> Result<()> {
+        let settings = Settings::of_environment()?;
+        let name = self.input.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let mut session = Session::new(Terminal::enter(settings.colours)?, settings, false, None);
+        let changed = |path: &Path| std::fs::metadata(path).and_then(|data| data.modified()).ok();
+        let mut bank = bank.to_owned();
+        // A file that is not there is being written.
+        let mut last = (std::fs::read(&self.input).ok(), changed(&bank));
+        let mut looked = Instant::now();
+        let mut remake = || {
+            if looked.elapsed() < LOOK {
+                return None;
+            }
+            looked = Instant::now();
+            let now = (Some(std::fs::read(&self.input).ok()?), Some(changed(&bank)?));
+            if now == last {
+                return None;
+            }
+            last = now;
+            let made = self.build(last.0.as_deref().unwrap_or_default()).and_then(|(built, path)| {
+                self.write(&built)?;
+                bank = path;
+                last.1 = changed(&bank);
+                Ok(built.whole)
+            });
+            Some(made)
+        };
+        steering::watch(whole, &name, &mut session, &mut remake)
+    }
 }

@@ -13,7 +13,7 @@ use crate::play::picture::{Show, Title, draw};
 use crate::play::play_time::PlayTime;
 use crate::play::playback::{Playback, Room};
 use crate::play::session::{Outcome, Session};
-use crate::play::settings::Settings;
+use crate::play::settings::{PALETTE, Settings};
 use crate::play::steering::Steering;
 use crate::play::terminal::Terminal;
 use anyhow::{Context, Result, bail, ensure};
@@ -33,7 +33,7 @@ use std::time::Duration;
 
 /// Play clips, or a bank's state machine, in the terminal, drawn by the firmware's own figure code.
 ///
-/// A bank with a state machine is steered by keys: arrows and letters make its inputs, ? lists them, and the last row shows the state, the inputs that are held and the parameters.
+/// A bank with a state machine is steered by keys: arrows and letters make its inputs, ? lists them, and the last row shows the state, the inputs, the parameters and, for a machine with `[feet]`, which joints are on the ground.
 ///
 /// A clip without joints plays as a face, if its scalars have names listed in docs/FACE.md, otherwise as one bar per channel. Keys: space pause, comma and period step, r reverse, + and - speed, n and p next and
 /// previous clip, arrows (or a, d, w, s) orbit and tilt, v view, f follow or fixed camera, g ground, o lines or solid, b braille or half blocks, ? help, q quit.
@@ -62,7 +62,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "plain")]
     colours: Option<Colours>,
     /// The picture's colours: a name, or paper and ink [see below]
-    #[arg(long, default_value = "phone", conflicts_with = "plain")]
+    #[arg(long, default_value = PALETTE, conflicts_with = "plain")]
     palette: Palette,
     /// Side to see it from: front, side, left, right, back, quarter, or degrees
     /// [default: quarter; a face: front]
@@ -164,11 +164,9 @@ fn with_show<T>(clip: &Clip, ahead: View, play: impl FnOnce(&mut dyn Show) -> Re
 impl Arguments {
     fn settings(&self) -> Result<Settings> {
         let track = if self.fixed { CameraTarget::Fixed } else { CameraTarget::Follow };
-        let variable = |name: &str| std::env::var(name).ok();
-        let colours = self.colours.unwrap_or_else(|| Colours::of_environment(variable));
+        let of_environment = Settings::of_environment()?;
         let dots = match self.dots {
-            // The letters of Linux' own console have no braille.
-            DotsOrAuto::Auto => (variable("TERM").as_deref() == Some("linux")).then_some(Dots::Half),
+            DotsOrAuto::Auto => of_environment.dots,
             DotsOrAuto::Half => Some(Dots::Half),
             DotsOrAuto::Braille => Some(Dots::Braille),
         };
@@ -181,13 +179,12 @@ impl Arguments {
         let look = self.look.as_deref().map_or(Ok(Look::DEFAULT), read_look)?;
         Ok(Settings {
             view,
-            ground: true,
             solid: self.style == StyleName::Solid,
             look,
             dots,
-            colours,
+            colours: self.colours.unwrap_or(of_environment.colours),
             palette: self.palette.clone(),
-            help: false,
+            ..of_environment
         })
     }
 

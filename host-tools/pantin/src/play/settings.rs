@@ -3,12 +3,16 @@
 use super::cells::Dots;
 use super::colours::Colours;
 use super::keys::Action;
+use anyhow::Result;
 use pantin_figure::solid::Look;
 use pantin_figure::{CameraTarget, View};
 use pantin_images::palette::Palette;
 
 /// Rows of cells from which on half blocks show enough of a figure. Below, braille has twice the pixels.
 const ROWS_FOR_HALF: usize = 48;
+
+/// The palette's name, unless another is asked for.
+pub const PALETTE: &str = "phone";
 
 /// All of it.
 #[derive(Clone, Debug)]
@@ -32,6 +36,22 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// What suits the terminal by its environment.
+    pub fn of_environment() -> Result<Settings> {
+        let variable = |name: &str| std::env::var(name).ok();
+        Ok(Settings {
+            view: View::default(),
+            ground: true,
+            solid: false,
+            look: Look::DEFAULT,
+            // The letters of Linux' own console have no braille.
+            dots: (variable("TERM").as_deref() == Some("linux")).then_some(Dots::Half),
+            colours: Colours::of_environment(variable),
+            palette: PALETTE.parse()?,
+            help: false,
+        })
+    }
+
     /// How pixels become letters in a picture with this number of rows.
     pub fn dots(&self, rows: usize) -> Dots {
         self.dots.unwrap_or(if rows < ROWS_FOR_HALF { Dots::Braille } else { Dots::Half })

@@ -7,8 +7,8 @@ use super::settings::Settings;
 use crate::output::clean;
 use anyhow::Result;
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use pantin_animator::machine::{Cause, Table};
-use pantin_animator::{Character, Feet};
+use pantin_animator::machine::{Cause, FEET, Table};
+use pantin_animator::{Character, Feet, first_clip};
 use pantin_figure::View;
 use pantin_pictures::machine::playback::{Room, Stage};
 use pantin_pictures::render::figure::MOST_PIXELS;
@@ -131,6 +131,39 @@ fn asked(key: KeyEvent) -> Option<Asked> {
     })
 }
 
+/// Looks whether a machine was changed, and makes its bank again if it was.
+pub type Remake<'w> = &'w mut dyn FnMut() -> Option<Result<Vec<u8>>>;
+
+/// Why a character ended.
+enum Ended {
+    Quit,
+    Restart,
+    /// Its bank was made again.
+    Changed(Vec<u8>),
+}
+
+/// Plays a bank's machine until a key ends it, and each that replaces it from its start, with the inputs that are held. Where one cannot be made, the
+/// reason is shown, and the one before plays on.
+pub fn watch(mut bytes: Vec<u8>, name: &str, session: &mut Session, remake: Remake<'_>) -> Result<()> {
+    let mut held = Vec::new();
+    loop {
+        let mut steering = Steering { held, ..Steering::new(&bytes, name.into())? };
+        let Some(changed) = steering.play_watched(session, remake)? else { return Ok(()) };
+        held = steering.held;
+        bytes = changed;
+    }
+}
+
+/// Refuses a bank whose machine cannot be played.
+fn check(bytes: &[u8]) -> Result<()> {
+    Steering::new(bytes, String::new())?;
+    Room::of(bytes)?.character(bytes, &mut Feet::new())?;
+    Stage::new(bytes, [64, 64], View::default(), None).map(drop)
+}
+
+/// Pictures for which an input that was fired is shown.
+const FIRED_PICTURES: u32 = 15;
+
 /// A character that is shown.
 pub struct Steering<'b> {
     bytes: &'b [u8],
@@ -138,36 +171,66 @@ pub struct Steering<'b> {
     keys: Keys,
     /// The parameter that keys change.
     parameter: u8,
+    /// The input that was fired last, and the pictures for which it is still shown.
+    fired: Option<(u8, u32)>,
+    /// Names of inputs that are held when it starts.
+    held: Vec<String>,
+    /// Why the machine could not be made again.
+    error: Option<String>,
     stage: Option<(Stage, [usize; 2], View)>,
 }
 
 impl<'b> Steering<'b> {
     /// The machine of a bank, which has one.
     pub fn new(bytes: &'b [u8], name: String) -> Result<Steering<'b>> {
-        Ok(Steering { bytes, name, keys: Keys::of(&Table::of_bank(bytes)?), parameter: 0, stage: None })
+        let keys = Keys::of(&Table::of_bank(bytes)?);
+        Ok(Steering { bytes, name, keys, parameter: 0, fired: None, held: Vec::new(), error: None, stage: None })
     }
 
     /// Plays until a key ends it.
     pub fn play(&mut self, session: &mut Session) -> Result<()> {
+        self.play_watched(session, &mut || None).map(drop)
+    }
+
+    /// Plays until a key ends it, or until its bank was made again, which is returned.
+    fn play_watched(&mut self, session: &mut Session, remake: Remake<'_>) -> Result<Option<Vec<u8>>> {
         loop {
             let (mut room, mut feet) = (Room::of(self.bytes)?, Feet::new());
             let mut character = room.character(self.bytes, &mut feet)?;
-            if !self.play_once(session, &mut character)? {
-                return Ok(());
+            for name in std::mem::take(&mut self.held) {
+                if let Some(input) = character.table().input(&name) {
+                    character.machine().hold(input, true);
+                }
+            }
+            match self.play_once(session, &mut character, remake)? {
+                Ended::Quit => return Ok(None),
+                Ended::Restart => {}
+                Ended::Changed(bytes) => {
+                    let table = character.table();
+                    let held = (0..table.inputs() as u8).filter(|&input| character.is_held(input));
+                    self.held = held.map(|input| table.input_name(input).to_owned()).collect();
+                    return Ok(Some(bytes));
+                }
             }
         }
     }
 
-    /// Plays from the start; whether it is to play from there again.
-    fn play_once(&mut self, session: &mut Session, character: &mut Character<'b, '_>) -> Result<bool> {
+    /// Plays from the start.
+    fn play_once(&mut self, session: &mut Session, character: &mut Character<'b, '_>, remake: Remake<'_>) -> Result<Ended> {
         let mut before = Instant::now();
         loop {
             if session.left == Some(0) {
-                return Ok(false);
+                return Ok(Ended::Quit);
+            }
+            match remake().map(|made| made.and_then(|bytes| check(&bytes).map(|()| bytes))) {
+                None => {}
+                Some(Ok(bytes)) => return Ok(Ended::Changed(bytes)),
+                Some(Err(error)) => self.error = Some(format!("{error:#}")),
             }
             let size = session.terminal.size()?;
             session.terminal.show(self.draw(character, &session.settings, size)?)?;
             session.left = session.left.map(|left| left - 1);
+            self.fired = self.fired.and_then(|(input, left)| Some((input, left.checked_sub(1)?)));
             let due = before + PICTURE;
             let mut patience = due.saturating_duration_since(Instant::now()).max(BRIEFLY);
             while event::poll(patience)? {
@@ -175,8 +238,8 @@ impl<'b> Steering<'b> {
                     Event::Resize(..) => session.terminal.forget(),
                     Event::Key(key) if key.kind != KeyEventKind::Release => {
                         match self.key(key, character, &mut session.settings, size[1]) {
-                            Some(Asked::Quit) => return Ok(false),
-                            Some(Asked::Restart) => return Ok(true),
+                            Some(Asked::Quit) => return Ok(Ended::Quit),
+                            Some(Asked::Restart) => return Ok(Ended::Restart),
                             _ => {}
                         }
                     }
@@ -193,12 +256,13 @@ impl<'b> Steering<'b> {
     /// Does what a key asks for, if it is not to end.
     fn key(&mut self, key: KeyEvent, character: &mut Character<'_, '_>, settings: &mut Settings, rows: usize) -> Option<Asked> {
         let control = key.modifiers.contains(KeyModifiers::CONTROL);
-        if let Some(own) = self.keys.find(key.code).filter(|_| !control) {
+        if let Some(own) = self.keys.find(key.code).filter(|_| !control).cloned() {
             let machine = character.machine();
             if own.toggles {
                 machine.hold(own.input, !machine.is_held(own.input));
             } else {
                 machine.fire(own.input);
+                self.fired = Some((own.input, FIRED_PICTURES));
             }
             return None;
         }
@@ -220,13 +284,17 @@ impl<'b> Steering<'b> {
         None
     }
 
-    /// The state, the inputs that are held, and the parameters.
+    /// The state, the inputs, the joints on the ground, and the parameters.
     fn status(&self, character: &Character<'_, '_>, settings: &Settings) -> String {
         let table = character.table();
         let mut line = format!(" {}  state {}", self.name, clean(table.state_name(character.state())));
         for input in (0..table.inputs() as u8).filter(|&input| character.is_held(input)) {
             line += &format!("  [{}]", clean(table.input_name(input)));
         }
+        if let Some((input, _)) = self.fired {
+            line += &format!("  ({})", clean(table.input_name(input)));
+        }
+        line += &self.contacts(character);
         for layer in (0..table.layers()).filter(|&layer| character.layer_weight(layer).to_bits() > 0) {
             let input = table.layer(layer).map_or("", |row| table.input_name(row.input));
             line += &format!("  +{}", clean(input));
@@ -236,6 +304,15 @@ impl<'b> Steering<'b> {
             line += &format!("  {}{chosen} {}", clean(table.parameter_name(parameter)), character.parameter(parameter));
         }
         line + &format!("  {}", settings.view_words())
+    }
+
+    /// The joints at which feet are held on the ground, of a bank with a table of feet.
+    fn contacts(&self, character: &Character<'_, '_>) -> String {
+        let (Some(feet), Ok(clip)) = (character.feet(), first_clip(self.bytes)) else { return String::new() };
+        let rig = clip.rig();
+        let held = (0..FEET).filter_map(|foot| feet.held(foot)).filter_map(|joint| rig.joint(joint.into()));
+        let names: Vec<String> = held.map(|joint| clean(joint.name()).into_owned()).collect();
+        format!("  on the ground: {}", if names.is_empty() { "none".into() } else { names.join(" ") })
     }
 
     /// A picture with its status line, the last row.
@@ -268,6 +345,14 @@ impl<'b> Steering<'b> {
             for (line, row) in lines.iter().zip(last - shown..last) {
                 grid.write_text(0, row, &" ".repeat(columns), ink, palette.paper());
                 grid.write_text(1, row, line, ink, palette.paper());
+            }
+        }
+        if let Some(error) = &self.error {
+            let words: Vec<char> = clean(&format!("error: {error}")).chars().collect();
+            let rows = words.chunks(columns.saturating_sub(1).max(1)).take(last);
+            for (row, line) in rows.enumerate() {
+                grid.write_text(0, row, &" ".repeat(columns), ink, palette.paper());
+                grid.write_text(0, row, &line.iter().collect::<String>(), ink, palette.paper());
             }
         }
         grid.write_text(0, last, &" ".repeat(columns), ink, paper);

@@ -287,6 +287,11 @@ fn our_character_goes_through_all_its_states() {
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
     assert!(texts.contains(&"layer wave, by wave, over start, walk, run"), "{texts:?}");
     assert!(["idle", "get_up", "no dance", "trip"].iter().all(|text| texts.contains(text)), "{texts:?}");
+    // In a column of a page its letters have 11 pixels at least.
+    let width: f64 = document.root_element().attribute("width").unwrap().parse().unwrap();
+    let sizes = document.descendants().filter_map(|node| node.attribute("font-size")?.parse().ok());
+    let smallest = sizes.fold(f64::INFINITY, f64::min);
+    assert!(smallest * (700.0 / width).min(1.0) >= 11.0, "{smallest} in a width of {width}");
     let bytes = std::fs::read(&bank).unwrap();
     let (bank, table) = (Bank::new_checked(&bytes).unwrap(), Table::of_bank(&bytes).unwrap());
     let mut machine = Machine::new(table);

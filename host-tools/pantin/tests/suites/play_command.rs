@@ -237,7 +237,7 @@ fn a_state_machine_is_steered_by_keys() {
     assert!(!seat.status(&["state stroll"]).contains("[go]"));
     // `jump` is the space bar and is fired; `wave` has a letter.
     seat.press(" ");
-    seat.status(&["state hop"]);
+    seat.status(&["state hop", "(jump)"]);
     seat.press("w");
     seat.status(&["state stroll"]);
     seat.press("++");
@@ -254,6 +254,33 @@ fn a_state_machine_is_steered_by_keys() {
     seat.shows("w wave");
     seat.press("R\x1b[A");
     seat.status(&["state sprint"]);
+    seat.press("q");
+    assert!(seat.wait().success());
+    assert!(seat.is_restored());
+}
+
+#[test]
+fn a_watched_machine_plays_what_its_file_says_now() {
+    let folder = Folder::with_machine("watched");
+    let write = |text: &str| std::fs::write(folder.0.join("m.toml"), text).unwrap();
+    let mut seat = Seat::new(&folder.0, PANTIN, &["machine", "m.toml", "--watch", "-o", "watched.ptb"]);
+    seat.status(&[" m ", "state stroll"]);
+    seat.press("\x1b[A");
+    seat.status(&["state sprint", "[go]"]);
+    // The input stays held, and leads to the state by its new name.
+    write(&MACHINE.replace("sprint", "dash"));
+    seat.status(&["state dash", "[go]"]);
+    // One that is wrong is shown, and the last one plays on.
+    write(&MACHINE.replace("clip = \"walk\"", "clip = \"crawl\""));
+    seat.shows("crawl");
+    seat.status(&["state dash", "[go]"]);
+    write(&format!("{MACHINE}\n[feet]\n"));
+    seat.status(&["state sprint", "[go]", "on the ground: "]);
+    assert!(!seat.rows()[..23].concat().contains("crawl"));
+    assert_eq!(std::fs::read(folder.0.join("watched.ptb")).unwrap().len(), {
+        folder.text(&["machine", "m.toml", "-o", "again.ptb"]);
+        std::fs::read(folder.0.join("again.ptb")).unwrap().len()
+    });
     seat.press("q");
     assert!(seat.wait().success());
     assert!(seat.is_restored());

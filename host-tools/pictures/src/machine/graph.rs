@@ -1,8 +1,7 @@
-//! A state machine as a picture: states on a circle, transitions as arrows with their causes, layers as lines below, as SVG.
+//! A state machine as a picture: states in two bent columns, transitions as arrows with their causes, layers as lines below, as SVG.
 
 use super::source::{Cause, Kind, Layer, Source, State, Transition};
 use crate::render::svg::escaped;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
 
 /// Width of a letter, height of a line, a state and a layer's line, and space around, in units of the picture.
@@ -11,8 +10,15 @@ const LINE: f64 = 15.0;
 const STATE: f64 = 44.0;
 const LAYER: f64 = LINE * 1.5;
 const MARGIN: f64 = 90.0;
-/// How far an arrow bends to its right, as a part of its length: there and back are two arrows.
+/// From a row of states to the next, and from a column to the middle beside half of a state. The picture is high rather than wide: a page that fits it
+/// into a column of text shrinks its letters little.
+const ROW: f64 = 88.0;
+const COLUMN: f64 = 165.0;
+/// How much nearer to the middle the columns are at their ends: arrows from a state to the one after the next pass beside the state between.
+const BULGE: f64 = 0.45;
+/// How far an arrow bends to its right, as a part of its length, and at least: there and back are two arrows.
 const BEND: f64 = 0.16;
+const LEAST_BEND: f64 = 52.0;
 
 type Point = [f64; 2];
 
@@ -41,7 +47,7 @@ pub fn svg(source: &Source) -> String {
     let layers: Vec<String> = source.layers.iter().map(|layer| layer_text(layer.get_ref())).collect();
     let half = half_size(&nodes, &layers);
     let mut out = head(half, LAYER * layers.len() as f64);
-    let mut labels = String::new();
+    let mut labels = Labels { text: String::new(), taken: nodes.iter().map(|node| (node.at, node.half)).collect() };
     for Arrow { from, to, causes } in &arrows(source) {
         arrow(&mut out, &mut labels, &nodes[*from], &nodes[*to], causes);
     }
@@ -54,7 +60,7 @@ pub fn svg(source: &Source) -> String {
         };
         draw(&mut out, node, role);
     }
-    out.push_str(&labels);
+    out.push_str(&labels.text);
     for (line, text) in layers.iter().enumerate() {
         let y = half[1] + LAYER * line as f64;
         let _ = writeln!(out, r##"<text x="0" y="{y:.1}" fill="#567">{}</text>"##, escaped(text));
@@ -135,7 +141,7 @@ fn draw(out: &mut String, node: &Node, role: Role) {
     let _ = writeln!(out, r#"<text x="{x:.1}" y="{:.1}" font-weight="bold">{}</text>"#, y + up, escaped(&node.name));
     if !node.clip.is_empty() {
         let _ =
-            writeln!(out, r##"<text x="{x:.1}" y="{:.1}" font-size="11" fill="#567">{}</text>"##, y + 13.0, escaped(&node.clip));
+            writeln!(out, r##"<text x="{x:.1}" y="{:.1}" font-size="12" fill="#567">{}</text>"##, y + 13.0, escaped(&node.clip));
     }
 }
 
@@ -151,12 +157,24 @@ fn nodes(source: &Source) -> Vec<Node> {
     let named: Vec<(String, String)> = source.states.iter().map(|state| (state.name.get_ref().clone(), clip(state))).collect();
     let width = |(name, clip): &(String, String)| name.chars().count().max(clip.chars().count()) as f64 * LETTER + 24.0;
     let widest = named.iter().map(width).fold(80.0, f64::max);
-    // Neighbours on the circle are a state and a label apart.
-    let radius = if count == 1 { 0.0 } else { (widest + 110.0) / (2.0 * (PI / count as f64).sin()) };
-    let angle = |index: usize| TAU * index as f64 / count as f64 - if count == 2 { PI } else { FRAC_PI_2 };
+    // The first at the top, down on the right, up on the left; an even number has one at the bottom.
+    let (rows, even) = ((count - 1) / 2, count % 2 == 0);
+    let last = if even { rows + 1 } else { rows };
+    let place = |index: usize| {
+        let (side, row) = match index {
+            0 => (0.0, 0),
+            _ if index <= rows => (1.0, index),
+            _ if even && index == rows + 1 => (0.0, last),
+            _ => (-1.0, count - index),
+        };
+        // From the middle of the column, -1 to 1.
+        let along = if rows < 2 { 0.0 } else { 2.0 * (row as f64 - 1.0) / (rows as f64 - 1.0) - 1.0 };
+        let column = (widest / 2.0 + COLUMN) * (1.0 - BULGE * along * along);
+        [side * column, ROW * (row as f64 - last as f64 / 2.0)]
+    };
     let node = |(index, (name, clip)): (usize, (String, String))| {
         let half = [width(&(name.clone(), clip.clone())) / 2.0, STATE / 2.0];
-        Node { at: [radius * angle(index).cos() * 1.15, radius * angle(index).sin()], name, clip, half }
+        Node { at: place(index), name, clip, half }
     };
     named.into_iter().enumerate().map(node).collect()
 }
@@ -189,11 +207,44 @@ fn why(row: &Transition) -> String {
     }
 }
 
+/// Texts beside arrows, and the boxes that they and the states take: their middles, and half of their sizes.
+struct Labels {
+    text: String,
+    taken: Vec<(Point, Point)>,
+}
+
+impl Labels {
+    /// Writes causes at the first of some places where nothing is in their way, else at the first of all.
+    fn write(&mut self, causes: &[String], places: &[Point]) {
+        let longest = causes.iter().map(|cause| cause.chars().count()).max().unwrap_or(0) as f64;
+        let half = [longest * LETTER / 2.0, causes.len() as f64 * LINE / 2.0];
+        let meets = |at: &Point, (other, its): &(Point, Point)| {
+            (0..2).all(|axis| (at[axis] - other[axis]).abs() < half[axis] + its[axis])
+        };
+        let free = places.iter().find(|at| !self.taken.iter().any(|other| meets(at, other)));
+        let Some(&at) = free.or(places.first()) else { return };
+        self.taken.push((at, half));
+        let top = at[1] - LINE * (causes.len() - 1) as f64 / 2.0 + 4.0;
+        for (line, cause) in causes.iter().enumerate() {
+            let _ = writeln!(
+                self.text,
+                r##"<text x="{:.1}" y="{:.1}" font-size="12" fill="#024" stroke="#fff" stroke-width="4" paint-order="stroke">{}</text>"##,
+                at[0],
+                top + LINE * line as f64,
+                escaped(cause)
+            );
+        }
+    }
+}
+
+/// Parts of an arrow's way at which its label may stand, the best first.
+const LABEL_AT: [f64; 9] = [0.5, 0.43, 0.57, 0.36, 0.64, 0.29, 0.71, 0.22, 0.78];
+
 /// Draws an arrow, and its label later, above all states.
-fn arrow(out: &mut String, labels: &mut String, from: &Node, to: &Node, causes: &[String]) {
+fn arrow(out: &mut String, labels: &mut Labels, from: &Node, to: &Node, causes: &[String]) {
     let (a, b) = (from.at, to.at);
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-    let (path, middle) = if length < 1.0 {
+    let (path, places) = if length < 1.0 {
         // To itself: a loop on the side away from the centre.
         let away = a[0].hypot(a[1]).max(1.0);
         let [x, y] = if away > 1.0 { [a[0] / away, a[1] / away] } else { [0.0, -1.0] };
@@ -204,26 +255,21 @@ fn arrow(out: &mut String, labels: &mut String, from: &Node, to: &Node, causes: 
             "M{:.1} {:.1}C{:.1} {:.1} {:.1} {:.1} {:.1} {:.1}",
             start[0], start[1], left[0], left[1], right[0], right[1], end[0], end[1]
         );
-        (path, [top[0] - x * 14.0, top[1] - y * 14.0])
+        (path, vec![[top[0] - x * 14.0, top[1] - y * 14.0]])
     } else {
-        let bend = [-(b[1] - a[1]) * BEND, (b[0] - a[0]) * BEND];
+        let part = BEND.max(LEAST_BEND / length);
+        let bend = [-(b[1] - a[1]) * part, (b[0] - a[0]) * part];
         let over = [(a[0] + b[0]) / 2.0 + bend[0], (a[1] + b[1]) / 2.0 + bend[1]];
         let (start, end) = (border(from, over), border(to, over));
-        let middle = [0, 1].map(|axis| 0.25 * start[axis] + 0.5 * over[axis] + 0.25 * end[axis]);
         let path = format!("M{:.1} {:.1}Q{:.1} {:.1} {:.1} {:.1}", start[0], start[1], over[0], over[1], end[0], end[1]);
-        (path, middle)
+        let at = |t: f64| {
+            let s = 1.0 - t;
+            [0, 1].map(|axis| s * s * start[axis] + 2.0 * s * t * over[axis] + t * t * end[axis])
+        };
+        (path, LABEL_AT.map(at).to_vec())
     };
     let _ = writeln!(out, r##"<path d="{path}" fill="none" stroke="#345" marker-end="url(#head)"/>"##);
-    let top = middle[1] - LINE * (causes.len() - 1) as f64 / 2.0 + 4.0;
-    for (line, cause) in causes.iter().enumerate() {
-        let _ = writeln!(
-            labels,
-            r##"<text x="{:.1}" y="{:.1}" font-size="12" fill="#024" stroke="#fff" stroke-width="4" paint-order="stroke">{}</text>"##,
-            middle[0],
-            top + LINE * line as f64,
-            escaped(cause)
-        );
-    }
+    labels.write(causes, &places);
 }
 
 /// Where the way from a state's middle to a point leaves the state.
