@@ -14,6 +14,7 @@ const HOME = { orbit: -50, tilt: 12 };
 // What is behind the figure where the ground is transparent, on a light page and a dark one.
 const PAPERS = [[250, 250, 247], [19, 22, 27]];
 const AXES = ["x", "y", "z"];
+const LOOKS = ["lines", "solid", "oled"];
 const SIDES = { left: -1, right: 1 };
 const [WIDTH, HEIGHT] = [128, 64];
 const isStill = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -94,7 +95,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   // What draws the clip's scalars, and what steers a character.
   #face = null;
   #actor = null;
-  #oled = null;
+  // The modules of the looks that were shown.
+  #looks = {};
   #request = 0;
   #before = 0;
   #at = 0;
@@ -208,7 +210,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   get src() { return this.getAttribute("src"); }
   set src(src) { this.setAttribute("src", src); }
   get currentSrc() { return this.src === null ? "" : new URL(this.src, document.baseURI).href; }
-  get look() { return this.getAttribute("look") === "oled" ? "oled" : "lines"; }
+  get look() { return LOOKS.find((look) => look === this.getAttribute("look")) ?? "lines"; }
   set look(look) { this.setAttribute("look", look); }
   get fit() { return this.getAttribute("fit") === "whole" ? "whole" : "follow"; }
   set fit(fit) { this.setAttribute("fit", fit); }
@@ -502,7 +504,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const isOled = this.look === "oled";
     const [width, height] = isOled ? [WIDTH, HEIGHT] : [clientWidth, clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
-    if (isOled && !this.#oled) this.#display().then(() => this.draw(), () => {});
+    if (this.look !== "lines" && !this.#looks[this.look]) this.#display().then(() => this.#aim(), () => {});
     this.#colors();
     const [orbit, tilt] = [Math.round(this.#orbit), Math.round(this.#tilt)];
     const hasBody = actor || clip.joints.length;
@@ -521,8 +523,11 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     else if (hasBody) {
       const player = this.#player;
       const { frame } = player;
-      this.#figure ??= figureOf(clip, player.seek(0).raw);
-      this.#figure.aim(...view, visitor(clip, this.#playable, (frame) => player.seek(frame).raw));
+      const figure = (this.#figure ??= figureOf(clip, player.seek(0).raw));
+      const visit = visitor(clip, this.#playable, (frame) => player.seek(frame).raw);
+      figure.solid = this.#looks[this.look]?.solidOf?.(clip, figure, figure.solid);
+      figure.aim(...view, visit, figure.solid?.cover);
+      figure.solid?.learn(visit, this.#playable);
       player.seek(frame);
     }
     face?.aim(side, hasBody ? side : height, width - side, orbit - HOME.orbit, tilt - HOME.tilt);
@@ -702,24 +707,25 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     }
   }
 
-  // Passes the frame's strokes, from far to near.
-  #each(stroke) {
+  // Passes the frame's strokes, from far to near: all, or those of a face beside a body.
+  #each(stroke, hasBody = true) {
     const aside = this.#aside;
     const body = aside ? (x, y, u, v, shade, part, width) => stroke(x + aside, y, part === 4 ? u : u + aside, v, shade, part, width) : stroke;
     if (!this.playable) return;
     if (this.#actor) return this.#actor.each(body);
-    this.#figure?.each(body);
+    if (hasBody) this.#figure?.each(body);
     this.#face?.each(this.#player.raw, stroke);
   }
 
   // The greys of the 128x64 display, 17 times 0 to 15; in that look alone, once its module has loaded.
   grey() {
-    return this.#oled.greysOf((stroke) => this.#each(stroke));
+    return this.#looks.oled.greysOf((stroke) => this.#each(stroke));
   }
 
-  // The module that draws the display's pixels, in that look alone.
+  // The module of another look than lines.
   async #display() {
-    if (this.look === "oled") this.#oled ??= await import("./pantin-oled.js");
+    if (this.look === "oled") this.#looks.oled ??= await import("./pantin-oled.js");
+    if (this.look === "solid") this.#looks.solid ??= await import("./pantin-solid.js");
   }
 
   // Calls the script that writes files, which is loaded only now.
@@ -747,8 +753,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   draw() {
-    if (this.look === "lines") this.#drawLines();
-    else if (this.#oled) {
+    if (this.look !== "oled") this.#drawLines();
+    else if (this.#looks.oled) {
       const image = this.context.createImageData(WIDTH, HEIGHT);
       const pixels = new Uint32Array(image.data.buffer);
       this.grey().forEach((grey, index) => (pixels[index] = 0xff000000 | (grey * 0x10101)));
@@ -762,6 +768,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const mix = (ink, part) => `rgb(${[0, 1, 2].map((index) => Math.round(paper[index] + (ink[index] - paper[index]) * part))})`;
     context.clearRect(0, 0, canvas.width, canvas.height);
     const thin = Math.max(1, canvas.height / 280);
+    const solid = this.look === "solid" && this.#figure?.solid;
+    if (solid) solid.draw(context, this.#tones, canvas.height, this.#aside / 16);
     this.#each((x, y, u, v, shade, part, width) => {
       context.strokeStyle = this.#inks[part * 256 + shade] ??= mix(this.#tones[part], shade / 255);
       // A path of its own for each, without round ends and one pixel wide where nobody sees the difference: a face has 900 lines, and browsers take several
@@ -777,7 +785,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
         context.globalCompositeOperation = "source-over";
       } else context.moveTo(x / 16, y / 16), context.lineTo(u / 16, v / 16);
       context.stroke();
-    });
+    }, !solid);
   }
 
   #tell() {

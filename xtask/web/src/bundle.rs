@@ -8,11 +8,12 @@ use anyhow::{Context, Result, ensure};
 use crate::script;
 
 /// The modules of each script of the player, below `web/packages`. The last one keeps its exports.
-pub const SCRIPTS: [(&str, &[&str]); 8] = [
+pub const SCRIPTS: [(&str, &[&str]); 9] = [
     ("pantin-player.js", &["decoder/tables.js", "decoder/clip.js", "player/figure.js", "player/element.js"]),
     ("pantin-controls.js", &["player/controls.js"]),
     ("pantin-export.js", &["player/export.js"]),
     ("pantin-oled.js", &["player/oled.js"]),
+    ("pantin-solid.js", &["player/solid.js"]),
     ("pantin-words.js", &["player/words.js"]),
     ("pantin-table.js", &["player/table.js"]),
     ("pantin-face.js", &["player/wasm.js", "player/face.js"]),

@@ -15,7 +15,7 @@ use xtask::{build, paths, setup};
 
 /// The packages, those that others need first.
 pub const PACKAGES: [&str; 3] = ["decoder", "three", "player"];
-const CHECK: [&str; 10] = [
+const CHECK: [&str; 13] = [
     "bundles.mjs",
     "check.mjs",
     "check.ts",
@@ -25,6 +25,9 @@ const CHECK: [&str; 10] = [
     "pixels.html",
     "pixels.js",
     "pixels.mjs",
+    "preact.tsx",
+    "react.tsx",
+    "templates.ts",
     "tsconfig.json",
 ];
 /// Files that three.js draws as their own animation moves them and as a clip of it does: a fox, a man with a texture of stripes, a captured body. Each

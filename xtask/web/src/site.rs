@@ -38,8 +38,8 @@ pub struct Size {
 
 /// What a page that plays clips loads.
 pub const PLAYER: [&str; 1] = ["pantin-player.js"];
-/// What it loads too: once a picture has the focus, for the display's look, for a table of poses, in other languages than English.
-pub const OTHERS: [&str; 4] = ["pantin-controls.js", "pantin-oled.js", "pantin-table.js", "pantin-words.js"];
+/// What it loads too: once a picture has the focus, for the solid look and the display's, for a table of poses, in other languages than English.
+pub const OTHERS: [&str; 5] = ["pantin-controls.js", "pantin-solid.js", "pantin-oled.js", "pantin-table.js", "pantin-words.js"];
 /// What it loads too once a picture or a recording is saved.
 pub const EXPORT: [&str; 1] = ["pantin-export.js"];
 /// What it loads too once a clip may drive a face.
