@@ -1,14 +1,15 @@
 // <pantin-player src="walk.ptn" autoplay loop></pantin-player>: plays a clip while its bytes arrive, as a media element does. docs/WEB.md lists its attributes,
 // properties, methods and events. The build puts decoder and figure into one file with it; other parts are modules, fetched at their first use.
 import { openRawClip, openRawRig } from "@pantin/decoder/clip.js";
-import { figureOf, visitor } from "./figure.js";
+import { figureOf, maths, visitor } from "./figure.js";
 
-const MOST = 64 << 20;
+// Bytes of a file that is not shown before all of it has arrived.
+const PACKET = 1200;
 // What a player without a clip knows.
-const empty = () => ({ received: 0, total: 0, trouble: "", error: null, events: [], clips: [], states: [], inputs: [], parameters: [], state: null });
+const empty = () => ({ received: 0, total: 0, trouble: "", coming: "", error: null, events: [], clips: [], states: [], inputs: [], parameters: [], state: null });
 // What is said, which a module has in other languages. What is wrong with a file the decoder says.
 const ENGLISH = {
-  figure: "animated figure", play: "Play", pause: "Pause", time: "Time", of: "of", seconds: "seconds", bytes: "bytes", frames: "frames", first: "the first pose is still to come",
+  figure: "animated figure", play: "Play", pause: "Pause", time: "Time", of: "of", seconds: "seconds", frames: "frames",
 };
 const HOME = { orbit: -50, tilt: 12 };
 // What is behind the figure where the ground is transparent, on a light page and a dark one.
@@ -89,9 +90,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   #figure = null;
   #playable = 0;
   #isWhole = false;
-  // Frames that the camera has looked at, and the file's bytes at the last look.
+  // Frames that the camera has looked at.
   #surveyed = 0;
-  #opened = 0;
   // What draws the clip's scalars, and what steers a character.
   #face = null;
   #actor = null;
@@ -310,10 +310,9 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const wanted = !this.#paused && !had;
     // Who asked to play before there was a clip gets the next one.
     if (!wanted) this.pause();
-    this.#face?.close();
     this.#actor?.close();
     this.#clip = this.#player = this.#figure = this.#face = this.#actor = this.#abort = this.#lazy = null;
-    this.#playable = this.#at = this.#surveyed = this.#opened = 0;
+    this.#playable = this.#at = this.#surveyed = 0;
     this.#isWhole = this.#ended = false;
     Object.assign(this, empty());
     if (had) this.#dispatch("emptied");
@@ -334,45 +333,23 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   }
 
   async #receive(what, signal, name) {
+    const { url } = what;
     if (what instanceof Response) {
       if (!what.ok) throw new Error(`the clip cannot be fetched: ${what.status} ${what.statusText}`);
       // With an encoding, it is the length of something else.
       if (!what.headers.get("Content-Encoding")) this.total = +what.headers.get("Content-Length") || 0;
       what = what.body;
     }
-    if (!(what instanceof ReadableStream)) what = new Blob([what]).stream();
-    if (this.total > MOST) throw new Error(`the file has ${this.total} bytes; a clip may have ${MOST} here`);
-    const reader = what.getReader();
-    const parts = [];
     let file;
-    const join = async () => {
-      file = new Uint8Array(await new Blob(parts).arrayBuffer());
-      signal.throwIfAborted();
-    };
-    try {
-      for (;;) {
-        const { done, value } = await reader.read().catch(() => ({ done: true }));
-        signal.throwIfAborted();
-        if (done) break;
-        parts.push(value);
-        const length = (this.received += value.length);
-        if (length > MOST) throw new Error(`a clip may have ${MOST} bytes here`);
-        // A bank's clips may lie anywhere in it. A clip is looked at again once it has an eighth more, a short one at once.
-        if (parts[0][1] === 98) continue;
-        if (length < (this.total || Infinity) && length * 8 > this.#opened * 9 - 4096) {
-          this.#opened = length;
-          await join();
-          const problem = await this.#open(file, undefined, signal, true);
-          // A file of another kind need not be read to its end.
-          if (problem && problem !== "ends early") throw this.#problem(problem);
-        }
-        this.#dispatch("progress");
-      }
-    } finally {
-      reader.cancel().catch(() => {});
+    // What the network brings in one packet has nothing to show before.
+    if (!(what instanceof ReadableStream) || (url && this.total && this.total < PACKET)) file = new Uint8Array(await new Response(what).arrayBuffer());
+    else {
+      const { arrived } = await import("./pantin-stream.js");
+      file = await arrived(this, what, signal, (file) => this.#open(file, undefined, signal, true), (problem) => this.#problem(problem), () => this.#tell());
     }
+    signal.throwIfAborted();
+    this.received = file.length;
     let rig;
-    await join();
     if (file[0] === 80 && file[1] === 98) {
       const { bankOf, steer } = await import("./pantin-character.js");
       signal.throwIfAborted();
@@ -417,7 +394,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const [frame, isFirst, had] = [this.frame, !this.#clip, this.#playable];
     if (clip.scalars.length && !this.#face) {
       const { faceOf } = await import("./pantin-face.js");
-      const face = await faceOf(clip);
+      const face = await faceOf(clip, maths);
       signal.throwIfAborted();
       this.#face = face;
     }
@@ -754,12 +731,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
 
   draw() {
     if (this.look !== "oled") this.#drawLines();
-    else if (this.#looks.oled) {
-      const image = this.context.createImageData(WIDTH, HEIGHT);
-      const pixels = new Uint32Array(image.data.buffer);
-      this.grey().forEach((grey, index) => (pixels[index] = 0xff000000 | (grey * 0x10101)));
-      this.context.putImageData(image, 0, 0);
-    }
+    else this.#looks.oled?.draw(this.context, (stroke) => this.#each(stroke));
   }
 
   #drawLines() {
@@ -809,9 +781,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const [now, all] = [(frame * this.#frameTime) / 1e9, this.duration || 0].map((seconds) => seconds.toFixed(2));
     this.output.textContent = frames ? `${now} / ${all}` : "";
     this.scrubber.setAttribute("aria-valuetext", `${now} ${words.of} ${all} ${words.seconds}`);
-    const loads = this.#abort && !this.#abort.done && this.received;
-    const coming = !loads ? "" : !playable ? `${this.received} ${words.bytes}; ${words.first}` : playable < frames ? `${this.received} ${words.bytes}, ${playable} ${words.of} ${frames} ${words.frames}` : "";
-    const said = this.trouble || coming;
+    const said = this.trouble || this.coming;
     if (this.#status.textContent !== said) this.#status.textContent = said;
   }
 

@@ -89,6 +89,8 @@ const turnAbout = (turns, at, axis, angle) => {
     turns[c] = (turns[c] * cosine - from * sine + HALF) >> 15;
   }
 };
+// What a face is drawn with, too: a turn about an axis, sine and cosine, and the image of a vector.
+export const maths = [turnAbout, (angle) => (turnTo(angle), [sine, cosine]), (turns, v) => (imageOfAny(turns, 0, ...v), [...IMAGE])];
 const scaledBy = (x, scale) => (x * (scale >> 7) + ((x * (scale & 127)) >> 7) + HALF) >> 15;
 // Turns by a quaternion of length 1.
 const turnByUnit = (turns, at, w, x, y, z) => {
@@ -210,7 +212,7 @@ const skeletonOf = (clip, raw) => {
     info.at = found.length;
     const parent = above ? above.at : -1;
     const place = isPlace ? joints[index].rest.map((value) => shifted(value, unit - rig.exponent)) : bone;
-    found.push({ offset: place, parent, part, drives, isMoved, isShown: !isPlace && length > 0 && parent >= 0, name: info.name, isEnd: joints[index].isEnd });
+    found.push({ offset: place, parent, part, drives, isMoved, isShown: !isPlace && length > 0 && parent >= 0, index });
     if (isHead) {
       const tenth = Math.floor(size / 10);
       const end = infos.find((end) => joints[end.index].isEnd && end.above === info && end.length > Math.floor(tenth / 3));
@@ -332,8 +334,8 @@ export const figureOf = (clip, raw) => {
 
   const figure = {
     place,
-    // What another look of the figure is made of.
-    inner: () => ({ bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target }),
+    // What another look of the figure is made of, in a row: names of properties take bytes that lines need not have.
+    inner: () => [bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target],
     // Degrees; `upAxis` takes the place of the axis that the rig states. A camera that does not follow the figure stands still. `cover` passes circles for which it
     // makes room in place of the head's.
     aim(width, rows, orbit, tilt, isFollowing, upAxis, visit, cover) {

@@ -40,17 +40,25 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [0, 1, 2].map((axis) => a[(axis + 1) % 3] * b[(axis + 2) % 3] - a[(axis + 2) % 3] * b[(axis + 1) % 3]);
 const unit = (v) => v.map((x) => x / (Math.hypot(...v) || 1));
 // Camera's distance over that of a depth.
+// What figure.js passes of a figure in a row.
+function innerOf(figure) {
+  const [bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target] = figure.inner();
+  return { bones, crown, size, hips, places, turns, points, inWorld, project, view, scale, seen, axis, height, target };
+}
 const zoomOf = (depth) => 1 / clamp(1 + depth / 32768, 0.5, 1.5);
 
 // [joints] The joints of a person as indices of bones; undefined for other rigs. Joints that may be missing are -1.
 function personOf(clip, { bones, crown, hips, size }) {
   const lengthOf = (index) => Math.hypot(...bones[index].offset);
+  // The crown of the head is no joint of the rig.
+  const nameOf = (index) => clip.rig.joints[bones[index].index]?.name.toLowerCase() ?? "";
   const above = (joint) => (joint < 0 || bones[joint].parent < 0 ? [] : [bones[joint].parent, ...above(bones[joint].parent)]);
   const limb = ({ weak, generic, strong }, side) => {
     const found = [];
     let other;
-    bones.forEach(({ name, part, isEnd }, index) => {
-      if (part !== side || isEnd || !name) return;
+    bones.forEach(({ part }, index) => {
+      const name = nameOf(index);
+      if (part !== side || !name || clip.rig.joints[bones[index].index].isEnd) return;
       let role = strong.findIndex((words) => words.test(name));
       if (role < 0 && generic.test(name)) role = [0, 1, 2, 3].find((role) => found[role] === undefined);
       if (role >= 0) found[role] ??= index;
@@ -86,7 +94,7 @@ function personOf(clip, { bones, crown, hips, size }) {
     const reach = { [joint]: 0 };
     let best = -1;
     for (let index = joint + 1; bones[index]?.parent >= joint; index++) {
-      const { name = "", parent } = bones[index];
+      const [name, { parent }] = [nameOf(index), bones[index]];
       reach[index] = /thumb/.test(name) && !/foot/.test(name) ? -Infinity : reach[parent] + lengthOf(index);
       if (reach[index] > shortest) [shortest, best] = [reach[index], index];
     }
@@ -248,8 +256,8 @@ function drawHead(context, { skull, up, face, left }, edge, width) {
  */
 export function solidOf(clip, figure, known) {
   if (known) return known;
-  const { bones, crown, size } = figure.inner();
-  const person = personOf(clip, figure.inner());
+  const { bones, crown, size } = innerOf(figure);
+  const person = personOf(clip, innerOf(figure));
   const order = person ? [...Array(LIMBS + 2 * SEGMENTS.length).keys()] : bones.flatMap(({ isShown, parent }, index) => (isShown || (crown === index && parent >= 0) ? [index] : []));
   if (!order.length || order.length > MOST_PARTS) return;
   const measures = person ? measuresOf(bones, person) : { height: size };
@@ -264,7 +272,7 @@ export function solidOf(clip, figure, known) {
   const round = ([x, y, depth], radius) => [x, y, radius * zoomOf(depth)];
   const circle = (place, radius) => round(place, height * radii[radius]);
   const measure = () => {
-    inner = figure.inner();
+    inner = innerOf(figure);
     height = pixelsOf(measures.height);
     depth = (measures.height * 8192) / inner.seen;
     radii = height < 80 ? SMALL : LARGE;
@@ -413,7 +421,7 @@ export function solidOf(clip, figure, known) {
       isSorted = false;
       if (!person || learned === poses) return;
       learned = poses;
-      const { inWorld, places, turns } = figure.inner();
+      const { inWorld, places, turns } = innerOf(figure);
       let [up, ahead] = [[0, 0, 0], [0, 0, 0]];
       const at = (index) => places.subarray(3 * index, 3 * index + 3);
       const way = (from, to) => unit([0, 1, 2].map((axis) => at(to)[axis] - at(from)[axis]));

@@ -62,9 +62,7 @@ pub fn pack(site: &Path, out: &Path) -> Result<Vec<Packed>> {
         for name in files.iter().filter_map(Value::as_str).chain(["package.json"]) {
             let bytes = match name {
                 "LICENSE-MIT" | "LICENSE-APACHE" => read(&paths::root().join(name))?,
-                "decoder.min.js" => {
-                    tools::minified(bundle::bundle(&paths::root().join("web/packages"), &bundle::DECODER)?.into_bytes())?
-                }
+                "decoder.min.js" => bundle::decoder()?,
                 "turns.min.js" => tools::minified(read(&source.join("turns.js"))?)?,
                 name if [&PLAYER[..], &OTHERS, &EXPORT, &FACE, &CHARACTER].iter().any(|files| files.contains(&name)) => {
                     read(&site.join(name))?

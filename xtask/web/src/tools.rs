@@ -33,7 +33,14 @@ pub fn installed() -> bool {
 /// A script with short names, or as it is.
 pub fn minified(script: Vec<u8>) -> Result<Vec<u8>> {
     let script = with_let(&String::from_utf8(script).context("a script that is not UTF-8")?).into_bytes();
-    let options = ["--module", "--compress", "passes=3,unsafe=true", "--mangle", "--ecma", "2022"];
+    let options = [
+        "--module",
+        "--compress",
+        "passes=3,unsafe=true,pure_getters=true,if_return=false,comparisons=false,lhs_constants=false,reduce_funcs=false",
+        "--mangle",
+        "--ecma",
+        "2022",
+    ];
     run("terser/bin/terser", "js", script, |from, to| {
         let mut arguments = vec![from.into()];
         arguments.extend(options.map(PathBuf::from));
