@@ -24,9 +24,9 @@ const pose = slot + ((wasm.slot() + 15) & -16);
 wasm.memory.grow(4);
 const memory = () => wasm.memory.buffer;
 
-function expected(raw, view) {
+function expected(raw, camera) {
   // The camera is set up again for each pose: while the head does not turn, the firmware projects some points of the neck as if they turned with it, a sixteenth of a pixel off.
-  wasm.aim(slot, ...view);
+  wasm.aim(slot, ...camera);
   new Int32Array(memory(), pose, raw.length).set(raw);
   const count = wasm.place(slot, pose, raw.length);
   const view = new DataView(memory(), wasm.picture(), STROKE * count);

@@ -42,7 +42,9 @@ export function attach(player, home) {
   stage.addEventListener("pointerdown", (event) => {
     from = place(event);
     stage.setPointerCapture(event.pointerId);
+    stage.style.cursor = "grabbing";
   });
+  stage.addEventListener("lostpointercapture", () => (stage.style.cursor = ""));
   stage.addEventListener("pointermove", (event) => {
     if (!(event.buttons & 1)) return;
     const [[x, y], [oldX, oldY]] = [place(event), from ?? place(event)];

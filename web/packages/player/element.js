@@ -15,9 +15,7 @@ const HOME = { orbit: -50, tilt: 12 };
 // What is behind the figure where the ground is transparent, on a light page and a dark one.
 const PAPERS = [[250, 250, 247], [19, 22, 27]];
 const AXES = ["x", "y", "z"];
-const LOOKS = ["lines", "solid", "oled"];
 const SIDES = { left: -1, right: 1 };
-const [WIDTH, HEIGHT] = [128, 64];
 const isStill = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 const CSS = `
@@ -27,7 +25,6 @@ const CSS = `
 .stage { --p: #fafaf7; --m: #262c34; --l: #c65c08; --r: #0068a8; --g: #69767e; }
 .dark { --p: #13161b; --m: #fff0d7; --l: #ffa64d; --r: #60c4ff; --g: #aabec3; }
 .stage { position: absolute; inset: 0; border-radius: 10px; overflow: hidden; touch-action: pan-y; cursor: grab; outline-offset: 3px; background: var(--pantin-paper, var(--p)); color: var(--pantin-body, var(--m)); fill: var(--pantin-left, var(--l)); stroke: var(--pantin-right, var(--r)); stop-color: var(--pantin-ground, var(--g)); }
-.stage:active { cursor: grabbing; }
 canvas, .poster { position: absolute; inset: 0; width: 100%; height: 100%; }
 .poster { display: block; object-fit: contain; }
 .shown .poster { display: none; }
@@ -210,7 +207,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
   get src() { return this.getAttribute("src"); }
   set src(src) { this.setAttribute("src", src); }
   get currentSrc() { return this.src === null ? "" : new URL(this.src, document.baseURI).href; }
-  get look() { return LOOKS.find((look) => look === this.getAttribute("look")) ?? "lines"; }
+  get look() { return ["solid", "oled"].find((look) => look === this.getAttribute("look")) ?? "lines"; }
   set look(look) { this.setAttribute("look", look); }
   get fit() { return this.getAttribute("fit") === "whole" ? "whole" : "follow"; }
   set fit(fit) { this.setAttribute("fit", fit); }
@@ -341,8 +338,8 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
       what = what.body;
     }
     let file;
-    // What the network brings in one packet has nothing to show before.
-    if (!(what instanceof ReadableStream) || (url && this.total && this.total < PACKET)) file = new Uint8Array(await new Response(what).arrayBuffer());
+    // What is in the page (data:, blob:), or comes in one packet, has nothing to show before.
+    if (!(what instanceof ReadableStream) || /^[bd]/.test(url) || (url && this.total && this.total < PACKET)) file = new Uint8Array(await new Response(what).arrayBuffer());
     else {
       const { arrived } = await import("./pantin-stream.js");
       file = await arrived(this, what, signal, (file) => this.#open(file, undefined, signal, true), (problem) => this.#problem(problem), () => this.#tell());
@@ -479,7 +476,7 @@ export class PantinPlayer extends (globalThis.HTMLElement ?? Object) {
     const { clientWidth, clientHeight } = this.stage;
     const scale = Math.min(devicePixelRatio || 1, 2047 / clientWidth);
     const isOled = this.look === "oled";
-    const [width, height] = isOled ? [WIDTH, HEIGHT] : [clientWidth, clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
+    const [width, height] = isOled ? [128, 64] : [clientWidth, clientHeight].map((length) => Math.max(1, Math.floor(length * scale)));
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     if (this.look !== "lines" && !this.#looks[this.look]) this.#display().then(() => this.#aim(), () => {});
     this.#colors();

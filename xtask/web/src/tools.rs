@@ -65,10 +65,10 @@ pub fn optimized(module: Vec<u8>) -> Result<Vec<u8>> {
 /// The script with `let` in place of `const`: it is shorter, and no constant of a script that runs is assigned to.
 fn with_let(script: &str) -> String {
     let mut out = String::with_capacity(script.len());
-    for (index, part) in script.split("const ").enumerate() {
-        let is_word = out.chars().last().is_none_or(|before| before.is_whitespace() || ";{}(".contains(before));
+    for (index, part) in script.split("const").enumerate() {
+        let begins = out.chars().last().is_none_or(|before| before.is_whitespace() || ";{}(".contains(before));
         if index > 0 {
-            out += if is_word { "let " } else { "const " };
+            out += if begins && part.starts_with([' ', '[', '{']) { "let" } else { "const" };
         }
         out += part;
     }
