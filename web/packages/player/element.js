@@ -34,7 +34,7 @@ canvas, .poster { position: absolute; inset: 0; width: 100%; height: 100%; }
 .bar { display: flex; gap: .6em; align-items: center; margin-top: .5em; }
 button { font: inherit; width: 2.6em; height: 2.2em; border: 1px solid color-mix(in srgb, currentColor 30%, transparent); border-radius: 7px; background: none; color: inherit; cursor: pointer; }
 i { display: block; width: 11px; height: 13px; margin: auto; background: currentColor; forced-color-adjust: none; clip-path: polygon(0 0, 100% 50%, 0 100%); }
-.runs > i { clip-path: polygon(0 0, 35% 0, 35% 100%, 65% 100%, 65% 0, 100% 0, 100% 100%, 0 100%); }
+.runs i { clip-path: polygon(0 0, 35% 0, 35% 100%, 65% 100%, 65% 0, 100% 0, 100% 100%, 0 100%); }
 .big { display: none; position: absolute; inset: auto auto 10px 10px; width: 44px; height: 44px; border-radius: 50%; border-color: currentColor; color: #fff; background: #000b; }
 .waits .big, :host([bare]) .runs:is(:hover, :focus-within) .big { display: block; }
 .waits .big { inset: 50% auto auto 50%; width: 64px; height: 64px; margin: -32px; }
